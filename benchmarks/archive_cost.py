@@ -20,8 +20,8 @@ from programs import PARSE, REDUCE, run, seconds_of, sizes, synthetic_log
 WANTED = 5.0  # times parsing, with the default archive
 STORE = f"""
 import netCDF4, xarray
-from reduction.archive.dataset import to_dataset
-from reduction.archive.kept import kept_samples
+from reduction.archive.test_dataset import to_dataset
+from reduction.archive.test_dataset import kept_samples
 from reduction.archive.write import write_archive
 {REDUCE}
 kept = kept_samples(test, survey.plan.settings)
@@ -38,7 +38,7 @@ def keeping_all(campaign: Path) -> Path:
     whole = campaign.with_name(campaign.name.replace("campaign", "whole"))
     # the last table is the test
     whole.write_text(
-        campaign.read_text(encoding="utf-8") + 'reduction.archive.samples = "all"\n',
+        campaign.read_text(encoding="utf-8") + 'reduction.archive.test_dataset = "all"\n',
         encoding="utf-8",
     )
     return whole

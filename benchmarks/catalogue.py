@@ -23,10 +23,15 @@ import numpy as np
 from figures import Figure, hand_on
 
 from reduction.archive.open import open_archive
-from reduction.catalogue.condition import condition_of
-from reduction.catalogue.file import FILE_NAME, load_catalogue
-from reduction.catalogue.query import Query, answer, needed_quantities
-from reduction.catalogue.read import rebuild
+from reduction.batch.catalogue import (
+    FILE_NAME,
+    Query,
+    answer,
+    condition_of,
+    load_catalogue,
+    needed_quantities,
+    rebuild,
+)
 
 ROOT = Path(__file__).parents[1]
 WANTED = 1.0  # s, of a question

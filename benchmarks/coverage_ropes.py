@@ -22,27 +22,28 @@ from typing import Any
 import numpy as np
 from coverage_tethers import Found, table
 
-from reduction.archive.dataset import to_dataset
-from reduction.archive.linesource import line_source_of_experiment
-from reduction.archive.surfaces import surfaces_to_dataset
-from reduction.batch.experiments import fit_rows
-from reduction.batch.runrows import row_of_archive
+from reduction.archive.surfaces_dataset import surfaces_to_dataset
+from reduction.archive.test_dataset import to_dataset
+from reduction.batch.experiment_product import fit_rows, row_of_archive
 from reduction.campaign.plan import ExperimentPlan
-from reduction.experiment import ExperimentResult
-from reduction.line.product import SlowPull
-from reduction.lookup.line import look_up
-from reduction.pipeline.locate import locate
-from reduction.pipeline.reduce import reduce_test
-from reduction.pipeline.shared.pulls import PullOrigin
-from reduction.product import ReducedTest, TestDescription
-from reduction.provenance import Origin
-from reduction.record import Record, Specimen
-from reduction.settings import CycleSettings, ReductionSettings
-from reduction.strain.model import StrainModel
-from reduction.surface.designs import box_behnken
-from reduction.surface.levels import FactorLevels
-from reduction.surface.terms import model_matrix, quadratic_exponents
-from reduction.uncertainty.product import InstrumentErrors
+from reduction.experiments.designs import (
+    FactorLevels,
+    box_behnken,
+    model_matrix,
+    quadratic_exponents,
+)
+from reduction.experiments.experiment import ExperimentResult
+from reduction.lines.archive_source import line_source_of_experiment
+from reduction.lines.line_lookup import look_up
+from reduction.pipeline.located_test import locate
+from reduction.pipeline.reduce_test import reduce_test
+from reduction.record.contributions import InstrumentErrors
+from reduction.record.measurement import Origin, Record, Specimen
+from reduction.record.settings import CycleSettings, ReductionSettings
+from reduction.stages.line.line_product import SlowPull
+from reduction.stages.reduced_test import ReducedTest, TestDescription
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.shared_contributions import PullOrigin
 
 STRENGTH, LENGTH = 28.5e3, 1.8
 PULL = np.array([0.0, 1 / 45e3, -6.5e-10, 9.5e-15])  # strain of the slow pull: K_0 doubles on it

@@ -16,18 +16,18 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from reduction.pipeline.locate import locate
-from reduction.pipeline.reduce import reduce_test
-from reduction.product import ReducedTest, TestDescription
-from reduction.record import Record, Specimen, SpliceMarks
-from reduction.settings import ReductionSettings
-from reduction.strain.fit import fit_strain_model
-from reduction.uncertainty.combine import (
+from reduction.pipeline.located_test import locate
+from reduction.pipeline.reduce_test import reduce_test
+from reduction.record.contributions import (
+    InstrumentErrors,
     combined_standard_uncertainty,
     coverage_factor,
     effective_degrees_of_freedom,
 )
-from reduction.uncertainty.product import InstrumentErrors
+from reduction.record.measurement import Record, Specimen, SpliceMarks
+from reduction.record.settings import ReductionSettings
+from reduction.stages.reduced_test import ReducedTest, TestDescription
+from reduction.stages.strain.strain_fit import fit_strain_model
 
 FREE, SPLICES, COMPLIANCE, EXPONENT = 2.55, 1.19, 0.4 / 900**0.85, 0.85
 DIAMETER = 0.026416

@@ -25,9 +25,9 @@ import numpy as np
 from figures import Figure, hand_on
 from scipy.interpolate import PchipInterpolator
 
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.hose import predict_hose
-from reduction.predict.product import HoseDesign, HosePrediction
+from reduction.prediction.cord_curve import CordCurve
+from reduction.prediction.hose_product import HoseDesign, HosePrediction
+from reduction.prediction.hose_tension import predict_hose
 
 PASSES = 15
 WANTED = 90.0  # times one square root of the array

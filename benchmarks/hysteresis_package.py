@@ -30,15 +30,14 @@ from typing import NamedTuple
 import numpy as np
 from figures import Figure, hand_on
 
-from reduction.cycles.energy import loop_energy
-from reduction.cycles.find import find_cycles
-from reduction.cycles.loops import close_loops
-from reduction.cycles.reversals import first_pass
-from reduction.moduli.ends import end_moduli
-from reduction.moduli.secant import chord_modulus
-from reduction.moduli.tangent import tangent_curves
-from reduction.phases.standstill import find_standstills
-from reduction.settings import CycleSettings, ModulusSettings, PhaseSettings
+from reduction.record.settings import CycleSettings, ModulusSettings, PhaseSettings
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.cycles.loop_energy import loop_energy
+from reduction.stages.cycles.loops import close_loops
+from reduction.stages.cycles.reversals import first_pass
+from reduction.stages.moduli.secant_modulus import chord_modulus, end_moduli
+from reduction.stages.moduli.tangent_modulus import tangent_curves
+from reduction.stages.standstills import find_standstills
 
 PASSES = 9
 NOISE = 0.002  # of the range

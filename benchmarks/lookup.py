@@ -19,8 +19,8 @@ from time import perf_counter
 import numpy as np
 from figures import Figure, hand_on
 
-from reduction.lookup.line import look_up
-from reduction.published.linesource import published_sources
+from reduction.lines.line_lookup import look_up
+from reduction.lines.published_source import published_sources
 
 PASSES = 15
 LINE = "nylon-double-braid-0.5in-new"

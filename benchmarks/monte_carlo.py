@@ -23,14 +23,13 @@ from pathlib import Path
 import numpy as np
 from coverage_tethers import numbers_of, one_test
 
-from reduction.batch.basis import basis_of
-from reduction.batch.history import past_of
-from reduction.batch.models import fit_strain_models
-from reduction.batch.reduce import reduce_survey
+from reduction.batch.reduce_tests import reduce_survey
+from reduction.batch.reuse import basis_of
 from reduction.batch.survey import Survey, read_test
+from reduction.batch.test_history import fit_strain_models, past_of
 from reduction.campaign.load import load_campaign
-from reduction.product import ReducedTest
-from reduction.uncertainty.combine import combined_standard_uncertainty
+from reduction.record.contributions import combined_standard_uncertainty
+from reduction.stages.reduced_test import ReducedTest
 
 ROOT = Path(__file__).parents[1] / "raw" / "tmt-synthetic"
 FOOT, POUND = 0.3048, 4.4482216152605

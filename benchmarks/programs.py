@@ -33,11 +33,11 @@ say(seconds=time.perf_counter() - start, rows=len(table))
 """A log is parsed: the file is the argument."""
 
 REDUCE = """
-from reduction.batch.models import fit_strain_models
-from reduction.batch.reduce import reduce_survey
+from reduction.batch.test_history import fit_strain_models
+from reduction.batch.reduce_tests import reduce_survey
 from reduction.batch.survey import survey_log
 from reduction.campaign.load import load_campaign
-from reduction.ingest.parts import Parts
+from reduction.readers.layout import Parts
 if sys.argv[2:] in (["memory"], ["disk"]):
     Parts.folder_of = lambda self, n_bytes: {"memory": None, "disk": self.folder}[sys.argv[2]]
 campaign = load_campaign(Path(sys.argv[1]))

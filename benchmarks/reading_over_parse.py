@@ -14,7 +14,7 @@ from programs import PARSE, print_sides, run, seconds_of, sizes, synthetic_log
 
 READ = """
 from reduction.campaign.load import load_campaign
-from reduction.ingest.read import read_log
+from reduction.readers.read_log import read_log
 campaign = load_campaign(Path(sys.argv[1]))
 (name, layout), = campaign.tests["long"].files
 start = time.perf_counter()

@@ -19,7 +19,7 @@ from programs import PARSE, print_sides, run, seconds_of, sizes, synthetic_log
 
 PAGE = """
 import netCDF4, xarray
-from reduction.report.page import write_report
+from reduction.report.campaign_page import write_report
 folder = Path(sys.argv[1])
 start = time.perf_counter()
 page = write_report(folder, folder / "report")

@@ -46,8 +46,8 @@ HEADER = (("time", "crosshead", "load_a", "load_b"), ("s", "ft", "lbf", "lbf"))
 READ = """
 import time, json, resource, sys
 from pathlib import Path
-from reduction.ingest.layout import Layout
-from reduction.ingest.spreadsheet import read_spreadsheet
+from reduction.readers.layout import Layout
+from reduction.readers.spreadsheet import read_spreadsheet
 layout = Layout(format="spreadsheet", has_unit_row=True, channels={
     "time": {"column": "time", "unit": "s"},
     "crosshead_position": {"column": "crosshead", "unit": "ft", "datum": "pin-to-pin"},

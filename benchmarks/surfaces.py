@@ -20,9 +20,8 @@ import numpy as np
 import statsmodels.api as sm
 from figures import Figure, hand_on
 
-from reduction.surface.designs import box_behnken
-from reduction.surface.surfaces import fit_surfaces
-from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.experiments.response_surfaces import fit_surfaces
 
 PASSES = 5
 R_SCRIPT = """

@@ -17,15 +17,12 @@ from statistics import median
 from figures import Figure, hand_on
 from programs import sizes, synthetic_log
 
-from reduction.batch.basis import basis_of
-from reduction.batch.describe import describe
-from reduction.batch.history import past_of
-from reduction.batch.instruments import instruments_of
-from reduction.batch.models import fit_strain_models
+from reduction.batch.reuse import basis_of, describe
 from reduction.batch.survey import located_again, read_test
+from reduction.batch.test_history import fit_strain_models, instruments_of, past_of
 from reduction.campaign.load import load_campaign
-from reduction.pipeline.reduce import reduce_test
-from reduction.uncertainty.stated import StatedErrors
+from reduction.pipeline.reduce_test import reduce_test
+from reduction.record.contributions import StatedErrors
 
 STATED = StatedErrors(
     tension_gain=0.0025, tension_offset=2.0, position_gain=0.001, position_offset=0.003, lag=0.005,

@@ -22,14 +22,13 @@ from statistics import median
 
 from figures import Figure, hand_on
 
-from reduction.batch.basis import basis_of
-from reduction.batch.executor import Workers, local_workers
-from reduction.batch.firstpass import survey_campaign
-from reduction.batch.history import past_of
-from reduction.batch.lock import run_lock
-from reduction.batch.models import fit_strain_models
-from reduction.batch.progress import Silent
-from reduction.batch.secondpass import reduce_campaign
+from reduction.batch.campaign_status import Silent
+from reduction.batch.reduce_tests import reduce_campaign
+from reduction.batch.reuse import basis_of
+from reduction.batch.run_lock import run_lock
+from reduction.batch.survey import survey_campaign
+from reduction.batch.test_history import fit_strain_models, past_of
+from reduction.batch.workers import Workers, local_workers
 from reduction.campaign.load import load_campaign
 from reduction.campaign.plan import Campaign
 

@@ -5,10 +5,15 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from reduction.published.cell import ReportId
-from reduction.reproduce.item import Item
-from reduction.reproduce.page import TITLES, number_beside
-from reduction.reproduce.reports import TouchedErratum, reproduce, touched_errata
+from reduction.published.printed_cells import ReportId
+from reduction.published.reproduce_page import (
+    TITLES,
+    TouchedErratum,
+    number_beside,
+    reproduce,
+    touched_errata,
+)
+from reduction.published.reproduced_item import Item
 
 __all__ = ["errata"]
 

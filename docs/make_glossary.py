@@ -1,13 +1,12 @@
-"""Write docs/glossary.md from `reduction.vocabulary`: ``python docs/make_glossary.py``."""
+"""Write docs/glossary.md from `reduction.quantities.names`: ``python docs/make_glossary.py``."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
 
-from reduction.record import Quality
-from reduction.tables.outcomes import OUTCOME_TABLES, GroupColumn
-from reduction.vocabulary import (
+from reduction.archive.csv_columns import OUTCOME_TABLES, GroupColumn
+from reduction.quantities.names import (
     BRANCH_VALUES,
     PHASE_VALUES,
     RESPONSE_PATTERNS,
@@ -15,6 +14,7 @@ from reduction.vocabulary import (
     SINGLE_QUANTITIES,
     Quantity,
 )
+from reduction.record.measurement import Quality
 
 __all__ = ["glossary"]
 
@@ -22,7 +22,7 @@ _SOURCES = {"000": "WHOI-2004-06", "002": "WHOI-2005-10", "003": "CG-D-39-80"}
 _HEAD = """\
 # Glossary
 
-<!-- Written by docs/make_glossary.py from reduction/vocabulary/; change it there. -->
+<!-- Written by docs/make_glossary.py from reduction/quantities/names.py; change it there. -->
 
 One name a quantity, the same in code, archives and tables; files are SI. A variable
 `NAME_standard_uncertainty` has the unit of `NAME`. A table's header is `NAME [unit]`.

@@ -6,13 +6,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from reduction.archive.tree import open_campaign
+    from reduction.archive.campaign_tree import open_campaign
 else:
 
     def __getattr__(name: str) -> Any:
         """Load what needs xarray at its first use: the package itself imports in milliseconds."""
         if name == "open_campaign":
-            return import_module("reduction.archive.tree").open_campaign
+            return import_module("reduction.archive.campaign_tree").open_campaign
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

@@ -14,10 +14,9 @@ import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
-from reduction.archive.attributes import CONVENTIONS
+from reduction.archive.dataset_builder import CONVENTIONS, SCHEMA_VERSION
 from reduction.archive.open import schema_of_file
-from reduction.archive.variable import Variable
-from reduction.archive.version import SCHEMA_VERSION
+from reduction.archive.variables import Variable
 
 _BLOCK = 1 << 20  # values of a long variable that are read at a time
 _CACHE = 1 << 19  # bytes of the largest chunk

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from reduction.lookup.composite import composite_curve
-from reduction.lookup.pieces import CurvePiece
-from reduction.lookup.tethers import Tether
-from reduction.strain.model import StrainModel
+from reduction.lines.assembly import Tether
+from reduction.lines.composite import composite_curve
+from reduction.lines.curve_pieces import CurvePiece
+from reduction.stages.strain.strain_model import StrainModel
 
 
 def curve_of(law, low=0.1, high=2.5, spread=0.0, n=200):

@@ -21,9 +21,9 @@ ROOT = Path(__file__).parents[1]
 SHARE = 5_000_000  # bytes of what was printed that are kept
 # what most commands load
 LOADED = (
-    "reduction.cli.main", "reduction.cli.runs", "reduction.batch.run", "reduction.batch.results",
-    "reduction.report.page", "reduction.tables.write", "reduction.ingest.sniff",
-    "reduction.lookup.loads", "reduction.designpage.page",
+    "reduction.cli.main", "reduction.cli.campaigns", "reduction.batch.run_campaign", "reduction.batch.other_products",
+    "reduction.report.campaign_page", "reduction.archive.csv_tables", "reduction.readers.sniff",
+    "reduction.lines.line_lookup", "reduction.pages.design_values",
 )  # fmt: skip
 WIDE = {"NO_COLOR": "1", "COLUMNS": "400"}
 MOST_MEMORY = 8_000_000_000  # of one command, that a fault does no harm to the machine
@@ -100,11 +100,11 @@ def _say(*words):
 
 def _read(path, layout, limits):
     """Propose a layout, then read; the status is that of the reading."""
-    from reduction.errors import ReductionError
-    from reduction.ingest.layout import Layout
-    from reduction.ingest.read import read_log
-    from reduction.ingest.sniff import sniff_layout
-    from reduction.settings import Limits
+    from reduction.readers.layout import Layout
+    from reduction.readers.read_log import read_log
+    from reduction.readers.sniff import sniff_layout
+    from reduction.record.errors import ReductionError
+    from reduction.record.settings import Limits
 
     path = Path(path)
     try:
@@ -168,8 +168,8 @@ def _child(asked, cwd, environment):
     except BaseException:
         traceback.print_exc()
     finally:
-        if "reduction.ingest.bounded" in sys.modules:
-            sys.modules["reduction.ingest.bounded"].end_reader()  # its memory counts too
+        if "reduction.readers.bounded_reader" in sys.modules:
+            sys.modules["reduction.readers.bounded_reader"].end_reader()  # its memory counts too
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)

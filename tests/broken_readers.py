@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from reduction.samples.scratch import ColumnWriter
+from reduction.record.samples import ColumnWriter
 
 
 def crash(path, *_, watch, **named):

@@ -6,11 +6,10 @@ from functools import cache
 import numpy as np
 from measured_hoses import Truth
 
-from reduction.archive.comparisons import NamedComparison, comparisons_to_dataset
-from reduction.compare.hose import compare_hose
-from reduction.compare.measured import measured_curve
-from reduction.compare.shared import constant_errors
-from reduction.provenance import Origin, Source, Step
+from reduction.archive.campaign_products import NamedComparison, comparisons_to_dataset
+from reduction.prediction.hose_comparison import compare_hose
+from reduction.prediction.measured_curve import constant_errors, measured_curve
+from reduction.record.measurement import Origin, Source, Step
 
 PSI = 6894.757293168
 TRUTH = Truth()

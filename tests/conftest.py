@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from visits import browser, visit
 
-from reduction.cycles.product import Cycles
+from reduction.stages.cycles.cycle_product import Cycles
 
 # an example takes as long as the machine lets it: others may work beside
 hypothesis.settings.register_profile("some", deadline=None, max_examples=20)

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from reduction.cli import lookup as command
-from reduction.cli.lookuppoints import Wanted
-from reduction.errors import ReductionError
-from reduction.units import display_unit
+from reduction.cli.lookup import Wanted
+from reduction.quantities.units import display_unit
+from reduction.record.errors import ReductionError
 
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 

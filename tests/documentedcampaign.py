@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from reduction.batch.run import run_campaign
+from reduction.batch.run_campaign import run_campaign
 from reduction.campaign.load import load_campaign
 
 ROOT = Path(__file__).parents[1]

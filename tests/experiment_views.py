@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 from experiments import ABOUT, FACTORS, HIGH, LOW, surface_experiment
 
-from reduction.archive.surfaces import surfaces_to_dataset
-from reduction.report.experimentview import ExperimentView
-from reduction.surface.designs import box_behnken
-from reduction.surface.surfaces import fit_surfaces
+from reduction.archive.surfaces_dataset import surfaces_to_dataset
+from reduction.experiments.designs import box_behnken
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.report.product_views import ExperimentView
 
 CODED = box_behnken(3).coded
 

@@ -2,19 +2,22 @@
 
 import numpy as np
 
-from reduction.experiment import ExperimentResult, RunTable
-from reduction.line.single import check_single_time
-from reduction.pipeline.shared.surface import with_shared_surfaces
-from reduction.provenance import Origin, Source, Step
-from reduction.surface.cautions import Caution
-from reduction.surface.designs import box_behnken, plackett_burman
-from reduction.surface.screening import screening_effects
-from reduction.surface.select import reduce_terms
-from reduction.surface.stiffness import fit_del_vecchio_stiffness, fit_mean_load_stiffness
-from reduction.surface.stiffness_forms import compare_stiffness_forms
-from reduction.surface.surfaces import fit_surfaces
-from reduction.uncertainty.product import Component, Contributions
-from reduction.vocabulary import RESPONSES
+from reduction.experiments.designs import box_behnken, plackett_burman
+from reduction.experiments.experiment import ExperimentResult, RunTable
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.run_sheet import Caution
+from reduction.experiments.screening import screening_effects
+from reduction.experiments.stiffness_forms import (
+    compare_stiffness_forms,
+    fit_del_vecchio_stiffness,
+    fit_mean_load_stiffness,
+)
+from reduction.experiments.term_selection import reduce_terms
+from reduction.quantities.names import RESPONSES
+from reduction.record.contributions import Component, Contributions
+from reduction.record.measurement import Origin, Source, Step
+from reduction.stages.line.line_model import check_single_time
+from reduction.uncertainty.surface_errors import with_shared_surfaces
 
 FACTORS = ("frequency", "mean_tension", "tension_amplitude")
 UNITS = ("Hz", "N", "N")

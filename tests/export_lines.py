@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from reduction.export.dynamics import Syrope, Viscoelasticity
-from reduction.export.product import ExportLine
+from reduction.lines.export_dynamics import Syrope, Viscoelasticity
+from reduction.lines.export_line import ExportLine
 
 
 def rubber(strain):

@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from reduction.lookup.linesurface import LineSurface
-from reduction.lookup.product import LineCurve, LineSource
-from reduction.surface.designs import box_behnken
-from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
 
 LOW, HIGH = np.array([0.1, 1000.0, 500.0]), np.array([0.5, 3000.0, 900.0])
 EXPONENTS = quadratic_exponents(3)

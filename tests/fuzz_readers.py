@@ -21,10 +21,10 @@ with atheris.instrument_imports(include=["reduction"]):
     from shortcampaign import write_short
 
     from reduction.archive.open import reading
-    from reduction.batch.run import run_campaign
+    from reduction.batch.run_campaign import run_campaign
     from reduction.campaign.load import load_campaign
-    from reduction.errors import ReductionError
-    from reduction.ingest.record_of_test import read_record
+    from reduction.readers.read_log import read_record
+    from reduction.record.errors import ReductionError
 
 import numpy as np
 

@@ -22,13 +22,12 @@ from fuzzcases import CASES
 from secondreading import read_again
 from secondreduction import numbers_that_differ, readings_that_differ
 
-from reduction.batch.basis import basis_of
-from reduction.batch.history import past_of
-from reduction.batch.models import fit_strain_models
-from reduction.batch.reduce import dataset_of
+from reduction.batch.reduce_tests import dataset_of
+from reduction.batch.reuse import basis_of
 from reduction.batch.survey import read_test
+from reduction.batch.test_history import fit_strain_models, past_of
 from reduction.campaign.load import load_campaign
-from reduction.errors import ReductionError
+from reduction.record.errors import ReductionError
 
 __all__ = ["InvariantError", "Verdict", "answer_of", "judge"]
 

@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from reduction.cycles.product import Cycles
-from reduction.product import ReducedTest, TestDescription
-from reduction.provenance import Source, Step
-from reduction.record import Quality, Record, Specimen
+from reduction.record.measurement import Quality, Record, Source, Specimen, Step
+from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.reduced_test import ReducedTest, TestDescription
 
 BEFORE, PER_CYCLE, AFTER = 300, 20, 150
 

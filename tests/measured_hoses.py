@@ -11,8 +11,8 @@ from math import pi
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.product import HoseDesign
+from reduction.prediction.cord_curve import CordCurve
+from reduction.prediction.hose_product import HoseDesign
 
 INCH, POUND_FORCE = 0.0254, 4.4482216152605
 CORD_STRAIN = np.array([0.0, 0.02, 0.06, 0.10, 0.15, 0.22])

@@ -3,8 +3,8 @@
 import re
 from dataclasses import replace
 
-from reduction.published.read import cells_of
-from reduction.reproduce.answers import Answer, item_of
+from reduction.published.printed_cells import cells_of
+from reduction.published.reproduced_item import Answer, item_of
 
 _DIGIT = re.compile(r"\d")
 

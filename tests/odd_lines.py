@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from reduction.lookup.linesurface import LineSurface
-from reduction.lookup.product import LineCurve, LineSource
-from reduction.surface.terms import quadratic_exponents
-from reduction.uncertainty.product import Component
+from reduction.experiments.designs import quadratic_exponents
+from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
+from reduction.record.contributions import Component
 
 LOW, HIGH = np.array([0.1, 2000.0, 900.0]), np.array([0.5, 9000.0, 2700.0])
 FACTORS = ("frequency", "mean_tension", "tension_amplitude")

@@ -9,12 +9,11 @@ from math import pi
 
 import numpy as np
 
-from reduction.archive.predictions import predictions_to_dataset
-from reduction.pipeline.prediction import predict_from_plan
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.product import HoseDesign
-from reduction.prediction import HelicalLayer, HosePlan
-from reduction.provenance import Origin, Source, Step
+from reduction.archive.campaign_products import predictions_to_dataset
+from reduction.prediction.cord_curve import CordCurve
+from reduction.prediction.hose_prediction import HelicalLayer, HosePlan, predict_from_plan
+from reduction.prediction.hose_product import HoseDesign
+from reduction.record.measurement import Origin, Source, Step
 
 INCH, POUND, PSI = 0.0254, 4.4482216152605, 6894.757293168
 CORD_STRAIN = np.array([0.0, 0.02, 0.06, 0.10, 0.15, 0.22])

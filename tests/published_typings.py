@@ -8,8 +8,7 @@ of exposure, loads at which a curve is entered and what was seen on one sample a
 import csv
 from pathlib import Path
 
-from reduction.published.cell import number_of
-from reduction.published.read import cells_of, errata_of
+from reduction.published.printed_cells import cells_of, errata_of, number_of
 
 ROOM = Path(__file__).parent / "golden" / "published"
 

@@ -2,7 +2,7 @@
 
 from functools import cache
 
-from reduction.reproduce.reports import reproduce
+from reduction.published.reproduce_page import reproduce
 
 
 @cache

@@ -3,9 +3,8 @@
 import csv
 import io
 
-from reduction.archive.variable import TEXT
-from reduction.tables.column import csv_lines
-from reduction.tables.rows import table_blocks
+from reduction.archive.csv_columns import csv_lines, table_blocks
+from reduction.archive.variables import TEXT
 
 
 def table_rows(archive, table):

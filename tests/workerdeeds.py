@@ -16,7 +16,7 @@ def add_a_line(path, text):
 
 
 def raise_data_error(value):
-    from reduction.errors import DataError
+    from reduction.record.errors import DataError
 
     raise DataError("no sense in it", found=value, file="a.csv", row=3, channel="load")
 

@@ -16,54 +16,54 @@ from types import ModuleType
 __all__ = ["pages", "public_modules"]
 
 ROOMS = {
-    "phases": "standstills, rests and holds",
-    "strain": "position to strain of the splice-free length; load to stress",
-    "cycles": "reversals, cycles, loops, energy",
-    "moduli": "tangent, secant and chord moduli, segments, comparisons, slips, elastomer laws",
-    "holds": "relaxation and creep",
-    "line": "the three-parameter line, slow pulls, rope programmes",
-    "surface": "designs, response surfaces, screening, stiffness forms",
-    "outcomes": "breaks, abrasion, lives",
+    "stages": "standstills, and the lag between channels",
+    "stages.strain": "position to strain of the splice-free length; load to stress",
+    "stages.cycles": "reversals, cycles, loops, energy",
+    "stages.moduli": "tangent, secant and chord moduli, segments, slips, elastomer laws",
+    "stages.holds": "relaxation and creep",
+    "stages.line": "the three-parameter line, slow pulls, rope programmes",
+    "experiments": "response surfaces, screening, stiffness forms; breaks, abrasion, lives",
     "uncertainty": "what errors that samples share do to each number",
-    "predict": "hoses, armour and waves from theory",
-    "compare": "a measured curve against a predicted one",
-    "lookup": "design values, composite curves, assemblies",
+    "prediction": "hoses, armour and waves from theory; measured against predicted",
+    "lines": "design values, composite curves, assemblies, line types for mooring codes",
     "published": "what the reports print",
-    "export": "line types for mooring codes",
 }
 """Rooms of which every module is public."""
 
 DOORS = {
     "reduction": "the package",
-    "reduction.archive.tree": "processed campaigns as trees of datasets",
+    "reduction.archive.campaign_tree": "processed campaigns as trees of datasets",
     "reduction.archive.open": "one archive",
-    "reduction.archive.surface_read": "surfaces out of their archive",
-    "reduction.archive.budget": "uncertainty budgets out of an archive",
-    "reduction.batch.run": "a campaign from its logs to its products",
+    "reduction.archive.surfaces_dataset": "surfaces out of their archive",
+    "reduction.archive.uncertainty_budget": "uncertainty budgets out of an archive",
+    "reduction.batch.run_campaign": "a campaign from its logs to its products",
     "reduction.campaign.load": "campaign.toml",
-    "reduction.catalogue.file": "the catalogues of campaigns",
-    "reduction.catalogue.query": "questions to them",
-    "reduction.errors": "errors and their exit statuses",
-    "reduction.experiment": "an experiment in one piece",
-    "reduction.ingest.layout": "declared layouts of logs",
-    "reduction.ingest.rawlog": "a log as it was read",
-    "reduction.ingest.read": "readers of every format",
-    "reduction.pipeline.reduce": "a record to a reduced test",
-    "reduction.prediction": "a prediction in one piece",
-    "reduction.product": "a reduced test in one piece",
-    "reduction.record": "records, specimens, flags",
-    "reduction.reproduce.item": "a printed number beside the computed one",
-    "reduction.reproduce.reports": "every printed number again",
-    "reduction.settings": "numbers of the reduction",
-    "reduction.units.parse": "numbers with units",
-    "reduction.vocabulary": "names of quantities",
+    "reduction.batch.catalogue": "the catalogues of campaigns",
+    "reduction.record.errors": "errors and their exit statuses",
+    "reduction.experiments.experiment": "an experiment in one piece",
+    "reduction.readers.layout": "declared layouts of logs",
+    "reduction.readers.raw_log": "a log as it was read",
+    "reduction.readers.read_log": "readers of every format",
+    "reduction.pipeline.reduce_test": "a record to a reduced test",
+    "reduction.prediction.hose_prediction": "a prediction in one piece",
+    "reduction.stages.reduced_test": "a reduced test in one piece",
+    "reduction.record.measurement": "records, specimens, flags",
+    "reduction.published.reproduced_item": "a printed number beside the computed one",
+    "reduction.published.reproduce_page": "every printed number again",
+    "reduction.record.settings": "numbers of the reduction",
+    "reduction.quantities.units": "numbers with units",
+    "reduction.quantities.names": "names of quantities",
 }
 """Single public modules."""
 
 
 def _of_room(room: str) -> list[str]:
     package = importlib.import_module(f"reduction.{room}")
-    found = [info.name for info in pkgutil.iter_modules(package.__path__, f"reduction.{room}.")]
+    found = [
+        info.name
+        for info in pkgutil.iter_modules(package.__path__, f"reduction.{room}.")
+        if not info.ispkg and info.name not in DOORS
+    ]
     return [name for name in found if _offers(importlib.import_module(name))]
 
 
@@ -116,8 +116,8 @@ def pages() -> dict[str, str]:
         f"{_titled('Python interface', '=')}\n"
         "Physics functions take arrays and return arrays, in SI; nothing in them reads a file or "
         "the clock. Most scripts need little more than "
-        ":py:func:`~reduction.archive.tree.open_campaign` and :doc:`the other entry points "
-        "<doors>`. In parameters ``[1]`` is the unit of a number without dimension.\n\n"
+        ":py:func:`~reduction.archive.campaign_tree.open_campaign` and :doc:`the other entry "
+        "points <doors>`. In parameters ``[1]`` is the unit of a number without dimension.\n\n"
         f"{rooms}\n\n.. toctree::\n   :hidden:\n   :titlesonly:\n\n{toc}\n"
     )
     return made

@@ -1,6 +1,7 @@
 """Links that work on the page of a repository and here.
 
-In Markdown ``[words](../reduction/cycles/find.py)`` leads to the file where the repository is read,
+In Markdown ``[words](../reduction/stages/cycles/cycle_search.py)`` leads to the file where the
+repository is read,
 and here to the page of the module; words that are the name of something in that module lead to it.
 In a docstring a name alone is found wherever it is the only one of its name.
 """

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from reduction.archive.comparison_schema import COMPARISON_SCHEMA
-from reduction.archive.outcomes import OUTCOME_SCHEMA
-from reduction.archive.prediction_schema import PREDICTION_SCHEMA
-from reduction.archive.properties import PROPERTY_SCHEMA
-from reduction.archive.schema import SCHEMA
-from reduction.archive.surface_schema import SURFACE_SCHEMA
-from reduction.archive.variable import SUFFIXES, Variable
+from reduction.archive.campaign_products import OUTCOME_SCHEMA
+from reduction.archive.rope_properties import PROPERTY_SCHEMA
+from reduction.archive.schema import COMPARISON_SCHEMA, PREDICTION_SCHEMA, SCHEMA, SURFACE_SCHEMA
+from reduction.archive.variables import SUFFIXES, Variable
 
 __all__ = ["pages"]
 

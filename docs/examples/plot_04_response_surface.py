@@ -8,8 +8,8 @@ The apparent spring constant of a 1/2 in plaited nylon line, as the surface of C
 import matplotlib.pyplot as plt
 import numpy as np
 
-from reduction.lookup.line import look_up
-from reduction.published.linesource import published_sources
+from reduction.lines.line_lookup import look_up
+from reduction.lines.published_source import published_sources
 
 line = published_sources()["nylon-8-strand-plaited-0.5in-new"]
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 
-from reduction.archive.budget import budget_from_archive
 from reduction.archive.open import open_archive
+from reduction.archive.uncertainty_budget import budget_from_archive
 
 with open_archive(Path("processed/tmt-synthetic/T-1.nc")) as archive:
     budgets = {

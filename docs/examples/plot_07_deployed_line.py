@@ -10,13 +10,12 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 
-from reduction.export.fromcomposite import line_from_composite
-from reduction.export.write import export_line
-from reduction.lookup.assembly import assemble
-from reduction.lookup.compositerule import CompositeRule
-from reduction.lookup.source import compose, used_of
-from reduction.lookup.tethers import Tether, equal_tethers
-from reduction.published.piecesource import published_piece_sources
+from reduction.lines.assembly import Tether, assemble, equal_tethers
+from reduction.lines.composite import compose, used_of
+from reduction.lines.curve_pieces import CompositeRule
+from reduction.lines.deck_formats import export_line
+from reduction.lines.export_sources import line_from_composite
+from reduction.lines.published_source import published_piece_sources
 
 # %%
 # The used tether of WHOI-2005-10: the printed pieces of six tests, and the static test.

@@ -9,10 +9,10 @@ from. (A reader for everybody belongs into the package; :doc:`how </develop>`.)
 import matplotlib.pyplot as plt
 import numpy as np
 
-from reduction.cycles.find import find_cycles
-from reduction.moduli.tangent import tangent_curves
-from reduction.phases.standstill import find_standstills
-from reduction.settings import CycleSettings, ModulusSettings, PhaseSettings
+from reduction.record.settings import CycleSettings, ModulusSettings, PhaseSettings
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.moduli.tangent_modulus import tangent_curves
+from reduction.stages.standstills import find_standstills
 
 # %%
 # A log as no program should write it: minutes, millimetres and kilonewtons in one field, with decimal

@@ -10,8 +10,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 
-from reduction.catalogue.file import load_catalogue
-from reduction.catalogue.query import Query, answer
+from reduction.batch.catalogue import Query, answer, load_catalogue
 
 catalogue = load_catalogue(Path("processed"))
 

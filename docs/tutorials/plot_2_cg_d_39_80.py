@@ -10,10 +10,10 @@ energy H lost in a cycle, and two numbers of a three-parameter line, K_1 and tau
 import matplotlib.pyplot as plt
 import numpy as np
 
-from reduction.line.model import apparent_spring_constant, hysteresis_energy
-from reduction.lookup.line import look_up
-from reduction.published.linesource import published_sources
-from reduction.reproduce.reports import counts_of, reproduce
+from reduction.lines.line_lookup import look_up
+from reduction.lines.published_source import published_sources
+from reduction.published.reproduce_page import counts_of, reproduce
+from reduction.stages.line.line_model import apparent_spring_constant, hysteresis_energy
 
 LBF = 4.4482216
 for verdict, number in counts_of(reproduce("CG-D-39-80")["CG-D-39-80"]).items():

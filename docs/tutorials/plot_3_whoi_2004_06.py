@@ -11,12 +11,11 @@ stretch on they carry. The report gives the equations, and some measured figures
 import matplotlib.pyplot as plt
 import numpy as np
 
-from reduction.predict.cord import pick_up_stretch_ratio
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.events import find_events
-from reduction.predict.hose import predict_hose
-from reduction.predict.product import HoseDesign
-from reduction.reproduce.reports import counts_of, reproduce
+from reduction.prediction.cord_curve import CordCurve
+from reduction.prediction.hose_geometry import pick_up_stretch_ratio
+from reduction.prediction.hose_product import HoseDesign
+from reduction.prediction.hose_tension import find_events, predict_hose
+from reduction.published.reproduce_page import counts_of, reproduce
 
 INCH, PSI, LBF = 0.0254, 6894.757, 4.4482216
 for verdict, number in counts_of(reproduce("WHOI-2004-06")["WHOI-2004-06"]).items():

@@ -10,12 +10,11 @@ nothing is measured.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from reduction.predict.immersion import immerse_hose
-from reduction.predict.morison import wave_load
-from reduction.predict.waves import airy_wave
-from reduction.predict.zhang2015 import WATER_DENSITY, printed_airy_wave, printed_section
-from reduction.published.read import cells_of
-from reduction.reproduce.reports import counts_of, reproduce
+from reduction.prediction.morison import immerse_hose, wave_load
+from reduction.prediction.wave_theory import airy_wave
+from reduction.prediction.zhang_example import WATER_DENSITY, printed_airy_wave, printed_section
+from reduction.published.printed_cells import cells_of
+from reduction.published.reproduce_page import counts_of, reproduce
 
 for verdict, number in counts_of(reproduce("Zhang-2015")["Zhang-2015"]).items():
     print(f"{verdict:13} {number:5}")

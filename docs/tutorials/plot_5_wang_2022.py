@@ -10,9 +10,8 @@ the equations and what the text says of them.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from reduction.predict.armour import predict_armour
-from reduction.predict.armourdesign import ArmourDesign
-from reduction.reproduce.reports import counts_of, reproduce, touched_errata
+from reduction.prediction.armour import ArmourDesign, predict_armour
+from reduction.published.reproduce_page import counts_of, reproduce, touched_errata
 
 items = reproduce("Wang-2022")["Wang-2022"]
 for verdict, number in counts_of(items).items():

@@ -1,1 +1,1 @@
-"""Edge: reduced tests to CF netCDF and back."""
+"""Products: netCDF archives and CSV tables."""

@@ -1,9 +1,10 @@
-"""Opening an archive: only a file that this version understands."""
+"""Opens archives: only files of this schema version."""
 
 from __future__ import annotations
 
 import json
 import math
+import os
 import re
 from collections.abc import Callable, Container, Hashable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
@@ -16,39 +17,44 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from reduction.archive.comparison_schema import COMPARISON_SCHEMA
-from reduction.archive.outcomes import OUTCOME_SCHEMA
-from reduction.archive.prediction_schema import PREDICTION_SCHEMA
-from reduction.archive.properties import PROPERTY_SCHEMA
-from reduction.archive.schema import schema_of
-from reduction.archive.surface_schema import SURFACE_SCHEMA
-from reduction.archive.variable import Variable
-from reduction.archive.version import SCHEMA_VERSION
-from reduction.errors import ArchiveError, SettingsError
+from reduction.archive.campaign_products import OUTCOME_SCHEMA
+from reduction.archive.dataset_builder import SCHEMA_VERSION
+from reduction.archive.rope_properties import PROPERTY_SCHEMA
+from reduction.archive.schema import COMPARISON_SCHEMA, PREDICTION_SCHEMA, SURFACE_SCHEMA, schema_of
+from reduction.archive.variables import Variable
+from reduction.record.errors import ArchiveError, SettingsError
 
 Chunks = int | Mapping[str, int | Literal["auto"] | tuple[int, ...]]
+
 """Values of a chunk, or by dimension, as `xarray.open_dataset` takes them."""
 
 Opener = Callable[[Path], AbstractContextManager[xr.Dataset]]
+
 """How a step opens an archive for a block: as `reading` does."""
 
 _CACHE = 1 << 20
+
 """Bytes of each variable that the library keeps as they are read: two chunks of an archive. Its own
 64 MB hold all that was ever read of a test, beside what is made of it."""
 
-
 _MOST = 64  # archives that are kept in memory, each of which takes 1.5 MB beside its values
+
 _LARGEST = 8_000_000  # bytes of values of one, unpacked
+
 _ROOM = 64_000_000  # and of all
+
 _OF_LIBRARY = re.compile(r"(\[Errno -\d+\] )?NetCDF: ")
+
 _MOST_PACKED = 1100  # times that deflated values can be larger than the file
+
 _LONGEST_SETTINGS = 20_000_000
+
 _TEXTS = (
     "id", "campaign", "test", "test_kind", "title", "raw_file", "raw_file_sha256", "raw_file_bytes",
     "raw_metadata", "settings", "key", "history", "command", "software_version", "synthetic",
 )  # fmt: skip
-_AGAIN = "Check the disk; take a copy that is whole, or remove it and run the campaign again."
 
+_AGAIN = "Check the disk; take a copy that is whole, or remove it and run the campaign again."
 
 # by the dimension that its kind alone has; a reduced test compares specimens, too
 _OF_CAMPAIGN: dict[str, dict[str, Variable]] = {
@@ -141,7 +147,7 @@ def failing_reads(what: str) -> Iterator[None]:
     >>> with failing_reads("processed/nylon/T-1.nc"):
     ...     raise RuntimeError("NetCDF: HDF error")
     Traceback (most recent call last):
-    reduction.errors.ArchiveError: processed/nylon/T-1.nc cannot be read; found NetCDF: HDF
+    reduction.record.errors.ArchiveError: processed/nylon/T-1.nc cannot be read; found NetCDF: HDF
     error. Check the disk; take a copy that is whole, or remove it and run the campaign again.
     """
     try:
@@ -333,3 +339,23 @@ def _open_in_chunks(path: Path, chunks: Chunks) -> xr.Dataset:
             found=f"{chunks!r}: {str(error).splitlines()[0]}",
             needed='a number of values, or "auto", by the name of a dimension',
         ) from error
+
+
+OF_CAMPAIGN = ("surfaces", "predictions", "comparisons", "outcomes", "change_in_length")
+
+"""Archives of a whole campaign, by their file names; no test may be called so."""
+
+
+def archives_in(folder: Path) -> list[Path]:
+    """All archives in a folder, by name; `OSError` where the system refuses it."""
+    try:
+        names = os.listdir(folder)
+    except (FileNotFoundError, NotADirectoryError):
+        return []
+    # a folder that may not be read is no empty one, as `Path.glob` has it
+    return [folder / name for name in sorted(names) if name.endswith(".nc")]
+
+
+def archives_of_tests(folder: Path) -> list[Path]:
+    """Archives of reduced tests in a folder, by name; `OSError` where the system refuses it."""
+    return [path for path in archives_in(folder) if path.stem not in OF_CAMPAIGN]

@@ -1,22 +1,127 @@
-"""Writing products, each whole or not at all."""
+"""Writes archives: a netCDF file appears whole or not at all.
+
+Who, what, when and with which limits stands apart from the archives: no number depends on it, so
+that a report can be amended while every archive stays what it was.  A text that is empty was not
+stated; a report shows it as such and never leaves it out.
+
+References
+----------
+.. [1] ISO/IEC 17025:2017, 7.8 (what a report of tests holds).
+"""
 
 from __future__ import annotations
 
+import datetime
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
+from typing import Annotated, Any, Generic, Literal, TypeVar
 
+import netCDF4
+import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    StringConstraints,
+    ValidationError,
+)
 
-from reduction.archive.netcdf import write_netcdf
-from reduction.archive.whole import remove_abandoned, whole_file
-from reduction.errors import ArchiveError
+from reduction.archive.atomic_write import remove_abandoned, take_away, whole_file
+from reduction.record.errors import ArchiveError
+from reduction.record.samples import let_go, sample_blocks
+from reduction.uncertainty.budget import DecisionRule
+
+_BLOCK = 1 << 20  # values of the last dimension at a time: whole chunks
+
+_CACHE = 1 << 19  # bytes of the largest chunk: each is written once
+
+
+def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
+    """Write a dataset of `reduction.archive.dataset_builder.build_dataset`.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        With encoding.
+    path : pathlib.Path
+        The file; one that is there is replaced.
+
+    Raises
+    ------
+    OSError, RuntimeError
+        If the disk refuses; the library says it in one of these ways.
+    """
+    with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+        file.setncatts(dataset.attrs)
+        for name, size in dataset.sizes.items():
+            file.createDimension(str(name), size)
+        todo = [
+            (_defined(file, str(name), variable), variable.values)
+            for name, variable in dataset.variables.items()
+        ]
+        for place, values in todo:
+            if values.dtype.kind == "U":
+                place[...] = _characters(values)
+            else:
+                for part in _parts(values):
+                    place[part] = values[part]
+                let_go(values)
+
+
+def _defined(file: netCDF4.Dataset, name: str, variable: xr.Variable) -> netCDF4.Variable[Any]:
+    """Define a variable as its encoding says."""
+    encoding, dims = variable.encoding, tuple(str(dim) for dim in variable.dims)
+    attributes = dict(variable.attrs)
+    kind: Any = variable.dtype
+    if variable.dtype.kind == "U":
+        length = f"{name}_strlen"
+        file.createDimension(length, _characters(variable.values).shape[-1])
+        kind, dims = "S1", (*dims, length)
+        attributes["_Encoding"] = "utf-8"
+    if "coordinates" in encoding:
+        attributes["coordinates"] = encoding["coordinates"]
+    options = {
+        key: encoding[key]
+        for key in ("zlib", "complevel", "shuffle", "chunksizes")
+        if key in encoding
+    }
+    # with the sum of each chunk the library refuses values that are not as they were written; a
+    # short variable would take several times its size in chunks
+    place = file.createVariable(
+        name, kind, dims, fill_value=encoding.get("_FillValue"), fletcher32=bool(options), **options
+    )
+    if options:
+        place.set_var_chunk_cache(_CACHE)
+    place.set_auto_maskandscale(False)
+    place.set_auto_chartostring(False)
+    place.setncatts(attributes)
+    return place
+
+
+def _characters(values: NDArray[np.str_]) -> NDArray[np.bytes_]:
+    """Text as bytes of UTF-8 along one more dimension."""
+    encoded = np.char.encode(values, "utf-8")
+    letters = encoded.astype(f"S{max(encoded.dtype.itemsize, 1)}")
+    return np.ascontiguousarray(letters).view("S1").reshape(*values.shape, letters.dtype.itemsize)
+
+
+def _parts(values: NDArray[Any]) -> Iterator[tuple[Any, ...]]:
+    """Blocks of a series, or all of what is short."""
+    if not values.ndim or values.shape[-1] <= _BLOCK:
+        yield (...,)
+        return
+    for part in sample_blocks(values.shape[-1], values, size=_BLOCK):
+        yield (..., part)
 
 
 def write_archive(dataset: xr.Dataset, path: Path) -> None:
-    """Write a dataset of `reduction.archive.dataset.to_dataset` as one netCDF file.
+    """Write a dataset of `reduction.archive.test_dataset.to_dataset` as one netCDF file.
 
     Parameters
     ----------
@@ -111,3 +216,191 @@ def _not_written(path: Path, error: Exception) -> ArchiveError:
         found=found or str(error),
         hint="What was there before is kept. Check the folder and the space on the disk.",
     )
+
+
+FILE_NAME = "report.json"
+
+Paper = Literal["A4", "Letter"]
+
+ReportText = Annotated[str, StringConstraints(max_length=4000, strip_whitespace=True)]
+
+
+def _as_text(value: object) -> object:
+    """A date of TOML as it is written there."""
+    return value.isoformat() if isinstance(value, datetime.date) else value
+
+
+Date = Annotated[ReportText, BeforeValidator(_as_text)]
+
+"""A date of TOML, or text: ``2026-03-05``, ``"2 to 5 March 2026"``."""
+
+
+class Section(BaseModel):
+    """A table of ``[report]``."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Laboratory(Section):
+    """``[report.laboratory]``."""
+
+    name: ReportText = ""
+    address: ReportText = ""
+    contact: ReportText = ""
+    location: ReportText = ""
+    """Where the tests were made, where that is not the address."""
+    accreditation: ReportText = ""
+
+
+class Client(Section):
+    """``[report.client]``."""
+
+    name: ReportText = ""
+    address: ReportText = ""
+    contact: ReportText = ""
+    order: ReportText = ""
+
+
+class Item(Section):
+    """``[report.items.SPECIMEN]``: what came in."""
+
+    identification: ReportText = ""
+    """What is written on it: a serial number, a tag."""
+    description: ReportText = ""
+    condition: ReportText = ""
+    """On receipt."""
+    received: Date = ""
+
+
+class Authorised(Section):
+    """``[report.authorised]``."""
+
+    by: ReportText = ""
+    function: ReportText = ""
+    on: Date = ""
+
+
+class Instrument(Section):
+    """``[[report.instruments]]``: one instrument with its last calibration."""
+
+    name: ReportText
+    identification: ReportText = ""
+    certificate: ReportText = ""
+    traceable_to: ReportText = ""
+    calibrated: Date = ""
+    due: Date = ""
+
+
+class Limit(Section):
+    """A limit that a number of a test is held against; at least one end is given.
+
+    Parameters
+    ----------
+    quantity : str
+        Name of the vocabulary.
+    test : str
+        Id of the product: of a test, or of a step of one.
+    at : dict of str to str
+        Place of the number along each dimension, as `reduction budget` takes it.
+    lower, upper : float or None
+        In SI. [unit of the quantity]
+    source : str
+        Where the limit stands.
+    """
+
+    quantity: str
+    test: str
+    at: dict[str, str] = Field(default_factory=dict)
+    lower: float | None = None
+    upper: float | None = None
+    source: str = ""
+
+
+AnyLimit = TypeVar("AnyLimit")
+
+
+class Statement(Section, Generic[AnyLimit]):
+    """``[report]``: every key may be left out; the report then says that it is not stated."""
+
+    number: ReportText = ""
+    revision: int = Field(default=0, ge=0)
+    amendment: ReportText = ""
+    """What this revision changed, and which report it replaces."""
+    issued: Date = ""
+    received: Date = ""
+    """When the items came in, where they came together."""
+    tested: Date = ""
+    method: ReportText = ""
+    deviations: ReportText = ""
+    """From the method: ``"none"`` where there were none."""
+    sampling: ReportText = ""
+    environment: ReportText = ""
+    opinions: ReportText = ""
+    """Opinions and interpretations, which the report marks as such."""
+    decision_rule: DecisionRule | None = None
+    """Required where a limit is given."""
+    paper: Paper = "A4"
+    laboratory: Laboratory = Laboratory()
+    client: Client = Client()
+    authorised: Authorised = Authorised()
+    items: dict[str, Item] = Field(default_factory=dict)
+    instruments: tuple[Instrument, ...] = ()
+    limits: tuple[AnyLimit, ...] = ()
+
+
+class ReportDetails(Statement[Limit]):
+    """What the laboratory states, with limits in SI."""
+
+
+def keep_details(folder: Path, details: ReportDetails | None) -> None:
+    """Write what the laboratory states, or take away what an earlier run kept.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Of the archives of a campaign.
+    details : ReportDetails or None
+        None where the campaign has no ``[report]``.
+
+    Raises
+    ------
+    ArchiveError
+        If the disk refuses.
+    """
+    path = folder / FILE_NAME
+    if details is None:
+        take_away(path)
+        return
+    write_whole(path, details.model_dump_json(indent=1) + "\n")
+
+
+def read_details(folder: Path) -> ReportDetails | None:
+    """Read what the laboratory states.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Of the archives of a campaign.
+
+    Returns
+    -------
+    details : ReportDetails or None
+        None where nothing was kept.
+
+    Raises
+    ------
+    ArchiveError
+        If the file cannot be read.
+    """
+    path = folder / FILE_NAME
+    if not path.is_file():
+        return None
+    try:
+        return ReportDetails.model_validate_json(path.read_bytes())
+    except (OSError, ValidationError) as error:
+        raise ArchiveError(
+            f"{path} cannot be read",
+            found=str(error).splitlines()[0],
+            needed="what a run keeps of [report]",
+            hint="Run the campaign again.",
+        ) from error

@@ -1,1 +1,1 @@
-"""Edge: a whole campaign, test by test; a failed test does not stop the others."""
+"""A campaign from its logs to its products."""

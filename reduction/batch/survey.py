@@ -1,32 +1,124 @@
-"""The first look at a test: what its log holds, before it is reduced.
-
-The marks of a specimen are pooled over its tests, and a test's history is what came
-before it; so every log is read and located once, and only then reduced.
-"""
+"""First pass over a campaign: what each log holds."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from reduction.batch.found import found_in
-from reduction.batch.steps import step_plan, step_record
-from reduction.campaign.plan import Campaign, TestPlan
-from reduction.errors import DataError, LogError, ReductionError, refused_by_system
-from reduction.ingest.datum import length_at_slack
-from reduction.ingest.record_of_test import read_record
-from reduction.ingest.source import unreadable
-from reduction.ingest.stepwise import read_step_readings
-from reduction.pipeline.extremes import Extremes, extremes_of_readings, extremes_of_test
-from reduction.pipeline.locate import Located, locate
-from reduction.pipeline.markreadings import tension_at_marks
-from reduction.provenance import Source
-from reduction.record import Floats, Record, SpliceMarks, StepReadings
-from reduction.strain.fit import zero_strain_position
+import numpy as np
+
+from reduction.batch.campaign_status import Progress, Silent, Status, TestStatus
+from reduction.batch.run_lock import RunLock
+from reduction.batch.workers import Task, Workers, work_on
+from reduction.campaign.plan import Campaign, StepPlan, TestPlan
+from reduction.pipeline.located_test import Located, locate, tension_at_marks
+from reduction.pipeline.test_extremes import Extremes, extremes_of_readings, extremes_of_test
+from reduction.readers.raw_log import unreadable
+from reduction.readers.read_log import read_record, read_step_readings
+from reduction.readers.record_in_si import length_at_slack
+from reduction.readers.sample_flags import account_rows
+from reduction.record.errors import (
+    DataError,
+    LogError,
+    ReductionError,
+    SettingsError,
+    refused_by_system,
+)
+from reduction.record.measurement import Floats, Record, Source, SpliceMarks, StepReadings
+from reduction.record.notes import Severity, by_severity, full_note, severity_of
+from reduction.stages.standstills import median_step
+from reduction.stages.strain.strain_fit import zero_strain_position
+
+
+def found_in(located: Located) -> dict[str, Any]:
+    """Rate, gaps, standstills, flags and notes of a record, beside its rows and cycles.
+
+    Parameters
+    ----------
+    located : Located
+        The record.
+
+    Returns
+    -------
+    found : dict
+        As the JSON answer has it.
+    """
+    record = located.record
+    n_flagged = account_rows(record).n_flagged
+    return {
+        "rate": {"value": 1 / median_step(record.time), "unit": "Hz"},
+        "gaps": int(n_flagged.get("crosshead_position", {}).get("gap", 0)),
+        "standstills": located.standstills.n_standstills,
+        "flags": {channel: masks for channel, masks in n_flagged.items() if masks},
+        "notes": [
+            *record.notes,
+            *(() if located.cycles is None else located.cycles.notes),
+        ],
+    }
+
+
+def _slice(record: Record, first: int, stop: int) -> Record:
+    """The rows from ``first`` up to ``stop``, as a record of its own."""
+    part = slice(first, stop)
+    return replace(
+        record,
+        time=record.time[part],
+        crosshead_position=record.crosshead_position[part],
+        tension=record.tension[:, part],
+        quality_flag=record.quality_flag[:, part],
+        crosshead_position_quality_flag=record.crosshead_position_quality_flag[part],
+        measured_strain=None if record.measured_strain is None else record.measured_strain[:, part],
+        cycle_counter=None if record.cycle_counter is None else record.cycle_counter[part],
+        n_rows_read=stop - first,
+    )
+
+
+def step_record(record: Record, step: StepPlan, plan: TestPlan) -> Record:
+    """The rows of one step of a log."""
+    if step.time_range is not None:
+        low, high = step.time_range
+        inside = np.flatnonzero((record.time >= low) & (record.time <= high))
+        if inside.size == 0:
+            raise DataError(
+                f"step '{step.name}' of test '{plan.id}' holds no row of the log",
+                found=f"{record.time[0]:g} to {record.time[-1]:g} s in the log",
+                needed=f"rows from {low:g} to {high:g} s",
+            )
+        return _slice(record, int(inside[0]), int(inside[-1]) + 1)
+    whole = locate(record, kind="cyclic", settings=plan.settings)
+    first, last = step.cycle_range or (1, 1)
+    if whole.cycles is None or not 1 <= first <= last <= whole.cycles.n_cycles:
+        raise DataError(
+            f"step '{step.name}' of test '{plan.id}' asks for cycles that the log lacks",
+            found=f"cycles {first} to {last}",
+            needed=f"1 to {0 if whole.cycles is None else whole.cycles.n_cycles}",
+        )
+    return _slice(record, int(whole.cycles.first[first - 1]), int(whole.cycles.last[last - 1]) + 1)
+
+
+def step_plan(plan: TestPlan, step: StepPlan, place: int) -> TestPlan:
+    """The plan of one step as that of a test."""
+    cycles = replace(plan.settings.cycles, expected_cycles=step.expected_cycles)
+    note = {"step": step.name} | ({"step_note": step.note} if step.note else {})
+    return replace(
+        plan,
+        id=step.product(plan.id),
+        kind=step.kind,
+        target_strain=step.target_strain or plan.target_strain,
+        settings=replace(plan.settings, cycles=cycles),
+        attributes=plan.attributes | note,
+        step_place=place,
+        failed=step.failed,
+        steps=(),
+    )
+
 
 Reader = Callable[..., tuple[Record, tuple[Source, ...]]]
-"""Gives the record of a log, as `reduction.ingest.record_of_test.read_record` does."""
+
+"""Gives the record of a log, as `reduction.readers.read_log.read_record` does."""
 
 
 @dataclass
@@ -199,4 +291,148 @@ def as_reduction_error(error: Exception) -> ReductionError:
         return refused_by_system(error)
     return ReductionError(
         f"internal error, a defect of this program: {type(error).__name__}: {error}"
+    )
+
+
+# records larger than this together are read again rather than kept between the passes
+KEPT_SAMPLES = 10_000_000
+
+
+@dataclass
+class FirstPass:
+    """What the tests of a campaign hold, without their samples; and the records that are kept.
+
+    ``surveys`` are in the order of the campaign; a test that failed carries its error.  ``kept``
+    holds, by log, the surveys with their records, where the log was read in this process.
+    """
+
+    surveys: list[Survey]
+    kept: dict[str, list[Survey]] = field(default_factory=dict)
+
+
+def survey_campaign(
+    campaign: Campaign,
+    *,
+    workers: Workers | None = None,
+    lock: RunLock | None = None,
+    progress: Progress | None = None,
+) -> FirstPass:
+    """Read and locate every test of a campaign.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded.
+    workers : Workers, optional
+        Where it is done; one log after another in this process where left out.
+    lock : RunLock, optional
+        That the run holds.
+    progress : Progress, optional
+        Told of each log.
+
+    Returns
+    -------
+    first : FirstPass
+        The surveys, and the records as far as they are kept.
+    """
+    progress = progress or Silent()
+    progress.stage("survey", len(campaign.tests))
+    is_elsewhere = workers is not None
+    tasks = [
+        Task(log, (with_one_log(campaign, log), log, lock, is_elsewhere), _n_bytes(campaign, log))
+        for log in campaign.tests
+    ]
+    kept: dict[str, list[Survey]] = {}
+    of_log: dict[str, list[Survey]] = {}
+    n_rows = 0
+    for ended in work_on(_survey, tasks, workers=workers, begun=progress.begun):
+        found = ended.value or [Survey(campaign.tests[ended.test], error=ended.error)]
+        n_rows += sum(survey.n_rows for survey in found)
+        if not is_elsewhere and (n_rows <= KEPT_SAMPLES or len(campaign.tests) == 1):
+            kept[ended.test] = found
+        of_log[ended.test] = [replace(survey, located=None) for survey in found]
+        progress.ended(ended.test)
+    return FirstPass([survey for log in campaign.tests for survey in of_log[log]], kept)
+
+
+def with_one_log(campaign: Campaign, log: str) -> Campaign:
+    """What the work on one log needs of a campaign: of thousands of tests each is sent one."""
+    return replace(campaign, tests={log: campaign.tests[log]})
+
+
+def _n_bytes(campaign: Campaign, log: str) -> int:
+    """Size of the files of a log, as far as they can be looked at."""
+    n_bytes = 0
+    for name, _ in campaign.tests[log].files:
+        if name not in campaign.unread:
+            with suppress(OSError):  # what is wrong with it is said by the test, when it is read
+                n_bytes += campaign.file(name).stat().st_size
+    return n_bytes
+
+
+def _survey(campaign: Campaign, log: str, lock: RunLock | None, is_elsewhere: bool) -> list[Survey]:
+    if lock is not None:
+        lock.confirm()
+    surveys = survey_log(campaign, log)
+    # to send a record between processes takes longer than to read it again
+    return [replace(one, located=None) for one in surveys] if is_elsewhere else surveys
+
+
+def with_record(survey: Survey, kept: Sequence[Survey] | None) -> Survey:
+    """Give a survey the record that was kept of its log, where it is of the same file."""
+    for one in kept or ():
+        if one.plan.id == survey.plan.id and one.sources == survey.sources:
+            return replace(survey, located=one.located)
+    return survey
+
+
+_SERIOUS: tuple[Severity, ...] = ("doubt", "refusal")
+
+
+def note_message(notes: Sequence[tuple[str, str]]) -> str:
+    """How many notes there are, how many of them are serious, and the most serious of all."""
+    ranked = by_severity(notes)
+    if not ranked:
+        return ""
+    kinds = Counter(severity_of(stage, text) for stage, text in ranked)
+    serious = [
+        f"{kinds[kind]} {kind}{'s' if kinds[kind] > 1 else ''}" for kind in _SERIOUS if kinds[kind]
+    ]
+    among = f" ({', '.join(serious)})" if serious else ""
+    count = f"{len(ranked)} note{'s' if len(ranked) > 1 else ''}"
+    return f"{count}{among}; first: {full_note(*ranked[0])}"
+
+
+def _error_message(campaign: Campaign, survey: Survey, error: ReductionError) -> str:
+    """``FILE:ROW [CHANNEL]: problem``; an error of the data is given its test's file."""
+    if isinstance(error, (LogError, SettingsError)):
+        return campaign.in_words(str(error))
+    if error.where():  # its file, as the campaign names it, and row and channel
+        name = str(error.facts["file"])
+        return f"{campaign.shown(name)}{str(error).removeprefix(name)}"
+    return campaign.in_words(f"{campaign.shown(survey.plan.files[0][0])}: {error}")
+
+
+def status_row(
+    campaign: Campaign,
+    survey: Survey,
+    status: Status,
+    *,
+    error: ReductionError | None = None,
+    message: str = "",
+    seconds: float = 0.0,
+    worker: str = "",
+) -> TestStatus:
+    """One row of the status table."""
+    return TestStatus(
+        test=survey.plan.id,
+        status=status,
+        exit_status=0 if error is None else error.exit_status,
+        message=message if error is None else _error_message(campaign, survey, error),
+        n_rows=survey.n_rows,
+        n_cycles=survey.n_cycles,
+        raw_sha256=" ".join(source.sha256 for source in survey.sources),
+        seconds=seconds,
+        found=survey.found,
+        worker=worker,
     )

@@ -1,1 +1,1 @@
-"""Edge: campaign.toml, its tests and its marks, validated."""
+"""campaign.toml and the files that it names."""

@@ -1,32 +1,33 @@
-"""campaign.toml and the files it names, to a `Campaign` in SI."""
+"""Loads campaign.toml and the files it names into a `Campaign` in SI."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
-from reduction.address import is_address, shown_address
-from reduction.campaign.comparisons import plan_comparison
-from reduction.campaign.experiments import agree_on_pulls, plan_experiment
-from reduction.campaign.faults import in_toml
-from reduction.campaign.files import file_inside
-from reduction.campaign.hoses import hose_of
-from reduction.campaign.limits import stated_limits
-from reduction.campaign.marks import pooled_marks
+from reduction.archive.open import archives_of_tests, reading
+from reduction.campaign.experiment_plans import agree_on_pulls, plan_experiment
+from reduction.campaign.hose_plans import hose_of, plan_comparison
 from reduction.campaign.model import (
     CampaignFile,
     TestSection,
+    check_names,
+    report_details,
+    stated_errors,
+    stated_limits,
 )
-from reduction.campaign.names import check_names
-from reduction.campaign.outcomes import outcomes_of
+from reduction.campaign.outcome_results import outcomes_of
 from reduction.campaign.plan import Campaign
-from reduction.campaign.reportspec import report_details
-from reduction.campaign.specimens import specimen_of
-from reduction.campaign.testplans import plan_test
-from reduction.campaign.testtable import merge_tests, read_test_table
-from reduction.campaign.toml import read_toml
-from reduction.campaign.uncertaintyspec import stated_errors
+from reduction.campaign.specimens import pooled_marks, specimen_of
+from reduction.campaign.test_plans import merge_tests, plan_test, read_test_table
+from reduction.campaign.toml_file import file_inside, in_toml, read_small_text, read_toml
+from reduction.readers.remote_files import base_name, fetch, renamed, scratch_folder
+from reduction.record.errors import ArchiveError, LogError, SettingsError
+from reduction.record.plain_text import is_address, shown_address
 
 
 def _hint(path: Path) -> str | None:
@@ -87,7 +88,7 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
         The campaign.toml.
     allow_remote : bool
         Whether the log of a test may be an address on the net. Nothing is fetched here:
-        `reduction.campaign.staged.staged_campaign` does.
+        `reduction.campaign.load.staged_campaign` does.
     text : str, optional
         What campaign.toml is to hold; what it does hold where left out.
 
@@ -178,3 +179,144 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
         limits=stated_limits(path, file.limits),
         addresses=_addresses(path, tests),
     )
+
+
+_UNUSUAL = re.compile(r"[^\w.\-]")
+
+
+@contextmanager
+def staged_campaign(
+    path: Path, *, allow_remote: bool = False, progress: Callable[[str, str], None] | None = None
+) -> Iterator[Campaign]:
+    """Load a campaign with its logs at hand.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The campaign.toml.
+    allow_remote : bool
+        Whether logs are fetched from the net.
+    progress : callable, optional
+        Called with ("fetch", name) before each file.
+
+    Yields
+    ------
+    campaign : Campaign
+        As `load_campaign` gives it. A log that cannot be fetched is its test's error. Copies
+        are gone when the block ends.
+
+    Raises
+    ------
+    SettingsError
+        If a log is an address and addresses are not allowed; else as `load_campaign`.
+    """
+    campaign = load_campaign(path, allow_remote=allow_remote)
+    if not campaign.addresses:
+        yield campaign
+        return
+    names: dict[str, str] = {}
+    copies: dict[str, Path] = {}
+    unread: dict[str, LogError] = {}
+    with scratch_folder() as scratch, renamed(names):
+        # one after another: not every package bears threads, and an interruption ends at once
+        for place, (name, address) in enumerate(campaign.addresses.items()):
+            copy = scratch / str(place) / (_UNUSUAL.sub("_", base_name(name))[-100:] or "log")
+            copies[name], names[str(copy)] = copy, name
+            if progress is not None:
+                progress("fetch", name)
+            try:
+                fetch(address, copy)
+            except LogError as error:
+                unread[name] = error
+        yield replace(campaign, addresses={}, copies=copies, unread=unread, names=dict(names))
+
+
+def id_of_products(processed: Path) -> str:
+    """Id of the campaign whose archives lie in a folder.
+
+    Raises
+    ------
+    ArchiveError
+        If there is none, or the first cannot be read.
+    SettingsError
+        If it is a folder of several campaigns.
+    """
+    archives = archives_of_tests(processed) if processed.is_dir() else []
+    if archives:
+        with reading(archives[0]) as archive:
+            return str(archive.attrs.get("campaign", ""))
+    folders = sorted(processed.iterdir()) if processed.is_dir() else []
+    inside = [one.name for one in folders if archives_of_tests(one)]
+    if inside:
+        raise SettingsError(
+            f"{processed} holds a folder for each campaign", found=", ".join(inside),
+            needed=f"one of them, such as {processed / inside[0]}",
+        )  # fmt: skip
+    raise ArchiveError(
+        f"there is no archive of a test in {processed}",
+        needed="the folder of a campaign, such as processed/CAMPAIGN",
+        hint="Run the campaign first.",
+    )
+
+
+def find_campaign(processed: Path, stated: Path | None = None, *, name: str = "") -> Path:
+    """Find the campaign.toml that a folder of archives was made from.
+
+    It is looked for where it lies by habit: ``raw/ID/campaign.toml`` and ``ID/campaign.toml``,
+    beside ``processed`` and in the working folder.
+
+    Parameters
+    ----------
+    processed : pathlib.Path
+        ``processed/CAMPAIGN``.
+    stated : pathlib.Path, optional
+        Where the user says that it is.
+    name : str, optional
+        Id of the campaign; that of the first archive where left out.
+
+    Returns
+    -------
+    path : pathlib.Path
+        Of a campaign of that id.
+
+    Raises
+    ------
+    SettingsError
+        If it is not found, or is another campaign.
+    ArchiveError
+        If there are no archives.
+    """
+    name = name or id_of_products(processed)
+    if stated is not None:
+        found = _id_of(stated)
+        if found != name:
+            raise SettingsError(
+                f"{stated} is not the campaign of {processed}",
+                found="no campaign.toml" if found is None else f"campaign '{found}'",
+                needed=f"campaign '{name}'",
+            )
+        return stated
+    above = processed.absolute().parent.parent
+    places = [
+        root / folder / name / "campaign.toml"
+        for root in (above, Path.cwd())
+        for folder in ("raw", "")
+    ]
+    for path in dict.fromkeys(places):
+        if _id_of(path) == name:
+            return path
+    raise SettingsError(
+        f"the campaign.toml of '{name}' is not where it is looked for",
+        found="none at " + " or ".join(str(path) for path in dict.fromkeys(places)),
+        needed="--campaign CAMPAIGN.toml",
+        hint="An archive keeps what its numbers were made with, and no path.",
+    )
+
+
+def _id_of(path: Path) -> str | None:
+    """Id that a campaign.toml states; None of a file that is none."""
+    try:
+        document = tomllib.loads(read_small_text(path))
+        return str(document["campaign"]["id"])
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return None

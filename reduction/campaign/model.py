@@ -6,17 +6,723 @@ them into SI.
 
 from __future__ import annotations
 
+import math
+import re
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import fields, replace
+from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, field_validator
 
-from reduction.campaign.hosemodel import ComparisonSection, HoseSection
-from reduction.campaign.limits import LimitsSection
-from reduction.campaign.reportspec import ReportSection
-from reduction.campaign.uncertaintyspec import UncertaintySection
-from reduction.errors import SettingsError
-from reduction.ingest.layout import Layout
-from reduction.settings import StrainMethod
+from reduction.archive.open import OF_CAMPAIGN
+from reduction.archive.uncertainty_budget import parse_place
+from reduction.archive.write import Limit, ReportDetails, ReportText, Section, Statement
+from reduction.campaign.plan import TestPlan, product_of
+from reduction.campaign.toml_file import DEVICE, Number, TableReader, in_toml
+from reduction.prediction.hose_product import RubberLaw
+from reduction.quantities.names import QUANTITIES, quantity
+from reduction.quantities.units import Dimension, parse_in_unit, parse_quantity
+from reduction.readers.layout import Layout
+from reduction.record.contributions import StatedErrors, of_expanded, of_half_width, of_resolution
+from reduction.record.errors import ReductionError, SettingsError
+from reduction.record.measurement import Specimen
+from reduction.record.settings import Limits, ReductionSettings, StoredSamples, StrainMethod
+
+
+def check_names(path: Path, campaign: str, tests: Mapping[str, TestPlan]) -> None:
+    """Refuse names under which two products would be one file somewhere.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        campaign.toml, for messages.
+    campaign : str
+        Its id, the name of a folder.
+    tests : mapping of str to TestPlan
+        By id; what letters an id has is checked before.
+
+    Raises
+    ------
+    SettingsError
+        If a name is a device of Windows, a product of every campaign, or that of another test or
+        step where small and capital letters count as equal.
+    """
+    for name in (campaign, *tests):
+        if DEVICE.fullmatch(name):
+            raise in_toml(
+                path, "a name is that of a device on Windows", found=repr(name),
+                needed="another name: it becomes one of a file or of a folder",
+            )  # fmt: skip
+    seen = dict.fromkeys(OF_CAMPAIGN, "")
+    for name in tests:
+        other = seen.setdefault(name.casefold(), name)
+        if not other:
+            raise in_toml(
+                path, f"test '{name}' has the name of a product of the campaign",
+                needed="another name than " + ", ".join(OF_CAMPAIGN),
+            )  # fmt: skip
+        if other != name:
+            raise in_toml(
+                path, "the names of two tests differ in capital letters only",
+                found=f"'{other}' and '{name}'", needed="names that are two on every disk",
+            )  # fmt: skip
+    for name, test in tests.items():
+        if len({step.product(name).casefold() for step in test.steps}) < len(test.steps):
+            raise in_toml(
+                path, f"two steps of test '{name}' have one name",
+                needed="names that are two on every disk",
+                hint="Blanks and hyphens, small and capital letters count as equal.",
+            )  # fmt: skip
+
+
+# of pint's many plain numbers, a turn and a percent among them, those that count bytes
+_BYTES = re.compile(r"[\d.+\-eE\s]*([kMGT]i?B|B|bytes?)\s*")
+
+_SIZES: dict[str, tuple[float, float, str]] = {
+    "file_size": (1e3, 1e14, '"1 kB" to "100 TB"'),
+    "unpacked_size": (1e6, 1e12, '"1 MB" to "1 TB"'),
+    "line_length": (1e3, 1e8, '"1 kB" to "100 MB"'),
+}
+
+_MOST_COLUMNS = 1_000_000
+
+_TIMES = (1.0, 7 * 86400.0)
+
+
+class LimitsSection(BaseModel):
+    """``[limits]``: beyond them a log is refused; no number depends on them."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    file_size: str | None = None
+    """Of one log: ``"100 GB"`` where left out."""
+    unpacked_size: str | None = None
+    """What a file that is read whole, or a piece of one, may take in memory: ``"4 GB"``."""
+    line_length: str | None = None
+    """Of a line of text: ``"1 MB"``."""
+    columns: int | None = None
+    """In a log: 10000."""
+    time: str | None = None
+    """To read one log: ``"1 h"``."""
+
+
+def stated_limits(path: Path, section: LimitsSection) -> Limits:
+    """Limits in bytes and seconds, with the defaults of what is not written.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        campaign.toml, for messages.
+    section : LimitsSection
+        As written.
+
+    Returns
+    -------
+    limits : Limits
+        Of every log of the campaign.
+
+    Raises
+    ------
+    SettingsError
+        If a value has another unit, or is none that anybody can mean.
+    """
+    reader = TableReader(path, "limits")
+    found: dict[str, int | float] = {}
+    for key, (least, most, shown) in _SIZES.items():
+        text = getattr(section, key)
+        if text is None:
+            continue
+        needed = f"{shown}, in bytes (B, kB, MB, GB, TB, KiB, MiB, GiB, TiB)"
+        if _BYTES.fullmatch(text) is None:
+            raise _refused(reader, key, "a size is not in bytes", text, needed)
+        value = reader.value(key, text, "information")
+        if not least <= value <= most:
+            raise _refused(reader, key, "this is no limit", text, needed)
+        found[key] = round(value)
+    if section.columns is not None:
+        if not 1 <= section.columns <= _MOST_COLUMNS:
+            needed = f"a whole number from 1 to {_MOST_COLUMNS}"
+            raise _refused(reader, "columns", "this is no limit", str(section.columns), needed)
+        found["columns"] = section.columns
+    if section.time is not None:
+        seconds = reader.value("time", section.time, "time")
+        if not _TIMES[0] <= seconds <= _TIMES[1]:
+            needed = '"1 s" to "7 days"'
+            raise _refused(reader, "time", "this is no limit", section.time, needed)
+        found["time"] = seconds
+    return Limits(**found)  # type: ignore[arg-type]
+
+
+def _refused(reader: TableReader, key: str, problem: str, found: str, needed: str) -> SettingsError:
+    fault = SettingsError("", found=repr(found), needed=needed)
+    return reader.fault(f"{key}: {problem}", fault)
+
+
+_HALF = 0.5
+
+"""Relative errors beyond this are no first-order ones: nothing that is carried would hold."""
+
+_OF_DIAMETER = 0.2
+
+"""Of a diameter: 40 % of its area, and of every stress and modulus."""
+
+_GREATEST_OF: dict[Dimension, tuple[float, str]] = {
+    "strain": (_HALF, ", at most 50 %"),
+    "temperature": (100.0, ", at most 100 K, as a difference: in K"),
+}
+
+
+class _UncertaintySection(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Expanded(_UncertaintySection):
+    """As a certificate of calibration prints it: ``{ expanded = "0.2 %", k = 2 }``."""
+
+    expanded: Number
+    k: float
+
+
+class StatedLimits(_UncertaintySection):
+    """As a data sheet prints it: ``{ half_width = "0.25 %", shape = "rectangular" }``."""
+
+    half_width: Number
+    shape: Literal["rectangular", "triangular", "arcsine"] = "rectangular"
+
+
+Stated = Number | Expanded | StatedLimits
+
+"""A plain value is a standard uncertainty."""
+
+
+class TensionSection(_UncertaintySection):
+    """``[uncertainty.tension]``."""
+
+    gain: Stated | None = None
+    """Of the whole indication: ``"0.1 %"``."""
+    offset: Stated | None = None
+    """Of the zero."""
+    noise: Stated | None = None
+    """Of one reading."""
+    resolution: Number | None = None
+    """One step of the indication."""
+    one_load_cell: bool = False
+    """All tension channels are of one cell, or calibrated against one."""
+
+
+class PositionSection(_UncertaintySection):
+    """``[uncertainty.crosshead_position]``."""
+
+    gain: Stated | None = None
+    offset: Stated | None = None
+    noise: Stated | None = None
+    resolution: Number | None = None
+
+
+class TemperatureSection(_UncertaintySection):
+    """``[uncertainty.temperature]``: both keys, or nothing can be said of it."""
+
+    value: Stated
+    """Of the temperature of a specimen while it is tested: ``"2 K"``."""
+    stiffness_per_kelvin: Number
+    """Relative change of its tension at one strain: ``"0.3 %"``."""
+
+
+class UncertaintySection(_UncertaintySection):
+    """``[uncertainty]``: standard uncertainties of what the tests of the campaign share."""
+
+    tension: TensionSection = TensionSection()
+    crosshead_position: PositionSection = PositionSection()
+    lag: Stated | None = None
+    """Between the two channels."""
+    diameter: Stated | None = None
+    """Of the mean of the readings of a specimen."""
+    strain: Stated | None = None
+    """Relative: what the strain method itself may miss."""
+    rated_break_strength: Stated | None = None
+    """Relative."""
+    temperature: TemperatureSection | None = None
+
+
+def stated_errors(
+    path: Path, section: UncertaintySection, specimens: Iterable[Specimen] = ()
+) -> StatedErrors:
+    """Standard uncertainties in SI; an error names campaign.toml and the key.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        campaign.toml.
+    section : UncertaintySection
+        As written.
+    specimens : iterable of Specimen
+        Of the campaign, whose diameters bound what may be stated of them.
+
+    Returns
+    -------
+    errors : StatedErrors
+        Zero where nothing is written.
+
+    Raises
+    ------
+    SettingsError
+        If a value has the wrong unit, is negative, or is beyond what can be meant.
+
+    Notes
+    -----
+    What only a log can bound (zeros, readings and lag) is looked at when the test is reduced, by
+    `reduction.pipeline.plausibility.check_stated_errors`.
+    """
+    reader = TableReader(path, "uncertainty")
+
+    def standard(key: str, text: Stated | None, dimension: Dimension) -> float:
+        if text is None:
+            return 0.0
+        try:
+            if isinstance(text, Expanded):
+                found = of_expanded(
+                    reader.value(f"{key}.expanded", text.expanded, dimension), text.k
+                )
+            elif isinstance(text, StatedLimits):
+                found = of_half_width(
+                    reader.value(f"{key}.half_width", text.half_width, dimension), text.shape
+                )
+            else:
+                found = reader.value(key, text, dimension)
+        except SettingsError:
+            raise
+        except ReductionError as error:
+            fault = SettingsError(error.problem, found=error.found, needed=error.needed)
+            raise reader.fault(f"{key}: {fault.problem}", fault) from error
+        # a temperature in degC would be one above freezing
+        most, words = _GREATEST_OF.get(dimension, (float("inf"), ""))
+        if not 0 <= found <= most:
+            fault = SettingsError(
+                "this is no standard uncertainty", found=str(text), needed=f"zero or more{words}"
+            )
+            raise reader.fault(f"{key}: {fault.problem}", fault)
+        return found
+
+    def reading(name: str, of: TensionSection | PositionSection, dimension: Dimension) -> float:
+        noise = standard(f"{name}.noise", of.noise, dimension)
+        step = standard(f"{name}.resolution", of.resolution, dimension)
+        return float((noise**2 + of_resolution(step) ** 2) ** 0.5)
+
+    tension, position, warmth = section.tension, section.crosshead_position, section.temperature
+    stiffness = 0.0
+    if warmth is not None:
+        kelvin = standard("temperature.value", warmth.value, "temperature")
+        each = reader.value(
+            "temperature.stiffness_per_kelvin", warmth.stiffness_per_kelvin, "strain"
+        )
+        stiffness = kelvin * abs(each)
+        if stiffness > _HALF:
+            raise reader.fault(
+                "temperature: value times stiffness_per_kelvin is no standard uncertainty",
+                SettingsError(
+                    "", found=f"{100 * stiffness:,.0f} % of the stiffness", needed="at most 50 %"
+                ),
+            )
+    diameter = standard("diameter", section.diameter, "length")
+    for specimen in specimens:
+        if specimen.diameter and diameter > _OF_DIAMETER * specimen.mean_diameter:
+            raise reader.fault(
+                f"diameter: this is no standard uncertainty of the diameter of '{specimen.name}'",
+                SettingsError(
+                    "",
+                    found=f"{1e3 * diameter:.4g} mm of {1e3 * specimen.mean_diameter:.4g} mm",
+                    needed="at most 20 % of it, which is 40 % of every modulus",
+                    hint="It is of the mean of the readings, not the diameter itself.",
+                ),
+            )
+    return StatedErrors(
+        tension_gain=standard("tension.gain", tension.gain, "strain"),
+        tension_offset=standard("tension.offset", tension.offset, "force"),
+        tension_reading=reading("tension", tension, "force"),
+        position_gain=standard("crosshead_position.gain", position.gain, "strain"),
+        position_offset=standard("crosshead_position.offset", position.offset, "length"),
+        position_reading=reading("crosshead_position", position, "length"),
+        lag=standard("lag", section.lag, "time"),
+        diameter=diameter,
+        strain_gain=standard("strain", section.strain, "strain"),
+        rated_break_strength=standard(
+            "rated_break_strength", section.rated_break_strength, "strain"
+        ),
+        stiffness=stiffness,
+        has_one_load_cell=tension.one_load_cell,
+    )
+
+
+class LimitSection(Section):
+    """``[[report.limits]]``: a number that is held against a limit."""
+
+    quantity: ReportText
+    """As `reduction budget` names it: ``tangent_modulus``, ``segment_modulus``, ..."""
+    test: ReportText
+    """A test, or ``test/step``."""
+    at: dict[str, str | int | float] = Field(default_factory=dict)
+    """``{ specimen = "new", branch = "ascending", strain = "125 %" }``."""
+    lower: str | None = None
+    upper: str | None = None
+    source: ReportText = ""
+
+
+class ReportSection(Statement[LimitSection]):
+    """``[report]``: every key may be left out; the report then says that it is not stated."""
+
+
+def report_details(
+    path: Path,
+    section: ReportSection | None,
+    *,
+    specimens: Collection[str],
+    tests: Mapping[str, TestPlan],
+) -> ReportDetails | None:
+    """Return what the laboratory states, limits in SI.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        campaign.toml.
+    section : ReportSection or None
+        As written.
+    specimens : collection of str
+        Of the campaign.
+    tests : mapping of str to TestPlan
+        Of the campaign.
+
+    Returns
+    -------
+    details : ReportDetails or None
+        None where the campaign has no ``[report]``.
+
+    Raises
+    ------
+    SettingsError
+        If an item is no specimen, a limit has no ends, a wrong unit or no such test, or limits
+        are given without a decision rule.
+    """
+    if section is None:
+        return None
+    unknown = sorted(set(section.items) - set(specimens))
+    if unknown:
+        raise in_toml(
+            path, "report.items names what is no specimen of the campaign",
+            found=", ".join(unknown), needed=f"one of {', '.join(specimens)}",
+        )  # fmt: skip
+    if section.limits and section.decision_rule is None:
+        raise in_toml(
+            path, "report.limits are given, but no rule by which conformity is decided",
+            needed='report.decision_rule = "simple acceptance" or "guard band"',
+        )  # fmt: skip
+    return ReportDetails(
+        **{name: value for name, value in section if name != "limits"},
+        limits=tuple(
+            _limit(path, f"report.limits.{number}", one, tests)
+            for number, one in enumerate(section.limits)
+        ),
+    )
+
+
+def _limit(path: Path, place: str, one: LimitSection, tests: Mapping[str, TestPlan]) -> Limit:
+    if one.quantity not in QUANTITIES:
+        raise in_toml(
+            path, f"{place}.quantity is not known", found=repr(one.quantity),
+            needed="a name such as tangent_modulus; `reduction budget PRODUCT.nc` lists them",
+        )  # fmt: skip
+    product = product_of(one.test, tests)
+    if product is None:
+        raise in_toml(
+            path, f"{place}.test is no test of the campaign", found=repr(one.test),
+            needed="one of " + ", ".join(tests) + "; of a test with steps TEST/STEP",
+        )  # fmt: skip
+    if one.lower is None and one.upper is None:
+        raise in_toml(path, f"{place} has no limit", needed="lower, upper, or both")
+    try:
+        lower, upper = (
+            None if text is None else parse_in_unit(text, quantity(one.quantity).unit)
+            for text in (one.lower, one.upper)
+        )
+        at = {key: parse_place(key, str(value)) for key, value in one.at.items()}
+    except SettingsError as error:
+        raise in_toml(
+            path, f"{place}: {error.problem}", found=error.found, needed=error.needed,
+            hint=error.hint,
+        ) from error  # fmt: skip
+    if lower is not None and upper is not None and not lower < upper:
+        raise in_toml(
+            path, f"{place}: the lower limit is not below the upper one",
+            found=f"{one.lower} and {one.upper}",
+        )  # fmt: skip
+    return Limit(
+        quantity=one.quantity, test=product[0], at=at, lower=lower, upper=upper, source=one.source
+    )
+
+
+_Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_ \-]{0,99}$")]
+
+Calibrated = Literal[
+    "wrap_angle",
+    "rubber_modulus",
+    "cord_load_scale",
+    "cord_strain_scale",
+    "dead_length_share",
+]
+
+"""What a comparison may fit; diameters and cords are measured, not fitted."""
+
+
+class _HoseSection(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class CordSection(_HoseSection):
+    """``[cord]``: measured points of one cord, the last one its break."""
+
+    strain: tuple[Number, ...]
+    load: tuple[str, ...]
+
+
+class LayerSection(_HoseSection):
+    """``[[hose.layers]]``: a layer that is to carry no load."""
+
+    name: _Name
+    wrap_angle: str
+    strain_limit: Number | None = None
+    """Greatest tensile strain that it bears."""
+    compression_limit: Number | None = None
+    """Greatest compressive strain that it bears, a positive number."""
+
+
+class HoseKeys(_HoseSection):
+    """``[hose]``, and ``[hoses.NAME]`` of a campaign without its cord."""
+
+    wrap_angle: str
+    """From the hose axis."""
+    wrap_diameter: str | None = None
+    """Mean of the two cord layers; or ``layer_diameters``."""
+    layer_diameters: tuple[str, str] | None = None
+    inner_diameter: str
+    outer_diameter: str
+    cords_per_length: str
+    cord_diameter: str
+    rubber_modulus: str
+    rubber_law: RubberLaw = "neo-hookean"
+    working_share: Number = Field(default=1 / 3)
+    """Of the break load of a cord, at the safe working load."""
+    cord_load_scale: Number = 1.0
+    cord_strain_scale: Number = 1.0
+    minimum_inner_diameter: str | None = None
+    length: str | None = None
+    """Relaxed, stretch-limited ends included; needed with ``dead_length``."""
+    dead_length: str | None = None
+    """Part of the length that does not stretch, both ends together."""
+    strain_step: Number = "1 %"
+    greatest_strain: Number | None = None
+    standard_uncertainty: dict[str, Number] = Field(default_factory=dict)
+    """By key of this table, in its unit or in % of its value."""
+    layers: tuple[LayerSection, ...] = ()
+
+
+class HoseSection(HoseKeys):
+    """``[hoses.NAME]`` with ``[hoses.NAME.cord]``."""
+
+    cord: CordSection
+
+
+class TargetSection(_HoseSection):
+    """``[target]``: what a hose like this one is to do at its safe working load."""
+
+    strain: Number
+    tension: str | None = None
+
+
+class ComparisonKeys(_HoseSection):
+    """``[comparison]``: how a measured curve meets the prediction."""
+
+    specimen: str | None = None
+    """Of the measured test, where it has several."""
+    loading: Literal["static", "dynamic"] | None = None
+    """How it was pulled, where its kind does not say it: a cyclic test may be slow."""
+    calibrate: tuple[Calibrated, ...] = ()
+    """Numbers of the hose to be fitted to the measured curve."""
+
+
+class HoseSpecFile(_HoseSection):
+    """SPEC.toml of ``reduction predict hose`` and ``reduction compare``."""
+
+    hose: HoseKeys
+    cord: CordSection
+    target: TargetSection | None = None
+    comparison: ComparisonKeys = ComparisonKeys()
+
+
+class ComparisonSection(ComparisonKeys):
+    """``[comparisons.NAME]``."""
+
+    measured: str
+    """Test or test/step of the campaign."""
+    predicted: str
+    """One of ``[hoses]``."""
+
+
+_DIMENSION: dict[tuple[str, str], Dimension] = {
+    ("phases", "minimum_duration"): "time",
+    ("phases", "position_tolerance"): "length",
+    ("phases", "tension_tolerance"): "force",
+    ("phases", "slack_tension"): "force",
+    ("holds", "minimum_duration"): "time",
+    ("holds", "times"): "time",
+    ("modulus", "strain_bin_width"): "strain",
+    ("modulus", "window"): "strain",
+    ("modulus", "stress_at_strain"): "strain",
+    ("rope", "reference_time"): "time",
+}
+
+# least and greatest value that a stage can work with; SI
+_LIMITS: dict[tuple[str, str], tuple[float, float]] = {
+    ("quality", "stuck_samples"): (3, math.inf),
+    ("quality", "spike_factor"): (3, math.inf),
+    ("quality", "gap_factor"): (1.01, math.inf),
+    ("quality", "rate_tolerance"): (1e-6, math.inf),
+    ("phases", "minimum_duration"): (1e-3, math.inf),
+    ("phases", "position_tolerance"): (1e-9, math.inf),
+    ("cycles", "band"): (1e-9, math.inf),
+    ("cycles", "trim_threshold"): (0.0, 1.0),
+    ("cycles", "break_in_cycles"): (0, math.inf),
+    ("modulus", "strain_bin_width"): (1e-4, 10.0),
+    ("modulus", "window"): (1e-4, 10.0),
+    ("modulus", "minimum_count"): (3, math.inf),
+    ("modulus", "maximum_segments"): (1, 8),
+    ("modulus", "segment_tolerance"): (1e-6, 1.0),
+    ("modulus", "selected_cycles"): (2, math.inf),
+    ("holds", "minimum_duration"): (1e-3, math.inf),
+    ("holds", "maximum_terms"): (1, 5),
+    ("slip", "minimum_cycles"): (20, math.inf),
+    ("slip", "false_alarm"): (1e-9, 0.5),
+    ("rope", "last_cycles"): (1, math.inf),
+    ("rope", "reference_time"): (1e-3, math.inf),
+    ("rope", "failure_share"): (0.01, 0.99),
+    ("archive", "longest_record"): (1000, math.inf),
+}
+
+_WORDS: dict[tuple[str, str], tuple[str, ...]] = {("archive", "samples"): get_args(StoredSamples)}
+
+# set elsewhere in campaign.toml, under their own names
+_ELSEWHERE = {("strain", "method"), ("cycles", "control"), ("cycles", "waveform"),
+              ("cycles", "expected_cycles")}  # fmt: skip
+
+
+def dimension_of(group: str, name: str, *, control: str) -> Dimension | None:
+    """Dimension of a number, with which its unit is written; None where it has none."""
+    if (group, name) == ("cycles", "band"):
+        return "force" if control == "load" else "length"
+    return _DIMENSION.get((group, name))
+
+
+def limits_of(group: str, name: str) -> tuple[float, float]:
+    """Least and greatest value that a number may have, in SI."""
+    return _LIMITS.get((group, name), (0.0, math.inf))
+
+
+def _in_si(where: str, value: str | float, dimension: Dimension) -> float:
+    """A value with its unit; a refusal says which number it is."""
+    try:
+        return parse_quantity(value, dimension)
+    except SettingsError as error:
+        raise SettingsError(
+            f"{where}: {error.problem}", found=repr(value), needed=error.needed, hint=error.hint
+        ) from error
+
+
+def _value(group: str, name: str, value: object, default: object, control: str) -> object:
+    where = f"reduction.{group}.{name}"
+    words = _WORDS.get((group, name))
+    if words is not None:
+        if value not in words:
+            needed = " or ".join(f'"{word}"' for word in words)
+            raise SettingsError(f"{where} is unknown", found=repr(value), needed=needed)
+        return value
+    dimension = dimension_of(group, name, control=control)
+    if isinstance(default, tuple):
+        if not isinstance(value, (list, tuple)):
+            raise SettingsError(f"{where} is not a list", found=repr(value), needed="a list")
+        return tuple(_in_si(where, item, dimension or "number") for item in value)
+    if dimension is not None:
+        if not isinstance(value, (str, int, float)):
+            raise SettingsError(f"{where} is not a value", found=repr(value), needed="a value")
+        number = _in_si(where, value, dimension)
+    elif isinstance(value, (int, float)) and not isinstance(value, bool):
+        try:
+            number = float(value)
+        except OverflowError:  # a whole number of hundreds of digits
+            number = math.inf
+    else:
+        raise SettingsError(f"{where} is not a number", found=repr(value), needed="a number")
+    least, greatest = limits_of(group, name)
+    if not least <= number <= greatest or (isinstance(default, float) and math.isinf(number)):
+        upper = "" if math.isinf(greatest) else f" and at most {greatest:g}"
+        raise SettingsError(
+            f"{where} is out of range", found=repr(value), needed=f"at least {least:g}{upper}"
+        )
+    if isinstance(default, int):
+        if not number.is_integer():  # nor is infinity one
+            raise SettingsError(
+                f"{where} is not a whole number", found=repr(value), needed="a whole number"
+            )
+        return int(number)
+    return number
+
+
+def apply_numbers(
+    settings: ReductionSettings, table: Mapping[str, Mapping[str, Any]], *, control: str
+) -> ReductionSettings:
+    """Settings with the numbers of one ``reduction`` table put in.
+
+    Parameters
+    ----------
+    settings : ReductionSettings
+        What holds so far.
+    table : mapping
+        Group to name to value, as TOML gave it.
+    control : str
+        ``position`` or ``load``: the dimension of a band.
+
+    Returns
+    -------
+    settings : ReductionSettings
+        New settings.
+
+    Raises
+    ------
+    SettingsError
+        If a group, a name or a value cannot be used.
+    """
+    for group, numbers in table.items():
+        known = {item.name for item in fields(settings)}
+        if group not in known:
+            raise SettingsError(
+                f"reduction.{group} is not a group of settings",
+                found=f"'{group}'",
+                needed="one of " + ", ".join(sorted(known)),
+            )
+        part = getattr(settings, group)
+        names = {
+            item.name: item.default for item in fields(part) if (group, item.name) not in _ELSEWHERE
+        }
+        changed = {}
+        for name, value in numbers.items():
+            if name not in names:
+                raise SettingsError(
+                    f"reduction.{group}.{name} is not a setting",
+                    found=f"'{name}'",
+                    needed="one of " + ", ".join(sorted(names)),
+                )
+            changed[name] = _value(group, name, value, names[name], control)
+        settings = replace(settings, **{group: replace(part, **changed)})
+    return settings
+
 
 TestKind = Literal[
     "cyclic",
@@ -29,15 +735,19 @@ TestKind = Literal[
     "tensile",
     "stepwise",
 ]
+
 # a name becomes a file name, so it may hold nothing that a path or a shell reads
 Identifier = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_\-]{0,99}$")]
+
 StepName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_ \-]{0,99}$")]
+
 RunName = Annotated[
     str,
     StringConstraints(
         pattern=r"^[A-Za-z0-9][A-Za-z0-9_\-]{0,99}(/[A-Za-z0-9][A-Za-z0-9_ \-]{0,99})?$"
     ),
 ]
+
 Response = Literal[
     "apparent_spring_constant",
     "hysteresis_energy",
@@ -48,8 +758,11 @@ Response = Literal[
     "loss_factor",
     "dashpot_coefficient",
 ]
+
 """What a surface may be fitted to; the first four are those of CG-D-39-80."""
+
 Text = Annotated[str, StringConstraints(max_length=2000)]
+
 _MOST = 999_999_999  # of what is counted: a netCDF integer holds it
 
 
@@ -136,7 +849,8 @@ class _Kept(_Section):
     note: Text = ""
     strain: StrainSection = StrainSection()
     reduction: dict[str, dict[str, Any]] = Field(default_factory=dict)
-    """Numbers of `reduction.settings`, by group: ``reduction.cycles.trim_threshold = 0.95``."""
+    """Numbers of `reduction.record.settings`, by group: ``reduction.cycles.trim_threshold =
+    0.95``."""
 
 
 class Defaults(_Kept):

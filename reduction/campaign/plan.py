@@ -7,18 +7,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from reduction.address import is_address
-from reduction.archive.laboratory import ReportDetails
-from reduction.errors import LogError
-from reduction.ingest.layout import Layout
-from reduction.outcomes.product import Outcome
-from reduction.prediction import HosePlan
-from reduction.provenance import Source
-from reduction.record import Specimen, SpliceMarks
-from reduction.remote import in_words
-from reduction.settings import Limits, ReductionSettings
-from reduction.surface.levels import FactorLevels
-from reduction.uncertainty.stated import StatedErrors
+from reduction.archive.write import ReportDetails
+from reduction.experiments.designs import FactorLevels
+from reduction.experiments.outcomes import Outcome
+from reduction.prediction.hose_prediction import HosePlan
+from reduction.readers.layout import Layout
+from reduction.readers.remote_files import in_words
+from reduction.record.contributions import StatedErrors
+from reduction.record.errors import LogError
+from reduction.record.measurement import Source, Specimen, SpliceMarks
+from reduction.record.plain_text import is_address
+from reduction.record.settings import Limits, ReductionSettings
 
 
 @dataclass(frozen=True)

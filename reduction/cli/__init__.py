@@ -1,1 +1,1 @@
-"""Edge: the command line."""
+"""The command line."""

@@ -1,4 +1,4 @@
-"""The command budget: where the uncertainty of one number comes from."""
+"""The command budget."""
 
 from __future__ import annotations
 
@@ -9,18 +9,21 @@ from typing import cast
 import xarray as xr
 from rich.markup import escape
 
-from reduction.archive.budget import budget_from_archive, quantities_with_budget
-from reduction.archive.budgetplaces import parse_place, place_name
 from reduction.archive.open import reading
-from reduction.archive.stored import stored
-from reduction.cli.commandoutput import CommandOutput
-from reduction.cli.lookupsource import name_of_quantity
-from reduction.cli.numbers import plain, short, table_of
-from reduction.errors import SettingsError
+from reduction.archive.uncertainty_budget import (
+    budget_from_archive,
+    parse_place,
+    place_name,
+    quantities_with_budget,
+)
+from reduction.archive.variables import stored
+from reduction.cli.lookup import name_of_quantity
+from reduction.cli.output import CommandOutput, plain, short, table_of
+from reduction.quantities.units import UnitSystem, display_unit
+from reduction.record.contributions import LINE_METHODS
+from reduction.record.errors import SettingsError
 from reduction.uncertainty.budget import Budget
-from reduction.uncertainty.montecarlo import PARAMETERS
-from reduction.uncertainty.product import LINE_METHODS
-from reduction.units import UnitSystem, display_unit
+from reduction.uncertainty.monte_carlo import PARAMETERS
 
 # what a look-up calls a curve of a slow pull
 _OVER_TENSION = {"strain": "quasi_static_strain"}

@@ -1,4 +1,4 @@
-"""The command ``catalogue``: a question to the campaigns of a folder, and its answer."""
+"""The command catalogue."""
 
 from __future__ import annotations
 
@@ -10,18 +10,26 @@ from typing import Any, cast
 
 from rich.markup import escape
 
-from reduction.catalogue.columns import NUMBERS
-from reduction.catalogue.condition import condition_of
-from reduction.catalogue.file import Catalogue, load_catalogue
-from reduction.catalogue.query import Query, answer, needed_quantities, quantities_there
-from reduction.catalogue.write import check_ending, meaning_of, unit_of, write_answer
-from reduction.cli.commandoutput import CommandOutput
-from reduction.cli.numbers import plain, short, table_of
-from reduction.cli.plaintable import plain_table
-from reduction.units import UnitSystem, display_unit
-from reduction.vocabulary import QUANTITIES
+from reduction.batch.catalogue import (
+    NUMBERS,
+    Catalogue,
+    Query,
+    answer,
+    check_ending,
+    condition_of,
+    load_catalogue,
+    meaning_of,
+    needed_quantities,
+    quantities_there,
+    unit_of,
+    write_answer,
+)
+from reduction.cli.output import CommandOutput, plain, plain_table, short, table_of
+from reduction.quantities.names import QUANTITIES
+from reduction.quantities.units import UnitSystem, display_unit
 
 _SPREAD = "_standard_uncertainty"
+
 # what a terminal has room for; JSON and files have every column
 _LEFT_TO_FILES = (
     "control", "waveform", "specimen_kind", "specimen_construction", "specimen_material",
@@ -56,7 +64,7 @@ def _named(text: str) -> str:
     """Name of a quantity, also where it is asked for by its symbol."""
     if text in QUANTITIES:
         return text
-    from reduction.cli.lookupsource import name_of_quantity
+    from reduction.cli.lookup import name_of_quantity
 
     return name_of_quantity(text)
 
@@ -112,7 +120,7 @@ def _catalogue(folder: Path, quantities: Sequence[str] | None, *, rebuild: bool)
     if not rebuild:
         return load_catalogue(folder, quantities)
     # a question does without the libraries that read archives
-    from reduction.catalogue.read import rebuild as write_again
+    from reduction.batch.catalogue import rebuild as write_again
 
     left_out = write_again(folder)
     catalogue = load_catalogue(folder, quantities)

@@ -1,4 +1,4 @@
-"""The command experiment: a run sheet, what to know before the first run, and the precision."""
+"""The commands experiment and surface."""
 
 from __future__ import annotations
 
@@ -8,18 +8,42 @@ from typing import Any, cast
 import numpy as np
 from rich.markup import escape
 
+from reduction.archive.csv_columns import csv_text
 from reduction.archive.write import write_whole
-from reduction.campaign.spec import ExperimentSpec, load_spec
-from reduction.cli.commandoutput import CommandOutput
-from reduction.cli.numbers import plain, short, table_of
-from reduction.errors import ReductionError, SettingsError
-from reduction.surface.cautions import Caution, find_cautions
-from reduction.surface.designs import Design, DesignKind, box_behnken, plackett_burman
-from reduction.surface.precision import ExpectedPrecision, expected_precision
-from reduction.surface.runsheet import RunSheet, make_run_sheet
-from reduction.surface.smallest import smallest_effect
-from reduction.tables.column import csv_text
-from reduction.units import UnitSystem, display_unit
+from reduction.campaign.experiment_plans import ExperimentSpec, RunSeries, load_spec, read_runs
+from reduction.cli.output import CommandOutput, Shown, fitted_unit, plain, short, table_of
+from reduction.experiments.designs import Design, DesignKind, box_behnken, plackett_burman
+from reduction.experiments.fit_results import (
+    FIT_REASONS,
+    LACK_OF_FIT_REASONS,
+    STATIONARY_KINDS,
+    STATIONARY_REASONS,
+    ResponseSurfaces,
+)
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.run_sheet import (
+    Caution,
+    ExpectedPrecision,
+    RunSheet,
+    expected_precision,
+    find_cautions,
+    make_run_sheet,
+    smallest_effect,
+)
+from reduction.experiments.screening import (
+    ScreeningEffects,
+    alias_matrix,
+    screening_effects,
+    screening_remarks,
+)
+from reduction.experiments.surface_warnings import (
+    Drift,
+    drift_over_order,
+    drifting_responses,
+    negative_surfaces,
+)
+from reduction.quantities.units import UnitSystem, combined_unit, display_unit
+from reduction.record.errors import DataError, FitError, ReductionError, SettingsError
 
 _ROUNDING = 1e-9
 
@@ -270,3 +294,401 @@ def _document(
         "expected_precision": expected,
         "out": None if out is None else str(out),
     }
+
+
+def frame(runs: RunSeries, notes: tuple[str, ...]) -> dict[str, Any]:
+    """What answers for surfaces and for effects have in common."""
+    return {
+        "n_runs": len(runs.row),
+        "factors": [
+            {"name": name, "unit": unit, "low": low, "high": high}
+            for name, unit, low, high in zip(
+                runs.factor_names, runs.factor_units, runs.low.tolist(), runs.high.tolist(),
+                strict=True,
+            )
+        ],
+        "notes": list(notes),
+    }  # fmt: skip
+
+
+def surface_document(
+    surfaces: ResponseSurfaces, index: int, runs: RunSeries, drift: Drift
+) -> dict[str, Any]:
+    """One response: every number of its surface."""
+    anova, lack, canonical = surfaces.anova, surfaces.lack_of_fit, surfaces.canonical
+    unit = fitted_unit(runs.response_units[index], surfaces.transform[index])
+    lines = zip(
+        anova.source, anova.degrees_of_freedom[index], anova.sum_of_squares[index],
+        anova.mean_square[index], anova.f[index], anova.p_value[index], anova.error_term,
+        strict=True,
+    )  # fmt: skip
+    reason = int(surfaces.reason[index])
+    diagnostics, blocks = surfaces.diagnostics, surfaces.blocks
+    return {
+        "unit": runs.response_units[index] or None,
+        "transform": surfaces.transform[index],
+        "transform_exponent": plain(surfaces.transform_exponent[index]),
+        "transform_exponent_interval": plain(surfaces.transform_exponent_interval[index]),
+        "coefficient_unit": unit or None,
+        "labels": list(surfaces.labels),
+        "terms": list(surfaces.term_names),
+        "coefficient": plain(surfaces.coefficient[index]),
+        "standard_error": plain(surfaces.coefficient_standard_uncertainty[index]),
+        "t": plain(surfaces.t[index]),
+        "p_value": plain(surfaces.p_value[index]),
+        "error_term": list(surfaces.error_term),
+        "r2": plain(surfaces.r2[index]),
+        "adjusted_r2": plain(surfaces.adjusted_r2[index]),
+        "predicted_r2": plain(surfaces.predicted_r2[index]),
+        "sigma": plain(surfaces.sigma[index]),
+        "degrees_of_freedom": int(surfaces.degrees_of_freedom[index]),
+        "overall": {
+            "f": plain(surfaces.overall_f[index]),
+            "p": plain(surfaces.overall_p_value[index]),
+            "printed_f": plain(surfaces.printed_f[index]),
+        },
+        "anova": [
+            {
+                "source": source, "df": None if np.isnan(df) else int(df), "ss": plain(ss),
+                "ms": plain(ms), "f": plain(f), "p": plain(p), "error_term": error_term,
+            }
+            for source, df, ss, ms, f, p, error_term in lines
+        ],
+        "lack_of_fit": {
+            "df": int(lack.degrees_of_freedom[index]),
+            "pure_error_df": int(lack.pure_error_degrees_of_freedom[index]),
+            "f": plain(lack.f[index]),
+            "p": plain(lack.p_value[index]),
+            "reason": LACK_OF_FIT_REASONS[int(lack.reason[index])],
+        },
+        "stationary_point": {
+            "coded": plain(canonical.stationary_point[index]),
+            "engineering": plain(canonical.stationary_point_engineering[index]),
+            "unit": list(runs.factor_units),
+            "coded_standard_error": plain(canonical.stationary_point_standard_uncertainty[index]),
+            "value": plain(canonical.stationary_value[index]),
+            "kind": STATIONARY_KINDS[int(canonical.kind[index])],
+            "inside": bool(canonical.is_inside[index]),
+            "reason": STATIONARY_REASONS[int(canonical.reason[index])],
+        },
+        "eigenvalues": plain(canonical.eigenvalue[index]),
+        "eigenvalue_standard_error": plain(canonical.eigenvalue_standard_uncertainty[index]),
+        "eigenvectors": plain(canonical.eigenvector[index].T),
+        "engineering": {
+            "terms": list(surfaces.term_names),
+            "coefficient": plain(surfaces.coefficient_engineering[index]),
+            "standard_error": plain(surfaces.coefficient_engineering_standard_uncertainty[index]),
+            "unit": [
+                combined_unit(unit, runs.factor_units, powers.tolist()) if unit else None
+                for powers in surfaces.exponents
+            ],
+        },
+        "drift": {
+            "per_run": plain(drift.slope[index]),
+            "standard_error": plain(drift.standard_uncertainty[index]),
+            "p": plain(drift.p_value[index]),
+        },
+        "blocks": None if blocks is None else {
+            "names": list(blocks.names),
+            "treatment": blocks.treatment,
+            "effect": plain(blocks.effect[index]),
+            "standard_deviation": plain(blocks.standard_deviation[index]),
+        },
+        "runs": {
+            "name": list(surfaces.run_names),
+            "coded": plain(surfaces.coded),
+            "fitted": plain(surfaces.fitted[index]),
+            "residual": plain(surfaces.residual[index]),
+            "leverage": plain(diagnostics.leverage[index]),
+            "cooks_distance": plain(diagnostics.cooks_distance[index]),
+            "deleted_residual": plain(diagnostics.deleted_residual[index]),
+        },
+        "reason": FIT_REASONS[reason],
+    }  # fmt: skip
+
+
+def effects_document(effects: ScreeningEffects, runs: RunSeries) -> dict[str, Any]:
+    """Effects of every response, and what they are mixed of."""
+    pairs, alias = alias_matrix(np.where(runs.coded < 0, -1.0, 1.0))
+    names = effects.names
+    documents = {
+        name: {
+            "unit": runs.response_units[index] or None,
+            "terms": list(names),
+            "effect": plain(effects.effect[index]),
+            "dummy_effect": plain(effects.dummy_effect[index]),
+            "mean": plain(effects.mean[index]),
+            "standard_error": plain(effects.effect_standard_error[index]),
+            "t": plain(effects.t_value[index]),
+            "p_value": plain(effects.p_value[index]),
+            "minimum_significant_effect": plain(effects.minimum_significant_effect[index]),
+            "simultaneous_minimum_effect": plain(effects.simultaneous_minimum_effect[index]),
+            "is_significant": plain(effects.is_significant[index]),
+            "reason": str(effects.reason[index]),
+        }
+        for index, name in enumerate(runs.response_names)
+    }
+    return {
+        "fit": "effects",
+        "error_from": effects.error_from,
+        "degrees_of_freedom": effects.degrees_of_freedom,
+        "significance": effects.significance,
+        "responses": documents,
+        "aliases": {
+            name: {
+                f"{names[one]}*{names[other]}": value
+                for (one, other), value in zip(
+                    pairs, alias[place + 1].round(12).tolist(), strict=True
+                )
+                if value
+            }
+            for place, name in enumerate(names)
+        },
+    }
+
+
+def show_surfaces(
+    surfaces: ResponseSurfaces,
+    runs: RunSeries,
+    notes: tuple[str, ...],
+    output: CommandOutput,
+    system: UnitSystem,
+) -> None:
+    """Each surface: its terms, its analysis of variance, its stationary point."""
+    for index, name in enumerate(surfaces.response_names):
+        transform = surfaces.transform[index]
+        shown = Shown(runs.response_units[index], transform, runs.factor_units, system)
+        power = f", Box-Cox exponent {surfaces.transform_exponent[index]:.3g}"
+        unit = f" [{shown.unit}]" if shown.unit else f" ({transform})" * (transform != "none")
+        output.say(f"{name}{unit}{power if transform == 'box-cox' else ''}")
+        if surfaces.reason[index] in (1, 2):
+            output.say(f"  {FIT_REASONS[int(surfaces.reason[index])]}")
+            continue
+        _show_terms(surfaces, index, shown.scale, output)
+        output.say(
+            f"r2 {short(surfaces.r2[index])}, adjusted {short(surfaces.adjusted_r2[index])}, "
+            f"predicted {short(surfaces.predicted_r2[index])}; "
+            f"F {short(surfaces.overall_f[index])}, p {short(surfaces.overall_p_value[index], 3)}"
+        )
+        output.say(
+            f"sigma {short(shown.scale * surfaces.sigma[index])} with "
+            f"{surfaces.degrees_of_freedom[index]} degrees of freedom"
+        )
+        _show_anova(surfaces, index, shown.scale, output)
+        _show_stationary(surfaces, index, shown, runs, output, system)
+        _show_equation(surfaces, index, shown, output)
+        output.say("")
+    for note in notes:
+        output.say(f"note: {note}")
+
+
+def _show_terms(
+    surfaces: ResponseSurfaces, index: int, scale: float, output: CommandOutput
+) -> None:
+    table = table_of("", "term", "coefficient", "standard error", "t", "p", texts=2)
+    rows = zip(
+        surfaces.labels, surfaces.term_names, surfaces.coefficient[index],
+        surfaces.coefficient_standard_uncertainty[index], surfaces.t[index],
+        surfaces.p_value[index], strict=True,
+    )  # fmt: skip
+    for label, term, coefficient, error, t, p in rows:
+        table.add_row(
+            label, escape(term), short(scale * coefficient), short(scale * error), short(t, 4),
+            short(p, 3),
+        )  # fmt: skip
+    output.show(table)
+
+
+def _show_equation(
+    surfaces: ResponseSurfaces, index: int, shown: Shown, output: CommandOutput
+) -> None:
+    """The equation in the units of the factors, where they have any."""
+    engineering = surfaces.coefficient_engineering[index]
+    if np.array_equal(surfaces.coefficient[index], engineering):
+        return
+    errors = surfaces.coefficient_engineering_standard_uncertainty[index]
+    table = table_of("", "in units", "coefficient", "standard error", "unit", texts=2)
+    rows = zip(
+        surfaces.labels, surfaces.term_names, engineering, errors, surfaces.exponents, strict=True
+    )
+    for label, term, coefficient, error, powers in rows:
+        unit, scale = shown.of_term(tuple(powers.tolist()))
+        table.add_row(
+            label, escape(term), short(scale * coefficient, 8), short(scale * error),
+            escape(unit),
+        )  # fmt: skip
+    output.show(table)
+
+
+def _show_anova(
+    surfaces: ResponseSurfaces, index: int, scale: float, output: CommandOutput
+) -> None:
+    anova = surfaces.anova
+    table = table_of("source", "df", "sum of squares", "mean square", "F", "p")
+    rows = zip(
+        anova.source, anova.degrees_of_freedom[index], anova.sum_of_squares[index],
+        anova.mean_square[index], anova.f[index], anova.p_value[index], strict=True,
+    )  # fmt: skip
+    for source, df, squares, mean, f, p in rows:
+        table.add_row(
+            source, short(df), short(scale**2 * squares), short(scale**2 * mean), short(f, 4),
+            short(p, 3),
+        )  # fmt: skip
+    output.show(table)
+    reason = LACK_OF_FIT_REASONS[int(surfaces.lack_of_fit.reason[index])]
+    if reason:
+        output.say(f"no test of lack of fit: {reason}")
+
+
+def _show_stationary(
+    surfaces: ResponseSurfaces,
+    index: int,
+    shown: Shown,
+    runs: RunSeries,
+    output: CommandOutput,
+    system: UnitSystem,
+) -> None:
+    canonical = surfaces.canonical
+    reason = STATIONARY_REASONS[int(canonical.reason[index])]
+    if reason:
+        output.say(f"no stationary point: {reason}")
+        return
+    inside = "among" if canonical.is_inside[index] else "outside"
+    eigenvalues = ", ".join(short(shown.scale * value) for value in canonical.eigenvalue[index])
+    output.say(
+        f"{STATIONARY_KINDS[int(canonical.kind[index])]} {inside} the levels, value "
+        f"{short(shown.scale * canonical.stationary_value[index])}; eigenvalues {eigenvalues}"
+    )
+    table = table_of("stationary point", "coded", "in units", "unit")
+    for name, unit, coded, engineering in zip(
+        runs.factor_names, runs.factor_units, canonical.stationary_point[index],
+        canonical.stationary_point_engineering[index], strict=True,
+    ):  # fmt: skip
+        text, scale = display_unit(unit, system)
+        table.add_row(escape(name), short(coded), short(scale * engineering), escape(text))
+    output.show(table)
+
+
+def show_effects(
+    effects: ScreeningEffects,
+    runs: RunSeries,
+    notes: tuple[str, ...],
+    output: CommandOutput,
+    system: UnitSystem,
+) -> None:
+    """Effects of each response, largest first, and the smallest that counts."""
+    for index, name in enumerate(runs.response_names):
+        unit, scale = display_unit(runs.response_units[index], system)
+        output.say(f"{name} [{unit}]" if unit else name)
+        if effects.reason[index]:
+            output.say(f"  {effects.reason[index]}")
+        table = table_of("factor", "effect", "t", "p", "significant")
+        order = sorted(
+            range(len(effects.names)), key=lambda place: -abs(effects.effect[index, place])
+        )
+        for place in order:
+            table.add_row(
+                escape(effects.names[place]), short(scale * effects.effect[index, place]),
+                short(effects.t_value[index, place], 4), short(effects.p_value[index, place], 3),
+                "yes" if effects.is_significant[index, place] else "no",
+            )  # fmt: skip
+        output.show(table)
+        of = "the dummies" if effects.error_from == "dummy" else "Lenth"
+        output.say(
+            f"significant at {100 * (1 - effects.significance):g} %: above "
+            f"{short(scale * effects.minimum_significant_effect[index])}, all factors together "
+            f"{short(scale * effects.simultaneous_minimum_effect[index])}; standard error by {of} "
+            f"{short(scale * effects.effect_standard_error[index])} with "
+            f"{short(effects.degrees_of_freedom, 3)} degrees of freedom"
+        )
+        output.say("")
+    for note in notes:
+        output.say(f"note: {note}")
+
+
+_NEAR_A_LEVEL = 0.1
+
+"""Coded distance from -1 or 1 at which a level of a screening is still that level."""
+
+
+def fit_runs(path: Path, spec_path: Path | None, *, output: CommandOutput) -> None:
+    """Fit what SPEC.toml asks for to a table of runs, and print it."""
+    spec = None if spec_path is None else load_spec(spec_path)
+    runs = read_runs(path, spec)
+    units = cast("UnitSystem", output.units)
+    try:
+        if spec is not None and spec.kind == "plackett-burman":
+            effects, notes = _screen(runs)
+            show_effects(effects, runs, notes, output, units)
+            output.answer(frame(runs, notes) | effects_document(effects, runs))
+            return
+        surfaces = _fit(runs, spec)
+        drift = drift_over_order(surfaces, runs.run_order)
+    except (DataError, FitError) as error:
+        raise type(error)(
+            f"{path}: {error.problem}", found=error.found, needed=error.needed, hint=error.hint
+        ) from error
+    notes = (
+        *runs.notes,
+        *surfaces.notes,
+        *_unstated(runs),
+        *negative_surfaces(surfaces),
+        *drifting_responses(surfaces, drift),
+    )
+    show_surfaces(surfaces, runs, notes, output, units)
+    documents = {
+        name: surface_document(surfaces, index, runs, drift)
+        for index, name in enumerate(surfaces.response_names)
+    }
+    output.answer(frame(runs, notes) | {"fit": "quadratic", "responses": documents})
+
+
+def _fit(runs: RunSeries, spec: ExperimentSpec | None) -> ResponseSurfaces:
+    levels = [np.unique(column[np.isfinite(column)].round(6)).size for column in runs.coded.T]
+    if set(levels) == {2}:
+        raise FitError(
+            "two levels a factor carry no square",
+            needed="three levels, or a screening",
+            hint='kind = "plackett-burman" under [experiment] of a SPEC.toml gives the effects.',
+        )
+    declared = () if spec is None else spec.responses
+    return fit_surfaces(
+        runs.coded,
+        runs.responses,
+        factor_names=runs.factor_names,
+        response_names=runs.response_names,
+        low=runs.low,
+        high=runs.high,
+        units="coded",
+        run_names=runs.run_names,
+        blocks=runs.blocks,
+        block_treatment="random" if spec and spec.specimens_as == "random" else "fixed",
+        transforms=[entry.transform for entry in declared] or "none",
+    )
+
+
+def _screen(runs: RunSeries) -> tuple[ScreeningEffects, tuple[str, ...]]:
+    notes = [*runs.notes, *_unstated(runs)]
+    near = np.where(runs.coded < 0, -1.0, 1.0)
+    away = np.abs(runs.coded - near)
+    if not (away <= _NEAR_A_LEVEL).all():
+        run, factor = np.argwhere(~(away <= _NEAR_A_LEVEL))[0].tolist()
+        raise DataError(
+            f"row {runs.row[run]}: a level of {runs.factor_names[factor]} is neither low nor high",
+            found=f"{runs.coded[run, factor]:.4g} coded",
+            needed="-1 or 1, as a screening of two levels has them",
+        )
+    if away.any():
+        notes.append(f"levels up to {away.max():.2g} coded off the plan count as those of the plan")
+    notes += screening_remarks(runs.dummy.shape[1], runs.blocks is not None)
+    design = Design("plackett-burman", near, runs.dummy)
+    return screening_effects(design, runs.responses, names=runs.factor_names), tuple(notes)
+
+
+def _unstated(runs: RunSeries) -> list[str]:
+    bare = [
+        name
+        for name, unit in zip(runs.response_names, runs.response_units, strict=True)
+        if not unit
+    ]
+    return [f"without a unit, numbers as in the table: {', '.join(bare)}"] if bare else []

@@ -1,4 +1,4 @@
-"""The explorer's server, from its start until it is interrupted."""
+"""The command explore."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from contextlib import suppress
 from pathlib import Path
 from typing import cast
 
-from reduction.campaign.find import find_campaign
-from reduction.cli.commandoutput import INTERRUPTED, CommandOutput
+from reduction.campaign.load import find_campaign
+from reduction.cli.output import INTERRUPTED, CommandOutput
 from reduction.cli.progress import campaign_progress
-from reduction.cli.remote import in_order
-from reduction.errors import SettingsError
-from reduction.explore.server import ExploreServer
-from reduction.explore.session import Session
-from reduction.units import UnitSystem
+from reduction.cli.remote_paths import in_order
+from reduction.pages.explorer_campaign import Session
+from reduction.pages.explorer_server import ExploreServer
+from reduction.quantities.units import UnitSystem
+from reduction.record.errors import SettingsError
 
 
 def serve(

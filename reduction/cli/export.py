@@ -1,31 +1,218 @@
-"""The command export: a curve in the words of another program."""
+"""The command export."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Literal, cast
 
-from reduction.cli.assembly import deployed_line
-from reduction.cli.commandoutput import CommandOutput
-from reduction.cli.compositesource import is_of_pieces, piece_source, rule_of
-from reduction.cli.hydrodynamics import stated_hydrodynamics
-from reduction.cli.numbers import plain
-from reduction.cli.syrope import with_syrope
-from reduction.errors import SettingsError
-from reduction.export.closeness import closeness_of
-from reduction.export.fromarchive import CurveName, line_from_archive
-from reduction.export.fromassembly import line_from_assembly
-from reduction.export.fromcomposite import line_from_composite
-from reduction.export.fromlookup import line_from_lookup
-from reduction.export.guards import guards_of
-from reduction.export.product import ExportLine
-from reduction.export.start import siblings_of
-from reduction.export.write import export_line
-from reduction.lookup.source import compose
-from reduction.published.linesource import published_sources
-from reduction.units import Dimension, UnitSystem, parse_quantity
+from reduction.cli.curves import deployed_line, is_of_pieces, piece_source, rule_of
+from reduction.cli.output import CommandOutput, plain
+from reduction.lines.composite import compose
+from reduction.lines.deck_formats import closeness_of, export_line
+from reduction.lines.deck_moordyn import fast_damping, segment_length
+from reduction.lines.export_dynamics import Syrope
+from reduction.lines.export_line import (
+    CYLINDER,
+    ExportLine,
+    Hydrodynamics,
+    curve_from_zero,
+    guards_of,
+    siblings_of,
+)
+from reduction.lines.export_sources import (
+    CurveName,
+    line_from_archive,
+    line_from_assembly,
+    line_from_composite,
+    line_from_lookup,
+)
+from reduction.lines.published_source import published_sources
+from reduction.quantities.units import Dimension, UnitSystem, parse_quantity
+from reduction.record.errors import SettingsError
+
+_HYDRODYNAMICS_NEEDED = 'two numbers, "1.6, 0.02": across the line, along it'
+
+
+def stated_hydrodynamics(
+    drag: str | None, added_mass: str | None, source: str | None
+) -> dict[str, Hydrodynamics]:
+    """Coefficients that stand in place of the assumed cylinder.
+
+    Parameters
+    ----------
+    drag, added_mass : str or None
+        Two numbers, across the line and along it; what is not stated stays assumed. [1]
+    source : str or None
+        Where they are from; it stands in the header.
+
+    Returns
+    -------
+    stated : dict of str to Hydrodynamics
+        As a field of `ExportLine`; empty where nothing is stated.
+
+    Raises
+    ------
+    SettingsError
+        If there are not two numbers, one is negative, or a source has nothing to speak of.
+
+    Examples
+    --------
+    >>> stated_hydrodynamics("1.6, 0.02", None, "a towing tank")["hydrodynamics"].axial_drag
+    0.02
+    """
+    if drag is None and added_mass is None:
+        if source is not None:
+            raise SettingsError(
+                "a source of coefficients without coefficients",
+                found=f"--hydrodynamics-source {source}",
+                needed="--drag or --added-mass with it",
+            )
+        return {}
+    said = f"stated at the export, {source or 'without a source'}"
+    found, words = CYLINDER, []
+    if drag is not None:
+        normal, axial = _pair("--drag", drag)
+        found = replace(found, normal_drag=normal, axial_drag=axial)
+    if added_mass is not None:
+        normal, axial = _pair("--added-mass", added_mass)
+        found = replace(found, normal_added_mass=normal, axial_added_mass=axial)
+    for what, text in (("drag", drag), ("added mass", added_mass)):
+        words.append(f"{what} {CYLINDER.source if text is None else said}")
+    both = drag is not None and added_mass is not None
+    return {"hydrodynamics": replace(found, source=said if both else "; ".join(words))}
+
+
+def _pair(option: str, text: str) -> tuple[float, float]:
+    parts = [part.strip() for part in text.split(",")]
+    if len(parts) != 2:
+        raise SettingsError(
+            f"{option} is not a pair of coefficients",
+            found=repr(text),
+            needed=_HYDRODYNAMICS_NEEDED,
+        )
+    try:
+        normal, axial = (parse_quantity(part, "number") for part in parts)
+    except SettingsError as error:
+        raise SettingsError(
+            f"{option}: {error.problem}", found=error.found, needed=_HYDRODYNAMICS_NEEDED
+        ) from error
+    if normal < 0 or axial < 0:
+        raise SettingsError(f"{option} is negative", found=repr(text), needed="zero or above")
+    return normal, axial
+
+
+_ROUNDING = 1e-9
+
+_NEEDED = 'a form and its numbers: "LINEAR, 0.2", "QUADRATIC, 0.2, 0.5" or "EXP, 0.2, 1.5"'
+
+
+def with_syrope(
+    line: ExportLine,
+    working_curve: str | None,
+    greatest_mean_tension: str | None,
+    *,
+    form: str | None,
+    rated_break_strength: float | None = None,
+) -> ExportLine:
+    """Give a line with dynamics the working curves of a Syrope model.
+
+    Parameters
+    ----------
+    line : ExportLine
+        Its curve is the original working curve, its dynamics hold at the mean it starts from.
+    working_curve : str or None
+        Form, k1 and k2; nobody has measured them for the published lines.
+    greatest_mean_tension : str or None
+        That the line has had before.
+    form : str or None
+        Of the export: these say nothing to another one than ``syrope``.
+    rated_break_strength : float, optional
+        That %RBS is a share of, as at the other levels. [N]
+
+    Returns
+    -------
+    line : ExportLine
+        As it was where neither is stated.
+
+    Raises
+    ------
+    SettingsError
+        If one is stated without the other, or the line has no dynamics, or they do not fit.
+
+    Notes
+    -----
+    alpha and beta are EA_d and its growth, the slow dashpot that of the three parameters in series
+    with EA_d; the fast one is numerical.
+    """
+    if working_curve is None and greatest_mean_tension is None:
+        return line
+    if form != "syrope":
+        raise SettingsError(
+            "a working curve is of a Syrope line alone", found=f"--form {form}",
+            needed="--form syrope",
+        )  # fmt: skip
+    if working_curve is None or greatest_mean_tension is None:
+        raise SettingsError(
+            "half a Syrope line is stated",
+            found="--working-curve" if working_curve else "--greatest-mean-tension",
+            needed="--working-curve and --greatest-mean-tension",
+        )
+    part = line.viscoelasticity
+    if part is None:
+        raise SettingsError(
+            f"a Syrope line needs the dynamics of {line.name}",
+            needed="a published line with --frequency, --mean-tension and --tension-amplitude",
+        )
+    shape, k1, k2 = _parts(working_curve)
+    greatest = parse_quantity(
+        greatest_mean_tension, "force", rated_break_strength=rated_break_strength
+    )
+    strain, tension, _ = curve_from_zero(line.strain, line.tension)
+    # 30 %RBS is the end of many printed curves, but for the last digit of a product
+    if math.isclose(greatest, tension[-1], rel_tol=_ROUNDING):
+        greatest = float(tension[-1])
+    syrope = Syrope(
+        strain=strain,
+        tension=tension,
+        form=cast("Any", shape),
+        k1=k1,
+        k2=k2,
+        dynamic_stiffness=part.dynamic_stiffness,
+        dynamic_stiffness_per_mean_tension=part.dynamic_stiffness_per_mean_tension,
+        slow_damping=part.slow_dashpot_coefficient,
+        fast_damping=fast_damping(
+            part.fast_stiffness, line.needed("linear_density"), segment_length(line)
+        ),
+        greatest_mean_tension=greatest,
+        mean_tension=part.mean_tension,
+    )
+    return replace(
+        line,
+        syrope=syrope,
+        sources=(
+            *line.sources,
+            f"Syrope: working curve {shape} {k1:g} {k2:g} and greatest mean tension "
+            f"{syrope.greatest_mean_tension:.6g} N stated at the export; stiffness and slow "
+            "dashpot are those of the three parameters, the fast dashpot is numerical",
+        ),
+    )
+
+
+def _parts(text: str) -> tuple[str, float, float]:
+    form, *numbers = (part.strip() for part in text.split(","))
+    if not 1 <= len(numbers) <= 2:
+        raise SettingsError("--working-curve is not understood", found=repr(text), needed=_NEEDED)
+    try:
+        k1, k2 = (parse_quantity(part, "number") for part in [*numbers, "0"][:2])
+    except SettingsError as error:
+        raise SettingsError(
+            f"--working-curve: {error.problem}", found=error.found, needed=_NEEDED
+        ) from error
+    return form.upper(), k1, k2
+
 
 _DIMENSIONS: dict[str, Dimension] = {
     "diameter": "length",
@@ -33,6 +220,7 @@ _DIMENSIONS: dict[str, Dimension] = {
     "wet_linear_density": "linear_density",
     "rated_break_strength": "force",
 }
+
 _LEVELS: dict[str, Dimension] = {
     "frequency": "frequency",
     "mean_tension": "force",

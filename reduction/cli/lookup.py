@@ -1,27 +1,363 @@
-"""The command lookup: one design value, or a grid of them, with interval, range and source."""
+"""The command lookup."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, Literal, cast
 
 import numpy as np
 from rich.table import Table
 
-from reduction.cli.commandoutput import CommandOutput
-from reduction.cli.lookuppoints import Wanted, points_of
-from reduction.cli.lookupsource import lines_of, one_of
-from reduction.cli.numbers import as_given, plain, short, table_of, within
-from reduction.export.lookuptable import TENSIONS, format_of_file, table_of_values
-from reduction.export.table import ValueTable
-from reduction.export.write import export_table
-from reduction.lookup.line import look_up
-from reduction.lookup.product import DesignValues, LineSource
-from reduction.lookup.search import find_lines
-from reduction.record import Floats
-from reduction.units import UnitSystem, display_unit
-from reduction.vocabulary import quantity as quantity_of
+from reduction.cli.output import CommandOutput, as_given, plain, short, table_of, within
+from reduction.lines.archive_source import archives_of_lines, lines_of_archive, told_apart
+from reduction.lines.deck_formats import export_table
+from reduction.lines.export_tables import (
+    TENSIONS,
+    ValueTable,
+    format_of_file,
+    table_of_difference,
+    table_of_values,
+)
+from reduction.lines.line_lookup import Branch, look_up
+from reduction.lines.line_search import LineDifference, compare_values, find_lines
+from reduction.lines.lookup_product import DesignValues, LineSource
+from reduction.lines.published_source import published_sources
+from reduction.quantities.names import SINGLE_QUANTITIES
+from reduction.quantities.names import quantity as quantity_of
+from reduction.quantities.units import Dimension, UnitSystem, display_unit, parse_quantity
+from reduction.record.errors import ArchiveError, DataError, SettingsError
+from reduction.record.measurement import Bools, Floats
+
+_OF_CYCLES = (
+    "apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant",
+    "dissipation_spring_constant", "relaxation_time", "dashpot_coefficient",
+)  # fmt: skip
+
+# tension along a curve over strain is kept by the name of its branches
+_OF_CURVES = {"tension": "branch_tension"}
+
+_ENDINGS = (".nc", ".toml", ".csv")
+
+
+def lines_of(source: str) -> list[LineSource]:
+    """Every line that SOURCE names.
+
+    Parameters
+    ----------
+    source : str
+        Name of a published line, or all of ``published``; path of an archive; folder of a
+        processed campaign.
+
+    Returns
+    -------
+    lines : list of LineSource
+        One or more.
+
+    Raises
+    ------
+    SettingsError
+        If nothing has that name.
+    ArchiveError
+        If an archive cannot be read, or has nothing to look up.
+    """
+    published = published_sources()
+    if source == "published":
+        return list(published.values())
+    if source in published:
+        return [published[source]]
+    path = Path(source)
+    if path.is_file():
+        lines = lines_of_archive(path)
+        if not lines:
+            raise ArchiveError(
+                "the archive has nothing that can be looked up", found=str(path),
+                needed="moduli of a cyclic test, a slow pull, or surfaces of an experiment",
+            )  # fmt: skip
+        return lines
+    if path.is_dir():
+        lines = told_apart([(one.stem, lines_of_archive(one)) for one in archives_of_lines(path)])
+        if lines:
+            return lines
+    if _is_path(source):
+        raise _no_products(path)
+    words = source.lower().replace("-", " ").split()
+    near = [name for name in published if all(word in name for word in words)]
+    raise SettingsError(
+        f"no line is called '{source}'",
+        needed="an archive, a folder of a processed campaign, or "
+        + (f"one of {', '.join(near)}" if near else f"one of {len(published)} published lines"),
+        hint="`reduction lookup published --list` says what there is.",
+    )
+
+
+def name_of_quantity(text: str) -> str:
+    """Name of a quantity that is asked for by the symbol of its source, or as ``tension``.
+
+    Parameters
+    ----------
+    text : str
+        A name, or a symbol; K_0 or K0; ``tension`` is that of a branch over strain.
+
+    Returns
+    -------
+    name : str
+        The text itself where it is neither ``tension`` nor a symbol of a number of the
+        three-parameter line.
+
+    Examples
+    --------
+    >>> [name_of_quantity(text) for text in ("K_ap", "tension", "loss_factor")]
+    ['apparent_spring_constant', 'branch_tension', 'loss_factor']
+    """
+    symbols = {
+        SINGLE_QUANTITIES[name].symbol.split(",")[0].split()[-1].replace("_", ""): name
+        for name in _OF_CYCLES
+    } | _OF_CURVES
+    return symbols.get(text.replace("_", ""), text)
+
+
+def _is_path(source: str) -> bool:
+    return "/" in source or "\\" in source or source.endswith(_ENDINGS) or Path(source).exists()
+
+
+def _no_products(path: Path) -> SettingsError:
+    """Why a path has nothing to look up, and which command makes it."""
+    if path.is_dir():
+        problem, found = "the folder holds no archive with values to look up", str(path)
+    else:
+        problem, found = "there is no such folder or archive", str(path)
+    campaign = path.parent.name if path.suffix == ".nc" else path.name
+    return SettingsError(
+        problem,
+        found=found,
+        needed="the products of a campaign, which are made first",
+        hint=f"`reduction run raw/{campaign}/campaign.toml` makes processed/{campaign}.",
+    )
+
+
+def one_of(lines: Sequence[LineSource], quantity: str, name: str | None) -> LineSource:
+    """The line that was meant: by its name, else the only one that has the quantity.
+
+    Parameters
+    ----------
+    lines : sequence of LineSource
+        What SOURCE names.
+    quantity : str
+        That is wanted.
+    name : str or None
+        Of the line, where it was said.
+
+    Returns
+    -------
+    line : LineSource
+        One that is alone may not have the quantity; the look-up says why.
+
+    Raises
+    ------
+    SettingsError
+        If no line has the name, several have the quantity, or none of several has it.
+    """
+    named = [line for line in lines if name in (None, line.name)]
+    if not named:
+        # of "T-1 new" the test or the specimen alone, as far as it leaves one
+        named = [
+            line
+            for line in lines
+            if line.name.startswith(f"{name} ") or line.name.endswith(f" {name}")
+        ]
+    if not named:
+        raise SettingsError(
+            f"there is no line '{name}'",
+            needed=", ".join(dict.fromkeys(line.name for line in lines)),
+            hint=f'Such as `--line "{lines[0].name}"`.',
+        )
+    having = [line for line in named if quantity in line.quantities]
+    if not having and len(named) > 1:
+        raise SettingsError(
+            f"none of {len(named)} lines has {quantity}",
+            needed="one of "
+            + ", ".join(dict.fromkeys(name for line in named for name in line.quantities)),
+        )
+    if len(having) > 1:
+        raise SettingsError(
+            f"several lines have {quantity}",
+            found=", ".join(dict.fromkeys(f"{line.name} ({line.source})" for line in having)),
+            needed="one archive, --line NAME, or a search that leaves one",
+            hint=f'Such as `--line "{having[0].name}"`.',
+        )
+    return having[0] if having else named[0]
+
+
+_DIMENSIONS: dict[str, Dimension] = {
+    "frequency": "frequency",
+    "mean_tension": "force",
+    "tension_amplitude": "force",
+    "tension": "force",
+    "strain": "strain",
+}
+
+_ROUNDING = 1e-12
+
+MOST_POINTS = 100_000
+
+"""Of a grid: what a table of text, or one JSON object, can reasonably hold."""
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What is to be looked up: options as they were given.
+
+    ``levels`` are texts with units, by name; ``search`` what `find_lines` takes; ``name`` the line
+    of SOURCE; ``grid`` whether a level may have several values, and one that is not given its
+    low, centre and high; ``out`` the file of a table.
+    """
+
+    quantity: str
+    levels: Mapping[str, str]
+    search: Mapping[str, Any] = field(default_factory=dict)
+    name: str | None = None
+    branch: Branch | None = None
+    extrapolate: Literal["refuse", "flag"] = "refuse"
+    grid: bool = False
+    out: Path | None = None
+
+
+def parsed_search(
+    words: Mapping[str, str | None], diameter: str | None, tolerance: str | None
+) -> dict[str, Any]:
+    """What `find_lines` takes, of texts; nothing of what was not given."""
+    search: dict[str, Any] = {name: text for name, text in words.items() if text is not None}
+    if tolerance is not None and diameter is None:
+        raise SettingsError(
+            "a tolerance is that of a diameter", found=f"--tolerance {tolerance}",
+            needed="--diameter with it",
+        )  # fmt: skip
+    if diameter is not None:
+        search["diameter"] = parse_quantity(diameter, "length")
+    if tolerance is not None:
+        search["tolerance"] = parse_quantity(tolerance, "number")
+    return search
+
+
+def points_of(
+    wanted: Wanted, line: LineSource, *others: LineSource
+) -> tuple[list[dict[str, Floats]], bool]:
+    """Points at which lines are looked up, by level, and whether slack ones were left out.
+
+    Parameters
+    ----------
+    wanted : Wanted
+        Levels as texts; %RBS is of the break strength of each line.
+    line, *others : LineSource
+        A grid is filled over what their boxes have in common.
+
+    Returns
+    -------
+    points : list of dict of str to ndarray, shape (n_points,)
+        One a line, by level. [SI]
+    left_out : bool
+        A grid has combinations whose amplitude is above the mean; they are not among the points.
+
+    Raises
+    ------
+    SettingsError
+        If a level has no or a wrong unit, or several values without a grid; or a grid has too
+        many points.
+    DataError
+        If the boxes have nothing in common, or a line would be pushed at every point of a grid.
+    """
+    lines = (line, *others)
+    filled = _filled(wanted, lines) if wanted.grid else {}
+    # in the order of the factors, whatever was said first
+    names = list(dict.fromkeys([*filled, *wanted.levels]))
+    points: list[dict[str, Floats]] = []
+    for one in lines:
+        levels = [
+            _numbers(name, wanted.levels[name], one) if name in wanted.levels else filled[name]
+            for name in names
+        ]
+        if not wanted.grid and any(values.size > 1 for values in levels):
+            raise SettingsError("several values of a level make a grid", needed="--table with them")
+        size = math.prod(values.size for values in levels)
+        if size > MOST_POINTS:
+            raise SettingsError(
+                "a grid has too many points for a table", found=f"{size:,}",
+                needed=f"at most {MOST_POINTS:,}",
+                hint="`reduction.lines.line_lookup.look_up` takes any number at once.",
+            )  # fmt: skip
+        axes = np.meshgrid(*levels, indexing="ij") if levels else []
+        points.append({name: axis.ravel() for name, axis in zip(names, axes, strict=True)})
+    if not (wanted.grid and {"mean_tension", "tension_amplitude"} <= set(names)):
+        return points, False
+    taut = np.all(
+        [at["tension_amplitude"] <= at["mean_tension"] * (1 + _ROUNDING) for at in points], axis=0
+    )
+    if not taut.any():
+        raise DataError(
+            "no combination of the grid has an amplitude of at most its mean tension",
+            found=f"{taut.size} combinations",
+            needed="a mean tension that is above an amplitude",
+        )
+    kept = [{name: values[taut] for name, values in at.items()} for at in points]
+    return kept, not taut.all()
+
+
+def _filled(wanted: Wanted, lines: Sequence[LineSource]) -> dict[str, Floats]:
+    """Low, centre and high of what was tested of all lines, by level; those that are given too."""
+    ends = [_ends(wanted, line) for line in lines]
+    filled = {}
+    for name in ends[0]:
+        low = max(one[name][0] for one in ends if name in one)
+        high = min(one[name][1] for one in ends if name in one)
+        if low > high and name not in wanted.levels:
+            raise DataError(
+                f"what was tested of {wanted.quantity} of "
+                f"{' and '.join(line.name for line in lines)} has no {name.replace('_', ' ')} in "
+                "common",
+                found=f"one from {low:.5g}, one to {high:.5g} (SI)",
+                hint=f"Give --{name.replace('_', '-')}, and --extrapolate flag.",
+            )
+        filled[name] = np.array([low, (low + high) / 2, high])
+    return filled
+
+
+def _ends(wanted: Wanted, line: LineSource) -> dict[str, tuple[float, float]]:
+    """Range of each variable that was tested; of a damping that of the spring in it."""
+    is_dashpot = wanted.quantity == "dashpot_coefficient" and line.has_dashpot
+    name = "dissipation_spring_constant" if is_dashpot else wanted.quantity
+    surface = line.surfaces.get(name)
+    if surface is not None:
+        return {
+            name: (float(surface.low[place]), float(surface.high[place]))
+            for place, name in enumerate(line.factor_names)
+        }
+    of_name = [curve for curve in line.curves if curve.quantity == name]
+    for curve in of_name:
+        is_meant = not wanted.levels or curve.variable in wanted.levels
+        # where one branch alone is known it need not be asked for
+        is_branch = curve.branch == wanted.branch or not curve.branch or len(of_name) == 1
+        if is_branch and is_meant:
+            return {curve.variable: (curve.low, curve.high)}
+    return {}
+
+
+def _numbers(name: str, text: str, line: LineSource) -> Floats:
+    strength = line.rated_break_strength
+    known = strength if np.isfinite(strength) else None
+    try:
+        return np.array(
+            [
+                parse_quantity(part.strip(), _DIMENSIONS[name], rated_break_strength=known)
+                for part in text.split(",")
+            ]
+        )
+    except SettingsError as error:
+        raise SettingsError(
+            f"--{name.replace('_', '-')}: {error.problem}", found=error.found, needed=error.needed
+        ) from error
 
 
 def list_sources(source: str, search: Mapping[str, Any], *, output: CommandOutput) -> None:
@@ -305,5 +641,220 @@ def _document(
         "linear_density_unit": "kg m-1",
         "source": found.source,
         "errata": list(found.errata),
+        "notes": list(found.notes),
+    }
+
+
+def look_up_against(source: str, other: str, wanted: Wanted, *, output: CommandOutput) -> None:
+    """Print values of two lines, their difference and ratio, and whether the intervals allow it."""
+    form = None if wanted.out is None else format_of_file(wanted.out)
+    lines = lines_of(source)
+    first = one_of(find_lines(lines, **wanted.search), wanted.quantity, wanted.name)
+    second = _other(lines, other, wanted.quantity, first)
+    (points, others), left_out = points_of(wanted, first, second)
+    if left_out:
+        output.say("combinations whose amplitude is above the mean tension are left out")
+    values = [
+        look_up(line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **at)
+        for line, at in ((first, points), (second, others))
+    ]
+    found = compare_values(*values)
+    _show_difference(first, second, found, points, others, output)
+    table = table_of_difference(first, second, found, points, others)
+    files = write_table(table, wanted.out, form, output)
+    document = _difference_document(first, second, found, points, others, grid=wanted.grid)
+    output.answer(document | {"files": files})
+
+
+def _other(lines: list[LineSource], name: str, quantity: str, first: LineSource) -> LineSource:
+    """The second line: one of SOURCE by its name, else what the name means by itself.
+
+    Of several that it means the one that is called as the first: the same specimen in two tests.
+    """
+    of_source = [line for line in lines if line.name == name]
+    found = of_source or lines_of(name)
+    having = [line for line in found if quantity in line.quantities]
+    if len(having) < 2:
+        return one_of(found, quantity, None)
+    alike = [line for line in having if line.name == first.name]
+    if len(alike) != 1:
+        raise SettingsError(
+            f"--against {name} means several lines with {quantity}: which is not said",
+            found=", ".join(f"{line.name} ({line.source})" for line in having),
+            needed=f"the name of one line, or one called {first.name} as the first is",
+            hint='Of tests of one campaign: lookup processed/CAMPAIGN --line "T-1 new" --against '
+            '"T-2 used".',
+        )
+    return alike[0]
+
+
+def _show_difference(
+    first: LineSource,
+    second: LineSource,
+    found: LineDifference,
+    points: Mapping[str, Floats],
+    others: Mapping[str, Floats],
+    output: CommandOutput,
+) -> None:
+    system = cast("UnitSystem", output.units)
+    unit, factor = display_unit(found.unit, system)
+    branch = f", {found.first.branch} branch" if found.first.branch else ""
+    # one specimen in two tests has one name
+    told = [
+        f"{line.name} of {line.source}" if first.name == second.name else line.name
+        for line in (second, first)
+    ]
+    output.say(f"{found.quantity} of {told[0]} (second) against {told[1]} (first){branch}")
+    if any(not np.array_equal(values, others[name]) for name, values in points.items()):
+        output.say(
+            "levels in %RBS are shares of each line's own break strength: "
+            + " and ".join(
+                f"{short(scale * line.rated_break_strength)} {force}"
+                for line in (first, second)
+                for force, scale in (display_unit("N", system),)
+            )
+            + "; loads are those of the first"
+        )
+    if output.is_text:
+        output.show(_difference_table(first, found, points, unit, factor, system))
+    output.say("differ: zero is not in the 95 % interval that follows from those of both lines")
+    output.say(
+        "95 % of the difference is of these lines: the surfaces, or the curves, that were tested"
+    )
+    output.say(
+        "these lines: the two surfaces, of the lines that were tested; the kinds, another line of "
+        "each: with how lines differ among each other, where a source says it"
+    )
+    for note in found.notes:
+        output.say(note)
+    said_of_lines(output, (first, found.first), (second, found.second))
+
+
+def _difference_table(
+    first: LineSource,
+    found: LineDifference,
+    points: Mapping[str, Floats],
+    unit: str,
+    factor: float,
+    system: UnitSystem,
+) -> Table:
+    heads, levels = shown_levels(points, first.rated_break_strength, found.difference.size, system)
+    table = table_of(
+        *heads, f"first\n[{unit}]", f"second\n[{unit}]", f"difference\n[{unit}]", "ratio",
+        "95 % of the\ndifference of\nthese lines", "these\nlines", "the kinds",
+        "another line\nof each", "remark", texts=0,
+    )  # fmt: skip
+    fold_last(table)
+    numbers = ("difference", "ratio", "surface_low", "surface_high")
+    for place, cells in enumerate(levels):
+        at = {name: float(getattr(found, name).ravel()[place]) for name in numbers}
+        table.add_row(
+            *cells,
+            *(within(*_with_halves(one, place, factor)) for one in (found.first, found.second)),
+            within(
+                factor * at["difference"], factor * (at["surface_high"] - at["surface_low"]) / 2
+            ),
+            short(at["ratio"], 4),
+            span(factor, at["surface_low"], at["surface_high"]),
+            _verdict(found.is_known, found.is_different, place),
+            _verdict(found.is_kind_known, found.is_kind_different, place),
+            _verdict(found.is_line_known, found.is_line_different, place),
+            _remark(found, place),
+        )
+    return table
+
+
+def _with_halves(found: DesignValues, place: int, factor: float) -> tuple[float, ...]:
+    """A value and the half widths of its intervals, as they are shown."""
+    spans = ((found.surface_low, found.surface_high), (found.low, found.high))
+    halves = ((high - low).ravel()[place] / 2 for low, high in spans)
+    return tuple(factor * float(one) for one in (found.value.ravel()[place], *halves))
+
+
+def _verdict(is_known: Bools, is_different: Bools, place: int) -> str:
+    if not is_known.ravel()[place]:
+        return "no interval"
+    return "differ" if is_different.ravel()[place] else "not told apart"
+
+
+def _remark(found: LineDifference, place: int) -> str:
+    words = []
+    for which, one in (("first", found.first), ("second", found.second)):
+        if not one.is_inside.ravel()[place]:
+            words.append(f"{which}: OUTSIDE")
+        if one.is_untested.ravel()[place]:
+            words.append(f"{which}: untested corner")
+        if one.own_peak_share.ravel()[place] >= 1:
+            words.append(f"{which}: peak above the strength it has")
+        elif one.is_above_rule.ravel()[place]:
+            words.append(f"{which}: peak above the rule")
+        if one.is_below_zero.ravel()[place]:
+            words.append(f"{which}: below zero, no value")
+    return "; ".join(words)
+
+
+def _difference_document(
+    first: LineSource,
+    second: LineSource,
+    found: LineDifference,
+    points: Mapping[str, Floats],
+    others: Mapping[str, Floats],
+    *,
+    grid: bool,
+) -> dict[str, Any]:
+    """What ``--json`` says, in SI: numbers of a single point, lists of a grid."""
+
+    def of(values: Any) -> Any:
+        shaped = np.atleast_1d(values).ravel()
+        return plain(shaped if grid else shaped[0])
+
+    def side(line: LineSource, one: DesignValues, at: Mapping[str, Floats]) -> dict[str, Any]:
+        return {
+            "line": line.name,
+            "levels": {name: of(values) for name, values in at.items()},
+            "level_units": {name: quantity_of(name).unit for name in at},
+            "value": of(one.value),
+            "interval": [of(one.low), of(one.high)],
+            "interval_of": one.interval_of or None,
+            "surface_interval": [of(one.surface_low), of(one.surface_high)],
+            "surface_interval_of": one.surface_interval_of or None,
+            "kind_interval": [of(one.kind_low), of(one.kind_high)],
+            "line_interval": [of(one.line_low), of(one.line_high)],
+            "below_zero": of(one.is_below_zero),
+            "inside": of(one.is_inside),
+            "untested": of(one.is_untested),
+            "peak_share": of(one.peak_share),
+            "minimum_share": of(one.minimum_share),
+            "own_peak_share": of(one.own_peak_share),
+            "own_minimum_share": of(one.own_minimum_share),
+            "tensile_strength": plain(line.tensile_strength),
+            "above_rule": of(one.is_above_rule),
+            "rule": one.rule,
+            "source": one.source,
+            "errata": list(one.errata),
+            "notes": list(one.notes),
+        }
+
+    return {
+        "quantity": found.quantity,
+        "branch": found.first.branch or None,
+        "unit": found.unit,
+        "first": side(first, found.first, points),
+        "second": side(second, found.second, others),
+        "difference": of(found.difference),
+        "ratio": of(found.ratio),
+        "surface_interval": [of(found.surface_low), of(found.surface_high)],
+        "interval": [of(found.low), of(found.high)],
+        "kind_interval": [of(found.kind_low), of(found.kind_high)],
+        "line_interval": [of(found.line_low), of(found.line_high)],
+        "known": of(found.is_known),
+        "different": of(found.is_different),
+        "test_known": of(found.is_test_known),
+        "test_different": of(found.is_test_different),
+        "kind_known": of(found.is_kind_known),
+        "kind_different": of(found.is_kind_different),
+        "line_known": of(found.is_line_known),
+        "line_different": of(found.is_line_different),
+        "inside": of(found.is_inside),
         "notes": list(found.notes),
     }

@@ -1,4 +1,4 @@
-"""The command ``reduction``: its commands in the order of ``--help``.
+"""The command line: every command with its options; the work is imported when it is called.
 
 Each stands with its options in the module of its group; the work is elsewhere. Heavy
 packages are imported inside the commands, so that ``--help`` answers at once.
@@ -9,24 +9,765 @@ from __future__ import annotations
 import gc
 import os
 import sys
+from enum import StrEnum
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from reduction import __version__
-from reduction.cli.budgetcommand import budget
-from reduction.cli.campaigncommands import check, init, report, run, schema, sniff
-from reduction.cli.cataloguecommand import catalogue
-from reduction.cli.commandoutput import INTERRUPTED
-from reduction.cli.curvecommands import assembly, composite
-from reduction.cli.diffcommand import diff
-from reduction.cli.experimentcommands import experiment, surface
-from reduction.cli.explorecommand import explore
-from reduction.cli.lookupcommand import lookup
-from reduction.cli.predictioncommands import compare, predict
-from reduction.cli.publishedcommands import export, reproduce
-from reduction.cli.usage import Commands
-from reduction.cli.verifycommand import verify
+from reduction.cli.output import INTERRUPTED, CommandOutput, guarded
+from reduction.cli.usage import Commands, here, written_here
+
+
+def here_if_given(path: Path | None) -> Path | None:
+    """A path of this machine, where one is given."""
+    return None if path is None else here(path)
+
+
+Json = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, SI.")]
+
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Nothing but errors.")]
+
+Units = Annotated[str, typer.Option("--units", help="What is shown: si or us (psi, lbf, ft).")]
+
+SpecPath = Annotated[Path, typer.Argument(metavar="SPEC.toml", show_default=False, callback=here)]
+
+CampaignPath = Annotated[
+    Path, typer.Argument(metavar="CAMPAIGN.toml", show_default=False, callback=here)
+]
+
+ProcessedOut = Annotated[Path, typer.Option(help="Where products go.", callback=written_here)]
+
+ReportsOut = Annotated[Path, typer.Option(help="Where the report goes.", callback=written_here)]
+
+AllowRemote = Annotated[
+    bool,
+    typer.Option("--allow-remote", help="Let logs and archives be addresses: s3://bucket/T-1.csv."),
+]
+
+OwnCampaign = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="CAMPAIGN.toml",
+        help="Where the campaign is, if in neither raw/CAMPAIGN/ nor CAMPAIGN/.",
+        show_default=False,
+        callback=here_if_given,
+    ),
+]
+
+
+def init(
+    folder: Annotated[
+        Path, typer.Argument(help="Folder of logs.", show_default=False, callback=here)
+    ],
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Write a starter campaign into a folder of logs, for a person to complete."""
+    with guarded(CommandOutput(json=json, quiet=quiet)) as output:
+        from reduction.cli.campaigns import start_campaign
+
+        start_campaign(folder, output)
+
+
+def sniff(
+    file: Annotated[
+        Path, typer.Argument(help="An unknown log.", show_default=False, callback=here)
+    ],
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Look at an unknown log and print a starter layout in TOML, to be confirmed."""
+    with guarded(CommandOutput(json=json, quiet=quiet)) as output:
+        from reduction.cli.campaigns import print_layout
+
+        print_layout(file, output)
+
+
+def check(
+    campaign: CampaignPath,
+    test: Annotated[
+        list[str] | None, typer.Option("--test", help="Only this test; may be repeated.")
+    ] = None,
+    allow_remote: AllowRemote = False,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Read and validate everything, print what was found, write nothing."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.campaigns import check_campaign
+        from reduction.cli.remote_paths import campaign_at
+
+        with campaign_at(campaign, allow_remote=allow_remote, output=output) as loaded:
+            check_campaign(loaded, tests=tuple(test or ()), output=output)
+
+
+def run(
+    campaign: CampaignPath,
+    processed: ProcessedOut = Path("processed"),
+    reports: ReportsOut = Path("reports"),
+    jobs: Annotated[
+        int | None,
+        typer.Option(min=1, help="Worker processes on this machine; 1 where left out."),
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="Dask scheduler with workers, tcp://HOST:PORT."),
+    ] = None,
+    test: Annotated[
+        list[str] | None, typer.Option("--test", help="Only this test; may be repeated.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Redo unchanged tests too.")] = False,
+    allow_remote: AllowRemote = False,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Reduce a campaign: archive, tables and report."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.campaigns import run_campaign
+        from reduction.cli.remote_paths import campaign_at
+
+        with campaign_at(campaign, allow_remote=allow_remote, output=output) as loaded:
+            run_campaign(
+                loaded,
+                processed=processed,
+                reports=reports,
+                tests=tuple(test or ()),
+                force=force,
+                jobs=jobs,
+                scheduler=scheduler,
+                output=output,
+            )
+
+
+def report(
+    processed_dir: Annotated[
+        Path,
+        typer.Argument(
+            help="processed/CAMPAIGN, or processed/ for all.", show_default=False, callback=here
+        ),
+    ],
+    reports: ReportsOut = Path("reports"),
+    pdf: Annotated[
+        bool, typer.Option("--pdf", help="Print the report to the client to PDF, by a browser.")
+    ] = False,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Make the reports again, from the archives alone."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.campaigns import report_again
+        from reduction.cli.remote_paths import in_order
+
+        with in_order():
+            report_again(processed_dir, reports=reports, is_printed=pdf, output=output)
+
+
+def schema(
+    json: Annotated[bool, typer.Option("--json", help="As it is in any case.")] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Print the JSON Schema of campaign.toml."""
+    with guarded(CommandOutput(json=not quiet or json, quiet=quiet)) as output:
+        from reduction.campaign.model import CampaignFile
+
+        output.answer(CampaignFile.model_json_schema())
+
+
+OptionalSpecPath = Annotated[
+    Path | None, typer.Argument(metavar="[SPEC.toml]", show_default=False, callback=here)
+]
+
+
+class DesignName(StrEnum):
+    """Designs that the command line knows."""
+
+    BOX_BEHNKEN = "box-behnken"
+    PLACKETT_BURMAN = "plackett-burman"
+
+
+def experiment(
+    kind: Annotated[DesignName, typer.Argument(help="Design.", show_default=False)],
+    spec: SpecPath,
+    out: Annotated[
+        Path | None, typer.Option(help="Write the run sheet as a CSV too.", callback=written_here)
+    ] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Plan an experiment: run sheet, cautions, expected precision."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.experiments import plan_runs
+
+        plan_runs(kind.value, spec, out=out, output=output)
+
+
+def surface(
+    runs: Annotated[Path, typer.Argument(metavar="RUNS.csv", show_default=False, callback=here)],
+    spec: OptionalSpecPath = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Fit response surfaces, or effects of a screening, to a table of runs from anywhere."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.experiments import fit_runs
+
+        fit_runs(runs, spec, output=output)
+
+
+class PredictionName(StrEnum):
+    """Predictions that the command line knows."""
+
+    HOSE = "hose"
+    ARMOUR = "armour"
+    WAVE_LOAD = "wave-load"
+
+
+def predict(
+    kind: Annotated[PredictionName, typer.Argument(help="Of what.", show_default=False)],
+    spec: SpecPath,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Write archive, tables and figures to this folder.", callback=written_here
+        ),
+    ] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Predict a stretch hose, a helical armour or a wave load from construction alone."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        if kind is PredictionName.HOSE:
+            from reduction.cli.predictions import predict_hose as predict_it
+        elif kind is PredictionName.ARMOUR:
+            from reduction.cli.predictions import predict_cable as predict_it
+        else:
+            from reduction.cli.predictions import predict_wave as predict_it
+
+        predict_it(spec, out=out, output=output)
+
+
+def compare(
+    measured: Annotated[str, typer.Argument(metavar="MEASURED.nc", show_default=False)],
+    spec: SpecPath,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Write archive, tables and figures to this folder.", callback=written_here
+        ),
+    ] = None,
+    allow_remote: AllowRemote = False,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Hold the archive of a test against the predicted hose of SPEC.toml."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.predictions import compare_test
+        from reduction.cli.remote_paths import local_sources
+
+        with local_sources([measured], allow_remote=allow_remote, output=output) as (here,):
+            compare_test(Path(here), spec, out=out, output=output)
+
+
+class BranchName(StrEnum):
+    """Branches of a cycle."""
+
+    ASCENDING = "ascending"
+    DESCENDING = "descending"
+
+
+class Extrapolation(StrEnum):
+    """What is done outside the tested range."""
+
+    REFUSE = "refuse"
+    FLAG = "flag"
+
+
+def lookup(
+    source: Annotated[
+        str,
+        typer.Argument(
+            help="A published line, `published`, an archive, or a processed campaign.",
+            show_default=False,
+        ),
+    ],
+    quantity: Annotated[
+        str | None,
+        typer.Option(help="What is wanted: its name, or K_ap, H, K_0, K_1, tau, N, tension."),
+    ] = None,
+    frequency: Annotated[str | None, typer.Option(help='"0.3 Hz".')] = None,
+    mean_tension: Annotated[str | None, typer.Option(help='"4000 lbf" or "21 %RBS".')] = None,
+    tension_amplitude: Annotated[str | None, typer.Option(help="Half the range.")] = None,
+    tension: Annotated[str | None, typer.Option(help="Of a load-strain curve.")] = None,
+    strain: Annotated[str | None, typer.Option(help='"100 %".')] = None,
+    branch: Annotated[BranchName | None, typer.Option(help="Of a cycle.")] = None,
+    line: Annotated[str | None, typer.Option(help="Which line of SOURCE.")] = None,
+    against: Annotated[
+        str | None, typer.Option(help="Another line: both values, difference, ratio.")
+    ] = None,
+    material: Annotated[str | None, typer.Option(help='Search: "nylon".')] = None,
+    construction: Annotated[str | None, typer.Option(help='Search: "double braid".')] = None,
+    condition: Annotated[str | None, typer.Option(help='Search: "new", "5 years".')] = None,
+    diameter: Annotated[str | None, typer.Option(help='Search: "0.5 in".')] = None,
+    tolerance: Annotated[str | None, typer.Option(help='Of the diameter, "3 %" if unsaid.')] = None,
+    extrapolate: Annotated[
+        Extrapolation, typer.Option(help="Outside what was tested.")
+    ] = Extrapolation.REFUSE,
+    table: Annotated[
+        bool, typer.Option("--table", help="A grid; values of a level parted by commas.")
+    ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Write the values: FILE.csv, .json, .tex, .md or .nc.", callback=written_here
+        ),
+    ] = None,
+    what_there_is: Annotated[bool, typer.Option("--list", help="What SOURCE holds.")] = False,
+    allow_remote: AllowRemote = False,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """One design value with its interval, range check and source, or a table of them."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.lookup import (
+            Wanted,
+            list_sources,
+            look_up_against,
+            look_up_values,
+            name_of_quantity,
+            parsed_search,
+        )
+        from reduction.cli.remote_paths import local_sources
+
+        words = {"material": material, "construction": construction, "condition": condition}
+        search = parsed_search(words, diameter, tolerance)
+        if what_there_is or quantity is None:
+            with local_sources([source], allow_remote=allow_remote, output=output) as (here,):
+                list_sources(here, search, output=output)
+            return
+        levels = {
+            "frequency": frequency,
+            "mean_tension": mean_tension,
+            "tension_amplitude": tension_amplitude,
+            "tension": tension,
+            "strain": strain,
+        }
+        wanted = Wanted(
+            quantity=name_of_quantity(quantity),
+            levels={name: text for name, text in levels.items() if text is not None},
+            search=search,
+            name=line,
+            branch=None if branch is None else branch.value,
+            extrapolate=extrapolate.value,
+            grid=table,
+            out=out,
+        )
+        named = [source] if against is None else [source, against]
+        with local_sources(named, allow_remote=allow_remote, output=output) as here:
+            if against is None:
+                look_up_values(here[0], wanted, output=output)
+            else:
+                look_up_against(here[0], here[1], wanted, output=output)
+
+
+class CurveName(StrEnum):
+    """What of a cycle becomes one curve."""
+
+    MEAN = "mean"
+    ASCENDING = "ascending"
+    DESCENDING = "descending"
+
+
+def composite(
+    sources: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="SOURCE...",
+            help="processed/CAMPAIGN, archives of tests, or a published tether without the test.",
+            show_default=False,
+        ),
+    ],
+    specimen: Annotated[str | None, typer.Option(help="Where the archives hold several.")] = None,
+    branch: Annotated[
+        CurveName | None, typer.Option(help="Of the cycles; mean unless said.", show_default=False)
+    ] = None,
+    precedence: Annotated[
+        str | None,
+        typer.Option(
+            help="Kinds of pieces, the first one first: cyclic,static,first-loading unless said; "
+            "what is not named is not used.",
+            show_default=False,
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Every node as .csv, .json, .nc, .md or .tex; a page as .html.",
+            callback=written_here,
+        ),
+    ] = None,
+    allow_remote: AllowRemote = False,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """One curve of tension against strain from zero, out of all tests of a specimen."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.curves import compose_tests
+        from reduction.cli.remote_paths import local_sources
+
+        with local_sources(sources, allow_remote=allow_remote, output=output) as here:
+            compose_tests(
+                here,
+                specimen=specimen,
+                branch=None if branch is None else branch.value,
+                precedence=precedence,
+                out=out,
+                output=output,
+            )
+
+
+def assembly(
+    spec: SpecPath,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Every node as .csv, .json, .nc, .md or .tex; a page as .html.",
+            callback=written_here,
+        ),
+    ] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Tethers as they are deployed: tension against length, stiffness, load of each tether."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.curves import assemble_spec
+
+        assemble_spec(spec, out=out, output=output)
+
+
+def export(
+    sources: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="SOURCE...",
+            help="A published line, an archive of a test or of hoses; of several archives, "
+            "processed/CAMPAIGN or a published tether without the test: the composite curve.",
+            show_default=False,
+        ),
+    ],
+    to: Annotated[
+        str,
+        typer.Option(
+            "--to",
+            help="csv, json, latex, markdown, netcdf, moordyn, moorpy, openfast, orcaflex, "
+            "whoi-cable or abaqus.",
+            show_default=False,
+        ),
+    ],
+    out: Annotated[
+        Path, typer.Option("--out", help="The file.", show_default=False, callback=written_here)
+    ],
+    form: Annotated[
+        str | None, typer.Option(help="Where a format has several, such as table.")
+    ] = None,
+    curve: Annotated[
+        str | None, typer.Option(help="mean (unless said), ascending or descending.")
+    ] = None,
+    precedence: Annotated[
+        str | None,
+        typer.Option(help="Of a composite, as in `reduction composite`.", show_default=False),
+    ] = None,
+    specimen: Annotated[str | None, typer.Option(help="Which one, or which hose.")] = None,
+    diameter: Annotated[str | None, typer.Option(help='With a unit, "26 mm".')] = None,
+    linear_density: Annotated[str | None, typer.Option(help='In air, "0.6 kg/m".')] = None,
+    wet_linear_density: Annotated[
+        str | None, typer.Option(help="Less the water it displaces.")
+    ] = None,
+    rated_break_strength: Annotated[str | None, typer.Option(help='"28 kN".')] = None,
+    drag: Annotated[
+        str | None, typer.Option(help='Across and along the line, "1.6, 0.02"; else a cylinder.')
+    ] = None,
+    added_mass: Annotated[str | None, typer.Option(help='The same, "1, 0".')] = None,
+    hydrodynamics_source: Annotated[
+        str | None, typer.Option(help="Where these are from, for the header.")
+    ] = None,
+    frequency: Annotated[str | None, typer.Option(help='Of the stiffness, "0.3 Hz".')] = None,
+    mean_tension: Annotated[str | None, typer.Option(help='"4000 lbf" or "21 %RBS".')] = None,
+    tension_amplitude: Annotated[str | None, typer.Option(help="Half the range.")] = None,
+    working_curve: Annotated[
+        str | None, typer.Option(help='Of a Syrope line: form, k1, k2, "QUADRATIC, 0.2, 0.5".')
+    ] = None,
+    greatest_mean_tension: Annotated[
+        str | None, typer.Option(help="Of a Syrope line: that it has had before.")
+    ] = None,
+    extrapolate: Annotated[
+        str, typer.Option(help="Outside the levels: refuse or flag.")
+    ] = "refuse",
+    allow_remote: AllowRemote = False,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Write a curve for a mooring code, or as a table."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.export import export_source
+        from reduction.cli.remote_paths import local_sources
+
+        with local_sources(sources, allow_remote=allow_remote, output=output) as here:
+            export_source(
+                here,
+                to=to,
+                out=out,
+                form=form,
+                curve=curve,
+                precedence=precedence,
+                specimen=specimen,
+                stated={
+                    "diameter": diameter,
+                    "linear_density": linear_density,
+                    "wet_linear_density": wet_linear_density,
+                    "rated_break_strength": rated_break_strength,
+                },
+                water=(drag, added_mass, hydrodynamics_source),
+                syrope=(working_curve, greatest_mean_tension),
+                levels={
+                    "frequency": frequency,
+                    "mean_tension": mean_tension,
+                    "tension_amplitude": tension_amplitude,
+                },
+                extrapolate=extrapolate,
+                output=output,
+            )
+
+
+def reproduce(
+    report: Annotated[
+        str | None, typer.Argument(metavar="[REPORT]", help="All unless said.", show_default=False)
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Write page and table to this folder.", callback=written_here),
+    ] = None,
+    erratum: Annotated[
+        str | None, typer.Option(help="One fault of a page with its evidence, such as CG-39.")
+    ] = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Recompute every printed number of the published reports: counts, errata, open cells."""
+    with guarded(CommandOutput(json=json, quiet=quiet)) as output:
+        from reduction.cli.reproduce import reproduce_erratum, reproduce_reports
+
+        if erratum is not None:
+            reproduce_erratum(report, erratum, output=output)
+            return
+        reproduce_reports(report, out=out, output=output)
+
+
+def budget(
+    product: Annotated[
+        str,
+        typer.Argument(
+            metavar="PRODUCT.nc",
+            help="Archive of a reduced test, or surfaces.nc.",
+            show_default=False,
+        ),
+    ],
+    quantity: Annotated[
+        str | None,
+        typer.Option(help="Such as segment_modulus; left out: what there is.", show_default=False),
+    ] = None,
+    at: Annotated[
+        list[str] | None,
+        typer.Option(help='Which one: "specimen=new", "branch=ascending", "strain=100 %".'),
+    ] = None,
+    allow_remote: AllowRemote = False,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Where the uncertainty of a number comes from, largest source first."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.budget import list_budgets, show_budget
+        from reduction.cli.remote_paths import local_sources
+
+        with local_sources([product], allow_remote=allow_remote, output=output) as (here,):
+            if quantity is None:
+                list_budgets(Path(here), output=output)
+            else:
+                show_budget(Path(here), quantity, at or [], output=output)
+
+
+Names = list[str] | None
+
+
+def catalogue(
+    processed: Annotated[
+        Path,
+        typer.Argument(
+            metavar="PROCESSED_DIR", help="Holds a folder for each campaign.", callback=here
+        ),
+    ] = Path("processed"),
+    campaign: Annotated[Names, typer.Option(help='Name or pattern: "tmt-*".')] = None,
+    test: Annotated[Names, typer.Option(help='Name or pattern: "T-*".')] = None,
+    kind: Annotated[Names, typer.Option(help="Of the test: cyclic, relaxation, ...")] = None,
+    specimen: Annotated[Names, typer.Option(help="Name or pattern.")] = None,
+    medium: Annotated[str | None, typer.Option(help='Words: "wet".')] = None,
+    material: Annotated[str | None, typer.Option(help='Words: "nylon".')] = None,
+    construction: Annotated[str | None, typer.Option(help='Words: "double braid".')] = None,
+    condition: Annotated[str | None, typer.Option(help='Words: "new".')] = None,
+    synthetic: Annotated[
+        bool | None, typer.Option("--synthetic/--measured", help="Only these.", show_default=False)
+    ] = None,
+    where: Annotated[
+        list[str] | None,
+        typer.Option(help='"frequency >= 0.1 Hz", "mean_tension < 20 %RBS"; all have to hold.'),
+    ] = None,
+    quantity: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A number of each test, such as apparent_spring_constant or loss_factor."
+        ),
+    ] = None,
+    by_cycle: Annotated[
+        bool, typer.Option("--by-cycle", help="Of cycles 1, 2, 5, 10, ..., last; not their mean.")
+    ] = False,
+    sort: Annotated[list[str] | None, typer.Option(help="By this column.")] = None,
+    descending: Annotated[bool, typer.Option("--descending", help="From the greatest.")] = False,
+    limit: Annotated[int | None, typer.Option(min=1, help="Rows at most.")] = None,
+    export: Annotated[
+        Path | None,
+        typer.Option(help="Write the rows: FILE.csv or FILE.parquet, SI.", callback=written_here),
+    ] = None,
+    what_there_is: Annotated[
+        bool, typer.Option("--list", help="Which quantities there are, and how many numbers.")
+    ] = False,
+    rebuild: Annotated[
+        bool, typer.Option("--rebuild", help="First make the catalogues again, from the archives.")
+    ] = False,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Tests, conditions and numbers of all campaigns."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.catalogue import list_quantities, query_of, show_catalogue
+
+        if what_there_is:
+            list_quantities(processed, rebuild=rebuild, output=output)
+            return
+        query = query_of(
+            names={"campaign": campaign, "test": test, "test_kind": kind, "specimen": specimen},
+            words={
+                "medium": medium,
+                "specimen_material": material,
+                "specimen_construction": construction,
+                "specimen_condition": condition,
+            },
+            synthetic=synthetic,
+            where=where or [],
+            quantity=quantity or [],
+            by_cycle=by_cycle,
+            sort=sort or [],
+            descending=descending,
+            limit=limit,
+        )
+        show_catalogue(processed, query, export=export, rebuild=rebuild, output=output)
+
+
+def explore(
+    processed_dir: Annotated[
+        Path,
+        typer.Argument(
+            metavar="PROCESSED_DIR", help="processed/CAMPAIGN.", show_default=False, callback=here
+        ),
+    ],
+    campaign: OwnCampaign = None,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Of 127.0.0.1; 0: a free one.")] = 0,
+    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page.")] = True,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Move the settings of a test on a local page, see what follows, save them."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.explore import serve
+
+        serve(processed_dir, campaign=campaign, port=port, opens=browser, output=output)
+
+
+def verify(
+    processed_dir: Annotated[
+        Path,
+        typer.Argument(
+            metavar="PROCESSED_DIR",
+            help="processed/CAMPAIGN, or processed/ for all.",
+            show_default=False,
+            callback=here,
+        ),
+    ],
+    campaign: OwnCampaign = None,
+    allow_remote: AllowRemote = False,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Look whether raw files and products still belong together; change nothing."""
+    with guarded(CommandOutput(json=json, quiet=quiet)) as output:
+        from reduction.cli.verify import verify_products
+
+        verify_products(processed_dir, campaign=campaign, allow_remote=allow_remote, output=output)
+
+
+def diff(
+    a: Annotated[
+        Path,
+        typer.Argument(
+            metavar="A",
+            help="Before: an archive, a table, a folder of products, or a CAMPAIGN.toml.",
+            show_default=False,
+            callback=here,
+        ),
+    ],
+    b: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="B",
+            help="After: the same kind of thing.",
+            show_default=False,
+            callback=here_if_given,
+        ),
+    ] = None,
+    against: Annotated[
+        str | None,
+        typer.Option(
+            metavar="REV",
+            help="Run the campaign A with this git revision of the software, and with this one.",
+            show_default=False,
+        ),
+    ] = None,
+    exact: Annotated[
+        bool, typer.Option("--exact", help="A number moves with its last bit.")
+    ] = False,
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Which answers changed between two products, and by how many standard uncertainties."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.diff import show_differences
+
+        show_differences(a, b, against=against, is_exact=exact, output=output)
 
 
 class _Application(typer.Typer):
@@ -73,22 +814,41 @@ def main(
 
 
 app.command()(init)
+
 app.command()(sniff)
+
 app.command()(check)
+
 app.command()(run)
+
 app.command()(experiment)
+
 app.command()(surface)
+
 app.command()(predict)
+
 app.command()(compare)
+
 app.command()(composite)
+
 app.command()(assembly)
+
 app.command()(export)
+
 app.command()(lookup)
+
 app.command()(budget)
+
 app.command()(catalogue)
+
 app.command()(report)
+
 app.command()(explore)
+
 app.command()(verify)
+
 app.command()(diff)
+
 app.command()(reproduce)
+
 app.command()(schema)

@@ -1,31 +1,34 @@
-"""How far a campaign is, on standard error: one line a test, and a bar where a person waits."""
+"""Progress of a campaign on standard error, and its worker processes."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 
 from rich.console import Console
 from rich.markup import escape
 from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    Task,
-    TaskID,
-    TextColumn,
-    TimeElapsedColumn,
-)  # fmt: skip
+    BarColumn,  # fmt: skip
+    MofNCompleteColumn,  # fmt: skip
+    Progress,  # fmt: skip
+    Task,  # fmt: skip
+    TaskID,  # fmt: skip
+    TextColumn,  # fmt: skip
+    TimeElapsedColumn,  # fmt: skip
+)
 from rich.text import Text
 
-from reduction.batch.status import TestStatus
-from reduction.cli.commandoutput import CommandOutput
+from reduction.batch.campaign_status import TestStatus
+from reduction.batch.workers import Workers, local_workers
+from reduction.cli.output import CommandOutput
+from reduction.record.errors import SettingsError
 
 _WORDS = {
     "survey": "reading", "reduce": "reducing", "tables": "writing tables",
     "report": "writing the report",
 }  # fmt: skip
+
 """Stages of a run, in words for a person."""
 
 
@@ -116,3 +119,48 @@ def campaign_progress(output: CommandOutput) -> Iterator[CampaignProgress]:
     )  # fmt: skip
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         yield CampaignProgress(bar)
+
+
+@contextmanager
+def chosen_workers(jobs: int | None, scheduler: str | None) -> Iterator[Workers | None]:
+    """Give what ``--jobs`` or ``--scheduler`` asks for, and end it afterwards.
+
+    Parameters
+    ----------
+    jobs : int or None
+        Worker processes on this machine; one, or None, is this process itself.
+    scheduler : str or None
+        Address of a scheduler of Dask.
+
+    Yields
+    ------
+    workers : Workers or None
+        Ready to work; None where this process does it itself.
+
+    Raises
+    ------
+    SettingsError
+        If both are given, or Dask is not there for a scheduler.
+    """
+    if jobs is not None and scheduler is not None:
+        raise SettingsError(
+            "--jobs and --scheduler exclude each other",
+            found=f"--jobs {jobs} --scheduler {scheduler}",
+            hint="How many workers a scheduler has is said where they are started.",
+        )
+    if scheduler is None:
+        with local_workers(jobs) if jobs is not None and jobs > 1 else nullcontext() as workers:
+            yield workers
+        return
+    try:
+        from reduction.batch.workers import users_cluster
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
+            raise
+        raise SettingsError(
+            "--scheduler needs Dask, which is not installed",
+            found=f"no package '{error.name}'",
+            hint="Install it with: pip install 'mooring-reduction[cluster]'. --jobs needs none.",
+        ) from error
+    with users_cluster(scheduler) as workers:
+        yield workers

@@ -1,4 +1,4 @@
-"""The command reproduce: every printed number of the reports again, with a verdict."""
+"""The command reproduce."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ from typing import Any
 from rich.markup import escape
 
 from reduction.archive.write import write_whole
-from reduction.cli.commandoutput import CommandOutput
-from reduction.cli.numbers import plain, table_of
-from reduction.errors import DataError, SettingsError
-from reduction.published.cell import ReportId
-from reduction.published.read import REPORTS
-from reduction.reproduce.item import Item
-from reduction.reproduce.page import number_beside, render_reproduction
-from reduction.reproduce.reports import (
+from reduction.cli.output import CommandOutput, plain, table_of
+from reduction.published.printed_cells import REPORTS, ReportId
+from reduction.published.reproduce_page import (
     VERDICTS,
     Counts,
     counts_by_table,
     counts_of,
     csv_of,
+    number_beside,
+    render_reproduction,
     reproduce,
     touched_errata,
 )
+from reduction.published.reproduced_item import Item
+from reduction.record.errors import DataError, SettingsError
 
 UNEXPLAINED = DataError.exit_status
+
 _COLUMNS = (
     "cells: printed numbers of a table. reproduced: comes back from other numbers of the pages "
     "within its rounding; erratum: the page is wrong, and the corrected number comes back; open: "

@@ -1,4 +1,4 @@
-"""A command line that cannot be used: one line on standard error, and JSON where asked for."""
+"""Errors of usage: one line on standard error, or JSON."""
 
 from __future__ import annotations
 
@@ -12,12 +12,37 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from reduction.address import shown_address
+from reduction.record.plain_text import shown_address
+
+_NUMBERS = re.compile(r"[-+]?[\d.]+(?: to [-+]?[\d.]+)?")
+
+_MANY = re.compile(r"(?<![\d.])\d{6,}")
+
+
+def grouped(text: str) -> str:
+    """A number, or the ends of an interval, with a blank between thousands from 100000 on.
+
+    Any other text stays as it is.
+
+    Examples
+    --------
+    >>> grouped("98000 to 283100"), grouped("-123456.5"), grouped("0.0001234567")
+    ('98000 to 283 100', '-123 456.5', '0.0001234567')
+    >>> grouped("T-123456")
+    'T-123456'
+    """
+    if not _NUMBERS.fullmatch(text):
+        return text
+    return _MANY.sub(lambda found: f"{int(found[0]):,}".replace(",", " "), text)
+
 
 USAGE = 2
+
 _LONGEST = 500
+
 # click's own class, which some versions of typer carry within themselves
 _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
+
 _URL = re.compile(r"^([a-z][a-z0-9+.-]+):/+", re.IGNORECASE)
 
 

@@ -1,17 +1,16 @@
-"""Folders of products verified one after another, and what is said of each."""
+"""The command verify."""
 
 from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
 
-from reduction.campaign.find import find_campaign
-from reduction.cli.commandoutput import CommandOutput
-from reduction.cli.processed import processed_folders
+from reduction.batch.verification import verify_campaign
+from reduction.campaign.load import find_campaign
+from reduction.cli.output import CommandOutput, processed_folders
 from reduction.cli.progress import campaign_progress
-from reduction.cli.remote import campaign_at
-from reduction.errors import ArchiveError, SettingsError
-from reduction.verify import verify_campaign
+from reduction.cli.remote_paths import campaign_at
+from reduction.record.errors import ArchiveError, SettingsError
 
 
 def verify_products(

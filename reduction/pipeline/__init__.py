@@ -1,1 +1,1 @@
-"""The way of the data: a record in SI to a reduced test.  Pure: no file, no clock."""
+"""The way of one test from its located record to a reduced test."""

@@ -1,25 +1,52 @@
-"""Numbers of a reduced test that no test gives unless its layout or campaign is wrong.
+"""Results against what is plausible, and against the stated limits of the instruments.
 
-Each is computed all the same, and named: the reader is the one who knows the machine.
+A reading has an error of its own, which no other sample shares; a load cell's gain and zero, a
+crosshead's, the tape and the diameter are in every sample of the test.  The two are kept apart, as
+in every number of a product.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
-from reduction.cycles.product import Cycles, Loops
-from reduction.moduli.product import ModulusCurves
-from reduction.record import Floats
-from reduction.samples.blocks import count_samples, finite_extremes
-from reduction.samples.intervals import over_intervals
+from reduction.pipeline.located_test import Located
+from reduction.quantities.names import PHASE_VALUES
+from reduction.record.contributions import (
+    Component,
+    Contributions,
+    InstrumentErrors,
+    merged,
+    stacked,
+)
+from reduction.record.errors import SettingsError
+from reduction.record.measurement import Floats, Integers, Record, Specimen
+from reduction.record.samples import (
+    count_samples,
+    finite_extremes,
+    over_intervals,
+    take_samples,
+    thinned,
+)
+from reduction.stages.cycles.cycle_product import Cycles, Loops
+from reduction.stages.moduli.modulus_product import ModulusCurves
+from reduction.stages.strain.strain_model import StrainModel, strain_by_model
+from reduction.uncertainty.error_field import error_field
+from reduction.uncertainty.propagation import with_diameter
 
 _GREATEST_STRAIN = 10.0  # no rubber is stretched to eleven times its length
+
 # a sine logged thirteen times a cycle misses 1.5 % of its range, a triangle has 23 % more
 _OFF_THE_SINE = 0.05
+
 _TRIANGULAR_SHARE = 0.6  # of samples at a constant rate; a sine has a half
+
 _MOST_DRIFT = 0.2  # of the range of a cycle: a rope that creeps drifts by a hundredth
+
 _FEWEST_SAMPLES = 10  # of a branch: below, its two ends are a good part of it
 
 
@@ -194,3 +221,289 @@ def _waveform(cycles: Cycles, waveform: str) -> list[str]:
 def _median(values: Floats) -> float:
     known = values[np.isfinite(values)]
     return float(np.median(known)) if known.size else float("nan")
+
+
+_TIMES = 10.0  # the greatest reading of a log
+
+_RECORD = 0.25  # of a record without cycles, for a lag
+
+_LINEAR = 0.05  # of a cycle: a loop that is turned by more has lost 5 % of its stiffness
+
+
+@dataclass(frozen=True)
+class _Limit:
+    key: str
+    stated: float
+    most: float
+    unit: str
+    what: str
+
+
+def check_stated_errors(
+    located: Located, instruments: Sequence[InstrumentErrors], *, place: str
+) -> tuple[str, ...]:
+    """Refuse standard uncertainties that a log shows to be impossible; say which are too large.
+
+    Parameters
+    ----------
+    located : Located
+        Record, with its cycles where the test has them.
+    instruments : sequence of InstrumentErrors, length n_specimens
+        What is stated.
+    place : str
+        File and table, for the message.
+
+    Returns
+    -------
+    notes : tuple of str
+        That a lag is too long for the first order, in which errors are propagated.
+
+    Raises
+    ------
+    SettingsError
+        If a zero or a reading of tension is beyond ten times the greatest tension of its specimen,
+        one of position beyond ten times the greatest position, or a lag beyond the longest cycle,
+        beyond a quarter of the record where there are no cycles.
+
+    Notes
+    -----
+    Ten times: a zero that is not known to 1 % of the capacity of an instrument is a fault of it,
+    and a test that uses less than a thousandth of that capacity needs another instrument.  What
+    the layout declares of one reading takes the place of what is stated, which then counts nowhere.
+
+    A lag of a whole cycle lays a tension on the position of the cycle before: nobody can tell it
+    from none.  A lag of the share s of a cycle turns the loop by 2 pi s, of which the stiffness
+    loses 1 - cos(2 pi s), a twentieth at s = 1/20; that is of second order and in no contribution.
+    """
+    for index, errors in enumerate(instruments):
+        for limit in _limits(located, index, errors):
+            if np.isfinite(limit.most) and limit.stated > limit.most:
+                raise SettingsError(
+                    f"{place}.{limit.key}: this is no standard uncertainty for test "
+                    f"'{located.record.test_id}'",
+                    found=f"{limit.stated:.4g} {limit.unit}",
+                    needed=f"at most {limit.most:.4g} {limit.unit}, {limit.what}",
+                )
+    period = _periods(located)
+    lag = max((errors.lag for errors in instruments), default=0.0)
+    is_short = lag > _LINEAR * period
+    if not is_short.any():
+        return ()
+    return (
+        f"the stated lag of {lag:.4g} s is more than a twentieth of {int(is_short.sum())} of "
+        f"{period.size} cycles, the shortest of {period.min():.4g} s: what it does to stiffness "
+        "and loss is of first order, and their uncertainties are too small",
+    )
+
+
+def _limits(located: Located, index: int, errors: InstrumentErrors) -> Iterator[_Limit]:
+    record, period = located.record, _periods(located)
+    tension = _TIMES * _greatest(located.tension[index])
+    position = _TIMES * _greatest(located.position)
+    of_tension = f"ten times the greatest tension of '{errors.specimen}'"
+    of_position = "ten times the greatest position"
+    yield _Limit("tension.offset", errors.tension_offset, tension, "N", of_tension)
+    yield _Limit("crosshead_position.offset", errors.position_offset, position, "m", of_position)
+    # readings as they count here; one that the layout declares is not of this table
+    declared = (*record.tension_standard_uncertainty, *len(located.tension) * (np.nan,))[index]
+    if not np.isfinite(declared):
+        yield _Limit(
+            "tension.noise and resolution", errors.tension_reading, tension, "N", of_tension
+        )
+    if not np.isfinite(record.position_standard_uncertainty):
+        yield _Limit(
+            "crosshead_position.noise and resolution",
+            errors.position_reading, position, "m", of_position,
+        )  # fmt: skip
+    if period.size:
+        yield _Limit("lag", errors.lag, float(period.max()), "s", "the longest cycle")
+    else:
+        first, last = finite_extremes(record.time)
+        most = _RECORD * (last - first)
+        yield _Limit("lag", errors.lag, most, "s", "a quarter of the record")
+
+
+def _periods(located: Located) -> Floats:
+    """How long each cycle lasts; empty where there are none. [s]."""
+    time, cycles = located.record.time, located.cycles
+    if cycles is None:
+        return np.empty(0)
+    return np.asarray(take_samples(time, cycles.last) - take_samples(time, cycles.first))
+
+
+def _greatest(values: Floats) -> float:
+    low, high = finite_extremes(values)
+    return max(-low, high) if low <= high else float("nan")
+
+
+_SAMPLES = 4096  # spread over the record: the uncertainty changes slowly with strain
+
+
+def readings_of(
+    record: Record, instruments: Sequence[InstrumentErrors]
+) -> tuple[InstrumentErrors, ...]:
+    """Errors with that of one reading of each channel: the one rule of which statement counts.
+
+    What the layout declares of one reading takes the place of noise and resolution of the
+    campaign, which hold for every log: the layout is of this one.  Gain and zero are stated by the
+    campaign alone, and stand beside either.
+    """
+    known = instruments or tuple(InstrumentErrors(name) for name in record.specimens)
+    tension = record.tension_standard_uncertainty or (np.nan,) * len(known)
+    position = record.position_standard_uncertainty
+    return tuple(
+        replace(
+            errors,
+            tension_reading=own if np.isfinite(own) else errors.tension_reading,
+            position_reading=position if np.isfinite(position) else errors.position_reading,
+        )
+        for errors, own in zip(known, tension, strict=True)
+    )
+
+
+def with_readings(record: Record, readings: Sequence[InstrumentErrors]) -> Record:
+    """Record with the standard uncertainty of one reading; NaN where nothing says it."""
+    tension = tuple(one.tension_reading or np.nan for one in readings)
+    return replace(
+        record,
+        tension_standard_uncertainty=tension if np.isfinite(tension).any() else (),
+        position_standard_uncertainty=readings[0].position_reading or np.nan,
+    )
+
+
+def reading_spread(
+    located: Located,
+    models: Sequence[StrainModel],
+    readings: Sequence[InstrumentErrors],
+    *,
+    phase: NDArray[np.int8],
+) -> Floats:
+    """Standard uncertainty of strain by one reading of position and tension. [1].
+
+    Root mean square over the samples, shape (n_specimens,); NaN where nothing is known of either
+    channel, and for an extensometer, which reads neither.
+    """
+    rows = _rows_of(phase)
+    position, tension = take_samples(located.position, rows), take_samples(located.tension, rows)
+    found = np.full(len(models), np.nan)
+    for index, (model, errors) in enumerate(zip(models, readings, strict=True)):
+        if model.method == "extensometer" or not (
+            errors.position_reading or errors.tension_reading
+        ):
+            continue
+        parts = []
+        for of_position, of_tension in (
+            (errors.position_reading, 0.0),
+            (0.0, errors.tension_reading),
+        ):
+            # a step of one standard uncertainty: finite where a law is steep near no tension
+            high, low = (
+                strain_by_model(
+                    model,
+                    position=position + way * of_position,
+                    tension=tension[index] + way * of_tension,
+                )
+                for way in (1, -1)
+            )
+            parts.append((high - low) / 2)
+        found[index] = _rms(np.hypot(*parts))
+    return found
+
+
+def channel_contributions(
+    located: Located,
+    strain: Floats,
+    models: Sequence[StrainModel],
+    specimens: Sequence[Specimen],
+    errors: Sequence[InstrumentErrors],
+    *,
+    phase: NDArray[np.int8],
+) -> Contributions:
+    """What shared errors do to the samples, by archive name of the channel.
+
+    Each contribution is the root mean square over the cycling samples, or over all but rests
+    where none cycles, with the sign of the mean.  Of tension and position it is what the channel
+    itself may be wrong by; strain has in addition the tape and the strain method, and stress the
+    diameter.  The lag between the channels is in none of them.  Nothing without stated errors.
+    """
+    if not errors:
+        return Contributions(())
+    rows = _rows_of(phase)
+    own = [
+        _of_specimen(
+            take_samples(located.tension[index], rows),
+            take_samples(strain[index], rows),
+            model,
+            specimen,
+            one,
+        )
+        for index, (model, specimen, one) in enumerate(zip(models, specimens, errors, strict=True))
+    ]
+    reach = _rms(take_samples(located.position, rows))
+    first = errors[0]
+    is_length = located.record.position_is_length
+    of_position = _of_channel(
+        "crosshead_position" if is_length else "crosshead_displacement",
+        {
+            Component("position_gain", first.position_instrument): first.position_gain * reach,
+            Component("position_offset", first.position_instrument): first.position_offset,
+        },
+    )
+    return merged([stacked(own), of_position])
+
+
+def _of_specimen(
+    tension: Floats,
+    strain: Floats,
+    model: StrainModel,
+    specimen: Specimen,
+    errors: InstrumentErrors,
+) -> Contributions:
+    level = _rms(tension)
+    cell = errors.tension_instrument
+    of_tension = _of_channel(
+        "tension",
+        {
+            Component("tension_gain", cell): errors.tension_gain * level,
+            Component("tension_offset", cell): errors.tension_offset,
+        },
+    )
+    field = error_field(errors, model, strain=strain, tension=tension)
+    of_strain = Contributions(
+        field.component,
+        {"strain": np.array([_signed_rms(row) for row in field.strain]).reshape(-1)},
+    )
+    if not specimen.diameter:
+        return merged([of_tension, of_strain])
+    of_stress = Contributions(
+        of_tension.component, {"nominal_stress": of_tension.values["tension"] / specimen.area}
+    )
+    value = {"nominal_stress": np.asarray(level / specimen.area)}
+    return merged(
+        [of_tension, of_strain, with_diameter(of_stress, errors, value, area=specimen.area)]
+    )
+
+
+def _of_channel(name: str, stated: dict[Component, float]) -> Contributions:
+    """Contributions to one channel, without those that are zero."""
+    kept = {one: value for one, value in stated.items() if value}
+    return Contributions(tuple(kept), {name: np.array(list(kept.values()))})
+
+
+def _rows_of(phase: NDArray[np.int8]) -> Integers:
+    """Cycling samples, or all but rests where none cycles."""
+    cycling, rest = PHASE_VALUES["cycling"], PHASE_VALUES["rest"]
+    rows = thinned(lambda part: phase[part] == cycling, phase.size, most=_SAMPLES, samples=(phase,))
+    if rows.size:
+        return rows
+    return thinned(lambda part: phase[part] != rest, phase.size, most=_SAMPLES, samples=(phase,))
+
+
+def _rms(values: Floats) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.sqrt(np.mean(known**2))) if known.size else 0.0
+
+
+def _signed_rms(values: Floats) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.copysign(_rms(known), known.mean())) if known.size else 0.0

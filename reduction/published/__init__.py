@@ -1,1 +1,1 @@
-"""Every printed number of the five reports, as printed and as corrected."""
+"""What the five reports print, and the same recomputed."""

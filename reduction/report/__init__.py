@@ -1,1 +1,1 @@
-"""Edge: the HTML report of a campaign, made from its archives alone."""
+"""The report page of a campaign, from its archives."""

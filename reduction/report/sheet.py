@@ -1,4 +1,4 @@
-"""A table said by its columns: a heading, and the name of the variable of the archive under it.
+"""Tables of the page: columns by the name of a variable, values with their uncertainty.
 
 Rows go along dimensions of the archive.  The unit follows from the variable and from what the
 page shows, ± from ``<name>_standard_uncertainty``.  What has no archive gives arrays instead.
@@ -13,18 +13,35 @@ from typing import Any, NamedTuple, Protocol, Self
 import numpy as np
 import xarray as xr
 
-from reduction.record import Bools, Integers
-from reduction.report import htmltable
-from reduction.report.htmltable import NOT_GIVEN, Cell, Table, factors_of, make_table, words
-from reduction.report.rowview import RowView
-from reduction.report.style import Kind, Shown, shown, shown_unit
-from reduction.report.uncertainty import Expanded, expand, expanded_of, plus_minus_of_tests
-from reduction.report.view import TestView
-from reduction.units import UnitSystem
-from reduction.vocabulary import QUANTITIES
+from reduction.quantities.names import QUANTITIES
+from reduction.quantities.units import UnitSystem
+from reduction.record.measurement import Bools, Integers
+from reduction.report import text_style as htmltable
+from reduction.report.test_view import (
+    Expanded,
+    RowView,
+    TestView,
+    expand,
+    expanded_of,
+    plus_minus_of_tests,
+)
+from reduction.report.text_style import (
+    NOT_GIVEN,
+    Cell,
+    Kind,
+    Shown,
+    Table,
+    factors_of,
+    make_table,
+    shown,
+    shown_unit,
+    words,
+)
 
 Unit = Kind | Shown | None
+
 Source = str | Iterable[Any]
+
 """Name of a variable, or what stands in the rows."""
 
 

@@ -1,1 +1,1 @@
-"""Errors that a test shares with others, carried from the instruments to every number."""
+"""What errors that samples share do to each number."""

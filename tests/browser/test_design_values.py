@@ -10,17 +10,20 @@ from design_queries import page_lines, questions, same_answer, same_text, shown_
 from odd_lines import odd_lines
 from scipy import stats
 
-from reduction.batch import run as batch_run
+from reduction.batch import run_campaign as batch_run
 from reduction.campaign.load import load_campaign
-from reduction.cli.lookupsource import lines_of
-from reduction.cli.numbers import as_given, within
-from reduction.cli.thousands import grouped
-from reduction.designpage.campaigns import CampaignLines
-from reduction.designpage.linedata import line_data
-from reduction.designpage.page import render_design_page, write_design_page
-from reduction.digits import fixed_number, plain_number
-from reduction.lookup.product import LineCurve, LineSource
-from reduction.uncertainty.combine import coverage_factor
+from reduction.cli.lookup import lines_of
+from reduction.cli.output import as_given, within
+from reduction.cli.usage import grouped
+from reduction.lines.lookup_product import LineCurve, LineSource
+from reduction.pages.design_values import (
+    CampaignLines,
+    line_data,
+    render_design_page,
+    write_design_page,
+)
+from reduction.quantities.digits import fixed_number, plain_number
+from reduction.record.contributions import coverage_factor
 
 SEED = 20_261_122
 ASKED, BY_HAND, ODD = 500, 30, 300

@@ -9,8 +9,8 @@ import pytest
 import xarray as xr
 from typer.testing import CliRunner
 
+from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.open import open_archive
-from reduction.archive.version import SCHEMA_VERSION
 from reduction.cli.main import app
 
 pytestmark = pytest.mark.slow

@@ -8,9 +8,9 @@ import sys
 import pytest
 from commandruns import ROOT, reduction
 
-from reduction.cli import printing
-from reduction.cli.printing import find_browser, print_page
-from reduction.errors import ArchiveError, SettingsError
+from reduction.cli import campaigns as printing
+from reduction.cli.campaigns import find_browser, print_page
+from reduction.record.errors import ArchiveError, SettingsError
 
 pytestmark = pytest.mark.slow
 

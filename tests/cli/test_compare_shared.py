@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 from reduction.archive.open import open_archive
-from reduction.batch.comparisons import compare_archive
-from reduction.batch.run import run_campaign
+from reduction.batch.prediction_product import compare_archive
+from reduction.batch.run_campaign import run_campaign
 from reduction.campaign.load import load_campaign
 
 pytestmark = pytest.mark.slow

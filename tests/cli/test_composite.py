@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.open import open_archive
-from reduction.archive.strainmodel import strain_model_of
-from reduction.archive.version import SCHEMA_VERSION
-from reduction.strain.inverse import position_by_model
+from reduction.archive.test_dataset import strain_model_of
+from reduction.stages.strain.strain_model import position_by_model
 
 LBF = 4.4482216152605
 

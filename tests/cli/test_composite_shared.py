@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reduction.batch.run import run_campaign
+from reduction.batch.run_campaign import run_campaign
 from reduction.campaign.load import load_campaign
 
 pytestmark = pytest.mark.slow

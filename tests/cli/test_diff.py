@@ -17,7 +17,7 @@ def made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("compared")
     (folder / "raw" / NAME).mkdir(parents=True)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reduction.batch.run.write_report", lambda *given, **more: None)
+        patch.setattr("reduction.batch.run_campaign.write_report", lambda *given, **more: None)
         assert run(copied(folder / "raw" / NAME), folder).exit_status == 0
     return folder
 
@@ -120,7 +120,7 @@ def test_quiet_says_nothing_and_ends_alike(place, command):
 
 
 def test_two_campaigns_are_run_and_compared(made, tmp_path, command, monkeypatch):
-    monkeypatch.setattr("reduction.batch.run.write_report", lambda *given, **more: None)
+    monkeypatch.setattr("reduction.batch.run_campaign.write_report", lambda *given, **more: None)
     shutil.copytree(made / "raw" / NAME, tmp_path / "wider")
     settings = tmp_path / "wider" / "campaign.toml"
     text = settings.read_text(encoding="utf-8").replace("1.04 in", "1.05 in")

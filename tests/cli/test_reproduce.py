@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from reduction.published.read import REPORTS, cells_of, errata_of
-from reduction.reproduce import reports
+from reduction.published import reproduce_page as reports
+from reduction.published.printed_cells import REPORTS, cells_of, errata_of
 
 SETTINGS, DATA = 2, 4
 KEYS = {"cells", "reproduced", "erratum", "open", "not_testable", "unexplained"}

@@ -9,10 +9,10 @@ import pytest
 
 from reduction.archive import open as opening
 from reduction.archive.open import open_archive
-from reduction.batch.run import run_campaign
+from reduction.batch.run_campaign import run_campaign
 from reduction.campaign.load import load_campaign
-from reduction.errors import ArchiveError
-from reduction.surface.levels import FactorLevels
+from reduction.experiments.designs import FactorLevels
+from reduction.record.errors import ArchiveError
 
 pytestmark = pytest.mark.slow
 

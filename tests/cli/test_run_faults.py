@@ -11,16 +11,16 @@ import pytest
 from commandruns import ROOT
 from shortcampaign import write_short
 
-from reduction.archive import products as products_module
+from reduction.archive import open as products_module
 from reduction.archive.open import reading
-from reduction.batch import reduce as reduce_module
-from reduction.batch import run as run_module
-from reduction.batch.lock import run_named
+from reduction.batch import reduce_tests as reduce_module
+from reduction.batch import run_campaign as run_module
+from reduction.batch.run_lock import run_named
 from reduction.batch.survey import as_reduction_error, survey_log
 from reduction.campaign.load import load_campaign
-from reduction.cli import designvalues as values_module
-from reduction.designpage import campaigns as campaigns_module
-from reduction.errors import ArchiveError
+from reduction.cli import campaigns as values_module
+from reduction.pages import design_values as campaigns_module
+from reduction.record.errors import ArchiveError
 
 pytestmark = pytest.mark.slow
 

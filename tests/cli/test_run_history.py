@@ -6,8 +6,8 @@ import json
 import numpy as np
 import pytest
 
-import reduction.batch.reduce
-import reduction.batch.wanted
+import reduction.batch.reduce_tests
+import reduction.batch.requested_products
 from reduction.archive.open import open_archive
 
 pytestmark = pytest.mark.slow
@@ -192,7 +192,10 @@ def test_an_earlier_test_that_is_new_and_fails_makes_the_later_ones_anew(row, co
 
 @pytest.mark.parametrize(
     ("module", "part"),
-    [(reduction.batch.wanted, "basis_of"), (reduction.batch.reduce, "standing_product")],
+    [
+        (reduction.batch.requested_products, "basis_of"),
+        (reduction.batch.reduce_tests, "standing_product"),
+    ],
 )
 def test_a_defect_before_the_reduction_is_the_failure_of_one_test(
     row, command, monkeypatch, module, part

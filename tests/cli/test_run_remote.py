@@ -15,8 +15,8 @@ import smallcampaign
 import stores
 import xarray as xr
 
-from reduction.campaign import staged
-from reduction.errors import LogError, SettingsError
+from reduction.campaign import load as staged
+from reduction.record.errors import LogError, SettingsError
 
 ROOT = Path(__file__).parents[2]
 CAMPAIGN = f'tests = "tests.csv"\n{smallcampaign.CAMPAIGN}'

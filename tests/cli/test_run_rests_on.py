@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from reduction.archive.open import open_archive
-from reduction.archive.shared import shared_contributions
+from reduction.archive.shared_errors import shared_contributions
 
 pytestmark = pytest.mark.slow
 

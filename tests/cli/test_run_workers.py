@@ -15,10 +15,10 @@ import psutil
 import pytest
 from manytests import ROOT, archives, products, run, start, wait_for, write_many
 
-from reduction.batch import run as run_module
-from reduction.batch.executor import local_workers
-from reduction.batch.lock import run_named
-from reduction.batch.run import run_campaign
+from reduction.batch import run_campaign as run_module
+from reduction.batch.run_campaign import run_campaign
+from reduction.batch.run_lock import run_named
+from reduction.batch.workers import local_workers
 from reduction.campaign.load import load_campaign
 
 N_TESTS = 8
@@ -286,7 +286,7 @@ def test_jobs_and_scheduler_exclude_each_other(campaign, command, tmp_path):
 
 def test_a_scheduler_without_dask_says_what_to_install(campaign, command, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    monkeypatch.delitem(sys.modules, "reduction.batch.cluster", raising=False)
+    monkeypatch.delitem(sys.modules, "reduction.batch.workers", raising=False)
     done = command("run", campaign, "--scheduler", "tcp://127.0.0.1:1", cwd=tmp_path)
     assert done.returncode == 2
     assert "--scheduler needs Dask, which is not installed" in done.stderr

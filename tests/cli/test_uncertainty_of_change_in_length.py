@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from reduction.archive.open import open_archive
-from reduction.batch.run import run_campaign
+from reduction.batch.run_campaign import run_campaign
 from reduction.campaign.load import load_campaign
 from reduction.cli.main import app
 

@@ -7,7 +7,7 @@ import pytest
 from commandruns import reduction
 from documentedcampaign import copied, run
 
-from reduction.cli.processed import processed_folders
+from reduction.cli.output import processed_folders
 
 NAME = "two-tethers"
 
@@ -17,7 +17,7 @@ def made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("verified")
     (folder / "raw" / NAME).mkdir(parents=True)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reduction.batch.run.write_report", lambda *given, **more: None)
+        patch.setattr("reduction.batch.run_campaign.write_report", lambda *given, **more: None)
         assert run(copied(folder / "raw" / NAME), folder).exit_status == 0
     return folder
 

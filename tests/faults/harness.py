@@ -14,11 +14,10 @@ from pathlib import Path
 from faults.calls import Calls
 from shortcampaign import TESTS, write_short
 
-from reduction.catalogue.file import FILE_NAME
-from reduction.catalogue.read import write_catalogue
-from reduction.designpage.page import write_design_page
-from reduction.report.page import write_report
-from reduction.tables.write import write_tables
+from reduction.archive.csv_tables import write_tables
+from reduction.batch.catalogue import FILE_NAME, write_catalogue
+from reduction.pages.design_values import write_design_page
+from reduction.report.campaign_page import write_report
 
 VICTIM = Path(__file__).with_name("victim.py")
 ROOT = Path(__file__).parents[2]

@@ -37,7 +37,7 @@ def _run(order):
     os.chdir(order["folder"])
     status = 1
     try:
-        from reduction.cli import runs
+        from reduction.cli import campaigns as runs
         from reduction.cli.main import app
 
         # time that passed stands in status.csv

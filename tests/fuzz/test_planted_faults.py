@@ -6,9 +6,11 @@ import pytest
 from fuzzcases import CASES, GOOD
 from invariant import InvariantError, judge
 
-from reduction.cycles import loops
-from reduction.errors import LogError
-from reduction.ingest import delimited, piece, record_of_test
+from reduction.readers import delimited
+from reduction.readers import read_log as record_of_test
+from reduction.readers import record_in_si as piece
+from reduction.record.errors import LogError
+from reduction.stages.cycles import loops
 
 
 def log_of(name, **changes):

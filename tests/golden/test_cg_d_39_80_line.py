@@ -10,12 +10,19 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.line.cubic import slope_of_cubic
-from reduction.line.identify import identify_by_amplitude
-from reduction.line.model import apparent_spring_constant, hysteresis_energy
-from reduction.line.pull import fit_pull
-from reduction.line.quasistatic import spring_constant_ratio, strain_at_break_share
-from reduction.line.single import VERDICTS, check_single_time
+from reduction.stages.line.line_model import (
+    VERDICTS,
+    apparent_spring_constant,
+    check_single_time,
+    hysteresis_energy,
+    identify_by_amplitude,
+)
+from reduction.stages.line.slow_pull import (
+    fit_pull,
+    slope_of_cubic,
+    spring_constant_ratio,
+    strain_at_break_share,
+)
 
 
 class Line(NamedTuple):

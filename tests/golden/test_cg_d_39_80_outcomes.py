@@ -9,11 +9,14 @@ from math import floor
 import numpy as np
 import pytest
 
-from reduction.outcomes.abrasion import ratio_to_published_life
-from reduction.outcomes.compare import one_way, ratio_of_means
-from reduction.outcomes.exposure import fit_exposure_trend, strength_after
-from reduction.outcomes.life import fit_life
-from reduction.outcomes.strength import group_statistics
+from reduction.experiments.life_statistics import fit_life, ratio_to_published_life
+from reduction.experiments.strength_statistics import (
+    fit_exposure_trend,
+    group_statistics,
+    one_way,
+    ratio_of_means,
+    strength_after,
+)
 
 NAN = float("nan")
 # mean, deviation, n; reference mean, deviation, n; printed change, change of the table's numbers

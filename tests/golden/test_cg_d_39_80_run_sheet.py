@@ -3,10 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.surface.cautions import find_cautions
-from reduction.surface.designs import box_behnken
-from reduction.surface.levels import FactorLevels, engineering_levels
-from reduction.surface.runsheet import make_run_sheet
+from reduction.experiments.designs import FactorLevels, box_behnken, engineering_levels
+from reduction.experiments.run_sheet import find_cautions, make_run_sheet
 
 LOW_TO_HIGH = {"1/2, 3/4": (0.12, 0.30, 0.05, 0.12), "1, 1 1/4": (0.10, 0.22, 0.05, 0.10)}
 

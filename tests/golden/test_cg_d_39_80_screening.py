@@ -8,8 +8,8 @@ printed effects and dummies of that size must give the table and the marks of it
 import numpy as np
 import pytest
 
-from reduction.surface.designs import plackett_burman
-from reduction.surface.screening import screening_effects
+from reduction.experiments.designs import plackett_burman
+from reduction.experiments.screening import screening_effects
 
 FACTORS = ("f", "Tm", "dT", "duration", "D")
 # effects as printed, smallest significant effect as printed, its error, factors that count

@@ -7,11 +7,15 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.surface.coding import coded_from_engineering
-from reduction.surface.designs import box_behnken
-from reduction.surface.overall import statistics_from_r2
-from reduction.surface.terms import model_matrix, quadratic_exponents, term_names
-from reduction.surface.variance import covariance_factor, variance_factor
+from reduction.experiments.designs import (
+    box_behnken,
+    coded_from_engineering,
+    model_matrix,
+    quadratic_exponents,
+    term_names,
+)
+from reduction.experiments.least_squares_fit import statistics_from_r2
+from reduction.experiments.run_sheet import covariance_factor, variance_factor
 
 # Table 3, K_ap of seven new lines: r2, F-STAT as printed
 TABLE_3 = (

@@ -10,10 +10,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.lookup.line import look_up
-from reduction.published.linesource import published_sources
-from reduction.published.read import cells_of
+from reduction.lines.line_lookup import look_up
+from reduction.lines.published_source import published_sources
+from reduction.published.printed_cells import cells_of
+from reduction.record.errors import SettingsError
 
 ROUNDING = 1e-12
 LBF, PSI = 4.4482216152605, 6894.757293168361

@@ -10,8 +10,7 @@ from pathlib import Path
 
 from published_typings import faults_of_the_claims
 
-from reduction.published.cell import number_of
-from reduction.published.read import cells_of, errata_of
+from reduction.published.printed_cells import cells_of, errata_of, number_of
 
 ROOM = Path(__file__).parent / "published" / "CG-D-39-80"
 CELLS = {cell.key: cell for cell in cells_of("CG-D-39-80")}

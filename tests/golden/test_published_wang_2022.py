@@ -2,7 +2,7 @@
 
 from published_typings import cells_in_order, faults_of_the_data, typed_in_order
 
-from reduction.published.read import errata_of, table_of
+from reduction.published.printed_cells import errata_of, table_of
 
 REPORT = "Wang-2022"
 

@@ -9,7 +9,7 @@ import csv
 import pytest
 from published_typings import ROOM, cells_in_order, faults_of_the_data, typed_in_order
 
-from reduction.published.read import cells_of, errata_of
+from reduction.published.printed_cells import cells_of, errata_of
 
 REPORT = "WHOI-2004-06"
 FABRIC = "nylon tire cord fabric"

@@ -11,8 +11,7 @@ from pathlib import Path
 import pytest
 from published_typings import faults_of_the_claims
 
-from reduction.published.cell import number_of
-from reduction.published.read import cells_of, errata_of, table_of
+from reduction.published.printed_cells import cells_of, errata_of, number_of, table_of
 
 REPORT = "WHOI-2005-10"
 HERE = Path(__file__).parent / "published" / REPORT

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from published_typings import cells_in_order, faults_of_the_data, typed_in_order
 
-from reduction.published.read import cells_of, errata_of
+from reduction.published.printed_cells import cells_of, errata_of
 
 REPORT = "Zhang-2015"
 TABLE_7 = Path(__file__).parent / "zhang_2015_table_7.csv"

@@ -14,10 +14,7 @@ import numpy as np
 import pytest
 from wire_energy import wire_energy
 
-from reduction.predict.armour import predict_armour
-from reduction.predict.armourdesign import ArmourDesign
-from reduction.predict.armourerror import theory_errors
-from reduction.predict.armouryield import layer_strength
+from reduction.prediction.armour import ArmourDesign, layer_strength, predict_armour, theory_errors
 
 ELASTIC_MODULUS, POISSON_RATIO = 210_000e6, 0.3  # Table 1
 WIRE_RADIUS, STRAIN = 2.5e-3, 1e-3  # sec. 4.1 and 4.2: "a thousandth the length of the pitch"

@@ -13,20 +13,21 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from reduction.predict.cord import (
+from reduction.prediction.cord_curve import CordCurve
+from reduction.prediction.hose_geometry import (
+    NEUTRAL_ANGLE,
     cord_stretch_ratio,
     hose_stretch_ratio,
     pick_up_stretch_ratio,
     slackest_stretch_ratio,
 )
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.cordrates import stretch_ratio_per_angle, stretch_ratio_per_cord_stretch
-from reduction.predict.events import find_events
-from reduction.predict.helix import NEUTRAL_ANGLE
-from reduction.predict.hose import predict_hose
-from reduction.predict.hoseloads import numbers_of
-from reduction.predict.product import HoseDesign
-from reduction.predict.rubber import rubber_tension
+from reduction.prediction.hose_product import HoseDesign
+from reduction.prediction.hose_sensitivity import (
+    stretch_ratio_per_angle,
+    stretch_ratio_per_cord_stretch,
+)
+from reduction.prediction.hose_tension import find_events, numbers_of, predict_hose
+from reduction.prediction.rubber_wall import rubber_tension
 
 HALF_OF_SIX_PLACES = 0.5e-6
 HALF_OF_FOUR_PLACES = 0.5e-4

@@ -11,18 +11,22 @@ import dataclasses
 import numpy as np
 import pytest
 
-from reduction.predict.cord import hose_stretch_ratio
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.cordrates import stretch_ratio_per_angle
-from reduction.predict.designchart import cord_strain_chart
-from reduction.predict.events import find_events
-from reduction.predict.fabric import number_of_cords, ribbon_width
-from reduction.predict.helicallayers import greatest_layer_angle, layer_range, least_layer_angle
-from reduction.predict.hosedesign import design_angle
-from reduction.predict.product import HOSE_PARAMETERS, HoseDesign
-from reduction.predict.sensitivity import hose_sensitivity
-from reduction.predict.uncertainty import propagate_hose
-from reduction.predict.wrapangle import wrap_angle_for
+from reduction.prediction.cord_curve import CordCurve
+from reduction.prediction.hose_design import design_angle
+from reduction.prediction.hose_geometry import (
+    cord_strain_chart,
+    greatest_layer_angle,
+    hose_stretch_ratio,
+    layer_range,
+    least_layer_angle,
+    number_of_cords,
+    ribbon_width,
+    wrap_angle_for,
+)
+from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseDesign
+from reduction.prediction.hose_sensitivity import hose_sensitivity, stretch_ratio_per_angle
+from reduction.prediction.hose_tension import find_events
+from reduction.prediction.hose_uncertainty import propagate_hose
 
 INCH, PSI, POUND = 0.0254, 6894.757293168, 4.4482216152605
 DEGREES = np.array([64.0, 68.0])  # section 3.0

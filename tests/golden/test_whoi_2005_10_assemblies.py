@@ -16,12 +16,17 @@ composite curve carries as its uncertainty: 14 to 18 %.
 import numpy as np
 import pytest
 
-from reduction.lookup.assembly import assemble
-from reduction.lookup.composite import composite_curve
-from reduction.lookup.pieces import CurvePiece
-from reduction.lookup.tethers import SeriesPart, Tether, equal_tethers
-from reduction.lookup.working import working_point, worst_sharing
-from reduction.strain.model import StrainModel
+from reduction.lines.assembly import (
+    SeriesPart,
+    Tether,
+    assemble,
+    equal_tethers,
+    working_point,
+    worst_sharing,
+)
+from reduction.lines.composite import composite_curve
+from reduction.lines.curve_pieces import CurvePiece
+from reduction.stages.strain.strain_model import StrainModel
 
 FOOT, LBF, PSI = 0.3048, 4.4482216152605, 6894.757293168
 AREA = {"new": np.pi / 4 * (1.04 * 0.0254) ** 2, "used": np.pi / 4 * (0.94 * 0.0254) ** 2}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.holds.relaxation import relaxation_drop
+from reduction.stages.holds.relaxation import relaxation_drop
 
 HALF_LAST_DIGIT_LBF = 0.5
 

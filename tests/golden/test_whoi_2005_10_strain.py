@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.record import Specimen, SpliceMarks
-from reduction.settings import StrainSettings
-from reduction.strain.evaluate import strain_by_model
-from reduction.strain.fit import fit_strain_model
-from reduction.strain.stress import check_constant_volume, constant_volume_diameter
+from reduction.record.measurement import Specimen, SpliceMarks
+from reduction.record.settings import StrainSettings
+from reduction.stages.strain.strain_fit import fit_strain_model
+from reduction.stages.strain.strain_model import strain_by_model
+from reduction.stages.strain.stress import check_constant_volume, constant_volume_diameter
 
 HERE = Path(__file__).parent
 INCH, FOOT = 0.0254, 0.3048

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.moduli.stepwise import reduce_stepwise
-from reduction.record import StepReadings
+from reduction.record.measurement import StepReadings
+from reduction.stages.moduli.stepwise_test import reduce_stepwise
 
 HERE = Path(__file__).parent
 RAW = HERE.parents[1] / "raw" / "buoy-technology-1997" / "table_4.csv"

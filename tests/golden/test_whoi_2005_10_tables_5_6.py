@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.moduli.secant import chord_modulus
+from reduction.stages.moduli.secant_modulus import chord_modulus
 
 HERE = Path(__file__).parent
 INCH, LBF = 0.0254, 4.4482216152605

@@ -7,13 +7,15 @@ import numpy as np
 import pytest
 from scipy import integrate, optimize
 
-from reduction.predict import zhang2015
-from reduction.predict.dispersion import wave_number, wave_period_of
-from reduction.predict.extremes import find_extremes
-from reduction.predict.immersion import immerse_hose
-from reduction.predict.morison import wave_load
-from reduction.predict.waves import airy_wave, stokes_wave
-from reduction.predict.wavetheory import describe_wave
+from reduction.prediction.hose_prediction import zhang_example as zhang2015
+from reduction.prediction.morison import find_extremes, immerse_hose, wave_load
+from reduction.prediction.wave_theory import (
+    airy_wave,
+    describe_wave,
+    stokes_wave,
+    wave_number,
+    wave_period_of,
+)
 
 TABLE_7 = Path(__file__).parent / "zhang_2015_table_7.csv"
 HALF_A_HUNDREDTH = 0.005

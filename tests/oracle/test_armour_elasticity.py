@@ -10,9 +10,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from reduction.predict.armour import predict_armour
-from reduction.predict.armourdesign import ArmourDesign
-from reduction.predict.armourstiffness import layer_stiffness
+from reduction.prediction.armour import ArmourDesign, layer_stiffness, predict_armour
 
 POISSON_RATIO, WIRE, DEGREE = 0.3, 1.0, 4
 SLENDER = 40.0  # helix radius over wire radius

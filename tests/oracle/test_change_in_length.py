@@ -7,15 +7,15 @@ import numpy as np
 import programme as made
 import pytest
 
-from reduction.archive.dataset import to_dataset
-from reduction.archive.rope_steps import step_of_archive
-from reduction.line.properties import change_in_length
-from reduction.pipeline.locate import locate
-from reduction.pipeline.reduce import reduce_test
-from reduction.product import TestDescription
-from reduction.record import Record, Specimen
-from reduction.settings import CycleSettings, ReductionSettings, RopeSettings
-from reduction.strain.model import StrainModel
+from reduction.archive.rope_properties import step_of_archive
+from reduction.archive.test_dataset import to_dataset
+from reduction.pipeline.located_test import locate
+from reduction.pipeline.reduce_test import reduce_test
+from reduction.record.measurement import Record, Specimen
+from reduction.record.settings import CycleSettings, ReductionSettings, RopeSettings
+from reduction.stages.line.change_in_length import change_in_length
+from reduction.stages.reduced_test import TestDescription
+from reduction.stages.strain.strain_model import StrainModel
 
 GAUGE = 10.0
 REFERENCE_TIME = 120.0

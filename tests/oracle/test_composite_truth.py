@@ -12,13 +12,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reduction.cycles.find import find_cycles
-from reduction.lookup.composite import composite_curve
-from reduction.lookup.compositerule import CompositeRule
-from reduction.lookup.pieces import CurvePiece, pieces_of_branches
-from reduction.moduli.tangent import tangent_curves
-from reduction.phases.standstill import find_standstills
-from reduction.settings import CycleSettings, ModulusSettings, PhaseSettings
+from reduction.lines.composite import composite_curve
+from reduction.lines.curve_pieces import CompositeRule, CurvePiece, pieces_of_branches
+from reduction.record.settings import CycleSettings, ModulusSettings, PhaseSettings
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.moduli.tangent_modulus import tangent_curves
+from reduction.stages.standstills import find_standstills
 
 DATA = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 FOOT, INCH, LBF = 0.3048, 0.0254, 4.4482216152605

@@ -8,10 +8,10 @@ from functools import partial
 import numpy as np
 import pytest
 
-from reduction.cycles.find import find_cycles
-from reduction.cycles.loops import close_loops
-from reduction.phases.standstill import find_standstills
-from reduction.settings import CycleSettings, PhaseSettings
+from reduction.record.settings import CycleSettings, PhaseSettings
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.cycles.loops import close_loops
+from reduction.stages.standstills import find_standstills
 
 HALF, N_CYCLES, LOW, HIGH = 5.0, 12, 4.0, 5.0
 SPRING, DASHPOT_SPRING, RELAXATION = 100.0, 40.0, 0.1

@@ -6,12 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reduction.cycles.find import find_cycles
-from reduction.cycles.label import label_phases
-from reduction.errors import DataError
-from reduction.phases.standstill import find_standstills
-from reduction.settings import CycleSettings, PhaseSettings
-from reduction.vocabulary import PHASE_VALUES
+from reduction.quantities.names import PHASE_VALUES
+from reduction.record.errors import DataError
+from reduction.record.settings import CycleSettings, PhaseSettings
+from reduction.stages.cycles.cycle_search import find_cycles, label_phases
+from reduction.stages.standstills import find_standstills
 
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 FOOT, POUND = 0.3048, 4.4482216152605

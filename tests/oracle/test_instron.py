@@ -11,10 +11,10 @@ import pandas as pd
 import pytest
 from measured_logs import LOGS, needs_measured_logs
 
-from reduction.cycles.find import find_cycles
-from reduction.cycles.reversals import find_reversals, first_pass
-from reduction.phases.standstill import find_standstills
-from reduction.settings import CycleSettings, PhaseSettings
+from reduction.record.settings import CycleSettings, PhaseSettings
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.cycles.reversals import find_reversals, first_pass
+from reduction.stages.standstills import find_standstills
 
 FOLDER = LOGS / "instron-elastomer"
 pytestmark = needs_measured_logs

@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 from measured_logs import LOGS
 
-from reduction.line.cubic import slope_of_cubic
-from reduction.line.pull import fit_pull
-from reduction.line.quasistatic import quasi_static_spring_constant
+from reduction.stages.line.slow_pull import fit_pull, quasi_static_spring_constant, slope_of_cubic
 
 TABLES = LOGS.parent / "reference" / "line"
 pytestmark = pytest.mark.skipif(

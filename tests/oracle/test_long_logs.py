@@ -9,17 +9,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.batch.models import fit_strain_models
-from reduction.batch.reduce import reduce_survey
+from reduction.batch.reduce_tests import reduce_survey
 from reduction.batch.survey import survey_log
+from reduction.batch.test_history import fit_strain_models
 from reduction.campaign.load import load_campaign
-from reduction.cycles import runs
-from reduction.holds import ramp, support
-from reduction.ingest import constant
-from reduction.ingest.parts import Parts
-from reduction.moduli import tensionlevel
-from reduction.phases import blocks as still_blocks
-from reduction.samples import blocks, intervals, scratch, search
+from reduction.readers import sample_flags as constant
+from reduction.readers.layout import Parts
+from reduction.record.measurement import samples as blocks
+from reduction.record.measurement import samples as intervals
+from reduction.record.measurement import samples as scratch
+from reduction.record.measurement import samples as search
+from reduction.stages import standstills as still_blocks
+from reduction.stages.cycles import cycle_pairing as runs
+from reduction.stages.holds import hold_start as ramp
+from reduction.stages.holds import reduce_holds as support
+from reduction.stages.moduli import loop_balance as tensionlevel
 
 pytestmark = pytest.mark.slow
 
@@ -139,11 +143,11 @@ import json, resource, sys
 from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 from generate import write_campaign
-from reduction.batch.models import fit_strain_models
-from reduction.batch.reduce import reduce_survey
+from reduction.batch.test_history import fit_strain_models
+from reduction.batch.reduce_tests import reduce_survey
 from reduction.batch.survey import survey_log
 from reduction.campaign.load import load_campaign
-from reduction.ingest.parts import Parts
+from reduction.readers.layout import Parts
 Parts.folder_of = lambda self, n_bytes: self.folder
 Parts.length_of = lambda self, n_bytes: 1 << 22
 campaign = load_campaign(write_campaign(Path(sys.argv[2]), n_rows=int(sys.argv[3])))
@@ -175,10 +179,10 @@ HOLD = """
 import sys
 from pathlib import Path
 import numpy as np
-from reduction.holds.reduce import reduce_holds
-from reduction.phases.standstill import Standstills
-from reduction.samples.scratch import ColumnWriter
-from reduction.settings import HoldSettings
+from reduction.stages.holds.reduce_holds import reduce_holds
+from reduction.stages.standstills import Standstills
+from reduction.record.samples import ColumnWriter
+from reduction.record.settings import HoldSettings
 n_samples, kind = int(sys.argv[1]), sys.argv[2]
 rest = n_samples // 4  # at slack, and as long a ramp; then the hold
 columns = [ColumnWriter(Path(sys.argv[3])) for _ in range(4)]

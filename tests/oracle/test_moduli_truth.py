@@ -11,13 +11,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reduction.cycles.find import find_cycles
-from reduction.moduli.grid import StrainGrid
-from reduction.moduli.identity import check_identity
-from reduction.moduli.moments import accumulate_moments, fit_windows
-from reduction.moduli.tangent import tangent_curves
-from reduction.phases.standstill import find_standstills
-from reduction.settings import CycleSettings, ModulusSettings, PhaseSettings
+from reduction.record.settings import CycleSettings, ModulusSettings, PhaseSettings
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.moduli.local_regression import accumulate_moments, fit_windows
+from reduction.stages.moduli.loop_balance import check_identity
+from reduction.stages.moduli.tangent_modulus import tangent_curves
+from reduction.stages.moduli.tangent_window import StrainGrid
+from reduction.stages.standstills import find_standstills
 
 DATA = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 FOOT, INCH, LBF = 0.3048, 0.0254, 4.4482216152605

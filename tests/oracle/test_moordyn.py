@@ -12,18 +12,15 @@ import pytest
 from export_lines import constant, growing, line, syrope
 from export_readers import moordyn_sections, moordyn_table
 
-from reduction.cli.assembly import deployed_line
-from reduction.cli.syrope import with_syrope
-from reduction.export.fromassembly import line_from_assembly
-from reduction.export.fromcomposite import line_from_composite
-from reduction.export.fromlookup import line_from_lookup
-from reduction.export.moordyn import moordyn_files
-from reduction.export.write import export_line
-from reduction.lookup.compositerule import CompositeRule
-from reduction.lookup.line import look_up
-from reduction.lookup.source import compose
-from reduction.published.linesource import published_sources
-from reduction.published.piecesource import published_piece_sources
+from reduction.cli.curves import deployed_line
+from reduction.cli.export import with_syrope
+from reduction.lines.composite import compose
+from reduction.lines.curve_pieces import CompositeRule
+from reduction.lines.deck_formats import export_line
+from reduction.lines.deck_moordyn import moordyn_files
+from reduction.lines.export_sources import line_from_assembly, line_from_composite, line_from_lookup
+from reduction.lines.line_lookup import look_up
+from reduction.lines.published_source import published_piece_sources, published_sources
 
 pytestmark = [
     pytest.mark.slow,

@@ -11,7 +11,7 @@ import yaml
 from export_lines import growing, line
 from export_readers import moorpy_table
 
-from reduction.export.write import export_line
+from reduction.lines.deck_formats import export_line
 
 pytestmark = [
     pytest.mark.slow,

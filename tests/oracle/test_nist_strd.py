@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from measured_logs import LOGS, needs_measured_logs
 
-from reduction.moduli.separable import fit_separable
+from reduction.stages.moduli.least_squares import fit_separable
 
 DATA = LOGS / "nist-strd"
 pytestmark = needs_measured_logs

@@ -7,11 +7,18 @@ from scipy.stats import CensoredData
 from statsmodels.regression.linear_model import WLS
 from statsmodels.stats.oneway import anova_oneway
 
-from reduction.outcomes.compare import one_way, ratio_of_means
-from reduction.outcomes.exposure import fit_exposure_trend
-from reduction.outcomes.fatigue import fit_load_life, life_at_load
-from reduction.outcomes.life import fit_life, ratio_of_lives
-from reduction.outcomes.strength import censored_mean
+from reduction.experiments.life_statistics import (
+    fit_life,
+    fit_load_life,
+    life_at_load,
+    ratio_of_lives,
+)
+from reduction.experiments.strength_statistics import (
+    censored_mean,
+    fit_exposure_trend,
+    one_way,
+    ratio_of_means,
+)
 
 # NIST/SEMATECH e-Handbook, 8.4.1.3: hours, ten of twenty suspended at 500
 NIST_HOURS = np.array([54, 187, 216, 240, 244, 335, 361, 373, 375, 386] + [500] * 10, float)

@@ -11,10 +11,14 @@ import pytest
 from measured_logs import LOGS
 from raschii import AiryWave, FentonWave, StokesWave, check_breaking_criteria
 
-from reduction.predict.breaking import breaking_height
-from reduction.predict.dispersion import wave_number, wave_period_of
-from reduction.predict.motion import particle_motion
-from reduction.predict.waves import airy_wave, stokes_wave
+from reduction.prediction.wave_theory import (
+    airy_wave,
+    breaking_height,
+    particle_motion,
+    stokes_wave,
+    wave_number,
+    wave_period_of,
+)
 
 GRAVITY = 9.81
 KINEMATICS = LOGS / "waves" / "raschii_kinematics_t0.csv"

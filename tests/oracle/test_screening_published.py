@@ -6,8 +6,8 @@ from itertools import combinations
 import numpy as np
 from measured_logs import LOGS, needs_measured_logs
 
-from reduction.surface.designs import Design, plackett_burman
-from reduction.surface.screening import screening_effects
+from reduction.experiments.designs import Design, plackett_burman
+from reduction.experiments.screening import screening_effects
 
 
 def pairings(columns):

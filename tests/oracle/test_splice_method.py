@@ -9,13 +9,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.record import Specimen, SpliceMarks
-from reduction.settings import StrainSettings
-from reduction.strain.evaluate import strain_by_model
-from reduction.strain.fit import fit_strain_model
-from reduction.uncertainty.field import error_field
-from reduction.uncertainty.product import InstrumentErrors
-from reduction.uncertainty.splicemethod import splice_method_error
+from reduction.record.contributions import InstrumentErrors
+from reduction.record.measurement import Specimen, SpliceMarks
+from reduction.record.settings import StrainSettings
+from reduction.stages.strain.strain_fit import fit_strain_model
+from reduction.stages.strain.strain_model import strain_by_model
+from reduction.uncertainty.error_field import error_field, splice_method_error
 
 FREE, SPLICES = 2.55, 1.19
 HOLDS = np.array([0.0, 0.75, 1.0, 1.25])

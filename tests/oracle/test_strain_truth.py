@@ -11,13 +11,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reduction.campaign.marks import read_marks
-from reduction.phases.standstill import Standstills
-from reduction.record import Specimen
-from reduction.settings import StrainSettings
-from reduction.strain.evaluate import extrapolated, strain_by_model
-from reduction.strain.fit import fit_strain_model
-from reduction.strain.marks import measure_mark_tension
+from reduction.campaign.specimens import read_marks
+from reduction.record.measurement import Specimen
+from reduction.record.settings import StrainSettings
+from reduction.stages.standstills import Standstills
+from reduction.stages.strain.splice_marks import measure_mark_tension
+from reduction.stages.strain.strain_fit import fit_strain_model
+from reduction.stages.strain.strain_model import extrapolated, strain_by_model
 
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 FOOT, LBF = 0.3048, 4.4482216152605

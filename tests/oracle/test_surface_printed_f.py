@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from measured_logs import LOGS, needs_measured_logs
 
-from reduction.surface.overall import statistics_from_r2
+from reduction.experiments.least_squares_fit import statistics_from_r2
 
 TABLE = LOGS.parent / "reference" / "line" / "response_surfaces.csv"
 pytestmark = [

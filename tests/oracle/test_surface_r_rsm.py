@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from measured_logs import LOGS, needs_measured_logs
 
-from reduction.surface.surfaces import fit_surfaces
+from reduction.experiments.response_surfaces import fit_surfaces
 
 DATA = LOGS / "box-behnken"
 EXPERIMENTS = ("treb_lawson", "myers_montgomery_ex7_5_viscosity")

@@ -10,13 +10,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reduction.cycles.find import find_cycles
-from reduction.cycles.loops import close_loops
-from reduction.holds.reduce import reduce_holds
-from reduction.moduli.slip import find_slips
-from reduction.moduli.tensionlevel import cycle_tension_level
-from reduction.phases.standstill import find_standstills
-from reduction.settings import CycleSettings, HoldSettings, PhaseSettings, SlipSettings
+from reduction.record.settings import CycleSettings, HoldSettings, PhaseSettings, SlipSettings
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.cycles.loops import close_loops
+from reduction.stages.holds.reduce_holds import reduce_holds
+from reduction.stages.moduli.loop_balance import cycle_tension_level
+from reduction.stages.moduli.splice_slip import find_slips
+from reduction.stages.standstills import find_standstills
 
 DATA = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 

@@ -7,13 +7,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reduction.archive.budget import budget_from_archive
-from reduction.archive.linesource import line_source_of_test
 from reduction.archive.open import open_archive
-from reduction.batch.run import run_campaign
+from reduction.archive.uncertainty_budget import budget_from_archive
+from reduction.batch.run_campaign import run_campaign
 from reduction.campaign.load import load_campaign
-from reduction.lookup.against import compare_values
-from reduction.lookup.line import look_up
+from reduction.lines.archive_source import line_source_of_test
+from reduction.lines.line_lookup import look_up
+from reduction.lines.line_search import compare_values
 
 pytestmark = pytest.mark.slow
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.uncertainty.combine import combined_standard_uncertainty
+from reduction.record.contributions import combined_standard_uncertainty
 
 pytestmark = pytest.mark.nightly
 

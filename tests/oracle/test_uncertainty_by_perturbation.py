@@ -9,14 +9,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.strain.evaluate import strain_by_model
-from reduction.strain.inverse import position_by_model
-from reduction.strain.model import StrainModel
-from reduction.uncertainty.curves import curve_contributions
-from reduction.uncertainty.field import error_field
-from reduction.uncertainty.line import pull_contributions
-from reduction.uncertainty.loops import loop_contributions
-from reduction.uncertainty.product import InstrumentErrors
+from reduction.record.contributions import InstrumentErrors
+from reduction.stages.strain.strain_model import StrainModel, position_by_model, strain_by_model
+from reduction.uncertainty.error_field import error_field
+from reduction.uncertainty.propagation import (
+    curve_contributions,
+    loop_contributions,
+    pull_contributions,
+)
 
 AREA = 5.48e-4
 MEAN, AMPLITUDE, FREQUENCY = 1.0, 0.25, 0.05

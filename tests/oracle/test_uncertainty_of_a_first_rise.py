@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from reduction.archive.open import open_archive
-from reduction.batch.run import run_campaign
+from reduction.batch.run_campaign import run_campaign
 from reduction.campaign.load import load_campaign
 
 pytestmark = pytest.mark.slow

@@ -5,16 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.line.pull import fit_pull
-from reduction.line.quasistatic import (
+from reduction.record.contributions import InstrumentErrors, merged
+from reduction.stages.line.slow_pull import (
+    fit_pull,
     quasi_static_spring_constant,
     strain_at_break_share,
     strain_at_tension,
 )
-from reduction.pipeline.shared.pulls import of_pull
-from reduction.strain.model import StrainModel
-from reduction.uncertainty.join import merged
-from reduction.uncertainty.product import InstrumentErrors
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.shared_contributions import of_pull
 
 MODEL = StrainModel("rope", "gauge-length", {"reference_position": 0.0, "gauge_length": 2.0})
 LOAD = np.linspace(0.0, 2000.0, 4001)

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from reduction.surface.bands import evaluate_surfaces
-from reduction.surface.designs import box_behnken
-from reduction.surface.surfaces import fit_surfaces
-from reduction.surface.terms import model_matrix, quadratic_exponents
-from reduction.uncertainty.surfacepoints import with_shared_at_points
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.surface_points import evaluate_surfaces
+from reduction.uncertainty.surface_errors import with_shared_at_points
 
 pytestmark = pytest.mark.slow
 

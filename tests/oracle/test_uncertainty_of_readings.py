@@ -9,27 +9,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.holds.reduce import reduce_holds
-from reduction.moduli.elastomer import fit_elastomers
-from reduction.moduli.hyperelastic import PARAMETERS, hyperelastic_stress
-from reduction.moduli.stepwise import reduce_stepwise
-from reduction.phases.standstill import Standstills
-from reduction.record import StepReadings
-from reduction.settings import HoldSettings
-from reduction.strain.evaluate import strain_by_model
-from reduction.strain.inverse import position_by_model
-from reduction.strain.model import StrainModel
-from reduction.uncertainty.elastomer import elastomer_contributions
-from reduction.uncertainty.field import error_field
-from reduction.uncertainty.holds import hold_contributions
-from reduction.uncertainty.points import (
+from reduction.record.contributions import Contributions, InstrumentErrors
+from reduction.record.measurement import StepReadings
+from reduction.record.settings import HoldSettings
+from reduction.stages.holds.reduce_holds import reduce_holds
+from reduction.stages.moduli.elastomer_laws import PARAMETERS, fit_elastomers, hyperelastic_stress
+from reduction.stages.moduli.stepwise_test import reduce_stepwise
+from reduction.stages.standstills import Standstills
+from reduction.stages.strain.strain_model import StrainModel, position_by_model, strain_by_model
+from reduction.uncertainty.error_field import error_field
+from reduction.uncertainty.propagation import (
     chord_contributions,
+    elastomer_contributions,
+    hold_contributions,
     secant_contributions,
+    stepwise_contributions,
     stress_contributions,
     with_diameter,
 )
-from reduction.uncertainty.product import Contributions, InstrumentErrors
-from reduction.uncertainty.weights import stepwise_contributions
 
 AREA = 5.48e-4
 GAUGE = StrainModel("new", "gauge-length", {"reference_position": 2.55, "gauge_length": 2.55})

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from export_lines import line, rubber
 
-from reduction.export.whoicable import whoicable_text
+from reduction.lines.deck_other_codes import whoicable_text
 
 CABLE = shutil.which("cable")
 PROBLEM = """

@@ -12,13 +12,12 @@ from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reduction.archive.samples import row_account
+from reduction.archive.csv_columns import csv_field, csv_lines, csv_text, number_texts, texts_of
+from reduction.archive.csv_tables import Curve, envelope_rows
 from reduction.archive.schema import SCHEMA
-from reduction.archive.values import pad
-from reduction.record import Record
-from reduction.tables.column import csv_field, csv_lines, csv_text, texts_of
-from reduction.tables.digits import number_texts
-from reduction.tables.envelope import Curve, envelope_rows
+from reduction.archive.test_dataset import row_account
+from reduction.archive.variables import pad
+from reduction.record.measurement import Record
 
 TEXT = st.text(st.characters(codec="utf-8", exclude_characters="\x00"), max_size=20)
 

@@ -6,9 +6,13 @@ from examples import examples
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from reduction.lookup.assembly import assemble
-from reduction.lookup.tethers import SeriesPart, equal_tethers, unequal_tethers
-from reduction.lookup.working import working_point
+from reduction.lines.assembly import (
+    SeriesPart,
+    assemble,
+    equal_tethers,
+    unequal_tethers,
+    working_point,
+)
 
 lengths = st.lists(st.floats(2.0, 3.0), min_size=1, max_size=6)
 parts = st.lists(

@@ -5,9 +5,8 @@ from examples import examples
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from reduction.lookup.composite import composite_curve
-from reduction.lookup.compositerule import CompositeRule
-from reduction.lookup.pieces import CurvePiece
+from reduction.lines.composite import composite_curve
+from reduction.lines.curve_pieces import CompositeRule, CurvePiece
 
 KINDS = ("cyclic", "static", "first-loading")
 

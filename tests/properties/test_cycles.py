@@ -6,10 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from reduction.cycles.find import find_cycles
-from reduction.cycles.reversals import find_reversals
-from reduction.phases.standstill import find_standstills
-from reduction.settings import CycleSettings, PhaseSettings
+from reduction.record.settings import CycleSettings, PhaseSettings
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.cycles.reversals import find_reversals
+from reduction.stages.standstills import find_standstills
 
 # eighths and powers of two: scaling and shifting them rounds nothing
 LEVELS = st.integers(-400, 400).map(lambda level: level / 8)

@@ -7,11 +7,11 @@ from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reduction.cycles.loops import close_loops
-from reduction.ingest.flags import flag_record
-from reduction.pipeline.locate import locate, usable
-from reduction.record import Quality, Record
-from reduction.settings import QualitySettings, ReductionSettings
+from reduction.pipeline.located_test import locate, usable
+from reduction.readers.sample_flags import flag_record
+from reduction.record.measurement import Quality, Record
+from reduction.record.settings import QualitySettings, ReductionSettings
+from reduction.stages.cycles.loops import close_loops
 
 STEP = 0.1  # s
 N_CYCLES, PER_CYCLE = 8, 80

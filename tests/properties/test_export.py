@@ -24,8 +24,8 @@ from export_readers import (
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reduction.export.thin import LIFT, curve_from_zero
-from reduction.export.write import export_line
+from reduction.lines.deck_formats import export_line
+from reduction.lines.export_line import LIFT, curve_from_zero
 
 AREA = np.pi / 4 * 0.026**2
 

@@ -6,16 +6,13 @@ from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reduction.holds.blocks import logarithmic_blocks
-from reduction.holds.ramp import find_ramp
-from reduction.holds.relaxation import rate_per_decade, relaxation_drop
-from reduction.holds.series import prony_tension, ramp_factor
-from reduction.moduli.elastomer import fit_elastomers
-from reduction.moduli.hyperelastic import hyperelastic_stress
-from reduction.moduli.slack import slack_position
-from reduction.moduli.steps import find_steps
-from reduction.moduli.stepscan import ramp_of
-from reduction.moduli.trend import slope_per_decade
+from reduction.stages.holds.hold_start import find_ramp
+from reduction.stages.holds.prony_series import prony_tension, ramp_factor
+from reduction.stages.holds.relaxation import logarithmic_blocks, rate_per_decade, relaxation_drop
+from reduction.stages.moduli.elastomer_laws import fit_elastomers, hyperelastic_stress
+from reduction.stages.moduli.secant_modulus import slope_per_decade
+from reduction.stages.moduli.slack_length import slack_position
+from reduction.stages.moduli.splice_slip import find_steps, ramp_of
 
 positive = st.floats(1e-3, 1e3)
 

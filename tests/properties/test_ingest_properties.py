@@ -7,13 +7,11 @@ from examples import examples
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from reduction.ingest.constant import constant_runs
-from reduction.ingest.convert import to_record
-from reduction.ingest.delimited import read_delimited
-from reduction.ingest.layout import Layout
-from reduction.ingest.quality import time_faults
-from reduction.ingest.resample import on_common_time
-from reduction.settings import QualitySettings
+from reduction.readers.delimited import read_delimited
+from reduction.readers.layout import Layout
+from reduction.readers.record_in_si import on_common_time, to_record
+from reduction.readers.sample_flags import constant_runs, time_faults
+from reduction.record.settings import QualitySettings
 
 NUMBERS = st.floats(-1e9, 1e9, allow_nan=False, allow_subnormal=False)
 ROWS = st.lists(st.tuples(NUMBERS, NUMBERS, NUMBERS), min_size=1, max_size=20)

@@ -5,10 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reduction.line.identify import identify_by_amplitude, identify_by_fundamental
-from reduction.line.model import (
+from reduction.stages.line.line_model import (
     apparent_spring_constant,
     hysteresis_energy,
+    identify_by_amplitude,
+    identify_by_fundamental,
     storage_and_loss,
 )
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.cycles.loops import close_loops
-from reduction.cycles.product import Cycles
+from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.cycles.loops import close_loops
 
 STORAGE, LOSS, AMPLITUDE = 9.0e3, 1.2e3, 0.02
 ENERGY = np.pi * LOSS * AMPLITUDE**2

@@ -6,10 +6,10 @@ from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reduction.moduli.identity import check_identity
-from reduction.moduli.segments import find_segments
-from reduction.moduli.tangent import tangent_curves
-from reduction.settings import ModulusSettings
+from reduction.record.settings import ModulusSettings
+from reduction.stages.moduli.loop_balance import check_identity
+from reduction.stages.moduli.segments import find_segments
+from reduction.stages.moduli.tangent_modulus import tangent_curves
 
 SETTINGS = ModulusSettings(strain_bin_width=0.02)
 EXAMPLES = settings(max_examples=examples(15), deadline=None)

@@ -11,12 +11,11 @@ from examples import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from reduction.campaign.results import read_results
-from reduction.outcomes.compare import one_way, ratio_of_means
-from reduction.outcomes.life import fit_life
-from reduction.outcomes.life_rows import fatigue_rows
-from reduction.outcomes.product import Outcome
-from reduction.outcomes.rows import strength_rows
+from reduction.campaign.outcome_results import read_results
+from reduction.experiments.life_statistics import fit_life
+from reduction.experiments.outcome_groups import fatigue_rows, strength_rows
+from reduction.experiments.outcomes import Outcome
+from reduction.experiments.strength_statistics import one_way, ratio_of_means
 
 positive = st.floats(1e-2, 1e6)
 spread_lives = st.lists(

@@ -6,11 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from wire_energy import wire_energy
 
-from reduction.predict.armour import predict_armour
-from reduction.predict.armourdesign import ARMOUR_THEORIES, ArmourDesign
-from reduction.predict.armourspacing import fill_factor, wire_gap
-from reduction.predict.armourstiffness import layer_stiffness
-from reduction.predict.armouryield import wire_stress, yield_strain
+from reduction.prediction.armour import (
+    ARMOUR_THEORIES,
+    ArmourDesign,
+    fill_factor,
+    layer_stiffness,
+    predict_armour,
+    wire_gap,
+    wire_stress,
+    yield_strain,
+)
 
 designs = st.builds(
     ArmourDesign,

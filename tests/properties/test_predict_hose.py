@@ -7,13 +7,15 @@ from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reduction.predict.cord import cord_stretch_ratio, hose_stretch_ratio, pick_up_stretch_ratio
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.cordload import cord_load, cord_strain_at
-from reduction.predict.events import find_events
-from reduction.predict.hose import hose_energy, predict_hose
-from reduction.predict.product import HoseDesign
-from reduction.predict.wrapangle import wrap_angle_for
+from reduction.prediction.cord_curve import CordCurve, cord_load, cord_strain_at
+from reduction.prediction.hose_geometry import (
+    cord_stretch_ratio,
+    hose_stretch_ratio,
+    pick_up_stretch_ratio,
+    wrap_angle_for,
+)
+from reduction.prediction.hose_product import HoseDesign
+from reduction.prediction.hose_tension import find_events, hose_energy, predict_hose
 
 LAWS = st.sampled_from(["neo-hookean", "linear", "linear-current", "hencky"])
 SEEDS = st.integers(0, 2**32 - 1)

@@ -10,10 +10,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from nptdms import ChannelObject, TdmsWriter
 
-from reduction.errors import LogError
-from reduction.ingest.layout import Layout
-from reduction.ingest.parts import Parts
-from reduction.ingest.read import read_log
+from reduction.readers.layout import Layout, Parts
+from reduction.readers.read_log import read_log
+from reduction.record.errors import LogError
 
 IN_TMP = settings(
     max_examples=examples(40),

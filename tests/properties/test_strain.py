@@ -4,12 +4,19 @@ import numpy as np
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from reduction.strain.calibration import fit_free_length_line, fit_splice_ratio
-from reduction.strain.law import fit_splice_law
-from reduction.strain.methods import marked_line_strain, splice_ratio_strain
-from reduction.strain.splice import free_length_fraction, free_length_strain
-from reduction.strain.stress import constant_volume_diameter, nominal_stress
-from reduction.strain.tensiondriven import tension_driven_strain
+from reduction.stages.strain.splice_marks import (
+    fit_free_length_line,
+    fit_splice_law,
+    fit_splice_ratio,
+)
+from reduction.stages.strain.strain_model import (
+    free_length_fraction,
+    free_length_strain,
+    marked_line_strain,
+    splice_ratio_strain,
+    tension_driven_strain,
+)
+from reduction.stages.strain.stress import constant_volume_diameter, nominal_stress
 
 lengths = st.floats(min_value=1e-2, max_value=1e2)
 shares = st.floats(min_value=0.01, max_value=0.99)

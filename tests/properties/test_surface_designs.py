@@ -4,12 +4,15 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reduction.surface.cautions import find_cautions
-from reduction.surface.coding import coded_from_engineering
-from reduction.surface.designs import box_behnken, plackett_burman
-from reduction.surface.levels import FactorLevels, engineering_levels
-from reduction.surface.runsheet import make_run_sheet
-from reduction.surface.screening import screening_effects
+from reduction.experiments.designs import (
+    FactorLevels,
+    box_behnken,
+    coded_from_engineering,
+    engineering_levels,
+    plackett_burman,
+)
+from reduction.experiments.run_sheet import find_cautions, make_run_sheet
+from reduction.experiments.screening import screening_effects
 
 SHARES = st.tuples(st.floats(0.01, 0.45), st.floats(0.02, 0.5)).map(lambda p: (p[0], p[0] + p[1]))
 STRENGTH = st.floats(1e2, 1e7)

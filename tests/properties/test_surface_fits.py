@@ -5,8 +5,8 @@ from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reduction.surface.designs import box_behnken
-from reduction.surface.surfaces import fit_surfaces
+from reduction.experiments.designs import box_behnken
+from reduction.experiments.response_surfaces import fit_surfaces
 
 RUNS = box_behnken(3).coded
 NAMES = ["frequency", "mean_tension", "tension_amplitude"]

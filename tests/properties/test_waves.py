@@ -5,20 +5,24 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from reduction.errors import DataError
-from reduction.predict.breaking import breaking_height
-from reduction.predict.dispersion import (
+from reduction.prediction.morison import (
+    ImmersedSection,
+    find_extremes,
+    immersion_depth_of,
+    wave_load,
+)
+from reduction.prediction.wave_theory import (
     STANDARD_GRAVITY,
+    airy_wave,
+    breaking_height,
+    describe_wave,
     group_velocity,
+    particle_motion,
+    stokes_wave,
     wave_number,
     wave_period_of,
 )
-from reduction.predict.extremes import find_extremes
-from reduction.predict.immersion import ImmersedSection, immersion_depth_of
-from reduction.predict.morison import wave_load
-from reduction.predict.motion import particle_motion
-from reduction.predict.waves import airy_wave, stokes_wave
-from reduction.predict.wavetheory import describe_wave
+from reduction.record.errors import DataError
 
 periods, depths = st.floats(0.3, 60.0), st.floats(0.05, 5e3)
 shares = st.floats(0.02, 0.95)

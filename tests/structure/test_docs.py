@@ -9,12 +9,13 @@ from typing import get_args
 
 import pytest
 
-from reduction.batch.status import Status, status_csv
-from reduction.campaign import model, numbers
+from reduction.batch.campaign_status import Status, status_csv
+from reduction.campaign import model
+from reduction.campaign import model as numbers
 from reduction.campaign.load import load_campaign
-from reduction.ingest.layout import Channel, Layout
-from reduction.ingest.read import read_log
-from reduction.settings import ReductionSettings
+from reduction.readers.layout import Channel, Layout
+from reduction.readers.read_log import read_log
+from reduction.record.settings import ReductionSettings
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"

@@ -4,8 +4,8 @@ import re
 import tomllib
 from pathlib import Path
 
-from reduction.archive import laboratory
-from reduction.campaign.reportspec import ReportSection
+from reduction.archive import write as laboratory
+from reduction.campaign.model import ReportSection
 
 PAGE = (Path(__file__).parents[2] / "docs" / "client-report.md").read_text(encoding="utf-8")
 SCHEMA = ReportSection.model_json_schema()

@@ -5,15 +5,15 @@ from pathlib import Path
 
 import pytest
 
-from reduction.campaign.assemblykeys import (
+from reduction.campaign.assembly_spec import (
     AssemblyKeys,
     CurveKeys,
     PartKeys,
     SpliceKeys,
     WorkingKeys,
+    load_assembly_case,
 )
-from reduction.campaign.assemblyspec import load_assembly_case
-from reduction.cli.assembly import deployed_line
+from reduction.cli.curves import deployed_line
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = (DOCS / "deployed.md").read_text(encoding="utf-8")

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from reduction.campaign.spec import ExperimentKeys, ResponseKeys, SpecFile
+from reduction.campaign.experiment_plans import ExperimentKeys, ResponseKeys, SpecFile
 from reduction.cli.main import app
 
 PAGE = (Path(__file__).parents[2] / "docs" / "experiments.md").read_text(encoding="utf-8")

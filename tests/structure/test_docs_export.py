@@ -8,8 +8,8 @@ import pytest
 from typer.testing import CliRunner
 
 from reduction.cli.main import app
-from reduction.export.write import FORMATS, FORMS
-from reduction.vocabulary import SINGLE_QUANTITIES
+from reduction.lines.deck_formats import FORMATS, FORMS
+from reduction.quantities.names import SINGLE_QUANTITIES
 
 DOCS = Path(__file__).parents[2] / "docs"
 TEXT = (DOCS / "export.md").read_text(encoding="utf-8")

@@ -8,8 +8,8 @@ import pytest
 from typer.testing import CliRunner
 
 from reduction.cli.main import app
-from reduction.lookup.line import look_up
-from reduction.published.linesource import published_sources
+from reduction.lines.line_lookup import look_up
+from reduction.lines.published_source import published_sources
 
 TEXT = (Path(__file__).parents[2] / "docs" / "lookup.md").read_text(encoding="utf-8")
 

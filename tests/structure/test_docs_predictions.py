@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from reduction.campaign import hosemodel
-from reduction.campaign.armourspec import ArmourKeys, ArmourLayerKeys, load_armour_case
-from reduction.campaign.hoses import load_hose
-from reduction.campaign.wavespec import WaveLoadKeys, load_wave_case
+from reduction.campaign import model as hosemodel
+from reduction.campaign.armour_spec import ArmourKeys, ArmourLayerKeys, load_armour_case
+from reduction.campaign.hose_plans import load_hose
+from reduction.campaign.wave_spec import WaveLoadKeys, load_wave_case
 
 PAGE = (Path(__file__).parents[2] / "docs" / "predictions.md").read_text(encoding="utf-8")
 BLOCKS = [body for _, body in re.findall(r"^```(toml)\n(.*?)^```$", PAGE, re.M | re.S)]

@@ -6,7 +6,7 @@ from pathlib import Path
 import typer
 
 from reduction.cli.main import app
-from reduction.remote import PACKAGES
+from reduction.readers.remote_files import PACKAGES
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "remote.md").read_text(encoding="utf-8")
@@ -36,7 +36,7 @@ def test_the_packages_are_those_that_messages_name():
 
 
 def test_the_messages_are_those_of_the_program():
-    source = (ROOT / "reduction" / "remote.py").read_text(encoding="utf-8")
+    source = (ROOT / "reduction" / "readers" / "remote_files.py").read_text(encoding="utf-8")
     part = PAGE.partition("## When it fails")[2]
     messages = re.findall(r"^\| `(?:\.\. )?(.*?)` \|", part, re.M)
     assert len(messages) == 8

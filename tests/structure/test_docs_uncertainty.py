@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from reduction.cli.main import app
-from reduction.published.read import cells_of
+from reduction.published.printed_cells import cells_of
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "uncertainty.md").read_text(encoding="utf-8")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from reduction.reproduce.reports import counts_of, reproduce
+from reduction.published.reproduce_page import counts_of, reproduce
 
 ROOT = Path(__file__).parents[2]
 VERDICTS = ("reproduced", "erratum", "open", "not_testable", "unexplained")

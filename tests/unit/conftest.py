@@ -8,20 +8,25 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from reduction.archive.dataset import to_dataset
-from reduction.archive.shared import SHARED, SHARED_OF_CHANNELS
+from reduction.archive.shared_errors import SHARED, SHARED_OF_CHANNELS
+from reduction.archive.test_dataset import to_dataset
 from reduction.archive.write import write_archive
-from reduction.cycles.product import Cycles, Loops
-from reduction.holds.product import HoldResult
-from reduction.line.failure import CyclesToFailure
-from reduction.line.held import HeldPair
-from reduction.line.product import LineParameters
-from reduction.line.programme import BeddingIn, DynamicStiffness
-from reduction.line.pull import fit_pull
-from reduction.line.static import CreepOfHold, static_stiffness
-from reduction.line.step import RopeStep
-from reduction.line.tensile import TensilePull
-from reduction.moduli.product import (
+from reduction.record.contributions import Component, Contributions, InstrumentErrors, LineSpread
+from reduction.record.measurement import Quality, Record, Source, Specimen, Step
+from reduction.stages.channel_lag import LagEstimate
+from reduction.stages.cycles.cycle_product import Cycles, Loops
+from reduction.stages.holds.relaxation import HoldResult
+from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair, static_stiffness
+from reduction.stages.line.line_product import LineParameters
+from reduction.stages.line.rope_programme import (
+    BeddingIn,
+    CyclesToFailure,
+    DynamicStiffness,
+    RopeStep,
+    TensilePull,
+)
+from reduction.stages.line.slow_pull import fit_pull
+from reduction.stages.moduli.modulus_product import (
     AmplitudeSummary,
     CycleIdentity,
     ElastomerFit,
@@ -32,16 +37,12 @@ from reduction.moduli.product import (
     Segments,
     Slips,
 )
-from reduction.moduli.slack import SlackStrain
-from reduction.moduli.stepwise import StepwiseResult
-from reduction.phases.standstill import Standstills
-from reduction.pipeline.shared.weights import with_shared_steps
-from reduction.product import History, ReducedTest, TestDescription
-from reduction.provenance import Source, Step
-from reduction.record import Quality, Record, Specimen
-from reduction.strain.model import StrainModel
-from reduction.uncertainty.lag import LagEstimate
-from reduction.uncertainty.product import Component, Contributions, InstrumentErrors, LineSpread
+from reduction.stages.moduli.slack_length import SlackStrain
+from reduction.stages.moduli.stepwise_test import StepwiseResult
+from reduction.stages.reduced_test import History, ReducedTest, TestDescription
+from reduction.stages.standstills import Standstills
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.shared_contributions import with_shared_steps
 
 N_SAMPLES, N_CYCLES, N_BINS, N_SEGMENTS = 60, 4, 5, 3
 SOURCE = Source("T-1.csv", "ab" * 32, 12345)

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reduction.address import is_address, secrets_of, shown_address, without_secrets
-from reduction.errors import LogError, SettingsError
+from reduction.record.errors import LogError, SettingsError
+from reduction.record.plain_text import is_address, secrets_of, shown_address, without_secrets
 
 
 @pytest.mark.parametrize(

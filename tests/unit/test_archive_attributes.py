@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from reduction.archive.attributes import global_attributes
-from reduction.errors import ArchiveError
-from reduction.provenance import Source
+from reduction.archive.dataset_builder import global_attributes
+from reduction.record.errors import ArchiveError
+from reduction.record.measurement import Source
 
 
 def attributes(test, **given):

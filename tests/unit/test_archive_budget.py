@@ -4,14 +4,16 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.archive.budget import (
+from reduction.archive.uncertainty_budget import (
     all_budgets,
     budget_from_archive,
+    effective_freedom,
+    place_name,
     quantities_with_budget,
+    random_freedom,
+    words_of,
 )
-from reduction.archive.budgetplaces import place_name, words_of
-from reduction.archive.freedom import effective_freedom, random_freedom
-from reduction.errors import ArchiveError, SettingsError
+from reduction.record.errors import ArchiveError, SettingsError
 
 
 @pytest.fixture

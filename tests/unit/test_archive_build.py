@@ -6,9 +6,9 @@ import netCDF4
 import numpy as np
 import pytest
 
-from reduction.archive.build import build_dataset
-from reduction.archive.netcdf import write_netcdf
+from reduction.archive.dataset_builder import build_dataset
 from reduction.archive.schema import SCHEMA
+from reduction.archive.write import write_netcdf
 
 # 65,536 doubles are half a megabyte: a few milliseconds to read, and 1,526 chunks in 1e8 samples
 LARGEST = 65536

@@ -12,13 +12,13 @@ from archive_check import check_archive
 from compared_hoses import LOOP, NOT_APART, SOURCE, TRUTH, agreeing, dataset, differing, trading
 from measured_hoses import INCH
 
-from reduction.archive.budget import budget_from_archive
-from reduction.archive.comparison_schema import COMPARISON_SCHEMA
 from reduction.archive.open import open_archive
+from reduction.archive.schema import COMPARISON_SCHEMA
+from reduction.archive.uncertainty_budget import budget_from_archive
 from reduction.archive.write import write_archive
-from reduction.compare.product import EventDifference
-from reduction.errors import ArchiveError
-from reduction.provenance import Origin
+from reduction.prediction.comparison_error import EventDifference
+from reduction.record.errors import ArchiveError
+from reduction.record.measurement import Origin
 
 COMPLIANCE = Path(__file__).parents[1] / "compliance.py"
 CURVES = ("ascending", "descending", "midline")
@@ -299,7 +299,7 @@ def test_comparisons_have_names_of_their_own(named):
 
 
 def empty_or_twice(named):
-    from reduction.archive.comparisons import comparisons_to_dataset
+    from reduction.archive.campaign_products import comparisons_to_dataset
 
     return comparisons_to_dataset(
         named,

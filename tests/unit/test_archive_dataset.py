@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.archive.dataset import to_dataset
 from reduction.archive.open import open_archive
 from reduction.archive.schema import SCHEMA
-from reduction.errors import ArchiveError
-from reduction.record import Quality
+from reduction.archive.test_dataset import to_dataset
+from reduction.record.errors import ArchiveError
+from reduction.record.measurement import Quality
 
 
 def build(test):

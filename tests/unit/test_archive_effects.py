@@ -5,11 +5,9 @@ import pytest
 from experiments import ABOUT, screening_experiment
 from scipy import stats
 
-from reduction.archive.effects import alias_values, effect_values
-from reduction.archive.surfaces import surfaces_to_dataset
-from reduction.surface.confounding import alias_matrix
-from reduction.surface.designs import Design, plackett_burman
-from reduction.surface.screening import screening_effects
+from reduction.archive.surfaces_dataset import alias_values, effect_values, surfaces_to_dataset
+from reduction.experiments.designs import Design, plackett_burman
+from reduction.experiments.screening import alias_matrix, screening_effects
 
 SCREENING = screening_experiment()
 BROKEN = screening_experiment("broken", missing=(4,))

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.archive.freedom import cycles_averaged, effective_freedom, random_freedom
-from reduction.uncertainty.combine import coverage_factor
+from reduction.archive.uncertainty_budget import cycles_averaged, effective_freedom, random_freedom
+from reduction.record.contributions import coverage_factor
 
 
 @pytest.mark.parametrize("n_cycles", [3, 10, 30])

@@ -13,13 +13,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from long_records import AFTER, BEFORE, PER_CYCLE, cycles_of, long_test
 
-from reduction.archive.dataset import to_dataset
-from reduction.archive.kept import kept_samples, stored_cycles
 from reduction.archive.open import open_archive
+from reduction.archive.test_dataset import kept_samples, stored_cycles, to_dataset
 from reduction.archive.write import write_archive
-from reduction.moduli.groups import select_cycles
-from reduction.notes import severity_of
-from reduction.settings import ArchiveSettings, ModulusSettings, ReductionSettings
+from reduction.record.notes import severity_of
+from reduction.record.settings import ArchiveSettings, ModulusSettings, ReductionSettings
+from reduction.stages.moduli.local_regression import select_cycles
 
 
 def wanted(samples=None, longest=4000, selected=8):
@@ -206,8 +205,8 @@ TAKE = """
 import sys
 from pathlib import Path
 import numpy as np
-from reduction.archive.kept import KeptSamples
-from reduction.samples.scratch import ColumnWriter
+from reduction.archive.test_dataset import KeptSamples
+from reduction.record.samples import ColumnWriter
 
 def memory(key):
     with open("/proc/self/status") as lines:

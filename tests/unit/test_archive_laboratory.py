@@ -2,7 +2,7 @@
 
 import pytest
 
-from reduction.archive.laboratory import (
+from reduction.archive.write import (
     FILE_NAME,
     Client,
     Instrument,
@@ -13,7 +13,7 @@ from reduction.archive.laboratory import (
     keep_details,
     read_details,
 )
-from reduction.errors import ArchiveError
+from reduction.record.errors import ArchiveError
 
 EVERYTHING = ReportDetails(
     number="17 <b>", revision=1, laboratory=Laboratory(name="Läb", location="there"),

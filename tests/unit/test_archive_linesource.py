@@ -5,19 +5,19 @@ import pytest
 from commandruns import run_once, shared_by_processes
 from scipy import stats
 
-from reduction.archive.linecurves import CURVES
-from reduction.archive.linesource import (
+from reduction.archive.open import open_archive
+from reduction.archive.surfaces_dataset import surfaces_of
+from reduction.cli.lookup import lines_of
+from reduction.experiments.designs import box_behnken
+from reduction.experiments.surface_points import evaluate_surfaces
+from reduction.lines.archive_source import (
+    CURVES,
     line_source_of_experiment,
     line_source_of_test,
     specimens_of,
 )
-from reduction.archive.open import open_archive
-from reduction.archive.surface_read import surfaces_of
-from reduction.cli.lookupsource import lines_of
-from reduction.errors import ArchiveError, DataError
-from reduction.lookup.line import look_up
-from reduction.surface.bands import evaluate_surfaces
-from reduction.surface.designs import box_behnken
+from reduction.lines.line_lookup import look_up
+from reduction.record.errors import ArchiveError, DataError
 
 pytestmark = pytest.mark.slow
 

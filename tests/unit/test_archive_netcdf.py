@@ -5,10 +5,10 @@ import pytest
 import xarray as xr
 from long_records import long_test
 
-from reduction.archive import netcdf
-from reduction.archive.dataset import to_dataset
-from reduction.archive.netcdf import write_netcdf
-from reduction.samples.scratch import ColumnWriter, empty_like, is_on_disk
+from reduction.archive import write as netcdf
+from reduction.archive.test_dataset import to_dataset
+from reduction.archive.write import write_netcdf
+from reduction.record.samples import ColumnWriter, empty_like, is_on_disk
 
 
 def opened(path):

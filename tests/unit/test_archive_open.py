@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from reduction.archive import open as module
+from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.open import failing_reads, open_archive, read_once, reading
-from reduction.archive.version import SCHEMA_VERSION
-from reduction.errors import ArchiveError
+from reduction.record.errors import ArchiveError
 
 
 def test_text_and_elapsed_time_come_back_decoded(rich_test, write):

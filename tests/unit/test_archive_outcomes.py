@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from archive_check import check_archive
 
+from reduction.archive.campaign_products import outcomes_of_dataset, outcomes_to_dataset
 from reduction.archive.open import open_archive
-from reduction.archive.outcomes import outcomes_of_dataset, outcomes_to_dataset
 from reduction.archive.write import write_archive
-from reduction.errors import ArchiveError
-from reduction.outcomes.product import Outcome
-from reduction.provenance import Origin, Source, Step
+from reduction.experiments.outcomes import Outcome
+from reduction.record.errors import ArchiveError
+from reduction.record.measurement import Origin, Source, Step
 
 COMPLIANCE = Path(__file__).parents[1] / "compliance.py"
 OUTCOMES = (

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.archive.pieces import pieces_of_test, source_of_tests, specimens_of
-from reduction.errors import DataError, SettingsError
-from reduction.lookup.compositerule import CompositeRule
-from reduction.lookup.source import compose, used_of
+from reduction.lines.archive_pieces import pieces_of_test, source_of_tests, specimens_of
+from reduction.lines.composite import compose, used_of
+from reduction.lines.curve_pieces import CompositeRule
+from reduction.record.errors import DataError, SettingsError
 
 BINS = np.array([0.5, 0.6, 0.7, 0.8])
 COEFFICIENTS = {

@@ -20,14 +20,14 @@ from predicted_hoses import (
     working_tension,
 )
 
+from reduction.archive.campaign_products import EVENTS
 from reduction.archive.open import open_archive
-from reduction.archive.prediction_schema import HOSE_STATES, PREDICTION_SCHEMA
-from reduction.archive.predictions import EVENTS
+from reduction.archive.schema import HOSE_STATES, PREDICTION_SCHEMA
 from reduction.archive.write import write_archive
-from reduction.errors import ArchiveError
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.product import HosePrediction
-from reduction.prediction import LayerResponse
+from reduction.prediction.cord_curve import CordCurve
+from reduction.prediction.hose_prediction import LayerResponse
+from reduction.prediction.hose_product import HosePrediction
+from reduction.record.errors import ArchiveError
 
 COMPLIANCE = Path(__file__).parents[1] / "compliance.py"
 SHORT_CORD = CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0]))

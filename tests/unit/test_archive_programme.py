@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from reduction.archive.dataset import to_dataset
-from reduction.archive.programme import rope_values
-from reduction.line.step import RopeStep
+from reduction.archive.test_dataset import to_dataset
+from reduction.archive.test_variables import rope_values
+from reduction.stages.line.rope_programme import RopeStep
 
 
 def test_a_refused_pair_keeps_its_levels_and_its_reason(rich_test):

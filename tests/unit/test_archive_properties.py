@@ -8,14 +8,13 @@ import pytest
 import xarray as xr
 
 from reduction.archive.open import open_archive
-from reduction.archive.properties import properties_to_dataset
-from reduction.archive.rope_steps import step_of_archive
+from reduction.archive.rope_properties import properties_to_dataset, step_of_archive
 from reduction.archive.write import write_archive
-from reduction.errors import ArchiveError
-from reduction.line.propertyproduct import ChangeInLength
-from reduction.provenance import Origin, Source, Step
-from reduction.strain.model import StrainModel
-from reduction.uncertainty.product import Component, InstrumentErrors
+from reduction.record.contributions import Component, InstrumentErrors
+from reduction.record.errors import ArchiveError
+from reduction.record.measurement import Origin, Source, Step
+from reduction.stages.line.change_in_length import ChangeInLength
+from reduction.stages.strain.strain_model import StrainModel
 
 ORIGIN = Origin(
     campaign_id="ropes",

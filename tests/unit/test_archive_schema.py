@@ -6,10 +6,12 @@ from dataclasses import fields
 import pytest
 
 from reduction.archive.schema import COEFFICIENTS, SCHEMA, schema_of
-from reduction.cycles.product import Loops
-from reduction.moduli.hyperelastic import PARAMETERS
-from reduction.moduli.product import AmplitudeSummary
-from reduction.strain import methods, splice, tensiondriven
+from reduction.stages.cycles.cycle_product import Loops
+from reduction.stages.moduli.elastomer_laws import PARAMETERS
+from reduction.stages.moduli.modulus_product import AmplitudeSummary
+from reduction.stages.strain import strain_model as methods
+from reduction.stages.strain import strain_model as splice
+from reduction.stages.strain import strain_model as tensiondriven
 
 PER_CYCLE = [item.name for item in fields(Loops) if item.name != "uncertainty"]
 OF_TEST = [item.name for item in fields(AmplitudeSummary) if item.name != "uncertainty"]

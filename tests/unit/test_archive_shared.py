@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.archive.shared import with_shared
-from reduction.errors import ArchiveError
-from reduction.uncertainty.product import Component, Contributions
+from reduction.archive.shared_errors import with_shared
+from reduction.record.contributions import Component, Contributions
+from reduction.record.errors import ArchiveError
 
 CELL, TAPE = Component("tension_gain", "cell"), Component("strain_calibration", "new", 2)
 

@@ -6,9 +6,9 @@ from dataclasses import asdict
 import pytest
 import xarray as xr
 
-from reduction.archive.statederrors import stated_errors_of
-from reduction.errors import ArchiveError
-from reduction.uncertainty.stated import StatedErrors
+from reduction.archive.shared_errors import stated_errors_of
+from reduction.record.contributions import StatedErrors
+from reduction.record.errors import ArchiveError
 
 
 def archive(uncertainty=None):

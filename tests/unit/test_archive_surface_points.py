@@ -8,21 +8,19 @@ import statsmodels.api as sm
 from experiments import ABOUT, FACTORS, HIGH, LOW, surface_experiment
 from scipy import stats
 
-from reduction.archive.budget import all_budgets
-from reduction.archive.linesource import line_source_of_experiment
-from reduction.archive.surface_points import point_values, ridge_values
-from reduction.archive.surfaces import surfaces_to_dataset
-from reduction.experiment import SharedSurfaces
-from reduction.lookup.line import look_up
-from reduction.report.experimentview import ExperimentView
-from reduction.report.surfaceuncertainty import expanded_of_coefficients, interval_of_surfaces
-from reduction.surface.bands import evaluate_surfaces
-from reduction.surface.canonical import canonical_analysis, ridge_path
-from reduction.surface.designs import box_behnken
-from reduction.surface.surfaces import fit_surfaces
-from reduction.surface.terms import model_matrix
-from reduction.uncertainty.product import Component, Contributions
-from reduction.vocabulary import RESPONSES
+from reduction.archive.surfaces_dataset import point_values, ridge_values, surfaces_to_dataset
+from reduction.archive.uncertainty_budget import all_budgets
+from reduction.experiments.designs import box_behnken, model_matrix
+from reduction.experiments.experiment import SharedSurfaces
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.stationary_point import canonical_analysis, ridge_path
+from reduction.experiments.surface_points import evaluate_surfaces
+from reduction.lines.archive_source import line_source_of_experiment
+from reduction.lines.line_lookup import look_up
+from reduction.quantities.names import RESPONSES
+from reduction.record.contributions import Component, Contributions
+from reduction.report.product_views import ExperimentView
+from reduction.report.surface_grid import expanded_of_coefficients, interval_of_surfaces
 
 SHARED = surface_experiment()
 # of scatter alone: nothing is known that the runs share

@@ -7,13 +7,12 @@ import pytest
 from experiments import ABOUT, FACTORS, HIGH, LOW, screening_experiment, surface_experiment
 
 from reduction.archive.open import open_archive
-from reduction.archive.surface_read import surface_names, surfaces_of
-from reduction.archive.surfaces import surfaces_to_dataset
+from reduction.archive.surfaces_dataset import surface_names, surfaces_of, surfaces_to_dataset
 from reduction.archive.write import write_archive
-from reduction.errors import ArchiveError
-from reduction.surface.bands import evaluate_surfaces
-from reduction.surface.surfaces import fit_surfaces
-from reduction.vocabulary import RESPONSES
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.surface_points import evaluate_surfaces
+from reduction.quantities.names import RESPONSES
+from reduction.record.errors import ArchiveError
 
 RESULTS = (
     surface_experiment(),

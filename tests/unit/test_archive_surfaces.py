@@ -10,11 +10,11 @@ from archive_check import check_archive
 from experiments import ABOUT, STRENGTH, screening_experiment, surface_experiment
 
 from reduction.archive.open import open_archive
-from reduction.archive.surface_schema import SURFACE_SCHEMA
-from reduction.archive.surfaces import surfaces_to_dataset
+from reduction.archive.schema import SURFACE_SCHEMA
+from reduction.archive.surfaces_dataset import surfaces_to_dataset
 from reduction.archive.write import write_archive
-from reduction.errors import ArchiveError
-from reduction.vocabulary import RESPONSES
+from reduction.quantities.names import RESPONSES
+from reduction.record.errors import ArchiveError
 
 ONE = surface_experiment()
 SHORT = surface_experiment("short", seed=4, names=RESPONSES[:1], missing=(3,))

@@ -11,9 +11,8 @@ import xarray as xr
 
 import reduction
 from reduction.archive import open as opening
-from reduction.archive.open import open_archive
-from reduction.archive.products import OF_CAMPAIGN
-from reduction.errors import ArchiveError, SettingsError
+from reduction.archive.open import OF_CAMPAIGN, open_archive
+from reduction.record.errors import ArchiveError, SettingsError
 
 needs_dask = pytest.mark.skipif(find_spec("dask") is None, reason="Dask is not installed")
 DESCRIPTORS = Path("/proc/self/fd")

@@ -3,9 +3,9 @@
 import pytest
 
 from reduction.archive.schema import SCHEMA, schema_of
-from reduction.archive.stepwise import STEPWISE
-from reduction.archive.variable import Variable
-from reduction.errors import ArchiveError
+from reduction.archive.test_variables import STEPWISE
+from reduction.archive.variables import Variable
+from reduction.record.errors import ArchiveError
 
 
 def test_a_name_that_the_vocabulary_lacks_is_refused():

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from reduction.archive.whole import remove_abandoned, take_away, whole_file
+from reduction.archive.atomic_write import remove_abandoned, take_away, whole_file
 from reduction.archive.write import write_whole
-from reduction.errors import ArchiveError
+from reduction.record.errors import ArchiveError
 
 
 def test_the_file_appears_when_the_block_ends_well(tmp_path):

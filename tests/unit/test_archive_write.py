@@ -9,14 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from reduction.archive.dataset import to_dataset
+from reduction.archive.test_dataset import to_dataset
 from reduction.archive.write import appended_whole, write_archive, write_whole
-from reduction.errors import ArchiveError
+from reduction.record.errors import ArchiveError
 
 AGAIN = """
 import pickle, sys
 from pathlib import Path
-from reduction.archive.dataset import to_dataset
+from reduction.archive.test_dataset import to_dataset
 from reduction.archive.write import write_archive
 test = pickle.loads(Path(sys.argv[1]).read_bytes())
 write_archive(to_dataset(test, version="1.2.3", command="reduction run"), Path(sys.argv[2]))

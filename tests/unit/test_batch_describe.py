@@ -7,15 +7,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.batch.describe import settings_json
+from reduction.batch.reuse import settings_json
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import TestPlan
-from reduction.pipeline.shared.pulls import PullOrigin
-from reduction.record import Specimen, SpliceMarks
-from reduction.settings import ReductionSettings
-from reduction.strain.model import StrainModel
-from reduction.uncertainty.product import InstrumentErrors
-from reduction.uncertainty.stated import StatedErrors
+from reduction.record.contributions import InstrumentErrors, StatedErrors
+from reduction.record.measurement import Specimen, SpliceMarks
+from reduction.record.settings import ReductionSettings
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.shared_contributions import PullOrigin
 
 TAPE = SpliceMarks(
     "new", ("P", "P"), ("slack", "min"), near_toe=np.array([0.6, 0.7]),

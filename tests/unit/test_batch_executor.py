@@ -16,10 +16,10 @@ from distributed import Client, KilledWorker, LocalCluster
 from distributed.comm import CommClosedError
 from workerdeeds import add_a_line, die_slowly, double, raise_data_error, say_and_wait, variables
 
-from reduction.batch import cluster, executor
-from reduction.batch.cluster import users_cluster
-from reduction.batch.executor import Task, Workers, local_workers, work_on
-from reduction.errors import DataError, LogError, SettingsError, WorkerError
+from reduction.batch import workers as cluster
+from reduction.batch import workers as executor
+from reduction.batch.workers import Task, Workers, local_workers, users_cluster, work_on
+from reduction.record.errors import DataError, LogError, SettingsError, WorkerError
 
 ROOT = Path(__file__).parents[2]
 
@@ -154,7 +154,7 @@ RUNS = """
 import sys
 from pathlib import Path
 from workerdeeds import say_and_wait
-from reduction.batch.executor import Task, local_workers, work_on
+from reduction.batch.workers import Task, local_workers, work_on
 if __name__ == "__main__":
     with local_workers(2) as two:
         tasks = [Task(name, (Path(sys.argv[1]),)) for name in "ab"]

@@ -2,7 +2,7 @@
 
 from manytests import write_many
 
-from reduction.batch.run import run_campaign
+from reduction.batch.run_campaign import run_campaign
 from reduction.campaign.load import load_campaign
 
 

@@ -5,12 +5,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.batch.history import history_of, history_remarks, past_of
 from reduction.batch.survey import Survey
+from reduction.batch.test_history import history_of, history_remarks, past_of
 from reduction.campaign.plan import TestPlan
-from reduction.errors import DataError
-from reduction.record import Specimen
-from reduction.settings import ReductionSettings
+from reduction.record.errors import DataError
+from reduction.record.measurement import Specimen
+from reduction.record.settings import ReductionSettings
 
 
 def survey(name, order, *, n_cycles=0, log="", place=0, error=None, specimens=("hose",), **told):

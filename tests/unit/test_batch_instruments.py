@@ -5,13 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.batch.instruments import instruments_of
 from reduction.batch.survey import Survey
+from reduction.batch.test_history import instruments_of
 from reduction.campaign.plan import TestPlan
-from reduction.record import Specimen, SpliceMarks
-from reduction.settings import ReductionSettings, StrainSettings
-from reduction.strain.fit import fit_strain_model
-from reduction.uncertainty.stated import StatedErrors
+from reduction.record.contributions import StatedErrors
+from reduction.record.measurement import Specimen, SpliceMarks
+from reduction.record.settings import ReductionSettings, StrainSettings
+from reduction.stages.strain.strain_fit import fit_strain_model
 
 # lengths of WHOI-2005-10, Table 3, new tether, in feet; the slack row of T-2 reads otherwise
 MARKS = SpliceMarks(

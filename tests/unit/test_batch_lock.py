@@ -9,17 +9,17 @@ from pathlib import Path
 
 import pytest
 
-from reduction.batch import lock as module
-from reduction.batch.lock import LOCK_NAME, RunLock, run_lock, run_named
-from reduction.errors import ArchiveError
+from reduction.batch import run_lock as module
+from reduction.batch.run_lock import LOCK_NAME, RunLock, run_lock, run_named
+from reduction.record.errors import ArchiveError
 
 ROOT = Path(__file__).parents[2]
 # takes the lock, makes a file that nobody else may have, and says who it was
 CONTENDER = """
 import sys, time
 from pathlib import Path
-from reduction.batch.lock import run_lock
-from reduction.errors import ArchiveError
+from reduction.batch.run_lock import run_lock
+from reduction.record.errors import ArchiveError
 folder = Path(sys.argv[1])
 try:
     with run_lock(folder):
@@ -33,7 +33,7 @@ except ArchiveError as error:
 DIES = """
 import os, sys
 from pathlib import Path
-from reduction.batch.lock import run_lock
+from reduction.batch.run_lock import run_lock
 with run_lock(Path(sys.argv[1])):
     (Path(sys.argv[1]) / ".T-1.nc.1.part").touch()
     print(os.getpid(), flush=True)

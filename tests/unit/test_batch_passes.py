@@ -5,18 +5,19 @@ from dataclasses import replace
 import pytest
 from manytests import write_many
 
-from reduction.batch import firstpass, secondpass
-from reduction.batch import pulls as pulls_module
-from reduction.batch.basis import Basis
-from reduction.batch.executor import Ended, local_workers
-from reduction.batch.firstpass import FirstPass, survey_campaign, with_record
-from reduction.batch.lock import RunLock, run_lock
-from reduction.batch.models import fit_strain_models
-from reduction.batch.progress import Silent
-from reduction.batch.pulls import fit_pulls
-from reduction.batch.secondpass import reduce_campaign
+from reduction.batch import reduce_tests as secondpass
+from reduction.batch import slow_pulls as pulls_module
+from reduction.batch import survey as firstpass
+from reduction.batch.campaign_status import Silent
+from reduction.batch.reduce_tests import reduce_campaign
+from reduction.batch.reuse import Basis
+from reduction.batch.run_lock import RunLock, run_lock
+from reduction.batch.slow_pulls import fit_pulls
+from reduction.batch.survey import FirstPass, survey_campaign, with_record
+from reduction.batch.test_history import fit_strain_models
+from reduction.batch.workers import Ended, local_workers
 from reduction.campaign.load import load_campaign
-from reduction.errors import ArchiveError, WorkerError
+from reduction.record.errors import ArchiveError, WorkerError
 
 
 @pytest.fixture(scope="module")

@@ -4,13 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from reduction.batch.planned import experiments_found, same_logs
-from reduction.batch.pulls import pull_tests
-from reduction.batch.status import TestStatus
+from reduction.batch.campaign_status import TestStatus
+from reduction.batch.experiment_product import experiments_found, same_logs
+from reduction.batch.slow_pulls import pull_tests
 from reduction.campaign.plan import Campaign, ExperimentPlan, TestPlan
-from reduction.record import Specimen
-from reduction.settings import ReductionSettings
-from reduction.surface.levels import FactorLevels
+from reduction.experiments.designs import FactorLevels
+from reduction.record.measurement import Specimen
+from reduction.record.settings import ReductionSettings
 
 MEAN = FactorLevels("mean_tension", 0.10, 0.30, "rated_break_strength")
 AMPLITUDE = FactorLevels("tension_amplitude", 0.05, 0.15, "rated_break_strength")

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from reduction.campaign.load import load_campaign
-from reduction.campaign.marks import read_marks
-from reduction.errors import DataError, LogError, SettingsError
+from reduction.campaign.specimens import read_marks
+from reduction.record.errors import DataError, LogError, SettingsError
 
 ROOT = Path(__file__).parents[2]
 BASE = """

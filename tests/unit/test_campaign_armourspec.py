@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from predicted_cases import ARMOUR, LEAST_ARMOUR, changed
 
-from reduction.campaign.armourspec import load_armour_case
-from reduction.errors import SettingsError
+from reduction.campaign.armour_spec import load_armour_case
+from reduction.record.errors import SettingsError
 
 
 @pytest.fixture

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from reduction.campaign.assemblyspec import load_assembly_case
-from reduction.errors import SettingsError
+from reduction.campaign.assembly_spec import load_assembly_case
+from reduction.record.errors import SettingsError
 
 LBF = 4.4482216152605
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.campaign.cells import read_cells
-from reduction.errors import LogError, SettingsError
+from reduction.campaign.csv_cells import read_cells
+from reduction.record.errors import LogError, SettingsError
 
 
 @pytest.fixture

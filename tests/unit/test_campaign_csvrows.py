@@ -2,8 +2,8 @@
 
 import pytest
 
-from reduction.campaign.csvrows import read_csv_rows
-from reduction.errors import LogError, SettingsError
+from reduction.campaign.toml_file import read_csv_rows
+from reduction.record.errors import LogError, SettingsError
 
 
 def in_settings(path, problem, *, row=None, **kwargs):

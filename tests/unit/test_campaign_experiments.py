@@ -4,13 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from reduction.campaign.experiments import agree_on_pulls, parse_factor, plan_experiment
+from reduction.campaign.experiment_plans import agree_on_pulls, parse_factor, plan_experiment
 from reduction.campaign.load import load_campaign
 from reduction.campaign.model import ExperimentSection
 from reduction.campaign.plan import StepPlan, TestPlan
-from reduction.errors import SettingsError
-from reduction.record import Specimen
-from reduction.settings import ReductionSettings
+from reduction.record.errors import SettingsError
+from reduction.record.measurement import Specimen
+from reduction.record.settings import ReductionSettings
 
 CAMPAIGN = Path(__file__).parents[2] / "raw" / "nylon-synthetic" / "campaign.toml"
 LOADS = {"mean_tension": ("12 %RBS", "30 %RBS"), "tension_amplitude": ("5 %RBS", "12 %RBS")}

@@ -3,11 +3,10 @@ import tomllib
 import numpy as np
 import pytest
 
-from reduction.campaign.comparisons import plan_comparison
-from reduction.campaign.hosemodel import ComparisonSection
-from reduction.campaign.hoses import load_hose
+from reduction.campaign.hose_plans import load_hose, plan_comparison
 from reduction.campaign.load import load_campaign
-from reduction.errors import SettingsError
+from reduction.campaign.model import ComparisonSection
+from reduction.record.errors import SettingsError
 
 INCH, POUND, PSI = 0.0254, 4.4482216152605, 6894.757293168
 SPEC = """

@@ -5,7 +5,7 @@ import hashlib
 import pytest
 
 from reduction.campaign.load import load_campaign
-from reduction.errors import LogError, SettingsError
+from reduction.record.errors import LogError, SettingsError
 
 ROWS = (
     "id,quantity,specimen,line,condition,value_lbf,peak_load_lbf\n"

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from reduction.archive.laboratory import Instrument, Item
-from reduction.campaign.reportspec import ReportSection, report_details
-from reduction.errors import SettingsError
+from reduction.archive.write import Instrument, Item
+from reduction.campaign.model import ReportSection, report_details
+from reduction.record.errors import SettingsError
 
 PATH = Path("campaign.toml")
 PSI = 6894.757293168361

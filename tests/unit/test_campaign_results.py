@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from reduction.campaign.results import read_results
-from reduction.errors import LogError
+from reduction.campaign.outcome_results import read_results
+from reduction.record.errors import LogError
 
 HEADER = "id,quantity,line,condition,exposure_years,value,unit,place,valid,run_out,note"
 

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.campaign.runtable import read_runs
-from reduction.campaign.spec import load_spec
-from reduction.errors import DataError, LogError, SettingsError
+from reduction.campaign.experiment_plans import load_spec, read_runs
+from reduction.record.errors import DataError, LogError, SettingsError
 
 LBF = 4.4482216152605
 FACTORS = """

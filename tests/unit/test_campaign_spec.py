@@ -2,8 +2,8 @@
 
 import pytest
 
-from reduction.campaign.spec import load_spec, response_unit
-from reduction.errors import SettingsError
+from reduction.campaign.experiment_plans import load_spec, response_unit
+from reduction.record.errors import SettingsError
 
 LBF = 4.4482216152605
 

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from reduction.campaign.uncertaintyspec import UncertaintySection, stated_errors
-from reduction.errors import SettingsError
-from reduction.record import Specimen
+from reduction.campaign.model import UncertaintySection, stated_errors
+from reduction.record.errors import SettingsError
+from reduction.record.measurement import Specimen
 
 PATH = Path("campaign.toml")
 LBF = 4.4482216152605

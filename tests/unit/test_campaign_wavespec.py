@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from predicted_cases import LEAST_WAVE, WAVE, changed
 
-from reduction.campaign.wavespec import load_wave_case
-from reduction.errors import SettingsError
+from reduction.campaign.wave_spec import load_wave_case
+from reduction.record.errors import SettingsError
 
 
 @pytest.fixture

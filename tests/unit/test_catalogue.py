@@ -12,18 +12,32 @@ import pyarrow.parquet
 import pytest
 import xarray as xr
 
+from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.open import open_archive
 from reduction.archive.schema import SCHEMA, schema_of
-from reduction.archive.version import SCHEMA_VERSION
-from reduction.catalogue import file
-from reduction.catalogue.columns import CONDITIONS, LEFT_OUT
-from reduction.catalogue.condition import condition_of
-from reduction.catalogue.file import FILE_NAME, campaigns_below, load_catalogue, shown_path
-from reduction.catalogue.query import Query, answer, needed_quantities, quantities_there
-from reduction.catalogue.read import entry_of, kept_cycles, rebuild, write_catalogue
-from reduction.catalogue.write import meaning_of, unit_of, write_answer
-from reduction.errors import ArchiveError, SettingsError
-from reduction.vocabulary import QUANTITIES
+from reduction.batch import catalogue as file
+from reduction.batch.catalogue import (
+    CONDITIONS,
+    FILE_NAME,
+    LEFT_OUT,
+    Query,
+    answer,
+    campaigns_below,
+    condition_of,
+    entry_of,
+    kept_cycles,
+    load_catalogue,
+    meaning_of,
+    needed_quantities,
+    quantities_there,
+    rebuild,
+    shown_path,
+    unit_of,
+    write_answer,
+    write_catalogue,
+)
+from reduction.quantities.names import QUANTITIES
+from reduction.record.errors import ArchiveError, SettingsError
 
 
 def made(folder):

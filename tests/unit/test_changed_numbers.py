@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from reduction.archive.changed_numbers import (
+from reduction.archive.product_differences import (
     Change,
     kind_of,
     pair_by_name,

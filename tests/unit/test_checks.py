@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.checks import as_finite, as_increasing, as_positive, as_same_shape, as_spread
-from reduction.errors import DataError, SettingsError
+from reduction.record.arrays import as_finite, as_increasing, as_positive, as_same_shape, as_spread
+from reduction.record.errors import DataError, SettingsError
 
 
 def test_finite_refuses_with_count_and_first_index():

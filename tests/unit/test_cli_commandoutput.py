@@ -6,9 +6,8 @@ import sys
 import pytest
 from rich.console import Console
 
-from reduction.cli import commandoutput as output_module
-from reduction.cli.commandoutput import CommandOutput
-from reduction.cli.numbers import table_of
+from reduction.cli import output as output_module
+from reduction.cli.output import CommandOutput, table_of
 
 CELLS = ["a long name of a line", "1.2345e+05", "-9.8765e-12", "1.5e+05 to 1.6e+05"]
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from reduction.cli.hydrodynamics import stated_hydrodynamics
-from reduction.errors import SettingsError
-from reduction.export.product import CYLINDER
+from reduction.cli.export import stated_hydrodynamics
+from reduction.lines.export_line import CYLINDER
+from reduction.record.errors import SettingsError
 
 
 def test_both_stand_in_place_of_the_assumed_cylinder():

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.cli.lookuppoints import Wanted, points_of
-from reduction.errors import DataError, SettingsError
-from reduction.lookup.product import LineCurve, LineSource
+from reduction.cli.lookup import Wanted, points_of
+from reduction.lines.lookup_product import LineCurve, LineSource
+from reduction.record.errors import DataError, SettingsError
 
 
 def curve(branch, low, high):

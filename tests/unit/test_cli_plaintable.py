@@ -2,7 +2,7 @@
 
 import pytest
 
-from reduction.cli.plaintable import NOTHING, plain_table
+from reduction.cli.output import NOTHING, plain_table
 
 
 def test_columns_stand_at_the_same_places_in_every_line():

@@ -6,8 +6,8 @@ import pytest
 from rich.console import Console
 from rich.progress import Progress
 
-from reduction.batch.status import TestStatus
-from reduction.cli.commandoutput import CommandOutput
+from reduction.batch.campaign_status import TestStatus
+from reduction.cli.output import CommandOutput
 from reduction.cli.progress import CampaignProgress, campaign_progress
 
 

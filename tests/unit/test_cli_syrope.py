@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from export_lines import constant, line
 
-from reduction.cli.syrope import with_syrope
-from reduction.errors import SettingsError
-from reduction.export.dynamics import Viscoelasticity
+from reduction.cli.export import with_syrope
+from reduction.lines.export_dynamics import Viscoelasticity
+from reduction.record.errors import SettingsError
 
 # 900 N at most: the fast spring has 2,000 N and 1 N more for each N of mean
 PART = Viscoelasticity(

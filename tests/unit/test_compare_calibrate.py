@@ -6,16 +6,19 @@ from measured_hoses import CORD_LOAD, CORD_STRAIN, Truth
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.stats import binom, chi2
 
-from reduction.compare import fitproblem
-from reduction.compare.calibrate import calibrate_hose
-from reduction.compare.fitproblem import parameter_bounds
-from reduction.compare.identifiability import CALIBRATED, identify_directions, plausible_error
-from reduction.compare.inputs import cord_curve_error
-from reduction.compare.measured import measured_curve
-from reduction.compare.residuals import autocorrelation_length
-from reduction.compare.shared import constant_errors
-from reduction.compare.trials import trial_tension
-from reduction.errors import DataError, FitError, SettingsError
+from reduction.prediction.comparison_error import autocorrelation_length
+from reduction.prediction.hose_comparison import (
+    CALIBRATED,
+    calibrate_hose,
+    cord_curve_error,
+    identify_directions,
+    parameter_bounds,
+    plausible_error,
+    trial_tension,
+)
+from reduction.prediction.hose_prediction import hose_comparison as fitproblem
+from reduction.prediction.measured_curve import constant_errors, measured_curve
+from reduction.record.errors import DataError, FitError, SettingsError
 
 TRUTH = Truth(dead_length_share=0.04)
 

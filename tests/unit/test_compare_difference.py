@@ -2,16 +2,15 @@ import numpy as np
 import pytest
 from measured_hoses import Truth
 
-from reduction.compare.difference import (
+from reduction.prediction.comparison_error import (
     cycle_differences,
     difference_of,
     energy_difference,
+    event_differences,
     strain_at_tension,
 )
-from reduction.compare.events import event_differences
-from reduction.compare.measured import measured_curve
-from reduction.compare.shared import constant_errors
-from reduction.errors import DataError
+from reduction.prediction.measured_curve import constant_errors, measured_curve
+from reduction.record.errors import DataError
 
 
 def cycled(tension_of, *, top=1.0, n_cycles=4, loop=0.0, drift=0.0, **options):

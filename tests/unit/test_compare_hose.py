@@ -2,11 +2,10 @@ import numpy as np
 import pytest
 from measured_hoses import Truth
 
-from reduction.compare.hose import compare_hose
-from reduction.compare.measured import measured_curve
-from reduction.compare.shared import constant_errors
-from reduction.errors import SettingsError
-from reduction.predict.events import find_events
+from reduction.prediction.hose_comparison import compare_hose
+from reduction.prediction.hose_tension import find_events
+from reduction.prediction.measured_curve import constant_errors, measured_curve
+from reduction.record.errors import SettingsError
 
 TRUTH = Truth()
 

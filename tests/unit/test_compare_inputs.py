@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from measured_hoses import Truth
 
-from reduction.compare.inputs import input_draws
+from reduction.prediction.hose_comparison import input_draws
 
 TRUTH = Truth()
 

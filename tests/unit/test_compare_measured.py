@@ -4,13 +4,18 @@ import numpy as np
 import pytest
 from measured_hoses import Truth
 
-from reduction.compare.cells import fill_cells, tension_at_centres
-from reduction.compare.measured import measured_curve
-from reduction.compare.measuredcurve import MeasuredCurve, Reading
-from reduction.compare.samples import select_samples
-from reduction.compare.scatter import branch_scatter, shared_scatter
-from reduction.compare.shared import constant_errors
-from reduction.errors import DataError, SettingsError
+from reduction.prediction.measured_curve import (
+    MeasuredCurve,
+    Reading,
+    branch_scatter,
+    constant_errors,
+    fill_cells,
+    measured_curve,
+    select_samples,
+    shared_scatter,
+    tension_at_centres,
+)
+from reduction.record.errors import DataError, SettingsError
 
 
 def strokes(n_cycles, n_samples, *, low=0.0, high=1.0):

@@ -2,9 +2,8 @@ import numpy as np
 import pytest
 from measured_hoses import Truth
 
-from reduction.compare.measured import measured_curve
-from reduction.compare.pickup import measured_pick_up
-from reduction.compare.shared import constant_errors
+from reduction.prediction.comparison_error import measured_pick_up
+from reduction.prediction.measured_curve import constant_errors, measured_curve
 
 
 def pulled(truth, top, *, noise=20.0, seed=0, **shared):

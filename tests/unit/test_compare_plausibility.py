@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from measured_hoses import Truth
 
-from reduction.compare.plausibility import plausibility_of_working_strain
-from reduction.errors import DataError
+from reduction.prediction.comparison_error import plausibility_of_working_strain
+from reduction.record.errors import DataError
 
 
 def test_the_two_reported_hoses_are_bands_and_no_targets():

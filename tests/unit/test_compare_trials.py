@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from measured_hoses import Truth
 
-from reduction.compare.trials import design_with, number_of
+from reduction.prediction.hose_comparison import design_with, number_of
 
 
 def test_a_layer_diameter_moves_both_layers():

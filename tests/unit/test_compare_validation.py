@@ -2,13 +2,16 @@ import numpy as np
 import pytest
 from measured_hoses import Truth
 
-from reduction.compare.inputs import input_draws
-from reduction.compare.measured import measured_curve
-from reduction.compare.shared import constant_errors
-from reduction.compare.validation import N_DRAWS, validate_curve
-from reduction.compare.verdict import probability_words, verdict_words
-from reduction.errors import DataError
-from reduction.predict.hose import predict_hose
+from reduction.prediction.comparison_error import (
+    N_DRAWS,
+    probability_words,
+    validate_curve,
+    verdict_words,
+)
+from reduction.prediction.hose_comparison import input_draws
+from reduction.prediction.hose_tension import predict_hose
+from reduction.prediction.measured_curve import constant_errors, measured_curve
+from reduction.record.errors import DataError
 
 STROKE = np.linspace(0, 1, 600)
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.cycles.counter import counted_cycles
-from reduction.errors import DataError
+from reduction.record.errors import DataError
+from reduction.stages.cycles.reversals import counted_cycles
 
 
 def test_branches_lie_between_the_extremes_of_the_counted_samples():

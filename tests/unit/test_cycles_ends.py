@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.cycles.ends import without_stands
+from reduction.stages.cycles.cycle_pairing import without_stands
 
 STROKES = [2.0, 4, 2, 4, 2]
 

@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 
-from reduction.cycles.find import find_cycles
-from reduction.cycles.label import label_phases
-from reduction.errors import DataError
-from reduction.phases.standstill import find_standstills
-from reduction.settings import CycleSettings, PhaseSettings
-from reduction.vocabulary import BRANCH_VALUES, PHASE_VALUES
+from reduction.quantities.names import BRANCH_VALUES, PHASE_VALUES
+from reduction.record.errors import DataError
+from reduction.record.settings import CycleSettings, PhaseSettings
+from reduction.stages.cycles.cycle_search import find_cycles, label_phases
+from reduction.stages.standstills import find_standstills
 
 LEAD = [(0, 3), (20, 3), (40, 4)]
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.cycles.jumps import drop_jumps
-from reduction.cycles.reversals import find_reversals
+from reduction.stages.cycles.reversals import drop_jumps, find_reversals
 
 
 def stroke(n_cycles=6, half=50):

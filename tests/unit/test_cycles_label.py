@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from reduction.cycles.label import label_phases
-from reduction.cycles.product import Cycles
-from reduction.errors import DataError
-from reduction.phases.standstill import Standstills
-from reduction.vocabulary import PHASE_VALUES
+from reduction.quantities.names import PHASE_VALUES
+from reduction.record.errors import DataError
+from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.cycles.cycle_search import label_phases
+from reduction.stages.standstills import Standstills
 
 
 def standing(first, last):

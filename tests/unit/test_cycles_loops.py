@@ -5,13 +5,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reduction.cycles.drift import mean_drift, part_means
-from reduction.cycles.energy import loop_energy, sums_over_cycles
-from reduction.cycles.harmonic import cycle_basis, fundamental
-from reduction.cycles.loops import close_loops
-from reduction.cycles.product import Cycles
-from reduction.cycles.readings import reading_noise
-from reduction.errors import DataError
+from reduction.record.errors import DataError
+from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.cycles.loop_energy import (
+    cycle_basis,
+    fundamental,
+    loop_energy,
+    mean_drift,
+    part_means,
+    reading_noise,
+    sums_over_cycles,
+)
+from reduction.stages.cycles.loops import close_loops
 
 STORAGE, LOSS, AMPLITUDE = 900.0, 100.0, 0.2
 

@@ -5,8 +5,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from reduction.cycles.reversals import find_reversals, first_pass, typical_range
-from reduction.errors import DataError
+from reduction.record.errors import DataError
+from reduction.stages.cycles.reversals import find_reversals, first_pass, typical_range
 
 
 def sequential(values, band):

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from reduction.cycles.slopes import slope_readings
-from reduction.errors import DataError
+from reduction.record.errors import DataError
+from reduction.stages.cycles.loops import slope_readings
 
 
 @pytest.mark.parametrize("degrees", [5.0, 8.0, 13.0])

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.cycles.trim import constant_rate_span, stroke_span
-from reduction.errors import SettingsError
+from reduction.record.errors import SettingsError
+from reduction.stages.cycles.cycle_search import constant_rate_span, stroke_span
 
 
 def soft_triangle(n_cycles, *, rate=10.0, half=5.0, speed=0.2, turn=0.5, noise=0.0):

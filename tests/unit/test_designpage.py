@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 from manytests import write_many
 
-from reduction.archive.campaignlines import lines_of_archive
 from reduction.archive.open import reading
-from reduction.batch import run as batch_run
+from reduction.batch import run_campaign as batch_run
 from reduction.campaign.load import load_campaign
-from reduction.cli.commandoutput import CommandOutput
-from reduction.cli.designvalues import refresh_design_page
-from reduction.designpage import campaigns as read
-from reduction.designpage import page as made
-from reduction.designpage.linedata import json_text, line_data
-from reduction.errors import ArchiveError
-from reduction.published.linesource import published_sources
+from reduction.cli.campaigns import refresh_design_page
+from reduction.cli.output import CommandOutput
+from reduction.lines.archive_source import lines_of_archive
+from reduction.lines.published_source import published_sources
+from reduction.pages import design_values as made
+from reduction.pages import design_values as read
+from reduction.pages.design_values import json_text, line_data
+from reduction.record.errors import ArchiveError
 
 DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
 
@@ -174,7 +174,9 @@ def test_what_has_no_room_is_told_and_not_read(processed, tmp_path, monkeypatch,
 
 
 def test_every_script_is_on_the_page_once():
-    there = {one.name for one in files("reduction.designpage").joinpath("static").iterdir()}
+    there = {
+        one.name for one in files("reduction.pages").joinpath("design_values_static").iterdir()
+    }
     assert sorted(made._SCRIPTS) == sorted(there - {"page.css"})
 
 

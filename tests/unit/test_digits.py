@@ -5,9 +5,9 @@ import re
 import numpy as np
 import pytest
 
-from reduction.cli.numbers import as_given, short, within
-from reduction.cli.thousands import grouped
-from reduction.digits import fixed_number, places_of, places_within, plain_number
+from reduction.cli.output import as_given, short, within
+from reduction.cli.usage import grouped
+from reduction.quantities.digits import fixed_number, places_of, places_within, plain_number
 
 RNG = np.random.default_rng(31)
 

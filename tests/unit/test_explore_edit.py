@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.explore.edit import edited, value_at
+from reduction.pages.explorer_campaign import edited, value_at
+from reduction.record.errors import SettingsError
 
 TEXT = '''# about the campaign
 [campaign]

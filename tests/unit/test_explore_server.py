@@ -11,9 +11,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.explore import server as server_module
-from reduction.explore.server import ExploreServer
+from reduction.pages import explorer_server as server_module
+from reduction.pages.explorer_server import ExploreServer
+from reduction.record.errors import DataError, SettingsError
 
 ROUTES = ("/api/campaign", "/api/change", "/api/save", "/api/reload")
 STATIC = ("/plotly.js", "/inflate.js", "/figures.js", "/explore.js", "/explore.css", "/page.css")

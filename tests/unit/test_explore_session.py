@@ -14,13 +14,17 @@ from documentedcampaign import copied, run
 
 from reduction.archive.open import open_archive
 from reduction.archive.write import write_archive
-from reduction.campaign.find import find_campaign
-from reduction.errors import ArchiveError, SettingsError
-from reduction.explore.document import campaign_document, change_document, save_document
-from reduction.explore.file import CampaignText
-from reduction.explore.keys import SETTINGS, setting_of, settings_of_kind
-from reduction.explore.session import Session
-from reduction.settings import ReductionSettings
+from reduction.campaign.load import find_campaign
+from reduction.pages.explorer_campaign import (
+    SETTINGS,
+    CampaignText,
+    Session,
+    setting_of,
+    settings_of_kind,
+)
+from reduction.pages.explorer_page import campaign_document, change_document, save_document
+from reduction.record.errors import ArchiveError, SettingsError
+from reduction.record.settings import ReductionSettings
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +63,7 @@ def test_an_archive_stands_while_nothing_is_changed(session):
 
 def test_numbers_that_are_shown_are_those_of_a_run_after_the_save(place, monkeypatch):
     for name in ("write_tables", "write_report"):  # what is made of archives takes long
-        monkeypatch.setattr(f"reduction.batch.run.{name}", lambda *given, **more: [])
+        monkeypatch.setattr(f"reduction.batch.run_campaign.{name}", lambda *given, **more: [])
     session = session_of(place)
     changes = {"cycles.trim_threshold": "0.9", "modulus.window": "6 %"}
     text = session.changed("T-1", changes)

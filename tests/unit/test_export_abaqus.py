@@ -5,8 +5,8 @@ import pytest
 from export_lines import line, rubber
 from export_readers import abaqus
 
-from reduction.errors import SettingsError
-from reduction.export.abaqus import abaqus_text
+from reduction.lines.deck_other_codes import abaqus_text
+from reduction.record.errors import SettingsError
 
 
 def test_nominal_stress_stands_first_and_the_origin_is_there():

@@ -2,8 +2,7 @@ import numpy as np
 import pytest
 from export_lines import constant, line
 
-from reduction.export.closeness import closeness_of
-from reduction.export.write import FORMATS, export_line
+from reduction.lines.deck_formats import FORMATS, closeness_of, export_line
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from export_lines import constant, growing, syrope
 
-from reduction.errors import SettingsError
+from reduction.record.errors import SettingsError
 
 
 def test_the_dashpot_of_a_mooring_code_gives_the_same_stiffness_at_every_frequency():

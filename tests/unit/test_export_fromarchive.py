@@ -3,10 +3,10 @@ import pytest
 import xarray as xr
 from predicted_hoses import dataset, predicted
 
-from reduction.archive.version import SCHEMA_VERSION
+from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.write import write_archive
-from reduction.errors import ArchiveError, DataError, SettingsError
-from reduction.export.fromarchive import line_from_archive
+from reduction.lines.export_sources import line_from_archive
+from reduction.record.errors import ArchiveError, DataError, SettingsError
 
 STRAIN = np.linspace(0.1, 1.0, 10)
 UP, DOWN = 500 * STRAIN, 500 * STRAIN - 40 * STRAIN * (1 - STRAIN)

@@ -1,10 +1,9 @@
 import numpy as np
 import pytest
 
-from reduction.export.fromcomposite import composite_table, line_from_composite, ranges_of
-from reduction.lookup.compositerule import CompositeRule
-from reduction.lookup.pieces import CurvePiece
-from reduction.lookup.source import PieceSource, compose
+from reduction.lines.composite import PieceSource, compose
+from reduction.lines.curve_pieces import CompositeRule, CurvePiece
+from reduction.lines.export_sources import composite_table, line_from_composite, ranges_of
 
 
 def piece(name, low, high, kind="cyclic"):

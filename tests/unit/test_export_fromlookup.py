@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from export_sources import LEVELS, source
 
-from reduction.errors import DataError, SettingsError
-from reduction.export.fromlookup import line_from_lookup
-from reduction.export.start import siblings_of
-from reduction.export.thin import curve_from_zero
-from reduction.lookup.product import LineCurve, LineSource
+from reduction.lines.export_line import curve_from_zero, siblings_of
+from reduction.lines.export_sources import line_from_lookup
+from reduction.lines.lookup_product import LineCurve, LineSource
+from reduction.record.errors import DataError, SettingsError
 
 
 def test_strain_over_tension_becomes_tension_over_strain():

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from export_lines import line
 
-from reduction.export.guards import guards_of, range_of
-from reduction.export.product import SEA_WATER
+from reduction.lines.export_line import SEA_WATER, guards_of, range_of
 
 
 def test_the_straight_start_is_said_not_to_be_measured():

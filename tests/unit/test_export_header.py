@@ -1,8 +1,8 @@
 import numpy as np
 from export_lines import line
 
-from reduction.export.header import header_lines, number, one_line, real_number
-from reduction.export.thin import thin_curve
+from reduction.lines.deck_moordyn import header_lines, number, one_line, real_number
+from reduction.lines.export_line import thin_curve
 
 
 def test_numbers_are_short_and_lose_nothing_that_was_measured():

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from export_sources import LEVELS, REST, SPRING, TIME, loop, source, surface
 
-from reduction.errors import DataError, SettingsError
-from reduction.export.fromlookup import line_from_lookup
-from reduction.export.linedynamics import line_dynamics
-from reduction.lookup.product import LineCurve
+from reduction.lines.export_dynamics import line_dynamics
+from reduction.lines.export_sources import line_from_lookup
+from reduction.lines.lookup_product import LineCurve
+from reduction.record.errors import DataError, SettingsError
 
 
 def measured(apparent, energy, **changed):

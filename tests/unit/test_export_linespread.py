@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from export_sources import LEVELS, REST, SPRING, TIME, loop, source, surface
 
-from reduction.export.linedynamics import line_dynamics
-from reduction.export.linespread import half_widths
-from reduction.line.identify import identify_by_amplitude
-from reduction.lookup.line import look_up
-from reduction.lookup.product import LineCurve
-from reduction.uncertainty.product import Component
+from reduction.lines.export_dynamics import half_widths, line_dynamics
+from reduction.lines.line_lookup import look_up
+from reduction.lines.lookup_product import LineCurve
+from reduction.record.contributions import Component
+from reduction.stages.line.line_model import identify_by_amplitude
 
 CELL, CLOCK = Component("tension_gain", "cell"), Component("lag", "clock")
 NAMES = ("quasi_static_spring_constant", "apparent_spring_constant", "hysteresis_energy")

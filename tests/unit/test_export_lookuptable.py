@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.errors import SettingsError
-from reduction.export.lookuptable import format_of_file, table_of_difference, table_of_values
-from reduction.export.write import export_table
-from reduction.lookup.against import compare_values
-from reduction.lookup.line import look_up
-from reduction.lookup.product import LineCurve, LineSource
-from reduction.published.linesource import published_sources
+from reduction.lines.deck_formats import export_table
+from reduction.lines.export_tables import format_of_file, table_of_difference, table_of_values
+from reduction.lines.line_lookup import look_up
+from reduction.lines.line_search import compare_values
+from reduction.lines.lookup_product import LineCurve, LineSource
+from reduction.lines.published_source import published_sources
+from reduction.record.errors import SettingsError
 
 LBF = 4.4482216152605
 NAME = "polyester-double-braid-0.5in"

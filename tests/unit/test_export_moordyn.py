@@ -4,8 +4,8 @@ import pytest
 from export_lines import constant, growing, line, syrope
 from export_readers import moordyn_sections, moordyn_table
 
-from reduction.errors import SettingsError
-from reduction.export.moordyn import moordyn_files
+from reduction.lines.deck_moordyn import moordyn_files
+from reduction.record.errors import SettingsError
 
 
 def row_of(files):

@@ -6,8 +6,8 @@ import yaml
 from export_lines import growing, line
 from export_readers import moordyn_sections, moorpy_table
 
-from reduction.errors import SettingsError
-from reduction.export.moorpy import moorpy_files
+from reduction.lines.deck_moordyn import moorpy_files
+from reduction.record.errors import SettingsError
 
 
 def test_the_name_of_the_table_stands_in_bars_and_the_table_ends_at_a_rule():

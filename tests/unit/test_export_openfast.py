@@ -1,8 +1,7 @@
 from export_lines import line, syrope
 from export_readers import moordyn_sections
 
-from reduction.export.moordyn import moordyn_files
-from reduction.export.openfast import openfast_files
+from reduction.lines.deck_moordyn import moordyn_files, openfast_files
 
 
 def test_the_row_is_that_of_moordyn_and_options_of_the_other_code_are_left_out():

@@ -6,8 +6,8 @@ import yaml
 from export_lines import line, rubber
 from export_readers import orcaflex
 
-from reduction.errors import SettingsError
-from reduction.export.orcaflex import orcaflex_text
+from reduction.lines.deck_other_codes import orcaflex_text
+from reduction.record.errors import SettingsError
 
 KEYS = {
     "Name", "Category", "OD", "ID", "MassPerUnitLength", "EIx", "EIy", "EA", "GJ", "PoissonRatio",

@@ -3,8 +3,8 @@ import math
 import pytest
 from export_lines import line
 
-from reduction.errors import SettingsError
-from reduction.export.product import SEA_WATER
+from reduction.lines.export_line import SEA_WATER
+from reduction.record.errors import SettingsError
 
 
 @pytest.mark.parametrize(

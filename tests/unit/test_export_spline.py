@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from export_lines import line, rubber
 
-from reduction.errors import DataError
-from reduction.export.spline import fit_smooth_curve
+from reduction.lines.deck_other_codes import fit_smooth_curve
+from reduction.record.errors import DataError
 
 
 def value(curve, strain):

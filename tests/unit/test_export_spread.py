@@ -9,18 +9,16 @@ import xarray as xr
 from export_lines import line
 from predicted_hoses import dataset, predicted
 
-from reduction.archive.version import SCHEMA_VERSION
+from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.write import write_archive
-from reduction.errors import DataError
-from reduction.export.fromarchive import line_from_archive
-from reduction.export.fromcomposite import composite_table, line_from_composite
-from reduction.export.spread import CurveSpread
-from reduction.export.table import curve_table
-from reduction.export.write import export_line
-from reduction.lookup.composite import composite_curve
-from reduction.lookup.pieces import CurvePiece
-from reduction.lookup.source import PieceSource
-from reduction.uncertainty.product import Component
+from reduction.lines.composite import PieceSource, composite_curve
+from reduction.lines.curve_pieces import CurvePiece
+from reduction.lines.deck_formats import export_line
+from reduction.lines.export_line import CurveSpread
+from reduction.lines.export_sources import composite_table, line_from_archive, line_from_composite
+from reduction.lines.export_tables import curve_table
+from reduction.record.contributions import Component
+from reduction.record.errors import DataError
 
 STRAIN = np.array([0.1, 0.2, 0.3])
 UP, DOWN = 500 * STRAIN, 480 * STRAIN

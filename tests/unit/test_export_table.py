@@ -7,14 +7,14 @@ import pytest
 import xarray as xr
 from export_lines import line
 
-from reduction.errors import ArchiveError, SettingsError
-from reduction.export.netcdftable import write_netcdf
-from reduction.export.table import (
+from reduction.lines.export_tables import (
     TableColumn,
     ValueTable,
     curve_table,
     table_text_of,
+    write_netcdf,
 )
+from reduction.record.errors import ArchiveError, SettingsError
 
 TABLE = ValueTable(
     "K_ap of 1/2 in line & more",

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.export.thin import LIFT, curve_from_zero, thin_curve
+from reduction.lines.export_line import LIFT, curve_from_zero, thin_curve
+from reduction.record.errors import DataError
 
 
 def test_chords_of_a_parabola_have_the_error_of_even_steps():

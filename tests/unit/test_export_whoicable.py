@@ -6,9 +6,9 @@ import pytest
 from export_lines import line, rubber
 from export_readers import CableExpression, cable_material, cable_pairs
 
-from reduction.errors import SettingsError
-from reduction.export.product import SEA_WATER
-from reduction.export.whoicable import whoicable_text
+from reduction.lines.deck_other_codes import whoicable_text
+from reduction.lines.export_line import SEA_WATER
+from reduction.record.errors import SettingsError
 
 
 def test_the_three_expressions_are_the_curve_and_its_derivatives():

@@ -1,8 +1,8 @@
 import pytest
 from export_lines import constant, line
 
-from reduction.errors import SettingsError
-from reduction.export.write import FORMATS, FORMS, export_line
+from reduction.lines.deck_formats import FORMATS, FORMS, export_line
+from reduction.record.errors import SettingsError
 
 
 @pytest.mark.parametrize("to", FORMATS)

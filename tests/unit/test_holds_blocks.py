@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.holds.blocks import logarithmic_blocks
+from reduction.record.errors import DataError
+from reduction.stages.holds.relaxation import logarithmic_blocks
 
 
 def test_blocks_keep_the_sum_of_the_series():

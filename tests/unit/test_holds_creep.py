@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.holds.creep import creep_rate, tension_variation
+from reduction.record.errors import DataError
+from reduction.stages.holds.relaxation import creep_rate, tension_variation
 
 TIME = np.arange(1.0, 2001.0)
 STRAIN = 1 + 0.03 * np.log10(TIME)

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, FitError
-from reduction.holds.blocks import logarithmic_blocks
-from reduction.holds.prony import fit_prony
-from reduction.holds.series import prony_tension
+from reduction.record.errors import DataError, FitError
+from reduction.stages.holds.prony_series import fit_prony, prony_tension
+from reduction.stages.holds.relaxation import logarithmic_blocks
 
 RAMP = 4.0
 TERMS = {

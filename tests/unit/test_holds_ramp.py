@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.holds.ramp import find_ramp
+from reduction.record.errors import DataError
+from reduction.stages.holds.hold_start import find_ramp
 
 
 def record(rate=0.2, stroke=1.0, power=1.0, rest=10.0, step=0.05):

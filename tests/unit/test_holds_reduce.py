@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.holds.reduce import reduce_holds
-from reduction.holds.series import prony_tension
-from reduction.phases.standstill import Standstills
-from reduction.settings import HoldSettings
+from reduction.record.errors import DataError
+from reduction.record.settings import HoldSettings
+from reduction.stages.holds.prony_series import prony_tension
+from reduction.stages.holds.reduce_holds import reduce_holds
+from reduction.stages.standstills import Standstills
 
 STEP = 0.1
 TERMS = {"tension": np.array([40.0, 35.0]), "relaxation_time": np.array([5.0, 60.0])}

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.holds.blocks import logarithmic_blocks
-from reduction.holds.relaxation import (
+from reduction.record.errors import DataError
+from reduction.stages.holds.relaxation import (
     end_mean,
+    logarithmic_blocks,
     rate_per_decade,
     relaxation_drop,
     value_at_times,

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.holds import select as selected
-from reduction.holds.ramp import find_ramp
-from reduction.holds.select import select_hold
-from reduction.phases.standstill import Standstills
+from reduction.stages.holds import reduce_holds as selected
+from reduction.stages.holds.hold_start import find_ramp
+from reduction.stages.holds.reduce_holds import select_hold
+from reduction.stages.standstills import Standstills
 
 TIME = np.arange(0.0, 100.0, 0.5)
 # 2 m/s up to 4 m, a hold to 40 s, on to 6 m, a hold to the end

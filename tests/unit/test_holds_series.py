@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.holds.series import exponentials, prony_tension, ramp_factor
+from reduction.record.errors import DataError
+from reduction.stages.holds.prony_series import exponentials, prony_tension, ramp_factor
 
 
 @pytest.mark.parametrize("ramp_duration", [0.5, 4.0, 40.0])

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.holds.ramp import Ramp
-from reduction.holds.support import Hold, hold_ends, reasons_against
-from reduction.settings import HoldSettings
+from reduction.record.errors import DataError
+from reduction.record.settings import HoldSettings
+from reduction.stages.holds.hold_start import Ramp
+from reduction.stages.holds.reduce_holds import Hold, hold_ends, reasons_against
 
 TIME = np.arange(0.0, 180.0, 0.1)
 RELAXING = 350 + 50 * np.exp(-TIME / 40)

@@ -1,8 +1,8 @@
 import pytest
 
-from reduction.errors import LogError
-from reduction.ingest.blocks import read_blocks
-from reduction.ingest.layout import Layout
+from reduction.readers.blocks import read_blocks
+from reduction.readers.layout import Layout
+from reduction.record.errors import LogError
 
 CHANNELS = {
     "time": {"column": "Time", "unit": "s"},

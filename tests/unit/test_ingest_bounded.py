@@ -13,18 +13,16 @@ import numpy as np
 import pytest
 from fuzzcases import CASES
 
-from reduction.batch.run import run_campaign
+from reduction.batch.run_campaign import run_campaign
 from reduction.campaign.load import load_campaign
-from reduction.errors import LogError
-from reduction.ingest import bounded as module
-from reduction.ingest import read
-from reduction.ingest.bounded import bounded
-from reduction.ingest.layout import Layout
-from reduction.ingest.limits import Watch
-from reduction.ingest.parts import Parts
-from reduction.ingest.read import read_log
-from reduction.samples.scratch import is_on_disk
-from reduction.settings import Limits
+from reduction.readers import bounded_reader as module
+from reduction.readers import read_log as read
+from reduction.readers.bounded_reader import bounded
+from reduction.readers.layout import Layout, Parts, Watch
+from reduction.readers.read_log import read_log
+from reduction.record.errors import LogError
+from reduction.record.samples import is_on_disk
+from reduction.record.settings import Limits
 
 SHORT = Limits(time=1.0)
 BROKE = "the library that reads this format broke at the file; found an end "
@@ -138,7 +136,7 @@ def test_columns_on_disk_are_taken_over(path, tmp_path):
 def test_the_process_ends_with_the_run_however_that_ends(path):
     code = (
         "import broken_readers as readers, sys, time; from pathlib import Path;"
-        "from reduction.ingest.bounded import bounded; from reduction.ingest.limits import Watch;"
+        "from reduction.readers.bounded_reader import bounded; from reduction.readers.layout import Watch;"
         "p = Path(sys.argv[1]); print(bounded(readers.whereabouts, p, watch=Watch(p))[1], flush=True);"
         "time.sleep(1000)"
     )

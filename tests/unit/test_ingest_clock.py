@@ -3,8 +3,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.errors import LogError
-from reduction.ingest.clock import clock_to_seconds
+from reduction.readers.columns import clock_to_seconds
+from reduction.record.errors import LogError
 
 LOG = Path("log.csv")
 

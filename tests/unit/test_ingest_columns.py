@@ -4,8 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.errors import LogError
-from reduction.ingest.columns import (
+from reduction.readers.columns import (
     Wanted,
     check_lengths,
     check_unit,
@@ -13,7 +12,8 @@ from reduction.ingest.columns import (
     wanted_columns,
     without_marks,
 )
-from reduction.ingest.layout import Layout
+from reduction.readers.layout import Layout
+from reduction.record.errors import LogError
 
 PATH = Path("log.h5")
 LOAD = Wanted("tension.1", "load", "kN", "force")

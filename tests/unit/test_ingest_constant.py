@@ -3,8 +3,8 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from reduction.ingest import constant
-from reduction.ingest.constant import (
+from reduction.readers import sample_flags as constant
+from reduction.readers.sample_flags import (
     constant_runs,
     find_saturated,
     find_stuck,

@@ -1,13 +1,12 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.ingest.convert import to_record
-from reduction.ingest.layout import Layout
-from reduction.ingest.rawlog import RawLog
-from reduction.provenance import Source
-from reduction.record import Quality
-from reduction.settings import QualitySettings
+from reduction.readers.layout import Layout
+from reduction.readers.raw_log import RawLog
+from reduction.readers.record_in_si import to_record
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Quality, Source
+from reduction.record.settings import QualitySettings
 
 FOOT, POUND = 0.3048, 4.4482216152605
 TIME = np.arange(0, 20, 0.1)

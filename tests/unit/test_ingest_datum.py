@@ -2,8 +2,8 @@
 
 import pytest
 
-from reduction.ingest.datum import length_at_slack
-from reduction.ingest.layout import Layout
+from reduction.readers.layout import Layout
+from reduction.readers.record_in_si import length_at_slack
 
 
 def layout(**channel):

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from reduction.errors import LogError
-from reduction.ingest.delimited import read_delimited
-from reduction.ingest.layout import Layout
-from reduction.ingest.read import read_log
+from reduction.readers.delimited import read_delimited
+from reduction.readers.layout import Layout
+from reduction.readers.read_log import read_log
+from reduction.record.errors import LogError
 
 CHANNELS = {
     "time": {"column": "t", "unit": "s"},
@@ -326,7 +326,7 @@ def test_a_file_of_bad_encoding_is_refused(read):
 def test_a_file_that_shrinks_while_it_is_parsed_is_refused(tmp_path, monkeypatch):
     path = tmp_path / "log.csv"
     path.write_text("t,x,F\n0,1,2\n1,2,3\n")
-    from reduction.ingest import delimited
+    from reduction.readers import delimited
 
     whole = delimited.read_fields
 

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from reduction.ingest.excursions import find_excursions, usual_step
-from reduction.ingest.quality import find_spikes, noise_of
+from reduction.readers.sample_flags import find_excursions, find_spikes, noise_of, usual_step
 
 TIME = np.arange(0, 200, 0.1)
 NOISE = np.random.default_rng(20051010).normal(0, 0.3, TIME.size)

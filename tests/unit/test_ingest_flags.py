@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.ingest.flags import flag_record
-from reduction.record import Quality, Record
-from reduction.settings import QualitySettings
+from reduction.readers.sample_flags import flag_record
+from reduction.record.errors import DataError
+from reduction.record.measurement import Quality, Record
+from reduction.record.settings import QualitySettings
 
 RANDOM = np.random.default_rng(20051010)
 TIME = np.arange(0, 200, 0.1)

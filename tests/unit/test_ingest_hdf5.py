@@ -2,9 +2,9 @@ import h5py
 import numpy as np
 import pytest
 
-from reduction.errors import LogError
-from reduction.ingest.hdf5 import read_hdf5
-from reduction.ingest.layout import Layout
+from reduction.readers.hdf5 import read_hdf5
+from reduction.readers.layout import Layout
+from reduction.record.errors import LogError
 
 
 def layout(**settings):

@@ -1,8 +1,8 @@
 import pytest
 from pydantic import ValidationError
 
-from reduction.errors import SettingsError
-from reduction.ingest.layout import Layout
+from reduction.readers.layout import Layout
+from reduction.record.errors import SettingsError
 
 
 def layout(*, channels=None, **settings):

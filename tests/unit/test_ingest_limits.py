@@ -9,15 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.campaign.limits import LimitsSection, stated_limits
 from reduction.campaign.load import load_campaign
-from reduction.errors import LogError, SettingsError
-from reduction.ingest.layout import Layout
-from reduction.ingest.limits import Watch
-from reduction.ingest.read import read_log
-from reduction.ingest.sniff import sniff_layout
-from reduction.ingest.source import hash_source
-from reduction.settings import Limits
+from reduction.campaign.model import LimitsSection, stated_limits
+from reduction.readers.layout import Layout, Watch
+from reduction.readers.raw_log import hash_source
+from reduction.readers.read_log import read_log
+from reduction.readers.sniff import sniff_layout
+from reduction.record.errors import LogError, SettingsError
+from reduction.record.settings import Limits
 
 _LAYOUT = Layout.model_validate(
     {

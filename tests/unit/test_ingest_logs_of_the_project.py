@@ -10,10 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.ingest.layout import Layout
-from reduction.ingest.read import read_log
-from reduction.ingest.record_of_test import read_record
-from reduction.settings import QualitySettings
+from reduction.readers.layout import Layout
+from reduction.readers.read_log import read_log, read_record
+from reduction.record.settings import QualitySettings
 
 RAW = Path(__file__).parents[2] / "raw"
 FOOT, POUND = 0.3048, 4.4482216152605

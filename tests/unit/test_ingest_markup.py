@@ -1,7 +1,7 @@
 import pytest
 
-from reduction.errors import LogError
-from reduction.ingest.markup import SoundMarkup
+from reduction.readers.spreadsheet import SoundMarkup
+from reduction.record.errors import LogError
 
 
 @pytest.fixture

@@ -6,9 +6,9 @@ import pytest
 import scipy.io
 from hostile_matlab import opaque_object
 
-from reduction.errors import LogError
-from reduction.ingest.layout import Layout
-from reduction.ingest.matlab import open_matlab, read_matlab
+from reduction.readers.layout import Layout
+from reduction.readers.matlab import open_matlab, read_matlab
+from reduction.record.errors import LogError
 
 TIME, LOAD = [0.0, 0.5, 1.0], [1.0, 2.0, 3.0]
 HEADER = b"MATLAB 7.3 MAT-file, Platform: GLNXA64"

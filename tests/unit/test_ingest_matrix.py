@@ -3,9 +3,9 @@ import json
 import numpy as np
 import pytest
 
-from reduction.errors import LogError
-from reduction.ingest.layout import Layout
-from reduction.ingest.matrix import read_json
+from reduction.readers.json_matrix import read_json
+from reduction.readers.layout import Layout
+from reduction.record.errors import LogError
 
 CHANNELS = {
     "time": {"column": 1, "unit": "s"},

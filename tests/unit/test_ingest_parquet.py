@@ -3,9 +3,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from reduction.errors import LogError
-from reduction.ingest.layout import Layout
-from reduction.ingest.parquet import read_parquet
+from reduction.readers.layout import Layout
+from reduction.readers.parquet import read_parquet
+from reduction.record.errors import LogError
 
 
 def layout(**settings):

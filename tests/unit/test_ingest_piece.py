@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.ingest import piece
-from reduction.ingest.layout import Layout
-from reduction.ingest.piece import to_piece
-from reduction.ingest.rawlog import RawLog
-from reduction.provenance import Source
-from reduction.samples import blocks
+from reduction.readers import record_in_si as piece
+from reduction.readers.layout import Layout
+from reduction.readers.raw_log import RawLog
+from reduction.readers.record_in_si import to_piece
+from reduction.record.errors import DataError
+from reduction.record.measurement import Source
+from reduction.record.measurement import samples as blocks
 
 LAYOUT = Layout(
     format="delimited",

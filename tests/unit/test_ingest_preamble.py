@@ -1,9 +1,8 @@
 import pytest
 
-from reduction.errors import LogError
-from reduction.ingest.columns import wanted_columns
-from reduction.ingest.layout import Layout
-from reduction.ingest.preamble import check_units, keep_line
+from reduction.readers.columns import check_units, keep_line, wanted_columns
+from reduction.readers.layout import Layout
+from reduction.record.errors import LogError
 
 COMMENTED = Layout(format="delimited", comment="#", channels={})
 SEMICOLONS = Layout(format="delimited", delimiter=";", channels={})

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from reduction.ingest.quality import (
+from reduction.readers.sample_flags import (
     account_rows,
     find_missing,
     find_outside_range,
@@ -9,7 +9,7 @@ from reduction.ingest.quality import (
     noise_of,
     time_faults,
 )
-from reduction.record import Quality, Record
+from reduction.record.measurement import Quality, Record
 
 RANDOM = np.random.default_rng(20051010)
 CLOCK = np.arange(0, 200, 0.1)

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 from measured_logs import LOGS, needs_measured_logs
 
-from reduction.errors import LogError
-from reduction.ingest.layout import Layout
-from reduction.ingest.read import read_log
-from reduction.ingest.record_of_test import read_record
-from reduction.record import Quality
-from reduction.settings import QualitySettings
+from reduction.readers.layout import Layout
+from reduction.readers.read_log import read_log, read_record
+from reduction.record.errors import LogError
+from reduction.record.measurement import Quality
+from reduction.record.settings import QualitySettings
 
 pytestmark = needs_measured_logs
 FOOT, POUND, INCH = 0.3048, 4.4482216152605, 0.0254

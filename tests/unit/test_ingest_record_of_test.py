@@ -3,10 +3,10 @@ import hashlib
 import numpy as np
 import pytest
 
-from reduction.errors import LogError, SettingsError
-from reduction.ingest.layout import Layout
-from reduction.ingest.record_of_test import read_record
-from reduction.settings import QualitySettings
+from reduction.readers.layout import Layout
+from reduction.readers.read_log import read_record
+from reduction.record.errors import LogError, SettingsError
+from reduction.record.settings import QualitySettings
 
 LAYOUT = Layout(
     format="delimited",

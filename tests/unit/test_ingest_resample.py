@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.ingest.resample import on_common_time
+from reduction.readers.record_in_si import on_common_time
+from reduction.record.errors import DataError
 
 FAST, SLOW = np.arange(0, 10, 0.01), np.arange(0, 10, 0.1)
 NAN = np.nan

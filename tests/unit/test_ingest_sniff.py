@@ -13,10 +13,10 @@ from measured_logs import LOGS, needs_measured_logs
 from nptdms import ChannelObject, TdmsWriter
 from pydantic import ValidationError
 
-from reduction.errors import LogError
-from reduction.ingest.layout import Layout
-from reduction.ingest.read import read_log
-from reduction.ingest.sniff import format_of, sniff_layout
+from reduction.readers.layout import Layout
+from reduction.readers.read_log import read_log
+from reduction.readers.sniff import format_of, sniff_layout
+from reduction.record.errors import LogError
 
 RAW = Path(__file__).parents[2] / "raw"
 

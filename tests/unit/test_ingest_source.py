@@ -4,10 +4,10 @@ import os
 
 import pytest
 
-from reduction.errors import ArchiveError, LogError, SettingsError
-from reduction.ingest import source
-from reduction.ingest.encoding import decode
-from reduction.ingest.source import hash_source, read_bytes, source_of, unchanged
+from reduction.readers import raw_log as source
+from reduction.readers.raw_log import hash_source, read_bytes, source_of, unchanged
+from reduction.readers.text_rows import decode
+from reduction.record.errors import ArchiveError, LogError, SettingsError
 
 
 @pytest.fixture

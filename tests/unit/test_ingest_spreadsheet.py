@@ -12,9 +12,9 @@ import python_calamine
 from measured_logs import LOGS, needs_measured_logs
 from workbook import SheetError, write_xlsx
 
-from reduction.errors import LogError
-from reduction.ingest.layout import Layout
-from reduction.ingest.spreadsheet import read_spreadsheet
+from reduction.readers.layout import Layout
+from reduction.readers.spreadsheet import read_spreadsheet
+from reduction.record.errors import LogError
 
 RAW = Path(__file__).parents[2] / "raw"
 TIME = {"column": "time", "unit": "s"}

@@ -1,6 +1,6 @@
 import numpy as np
 
-from reduction.ingest.stamps import bridge_stamps
+from reduction.readers.sample_flags import bridge_stamps
 
 
 def bridged(time):

@@ -7,8 +7,8 @@ import pytest
 from workbook import write_xlsx
 
 from reduction.campaign.load import load_campaign
-from reduction.errors import LogError, SettingsError
-from reduction.ingest.starter import starter_campaign
+from reduction.readers.starter_campaign import starter_campaign
+from reduction.record.errors import LogError, SettingsError
 
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"
 LOG = "time_s,crosshead_ft,load_new_lb,load_used_lb\n0,12,1,2\n1,13,2,3\n2,14,3,4\n"

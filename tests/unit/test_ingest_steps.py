@@ -1,11 +1,9 @@
 import numpy as np
 import pytest
 
-from reduction.ingest.flags import flag_record
-from reduction.ingest.quality import noise_of
-from reduction.ingest.steps import find_lone_steps
-from reduction.record import Record
-from reduction.settings import QualitySettings
+from reduction.readers.sample_flags import find_lone_steps, flag_record, noise_of
+from reduction.record.measurement import Record
+from reduction.record.settings import QualitySettings
 
 TIME = np.arange(0, 200, 0.1)
 WAVE = np.abs(TIME % 20 - 10)

@@ -3,12 +3,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.errors import LogError
-from reduction.ingest.checked import CheckedColumn
-from reduction.ingest.columns import Wanted
-from reduction.ingest.layout import Layout
-from reduction.ingest.parts import Parts
-from reduction.ingest.table import ColumnTable, matrix_table, read_columns, row_parts
+from reduction.readers.columns import (
+    CheckedColumn,
+    ColumnTable,
+    Wanted,
+    matrix_table,
+    read_columns,
+    row_parts,
+)
+from reduction.readers.layout import Layout, Parts
+from reduction.record.errors import LogError
 
 PATH = Path("log.h5")
 TIME = Wanted("time", "t", "s", "time")

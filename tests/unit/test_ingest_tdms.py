@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
 
-from reduction.errors import LogError
-from reduction.ingest.layout import Layout
-from reduction.ingest.tdms import read_tdms
+from reduction.readers.layout import Layout
+from reduction.readers.tdms import read_tdms
+from reduction.record.errors import LogError
 
 N = 5
 START = datetime(2020, 1, 1)  # noqa: DTZ001 - the writer takes naive times

@@ -3,12 +3,11 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, LogError
-from reduction.ingest.layout import Layout
-from reduction.ingest.parts import Parts
-from reduction.ingest.read import read_log
-from reduction.ingest.textparts import open_text
-from reduction.samples import scratch
+from reduction.readers.layout import Layout, Parts
+from reduction.readers.read_log import read_log
+from reduction.readers.text_rows import open_text
+from reduction.record.errors import DataError, LogError
+from reduction.record.measurement import samples as scratch
 
 CHANNELS = {
     "time": {"column": "t", "unit": "s"},
@@ -135,7 +134,7 @@ def test_a_line_of_more_than_a_million_bytes_is_refused(tmp_path, n_bytes, end):
 
 
 def test_a_file_that_grows_while_it_is_read_in_parts_is_refused(tmp_path, monkeypatch):
-    from reduction.ingest import delimited
+    from reduction.readers import delimited
 
     whole = delimited.read_fields
 
@@ -150,7 +149,7 @@ def test_a_file_that_grows_while_it_is_read_in_parts_is_refused(tmp_path, monkey
 
 
 def test_a_file_that_shrinks_is_told_before_the_row_that_it_cut_off(tmp_path, monkeypatch):
-    from reduction.ingest import delimited
+    from reduction.readers import delimited
 
     content = b"t,F\n" + b"0,1\n" * 60_000
     whole = delimited.read_fields

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.line.held import held_pairs
-from reduction.phases.standstill import Standstills
+from reduction.record.errors import DataError
+from reduction.stages.line.hold_pairs import held_pairs
+from reduction.stages.standstills import Standstills
 
 
 def stands(*intervals, tension, rest=()):

@@ -1,11 +1,16 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.line.identify import identify_by_amplitude, identify_by_fundamental
-from reduction.line.model import apparent_spring_constant, hysteresis_energy, storage_and_loss
-from reduction.line.product import REASONS
-from reduction.line.solve import reasons_in_words
+from reduction.record.errors import DataError
+from reduction.stages.line.line_model import (
+    apparent_spring_constant,
+    hysteresis_energy,
+    identify_by_amplitude,
+    identify_by_fundamental,
+    reasons_in_words,
+    storage_and_loss,
+)
+from reduction.stages.line.line_product import REASONS
 
 LOOP = {
     "apparent_spring_constant": 6.317e4,

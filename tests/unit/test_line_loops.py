@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from reduction.cycles.loops import close_loops
-from reduction.cycles.product import Cycles, Loops
-from reduction.errors import DataError
-from reduction.line.loops import identify_cycles, identify_run
-from reduction.line.model import apparent_spring_constant, storage_and_loss
+from reduction.record.errors import DataError
+from reduction.stages.cycles.cycle_product import Cycles, Loops
+from reduction.stages.cycles.loops import close_loops
+from reduction.stages.line.line_model import apparent_spring_constant, storage_and_loss
+from reduction.stages.line.line_of_loops import identify_cycles, identify_run
 
 REST, SPRING, TIME, FREQUENCY = 1.2e4, 1.8e4, 2.0, 0.3
 LINE = {

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.line.model import (
+from reduction.record.errors import DataError
+from reduction.stages.line.line_model import (
     apparent_spring_constant,
     dashpot_coefficient,
     hysteresis_energy,

@@ -1,13 +1,16 @@
 import numpy as np
 import pytest
 
-from reduction.cycles.product import Loops
-from reduction.errors import DataError, FitError, SettingsError
-from reduction.holds.product import HoldResult
-from reduction.line.failure import cycles_to_failure
-from reduction.line.programme import dynamic_stiffness, summarise_bedding_in
-from reduction.line.static import creep_of_hold, static_stiffness
-from reduction.line.strength import mean_of_rows, one_a_specimen
+from reduction.record.errors import DataError, FitError, SettingsError
+from reduction.stages.cycles.cycle_product import Loops
+from reduction.stages.holds.relaxation import HoldResult
+from reduction.stages.line.hold_pairs import creep_of_hold, static_stiffness
+from reduction.stages.line.line_product import mean_of_rows, one_a_specimen
+from reduction.stages.line.rope_programme import (
+    cycles_to_failure,
+    dynamic_stiffness,
+    summarise_bedding_in,
+)
 
 
 def loops_with(shape, *, u=0.0, **given):

@@ -6,9 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.line.properties import change_in_length
-from reduction.line.propertyproduct import (
+from reduction.record.errors import SettingsError
+from reduction.stages.line.change_in_length import (
     PROPERTY_NAMES,
     BeddingCycles,
     CyclicLevel,
@@ -17,6 +16,7 @@ from reduction.line.propertyproduct import (
     PairOfHolds,
     StepNumber,
     StepOfProgramme,
+    change_in_length,
 )
 
 CYCLES = BeddingCycles(

@@ -3,14 +3,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reduction.cycles.product import Loops
-from reduction.errors import DataError, FitError
-from reduction.line.cubic import positive_range, printed_form, slope_of_cubic
-from reduction.line.loading import find_loading, greatest_fall
-from reduction.line.pull import fit_pull
-from reduction.line.quasistatic import (
+from reduction.record.errors import DataError, FitError
+from reduction.stages.cycles.cycle_product import Loops
+from reduction.stages.line.slow_pull import (
+    find_loading,
+    fit_pull,
+    greatest_fall,
+    positive_range,
+    printed_form,
     quasi_static_of_run,
     quasi_static_spring_constant,
+    slope_of_cubic,
     spring_constant_ratio,
     strain_at_break_share,
     strain_at_tension,

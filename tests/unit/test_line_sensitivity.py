@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.line.sensitivity import (
+from reduction.record.errors import DataError
+from reduction.stages.line.line_model import (
     AMPLITUDE_INPUTS,
     FUNDAMENTAL_INPUTS,
     OUTPUTS,

@@ -2,10 +2,14 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.errors import DataError, SettingsError
-from reduction.line.identify import identify_by_fundamental
-from reduction.line.model import storage_and_loss
-from reduction.line.single import VERDICTS, check_single_time, power_of_frequency
+from reduction.record.errors import DataError, SettingsError
+from reduction.stages.line.line_model import (
+    VERDICTS,
+    check_single_time,
+    identify_by_fundamental,
+    power_of_frequency,
+    storage_and_loss,
+)
 
 FREQUENCY = np.array([0.1, 0.1, 0.3, 0.3, 0.5, 0.5])
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.errors import DataError, SettingsError
-from reduction.lookup.against import compare_values
-from reduction.lookup.line import look_up
-from reduction.lookup.product import LineCurve, LineSource
-from reduction.published.linesource import published_sources
-from reduction.uncertainty.product import Component
+from reduction.lines.line_lookup import look_up
+from reduction.lines.line_search import compare_values
+from reduction.lines.lookup_product import LineCurve, LineSource
+from reduction.lines.published_source import published_sources
+from reduction.record.contributions import Component
+from reduction.record.errors import DataError, SettingsError
 
 LBF = 4.4482216152605
 BRAID, PLAIT = "double-braid-0.5in", "8-strand-plaited-0.5in"

@@ -2,10 +2,9 @@ import numpy as np
 import pytest
 from assemblies import RUBBER, curve_of, spring
 
-from reduction.errors import DataError, SettingsError
-from reduction.lookup.assembly import assemble
-from reduction.lookup.tethers import SeriesPart, Tether, equal_tethers, unequal_tethers
-from reduction.strain.model import StrainModel
+from reduction.lines.assembly import SeriesPart, Tether, assemble, equal_tethers, unequal_tethers
+from reduction.record.errors import DataError, SettingsError
+from reduction.stages.strain.strain_model import StrainModel
 
 
 def test_springs_side_by_side_and_in_line_follow_hooke():

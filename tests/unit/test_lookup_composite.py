@@ -1,10 +1,9 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.lookup.composite import composite_curve
-from reduction.lookup.compositerule import CompositeRule
-from reduction.lookup.pieces import CurvePiece
+from reduction.lines.composite import composite_curve
+from reduction.lines.curve_pieces import CompositeRule, CurvePiece
+from reduction.record.errors import DataError, SettingsError
 
 
 def law(strain):

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from assemblies import DRIVEN
 
-from reduction.lookup.assembly import assemble
-from reduction.lookup.composite import composite_curve
-from reduction.lookup.pieces import CurvePiece
-from reduction.lookup.tethers import SeriesPart, Tether, equal_tethers
-from reduction.strain.model import StrainModel
-from reduction.uncertainty.product import Component
+from reduction.lines.assembly import SeriesPart, Tether, assemble, equal_tethers
+from reduction.lines.composite import composite_curve
+from reduction.lines.curve_pieces import CurvePiece
+from reduction.record.contributions import Component
+from reduction.stages.strain.strain_model import StrainModel
 
 CELL, OTHER = Component("tension_gain", "A"), Component("tension_gain", "B")
 ZERO = Component("tension_offset", "A")

@@ -3,14 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.lookup.line import look_up
-from reduction.lookup.linesurface import LineSurface
-from reduction.lookup.loads import cycle_loads
-from reduction.lookup.product import LineCurve, LineSource
-from reduction.lookup.surface import evaluate_surface, sigma_from_r2
-from reduction.surface.designs import box_behnken
-from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.lines.line_lookup import cycle_loads, evaluate_surface, look_up, sigma_from_r2
+from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
+from reduction.record.errors import DataError, SettingsError
 
 LOW, HIGH = np.array([0.1, 100.0, 50.0]), np.array([0.5, 300.0, 150.0])
 B = np.array([1e4, 100.0, -200.0, 50.0, 300.0, 2000.0, -400.0, 20.0, -10.0, 60.0])

@@ -5,12 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.lookup.line import look_up
-from reduction.lookup.linesurface import LineSurface
-from reduction.lookup.loads import loads_of_line
-from reduction.lookup.product import LineCurve, LineSource
-from reduction.published.linesource import published_sources
+from reduction.lines.line_lookup import loads_of_line, look_up
+from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
+from reduction.lines.published_source import published_sources
+from reduction.record.errors import DataError
 
 LBF = 4.4482216152605
 POINTS = np.array([0.2, 1.0, 2.0])

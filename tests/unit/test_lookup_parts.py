@@ -6,16 +6,13 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.errors import DataError
-from reduction.lookup.against import compare_values
-from reduction.lookup.line import look_up
-from reduction.lookup.linesurface import LineSurface
-from reduction.lookup.parts import own_half_width, shared_half_width, shared_of
-from reduction.lookup.product import LineSource
-from reduction.lookup.surface import evaluate_surface
-from reduction.surface.designs import box_behnken
-from reduction.surface.terms import model_matrix, quadratic_exponents
-from reduction.uncertainty.product import Component
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.lines.line_curve import own_half_width, shared_half_width, shared_of
+from reduction.lines.line_lookup import evaluate_surface, look_up
+from reduction.lines.line_search import compare_values
+from reduction.lines.lookup_product import LineSource, LineSurface
+from reduction.record.contributions import Component
+from reduction.record.errors import DataError
 
 EXPONENTS = quadratic_exponents(3)
 DESIGN = model_matrix(box_behnken(3).coded, EXPONENTS)

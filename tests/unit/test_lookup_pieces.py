@@ -4,14 +4,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.lookup.composite import composite_curve
-from reduction.lookup.pieces import CurvePiece, pieces_of_branches
-from reduction.lookup.staticpiece import piece_of_steps
-from reduction.moduli.stepwise import reduce_stepwise
-from reduction.record import StepReadings
-from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
-from reduction.uncertainty.weights import stepwise_contributions
+from reduction.lines.composite import composite_curve
+from reduction.lines.curve_pieces import CurvePiece, piece_of_steps, pieces_of_branches
+from reduction.record.contributions import Component, Contributions, InstrumentErrors
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import StepReadings
+from reduction.stages.moduli.stepwise_test import reduce_stepwise
+from reduction.uncertainty.propagation import stepwise_contributions
 
 TABLE_4 = Path(__file__).parents[1] / "golden" / "whoi_2005_10_table_4.csv"
 INCH, LBF = 0.0254, 4.4482216152605

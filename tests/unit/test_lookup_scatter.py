@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.lookup.line import look_up
-from reduction.lookup.scatter import interval_between_lines
-from reduction.published.linesource import published_sources
+from reduction.lines.line_curve import interval_between_lines
+from reduction.lines.line_lookup import look_up
+from reduction.lines.published_source import published_sources
+from reduction.record.errors import DataError
 
 LBF = 4.4482216152605
 K_AP = "apparent_spring_constant"

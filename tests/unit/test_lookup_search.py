@@ -2,10 +2,10 @@
 
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.lookup.product import LineSource
-from reduction.lookup.search import find_lines
-from reduction.published.linesource import published_sources
+from reduction.lines.line_search import find_lines
+from reduction.lines.lookup_product import LineSource
+from reduction.lines.published_source import published_sources
+from reduction.record.errors import SettingsError
 
 INCH = 0.0254
 NAN = float("nan")

@@ -1,10 +1,9 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.lookup.splices import StatedSplices, deployed_model, stated_model
-from reduction.strain.inverse import position_by_model
-from reduction.strain.model import StrainModel
+from reduction.lines.assembly import StatedSplices, deployed_model, stated_model
+from reduction.record.errors import DataError, SettingsError
+from reduction.stages.strain.strain_model import StrainModel, position_by_model
 
 
 def length(splices, strain, tension, free=10.0):

@@ -3,10 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.lookup.pieces import CurvePiece
-from reduction.lookup.staticpiece import mean_piece, piece_of_pull
-from reduction.uncertainty.product import Component, Contributions
+from reduction.lines.curve_pieces import CurvePiece, mean_piece, piece_of_pull
+from reduction.record.contributions import Component, Contributions
+from reduction.record.errors import DataError
 
 
 def branch(way, low, high, slope, spread=3.0):

@@ -2,10 +2,15 @@ import numpy as np
 import pytest
 from assemblies import RUBBER, spring
 
-from reduction.errors import DataError, SettingsError
-from reduction.lookup.assembly import assemble
-from reduction.lookup.tethers import SeriesPart, equal_tethers, unequal_tethers
-from reduction.lookup.working import working_point, worst_sharing
+from reduction.lines.assembly import (
+    SeriesPart,
+    assemble,
+    equal_tethers,
+    unequal_tethers,
+    working_point,
+    worst_sharing,
+)
+from reduction.record.errors import DataError, SettingsError
 
 
 def test_springs_have_the_stiffness_of_hooke_at_every_amplitude():

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.cycles.product import Loops
-from reduction.errors import DataError
-from reduction.moduli.amplitude import summarise_amplitude
+from reduction.record.errors import DataError
+from reduction.stages.cycles.cycle_product import Loops
+from reduction.stages.moduli.secant_modulus import summarise_amplitude
 
 AREA = np.array([5e-4, 4e-4])
 

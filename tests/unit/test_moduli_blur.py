@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.blur import window_blur
-from reduction.moduli.grid import StrainGrid
-from reduction.moduli.moments import accumulate_moments, fit_windows
+from reduction.record.errors import DataError
+from reduction.stages.moduli.local_regression import accumulate_moments, fit_windows
+from reduction.stages.moduli.tangent_window import StrainGrid, window_blur
 
 
 def slopes_of(strain, tension, half_window, n_curves=1):

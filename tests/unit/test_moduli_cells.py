@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reduction.moduli.cells import sums_by_cell
+from reduction.stages.moduli.local_regression import sums_by_cell
 
 
 def test_sums_are_those_of_bincount_to_the_last_bit() -> None:

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.compare import compare_curves, compare_cycles
-from reduction.moduli.product import ModulusCurves
+from reduction.record.errors import DataError
+from reduction.stages.moduli.modulus_product import ModulusCurves
+from reduction.stages.moduli.secant_modulus import compare_curves, compare_cycles
 
 NAMES = {"numerator_name": "new", "denominator_name": "used"}
 FIRST = {"numerator_specimen": 0, "denominator_specimen": 0}

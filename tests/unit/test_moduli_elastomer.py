@@ -3,9 +3,15 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.elastomer import even_grid, fit_elastomers, is_stable, mooney_plot
-from reduction.moduli.hyperelastic import LAWS, hyperelastic_stress
+from reduction.record.errors import DataError
+from reduction.stages.moduli.elastomer_laws import (
+    LAWS,
+    even_grid,
+    fit_elastomers,
+    hyperelastic_stress,
+    is_stable,
+    mooney_plot,
+)
 
 STRAIN = np.linspace(0.005, 2.75, 1500)
 EXAMPLE = {

@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.ends import end_moduli
+from reduction.record.errors import DataError
+from reduction.stages.moduli.secant_modulus import end_moduli
 
 AREA = np.array([5e-4, 4e-4])
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.first_loading import first_loading_curves
-from reduction.phases.standstill import Standstills
-from reduction.settings import ModulusSettings
+from reduction.record.errors import DataError
+from reduction.record.settings import ModulusSettings
+from reduction.stages.moduli.first_loading import first_loading_curves
+from reduction.stages.standstills import Standstills
 
 AREA = 5e-4
 SETTINGS = ModulusSettings()

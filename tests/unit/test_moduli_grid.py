@@ -5,9 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.moduli.grid import round_number, strain_grid
-from reduction.settings import ModulusSettings
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.settings import ModulusSettings
+from reduction.stages.moduli.tangent_window import round_number, strain_grid
 
 AUTOMATIC = ModulusSettings()
 

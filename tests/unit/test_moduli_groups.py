@@ -5,8 +5,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.groups import CycleGroups, select_cycles
+from reduction.record.errors import DataError
+from reduction.stages.moduli.local_regression import CycleGroups, select_cycles
 
 
 def test_a_cycle_is_a_group_where_none_are_pooled():

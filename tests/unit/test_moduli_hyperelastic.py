@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.hyperelastic import (
+from reduction.record.errors import DataError
+from reduction.stages.moduli.elastomer_laws import (
     LAWS,
     hyperelastic_stress,
     ogden_columns,

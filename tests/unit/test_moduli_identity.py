@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from reduction.moduli import identity
-from reduction.moduli.identity import check_identity
+from reduction.stages.moduli import loop_balance as identity
+from reduction.stages.moduli.loop_balance import check_identity
 
 AREA = 5e-4
 

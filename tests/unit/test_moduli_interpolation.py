@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.interpolation import curve_at
+from reduction.record.errors import DataError
+from reduction.stages.moduli.local_regression import curve_at
 
 
 def test_curve_is_not_carried_over_a_gap_or_its_ends():

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from reduction.errors import DataError
-from reduction.moduli.grid import StrainGrid
-from reduction.moduli.moments import accumulate_moments, fit_windows
+from reduction.record.errors import DataError
+from reduction.stages.moduli.local_regression import accumulate_moments, fit_windows
+from reduction.stages.moduli.tangent_window import StrainGrid
 
 GRID = StrainGrid(low=1.0, width=0.02, n_bins=25, half_window=3)
 

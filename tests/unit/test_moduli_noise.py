@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.noise import sample_noise
+from reduction.record.errors import DataError
+from reduction.stages.moduli.splice_slip import sample_noise
 
 
 def test_noise_of_a_white_series_is_its_standard_deviation():

@@ -8,8 +8,8 @@ from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reduction.errors import DataError
-from reduction.moduli.piecewise import fit_piecewise_lines
+from reduction.record.errors import DataError
+from reduction.stages.moduli.segments import fit_piecewise_lines
 
 X = 0.8 + 0.01 * np.arange(45)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.moduli.running import RunningStatistics
+from reduction.stages.moduli.local_regression import RunningStatistics
 
 
 def test_blocks_merge_to_the_statistics_of_the_whole():

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.secant import chord_modulus, secant_modulus
+from reduction.record.errors import DataError
+from reduction.stages.moduli.secant_modulus import chord_modulus, secant_modulus
 
 
 def test_secant_of_a_straight_line_is_its_slope():

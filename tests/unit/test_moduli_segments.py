@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.product import ModulusCurves
-from reduction.moduli.segments import find_segments
-from reduction.settings import ModulusSettings
+from reduction.record.errors import DataError
+from reduction.record.settings import ModulusSettings
+from reduction.stages.moduli.modulus_product import ModulusCurves
+from reduction.stages.moduli.segments import find_segments
 
 AREA = 5e-4
 X = 0.8 + 0.01 * np.arange(45)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import curve_fit, least_squares
 
-from reduction.errors import DataError, FitError
-from reduction.moduli.separable import fit_separable, lag_one_inflation
+from reduction.record.errors import DataError, FitError
+from reduction.stages.moduli.least_squares import fit_separable, lag_one_inflation
 
 X = np.linspace(0, 10, 80)
 

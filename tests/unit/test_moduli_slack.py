@@ -3,8 +3,12 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.slack import slack_crossings, slack_position, slack_strain_at_unloading
+from reduction.record.errors import DataError
+from reduction.stages.moduli.slack_length import (
+    slack_crossings,
+    slack_position,
+    slack_strain_at_unloading,
+)
 
 UP, DOWN = np.linspace(0, 2, 401), np.linspace(2, 0, 401)
 POSITION = np.concatenate([UP, DOWN])

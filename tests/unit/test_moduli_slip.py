@@ -5,11 +5,11 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from reduction.cycles.product import Loops
-from reduction.errors import DataError
-from reduction.moduli.slip import find_slips
-from reduction.moduli.tensionlevel import cycle_tension_level
-from reduction.settings import SlipSettings
+from reduction.record.errors import DataError
+from reduction.record.settings import SlipSettings
+from reduction.stages.cycles.cycle_product import Loops
+from reduction.stages.moduli.loop_balance import cycle_tension_level
+from reduction.stages.moduli.splice_slip import find_slips
 
 SLOPE = 200.0  # N/m
 

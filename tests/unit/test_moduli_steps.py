@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from reduction.errors import DataError
-from reduction.moduli.steps import find_steps
-from reduction.moduli.stepscan import ramp_of
+from reduction.record.errors import DataError
+from reduction.stages.moduli.splice_slip import find_steps, ramp_of
 
 NOISE = 0.3
 

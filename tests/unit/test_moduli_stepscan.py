@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.moduli import stepscan
-from reduction.moduli.stepscan import (
+from reduction.stages.moduli import splice_slip as stepscan
+from reduction.stages.moduli.splice_slip import (
     fit_kinks,
     fit_ramps,
     ramp_of,

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.moduli.stepscan import ramp_of
-from reduction.moduli.stepsize import Step, step_sizes
+from reduction.stages.moduli.splice_slip import Step, ramp_of, step_sizes
 
 
 def test_the_size_of_a_step_in_another_series_is_free_of_its_neighbours():

@@ -1,11 +1,11 @@
-"""Unit tests of reduction.moduli.stepwise; the numbers of a real test are in tests/golden."""
+"""Unit tests of reduction.stages.moduli.stepwise_test; the numbers of a real test are in tests/golden."""
 
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.stepwise import reduce_stepwise
-from reduction.record import StepReadings
+from reduction.record.errors import DataError
+from reduction.record.measurement import StepReadings
+from reduction.stages.moduli.stepwise_test import reduce_stepwise
 
 AREA, GAUGE, MODULUS = 5e-4, 0.15, 8e5
 WEIGHTS = np.array([100.0, 200.0, 300.0, 400.0, 300.0, 200.0])

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.stress_at import stress_at_strain
+from reduction.record.errors import DataError
+from reduction.stages.moduli.first_loading import stress_at_strain
 
 X = np.linspace(0, 1.5, 301)
 

@@ -5,11 +5,12 @@ import dataclasses
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli import groups, specimencurves
-from reduction.moduli.grid import strain_grid
-from reduction.moduli.tangent import tangent_curves
-from reduction.settings import ModulusSettings
+from reduction.record.errors import DataError
+from reduction.record.settings import ModulusSettings
+from reduction.stages.moduli import local_regression as groups
+from reduction.stages.moduli import tangent_modulus as specimencurves
+from reduction.stages.moduli.tangent_modulus import tangent_curves
+from reduction.stages.moduli.tangent_window import strain_grid
 
 AREA = 5e-4
 SETTINGS = ModulusSettings()

@@ -5,9 +5,9 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from reduction.cycles.product import Loops
-from reduction.errors import DataError
-from reduction.moduli.trend import change_of_ends, fit_peak_trend, slope_per_decade
+from reduction.record.errors import DataError
+from reduction.stages.cycles.cycle_product import Loops
+from reduction.stages.moduli.secant_modulus import change_of_ends, fit_peak_trend, slope_per_decade
 
 
 def loops_of(values, spring=None):

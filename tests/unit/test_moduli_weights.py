@@ -1,10 +1,10 @@
-"""Unit tests of reduction.moduli.weights."""
+"""Unit tests of reduction.stages.moduli.stepwise_test."""
 
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.weights import (
+from reduction.record.errors import DataError
+from reduction.stages.moduli.stepwise_test import (
     find_inconsistent_readings,
     interval_slopes,
     recover_gauge_length,

@@ -2,8 +2,8 @@
 
 import pytest
 
-from reduction.batch.outcome import note_message
-from reduction.notes import by_severity, full_note, severity_of
+from reduction.batch.survey import note_message
+from reduction.record.notes import by_severity, full_note, severity_of
 
 METHOD = ("moduli", "tangent modulus by local regression in a window of 0.13 of strain")
 REFUSED = ("hold 1 new", "refused: Prony series: a drop of 0.03% is not told from zero")

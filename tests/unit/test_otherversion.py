@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from reduction.cli import otherversion
-from reduction.cli.commandoutput import CommandOutput
-from reduction.errors import SettingsError
+from reduction.cli import diff as otherversion
+from reduction.cli.output import CommandOutput
+from reduction.record.errors import SettingsError
 
 # a package of that name, which writes what it was asked for where products go
 STUB = """

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.outcomes.abrasion import ratio_to_published_life
+from reduction.experiments.life_statistics import ratio_to_published_life
+from reduction.record.errors import DataError
 
 REFERENCE = {"reference_mean": 8134, "reference_standard_deviation": 1963, "reference_n": 38}
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, FitError
-from reduction.outcomes import censored
-from reduction.outcomes.censored import fit_censored, scatter_quantile
+from reduction.experiments import life_statistics as censored
+from reduction.experiments.life_statistics import fit_censored, scatter_quantile
+from reduction.record.errors import DataError, FitError
 
 ONES = np.ones((4, 1))
 NONE = np.zeros(4, dtype=bool)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.outcomes.compare import one_way, ratio_of_means
+from reduction.experiments.strength_statistics import one_way, ratio_of_means
+from reduction.record.errors import DataError
 
 
 def ratio(mean=50.0, deviation=2.0, n=5, reference=(100.0, 4.0, 10), **options):

@@ -5,8 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, FitError
-from reduction.outcomes.exposure import fit_exposure_trend, share_lost_per_year, strength_after
+from reduction.experiments.strength_statistics import (
+    fit_exposure_trend,
+    share_lost_per_year,
+    strength_after,
+)
+from reduction.record.errors import DataError, FitError
 
 
 def test_groups_give_the_line_of_their_breaks():

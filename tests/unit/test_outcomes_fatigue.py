@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, FitError
-from reduction.outcomes.fatigue import fit_load_life, life_at_load, load_levels
+from reduction.experiments.life_statistics import fit_load_life, life_at_load, load_levels
+from reduction.record.errors import DataError, FitError
 
 LOAD = np.repeat([0.3, 0.4, 0.5, 0.7], 3)
 LIVES = 500 * LOAD**-5.0 * np.tile([0.7, 1.0, 1.4], 4)

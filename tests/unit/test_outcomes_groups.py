@@ -4,10 +4,14 @@ import math
 
 import pytest
 
-from reduction.errors import DataError
-from reduction.outcomes.groups import complete_from_specimens, group_outcomes, reference_of
-from reduction.outcomes.product import Outcome
-from reduction.record import Specimen
+from reduction.experiments.outcome_groups import (
+    complete_from_specimens,
+    group_outcomes,
+    reference_of,
+)
+from reduction.experiments.outcomes import Outcome
+from reduction.record.errors import DataError
+from reduction.record.measurement import Specimen
 
 
 def strength(value=28e3, **facts):

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, FitError
-from reduction.outcomes.life import fit_life, ratio_of_lives, runout_bound
+from reduction.experiments.life_statistics import fit_life, ratio_of_lives, runout_bound
+from reduction.record.errors import DataError, FitError
 
 
 def test_a_runout_counts_as_longer_than_a_failure_there():

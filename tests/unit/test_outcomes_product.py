@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from reduction.outcomes.product import IN_THE_TERMINATION, Outcome, reason_codes
+from reduction.experiments.outcomes import IN_THE_TERMINATION, Outcome, reason_codes
 
 
 @pytest.mark.parametrize(

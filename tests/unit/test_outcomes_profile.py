@@ -5,8 +5,8 @@ import math
 import pytest
 from scipy import stats
 
-from reduction.errors import DataError
-from reduction.outcomes.profile import cutoff, profile_bounds
+from reduction.experiments.life_statistics import cutoff, profile_bounds
+from reduction.record.errors import DataError
 
 
 def test_few_failures_need_a_larger_drop_than_chi_square():

@@ -2,9 +2,7 @@
 
 import math
 
-from reduction.outcomes.columns import FATIGUE_COLUMNS
-from reduction.outcomes.groups import Group
-from reduction.outcomes.row import empty_row, labels_of
+from reduction.experiments.outcome_groups import FATIGUE_COLUMNS, Group, empty_row, labels_of
 
 
 def test_an_empty_row_has_every_column_in_order():

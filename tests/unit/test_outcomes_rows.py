@@ -4,15 +4,17 @@ import math
 
 import pytest
 
-from reduction.outcomes.columns import (
+from reduction.experiments.outcome_groups import (
     EXPOSURE_COLUMNS,
     FATIGUE_COLUMNS,
     LOAD_LIFE_COLUMNS,
     STRENGTH_COLUMNS,
+    exposure_rows,
+    fatigue_rows,
+    load_life_rows,
+    strength_rows,
 )
-from reduction.outcomes.life_rows import fatigue_rows, load_life_rows
-from reduction.outcomes.product import Outcome
-from reduction.outcomes.rows import exposure_rows, strength_rows
+from reduction.experiments.outcomes import Outcome
 
 BREAKS = [
     *[Outcome("tensile_strength", v, condition="new") for v in (28e3, 29e3, 30e3)],

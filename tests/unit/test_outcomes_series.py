@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from reduction.errors import DataError
-from reduction.outcomes.product import Outcome
-from reduction.outcomes.series import exposure_series, load_series
+from reduction.experiments.outcome_groups import exposure_series, load_series
+from reduction.experiments.outcomes import Outcome
+from reduction.record.errors import DataError
 
 
 def broken(strength, years=math.nan, **about):

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from reduction.errors import DataError
-from reduction.outcomes.snap import summarise_snap_loading
+from reduction.experiments.strength_statistics import summarise_snap_loading
+from reduction.record.errors import DataError
 
 PEAK = [0.7, 0.7, 0.5, 0.5, 0.3, 0.3, 0.3]
 LIVES = [4e3, 6e3, 4e4, 6e4, 2e5, 2e5, 2e5]

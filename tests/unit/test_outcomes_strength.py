@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.outcomes.product import REASONS
-from reduction.outcomes.strength import (
+from reduction.experiments.outcomes import REASONS
+from reduction.experiments.strength_statistics import (
     EXCLUDED,
     LOWER_BOUND,
     VALUE,
     censored_mean,
     group_statistics,
 )
+from reduction.record.errors import DataError
 
 
 def test_breaks_in_the_splice_do_not_touch_mean_or_deviation():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.phases.blocks import block_extremes, still_blocks
+from reduction.stages.standstills import block_extremes, still_blocks
 
 
 def test_extremes_are_those_of_whole_and_broken_blocks():

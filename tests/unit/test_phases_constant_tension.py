@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.phases.constant_tension import find_tension_stands
-from reduction.phases.standstill import find_standstills
-from reduction.settings import PhaseSettings
+from reduction.record.settings import PhaseSettings
+from reduction.stages.standstills import find_standstills, find_tension_stands
 
 LOAD = [(0, 0), (20, 0), (40, 300), (640, 300), (650, 500), (950, 500), (960, 0), (1000, 0)]
 START, END = [0, 40, 650, 960], [20, 640, 950, 1000]

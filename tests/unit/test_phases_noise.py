@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.phases.noise import estimate_noise, noise_range
+from reduction.record.errors import DataError
+from reduction.stages.standstills import estimate_noise, noise_range
 
 TIME = np.arange(20_000)
 

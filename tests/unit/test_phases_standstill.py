@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.phases.intervals import median_step
-from reduction.phases.standstill import find_standstills
-from reduction.settings import PhaseSettings
+from reduction.record.errors import DataError
+from reduction.record.settings import PhaseSettings
+from reduction.stages.standstills import find_standstills, median_step
 
 TEST = [(0, 3), (20, 3), (40, 4), (100, 4), (110, 5), (290, 5), (300, 4), (310, 4)]
 TEST += [(310 + 5 * i, 4 + i % 2) for i in range(1, 21)] + [(430, 3), (500, 3)]

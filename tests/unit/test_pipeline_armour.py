@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from predicted_cases import ARMOUR, LEAST_ARMOUR, changed
 
-from reduction.campaign.armourspec import load_armour_case
-from reduction.errors import SettingsError
-from reduction.pipeline.armour import predict_armour_case, wound_at_all_angles
+from reduction.campaign.armour_spec import load_armour_case
+from reduction.prediction.armour import predict_armour_case, wound_at_all_angles
+from reduction.record.errors import SettingsError
 
 ANGLE, MODULUS, WIRE, STRAIN = np.radians(20.0), 210e9, 2.5e-3, 1e-3
 HELIX = np.array([27.5e-3, 32.5e-3])

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.moduli.product import ModulusCurves
-from reduction.pipeline.comparison import compare_specimens
-from reduction.product import History
-from reduction.record import Specimen
+from reduction.pipeline.cyclic_test import compare_specimens
+from reduction.record.measurement import Specimen
+from reduction.stages.moduli.modulus_product import ModulusCurves
+from reduction.stages.reduced_test import History
 
 
 def curves(*moduli):

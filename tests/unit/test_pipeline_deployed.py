@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 from assemblies import DRIVEN, RUBBER
 
-from reduction.errors import DataError
-from reduction.lookup.tethers import SeriesPart
-from reduction.pipeline.deployed import WorkingLevel, deploy
-from reduction.strain.inverse import position_by_model
-from reduction.strain.model import StrainModel
+from reduction.lines.assembly import SeriesPart, WorkingLevel, deploy
+from reduction.record.errors import DataError
+from reduction.stages.strain.strain_model import StrainModel, position_by_model
 
 CURVE = RUBBER.curve
 LEVEL = WorkingLevel("strain", 1.0)

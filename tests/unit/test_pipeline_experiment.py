@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.experiment import RunTable
-from reduction.pipeline.experiment import fit_experiment
-from reduction.pipeline.runline import LineOfRuns
-from reduction.surface.designs import box_behnken, plackett_burman
-from reduction.surface.levels import FactorLevels
+from reduction.experiments.designs import FactorLevels, box_behnken, plackett_burman
+from reduction.experiments.experiment import RunTable
+from reduction.experiments.experiment_fit import LineOfRuns, fit_experiment
 
 FACTORS = (
     FactorLevels("frequency", 0.1, 0.5),

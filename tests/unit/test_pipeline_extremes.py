@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.phases.standstill import describe_standstills
-from reduction.pipeline.extremes import (
+from reduction.pipeline.located_test import Located
+from reduction.pipeline.test_extremes import (
     Extremes,
     Samples,
     extremes_of_readings,
@@ -14,9 +14,9 @@ from reduction.pipeline.extremes import (
     greatest_strain,
     growth_of_slack_length,
 )
-from reduction.pipeline.locate import Located
-from reduction.record import Record, StepReadings
-from reduction.strain.model import StrainModel
+from reduction.record.measurement import Record, StepReadings
+from reduction.stages.standstills import describe_standstills
+from reduction.stages.strain.strain_model import StrainModel
 
 POSITION = np.array([3.0, 3.5, 4.0, 4.002, 4.0, 3.5, np.nan])
 TENSION = np.array([[0.0, 20, 100, 102, 90, 30, 0], [0, 10, 50, np.nan, 45, 10, 0]])

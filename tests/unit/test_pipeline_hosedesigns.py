@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from reduction.pipeline.hosedesigns import design_hoses
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.product import HoseDesign
-from reduction.prediction import HosePlan, HoseTarget
+from reduction.prediction.cord_curve import CordCurve
+from reduction.prediction.hose_design import design_hoses
+from reduction.prediction.hose_prediction import HosePlan, HoseTarget
+from reduction.prediction.hose_product import HoseDesign
 
 LIKE = HosePlan(
     "like",

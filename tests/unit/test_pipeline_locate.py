@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.pipeline.locate import locate
-from reduction.record import Quality, Record
-from reduction.settings import CycleSettings, ReductionSettings
+from reduction.pipeline.located_test import locate
+from reduction.record.errors import DataError
+from reduction.record.measurement import Quality, Record
+from reduction.record.settings import CycleSettings, ReductionSettings
 
 
 def record(repeats=False):

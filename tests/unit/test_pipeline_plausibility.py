@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.cycles.loops import close_loops
-from reduction.moduli.tangent import tangent_curves
 from reduction.pipeline.plausibility import plausibility_notes
-from reduction.settings import ModulusSettings
+from reduction.record.settings import ModulusSettings
+from reduction.stages.cycles.loops import close_loops
+from reduction.stages.moduli.tangent_modulus import tangent_curves
 
 AREA = np.array([3e-4])
 

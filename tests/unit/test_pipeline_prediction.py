@@ -14,9 +14,8 @@ from predicted_hoses import (
     working_tension,
 )
 
-from reduction.errors import SettingsError
-from reduction.pipeline.prediction import predict_from_plan
-from reduction.prediction import HelicalLayer
+from reduction.prediction.hose_prediction import HelicalLayer, predict_from_plan
+from reduction.record.errors import SettingsError
 
 BREAK = 0.22
 """Cord strain of the last measured point."""

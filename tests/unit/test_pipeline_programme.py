@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.cycles.loops import close_loops
-from reduction.line.programme import DynamicStiffness
-from reduction.pipeline.locate import locate
-from reduction.pipeline.programme import rope_step
-from reduction.record import Record, Specimen
-from reduction.settings import CycleSettings, ReductionSettings, RopeSettings
+from reduction.pipeline.located_test import locate
+from reduction.pipeline.rope_test import rope_step
+from reduction.record.measurement import Record, Specimen
+from reduction.record.settings import CycleSettings, ReductionSettings, RopeSettings
+from reduction.stages.cycles.loops import close_loops
+from reduction.stages.line.rope_programme import DynamicStiffness
 
 ROPE = Specimen("line", kind="rope", rated_break_strength=1000.0)
 TETHER = Specimen("tether", rated_break_strength=1000.0)

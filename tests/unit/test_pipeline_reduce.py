@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from reduction.archive.samples import sample_values
-from reduction.pipeline.locate import locate
-from reduction.pipeline.reduce import reduce_test
-from reduction.product import TestDescription
-from reduction.record import Quality, Record, Specimen
-from reduction.settings import ReductionSettings
-from reduction.strain.model import StrainModel
+from reduction.archive.test_dataset import sample_values
+from reduction.pipeline.located_test import locate
+from reduction.pipeline.reduce_test import reduce_test
+from reduction.record.measurement import Quality, Record, Specimen
+from reduction.record.settings import ReductionSettings
+from reduction.stages.reduced_test import TestDescription
+from reduction.stages.strain.strain_model import StrainModel
 
 DIAMETER = 0.025
 SPIKE = 700

@@ -5,14 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.line.programme import dynamic_stiffness, summarise_bedding_in
-from reduction.line.step import RopeStep
-from reduction.moduli.trend import fit_peak_trend
-from reduction.pipeline.shared.cycles import of_cycles
-from reduction.settings import CycleSettings
-from reduction.strain.model import StrainModel
-from reduction.uncertainty.join import merged
-from reduction.uncertainty.product import InstrumentErrors
+from reduction.record.contributions import InstrumentErrors, merged
+from reduction.record.settings import CycleSettings
+from reduction.stages.line.rope_programme import RopeStep, dynamic_stiffness, summarise_bedding_in
+from reduction.stages.moduli.secant_modulus import fit_peak_trend
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.shared_contributions import of_cycles
 
 AREA = 5e-4
 MODEL = StrainModel("new", "gauge-length", {"reference_position": 0.0, "gauge_length": 2.0})

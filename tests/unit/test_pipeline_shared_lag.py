@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from reduction.archive.lag import lag_values
-from reduction.cycles.product import Cycles
-from reduction.pipeline.shared.lag import lag_of_test
-from reduction.record import Record
+from reduction.archive.test_variables import lag_values
+from reduction.record.measurement import Record
+from reduction.stages.cycles.cycle_product import Cycles
+from reduction.uncertainty.shared_contributions import lag_of_test
 
 TIME = np.arange(0, 118, 0.1)
 TURNS = np.arange(50, 1151, 50)

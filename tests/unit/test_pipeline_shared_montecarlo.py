@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.archive.line import spread_of_line_values
-from reduction.cycles.product import Loops
-from reduction.line.loops import identify_run
-from reduction.pipeline.shared.montecarlo import with_line_spread
-from reduction.product import ReducedTest, TestDescription
-from reduction.record import Specimen
-from reduction.settings import CycleSettings
-from reduction.uncertainty.product import Component, Contributions
+from reduction.archive.test_variables import spread_of_line_values
+from reduction.record.contributions import Component, Contributions
+from reduction.record.measurement import Specimen
+from reduction.record.settings import CycleSettings
+from reduction.stages.cycles.cycle_product import Loops
+from reduction.stages.line.line_of_loops import identify_run
+from reduction.stages.reduced_test import ReducedTest, TestDescription
+from reduction.uncertainty.monte_carlo import with_line_spread
 
 STORED, LOST, RATE = 3e4, 4e3, 0.3
 NAMES = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")

@@ -5,13 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.moduli.product import Ratio
-from reduction.pipeline.shared.cycles import of_slips
-from reduction.pipeline.shared.ratio import of_ratios, with_shared_ratios
-from reduction.pipeline.shared.weights import with_shared_steps
-from reduction.strain.model import StrainModel
-from reduction.uncertainty.product import Component, Contributions, InstrumentErrors
-from reduction.uncertainty.ratio import with_shared_interval
+from reduction.record.contributions import Component, Contributions, InstrumentErrors
+from reduction.stages.moduli.modulus_product import Ratio
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.propagation import with_shared_interval
+from reduction.uncertainty.shared_contributions import of_slips, with_shared_steps
+from reduction.uncertainty.shared_curves import of_ratios, with_shared_ratios
 
 MODEL = StrainModel("new", "gauge-length", {"reference_position": 2.0, "gauge_length": 2.0})
 CELL, NEW, USED = (

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from experiments import surface_experiment
 
-from reduction.pipeline.shared.surface import with_shared_surfaces
-from reduction.uncertainty.product import Component, Contributions
+from reduction.record.contributions import Component, Contributions
+from reduction.uncertainty.surface_errors import with_shared_surfaces
 
 STIFFNESS = "apparent_spring_constant"
 

@@ -1,4 +1,4 @@
-"""Unit tests of reduction.pipeline.spread; expected values from the derivatives by hand."""
+"""Unit tests of reduction.pipeline.plausibility; expected values from the derivatives by hand."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -6,16 +6,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.pipeline.spread import (
+from reduction.pipeline.plausibility import (
     channel_contributions,
     reading_spread,
     readings_of,
     with_readings,
 )
-from reduction.record import Record, Specimen
-from reduction.strain.model import StrainModel
-from reduction.uncertainty.product import InstrumentErrors
-from reduction.vocabulary import PHASE_VALUES
+from reduction.quantities.names import PHASE_VALUES
+from reduction.record.contributions import InstrumentErrors
+from reduction.record.measurement import Record, Specimen
+from reduction.stages.strain.strain_model import StrainModel
 
 # slope of strain on the gauge length is -(p - p0) / L0^2: it depends on the sample
 MODEL = StrainModel(

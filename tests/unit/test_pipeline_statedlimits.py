@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.notes import severity_of
-from reduction.pipeline.statedlimits import check_stated_errors
-from reduction.uncertainty.product import InstrumentErrors
+from reduction.pipeline.plausibility import check_stated_errors
+from reduction.record.contributions import InstrumentErrors
+from reduction.record.errors import SettingsError
+from reduction.record.notes import severity_of
 
 TIME = np.arange(0.0, 41.0)
 PLACE = "campaign.toml: uncertainty"

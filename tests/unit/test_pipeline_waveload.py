@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from predicted_cases import LEAST_WAVE, WAVE
 
-from reduction.campaign.wavespec import load_wave_case
-from reduction.errors import DataError
-from reduction.pipeline.waveload import predict_wave_load
+from reduction.campaign.wave_spec import load_wave_case
+from reduction.prediction.wave_load import predict_wave_load
+from reduction.record.errors import DataError
 
 DIAMETER, DENSITY, DRAG, INERTIA = 0.114, 1025.0, 1.2, 2.0
 HEIGHT, PERIOD, LENGTH, DEPTH, CURRENT = 1.25, 3.57, 20.0, 6.0, 0.5

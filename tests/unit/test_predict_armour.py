@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.predict.armour import predict_armour
-from reduction.predict.armourdesign import ARMOUR_THEORIES, ArmourDesign
+from reduction.prediction.armour import ARMOUR_THEORIES, ArmourDesign, predict_armour
+from reduction.record.errors import SettingsError
 
 DESIGN = ArmourDesign(np.radians(35.0), 2.5e-3, 25e-3, 210e9)
 

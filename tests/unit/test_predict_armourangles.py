@@ -3,8 +3,12 @@
 import numpy as np
 import pytest
 
-from reduction.predict.armourangles import predict_intermediate, predict_large, predict_small
-from reduction.predict.armourdesign import ArmourDesign
+from reduction.prediction.armour import (
+    ArmourDesign,
+    predict_intermediate,
+    predict_large,
+    predict_small,
+)
 
 STRAIN = np.array([1e-3])
 

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.predict.armour import predict_armour
-from reduction.predict.armourdesign import ArmourDesign
+from reduction.prediction.armour import ArmourDesign, predict_armour
+from reduction.record.errors import SettingsError
 
 GOOD = {
     "winding_angle": 0.5,

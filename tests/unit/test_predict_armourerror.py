@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.predict.armour import predict_armour
-from reduction.predict.armourdesign import ArmourDesign
-from reduction.predict.armourerror import (
+from reduction.prediction.armour import (
     ARMOUR_QUANTITIES,
+    ArmourDesign,
     angles_of_use,
+    predict_armour,
     theory_errors,
     thinning_loss,
 )
+from reduction.record.errors import DataError, SettingsError
 
 DEGREES = np.arange(5.0, 86.0)
 DESIGN = ArmourDesign(np.radians(DEGREES), 2.5e-3, 25e-3, 210e9)

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.predict.armourdesign import ArmourDesign
-from reduction.predict.armourexact import predict_conjugate, predict_exact
+from reduction.prediction.armour import ArmourDesign, predict_conjugate, predict_exact
 
 STRAIN = np.array([-0.3, 1e-9, 1e-3, 0.5])
 DESIGN = ArmourDesign(np.radians([[20.0], [50.0], [80.0]]), 1.0, np.array([9.0, 19.0]), 1 / np.pi)

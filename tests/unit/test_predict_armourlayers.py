@@ -3,12 +3,16 @@
 import numpy as np
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.predict.armour import predict_armour
-from reduction.predict.armourdesign import ArmourDesign
-from reduction.predict.armourlayers import ArmourLayers, cable_stiffness, predict_layers
-from reduction.predict.armourstiffness import layer_stiffness
-from reduction.predict.cablestrength import cable_strength
+from reduction.prediction.armour import (
+    ArmourDesign,
+    ArmourLayers,
+    cable_stiffness,
+    cable_strength,
+    layer_stiffness,
+    predict_armour,
+    predict_layers,
+)
+from reduction.record.errors import SettingsError
 
 STEEL = 800e6
 

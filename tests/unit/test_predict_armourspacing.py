@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.predict.armourdesign import ArmourDesign
-from reduction.predict.armourspacing import fill_factor, wire_gap
+from reduction.prediction.armour import ArmourDesign, fill_factor, wire_gap
 
 
 def layer(degrees, n_wires, wire_radius=1.0, core_radius=9.0):

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.predict.armourdesign import ArmourDesign
-from reduction.predict.armourstiffness import layer_stiffness
+from reduction.prediction.armour import ArmourDesign, layer_stiffness
 
 
 def test_all_but_straight_wires_are_rods():

@@ -3,10 +3,14 @@
 import numpy as np
 import pytest
 
-from reduction.errors import FitError, SettingsError
-from reduction.predict.armour import predict_armour
-from reduction.predict.armourdesign import ArmourDesign
-from reduction.predict.armouryield import layer_strength, wire_stress, yield_strain
+from reduction.prediction.armour import (
+    ArmourDesign,
+    layer_strength,
+    predict_armour,
+    wire_stress,
+    yield_strain,
+)
+from reduction.record.errors import FitError, SettingsError
 
 DESIGN = ArmourDesign(np.radians([20.0, 50.0, 80.0]), 2.5e-3, 25e-3, 210e9)
 

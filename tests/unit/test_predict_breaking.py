@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.predict.breaking import breaking_height, refuse_breaking
+from reduction.prediction.wave_theory import breaking_height, refuse_breaking
+from reduction.record.errors import DataError
 
 
 def test_steepness_limits_deep_water_and_depth_shallow_water():

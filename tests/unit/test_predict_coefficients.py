@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.predict.coefficients import (
+from reduction.prediction.morison import (
     CODE_OF_HYDROLOGY,
     GREATEST_DIAMETER_TO_LENGTH,
     PUBLISHED_COEFFICIENTS,
@@ -13,8 +12,8 @@ from reduction.predict.coefficients import (
     keulegan_carpenter_number,
     reynolds_number,
 )
-from reduction.predict.motion import particle_motion
-from reduction.predict.waves import airy_wave, stokes_wave
+from reduction.prediction.wave_theory import airy_wave, particle_motion, stokes_wave
+from reduction.record.errors import DataError
 
 SEA = {"wave_height": 1.25, "wave_period": 3.57, "water_depth": 3.0, "elevation": -0.038}
 TABLE_2 = [

@@ -1,15 +1,16 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.predict.cord import (
+from reduction.prediction.hose_geometry import (
+    NEUTRAL_ANGLE,
     cord_stretch_ratio,
+    current_wrap_angle,
     hose_stretch_ratio,
     pick_up_stretch_ratio,
     slackest_stretch_ratio,
+    wrap_angle_for,
 )
-from reduction.predict.helix import NEUTRAL_ANGLE
-from reduction.predict.wrapangle import current_wrap_angle, wrap_angle_for
+from reduction.record.errors import DataError, SettingsError
 
 ANGLES = np.radians(np.arange(5.0, 86.0, 1.0))
 CORES = ("isochoric", "rigid")

@@ -2,8 +2,13 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.cordload import cord_energy, cord_load, cord_stiffness, cord_strain_at
+from reduction.prediction.cord_curve import (
+    CordCurve,
+    cord_energy,
+    cord_load,
+    cord_stiffness,
+    cord_strain_at,
+)
 
 CORD = CordCurve(
     strain=np.array([0.0, 0.02, 0.06, 0.10, 0.15, 0.22]),

@@ -1,7 +1,6 @@
 import numpy as np
 
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.cordpieces import pieces_of
+from reduction.prediction.cord_curve import CordCurve, pieces_of
 
 CORD = CordCurve(
     strain=np.array([0.0, 0.02, 0.06, 0.10, 0.15, 0.22]),

@@ -1,9 +1,12 @@
 import numpy as np
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.predict.cord import hose_stretch_ratio
-from reduction.predict.cordrates import stretch_ratio_per_angle, stretch_ratio_per_cord_stretch
+from reduction.prediction.hose_geometry import hose_stretch_ratio
+from reduction.prediction.hose_sensitivity import (
+    stretch_ratio_per_angle,
+    stretch_ratio_per_cord_stretch,
+)
+from reduction.record.errors import SettingsError
 
 
 def test_sensitivities_are_the_differences_of_the_inverse():

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.predict.designchart import cord_strain_chart
-from reduction.predict.helix import NEUTRAL_ANGLE
+from reduction.prediction.hose_geometry import NEUTRAL_ANGLE, cord_strain_chart
+from reduction.record.errors import DataError
 
 ANGLE = np.radians([40.0, 54.0, 60.0, 64.0, 68.0, 72.0])
 

@@ -3,12 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.predict.difference import load_difference
-from reduction.predict.extremes import find_extremes
-from reduction.predict.immersion import ImmersedSection
-from reduction.predict.morison import wave_load
-from reduction.predict.waves import stokes_wave
+from reduction.prediction.morison import ImmersedSection, find_extremes, load_difference, wave_load
+from reduction.prediction.wave_theory import stokes_wave
+from reduction.record.errors import SettingsError
 
 HOSE = ImmersedSection(np.array(0.114), np.array(0.0091), np.array(0.0951))
 WAVE = stokes_wave(wave_height=1.25, wave_period=3.57, water_depth=3.0, elevation=-0.038)

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, FitError
-from reduction.predict import dispersion
-from reduction.predict.dispersion import (
+from reduction.prediction.hose_prediction import wave_theory as dispersion
+from reduction.prediction.wave_theory import (
     STANDARD_GRAVITY,
     group_velocity,
     wave_number,
     wave_period_of,
 )
+from reduction.record.errors import DataError, FitError
 
 
 def residual(number, period, depth, current=0.0):

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.predict.environment import anchor_force, current_load, wind_load
-from reduction.predict.immersion import ImmersedSection
-from reduction.predict.morison import wave_load
-from reduction.predict.waves import airy_wave
+from reduction.prediction.morison import ImmersedSection, wave_load
+from reduction.prediction.wave_load import anchor_force, current_load, wind_load
+from reduction.prediction.wave_theory import airy_wave
+from reduction.record.errors import DataError
 
 HOSE = ImmersedSection(np.array(0.114), np.array(0.0091), np.array(0.0951))
 WAVE = airy_wave(wave_height=1.25, wave_period=3.57, water_depth=6.0, elevation=-0.038)

@@ -3,11 +3,9 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.cordload import cord_load
-from reduction.predict.events import find_events
-from reduction.predict.hose import predict_hose
-from reduction.predict.product import HoseDesign, HoseEvent, HoseEvents
+from reduction.prediction.cord_curve import CordCurve, cord_load
+from reduction.prediction.hose_product import HoseDesign, HoseEvent, HoseEvents
+from reduction.prediction.hose_tension import find_events, predict_hose
 
 CORD = CordCurve(
     strain=np.array([0.0, 0.02, 0.06, 0.10, 0.15, 0.22]),

@@ -3,12 +3,15 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.predict.extremes import find_extremes, load_range
-from reduction.predict.immersion import ImmersedSection, immerse_hose
-from reduction.predict.morison import wave_load
-from reduction.predict.phaseseries import cosine_series, sine_series
-from reduction.predict.waves import airy_wave, stokes_wave
+from reduction.prediction.morison import (
+    ImmersedSection,
+    find_extremes,
+    immerse_hose,
+    load_range,
+    wave_load,
+)
+from reduction.prediction.wave_theory import airy_wave, cosine_series, sine_series, stokes_wave
+from reduction.record.errors import DataError
 
 HOSE = ImmersedSection(np.array(0.114), np.array(0.0091), np.array(0.0951))
 SEA = {"wave_height": 1.25, "wave_period": 3.57, "elevation": -0.038}

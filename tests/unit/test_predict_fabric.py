@@ -5,8 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.predict.fabric import number_of_cords, ribbon_width
+from reduction.prediction.hose_geometry import number_of_cords, ribbon_width
+from reduction.record.errors import DataError
 
 ANGLE = np.radians([20.0, 50.0, 64.0, 68.0, 85.0])
 

@@ -5,13 +5,13 @@ import re
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.predict.helicallayers import (
+from reduction.prediction.hose_geometry import (
+    NEUTRAL_ANGLE,
     greatest_layer_angle,
     layer_range,
     least_layer_angle,
 )
-from reduction.predict.helix import NEUTRAL_ANGLE
+from reduction.record.errors import DataError, SettingsError
 
 
 def layer_strain(angle, strain, dead=0.0):

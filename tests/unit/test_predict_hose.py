@@ -3,14 +3,13 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from reduction import workers
-from reduction.errors import DataError
-from reduction.predict import hose
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.events import find_events
-from reduction.predict.hose import hose_energy, predict_hose
-from reduction.predict.product import HoseDesign, HosePrediction
-from reduction.predict.rubber import rubber_tension
+from reduction.prediction.cord_curve import CordCurve
+from reduction.prediction.hose_prediction import hose_tension as hose
+from reduction.prediction.hose_product import HoseDesign, HosePrediction
+from reduction.prediction.hose_tension import find_events, hose_energy, predict_hose
+from reduction.prediction.rubber_wall import rubber_tension
+from reduction.record.errors import DataError
+from reduction.record.measurement import arrays as workers
 
 CORD = CordCurve(
     strain=np.array([0.0, 0.02, 0.06, 0.10, 0.15, 0.22]),

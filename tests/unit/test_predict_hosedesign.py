@@ -6,11 +6,11 @@ import re
 import numpy as np
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.events import find_events
-from reduction.predict.hosedesign import design_angle, design_diameters, design_fabric
-from reduction.predict.product import HoseDesign
+from reduction.prediction.cord_curve import CordCurve
+from reduction.prediction.hose_design import design_angle, design_diameters, design_fabric
+from reduction.prediction.hose_product import HoseDesign
+from reduction.prediction.hose_tension import find_events
+from reduction.record.errors import SettingsError
 
 INCH, PSI = 0.0254, 6894.757
 CORD = CordCurve(

@@ -5,9 +5,9 @@ from decimal import Decimal, localcontext
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, FitError
-from reduction.predict import immersion
-from reduction.predict.immersion import ImmersedSection, immerse_hose, immersion_depth_of
+from reduction.prediction.hose_prediction import morison as immersion
+from reduction.prediction.morison import ImmersedSection, immerse_hose, immersion_depth_of
+from reduction.record.errors import DataError, FitError
 
 HOSE = {
     "outer_diameter": 0.114, "wall_thickness": 0.006, "wall_density": 1250.0,

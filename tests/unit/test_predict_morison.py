@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.predict.immersion import ImmersedSection, immerse_hose
-from reduction.predict.morison import load_factors, wave_load
-from reduction.predict.motion import particle_motion
-from reduction.predict.waves import stokes_wave
+from reduction.prediction.morison import ImmersedSection, immerse_hose, load_factors, wave_load
+from reduction.prediction.wave_theory import particle_motion, stokes_wave
+from reduction.record.errors import DataError
 
 D, H_IN, S1 = 0.114, 0.0951, 0.0091
 HOSE = ImmersedSection(np.array(D), np.array(S1), np.array(H_IN))

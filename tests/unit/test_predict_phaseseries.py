@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.predict.phaseseries import (
+from reduction.prediction.wave_theory import (
     cosine_series,
     phase_derivative,
     root_phases,
@@ -12,6 +11,7 @@ from reduction.predict.phaseseries import (
     sine_series,
     sum_at,
 )
+from reduction.record.errors import DataError
 
 PHASE = np.linspace(-7.0, 7.0, 101)
 COSINES, SINES = np.array([1.3, -0.4, 0.2]), np.array([0.7, 0.1, -0.5])

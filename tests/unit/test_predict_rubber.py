@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from reduction.errors import DataError, SettingsError
-from reduction.predict.rubber import rubber_energy, rubber_stiffness, rubber_tension
+from reduction.prediction.rubber_wall import rubber_energy, rubber_stiffness, rubber_tension
+from reduction.record.errors import DataError, SettingsError
 
 STRETCH = np.array([1.001, 1.2, 1.7, 2.46, 3.5])
 # written out once more, for a wall with A E = 1

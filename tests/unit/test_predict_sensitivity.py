@@ -5,12 +5,11 @@ import dataclasses
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.events import find_events
-from reduction.predict.hose import predict_hose
-from reduction.predict.product import HOSE_PARAMETERS, HoseDesign
-from reduction.predict.sensitivity import hose_sensitivity
+from reduction.prediction.cord_curve import CordCurve
+from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseDesign
+from reduction.prediction.hose_sensitivity import hose_sensitivity
+from reduction.prediction.hose_tension import find_events, predict_hose
+from reduction.record.errors import DataError
 
 LAWS = ("neo-hookean", "linear", "linear-current", "hencky")
 EVENTS = ("deepest_slack", "pick_up", "working", "cord_break")

@@ -2,8 +2,8 @@
 
 import pytest
 
-from reduction.errors import DataError
-from reduction.predict.theorytable import printed_theory, theory_by_depth
+from reduction.prediction.wave_theory import printed_theory, theory_by_depth
+from reduction.record.errors import DataError
 
 
 @pytest.mark.parametrize(

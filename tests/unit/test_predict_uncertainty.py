@@ -6,13 +6,12 @@ import re
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.predict.cordcurve import CordCurve
-from reduction.predict.events import find_events
-from reduction.predict.hose import predict_hose
-from reduction.predict.product import HoseDesign
-from reduction.predict.sensitivity import hose_sensitivity
-from reduction.predict.uncertainty import propagate_hose
+from reduction.prediction.cord_curve import CordCurve
+from reduction.prediction.hose_product import HoseDesign
+from reduction.prediction.hose_sensitivity import hose_sensitivity
+from reduction.prediction.hose_tension import find_events, predict_hose
+from reduction.prediction.hose_uncertainty import propagate_hose
+from reduction.record.errors import DataError, SettingsError
 
 INCH, PSI = 0.0254, 6894.757
 CORD = CordCurve(

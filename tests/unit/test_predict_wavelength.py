@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.predict.dispersion import wave_number
-from reduction.predict.wavelength import check_wave_length
+from reduction.prediction.wave_theory import check_wave_length, wave_number
+from reduction.record.errors import DataError
 
 
 def test_a_length_that_fits_has_no_mismatch():

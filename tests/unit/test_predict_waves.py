@@ -3,10 +3,15 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.predict.dispersion import STANDARD_GRAVITY, wave_number, wave_period_of
-from reduction.predict.motion import particle_motion
-from reduction.predict.waves import airy_wave, stokes_wave
+from reduction.prediction.wave_theory import (
+    STANDARD_GRAVITY,
+    airy_wave,
+    particle_motion,
+    stokes_wave,
+    wave_number,
+    wave_period_of,
+)
+from reduction.record.errors import DataError
 
 SEA = {"wave_height": 1.25, "wave_period": 3.57, "water_depth": 3.0}
 MAKERS = [airy_wave, stokes_wave]

@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.predict.waves import stokes_wave
-from reduction.predict.wavetheory import GREATEST_URSELL_NUMBER, describe_wave, regular_wave
+from reduction.prediction.wave_theory import (
+    GREATEST_URSELL_NUMBER,
+    describe_wave,
+    regular_wave,
+    stokes_wave,
+)
+from reduction.record.errors import DataError
 
 SHALLOW = {"wave_height": 1.25, "wave_period": 3.57, "water_depth": 3.0}
 

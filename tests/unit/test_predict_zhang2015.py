@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.predict.waves import stokes_wave
-from reduction.predict.zhang2015 import printed_airy_wave, printed_stokes_wave
+from reduction.prediction.wave_theory import stokes_wave
+from reduction.prediction.zhang_example import printed_airy_wave, printed_stokes_wave
+from reduction.record.errors import SettingsError
 
 
 def test_the_printed_stokes_wave_is_that_of_the_package_but_for_the_rounded_frequency():

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from reduction.archive.product_differences import differences_between
-from reduction.errors import ArchiveError, DataError, SettingsError
+from reduction.record.errors import ArchiveError, DataError, SettingsError
 
 NAN = np.nan
 

@@ -5,9 +5,9 @@ from dataclasses import FrozenInstanceError
 import numpy as np
 import pytest
 
-from reduction.line.cubic import slope_of_cubic
-from reduction.published.lines import published_lines
-from reduction.published.read import errata_of
+from reduction.published.printed_cells import errata_of
+from reduction.published.published_lines import published_lines
+from reduction.stages.line.slow_pull import slope_of_cubic
 
 POUND = 4.4482216152605
 LINES = {line.name: line for line in published_lines()}

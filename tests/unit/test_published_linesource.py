@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.lookup.line import look_up
-from reduction.published.linesource import published_sources
+from reduction.lines.line_lookup import look_up
+from reduction.lines.published_source import published_sources
+from reduction.record.errors import DataError, SettingsError
 
 LBF = 4.4482216152605
 

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.lookup.compositerule import CompositeRule
-from reduction.lookup.source import compose
-from reduction.published.piecesource import published_piece_sources
+from reduction.lines.composite import compose
+from reduction.lines.curve_pieces import CompositeRule
+from reduction.lines.published_source import published_piece_sources
 
 TABLE = Path(__file__).parents[1] / "golden" / "whoi_2005_10_table_6.csv"
 LBF = 4.4482216152605

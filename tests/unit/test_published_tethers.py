@@ -3,13 +3,16 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.moduli.secant import chord_modulus
-from reduction.moduli.stepwise import reduce_stepwise
-from reduction.published.tether import name_of_segment
-from reduction.published.tethers import published_static_test, published_tethers
-from reduction.settings import StrainSettings
-from reduction.strain.fit import fit_strain_model
+from reduction.published.published_tethers import (
+    name_of_segment,
+    published_static_test,
+    published_tethers,
+)
+from reduction.record.errors import DataError
+from reduction.record.settings import StrainSettings
+from reduction.stages.moduli.secant_modulus import chord_modulus
+from reduction.stages.moduli.stepwise_test import reduce_stepwise
+from reduction.stages.strain.strain_fit import fit_strain_model
 
 INCH, FOOT, LBF = 0.0254, 0.3048, 4.4482216152605
 PSI = LBF / INCH**2

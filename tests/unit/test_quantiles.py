@@ -52,7 +52,7 @@ def test_the_chance_of_a_correlation_is_that_of_a_regression(n_values):
 def test_a_run_and_a_lookup_do_without_the_distributions():
     # half a second of every command
     program = (
-        "import sys, reduction.cli.runs, reduction.batch.run, reduction.report.page, "
+        "import sys, reduction.cli.campaigns, reduction.batch.run_campaign, reduction.report.campaign_page, "
         "reduction.cli.lookup; print('scipy.stats' in sys.modules)"
     )
     done = subprocess.run(

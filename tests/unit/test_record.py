@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.record import Record, Specimen, SpliceMarks, areas_of
+from reduction.record.errors import DataError
+from reduction.record.measurement import Record, Specimen, SpliceMarks, areas_of
 
 
 def record(**changed):

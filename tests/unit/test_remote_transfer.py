@@ -7,8 +7,8 @@ import sys
 import pytest
 import stores
 
-from reduction.errors import ArchiveError, LogError, SettingsError
-from reduction.remote import PACKAGES, allowed, base_name, fetch, product_fault
+from reduction.readers.remote_files import PACKAGES, allowed, base_name, fetch, product_fault
+from reduction.record.errors import ArchiveError, LogError, SettingsError
 
 DATA = bytes(range(256)) * 1000
 

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from reduction.archive.open import open_archive
-from reduction.report.figures.amplitude import draw_amplitude_pairs
-from reduction.report.figures.campaign import (
+from reduction.report.figures.campaign_figures import (
     draw_all_moduli,
     draw_parts,
+    draw_ratios,
     draw_static_dynamic,
 )
-from reduction.report.figures.ratios import draw_ratios
-from reduction.report.view import TestView
+from reduction.report.figures.cycle_figures import draw_amplitude_pairs
+from reduction.report.test_view import TestView
 
 
 @pytest.fixture(scope="module")

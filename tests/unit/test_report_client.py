@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from reduction.archive.laboratory import (
+from reduction.archive.open import open_archive
+from reduction.archive.write import (
     Authorised,
     Client,
     Instrument,
@@ -16,12 +17,11 @@ from reduction.archive.laboratory import (
     ReportDetails,
     keep_details,
 )
-from reduction.archive.open import open_archive
-from reduction.report import clientfigures
-from reduction.report.clientfields import NOT_STATED
-from reduction.report.conformitytable import RULES, conformity_table
-from reduction.report.page import write_report
-from reduction.report.view import OF_NO_TEST, Status, TestView
+from reduction.report import client_report as clientfigures
+from reduction.report.answer_tables import RULES, conformity_table
+from reduction.report.campaign_page import write_report
+from reduction.report.client_report import NOT_STATED
+from reduction.report.test_view import OF_NO_TEST, Status, TestView
 
 NASTY = (
     "</style></script><script>alert(1)</script> \"q\" 'x' & \\ \u2028\nnew line } @import url(//x)"

@@ -11,7 +11,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from reduction.report.style import COLOURS, DASHES, SYMBOLS, marker
+from reduction.report.text_style import COLOURS, DASHES, SYMBOLS, marker
 
 VISIONS = {
     "usual": np.eye(3),

@@ -19,21 +19,19 @@ from compared_hoses import (
 )
 
 from reduction.archive.write import write_archive
-from reduction.report.comparisonsection import (
+from reduction.report.campaign_page import write_report
+from reduction.report.campaign_sections import (
     comparison_findings,
     comparison_tiles,
     make_comparison_section,
 )
-from reduction.report.comparisonview import view_comparisons
-from reduction.report.figures.comparisons import (
+from reduction.report.figures.hose_figures import (
     draw_all_comparisons,
     draw_comparison,
     draw_cycle_bias,
     draw_error,
 )
-from reduction.report.htmltable import NOT_GIVEN
-from reduction.report.page import write_report
-from reduction.report.predictiontables import (
+from reduction.report.prediction_tables import (
     calibration_table,
     compared_curve_table,
     compared_event_table,
@@ -41,6 +39,8 @@ from reduction.report.predictiontables import (
     energy_table,
     verdict_table,
 )
+from reduction.report.product_views import view_comparisons
+from reduction.report.text_style import NOT_GIVEN
 
 NASTY = "</script><script>alert(1)</script> & <b>"
 POUND = 4.4482216152605

@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 from assemblies import DRIVEN
 
-from reduction.lookup.compositerule import CompositeRule
-from reduction.lookup.pieces import CurvePiece
-from reduction.lookup.source import PieceSource, compose
-from reduction.lookup.tethers import SeriesPart
-from reduction.pipeline.deployed import DeployedLine, WorkingLevel, deploy
-from reduction.report.curvepage import write_assembly_page, write_composite_page
-from reduction.report.figures.curves import draw_assembly, draw_composite, draw_stiffness
+from reduction.lines.assembly import DeployedLine, SeriesPart, WorkingLevel, deploy
+from reduction.lines.composite import PieceSource, compose
+from reduction.lines.curve_pieces import CompositeRule, CurvePiece
+from reduction.report.figures.curve_figures import draw_assembly, draw_composite, draw_stiffness
+from reduction.report.single_pages import write_assembly_page, write_composite_page
 
 
 def piece(name, low, high, kind="cyclic"):

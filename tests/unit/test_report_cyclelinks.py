@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.report.cyclelinks import MOST, cycle_links
-from reduction.report.summary import brief
-from reduction.report.view import TestView
+from reduction.report.campaign_summary import brief
+from reduction.report.test_section import MOST, cycle_links
+from reduction.report.test_view import TestView
 
 
 def view_of(start, frequency, **more):

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from reduction.errors import DataError
-from reduction.report.decimate import keep_extremes, least_and_greatest
+from reduction.record.errors import DataError
+from reduction.report.figure_data import keep_extremes, least_and_greatest
 
 VALUES = st.floats(-1e6, 1e6) | st.just(float("nan"))
 CHANNELS = arrays(np.float64, st.integers(200, 600), elements=VALUES)

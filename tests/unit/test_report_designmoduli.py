@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.report.designmoduli import design_modulus_table
-from reduction.report.htmltable import NOT_GIVEN
-from reduction.report.view import OF_NO_TEST, Status, TestView
+from reduction.report.answer_tables import design_modulus_table
+from reduction.report.test_view import OF_NO_TEST, Status, TestView
+from reduction.report.text_style import NOT_GIVEN
 
 S, B = "specimen", ("specimen", "branch_name", "strain_bin")
 NAN = np.nan

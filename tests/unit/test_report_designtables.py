@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.report.htmltable import NOT_GIVEN
-from reduction.report.testtables import design_tables
-from reduction.report.view import TestView
+from reduction.report.test_tables import design_tables
+from reduction.report.test_view import TestView
+from reduction.report.text_style import NOT_GIVEN
 
 
 def make_view(test, bins, ascending, descending, *, units="si", specimen="new", half=0.01e6):

@@ -9,16 +9,21 @@ import pytest
 from experiment_views import CODED, law_experiment, view_of
 from experiments import screening_experiment, surface_experiment
 
-from reduction.line.single import check_single_time
-from reduction.report.experimentsection import make_experiment_section
-from reduction.report.figures.cube import draw_cube
-from reduction.report.figures.lines import draw_derived, draw_forms, draw_single_time
-from reduction.report.figures.screening import draw_effects
-from reduction.report.figures.surfacechecks import draw_checks, draw_pareto, term_words
-from reduction.report.figures.surfaces import draw_contours, draw_surface
-from reduction.report.surfacegrid import make_planes
-from reduction.surface.bands import evaluate_surfaces
-from reduction.surface.surfaces import fit_surfaces
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.surface_points import evaluate_surfaces
+from reduction.report.campaign_sections import make_experiment_section
+from reduction.report.figures.stiffness_figures import draw_derived, draw_forms, draw_single_time
+from reduction.report.figures.surface_figures import (
+    draw_checks,
+    draw_contours,
+    draw_cube,
+    draw_effects,
+    draw_pareto,
+    draw_surface,
+    term_words,
+)
+from reduction.report.surface_grid import make_planes
+from reduction.stages.line.line_model import check_single_time
 
 EVERYTHING = (
     surface_experiment(),

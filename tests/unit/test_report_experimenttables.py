@@ -8,7 +8,7 @@ import pytest
 from experiment_views import law_experiment, view_of
 from experiments import HIGH, LOW, STRENGTH, screening_experiment, surface_experiment
 
-from reduction.report.experimenttables import (
+from reduction.report.experiment_tables import (
     anova_table,
     answer_table,
     caution_table,
@@ -17,7 +17,7 @@ from reduction.report.experimenttables import (
     run_table,
     surface_coefficient_table,
 )
-from reduction.report.htmltable import NOT_GIVEN, share_text
+from reduction.report.text_style import NOT_GIVEN, share_text
 
 POUND = 4.4482216152605  # exactly, in newton
 

@@ -8,8 +8,7 @@ import pytest
 from experiment_views import CODED, law_experiment, view_of
 from experiments import screening_experiment, surface_experiment
 
-from reduction.line.single import check_single_time
-from reduction.report.experimentwords import (
+from reduction.report.experiment_tables import (
     block_words,
     experiment_findings,
     form_words,
@@ -18,8 +17,9 @@ from reduction.report.experimentwords import (
     single_time_words,
     stationary_words,
 )
-from reduction.report.figures.screening import confounding_words
-from reduction.report.surfacegrid import negative_inside
+from reduction.report.figures.surface_figures import confounding_words
+from reduction.report.surface_grid import negative_inside
+from reduction.stages.line.line_model import check_single_time
 
 
 def falls(frequency, mean, amplitude):

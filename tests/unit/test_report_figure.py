@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reduction.report.figure import axis, band, line, make_figure, plain_numbers, script_json
-from reduction.report.style import plot_text, shorten, shown
+from reduction.report.figure_data import axis, band, line, make_figure, plain_numbers, script_json
+from reduction.report.text_style import plot_text, shorten, shown
 
 
 @given(st.text())

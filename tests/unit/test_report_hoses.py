@@ -21,22 +21,21 @@ from predicted_hoses import (
     working_tension,
 )
 
-from reduction.archive.prediction_schema import HOSE_STATES
+from reduction.archive.schema import HOSE_STATES
 from reduction.archive.write import write_archive
-from reduction.errors import ArchiveError
-from reduction.predict.cordcurve import CordCurve
-from reduction.report.figures.hosechart import draw_chart, draw_limits
-from reduction.report.figures.hoses import (
+from reduction.prediction.cord_curve import CordCurve
+from reduction.record.errors import ArchiveError
+from reduction.report.campaign_page import write_report
+from reduction.report.campaign_sections import hose_findings, hose_tiles, make_hose_section
+from reduction.report.figures.hose_figures import (
     draw_all_hoses,
     draw_budget,
+    draw_chart,
+    draw_limits,
     draw_pressure,
     draw_tension,
 )
-from reduction.report.hosesection import hose_findings, hose_tiles, make_hose_section
-from reduction.report.hoseview import view_hoses
-from reduction.report.htmltable import NOT_GIVEN
-from reduction.report.page import write_report
-from reduction.report.predictiontables import (
+from reduction.report.prediction_tables import (
     answer_of_hoses,
     cord_table,
     hose_curve_table,
@@ -45,6 +44,8 @@ from reduction.report.predictiontables import (
     layer_table,
     plus_minus_of_hoses,
 )
+from reduction.report.product_views import view_hoses
+from reduction.report.text_style import NOT_GIVEN
 
 NASTY = "</script><script>alert(1)</script> & <b>\u2028"
 SHORT_CORD = CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0]))

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.report.htmltable import (
+from reduction.report.text_style import (
     NOT_GIVEN,
+    Shown,
     count,
     make_table,
     measured,
@@ -13,7 +14,6 @@ from reduction.report.htmltable import (
     with_interval,
     words,
 )
-from reduction.report.style import Shown
 
 MPA = Shown("MPa", 1e-6)
 

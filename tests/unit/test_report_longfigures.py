@@ -7,10 +7,10 @@ import pytest
 import xarray as xr
 from long_records import long_test
 
-from reduction.archive.dataset import to_dataset
-from reduction.report.figures.record import draw_record
-from reduction.report.figures.trends import draw_trends
-from reduction.report.view import TestView
+from reduction.archive.test_dataset import to_dataset
+from reduction.report.figures.cycle_figures import draw_trends
+from reduction.report.figures.record_figures import draw_record
+from reduction.report.test_view import TestView
 
 
 def whole_view(n_cycles):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.report.figures.loops import draw_loops
-from reduction.report.view import TestView
+from reduction.report.figures.cycle_figures import draw_loops
+from reduction.report.test_view import TestView
 
 
 def make_view(opening=0.02, *, n_cycles=3, strain=None):

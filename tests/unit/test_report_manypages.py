@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from reduction.report.manypages import over_pages, write_pages
-from reduction.report.render import Page, RenderedSection
+from reduction.report.campaign_page import over_pages, write_pages
+from reduction.report.page_template import Page, RenderedSection
 
 CONTENT = Page(
     title="Many <tests>", campaign="many", summary="", about=["Units: SI."], tiles=(), faults=(),

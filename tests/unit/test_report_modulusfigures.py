@@ -3,8 +3,8 @@
 import numpy as np
 import xarray as xr
 
-from reduction.report.figures.moduli import draw_moduli
-from reduction.report.view import TestView
+from reduction.report.figures.modulus_figures import draw_moduli
+from reduction.report.test_view import TestView
 
 NAN = np.nan
 TRIMMED = np.array([NAN, NAN, 2.0, 3.0, 4.0, NAN])

@@ -3,15 +3,15 @@
 import pytest
 from pagefigures import figures_of
 
-from reduction.archive.outcomes import outcomes_to_dataset
+from reduction.archive.campaign_products import outcomes_to_dataset
 from reduction.archive.write import write_archive
-from reduction.outcomes.groups import Group
-from reduction.outcomes.product import Outcome
-from reduction.provenance import Origin, Source, Step
-from reduction.report.figures.outcomes import draw_exposure, draw_lives
-from reduction.report.htmltable import NOT_GIVEN
-from reduction.report.outcomesection import make_outcome_section
-from reduction.report.outcometables import (
+from reduction.experiments.outcome_groups import Group
+from reduction.experiments.outcomes import Outcome
+from reduction.record.measurement import Origin, Source, Step
+from reduction.report.campaign_page import write_report
+from reduction.report.campaign_sections import make_outcome_section
+from reduction.report.figures.outcome_figures import draw_exposure, draw_lives
+from reduction.report.outcome_tables import (
     exposure_table,
     fatigue_table,
     load_life_table,
@@ -19,8 +19,8 @@ from reduction.report.outcometables import (
     snap_table,
     strength_table,
 )
-from reduction.report.outcomeview import OutcomeView, group_names, line_of
-from reduction.report.page import write_report
+from reduction.report.product_views import OutcomeView, group_names, line_of
+from reduction.report.text_style import NOT_GIVEN
 
 LBF = 4.4482216152605
 # 6500 lbf - 600 lbf a year, and 100 lbf about it

@@ -13,9 +13,9 @@ import plotly.graph_objects as go
 import pytest
 
 from reduction.archive.open import open_archive
-from reduction.errors import ArchiveError
-from reduction.report.page import write_report
-from reduction.report.view import TestView
+from reduction.record.errors import ArchiveError
+from reduction.report.campaign_page import write_report
+from reduction.report.test_view import TestView
 
 NASTY = "</script><script>alert(1)</script> \"quote\" 'x' & \u2028\nnew line"
 STATUS = "test,status,exit_status,message,raw_sha256,seconds\r\n"

@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 from long_records import cycles_of, long_test
 
-from reduction.archive.dataset import to_dataset
-from reduction.archive.kept import kept_samples, stored_cycles
-from reduction.report.decimate import with_gaps
-from reduction.report.figures.loops import draw_loops
-from reduction.report.figures.record import draw_record, draw_tension_position
-from reduction.report.view import TestView
-from reduction.settings import ArchiveSettings, ModulusSettings, ReductionSettings
+from reduction.archive.test_dataset import kept_samples, stored_cycles, to_dataset
+from reduction.record.settings import ArchiveSettings, ModulusSettings, ReductionSettings
+from reduction.report.figure_data import with_gaps
+from reduction.report.figures.cycle_figures import draw_loops
+from reduction.report.figures.record_figures import draw_record, draw_tension_position
+from reduction.report.test_view import TestView
 
 
 def view_of(test, samples="selected", longest=10**6):

@@ -8,15 +8,19 @@ import plotly.graph_objects as go
 import pytest
 from predicted_cases import ARMOUR, LEAST_ARMOUR, WAVE, changed
 
-from reduction.campaign.armourspec import load_armour_case
-from reduction.campaign.wavespec import load_wave_case
-from reduction.pipeline.armour import predict_armour_case
-from reduction.pipeline.waveload import predict_wave_load
-from reduction.report.figures.armour import draw_errors, draw_wire
-from reduction.report.figures.waves import draw_section, draw_surface, draw_wave_load
-from reduction.report.htmltable import NOT_GIVEN
-from reduction.report.predictionpage import write_armour_page, write_wave_page
-from reduction.report.predictiontables import (
+from reduction.campaign.armour_spec import load_armour_case
+from reduction.campaign.wave_spec import load_wave_case
+from reduction.prediction.armour import predict_armour_case
+from reduction.prediction.wave_load import predict_wave_load
+from reduction.report.figures.theory_figures import (
+    draw_errors,
+    draw_section,
+    draw_surface,
+    draw_wave_load,
+    draw_wire,
+)
+from reduction.report.page_template import about_page
+from reduction.report.prediction_tables import (
     anchor_table,
     armour_design_table,
     cable_table,
@@ -28,8 +32,8 @@ from reduction.report.predictiontables import (
     wave_table,
     wires_table,
 )
-from reduction.report.render import about_page
-from reduction.report.style import Shown, with_prefix
+from reduction.report.single_pages import write_armour_page, write_wave_page
+from reduction.report.text_style import NOT_GIVEN, Shown, with_prefix
 
 NASTY = "</script><script>alert(1)</script> & <b>"
 POUND, FOOT = 4.4482216152605, 0.3048

@@ -8,18 +8,23 @@ import plotly.graph_objects as go
 import pytest
 import xarray as xr
 
-from reduction.archive.properties import properties_to_dataset
+from reduction.archive.rope_properties import properties_to_dataset
 from reduction.archive.write import write_archive
-from reduction.line.propertyproduct import PROPERTY_NAMES, ChangeInLength
-from reduction.provenance import Origin, Source, Step
-from reduction.report.figures.ropes import draw_creep, draw_held_pairs, draw_stiffness
-from reduction.report.htmltable import NOT_GIVEN
-from reduction.report.page import write_report
-from reduction.report.ropesection import make_rope_section, rope_tiles
-from reduction.report.ropetables import answer_of_ropes, creep_table, level_table, property_table
-from reduction.report.ropeview import view_ropes
-from reduction.report.view import TestView
-from reduction.uncertainty.product import Component
+from reduction.record.contributions import Component
+from reduction.record.measurement import Origin, Source, Step
+from reduction.report.campaign_page import write_report
+from reduction.report.campaign_sections import make_rope_section, rope_tiles
+from reduction.report.figures.hold_figures import draw_creep, draw_held_pairs, draw_stiffness
+from reduction.report.outcome_tables import (
+    answer_of_ropes,
+    creep_table,
+    level_table,
+    property_table,
+)
+from reduction.report.product_views import view_ropes
+from reduction.report.test_view import TestView
+from reduction.report.text_style import NOT_GIVEN
+from reduction.stages.line.change_in_length import PROPERTY_NAMES, ChangeInLength
 
 FOUND = {
     "R-1": (

@@ -10,20 +10,20 @@ from experiment_views import view_of
 from experiments import ABOUT, screening_experiment, surface_experiment
 
 from reduction.archive.open import open_archive
-from reduction.archive.surfaces import surfaces_to_dataset
+from reduction.archive.surfaces_dataset import surfaces_to_dataset
 from reduction.archive.write import write_archive
-from reduction.report.experimenttables import form_quality_table, form_table, line_of_runs_table
-from reduction.report.figures.pull import draw_pull
-from reduction.report.page import write_report
-from reduction.report.summary import Finding, find_faults, test_table
-from reduction.report.testtables import (
+from reduction.report.campaign_page import write_report
+from reduction.report.campaign_summary import Finding, find_faults, test_table
+from reduction.report.experiment_tables import form_quality_table, form_table, line_of_runs_table
+from reduction.report.figures.hold_figures import draw_pull
+from reduction.report.test_tables import (
     line_table,
     pull_share_table,
     pull_table,
     segment_table,
     summary_table,
 )
-from reduction.report.view import TestView
+from reduction.report.test_view import TestView
 
 test_table.__test__ = False
 

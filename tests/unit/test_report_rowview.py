@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.report.rowview import RowView
+from reduction.report.test_view import RowView
 
 DATA = xr.Dataset(
     {

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.report.figures.splices import draw_splices
-from reduction.report.view import TestView
+from reduction.report.figures.record_figures import draw_splices
+from reduction.report.test_view import TestView
 
 FREE, SPLICES, COMPLIANCE, EXPONENT = 2.5, 1.2, 2e-3, 0.8
 TENSION = np.array([0.0, 200.0, 400.0, 800.0])

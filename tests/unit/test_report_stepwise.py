@@ -6,15 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.archive.dataset import to_dataset
-from reduction.moduli.stepwise import StepReadings, reduce_stepwise
-from reduction.pipeline.shared.weights import with_shared_steps
-from reduction.report.answers import answer_budgets, budget_table
-from reduction.report.figures.stepwise import draw_steps
-from reduction.report.instruments import NOTHING_STATED
-from reduction.report.testtables import interval_table
-from reduction.report.view import TestView
-from reduction.uncertainty.product import InstrumentErrors
+from reduction.archive.test_dataset import to_dataset
+from reduction.record.contributions import InstrumentErrors
+from reduction.report.answer_tables import answer_budgets, budget_table
+from reduction.report.figures.modulus_figures import draw_steps
+from reduction.report.test_tables import interval_table
+from reduction.report.test_view import NOTHING_STATED, TestView
+from reduction.stages.moduli.stepwise_test import StepReadings, reduce_stepwise
+from reduction.uncertainty.shared_contributions import with_shared_steps
 
 INCH, POUND = 0.0254, 4.4482216
 AREA = np.pi / 4 * 0.0257**2

@@ -5,7 +5,7 @@ import pytest
 from experiment_views import law_experiment, view_of
 from experiments import surface_experiment
 
-from reduction.report.surfacegrid import (
+from reduction.report.surface_grid import (
     HELD,
     extremes_in_box,
     make_planes,

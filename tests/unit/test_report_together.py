@@ -4,10 +4,14 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.report.figures.campaign import draw_all_moduli, draw_parts, draw_static_dynamic
-from reduction.report.figures.ratios import draw_ratios
-from reduction.report.figures.together import draw_specimens_together
-from reduction.report.view import TestView
+from reduction.report.figures.campaign_figures import (
+    draw_all_moduli,
+    draw_parts,
+    draw_ratios,
+    draw_specimens_together,
+    draw_static_dynamic,
+)
+from reduction.report.test_view import TestView
 
 S, B = "specimen", ("specimen", "branch_name", "strain_bin")
 NAN = np.nan

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.report.figures.trends import draw_trends
-from reduction.report.view import TestView
+from reduction.report.figures.cycle_figures import draw_trends
+from reduction.report.test_view import TestView
 
 NAMES = ("peak_tension", "valley_tension", "hysteresis_energy", "mean_strain")
 SPIKE = 1234

@@ -10,29 +10,30 @@ import xarray as xr
 from experiment_views import law_experiment, view_of
 from scipy import stats
 
-from reduction.report.answers import answer_budgets, budget_sentences, budget_table
-from reduction.report.experimenttables import answer_table, surface_coefficient_table
-from reduction.report.figures.amplitude import draw_amplitude_pairs
-from reduction.report.figures.budgets import draw_budgets
-from reduction.report.figures.moduli import draw_moduli
-from reduction.report.htmltable import NOT_GIVEN, factors_of
-from reduction.report.instruments import (
-    NOTHING_STATED,
-    instrument_sentences,
-    instrument_table,
-)
-from reduction.report.section import make_section
-from reduction.report.sources import bar_look, in_order
-from reduction.report.style import Shown
-from reduction.report.surfaceuncertainty import (
+from reduction.report.answer_tables import answer_budgets, budget_sentences, budget_table
+from reduction.report.experiment_tables import answer_table, surface_coefficient_table
+from reduction.report.figures.budget_figures import draw_budgets
+from reduction.report.figures.cycle_figures import draw_amplitude_pairs
+from reduction.report.figures.modulus_figures import draw_moduli
+from reduction.report.surface_grid import (
     expanded_of_coefficients,
     expanded_of_runs,
     interval_of_surfaces,
     shared_by_runs,
 )
-from reduction.report.testtables import line_table, segment_table, summary_table
-from reduction.report.uncertainty import NORMAL, expand, plus_minus_of_tests, shared_sources
-from reduction.report.view import TestView
+from reduction.report.test_section import make_section
+from reduction.report.test_tables import line_table, segment_table, summary_table
+from reduction.report.test_view import (
+    NORMAL,
+    NOTHING_STATED,
+    TestView,
+    expand,
+    instrument_sentences,
+    instrument_table,
+    plus_minus_of_tests,
+    shared_sources,
+)
+from reduction.report.text_style import NOT_GIVEN, Shown, bar_look, factors_of, in_order
 
 STATED = {"tension_gain": 0.0025, "tension_offset": 2.0, "diameter": 1e-4, "lag": 0.005}
 SOURCES = ("diameter", "strain_calibration", "strain_calibration", "tension_gain")

@@ -6,9 +6,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from reduction.report.figure import axis, band, line, make_figure, named_axis
-from reduction.report.vector import can_be_drawn, vector_of
-from reduction.report.vectoraxes import axis_of, round_ticks
+from reduction.report.figure_data import axis, band, line, make_figure, named_axis
+from reduction.report.svg_figure import axis_of, can_be_drawn, round_ticks, vector_of
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 from misprinted import misprint
 
-from reduction.errors import DataError
-from reduction.published.read import cells_of
-from reduction.reproduce.answers import Answer, item_of, items_from
+from reduction.published.printed_cells import cells_of
+from reduction.published.reproduced_item import Answer, item_of, items_from
+from reduction.record.errors import DataError
 
 CELL = cells_of("Wang-2022")[0]
 

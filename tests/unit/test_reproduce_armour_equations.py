@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.published.read import table_of
-from reduction.reproduce import armour_equations
-from reduction.reproduce.armour_equations import armour, equation_answers, response
+from reduction.published import wang_2022 as armour_equations
+from reduction.published.printed_cells import table_of
+from reduction.published.wang_2022 import armour, equation_answers, response
 
 ANSWERS = equation_answers()
 

@@ -7,12 +7,11 @@ from dataclasses import replace
 import pytest
 from reproduced import whole
 
-from reduction.errors import DataError
-from reduction.published.cell import number_of
-from reduction.published.read import cells_of, errata_of
-from reduction.reproduce.cg_cells import Pages, number, rounding
-from reduction.reproduce.cg_d_39_80 import item_of, items_of
-from reduction.reproduce.item import agree, beside, judge, not_testable
+from reduction.published.cg_cells import Pages, number, rounding
+from reduction.published.cg_d_39_80 import item_of, items_of
+from reduction.published.printed_cells import cells_of, errata_of, number_of
+from reduction.published.reproduced_item import agree, beside, judge, not_testable
+from reduction.record.errors import DataError
 
 REPORT = "CG-D-39-80"
 CELLS = cells_of(REPORT)

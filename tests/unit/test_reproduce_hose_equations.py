@@ -2,8 +2,8 @@
 
 import pytest
 
-from reduction.published.read import table_of
-from reduction.reproduce.hose_equations import equation_answers
+from reduction.published.printed_cells import table_of
+from reduction.published.whoi_2004_06 import equation_answers
 
 ANSWERS = equation_answers()
 REPORT = "WHOI-2004-06"

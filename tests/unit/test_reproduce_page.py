@@ -9,10 +9,9 @@ from html.parser import HTMLParser
 import pytest
 from reproduced import whole
 
-from reduction.published.cell import printed_step
-from reduction.published.read import REPORTS, cells_of, errata_of
-from reduction.reproduce.item import Item
-from reduction.reproduce.page import TITLES, number_beside, render_reproduction
+from reduction.published.printed_cells import REPORTS, cells_of, errata_of, printed_step
+from reduction.published.reproduce_page import TITLES, number_beside, render_reproduction
+from reduction.published.reproduced_item import Item
 
 VOID = {"meta", "input", "link", "br", "wbr"}
 

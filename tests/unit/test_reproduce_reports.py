@@ -7,9 +7,8 @@ from dataclasses import replace
 import pytest
 from reproduced import whole
 
-from reduction.published.read import REPORTS, cells_of, errata_of
-from reduction.reproduce.item import Item
-from reduction.reproduce.reports import (
+from reduction.published.printed_cells import REPORTS, cells_of, errata_of
+from reduction.published.reproduce_page import (
     VERDICTS,
     counts_by_table,
     counts_of,
@@ -17,6 +16,7 @@ from reduction.reproduce.reports import (
     reproduce,
     touched_errata,
 )
+from reduction.published.reproduced_item import Item
 
 
 def test_all_five_reports_are_there_with_every_cell():

@@ -11,8 +11,7 @@ from functools import cache
 import pytest
 from reproduced import whole
 
-from reduction.published.cell import number_of, printed_step
-from reduction.published.read import REPORTS, cells_of
+from reduction.published.printed_cells import REPORTS, cells_of, number_of, printed_step
 
 HIDDEN = 0.1
 # a mean and a deviation of two digits, in a difference of two means that nearly cancel or are few

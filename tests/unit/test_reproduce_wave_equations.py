@@ -2,8 +2,8 @@
 
 import pytest
 
-from reduction.published.read import table_of
-from reduction.reproduce.wave_equations import equation_answers
+from reduction.published.printed_cells import table_of
+from reduction.published.zhang_2015 import equation_answers
 
 ANSWERS = equation_answers()
 SPEED = ("eq 14", "wave number k", "divisor of 2 pi")

@@ -6,11 +6,10 @@ from math import pi
 import numpy as np
 import pytest
 
-from reduction.predict.morison import wave_load
-from reduction.predict.zhang2015 import printed_airy_wave, printed_section
-from reduction.published.cell import number_of
-from reduction.published.read import cells_of
-from reduction.reproduce.wave_tables import table_answers
+from reduction.prediction.morison import wave_load
+from reduction.prediction.zhang_example import printed_airy_wave, printed_section
+from reduction.published.printed_cells import cells_of, number_of
+from reduction.published.zhang_2015 import table_answers
 
 ANSWERS = table_answers()
 CELLS = [cell for cell in cells_of("Zhang-2015") if cell.table == "7"]

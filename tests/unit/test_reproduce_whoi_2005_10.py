@@ -13,11 +13,14 @@ from dataclasses import replace
 
 import pytest
 
-from reduction.published.read import cells_of, errata_of
-from reduction.reproduce.tether_marks import static_gauge_length
-from reduction.reproduce.tether_moduli import areas_of_tables
-from reduction.reproduce.tether_rows import rows_of
-from reduction.reproduce.whoi_2005_10 import items, items_of
+from reduction.published.printed_cells import cells_of, errata_of
+from reduction.published.whoi_2005_10 import (
+    areas_of_tables,
+    items,
+    items_of,
+    rows_of,
+    static_gauge_length,
+)
 
 REPORT = "WHOI-2005-10"
 CELLS = cells_of(REPORT)

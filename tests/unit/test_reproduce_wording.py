@@ -2,8 +2,8 @@
 
 import pytest
 
-from reduction.published.cell import Cell
-from reduction.reproduce.wording import (
+from reduction.published.printed_cells import Cell
+from reduction.published.reproduced_item import (
     judge_as,
     judge_limit,
     judge_round,

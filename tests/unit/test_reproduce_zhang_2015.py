@@ -5,8 +5,8 @@ from collections import Counter
 import pytest
 from misprinted import verdicts_of_misprints
 
-from reduction.published.read import cells_of, errata_of
-from reduction.reproduce.zhang_2015 import answers, items
+from reduction.published.printed_cells import cells_of, errata_of
+from reduction.published.zhang_2015 import answers, items
 
 ITEMS = items()
 BY_KEY = {item.cell.key: item for item in ITEMS}

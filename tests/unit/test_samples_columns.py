@@ -3,9 +3,16 @@
 import numpy as np
 import pytest
 
-from reduction.samples import blocks, scratch
-from reduction.samples.columns import chosen, mean_of, median_step_reaches, shifted
-from reduction.samples.scratch import ColumnWriter, is_on_disk
+from reduction.record.measurement import samples as blocks
+from reduction.record.measurement import samples as scratch
+from reduction.record.samples import (
+    ColumnWriter,
+    chosen,
+    is_on_disk,
+    mean_of,
+    median_step_reaches,
+    shifted,
+)
 
 
 @pytest.fixture(params=[1, 2, 7, 1 << 16], ids="blocks of {}".format)

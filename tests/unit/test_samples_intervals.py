@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.samples import blocks, intervals
-from reduction.samples.intervals import interval_labels, over_intervals
-from reduction.samples.scratch import ColumnWriter
+from reduction.record.measurement import samples as blocks
+from reduction.record.measurement import samples as intervals
+from reduction.record.samples import ColumnWriter, interval_labels, over_intervals
 
 
 def on_disk(folder, series):

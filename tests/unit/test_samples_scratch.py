@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.samples import scratch
-from reduction.samples.scratch import (
+from reduction.record.errors import DataError
+from reduction.record.measurement import samples as scratch
+from reduction.record.samples import (
     ColumnWriter,
     empty_like,
     give_back,

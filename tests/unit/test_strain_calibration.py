@@ -1,4 +1,4 @@
-"""Unit tests of reduction.strain.calibration and its covariances.
+"""Unit tests of reduction.stages.strain.splice_marks and its covariances.
 
 Covariances are checked against many sets of marks drawn with reading errors: an
 independent way to the same number.
@@ -7,8 +7,8 @@ independent way to the same number.
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.strain.calibration import (
+from reduction.record.errors import DataError
+from reduction.stages.strain.splice_marks import (
     fit_free_length_line,
     fit_splice_ratio,
     line_slope,

@@ -1,18 +1,20 @@
-"""Unit tests of reduction.strain.evaluate."""
+"""Unit tests of reduction.stages.strain.strain_model."""
 
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.strain.evaluate import extrapolated, strain_by_model, strain_sensitivity_of
-from reduction.strain.methods import (
+from reduction.record.errors import DataError
+from reduction.stages.strain.strain_model import (
+    StrainModel,
+    extrapolated,
+    free_length_strain,
     gauge_length_strain,
     marked_line_strain,
     splice_ratio_strain,
+    strain_by_model,
+    strain_sensitivity_of,
+    tension_driven_strain,
 )
-from reduction.strain.model import StrainModel
-from reduction.strain.splice import free_length_strain
-from reduction.strain.tensiondriven import tension_driven_strain
 
 POSITION, TENSION = np.array([5.9, 6.6, 7.3]), np.array([380.0, 480.0, 590.0])
 OF_POSITION = {

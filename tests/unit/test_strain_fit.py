@@ -1,18 +1,21 @@
-"""Unit tests of reduction.strain.fit and reduction.strain.pool: which method, on which marks."""
+"""Unit tests of reduction.stages.strain.strain_fit and reduction.stages.strain.strain_fit: which method, on which marks."""
 
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, FitError
-from reduction.phases.standstill import Standstills
-from reduction.record import Specimen, SpliceMarks
-from reduction.settings import StrainSettings
-from reduction.strain.evaluate import strain_by_model
-from reduction.strain.fit import fit_strain_model, zero_strain_position
-from reduction.strain.model import StrainModel
-from reduction.strain.pool import PooledMarks, fit_to_marks
-from reduction.uncertainty.field import error_field
-from reduction.uncertainty.product import InstrumentErrors
+from reduction.record.contributions import InstrumentErrors
+from reduction.record.errors import DataError, FitError
+from reduction.record.measurement import Specimen, SpliceMarks
+from reduction.record.settings import StrainSettings
+from reduction.stages.standstills import Standstills
+from reduction.stages.strain.strain_fit import (
+    PooledMarks,
+    fit_strain_model,
+    fit_to_marks,
+    zero_strain_position,
+)
+from reduction.stages.strain.strain_model import StrainModel, strain_by_model
+from reduction.uncertainty.error_field import error_field
 
 L0, LS = 2.55, 1.18
 COMPLIANCE, EXPONENT = 0.0012, 0.85

@@ -1,10 +1,13 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.strain.evaluate import strain_by_model
-from reduction.strain.inverse import position_by_model, with_free_length
-from reduction.strain.model import StrainModel
+from reduction.record.errors import DataError
+from reduction.stages.strain.strain_model import (
+    StrainModel,
+    position_by_model,
+    strain_by_model,
+    with_free_length,
+)
 
 TENSION = np.array([0.0, 40.0, 300.0, 1200.0])
 POSITION = np.array([3.74, 5.1, 6.6, 11.0])

@@ -1,12 +1,12 @@
-"""Unit tests of reduction.strain.marks."""
+"""Unit tests of reduction.stages.strain.splice_marks."""
 
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.phases.standstill import Standstills
-from reduction.record import SpliceMarks
-from reduction.strain.marks import check_marks, measure_mark_tension
+from reduction.record.errors import DataError
+from reduction.record.measurement import SpliceMarks
+from reduction.stages.standstills import Standstills
+from reduction.stages.strain.splice_marks import check_marks, measure_mark_tension
 
 
 def marks(position, free, *, hold=None, test=None, reading_uncertainty=0.00124):

@@ -1,15 +1,16 @@
-"""Unit tests of reduction.strain.methods and tensiondriven: limit cases of each formula, and what it refuses."""
+"""Unit tests of reduction.stages.strain.strain_model and tensiondriven: limit cases of each formula, and what it refuses."""
 
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.strain.methods import (
+from reduction.record.errors import DataError
+from reduction.stages.strain.strain_model import (
     gauge_length_strain,
     marked_line_strain,
     splice_ratio_strain,
+    splice_strain,
+    tension_driven_strain,
 )
-from reduction.strain.tensiondriven import splice_strain, tension_driven_strain
 
 LENGTHS = {"relaxed_free_length": 2.5, "relaxed_splice_length": 1.2}
 LAW = {"splice_compliance": 0.0012, "splice_exponent": 0.85}

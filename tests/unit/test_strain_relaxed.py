@@ -1,11 +1,11 @@
-"""Unit tests of reduction.strain.relaxed; covariances against many sets of marks drawn."""
+"""Unit tests of reduction.stages.strain.splice_marks; covariances against many sets of marks drawn."""
 
 import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.errors import DataError
-from reduction.strain.relaxed import relaxed_lengths
+from reduction.record.errors import DataError
+from reduction.stages.strain.splice_marks import relaxed_lengths
 
 READING = 0.00124
 DRAWS = 4000

@@ -1,11 +1,11 @@
-"""Unit tests of reduction.strain.remarks: each sentence, and its absence."""
+"""Unit tests of reduction.stages.strain.strain_fit: each sentence, and its absence."""
 
 import numpy as np
 import pytest
 
-from reduction.record import SpliceMarks
-from reduction.strain.model import StrainModel
-from reduction.strain.remarks import remarks_on
+from reduction.record.measurement import SpliceMarks
+from reduction.stages.strain.strain_fit import remarks_on
+from reduction.stages.strain.strain_model import StrainModel
 
 L0 = 2.55
 READING = 0.00124  # sqrt(3) of it over 2.55 m is 0.084 points

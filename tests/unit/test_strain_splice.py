@@ -1,10 +1,10 @@
-"""Unit tests of reduction.strain.splice."""
+"""Unit tests of reduction.stages.strain.strain_model."""
 
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.strain.splice import free_length_fraction, free_length_strain
+from reduction.record.errors import DataError
+from reduction.stages.strain.strain_model import free_length_fraction, free_length_strain
 
 
 def test_strain_is_zero_at_the_relaxed_length():

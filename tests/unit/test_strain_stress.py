@@ -1,11 +1,11 @@
-"""Unit tests of reduction.strain.stress."""
+"""Unit tests of reduction.stages.strain.stress."""
 
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.record import Specimen
-from reduction.strain.stress import (
+from reduction.record.errors import DataError
+from reduction.record.measurement import Specimen
+from reduction.stages.strain.stress import (
     check_constant_volume,
     constant_volume_diameter,
     nominal_stress,

@@ -4,12 +4,15 @@ import pytest
 from statsmodels.formula.api import ols
 from statsmodels.stats.anova import anova_lm
 
-from reduction.errors import DataError, SettingsError
-from reduction.surface.anova import anova_table, lack_of_fit, replicate_cells
-from reduction.surface.designs import box_behnken
-from reduction.surface.fit import fit_least_squares
-from reduction.surface.product import LACK_OF_FIT_REASONS
-from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.experiments.fit_results import LACK_OF_FIT_REASONS
+from reduction.experiments.least_squares_fit import (
+    anova_table,
+    fit_least_squares,
+    lack_of_fit,
+    replicate_cells,
+)
+from reduction.record.errors import DataError, SettingsError
 
 EXPONENTS = quadratic_exponents(3)
 RUNS = box_behnken(3).coded

@@ -3,11 +3,10 @@ import pytest
 import statsmodels.api as sm
 from scipy import stats
 
-from reduction.errors import DataError, SettingsError
-from reduction.surface.bands import evaluate_surfaces
-from reduction.surface.designs import box_behnken
-from reduction.surface.surfaces import fit_surfaces
-from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.surface_points import evaluate_surfaces
+from reduction.record.errors import DataError, SettingsError
 
 RUNS = box_behnken(3).coded
 EXPONENTS = quadratic_exponents(3)

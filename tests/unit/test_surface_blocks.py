@@ -5,10 +5,9 @@ import pytest
 from statsmodels.regression.linear_model import GLS
 from statsmodels.regression.mixed_linear_model import MixedLM
 
-from reduction.errors import DataError
-from reduction.surface.blocks import block_columns, fit_random_intercept
-from reduction.surface.designs import box_behnken
-from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.experiments.block_effects import block_columns, fit_random_intercept
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.record.errors import DataError
 
 RUNS = np.tile(box_behnken(3).coded, (4, 1))
 MATRIX = model_matrix(RUNS, quadratic_exponents(3))

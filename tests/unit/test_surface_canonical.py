@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from reduction.errors import SettingsError
-from reduction.surface.canonical import canonical_analysis, curvature, ridge_path
-from reduction.surface.product import STATIONARY_KINDS, STATIONARY_REASONS
-from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.experiments.designs import model_matrix, quadratic_exponents
+from reduction.experiments.fit_results import STATIONARY_KINDS, STATIONARY_REASONS
+from reduction.experiments.stationary_point import canonical_analysis, curvature, ridge_path
+from reduction.record.errors import SettingsError
 
 EXPONENTS = quadratic_exponents(3)
 # Treb: B1 .. B10 of the published data by least squares

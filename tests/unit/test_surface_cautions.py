@@ -2,11 +2,9 @@
 
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.surface.cautions import find_cautions
-from reduction.surface.designs import box_behnken, plackett_burman
-from reduction.surface.levels import FactorLevels
-from reduction.surface.runsheet import make_run_sheet
+from reduction.experiments.designs import FactorLevels, box_behnken, plackett_burman
+from reduction.experiments.run_sheet import find_cautions, make_run_sheet
+from reduction.record.errors import SettingsError
 
 FREQUENCY = FactorLevels("frequency", 0.1, 0.5)
 MEAN = FactorLevels("mean_tension", 0.12, 0.30, "rated_break_strength")

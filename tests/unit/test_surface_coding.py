@@ -1,13 +1,14 @@
 import numpy as np
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.surface.coding import (
+from reduction.experiments.designs import (
     coded_from_engineering,
     engineering_from_coded,
     engineering_matrix,
+    model_matrix,
+    quadratic_exponents,
 )
-from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.record.errors import SettingsError
 
 LOW, HIGH = [0.1, 768.0, 320.0], [0.5, 1920.0, 768.0]
 

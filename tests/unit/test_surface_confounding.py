@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.errors import DataError
-from reduction.surface.confounding import alias_matrix, half_normal_coordinates
-from reduction.surface.designs import plackett_burman
+from reduction.experiments.designs import plackett_burman
+from reduction.experiments.screening import alias_matrix, half_normal_coordinates
+from reduction.record.errors import DataError
 
 RNG = np.random.default_rng(12)
 

@@ -5,8 +5,8 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.surface.designs import FIRST_ROWS, TRIPLES, box_behnken, plackett_burman
+from reduction.experiments.designs import FIRST_ROWS, TRIPLES, box_behnken, plackett_burman
+from reduction.record.errors import SettingsError
 
 FACTORS = [3, 4, 5, 6, 7]
 

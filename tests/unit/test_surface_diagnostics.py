@@ -3,10 +3,8 @@ import pytest
 import statsmodels.api as sm
 from scipy import stats
 
-from reduction.surface.designs import box_behnken
-from reduction.surface.diagnostics import diagnose
-from reduction.surface.fit import fit_least_squares
-from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.experiments.least_squares_fit import diagnose, fit_least_squares
 
 RUNS = box_behnken(3).coded
 MATRIX = model_matrix(RUNS, quadratic_exponents(3))

@@ -3,11 +3,14 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.surface.designs import box_behnken
-from reduction.surface.doubts import drifting_responses, negative_surfaces
-from reduction.surface.drift import drift_over_order
-from reduction.surface.surfaces import fit_surfaces
+from reduction.experiments.designs import box_behnken
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.surface_warnings import (
+    drift_over_order,
+    drifting_responses,
+    negative_surfaces,
+)
+from reduction.record.errors import DataError
 
 CODED = box_behnken(3).coded
 

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 import statsmodels.api as sm
 
-from reduction.errors import DataError
-from reduction.surface.designs import box_behnken
-from reduction.surface.drift import drift_over_order
-from reduction.surface.surfaces import fit_surfaces
-from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.surface_warnings import drift_over_order
+from reduction.record.errors import DataError
 
 RNG = np.random.default_rng(1980)
 CODED = box_behnken(3).coded

@@ -3,11 +3,10 @@ import pytest
 import statsmodels.api as sm
 from scipy import stats
 
-from reduction.errors import DataError
-from reduction.surface.designs import box_behnken
-from reduction.surface.fit import fit_least_squares, two_sided_p
-from reduction.surface.leastsquares import FIT_REASONS
-from reduction.surface.terms import model_matrix, quadratic_exponents, term_names
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents, term_names
+from reduction.experiments.fit_results import FIT_REASONS
+from reduction.experiments.least_squares_fit import fit_least_squares, two_sided_p
+from reduction.record.errors import DataError
 
 EXPONENTS = quadratic_exponents(3)
 NAMES = term_names(EXPONENTS, ["f", "Tm", "dT"])

@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.surface.designs import box_behnken, plackett_burman
-from reduction.surface.levels import FactorLevels, engineering_levels
+from reduction.experiments.designs import (
+    FactorLevels,
+    box_behnken,
+    engineering_levels,
+    plackett_burman,
+)
+from reduction.record.errors import DataError, SettingsError
 
 CODED = np.array([[-1.0, -1.0], [0.0, 0.0], [1.0, 1.0]])
 

@@ -2,11 +2,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.errors import SettingsError
-from reduction.surface.designs import box_behnken
-from reduction.surface.fit import fit_least_squares
-from reduction.surface.overall import statistics_from_r2
-from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.experiments.least_squares_fit import fit_least_squares, statistics_from_r2
+from reduction.record.errors import SettingsError
 
 MATRIX = model_matrix(box_behnken(3).coded, quadratic_exponents(3))
 

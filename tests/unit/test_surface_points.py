@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.surface.designs import box_behnken
-from reduction.surface.points import plan_points
+from reduction.experiments.designs import box_behnken
+from reduction.experiments.surface_points import plan_points
+from reduction.record.errors import DataError
 
 
 def test_three_factors_have_a_centre_twelve_edges_and_eight_corners():

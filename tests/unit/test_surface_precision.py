@@ -4,10 +4,14 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.errors import DataError, FitError, SettingsError
-from reduction.surface.designs import box_behnken, plackett_burman
-from reduction.surface.precision import expected_precision
-from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.experiments.designs import (
+    box_behnken,
+    model_matrix,
+    plackett_burman,
+    quadratic_exponents,
+)
+from reduction.experiments.run_sheet import expected_precision
+from reduction.record.errors import DataError, FitError, SettingsError
 
 FIFTEEN = box_behnken(3).coded
 

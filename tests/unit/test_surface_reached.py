@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError
-from reduction.surface.designs import box_behnken
-from reduction.surface.reached import levels_off_plan
+from reduction.experiments.designs import box_behnken
+from reduction.experiments.run_sheet import levels_off_plan
+from reduction.record.errors import DataError
 
 PLAN = box_behnken(3).coded
 NAMES = [f"R{number}" for number in range(1, 16)]

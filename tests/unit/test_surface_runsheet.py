@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.surface.designs import box_behnken, plackett_burman
-from reduction.surface.levels import FactorLevels
-from reduction.surface.runsheet import make_run_sheet
+from reduction.experiments.designs import FactorLevels, box_behnken, plackett_burman
+from reduction.experiments.run_sheet import make_run_sheet
+from reduction.record.errors import DataError, SettingsError
 
 FREQUENCY = FactorLevels("frequency", 0.1, 0.5)
 MEAN = FactorLevels("mean_tension", 1000.0, 3000.0)

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.errors import DataError, SettingsError
-from reduction.surface.confounding import alias_matrix
-from reduction.surface.designs import Design, plackett_burman
-from reduction.surface.screening import screening_effects, screening_remarks
+from reduction.experiments.designs import Design, plackett_burman
+from reduction.experiments.screening import alias_matrix, screening_effects, screening_remarks
+from reduction.record.errors import DataError, SettingsError
 
 FIVE = plackett_burman(5)
 RNG = np.random.default_rng(11)

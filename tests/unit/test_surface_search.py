@@ -1,6 +1,6 @@
 import numpy as np
 
-from reduction.surface.search import highest_of_each
+from reduction.experiments.response_matrix import highest_of_each
 
 
 def test_the_top_of_each_curve_is_found_between_places_of_the_grid():

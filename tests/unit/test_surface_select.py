@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 import statsmodels.api as sm
 
-from reduction.errors import SettingsError
-from reduction.surface.designs import box_behnken
-from reduction.surface.select import reduce_terms
-from reduction.surface.surfaces import fit_surfaces
-from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.term_selection import reduce_terms
+from reduction.record.errors import SettingsError
 
 RUNS = box_behnken(3).coded
 MATRIX = model_matrix(RUNS, quadratic_exponents(3))

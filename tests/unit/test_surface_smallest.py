@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.surface.designs import plackett_burman
-from reduction.surface.screening import screening_effects
-from reduction.surface.smallest import smallest_effect
+from reduction.experiments.designs import plackett_burman
+from reduction.experiments.run_sheet import smallest_effect
+from reduction.experiments.screening import screening_effects
+from reduction.record.errors import DataError, SettingsError
 
 
 def test_it_is_the_t_of_the_report_times_the_error_of_a_difference_of_means():

@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 import statsmodels.api as sm
 
-from reduction.errors import DataError, SettingsError
-from reduction.surface.designs import box_behnken
-from reduction.surface.stiffness import fit_del_vecchio_stiffness, fit_mean_load_stiffness
-from reduction.surface.stiffness_forms import compare_stiffness_forms
+from reduction.experiments.designs import box_behnken
+from reduction.experiments.stiffness_forms import (
+    compare_stiffness_forms,
+    fit_del_vecchio_stiffness,
+    fit_mean_load_stiffness,
+)
+from reduction.record.errors import DataError, SettingsError
 
 STRENGTH = 28_470.0  # 6400 lbf
 CODED = box_behnken(3).coded

@@ -7,12 +7,11 @@ import statsmodels.api as sm
 from statsmodels.formula.api import ols
 from statsmodels.stats.anova import anova_lm
 
-from reduction.errors import DataError, FitError, SettingsError
-from reduction.surface.designs import box_behnken
-from reduction.surface.leastsquares import FIT_REASONS
-from reduction.surface.select import reduce_terms
-from reduction.surface.surfaces import fit_surfaces
-from reduction.surface.terms import model_matrix, quadratic_exponents
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.experiments.fit_results import FIT_REASONS
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.term_selection import reduce_terms
+from reduction.record.errors import DataError, FitError, SettingsError
 
 RUNS = box_behnken(3).coded
 EXPONENTS = quadratic_exponents(3)

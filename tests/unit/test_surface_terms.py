@@ -1,14 +1,14 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, SettingsError
-from reduction.surface.terms import (
+from reduction.experiments.designs import (
     gradient_matrix,
     model_matrix,
     quadratic_exponents,
     term_kinds,
     term_names,
 )
+from reduction.record.errors import DataError, SettingsError
 
 
 def test_terms_of_three_factors_stand_in_the_order_of_equation_5():

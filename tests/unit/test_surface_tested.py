@@ -3,10 +3,14 @@
 import numpy as np
 import pytest
 
-from reduction.surface.bands import evaluate_surfaces
-from reduction.surface.designs import box_behnken
-from reduction.surface.surfaces import fit_surfaces
-from reduction.surface.tested import greatest_leverage, is_within_levels, levels_tested
+from reduction.experiments.designs import box_behnken
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.surface_points import (
+    evaluate_surfaces,
+    greatest_leverage,
+    is_within_levels,
+    levels_tested,
+)
 
 PLAN = box_behnken(3).coded
 REACHED = PLAN * (1 - 1e-3 * np.random.default_rng(3).random(PLAN.shape))

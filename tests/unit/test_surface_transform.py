@@ -2,17 +2,16 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.errors import DataError, SettingsError
-from reduction.surface.boxcox import box_cox_exponent
-from reduction.surface.designs import box_behnken
-from reduction.surface.leastsquares import FIT_REASONS
-from reduction.surface.surfaces import fit_surfaces
-from reduction.surface.terms import model_matrix, quadratic_exponents
-from reduction.surface.transform import (
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
+from reduction.experiments.fit_results import FIT_REASONS
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.response_transform import (
     back_transform,
+    box_cox_exponent,
     retransformed_mean,
     transform,
 )
+from reduction.record.errors import DataError, SettingsError
 
 RUNS = box_behnken(3).coded
 MATRIX = model_matrix(RUNS, quadratic_exponents(3))

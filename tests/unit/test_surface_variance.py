@@ -1,10 +1,9 @@
 import numpy as np
 import pytest
 
-from reduction.errors import DataError, FitError
-from reduction.surface.designs import box_behnken
-from reduction.surface.terms import model_matrix, quadratic_exponents, term_names
-from reduction.surface.variance import covariance_factor, find_confounded, variance_factor
+from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents, term_names
+from reduction.experiments.run_sheet import covariance_factor, find_confounded, variance_factor
+from reduction.record.errors import DataError, FitError
 
 EXPONENTS = quadratic_exponents(3)
 NAMES = term_names(EXPONENTS, ["f", "Tm", "dT"])

@@ -7,15 +7,12 @@ import pytest
 import xarray as xr
 from experiments import ABOUT, screening_experiment, surface_experiment
 
+from reduction.archive.csv_columns import csv_lines, table_blocks
+from reduction.archive.csv_definitions import EXPERIMENT_TABLES, TABLES
+from reduction.archive.csv_tables import by_response, write_tables
+from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.open import open_archive
-from reduction.archive.surfaces import surfaces_to_dataset
-from reduction.archive.version import SCHEMA_VERSION
-from reduction.tables.column import csv_lines
-from reduction.tables.definitions import TABLES
-from reduction.tables.experiments import EXPERIMENT_TABLES
-from reduction.tables.responses import by_response
-from reduction.tables.rows import table_blocks
-from reduction.tables.write import write_tables
+from reduction.archive.surfaces_dataset import surfaces_to_dataset
 
 N_CYCLES = 30000
 PER_CYCLE = ("mean_tension", "tension_amplitude", "loss_factor", "hysteresis_energy")

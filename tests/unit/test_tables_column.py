@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from reduction.archive.csv_columns import Column, csv_lines, csv_text, texts_of, uncertainty_of
 from reduction.archive.schema import SCHEMA
-from reduction.archive.variable import label
-from reduction.tables.column import Column, csv_lines, csv_text, texts_of, uncertainty_of
+from reduction.archive.variables import label
 
 
 def test_a_real_has_its_unit_in_the_header_and_a_label_or_count_has_none():

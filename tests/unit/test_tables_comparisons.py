@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from compared_hoses import LOOP, NOT_APART, agreeing, dataset, differing, trading
 
+from reduction.archive.csv_definitions import COMPARISON_TABLES
+from reduction.archive.csv_tables import write_tables
 from reduction.archive.write import write_archive
-from reduction.tables.comparisons import COMPARISON_TABLES
-from reduction.tables.write import write_tables
 
 
 def read(path):

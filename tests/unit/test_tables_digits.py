@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.tables.digits import number_texts
+from reduction.archive.csv_columns import number_texts
 
 RNG = np.random.default_rng(20)
 SIZES = 10.0 ** np.arange(-8, 20)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.tables.envelope import Curve, envelope_rows, on_grid
+from reduction.archive.csv_tables import Curve, envelope_rows, on_grid
 
 
 def curve(test, strain, modulus, *, specimen="new", width=0.1, synthetic="no"):

@@ -5,14 +5,14 @@ import pytest
 from experiments import ABOUT, UNITS, screening_experiment, surface_experiment
 from table_cells import table_rows
 
-from reduction.archive.surface_schema import SURFACE_SCHEMA
-from reduction.archive.surfaces import surfaces_to_dataset
-from reduction.surface.bands import evaluate_surfaces
-from reduction.surface.canonical import ridge_path
-from reduction.tables.experiments import EXPERIMENT_TABLES
-from reduction.tables.responses import by_response
-from reduction.uncertainty.surfacepoints import with_shared_at_points
-from reduction.vocabulary import RESPONSE_PATTERNS, RESPONSES, SURFACE_NAMES
+from reduction.archive.csv_definitions import EXPERIMENT_TABLES
+from reduction.archive.csv_tables import by_response
+from reduction.archive.schema import SURFACE_SCHEMA
+from reduction.archive.surfaces_dataset import surfaces_to_dataset
+from reduction.experiments.stationary_point import ridge_path
+from reduction.experiments.surface_points import evaluate_surfaces
+from reduction.quantities.names import RESPONSE_PATTERNS, RESPONSES, SURFACE_NAMES
+from reduction.uncertainty.surface_errors import with_shared_at_points
 
 ONE = surface_experiment()
 TWO = surface_experiment("two lines", seed=4, names=RESPONSES[:2], specimens=("a", "b"))

@@ -1,9 +1,13 @@
 """Why a cell of a table is empty beside a number."""
 
-from reduction.archive.variable import measured
-from reduction.tables.column import Column, uncertainty_of
-from reduction.tables.holes import column_descriptions, lonely_numbers
-from reduction.tables.table import SYNTHETIC
+from reduction.archive.csv_columns import (
+    SYNTHETIC,
+    Column,
+    column_descriptions,
+    lonely_numbers,
+    uncertainty_of,
+)
+from reduction.archive.variables import measured
 
 
 def test_an_empty_cell_beside_a_number_has_a_reason_and_a_full_column_needs_none():

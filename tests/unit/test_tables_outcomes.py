@@ -4,12 +4,12 @@ import csv
 
 import pytest
 
-from reduction.archive.outcomes import outcomes_to_dataset
+from reduction.archive.campaign_products import outcomes_to_dataset
+from reduction.archive.csv_columns import OUTCOME_TABLES
+from reduction.archive.csv_tables import write_tables
 from reduction.archive.write import write_archive
-from reduction.outcomes.product import Outcome
-from reduction.provenance import Origin, Source, Step
-from reduction.tables.outcomes import OUTCOME_TABLES
-from reduction.tables.write import write_tables
+from reduction.experiments.outcomes import Outcome
+from reduction.record.measurement import Origin, Source, Step
 
 BREAKS = [
     Outcome("tensile_strength", 6500 - 600 * years + about, line="PD", exposure=years,

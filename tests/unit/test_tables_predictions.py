@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from predicted_hoses import LAYERS, UNCERTAIN, dataset, pick_up_strain, predicted, working_tension
 
+from reduction.archive.csv_definitions import PREDICTION_TABLES
+from reduction.archive.csv_tables import write_tables
 from reduction.archive.write import write_archive
-from reduction.tables.predictions import PREDICTION_TABLES
-from reduction.tables.write import write_tables
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from table_cells import table_rows
 
-from reduction.tables.definitions import TABLES
+from reduction.archive.csv_definitions import TABLES
 
 (PROGRAMME,) = (table for table in TABLES if table.name == "rope_programme")
 

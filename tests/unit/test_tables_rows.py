@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from table_cells import table_rows
 
-from reduction.archive.dataset import to_dataset
-from reduction.tables.definitions import TABLES
+from reduction.archive.csv_definitions import TABLES
+from reduction.archive.test_dataset import to_dataset
 
 BY_NAME = {table.name: table for table in TABLES}
 

@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.tables.envelope import Curve
-from reduction.tables.static_dynamic import STATIC_DYNAMIC_COLUMNS, Slope, static_dynamic_rows
-from reduction.uncertainty.product import Component, Contributions
+from reduction.archive.csv_tables import STATIC_DYNAMIC_COLUMNS, Curve, Slope, static_dynamic_rows
+from reduction.record.contributions import Component, Contributions
 
 
 def curve(branch="ascending", gap=None):

@@ -7,18 +7,15 @@ from dataclasses import replace
 import pytest
 from experiments import ABOUT, screening_experiment, surface_experiment
 
+from reduction.archive.csv_definitions import EXPERIMENT_TABLES, TABLES
+from reduction.archive.csv_tables import ENVELOPE_COLUMNS, STATIC_DYNAMIC_COLUMNS, write_tables
 from reduction.archive.schema import SCHEMA
-from reduction.archive.shared import SHARED_OF_CHANNELS
-from reduction.archive.surfaces import surfaces_to_dataset
-from reduction.archive.variable import SUFFIXES
+from reduction.archive.shared_errors import SHARED_OF_CHANNELS
+from reduction.archive.surfaces_dataset import surfaces_to_dataset
+from reduction.archive.variables import SUFFIXES
 from reduction.archive.write import write_archive
-from reduction.errors import ArchiveError
-from reduction.tables.definitions import TABLES
-from reduction.tables.envelope import ENVELOPE_COLUMNS
-from reduction.tables.experiments import EXPERIMENT_TABLES
-from reduction.tables.static_dynamic import STATIC_DYNAMIC_COLUMNS
-from reduction.tables.write import write_tables
-from reduction.vocabulary import QUANTITIES, RESPONSES
+from reduction.quantities.names import QUANTITIES, RESPONSES
+from reduction.record.errors import ArchiveError
 
 
 def read(path):

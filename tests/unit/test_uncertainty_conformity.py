@@ -4,7 +4,7 @@ from math import nan
 
 import pytest
 
-from reduction.uncertainty.conformity import conformity
+from reduction.uncertainty.budget import conformity
 
 # value, interval, lower, upper; simple acceptance, guard band
 CASES = [

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from reduction.strain.model import StrainModel
-from reduction.uncertainty.field import error_field
-from reduction.uncertainty.product import InstrumentErrors
+from reduction.record.contributions import InstrumentErrors
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.error_field import error_field
 
 LENGTH, START = 2.0, 2.3
 STRAIN = np.array([0.0, 0.4, 0.9])

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.moduli.elastomer import fit_elastomers
-from reduction.moduli.hyperelastic import hyperelastic_stress
-from reduction.uncertainty.elastomer import elastomer_contributions
+from reduction.stages.moduli.elastomer_laws import fit_elastomers, hyperelastic_stress
+from reduction.uncertainty.propagation import elastomer_contributions
 
 STRAIN = np.linspace(0.02, 2.2, 500)
 # two Ogden terms, and a part that no law here has: what is left over bends the least squares

@@ -5,9 +5,9 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from reduction.strain.model import StrainModel
-from reduction.uncertainty.field import error_field
-from reduction.uncertainty.product import InstrumentErrors
+from reduction.record.contributions import InstrumentErrors
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.error_field import error_field
 
 MODEL = StrainModel(
     "new", "tension-driven",

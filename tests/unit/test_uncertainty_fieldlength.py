@@ -5,12 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.pipeline.shared.material import of_material
-from reduction.strain.evaluate import strain_by_model
-from reduction.strain.model import StrainModel
-from reduction.uncertainty.field import error_field
-from reduction.uncertainty.fieldlength import coefficient_errors
-from reduction.uncertainty.product import InstrumentErrors
+from reduction.record.contributions import InstrumentErrors
+from reduction.stages.strain.strain_model import StrainModel, strain_by_model
+from reduction.uncertainty.error_field import coefficient_errors, error_field
+from reduction.uncertainty.shared_curves import of_material
 
 COEFFICIENTS = {
     "relaxed_free_length": 2.55,

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from scipy.optimize import curve_fit
 
-from reduction.strain.model import StrainModel
-from reduction.strain.tensiondriven import tension_driven_strain
-from reduction.uncertainty.fieldload import load_parts
-from reduction.uncertainty.product import Component, InstrumentErrors
+from reduction.record.contributions import Component, InstrumentErrors
+from reduction.stages.strain.strain_model import StrainModel, tension_driven_strain
+from reduction.uncertainty.error_field import load_parts
 
 FREE, SPLICES, COMPLIANCE, EXPONENT = 2.55, 1.18, 0.0012, 0.86
 MARKS = np.array([0.7, 200.0, 420.0, 600.0, 900.0])  # the first while it was slack

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.errors import DataError
-from reduction.line.sensitivity import AMPLITUDE_INPUTS, FUNDAMENTAL_INPUTS
-from reduction.uncertainty.montecarlo import N_DRAWS, draw_line
+from reduction.record.errors import DataError
+from reduction.stages.line.line_model import AMPLITUDE_INPUTS, FUNDAMENTAL_INPUTS
+from reduction.uncertainty.monte_carlo import N_DRAWS, draw_line
 
 STORED, LOST, RATE, REST = 3e4, 4e3, 0.3, 2e4
 TURN = 2 * np.pi * RATE

@@ -2,14 +2,14 @@
 
 import pytest
 
-from reduction.errors import SettingsError
-from reduction.units import (
+from reduction.quantities.units import (
     combined_unit,
     display_unit,
     parse_quantity,
     scale_of_unit,
     scale_to_si,
 )
+from reduction.record.errors import SettingsError
 
 POUND_FORCE = 0.45359237 * 9.80665
 

@@ -9,9 +9,9 @@ import netCDF4
 import pytest
 from documentedcampaign import ROOT, copied, run
 
-from reduction.batch.progress import Silent
+from reduction.batch.campaign_status import Silent
+from reduction.batch.verification import Finding, Kind, verify_campaign
 from reduction.campaign.load import load_campaign
-from reduction.verify import Finding, Kind, verify_campaign
 
 NAME = "two-tethers"
 
@@ -33,8 +33,8 @@ def place(made, tmp_path):
 @pytest.fixture
 def without_tables(monkeypatch):
     """Leave out what takes longest, where a test is not about tables and pages."""
-    monkeypatch.setattr("reduction.verify._of_tables", lambda *given: (0, []))
-    monkeypatch.setattr("reduction.batch.run.write_report", lambda *given, **more: None)
+    monkeypatch.setattr("reduction.batch.verification._of_tables", lambda *given: (0, []))
+    monkeypatch.setattr("reduction.batch.run_campaign.write_report", lambda *given, **more: None)
 
 
 def verified(place):

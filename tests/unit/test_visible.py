@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reduction.errors import LogError, SettingsError
-from reduction.visible import bare_cell, cut, safe_cell, toml_comment, toml_text, visible
+from reduction.record.errors import LogError, SettingsError
+from reduction.record.plain_text import bare_cell, cut, safe_cell, toml_comment, toml_text, visible
 
 
 @given(st.text())

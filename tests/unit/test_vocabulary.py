@@ -2,7 +2,7 @@
 
 import pytest
 
-from reduction.vocabulary import (
+from reduction.quantities.names import (
     QUANTITIES,
     RESPONSE_PATTERNS,
     RESPONSES,

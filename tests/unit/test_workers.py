@@ -8,11 +8,11 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from reduction import workers
-from reduction.cycles.product import Cycles
-from reduction.moduli.tangent import tangent_curves
-from reduction.settings import ModulusSettings
-from reduction.workers import run_blocks
+from reduction.record.arrays import run_blocks
+from reduction.record.measurement import arrays as workers
+from reduction.record.settings import ModulusSettings
+from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.moduli.tangent_modulus import tangent_curves
 
 
 def test_results_come_in_the_order_of_the_items() -> None:

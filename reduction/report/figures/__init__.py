@@ -1,1 +1,1 @@
-"""One function a figure: an archive in, plain plotly dictionaries out."""
+"""Figures of the report."""

@@ -1,0 +1,611 @@
+"""The archives of outcomes, predictions and comparisons of a campaign.
+
+Along ``outcome``, one entry a row of the table of results.  A value stands under the name of its
+quantity, with its unit; it is NaN under the names of the others.  What no row says is absent.
+``outcome_use`` is what statistics make of the value: a break in the termination and a test that
+was stopped are lower bounds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import chain
+from typing import Any, get_args
+
+import numpy as np
+import xarray as xr
+
+from reduction.archive.dataset_builder import build_dataset, part_attributes
+from reduction.archive.schema import COMPARISON_SCHEMA, HOSE_STATES, PREDICTION_SCHEMA
+from reduction.archive.shared_errors import component_values
+from reduction.archive.variables import (
+    NO_YES,
+    STATED,
+    Values,
+    Variable,
+    count,
+    flag,
+    label,
+    numbers,
+    pad,
+    pad_texts,
+    stated,
+    texts,
+)
+from reduction.experiments.outcomes import Outcome, OutcomeQuantity, Place
+from reduction.prediction.comparison_error import Calibration, Comparison
+from reduction.prediction.hose_prediction import PredictedHose
+from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseEvents
+from reduction.prediction.hose_tension import predict_hose
+from reduction.prediction.hose_uncertainty import EventUncertainty
+from reduction.prediction.measured_curve import CURVES
+from reduction.quantities.names import quantity
+from reduction.record.contributions import combined_standard_uncertainty
+from reduction.record.errors import ArchiveError
+from reduction.record.measurement import Floats, Origin
+
+_OF_CURVE = {
+    "tension_bias": "bias",
+    "tension_rms": "rms",
+    "tension_relative_rms": "relative_rms",
+    "worst_strain": "worst_strain",
+    "worst_tension_difference": "worst_difference",
+}
+
+_OF_VALIDATION = {
+    "coverage_factor": "coverage_factor",
+    "largest_ratio": "ratio",
+    "largest_ratio_strain": "ratio_strain",
+    "chi_square": "chi_square",
+    "chi_square_freedom": "chi_square_freedom",
+    "chi_square_probability": "chi_square_probability",
+    "uncertainty_share": "share",
+}
+
+_OF_EVENT = {
+    "event_strain": "strain",
+    "event_tension": "tension",
+    "event_measured_tension": "measured_tension",
+    "event_tension_difference": "tension_difference",
+    "event_tension_difference_standard_uncertainty": "tension_difference_standard_uncertainty",
+    "event_measured_strain": "measured_strain",
+    "event_strain_difference": "strain_difference",
+    "event_strain_difference_standard_uncertainty": "strain_difference_standard_uncertainty",
+}
+
+_OF_ENERGY = {
+    "energy_strain_low": "strain_low",
+    "energy_strain_high": "strain_high",
+    "measured_energy": "measured",
+    "predicted_energy": "predicted",
+    "energy_difference": "difference",
+    "loop_energy": "loop",
+    "loop_energy_share": "loop_share",
+}
+
+_OF_PARAMETER = {
+    "parameter_start": "start",
+    "parameter_value": "value",
+    "parameter_value_standard_uncertainty": "standard_uncertainty",
+    "parameter_low": "low",
+    "parameter_high": "high",
+    "parameter_lower_bound": "lower_bound",
+    "parameter_upper_bound": "upper_bound",
+}
+
+_NOT_ASKED = 2
+
+_RANDOM = "_random_standard_uncertainty"
+
+
+@dataclass(frozen=True)
+class NamedComparison:
+    """A comparison with what it is of."""
+
+    name: str
+    test: str
+    specimen: str
+    hose: str
+    comparison: Comparison
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Of the comparison, its verdict and its calibration, none twice."""
+        found = self.comparison
+        own = () if found.calibration is None else found.calibration.notes
+        return tuple(dict.fromkeys((*found.notes, *found.validation.notes, *own)))
+
+
+def comparisons_to_dataset(named: Sequence[NamedComparison], *, origin: Origin) -> xr.Dataset:
+    """Bring comparisons into the form of the archive; no file is touched.
+
+    Parameters
+    ----------
+    named : sequence of NamedComparison
+        One or more, each with a name of its own.
+    origin : Origin
+        The campaign, the archives of the tests, and the file that says how the hoses are made.
+
+    Returns
+    -------
+    dataset : xarray.Dataset
+        Names, dimensions and attributes of `COMPARISON_SCHEMA`, encoding included. Equal
+        inputs give equal datasets.
+
+    Raises
+    ------
+    ArchiveError
+        If there is no comparison, or two have one name.
+    """
+    names = [one.name for one in named]
+    if not named or len(set(names)) < len(names):
+        raise ArchiveError(
+            "the comparisons cannot be kept", found=", ".join(names) or "none",
+            needed="one or more, each with a name of its own",
+        )  # fmt: skip
+    found = [one.comparison for one in named]
+    values: Values = {
+        "comparison": texts(names),
+        "curve": texts(CURVES),
+        "hose_event": texts([event.name for event in found[0].events]),
+        "comparison_test": texts([one.test for one in named]),
+        "comparison_specimen": texts([one.specimen for one in named]),
+        "comparison_hose": texts([one.hose for one in named]),
+        "comparison_loading": texts([one.measured.loading for one in found]),
+        "judged_curve": texts([one.judged for one in found]),
+        "note_comparison": texts([one.name for one in named for _ in one.notes]),
+        "note": texts([note for one in named for note in one.notes]),
+    }
+    values |= _compared_curves(found) | _judgement_values(found) | _calibration_values(found)
+    for axis, along in (
+        ("comparison_point", "strain"),
+        ("comparison_cycle", "cycle_bias"),
+        ("parameter", "parameter_value"),
+        ("parameter_other", "parameter_value"),
+    ):
+        if along in values:
+            values[axis] = np.arange(1, values[along].shape[1] + 1)
+    return build_dataset(
+        values,
+        COMPARISON_SCHEMA,
+        attributes=part_attributes("comparisons", names, origin=origin),
+    )
+
+
+def _compared_curves(found: Sequence[Comparison]) -> Values:
+    length = max(one.measured.strain.size for one in found)
+    shape = (len(found), len(CURVES), length)
+    values: Values = {
+        name: np.full(shape, np.nan)
+        for name in (
+            "measured_tension",
+            f"measured_tension{_RANDOM}",
+            "tension_difference",
+        )
+    }
+    values |= {name: np.full(shape[:2], np.nan) for name in _OF_CURVE}
+    for row, one in enumerate(found):
+        size = one.measured.strain.size
+        for place, curve in enumerate(CURVES):
+            if curve not in one.differences:
+                continue
+            difference = one.differences[curve]
+            values["measured_tension"][row, place, :size] = one.measured.tension_of(curve)
+            values[f"measured_tension{_RANDOM}"][row, place, :size] = (
+                one.measured.standard_uncertainty_of(curve)
+            )
+            values["tension_difference"][row, place, :size] = difference.difference
+            for name, field in _OF_CURVE.items():
+                values[name][row, place] = getattr(difference, field)
+    values |= _shared_values(found, values)
+    values["strain"] = pad([one.measured.strain for one in found])
+    values["predicted_tension"] = pad([one.prediction.tension for one in found])
+    values["predicted_tension_standard_uncertainty"] = pad(
+        [one.validation.input_standard_uncertainty for one in found]
+    )
+    values["validation_uncertainty"] = pad([one.validation.standard_uncertainty for one in found])
+    return values
+
+
+def _shared_values(found: Sequence[Comparison], values: Values) -> Values:
+    """What the samples of each test share, and the uncertainty of its curves with it."""
+    measured = values["measured_tension"]
+    component = sorted({each for one in found for each in one.measured.component})
+    rows = np.zeros((len(component), *measured.shape))
+    for place, one in enumerate(found):
+        own = [component.index(each) for each in one.measured.component]
+        rows[own, place, :, : one.measured.strain.size] = one.measured.contribution
+    return component_values(component) | {
+        # where there is no tension, nothing contributes to it
+        "measured_tension_uncertainty_contribution": np.where(np.isnan(measured), np.nan, rows),
+        "measured_tension_standard_uncertainty": combined_standard_uncertainty(
+            rows, values[f"measured_tension{_RANDOM}"]
+        ),
+    }
+
+
+def _judgement_values(found: Sequence[Comparison]) -> Values:
+    values: Values = {
+        name: np.array([float(getattr(one.validation, field)) for one in found])
+        for name, field in _OF_VALIDATION.items()
+    }
+    for name in ("measured_pick_up_strain", "measured_pick_up_strain_standard_uncertainty"):
+        values[name] = np.array([getattr(one, name) for one in found])
+    values |= {
+        "agrees": np.array([int(one.validation.agrees) for one in found]),
+        "is_informative": np.array([int(one.validation.is_informative) for one in found]),
+        "verdict": texts([one.validation.verdict for one in found]),
+        "cycle_bias": pad([one.cycles.bias for one in found]),
+        "cycle_rms": pad([one.cycles.rms for one in found]),
+        "bias_per_decade": np.array([one.cycles.bias_per_decade for one in found]),
+        "bias_per_decade_standard_uncertainty": np.array(
+            [one.cycles.bias_per_decade_standard_uncertainty for one in found]
+        ),
+    }
+    numbers = np.zeros(values["cycle_bias"].shape, dtype=np.int32)
+    for row, one in zip(numbers, found, strict=True):
+        row[: one.cycles.cycle_number.size] = one.cycles.cycle_number
+    values["comparison_cycle_number"] = numbers
+    for name, field in _OF_EVENT.items():
+        values[name] = np.array([[getattr(event, field) for event in one.events] for one in found])
+    for name, field in _OF_ENERGY.items():
+        values[name] = np.array([getattr(one.energy, field) for one in found])
+    return values
+
+
+def _calibration_values(found: Sequence[Comparison]) -> Values:
+    """Nothing where no number was to be fitted."""
+    fits = [one.calibration for one in found]
+    most = max((len(fit.parameter) for fit in fits if fit is not None), default=0)
+    if not most:
+        return {}
+    named = [() if fit is None else fit.parameter for fit in fits]
+    values: Values = {
+        "parameter_name": pad_texts(named),
+        "parameter_unit": pad_texts([[quantity(name).unit for name in names] for names in named]),
+        "parameter_is_at_bound": (_rows(fits, "is_at_bound") == 1).astype(np.int8),
+        "calibrated_tension": pad(
+            [
+                one.measured.strain * np.nan
+                if one.calibration is None
+                else predict_hose(one.calibration.design, one.measured.strain).tension
+                for one in found
+            ]
+        ),
+        "is_identified": np.array(
+            [_NOT_ASKED if fit is None else int(fit.identifiability.is_identified) for fit in fits]
+        ),
+        "identifiability": texts(
+            ["" if fit is None else fit.identifiability.words for fit in fits]
+        ),
+    }
+    values |= {name: _rows(fits, field) for name, field in _OF_PARAMETER.items()}
+    correlation = np.full((len(fits), most, most), np.nan)
+    for table, fit in zip(correlation, fits, strict=True):
+        if fit is not None:
+            size = len(fit.parameter)
+            table[:size, :size] = fit.correlation
+    values["parameter_correlation"] = correlation
+    for name in ("bias", "rms", "relative_rms"):
+        values[f"calibrated_{name}"] = np.array(
+            [np.nan if fit is None else getattr(fit.after, name) for fit in fits]
+        )
+    for name in ("collinearity", "least_change", "needed_change"):
+        values[name] = np.array(
+            [np.nan if fit is None else getattr(fit.identifiability, name) for fit in fits]
+        )
+    for name in ("model_error", "effective_points"):
+        values[name] = np.array([np.nan if fit is None else getattr(fit, name) for fit in fits])
+    return values
+
+
+def _rows(fits: Sequence[Calibration | None], field: str) -> Floats:
+    return pad([() if fit is None else getattr(fit, field) for fit in fits])
+
+
+EVENTS = ("deepest_slack", "pick_up", "working", "cord_break")
+
+_STATES = {
+    "slack": "is_slack",
+    "broken": "is_broken",
+    "jammed": "is_jammed",
+    "bore_too_small": "is_bore_too_small",
+}
+
+_ALONG = (
+    "strain", "free_strain", "tension", "fill_pressure", "cord_tension", "cord_strain",
+    "cord_share", "rubber_share", "end_cap_load", "current_wrap_angle", "cord_spacing",
+    "current_inner_diameter",
+)  # fmt: skip
+
+_AT_EVENT = ("strain", "tension", "fill_pressure", "cord_tension", "cord_strain")
+
+_DESIGN = (
+    "wrap_angle", "inner_diameter", "outer_diameter", "cords_per_length", "cord_diameter",
+    "rubber_modulus", "working_share", "cord_load_scale", "cord_strain_scale",
+    "dead_length_share", "minimum_inner_diameter",
+)  # fmt: skip
+
+_OF_LAYER = ("least_strain", "greatest_strain", "break_strain", "least_angle", "greatest_angle")
+
+
+def predictions_to_dataset(hoses: Sequence[PredictedHose], *, origin: Origin) -> xr.Dataset:
+    """Bring predictions into the form of the archive; no file is touched.
+
+    Parameters
+    ----------
+    hoses : sequence of PredictedHose
+        One or more, each with a name of its own.
+    origin : Origin
+        The campaign, and the file that says how the hoses are made.
+
+    Returns
+    -------
+    dataset : xarray.Dataset
+        Names, dimensions and attributes of `PREDICTION_SCHEMA`, encoding included. Equal
+        inputs give equal datasets.
+
+    Raises
+    ------
+    ArchiveError
+        If there is no hose, or two have one name.
+    """
+    names = [hose.plan.name for hose in hoses]
+    if not hoses or len(set(names)) < len(names):
+        raise ArchiveError(
+            "the predictions cannot be kept", found=", ".join(names) or "none",
+            needed="one or more hoses, each with a name of its own",
+        )  # fmt: skip
+    values: Values = {
+        "hose": texts(names),
+        "hose_event": texts(EVENTS),
+        "cord_layer": texts(("inner", "outer")),
+        "rubber_law": texts([hose.plan.design.rubber_law for hose in hoses]),
+        "note_hose": texts([hose.plan.name for hose in hoses for _ in hose.notes]),
+        "note": texts([note for hose in hoses for note in hose.notes]),
+    }
+    values |= _design_values(hoses) | _predicted_curves(hoses) | _event_values(hoses)
+    values |= _uncertainty_values(hoses) | _layer_values(hoses)
+    for axis, along in (("hose_point", "strain"), ("cord_point", "cord_curve_strain")):
+        values[axis] = np.arange(1, values[along].shape[1] + 1)
+    return build_dataset(
+        values,
+        PREDICTION_SCHEMA,
+        attributes=part_attributes("predictions", names, origin=origin),
+    )
+
+
+def _design_values(hoses: Sequence[PredictedHose]) -> Values:
+    designs = [hose.plan.design for hose in hoses]
+    values: Values = {
+        name: np.array([float(getattr(design, name)) for design in designs]) for name in _DESIGN
+    }
+    values["layer_diameter"] = np.array([design.layer_diameter for design in designs], dtype=float)
+    values["ribbon_width"] = np.array([hose.ribbon_width for hose in hoses])
+    values["number_of_cords"] = np.array([hose.number_of_cords for hose in hoses])
+    values["cord_curve_strain"] = pad([design.cord.strain for design in designs])
+    values["cord_curve_load"] = pad([design.cord.load for design in designs])
+    for name in HOSE_PARAMETERS:
+        spread = np.array(
+            [hose.plan.standard_uncertainty.get(name, np.nan) for hose in hoses], dtype=float
+        )
+        if np.isfinite(spread).any():
+            both = name == "layer_diameter"
+            values[f"{name}_standard_uncertainty"] = np.stack([spread] * 2, 1) if both else spread
+    return values
+
+
+def _predicted_curves(hoses: Sequence[PredictedHose]) -> Values:
+    values: Values = {
+        name: pad([getattr(hose.prediction, name) for hose in hoses]) for name in _ALONG
+    }
+    state = np.zeros(values["strain"].shape, dtype=np.uint16)
+    for row, hose in zip(state, hoses, strict=True):
+        for name, bit in HOSE_STATES.items():
+            is_so = getattr(hose.prediction, _STATES[name])
+            row[: is_so.size] |= np.where(is_so, bit, 0).astype(np.uint16)
+    return values | {"hose_state": state}
+
+
+def _event_values(hoses: Sequence[PredictedHose]) -> Values:
+    def at(events: HoseEvents, name: str) -> list[float]:
+        return [float(getattr(getattr(events, event), name)) for event in EVENTS]
+
+    return {
+        f"event_{name}": np.array([at(hose.events, name) for hose in hoses]) for name in _AT_EVENT
+    }
+
+
+def _uncertainty_values(hoses: Sequence[PredictedHose]) -> Values:
+    """Nothing of hoses of which no number is uncertain."""
+    given = [hose.uncertainty for hose in hoses]
+    sources = [name for name in HOSE_PARAMETERS if any(name in one.source for one in given)]
+    if not sources:
+        return {}
+    n_points = max(hose.prediction.strain.size for hose in hoses)
+    values: Values = {"uncertainty_source": texts(sources)}
+    for name in ("tension", "fill_pressure"):
+        parts = np.full((len(hoses), len(sources), n_points), np.nan)
+        for part, hose in zip(parts, hoses, strict=True):
+            found: Floats = getattr(hose.uncertainty, f"{name}_contribution")
+            part[:, : found.shape[-1]] = 0.0
+            for source, row in zip(hose.uncertainty.source, found, strict=True):
+                part[sources.index(source), : row.size] = row
+        values[f"{name}_contribution"] = parts
+        values[f"{name}_standard_uncertainty"] = pad(
+            [
+                _nan_where_exact(hose, getattr(hose.uncertainty, f"{name}_standard_uncertainty"))
+                for hose in hoses
+            ]
+        )
+    for name in ("strain", "tension", "fill_pressure"):
+        values[f"event_{name}_standard_uncertainty"] = np.array(
+            [[_at_event(hose, event, name) for event in EVENTS] for hose in hoses]
+        )
+    return values
+
+
+def _nan_where_exact(hose: PredictedHose, values: Floats) -> Floats:
+    """NaN, not zero, of a hose of which no number is uncertain."""
+    return values if hose.uncertainty.source else np.full(values.shape, np.nan)
+
+
+def _at_event(hose: PredictedHose, event: str, name: str) -> float:
+    found: EventUncertainty = getattr(hose.uncertainty, event)
+    if not hose.uncertainty.source:
+        return np.nan
+    return float(getattr(found, f"{name}_standard_uncertainty"))
+
+
+def _layer_values(hoses: Sequence[PredictedHose]) -> Values:
+    most = max(len(hose.layers) for hose in hoses)
+    if not most:
+        return {}
+    values: Values = {
+        "hose_layer": np.arange(1, most + 1),
+        "hose_layer_name": pad_texts([[one.layer.name for one in hose.layers] for hose in hoses]),
+    }
+    for name in ("wrap_angle", "strain_limit", "compression_limit"):
+        values[f"hose_layer_{name}"] = pad(
+            [[getattr(one.layer, name) for one in hose.layers] for hose in hoses]
+        )
+    for name in _OF_LAYER:
+        values[f"hose_layer_{name}"] = pad(
+            [[getattr(one, name) for one in hose.layers] for hose in hoses]
+        )
+    return values
+
+
+_ALONG_OUTCOMES = ("outcome",)
+
+_QUANTITIES: tuple[OutcomeQuantity, ...] = get_args(OutcomeQuantity)
+
+_PLACES: tuple[Place, ...] = get_args(Place)
+
+_USES = {"value": 0, "lower_bound": 1, "excluded": 2}
+
+_TEXTS = ("test", "specimen", "line", "material", "construction", "condition", "mode", "note")
+
+_NUMBERS = (
+    "diameter", "exposure", "minimum_load", "peak_load", "minimum_load_ratio", "peak_load_ratio",
+)  # fmt: skip
+
+_COMPANIONS = ("outcome_use",)
+
+OUTCOME_SCHEMA: dict[str, Variable] = {
+    row.name: row
+    for row in chain(
+        count("outcome_row", _ALONG_OUTCOMES),
+        flag(
+            "outcome_quantity",
+            _ALONG_OUTCOMES,
+            {name: code for code, name in enumerate(_QUANTITIES)},
+        ),
+        *(stated(name, _ALONG_OUTCOMES, STATED, ancillary=_COMPANIONS) for name in _QUANTITIES),
+        flag("outcome_use", _ALONG_OUTCOMES, _USES),
+        *(label(f"outcome_{name}", _ALONG_OUTCOMES) for name in _TEXTS),
+        *(stated(f"outcome_{name}", _ALONG_OUTCOMES, STATED) for name in _NUMBERS),
+        flag("outcome_place", _ALONG_OUTCOMES, {name: code for code, name in enumerate(_PLACES)}),
+        flag("outcome_is_valid", _ALONG_OUTCOMES, NO_YES),
+        flag("outcome_is_suspended", _ALONG_OUTCOMES, NO_YES),
+    )
+}
+
+"""Every variable that an archive of outcomes may have."""
+
+
+def outcomes_to_dataset(outcomes: Sequence[Outcome], *, origin: Origin) -> xr.Dataset:
+    """Bring outcomes into the form of the archive; no file is touched.
+
+    Parameters
+    ----------
+    outcomes : sequence of Outcome
+        One or more, in the order of the table of results.
+    origin : Origin
+        The campaign, and the table of results as the only source.
+
+    Returns
+    -------
+    dataset : xarray.Dataset
+        Names, dimensions and attributes of `OUTCOME_SCHEMA`, encoding included. Equal inputs
+        give equal datasets.
+
+    Raises
+    ------
+    ArchiveError
+        If there is no outcome, or an attribute has a name that the archive keeps.
+    """
+    if not outcomes:
+        raise ArchiveError("there are no outcomes to keep", needed="one or more")
+    values: Values = {
+        "outcome_row": np.array([one.row for one in outcomes]),
+        "outcome_quantity": np.array([_QUANTITIES.index(one.quantity) for one in outcomes]),
+        "outcome_use": np.array([_USES[one.use] for one in outcomes]),
+        "outcome_place": np.array([_PLACES.index(one.place) for one in outcomes]),
+        "outcome_is_valid": np.array([one.is_valid for one in outcomes]),
+        "outcome_is_suspended": np.array([one.is_suspended for one in outcomes]),
+    }
+    for measured in _QUANTITIES:
+        own = [one.value if one.quantity == measured else None for one in outcomes]
+        values[measured] = numbers(own)
+    for name in _TEXTS:
+        values[f"outcome_{name}"] = texts([getattr(one, name) for one in outcomes])
+    for name in _NUMBERS:
+        values[f"outcome_{name}"] = numbers([getattr(one, name) for one in outcomes])
+    return build_dataset(
+        {name: array for name, array in values.items() if _says_something(array)},
+        OUTCOME_SCHEMA,
+        attributes=part_attributes("outcomes", origin=origin),
+    )
+
+
+def _says_something(array: np.ndarray[Any, np.dtype[Any]]) -> bool:
+    if array.dtype.kind == "U":
+        return any(array)
+    return array.dtype.kind != "f" or bool(np.isfinite(array).any())
+
+
+def outcomes_of_dataset(dataset: xr.Dataset) -> tuple[Outcome, ...]:
+    """Return the outcomes that an archive holds, as they were.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        From `reduction.archive.open.open_archive`.
+
+    Returns
+    -------
+    outcomes : tuple of Outcome
+        In the order of the table of results.
+
+    Raises
+    ------
+    ArchiveError
+        If it is no archive of outcomes.
+    """
+    if "outcome" not in dataset.sizes:
+        raise ArchiveError(
+            "the archive holds no outcomes", found=", ".join(map(str, dataset.sizes))
+        )
+    size = dataset.sizes["outcome"]
+
+    def column(name: str, missing: object) -> list[Any]:
+        # tolist gives numbers of Python, which print and compare as those that were read
+        return dataset.variables[name].values.tolist() if name in dataset else [missing] * size
+
+    quantity = [_QUANTITIES[code] for code in column("outcome_quantity", 0)]
+    by_quantity = {name: column(name, np.nan) for name in _QUANTITIES}
+    kept: dict[str, list[Any]] = {name: column(f"outcome_{name}", "") for name in _TEXTS}
+    kept |= {name: column(f"outcome_{name}", np.nan) for name in _NUMBERS}
+    kept |= {
+        "quantity": quantity,
+        "value": [by_quantity[name][place] for place, name in enumerate(quantity)],
+        "place": [_PLACES[code] for code in column("outcome_place", 0)],
+        "is_valid": [bool(value) for value in column("outcome_is_valid", 1)],
+        "is_suspended": [bool(value) for value in column("outcome_is_suspended", 0)],
+        "row": column("outcome_row", 0),
+    }
+    return tuple(
+        Outcome(**dict(zip(kept, row, strict=True))) for row in zip(*kept.values(), strict=True)
+    )

@@ -1,0 +1,134 @@
+"""A processed campaign as one tree of datasets, loaded on demand."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from reduction.archive.open import OF_CAMPAIGN, Chunks, archives_of_tests, open_archive
+from reduction.record.errors import ArchiveError, SettingsError
+
+# what an archive says of itself: of a campaign with one archive it is not said either
+_OF_ONE_ARCHIVE = frozenset(
+    {
+        "id", "test", "test_kind", "test_order", "raw_file", "raw_file_sha256", "raw_file_bytes",
+        "raw_metadata", "stored_samples", "settings", "key", "history",
+    }
+)  # fmt: skip
+
+
+def open_campaign(path: str | Path, *, chunks: Chunks | None = None) -> xr.DataTree | xr.Dataset:
+    """Open a processed campaign, or one of its archives; nothing but labels is read.
+
+    Parameters
+    ----------
+    path : str or pathlib.Path
+        ``processed/<campaign>``, or one archive in it.
+    chunks : int or mapping of str to int or "auto", optional
+        Passed on to Dask, if it is installed: values of a chunk by dimension, such as
+        ``{"sample": 655360}`` or ``{"sample": "auto"}``; ``{}`` for chunks as they are stored.
+        Without it variables are no Dask arrays, and are read when they are asked for all the same.
+
+    Returns
+    -------
+    campaign : xarray.DataTree or xarray.Dataset
+        Of a folder a tree: one node a test (a step is ``<test>.<step>``), and nodes ``surfaces``,
+        ``outcomes``, ``predictions``, ``comparisons`` and ``change_in_length`` where there are
+        such archives; the attributes in which all of them agree stand on the root. Of a file
+        its dataset. To be closed, or used with ``with``.
+
+    Raises
+    ------
+    ArchiveError
+        If there is nothing of that name, no archive in the folder, a file that is no archive of
+        this version, or the archives are of more than one campaign.
+    SettingsError
+        If Dask is wanted and not installed, refuses the chunks, or no archive has a dimension
+        of the name.
+
+    Examples
+    --------
+    >>> import reduction
+    >>> reduction.open_campaign("processed/none")
+    Traceback (most recent call last):
+    reduction.record.errors.ArchiveError: there is no processed campaign processed/none; needed
+    the folder of a campaign in processed/, or an archive. Run the campaign first.
+    """
+    path = Path(path)
+    if path.is_file():
+        with ExitStack() as opened:
+            archive = opened.enter_context(open_archive(path, chunks=chunks))
+            _refuse_unknown(chunks, [archive])
+            opened.pop_all()
+        return archive
+    if not path.is_dir():
+        raise ArchiveError(
+            f"there is no processed campaign {path.as_posix()}",
+            needed="the folder of a campaign in processed/, or an archive",
+            hint="Run the campaign first.",
+        )
+    whole = (path / f"{name}.nc" for name in OF_CAMPAIGN)
+    archives = [*archives_of_tests(path), *(one for one in whole if one.is_file())]
+    if not archives:
+        raise _without_archives(path)
+    with ExitStack() as opened:
+        nodes = {
+            one.stem: opened.enter_context(open_archive(one, chunks=chunks)) for one in archives
+        }
+        _refuse_unknown(chunks, nodes.values())
+        _refuse_several({name: one.attrs.get("campaign", "") for name, one in nodes.items()})
+        root = xr.Dataset(attrs=_in_common(one.attrs for one in nodes.values()))
+        tree = xr.DataTree.from_dict({"/": root} | nodes, name=root.attrs.get("campaign"))
+        # each file is now closed by its node
+        for name, one in nodes.items():
+            tree[name].set_close(one.close)
+        opened.pop_all()
+    return tree
+
+
+def _without_archives(folder: Path) -> ArchiveError:
+    """Say what to open instead where the folder is the one above."""
+    campaigns = sorted({one.parent.name for one in folder.glob("*/*.nc")})
+    return ArchiveError(
+        f"no archive in {folder.as_posix()}",
+        found=f"folders of campaigns: {', '.join(campaigns)}" if campaigns else "no .nc file",
+        needed="the folder of one campaign, with <test>.nc",
+        hint="Open one of them." if campaigns else "Run the campaign first.",
+    )
+
+
+def _refuse_unknown(chunks: Chunks | None, archives: Collection[xr.Dataset]) -> None:
+    """One that only some archives have is right; one that none has is misspelt."""
+    dimensions = {str(name) for one in archives for name in one.dims}
+    named = chunks if isinstance(chunks, Mapping) else ()
+    unknown = sorted(set(named) - dimensions)
+    if unknown:
+        raise SettingsError(
+            "chunks name a dimension that no archive has",
+            found=", ".join(unknown),
+            needed=", ".join(sorted(dimensions)),
+        )
+
+
+def _refuse_several(campaigns: Mapping[str, str]) -> None:
+    if len(set(campaigns.values())) > 1:
+        raise ArchiveError(
+            "the archives in this folder are of more than one campaign",
+            found=", ".join(f"{name} of {campaign}" for name, campaign in campaigns.items()),
+            needed="one campaign a folder",
+            hint="Open each archive by its own path.",
+        )
+
+
+def _in_common(attributes: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    """Attributes that every archive has with the same text, in the order of the first."""
+    first, *others = attributes
+    return {
+        name: text
+        for name, text in first.items()
+        if name not in _OF_ONE_ARCHIVE and all(one.get(name) == text for one in others)
+    }

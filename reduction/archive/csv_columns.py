@@ -1,0 +1,610 @@
+"""Columns and rows of a CSV table, written block by block."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from functools import cached_property, partial
+from itertools import pairwise
+from math import prod
+from pathlib import Path
+from typing import Any, Literal, TypeVar
+
+import numpy as np
+import pyarrow  # type: ignore[import-untyped]
+import pyarrow.compute  # type: ignore[import-untyped]
+import xarray as xr
+from numpy.typing import NDArray
+
+from reduction.archive.campaign_products import outcomes_of_dataset
+from reduction.archive.rope_properties import PROPERTY_SCHEMA
+from reduction.archive.schema import (
+    COMPARISON_SCHEMA,
+    PREDICTION_SCHEMA,
+    SURFACE_SCHEMA,
+    rows_of_response,
+    schema_of,
+)
+from reduction.archive.variables import TEXT, Variable, count, label, measured, stated
+from reduction.archive.write import appended_whole
+from reduction.experiments.outcome_groups import (
+    EXPOSURE_COLUMNS,
+    FATIGUE_COLUMNS,
+    LOAD_LIFE_COLUMNS,
+    STRENGTH_COLUMNS,
+    OutcomeColumn,
+    Row,
+    exposure_rows,
+    fatigue_rows,
+    load_life_rows,
+    strength_rows,
+)
+from reduction.record.measurement import Bools, Floats
+from reduction.record.plain_text import safe_cell
+
+_LOW, _HIGH = 1e-4, 1e9
+
+"""Between these Arrow, which is three times as fast, and Python write a number alike."""
+
+
+def number_texts(values: Floats) -> list[str]:
+    """Return numbers as Python writes them, NaN as an empty text.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Any numbers. [any]
+
+    Returns
+    -------
+    texts : list of str
+        One a number.
+
+    Notes
+    -----
+    The shortest digits that give a number back are the same, whoever finds them; Python and Arrow
+    differ in where they begin to write a power of ten, in how, and in the point of a whole number.
+
+    Examples
+    --------
+    >>> number_texts(np.array([0.1, 2.0, 1e-7, np.nan]))
+    ['0.1', '2.0', '1e-07', '']
+    """
+    numbers = np.asarray(values, dtype=np.float64)
+    size = np.abs(numbers)
+    is_alike = (size >= _LOW) & (size < _HIGH) & (numbers != np.trunc(numbers))
+    texts: list[str] = pyarrow.compute.cast(pyarrow.array(numbers), pyarrow.string()).to_pylist()
+    other = np.flatnonzero(~is_alike)
+    for place, number in zip(other.tolist(), numbers[other].tolist(), strict=True):
+        texts[place] = "" if number != number else repr(number)  # NaN alone is not itself
+    return texts
+
+
+Cell = str | int | float | None
+
+_Label = TypeVar("_Label", int, str)
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column: name, what it holds, and the variable that its values come from."""
+
+    name: str
+    variable: Variable
+
+    @property
+    def header(self) -> str:
+        """Name with the unit where it is a real number."""
+        is_real = self.variable.dtype == "f8"
+        return f"{self.name} [{self.variable.unit}]" if is_real else self.name
+
+    @property
+    def description(self) -> list[Cell]:
+        """Header, unit, meaning, and why there is no uncertainty: a row of columns.csv."""
+        row = self.variable
+        unit = "" if row.is_text or row.flags else row.unit
+        return [self.header, unit, row.long_name, row.no_uncertainty]
+
+
+def uncertainty_of(column: Column) -> Column:
+    """Return the column that stands beside a measured one."""
+    name = f"{column.name}_standard_uncertainty"
+    source = f"{column.variable.name}_standard_uncertainty"
+    return Column(
+        name, Variable(source, column.variable.dims, "f8", no_uncertainty="is an uncertainty")
+    )
+
+
+def texts_of_columns(columns: Sequence[tuple[NDArray[Any], Variable]]) -> list[list[str]]:
+    """Return columns of one length as fields, those of real numbers written in one go.
+
+    Parameters
+    ----------
+    columns : sequence of ndarray, shape (n_rows,), and Variable
+        Values, and what they are. [unit of each]
+
+    Returns
+    -------
+    texts : list of list of str
+        A field a row of each, as `texts_of` has it.
+    """
+    is_real = [
+        values.dtype.kind == "f" and not variable.flags and variable.dtype != TEXT
+        for values, variable in columns
+    ]
+    real = [values for (values, _), one in zip(columns, is_real, strict=True) if one]
+    written = number_texts(np.concatenate(real)) if real else []
+    numbers = (written[len(part) * at : len(part) * (at + 1)] for at, part in enumerate(real))
+    return [
+        next(numbers) if one else texts_of(values, variable)
+        for (values, variable), one in zip(columns, is_real, strict=True)
+    ]
+
+
+def texts_of(values: NDArray[Any], variable: Variable) -> list[str]:
+    """Return the values of a column as fields of a CSV file; flags as their meanings.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_rows,)
+        Of the variable. [its unit]
+    variable : Variable
+        What they are.
+
+    Returns
+    -------
+    texts : list of str
+        A field a row, quoted where it has to be.
+    """
+    if variable.flags:
+        return _labels([int(value) for value in values], partial(_flag_text, variable=variable))
+    if variable.dtype == TEXT:
+        return _labels([str(value) for value in values], str)
+    if values.dtype.kind == "f":
+        return number_texts(values)
+    return [repr(value) for value in values.tolist()]
+
+
+def _labels(labels: Sequence[_Label], worded: Callable[[_Label], str]) -> list[str]:
+    """Put labels, most of which repeat, in fields."""
+    field = {label: csv_field(worded(label)) for label in set(labels)}
+    return [field[label] for label in labels]
+
+
+def _flag_text(value: int, variable: Variable) -> str:
+    if variable.is_mask:
+        return " ".join(name for name, bit in variable.flags.items() if value & bit)
+    return next((name for name, number in variable.flags.items() if number == value), str(value))
+
+
+def csv_field(cell: Cell) -> str:
+    """Return a cell as a field of a CSV file, quoted where it has to be.
+
+    Examples
+    --------
+    >>> print(csv_field(0.1), csv_field("=a, b"))
+    0.1 "'=a, b"
+    """
+    line = io.StringIO()
+    # a second field keeps an empty one from being quoted; ends of lines are, with this terminator
+    csv.writer(line, lineterminator="\r\n").writerow([_written(cell), ""])
+    return line.getvalue().removesuffix(",\r\n")
+
+
+def csv_lines(columns: Iterable[Sequence[str]]) -> str:
+    """Return columns of fields, two at least, as lines of a CSV file.
+
+    Raises
+    ------
+    ValueError
+        If the columns differ in length.
+    """
+    return "".join(f"{line}\r\n" for line in map(",".join, zip(*columns, strict=True)))
+
+
+def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
+    """Return a table as text of a CSV file."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\r\n")
+    writer.writerow(map(safe_cell, header))
+    writer.writerows([_written(cell) for cell in row] for row in rows)
+    return text.getvalue()
+
+
+def _written(cell: Cell) -> str:
+    if cell is None:
+        return ""
+    if isinstance(cell, str):
+        return safe_cell(cell)
+    return repr(cell)
+
+
+Product = Literal[
+    "test", "stepwise test", "experiments", "predictions", "comparisons", "properties"
+]
+
+Variables = Mapping[str, xr.Variable]
+
+"""By name, as those of an archive."""
+
+TEST = Column("test", label("test")[0])
+
+SYNTHETIC = Column("synthetic", label("synthetic")[0])
+
+_OWN = {
+    row.name: row
+    for row in [
+        *count("n_cycles", ()),
+        *measured("chord_modulus_ascending", ("specimen", "cycle")),
+        *measured("chord_modulus_descending", ("specimen", "cycle")),
+        *stated("strain_bin_low", ("strain_bin",), "bound"),
+        *stated("strain_bin_high", ("strain_bin",), "bound"),
+    ]
+}
+
+_OF_RESPONSES = {
+    row.name: row
+    for row in [
+        *label("response"),
+        *label("unit"),
+        *label("response_unit"),
+        *label("coefficient_engineering_unit"),
+        *rows_of_response("response", is_transformed=False),
+    ]
+}
+
+_SCHEMAS: dict[Product, dict[str, Variable]] = {
+    "test": schema_of(is_stepwise=False) | _OWN,
+    "stepwise test": schema_of(is_stepwise=True) | _OWN,
+    "experiments": SURFACE_SCHEMA | _OF_RESPONSES,
+    "predictions": PREDICTION_SCHEMA,
+    "comparisons": COMPARISON_SCHEMA,
+    "properties": PROPERTY_SCHEMA,
+}
+
+
+def _nothing(_: xr.Dataset) -> Variables:
+    return {}
+
+
+@dataclass(frozen=True)
+class Table:
+    """One file of tables: a row for each combination of the entries of ``dims``.
+
+    Parameters
+    ----------
+    name : str
+        File name without suffix.
+    dims : tuple of str
+        Slowest first; a dimension with a coordinate gives a column.
+    variables : tuple of str
+        Of the archive, in order; ``column=variable`` gives it another name here. A
+        measured one is followed by its standard uncertainty.
+    needs : tuple of str
+        A row is written where one of these is known.
+    derive : callable
+        From the archive to variables that the table needs beside or in place of its own.
+    product : str
+        Whose names they are. A row of a test names it; any other names its experiment or hose.
+    """
+
+    name: str
+    dims: tuple[str, ...]
+    variables: tuple[str, ...]
+    needs: tuple[str, ...]
+    derive: Callable[[xr.Dataset], Variables] = _nothing
+    product: Product = "test"
+
+    @cached_property
+    def columns(self) -> list[Column]:
+        """Every column, the test first and the word on synthetic data last."""
+        schema = _SCHEMAS[self.product]
+        columns = [TEST] if self.product in ("test", "stepwise test") else []
+        for item in (*(dim for dim in self.dims if dim in schema), *self.variables):
+            name, _, source = item.partition("=")
+            column = _column(name, schema[source or name])
+            columns.append(column)
+            if column.variable.has_uncertainty:
+                columns.append(uncertainty_of(column))
+        return [*columns, SYNTHETIC]
+
+
+def _column(name: str, variable: Variable) -> Column:
+    # the axis is `branch_name`, since `branch` is a flag of the samples
+    return Column("branch" if name == "branch_name" else name, variable)
+
+
+BLOCK_ROWS = 1 << 12
+
+"""Rows of a block: three megabytes of text where a table is as wide as that of the cycles. [1]"""
+
+
+def table_blocks(
+    archive: xr.Dataset, table: Table, *, block_rows: int = BLOCK_ROWS
+) -> Iterator[list[list[str]]]:
+    """Give the rows that an archive gives to a table; none where it lacks the subject.
+
+    Parameters
+    ----------
+    archive : xarray.Dataset
+        From `reduction.archive.open.open_archive`; of what is as long as the table no more than a
+        block is read at a time.
+    table : Table
+        What to lay out.
+    block_rows : int
+        Most rows of a block. [1]
+
+    Yields
+    ------
+    fields : list of list of str
+        Rows of a block by column, each field as it stands in a CSV file; rows in the order of
+        ``table.dims``, last dimension fastest.
+    """
+    needed = [name for name in table.needs if name in archive]
+    if not needed or not set(table.dims) <= set(archive.sizes):
+        return
+    variables = {str(name): variable for name, variable in archive.variables.items()}
+    variables |= table.derive(archive)
+    sizes = {dim: archive.sizes[dim] for dim in table.dims}
+    global_fields = {
+        TEST.name: csv_field(archive.attrs.get("test", "")),
+        SYNTHETIC.name: csv_field(archive.attrs.get("synthetic", "no")),
+    }
+    columns = table.columns
+    for block in _blocks(sizes, block_rows):
+        laid_out = [_laid_out(variables[name], block) for name in needed]
+        known = np.any([_is_known(values) for values in laid_out], axis=0)
+        n_rows = int(known.sum())
+        if not n_rows:
+            continue
+        values = {
+            place: (_laid_out(variables[column.variable.name], block)[known], column.variable)
+            for place, column in enumerate(columns)
+            if column.name not in global_fields and column.variable.name in variables
+        }
+        texts = dict(zip(values, texts_of_columns(list(values.values())), strict=True))
+        yield [
+            texts[place] if place in texts else [global_fields.get(column.name, "")] * n_rows
+            for place, column in enumerate(columns)
+        ]
+
+
+def _blocks(sizes: Mapping[str, int], most: int) -> Iterator[dict[str, range]]:
+    """Cut the combinations of entries of dimensions, the last fastest, in blocks."""
+    shape = list(sizes.values())
+    # whole along the last dimensions, one entry at a time along the first
+    cut = next(axis for axis in range(len(shape)) if prod(shape[axis + 1 :]) <= most)
+    step = max(1, most // max(1, prod(shape[cut + 1 :])))
+    for outer in np.ndindex(*shape[:cut]):
+        for start in range(0, shape[cut], step):
+            part = range(start, min(start + step, shape[cut]))
+            ranges = [*(range(at, at + 1) for at in outer), part, *map(range, shape[cut + 1 :])]
+            yield dict(zip(sizes, ranges, strict=True))
+
+
+def _laid_out(variable: xr.Variable, block: Mapping[str, range]) -> NDArray[Any]:
+    """Repeat a variable over the dimensions it lacks, and unroll it."""
+    dims = variable.dims
+    own = [dim for dim in block if dim in dims]
+    if any(len(block[dim]) < variable.sizes[dim] for dim in own):
+        variable = variable.isel({dim: slice(block[dim].start, block[dim].stop) for dim in own})
+    values = np.asarray(variable.values)
+    if dims == tuple(block):
+        return values.ravel()
+    values = values.transpose([dims.index(dim) for dim in own])
+    axes = tuple(slice(None) if dim in own else np.newaxis for dim in block)
+    return np.broadcast_to(values[axes], [len(entries) for entries in block.values()]).ravel()
+
+
+def _is_known(values: NDArray[Any]) -> Bools:
+    if values.dtype.kind == "f":
+        return np.asarray(np.isfinite(values), dtype=bool)
+    return np.ones(values.shape, dtype=bool)
+
+
+@dataclass(frozen=True)
+class GroupColumn:
+    """A column of a table of outcomes."""
+
+    column: OutcomeColumn
+
+    @property
+    def header(self) -> str:
+        """Name with the unit where it is a real number."""
+        unit = self.column.unit
+        return f"{self.column.name} [{unit}]" if unit not in ("", "count") else self.column.name
+
+    @property
+    def description(self) -> list[Cell]:
+        """Header, unit, meaning, and why there is no uncertainty: a row of columns.csv."""
+        column = self.column
+        unit = "1" if column.unit == "count" else column.unit
+        return [self.header, unit, column.long_name, column.no_uncertainty]
+
+
+_COLUMNS = {
+    "strength": STRENGTH_COLUMNS,
+    "exposure": EXPOSURE_COLUMNS,
+    "fatigue": FATIGUE_COLUMNS,
+    "load_life": LOAD_LIFE_COLUMNS,
+}
+
+OUTCOME_TABLES: dict[str, tuple[GroupColumn | Column, ...]] = {
+    name: (*map(GroupColumn, columns), SYNTHETIC) for name, columns in _COLUMNS.items()
+}
+
+"""Columns of each table, the word on synthetic data last."""
+
+
+def outcome_table_rows(archive: xr.Dataset) -> dict[str, list[list[Cell]]]:
+    """Return the rows of every table of outcomes; none where the outcomes do not give it.
+
+    Parameters
+    ----------
+    archive : xarray.Dataset
+        Of outcomes, from `reduction.archive.open.open_archive`.
+
+    Returns
+    -------
+    rows : dict of str to list of list
+        By table, in the order of `OUTCOME_TABLES`.
+    """
+    outcomes = outcomes_of_dataset(archive)
+    synthetic = archive.attrs.get("synthetic", "no")
+    rows: dict[str, list[Row]] = {
+        "strength": strength_rows(outcomes),
+        "exposure": exposure_rows(outcomes),
+        "fatigue": fatigue_rows(outcomes),
+        "load_life": load_life_rows(outcomes),
+    }
+    return {
+        name: [[*map(_cell, row.values()), synthetic] for row in own] for name, own in rows.items()
+    }
+
+
+def _cell(value: float | str) -> Cell:
+    return None if value != value else value  # NaN alone is not itself
+
+
+_U = "_standard_uncertainty"
+
+_ONE_READING = "there is one reading, and nothing is stated of it"
+
+_OF_DESIGN = "nothing is stated of the numbers of the hose"
+
+_OF_RUNS = "the runs leave no scatter to judge by"
+
+_WHY = {
+    "diameter": _ONE_READING,
+    "area": _ONE_READING,
+    "tension": "nothing is stated of it",
+    "parameter_value": "the fit does not hold it: its interval is wider than its bounds",
+    "event_strain": _OF_DESIGN,
+    "event_tension": _OF_DESIGN,
+    "event_fill_pressure": _OF_DESIGN,
+    "response_coefficient": _OF_RUNS,
+    "response_coefficient_engineering": _OF_RUNS,
+    "property_stiffness": "property_remark says why",
+    "property_stiffness_over_strength": "property_remark says why",
+    "property_strain": "property_remark says why",
+}
+
+_UNKNOWN = "nothing is known of its scatter"
+
+
+def lonely_numbers(
+    columns: Sequence[Column | GroupColumn], fields: Sequence[Sequence[str]]
+) -> set[int]:
+    """Find the uncertainties that are empty where a number stands beside.
+
+    Parameters
+    ----------
+    columns : sequence of Column or GroupColumn
+        Of a table.
+    fields : sequence of sequence of str
+        Rows of it, by column.
+
+    Returns
+    -------
+    lonely : set of int
+        Places of such columns. [1]
+    """
+    return {
+        place
+        for place, _ in _uncertainties(columns)
+        if "" in fields[place]
+        and any(
+            not own and number for own, number in zip(fields[place], fields[place - 1], strict=True)
+        )
+    }
+
+
+def column_descriptions(
+    columns: Sequence[Column | GroupColumn], lonely: Collection[int] = ()
+) -> Iterator[list[Cell]]:
+    """Return the rows of columns.csv of one table.
+
+    Parameters
+    ----------
+    columns : sequence of Column or GroupColumn
+        Of the table.
+    lonely : collection of int
+        From `lonely_numbers`, of all its rows. [1]
+
+    Yields
+    ------
+    description : list
+        Of each column; that of an uncertainty says why it is empty where a number stands beside.
+    """
+    quantities = dict(_uncertainties(columns))
+    for place, column in enumerate(columns):
+        *about, reason = column.description
+        if place in lonely:
+            reason = f"{reason}; empty where {_WHY.get(quantities[place], _UNKNOWN)}"
+        yield [*about, reason]
+
+
+def _uncertainties(columns: Sequence[Column | GroupColumn]) -> Iterator[tuple[int, str]]:
+    """Places of the uncertainties, and of which quantity each is."""
+    names = [column.header.partition(" [")[0] for column in columns]
+    for place, (name, own) in enumerate(pairwise(names), start=1):
+        if own == f"{name}{_U}":
+            yield place, name
+
+
+class TableFile:
+    """A table that grows by rows; without rows there is no file.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Of the table.
+    columns : sequence of Column or GroupColumn
+        Of it.
+    whole : contextlib.ExitStack
+        At whose end the file gets its name.
+    """
+
+    def __init__(
+        self, path: Path, columns: Sequence[Column | GroupColumn], whole: ExitStack
+    ) -> None:
+        """Begin a table without rows."""
+        self.path = path
+        self.columns = columns
+        self.lonely: set[int] = set()
+        self._whole = whole
+        self._append: Callable[[str], None] | None = None
+
+    @property
+    def is_filled(self) -> bool:
+        """Whether the table has a row."""
+        return self._append is not None
+
+    def add(self, fields: Sequence[Sequence[str]]) -> None:
+        """Add rows, given as columns of fields of `reduction.archive.csv_columns.texts_of`.
+
+        Raises
+        ------
+        ArchiveError
+            If the disk refuses.
+        """
+        if not fields or not fields[0]:
+            return
+        if self._append is None:
+            self._append = self._whole.enter_context(appended_whole(self.path))
+            self._append(csv_text([column.header for column in self.columns], ()))
+        self._append(csv_lines(fields))
+        self.lonely |= lonely_numbers(self.columns, fields)
+
+    def add_rows(self, rows: Sequence[Sequence[Cell]]) -> None:
+        """Add rows of cells.
+
+        Raises
+        ------
+        ArchiveError
+            If the disk refuses.
+        """
+        self.add([[csv_field(cell) for cell in column] for column in zip(*rows, strict=True)])

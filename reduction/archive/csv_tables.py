@@ -1,0 +1,544 @@
+"""Writes the CSV tables of a campaign from its archives."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from reduction.archive.atomic_write import take_away
+from reduction.archive.csv_columns import (
+    OUTCOME_TABLES,
+    SYNTHETIC,
+    TEST,
+    Cell,
+    Column,
+    GroupColumn,
+    Table,
+    TableFile,
+    column_descriptions,
+    outcome_table_rows,
+    table_blocks,
+    uncertainty_of,
+)
+from reduction.archive.csv_definitions import (
+    COMPARISON_TABLES,
+    EXPERIMENT_TABLES,
+    PREDICTION_TABLES,
+    PROPERTY_TABLES,
+    TABLES,
+)
+from reduction.archive.open import Opener, reading
+from reduction.archive.schema import SCHEMA
+from reduction.archive.shared_errors import components_of, shared_contributions
+from reduction.archive.variables import SUFFIXES, count, label, measured, stored
+from reduction.quantities.names import BRANCH_VALUES, QUANTITIES, RESPONSE_PATTERNS, SURFACE_NAMES
+from reduction.quantities.units import combined_unit
+from reduction.record.contributions import Component, Contributions, combined_standard_uncertainty
+from reduction.record.measurement import Floats
+from reduction.stages.moduli.local_regression import curve_at
+from reduction.uncertainty.propagation import ratio_contributions
+
+_BIN = ("specimen", "branch_name", "strain_bin")
+
+ENVELOPE_COLUMNS = (
+    Column("specimen", SCHEMA["specimen"]),
+    Column("branch", SCHEMA["branch_name"]),
+    Column("strain_bin", SCHEMA["strain_bin"]),
+    *(Column(row.name, row) for row in measured("envelope_minimum", _BIN)),
+    Column("envelope_minimum_test", label("envelope_minimum_test")[0]),
+    *(Column(row.name, row) for row in measured("envelope_maximum", _BIN)),
+    Column("envelope_maximum_test", label("envelope_maximum_test")[0]),
+    Column("n_tests", count("n_tests", ())[0]),
+    SYNTHETIC,
+)
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Mean tangent modulus of one test, specimen and branch; arrays (n_bins,).
+
+    ``uncertainty`` holds both parts; ``shared`` what each error that samples share adds to
+    ``tangent_modulus``, (n_components, n_bins).
+    """
+
+    test: str
+    specimen: str
+    branch: str
+    synthetic: str
+    strain: Floats
+    width: float
+    modulus: Floats
+    uncertainty: Floats
+    shared: Contributions = field(default_factory=lambda: Contributions(()))
+
+
+def curves_of(archive: xr.Dataset) -> Iterator[Curve]:
+    """Give the curves of an archive; none where the test has no cycles."""
+    if "tangent_modulus" not in archive:
+        return
+    edges = archive.variables["strain_bin_bounds"].values
+    rows = stored(archive, "tangent_modulus_uncertainty_contribution")
+    component = () if rows is None else tuple(components_of(archive))
+    for row, specimen in enumerate(archive.variables["specimen"].values):
+        for column, branch in enumerate(archive.variables["branch_name"].values):
+            yield Curve(
+                test=archive.attrs["test"],
+                specimen=str(specimen),
+                branch=str(branch),
+                synthetic=archive.attrs.get("synthetic", "no"),
+                strain=archive.variables["strain_bin"].values,
+                width=float(np.max(edges[:, 1] - edges[:, 0])),
+                modulus=archive.variables["tangent_modulus"].values[row, column],
+                uncertainty=archive.variables["tangent_modulus_standard_uncertainty"].values[
+                    row, column
+                ],
+                shared=Contributions(component)
+                if rows is None
+                else Contributions(component, {"tangent_modulus": rows.values[:, row, column]}),
+            )
+
+
+def on_grid(curve: Curve, grid: Floats) -> tuple[Floats, Floats]:
+    """Bring a curve onto a strain grid by straight lines between neighbouring bins.
+
+    Parameters
+    ----------
+    curve : Curve
+        One test, specimen and branch.
+    grid : ndarray, shape (n_grid,)
+        Strain. [1]
+
+    Returns
+    -------
+    modulus, uncertainty : ndarray, shape (n_grid,)
+        NaN outside the curve and across a gap in it: nothing is extrapolated. [Pa]
+    """
+    modulus, uncertainty = read_curve(curve, grid, np.stack([curve.modulus, curve.uncertainty]))
+    return modulus, uncertainty
+
+
+def read_curve(curve: Curve, grid: Floats, values: Floats) -> Floats:
+    """Values at the bins of a curve, (n, n_bins), on a strain grid, (n, n_grid); as `on_grid`."""
+    known = np.isfinite(curve.modulus)
+    strain = curve.strain[known]
+    if strain.size == 0:
+        return np.full((values.shape[0], grid.size), np.nan)
+    found = [curve_at(grid, strain, row[known], spacing=curve.width) for row in values]
+    return np.array(found).reshape(len(values), grid.size)
+
+
+def envelope_rows(curves: Sequence[Curve]) -> list[list[Cell]]:
+    """Return the envelope of each specimen and branch on one strain grid.
+
+    The grid is that of the test with the widest bins, carried on to both sides, so that
+    no curve is shown finer than it is.
+
+    Parameters
+    ----------
+    curves : sequence of Curve
+        Of all tests of a campaign.
+
+    Returns
+    -------
+    rows : list of list
+        In the order of `ENVELOPE_COLUMNS`; strains at which no test has a modulus are
+        left out.
+    """
+    if not curves:
+        return []
+    widest = max(curves, key=lambda curve: curve.width)
+    low = min(float(curve.strain[0]) for curve in curves)
+    high = max(float(curve.strain[-1]) for curve in curves)
+    origin = float(widest.strain[0])
+    steps = np.arange(
+        np.floor((low - origin) / widest.width + 0.01),
+        np.ceil((high - origin) / widest.width - 0.01) + 1,
+    )
+    # sixteenth digits that differ from test to test say nothing
+    grid = np.round(origin + widest.width * steps, 12)
+    groups: dict[tuple[str, str], list[Curve]] = defaultdict(list)
+    for curve in curves:
+        groups[curve.specimen, curve.branch].append(curve)
+    return [
+        row
+        for (specimen, branch), group in groups.items()
+        for row in _group_rows(specimen, branch, group, grid)
+    ]
+
+
+def _group_rows(
+    specimen: str, branch: str, group: Sequence[Curve], grid: Floats
+) -> Iterator[list[Cell]]:
+    pairs = [on_grid(curve, grid) for curve in group]
+    modulus = np.array([pair[0] for pair in pairs])
+    uncertainty = np.array([pair[1] for pair in pairs])
+    synthetic = "yes" if any(curve.synthetic == "yes" for curve in group) else "no"
+    for column in np.flatnonzero(np.isfinite(modulus).any(axis=0)):
+        at = modulus[:, column]
+        cells: list[Cell] = [specimen, branch, float(grid[column])]
+        for extreme in (int(np.nanargmin(at)), int(np.nanargmax(at))):
+            spread = float(uncertainty[extreme, column])
+            cells += [
+                float(at[extreme]),
+                spread if np.isfinite(spread) else None,
+                group[extreme].test,
+            ]
+        yield [*cells, int(np.isfinite(at).sum()), synthetic]
+
+
+def by_response(archive: xr.Dataset) -> xr.Dataset:
+    """Set the responses side by side along a dimension ``response``.
+
+    Parameters
+    ----------
+    archive : xarray.Dataset
+        Of experiments.
+
+    Returns
+    -------
+    dataset : xarray.Dataset
+        What the archive has, and ``response_<what>`` of every response; numbers are NaN
+        where an experiment lacks it.  ``run_is_there`` and ``effect_is_there`` are 1 where a
+        row of a table belongs, NaN where an experiment is shorter than another, and the plan
+        of the runs has its factors alone.
+    """
+    names = [
+        name
+        for name in SURFACE_NAMES
+        if f"{name}_measured" in archive or f"{name}_transform" in archive
+    ]
+    units = [QUANTITIES[f"{name}_sigma"].unit for name in names]
+    own_units = [QUANTITIES[f"{name}_point_value"].unit for name in names]
+    stacked: dict[str, xr.Variable] = {
+        "response": xr.Variable("response", np.array(names, dtype=np.str_)),
+        "unit": xr.Variable("response", np.array(units, dtype=np.str_)),
+        "response_unit": xr.Variable("response", np.array(own_units, dtype=np.str_)),
+    }
+    for pattern in RESPONSE_PATTERNS:
+        what = pattern.name.removeprefix("<response>")
+        for own in (what, *(f"{what}{suffix}" for suffix in SUFFIXES)):
+            variable = _stacked(archive, names, own)
+            if variable is not None:
+                stacked[f"response{own}"] = variable
+    dataset = archive.assign(stacked)
+    if "term_unit_engineering" in archive:
+        of_term = archive.variables["term_unit_engineering"].values
+        # the unit of a term stands there as what is multiplied, not as what is divided by
+        full = [
+            [[combined_unit(unit, [str(own)], [-1]) for own in row] for unit in units]
+            for row in of_term
+        ]
+        dims = ("experiment", "response", "term")
+        dataset["coefficient_engineering_unit"] = (dims, np.array(full, dtype=np.str_))
+    dataset["run_is_there"] = (
+        ("experiment", "run"),
+        _marked(archive.variables["run_name"].values != ""),
+    )
+    dataset["run_plan"] = (
+        ("experiment", "run", "factor"),
+        archive.variables["run_plan"].values[:, :, : archive.sizes["factor"]],
+    )
+    if "response_effect" in dataset:
+        is_column = archive.variables["plan_column_name"].values[:, None, :] != ""
+        known = np.isfinite(dataset.variables["response_effect"].values)
+        if "response_effect_refusal" in dataset:
+            is_refused = dataset.variables["response_effect_refusal"].values != ""
+            known |= is_refused[:, :, None] & is_column
+        dims = ("experiment", "response", "plan_column")
+        dataset["effect_is_there"] = (dims, _marked(known))
+    return dataset
+
+
+def _stacked(archive: xr.Dataset, names: Sequence[str], what: str) -> xr.Variable | None:
+    """Set one quantity of every response behind the experiments; None where none has it."""
+    given = {name: archive[f"{name}{what}"] for name in names if f"{name}{what}" in archive}
+    if not given:
+        return None
+    first = next(iter(given.values()))
+    fill = {"U": "", "f": np.nan}.get(first.dtype.kind, 0)
+    missing: NDArray[Any] = np.full(first.shape, fill, dtype=first.dtype)
+    rows = [given[name].values if name in given else missing for name in names]
+    experiment, *rest = first.dims
+    return xr.Variable((experiment, "response", *rest), np.stack(rows, axis=1))
+
+
+def _marked(present: NDArray[Any]) -> NDArray[Any]:
+    return np.where(present, 1.0, np.nan)
+
+
+_STATIC, _DYNAMIC = (Column(name, SCHEMA[name]) for name in ("interval_modulus", "tangent_modulus"))
+
+STATIC_DYNAMIC_COLUMNS = (
+    Column("static_test", label("static_test")[0]),
+    Column("static_specimen", label("static_specimen")[0]),
+    TEST,
+    Column("specimen", SCHEMA["specimen"]),
+    Column("branch", SCHEMA["branch_name"]),
+    Column("interval_strain", SCHEMA["interval_strain"]),
+    _STATIC,
+    uncertainty_of(_STATIC),
+    _DYNAMIC,
+    uncertainty_of(_DYNAMIC),
+    *(Column(row.name, row) for row in measured("static_dynamic_ratio", ("interval",))),
+    SYNTHETIC,
+)
+
+
+@dataclass(frozen=True)
+class Slope:
+    """Slope between two readings of a stepwise test, at the strain in their middle.
+
+    ``uncertainty`` holds both parts; ``shared`` what each error that samples share adds.
+    """
+
+    test: str
+    specimen: str
+    branch: str
+    synthetic: str
+    strain: float
+    modulus: float
+    uncertainty: float
+    shared: Mapping[Component, float] = field(default_factory=dict)
+
+
+def slopes_of(archive: xr.Dataset) -> Iterator[Slope]:
+    """Give the slopes of an archive that have a number; none where the test is not stepwise."""
+    if "interval_modulus" not in archive:
+        return
+    branches = {value: name for name, value in BRANCH_VALUES.items()}
+    for index in map(
+        int, np.flatnonzero(np.isfinite(archive.variables["interval_modulus"].values))
+    ):
+        yield Slope(
+            test=archive.attrs["test"],
+            specimen=str(archive.variables["specimen"].values[0]),
+            branch=branches[int(archive.variables["interval_branch"].values[index])],
+            synthetic=archive.attrs.get("synthetic", "no"),
+            strain=float(archive.variables["interval_strain"].values[index]),
+            modulus=float(archive.variables["interval_modulus"].values[index]),
+            uncertainty=float(
+                archive.variables["interval_modulus_standard_uncertainty"].values[index]
+            ),
+            shared=shared_contributions(archive, "interval_modulus", index),
+        )
+
+
+def static_dynamic_rows(slopes: Sequence[Slope], curves: Sequence[Curve]) -> list[list[Cell]]:
+    """Set every static slope beside the dynamic curves of its branch, and give their ratio.
+
+    Parameters
+    ----------
+    slopes : sequence of Slope
+        Of all stepwise tests of a campaign.
+    curves : sequence of Curve
+        Of all cyclic tests of it.
+
+    Returns
+    -------
+    rows : list of list
+        In the order of `STATIC_DYNAMIC_COLUMNS`, by curve and then by rising strain;
+        strains at which the curve has no modulus are left out.  What both moduli share (a
+        load cell, a diameter) is in the ratio as far as it is not the same share of both; of
+        archives that say nothing of it they count as independent.
+    """
+    rows: list[list[Cell]] = []
+    for curve in curves:
+        beside = sorted(
+            (slope for slope in slopes if slope.branch == curve.branch),
+            key=lambda slope: (slope.test, slope.specimen, slope.strain),
+        )
+        at = np.array([slope.strain for slope in beside])
+        of_errors = curve.shared.values.get("tangent_modulus", np.empty((0, curve.strain.size)))
+        dynamic = np.column_stack([*on_grid(curve, at), *read_curve(curve, at, of_errors)])
+        rows += [
+            _row(slope, curve, float(modulus), float(spread), shared)
+            for slope, (modulus, spread, *shared) in zip(beside, dynamic, strict=True)
+            if np.isfinite(modulus)
+        ]
+    return rows
+
+
+def _row(
+    slope: Slope, curve: Curve, modulus: float, spread: float, shared: Sequence[float]
+) -> list[Cell]:
+    ratio = slope.modulus / modulus
+    of_curve = dict(zip(curve.shared.component, np.nan_to_num(shared), strict=True))
+    component = sorted({*of_curve, *slope.shared})
+    above, below = (
+        np.array([known.get(one, 0.0) for one in component]) for known in (slope.shared, of_curve)
+    )
+    rows = ratio_contributions(
+        ratio, numerator=slope.modulus, of_numerator=above, denominator=modulus,
+        of_denominator=below,
+    )  # fmt: skip
+    random = np.hypot(
+        _left(slope.uncertainty, above) / slope.modulus, _left(spread, below) / modulus
+    )
+    whole = float(combined_standard_uncertainty(rows, abs(ratio) * random))
+    numbers = [slope.modulus, slope.uncertainty, modulus, spread, ratio, whole]
+    return [
+        slope.test,
+        slope.specimen,
+        curve.test,
+        curve.specimen,
+        slope.branch,
+        slope.strain,
+        *(value if np.isfinite(value) else None for value in numbers),
+        "yes" if "yes" in (slope.synthetic, curve.synthetic) else "no",
+    ]
+
+
+def _left(whole: float, contribution: Floats) -> float:
+    """Random part of a standard uncertainty: what is not shared."""
+    return float(np.sqrt(max(whole**2 - float(contribution @ contribution), 0.0)))
+
+
+_Place = tuple[float, list[tuple[int, str]]]
+
+_ALL = (
+    *TABLES, *PROPERTY_TABLES, *EXPERIMENT_TABLES, *PREDICTION_TABLES, *COMPARISON_TABLES,
+)  # fmt: skip
+
+_ABOUT = tuple(
+    Column(name, label(name)[0])
+    for name in ("table", "column", "unit", "meaning", "no_uncertainty")
+)
+
+
+def write_tables(
+    archives: Sequence[Path],
+    folder: Path,
+    *,
+    surfaces: Path | None = None,
+    outcomes: Path | None = None,
+    predictions: Path | None = None,
+    comparisons: Path | None = None,
+    change_in_length: Path | None = None,
+    opener: Opener = reading,
+) -> list[Path]:
+    """Write every table that the archives fill, and columns.csv, which explains them.
+
+    Parameters
+    ----------
+    archives : sequence of pathlib.Path
+        Archives of one campaign; the rows stand in the order of the tests' places in
+        the specimens' history, then of their names.
+    folder : pathlib.Path
+        Where the tables go.
+    surfaces : pathlib.Path, optional
+        Archive of the campaign's experiments, where it has any.
+    outcomes : pathlib.Path, optional
+        Archive of the campaign's outcomes without a log, where it has any.
+    predictions : pathlib.Path, optional
+        Archive of the campaign's predicted hoses, where it has any.
+    comparisons : pathlib.Path, optional
+        Archive of the campaign's comparisons, where it has any.
+    change_in_length : pathlib.Path, optional
+        Archive of the properties of the campaign's ropes, where it has any.
+    opener : Opener
+        How archives are opened.
+
+    Returns
+    -------
+    paths : list of pathlib.Path
+        The files, in a fixed order. A table without rows is not written; one that an
+        earlier run wrote and this one does not fill is removed once all is written.
+
+    Raises
+    ------
+    ArchiveError
+        If an archive cannot be opened or a table cannot be written.
+    """
+    columns: dict[str, Sequence[Column | GroupColumn]] = {
+        table.name: table.columns for table in _ALL
+    }
+    columns |= {"envelope": ENVELOPE_COLUMNS, "static_dynamic": STATIC_DYNAMIC_COLUMNS}
+    columns |= OUTCOME_TABLES | {"columns": _ABOUT}
+    with ExitStack() as whole:
+        files = {
+            name: TableFile(folder / f"{name}.csv", listed, whole)
+            for name, listed in columns.items()
+        }
+        _add_tests(files, archives, opener)
+        _add_experiments(files, surfaces, opener)
+        _add_outcomes(files, outcomes, opener)
+        _add_as_it_is(files, predictions, PREDICTION_TABLES, opener)
+        _add_as_it_is(files, comparisons, COMPARISON_TABLES, opener)
+        _add_as_it_is(files, change_in_length, PROPERTY_TABLES, opener)
+        filled = [name for name in columns if files[name].is_filled] + ["columns"]
+        files["columns"].add_rows(
+            [
+                [f"{name}.csv", *described]
+                for name in filled
+                for described in column_descriptions(columns[name], files[name].lonely)
+            ]
+        )
+    for name in columns:
+        if name not in filled:
+            take_away(files[name].path)
+    return [files[name].path for name in filled]
+
+
+def _place(attributes: dict[str, Any]) -> _Place:
+    """Place in the history, tests without one last; then the name, T-2 before T-10."""
+    name = re.split(r"(\d+)", attributes["test"])
+    digits = [(int(part), "") if part.isdigit() else (-1, part) for part in name]
+    return float(attributes.get("test_order", "inf")), digits
+
+
+def _add_tests(files: Mapping[str, TableFile], archives: Sequence[Path], opener: Opener) -> None:
+    places: dict[Path, _Place] = {}
+    for path in archives:
+        with opener(path) as archive:
+            places[path] = _place(archive.attrs)
+    curves: list[Curve] = []
+    slopes: list[Slope] = []
+    for path in sorted(archives, key=places.__getitem__):
+        with opener(path) as archive:
+            for table in TABLES:
+                _add(files[table.name], archive, table)
+            curves += curves_of(archive)
+            slopes += slopes_of(archive)
+    files["envelope"].add_rows(envelope_rows(curves))
+    files["static_dynamic"].add_rows(static_dynamic_rows(slopes, curves))
+
+
+def _add_experiments(files: Mapping[str, TableFile], surfaces: Path | None, opener: Opener) -> None:
+    if surfaces is None:
+        return
+    with opener(surfaces) as archive:
+        dataset = by_response(archive)
+        for table in EXPERIMENT_TABLES:
+            _add(files[table.name], dataset, table)
+
+
+def _add_as_it_is(
+    files: Mapping[str, TableFile], path: Path | None, tables: Sequence[Table], opener: Opener
+) -> None:
+    if path is None:
+        return
+    with opener(path) as archive:
+        for table in tables:
+            _add(files[table.name], archive, table)
+
+
+def _add_outcomes(files: Mapping[str, TableFile], outcomes: Path | None, opener: Opener) -> None:
+    if outcomes is None:
+        return
+    with opener(outcomes) as archive:
+        for name, rows in outcome_table_rows(archive).items():
+            files[name].add_rows(rows)
+
+
+def _add(file: TableFile, archive: xr.Dataset, table: Table) -> None:
+    for fields in table_blocks(archive, table):
+        file.add(fields)

@@ -1,0 +1,442 @@
+"""Errors that a test shares with others, as its archive holds them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import fields
+from itertools import chain
+
+import numpy as np
+import xarray as xr
+
+from reduction.archive.variables import (
+    OF_UNCERTAINTY,
+    Values,
+    Variable,
+    companion,
+    count,
+    label,
+    stated,
+    stored,
+    texts,
+)
+from reduction.prediction.measured_curve import SharedErrors, constant_errors
+from reduction.record.contributions import (
+    Component,
+    Contributions,
+    StatedErrors,
+    combined_standard_uncertainty,
+)
+from reduction.record.errors import ArchiveError
+from reduction.record.measurement import Bools, Floats
+from reduction.record.samples import beside, let_go
+
+COMPONENT = "uncertainty_component"
+
+FREEDOM = "uncertainty_source_degrees_of_freedom"
+
+"""Of each shared error; there where one of them is from a few readings."""
+
+_S = ("specimen",)
+
+_H = ("hold",)
+
+_G = ("specimen", "branch_name", "segment")
+
+_B = ("specimen", "branch_name", "strain_bin")
+
+_F = ("specimen", "branch_name", "first_loading_strain_bin")
+
+_OF_TEST = (
+    "mean_strain", "strain_amplitude", "mean_tension", "tension_amplitude",
+    "apparent_spring_constant", "dynamic_modulus", "hysteresis_energy",
+    "storage_spring_constant", "loss_spring_constant", "loss_factor",
+    "quasi_static_spring_constant", "dissipation_spring_constant", "relaxation_time",
+    "dashpot_coefficient",
+)  # fmt: skip
+
+_OF_SPECIMEN = (
+    "diameter", "area", "slack_strain_at_unloading", "permanent_set",
+    "peak_tension_per_decade", "dynamic_modulus_per_decade", "peak_tension_change",
+    "bedding_first_stiffness", "bedding_last_stiffness", "bedding_first_stiffness_over_strength",
+    "bedding_last_stiffness_over_strength", "bedding_stiffening", "bedding_permanent_strain",
+    "dynamic_stiffness", "dynamic_stiffness_over_strength", "dynamic_stiffness_drift",
+    "dynamic_mean_tension", "dynamic_mean_tension_over_strength",
+    "dynamic_tension_amplitude", "dynamic_tension_amplitude_over_strength",
+    "pull_peak_tension", "pull_peak_tension_over_strength", "pull_peak_strain",
+    "tensile_strength", "strain_at_failure",
+)  # fmt: skip
+
+_OF_HOLD = (
+    "hold_strain", "hold_initial_tension", "hold_final_tension", "relaxation_drop",
+    "relaxation_rate_per_decade", "creep_rate_per_decade", "long_time_tension",
+    "creep_tension_over_strength", "creep_compliance_per_decade",
+)  # fmt: skip
+
+_OF_PAIR = (
+    "held_pair_low_tension", "held_pair_high_tension", "static_stiffness",
+    "static_stiffness_over_strength", "static_stiffness_per_decade",
+    "static_stiffness_per_decade_over_strength",
+)  # fmt: skip
+
+SHARED: dict[str, tuple[str, ...]] = {
+    **{f"test_{name}": _S for name in _OF_TEST},
+    "tangent_modulus": _B,
+    "tangent_modulus_untrimmed": _B,
+    "branch_tension": _B,
+    "tangent_modulus_first_loading": _F,
+    "branch_tension_first_loading": _F,
+    "segment_modulus": _G,
+    "segment_tension_low": _G,
+    "segment_tension_high": _G,
+    **dict.fromkeys(_OF_SPECIMEN, _S),
+    "quasi_static_spring_constant": ("specimen", "tension_grid"),
+    "quasi_static_strain": ("specimen", "tension_grid"),
+    "pull_strain_coefficient": ("specimen", "pull_term"),
+    "strain_at_break_share": ("specimen", "break_share"),
+    "stress_at_strain": ("specimen", "strain_level"),
+    **dict.fromkeys(_OF_HOLD, _H),
+    "tension_at_time": ("hold", "hold_time"),
+    "strain_at_time": ("hold", "hold_time"),
+    "prony_tension": ("hold", "prony_term"),
+    **dict.fromkeys(_OF_PAIR, ("held_pair",)),
+    "interval_modulus": ("interval",),
+    "slip_tension_step": ("slip",),
+    "slip_length": ("slip",),
+    "elastomer_modulus": ("elastomer_parameter",),
+    "elastomer_exponent": ("elastomer_parameter",),
+    "modulus_ratio": ("comparison", "branch_name", "ratio_strain_bin"),
+}
+
+"""Quantities whose contributions are kept, with their dimensions."""
+
+SHARED_OF_CHANNELS: dict[str, tuple[str, ...]] = {
+    "crosshead_position": (),
+    "crosshead_displacement": (),
+    **dict.fromkeys(("tension", "strain", "nominal_stress"), _S),
+}
+
+"""Channels: one contribution for all samples of a specimen, with its dimensions."""
+
+SHARED_OF_STEPS: dict[str, tuple[str, ...]] = {"secant_modulus": ("step",)}
+
+"""Of a stepwise test alone: in a record it is of each cycle."""
+
+# the curve of one cycle has the shared error of the mean
+_ALIKE = {"tangent_modulus_by_cycle": "tangent_modulus"}
+
+SHARED_ROWS: tuple[Variable, ...] = tuple(
+    chain(
+        count(COMPONENT, (COMPONENT,)),
+        label("uncertainty_source", (COMPONENT,)),
+        label("uncertainty_source_of", (COMPONENT,)),
+        count("uncertainty_source_number", (COMPONENT,)),
+        stated(FREEDOM, (COMPONENT,), OF_UNCERTAINTY),
+        *(
+            (
+                companion(name, "_random_standard_uncertainty", dims),
+                companion(name, "_uncertainty_contribution", (COMPONENT, *dims)),
+            )
+            for name, dims in (SHARED | SHARED_OF_CHANNELS).items()
+        ),
+    )
+)
+
+
+def with_shared(
+    values: Values,
+    contributions: Contributions | None,
+    of_cycles: dict[str, Floats],
+    random: Values | None = None,
+) -> Values:
+    """Put the shared part of every uncertainty beside its random part, and both together.
+
+    Parameters
+    ----------
+    values : dict of str to ndarray
+        Of the archive; uncertainties are random.
+    contributions : Contributions or None
+        By name of the archive.
+    of_cycles : dict of str to ndarray
+        Shared standard uncertainty of the quantities of each cycle.
+    random : dict of str to ndarray, optional
+        Random part by quantity, where the uncertainty of ``values`` holds more.
+
+    Returns
+    -------
+    values : dict of str to ndarray
+        New; equal where nothing is shared.
+
+    Raises
+    ------
+    ArchiveError
+        If there are contributions to a quantity that has no variable for them.
+    """
+    known = SHARED | SHARED_OF_CHANNELS | SHARED_OF_STEPS
+    homeless = sorted(set(contributions.values) - set(known)) if contributions else []
+    if homeless:
+        raise ArchiveError(
+            "the archive has no variable for contributions of shared errors",
+            found=", ".join(homeless),
+            needed="quantities of reduction.archive.shared_errors.SHARED",
+            hint="this is a fault of the program, not of the campaign",
+        )
+    found = dict(values)
+    for name, shared in of_cycles.items():
+        if random is not None and name in random:
+            found[f"{name}_standard_uncertainty"] = random[name]
+        _combine(found, name, shared[None])
+    if contributions is None:
+        return found
+    for name, rows in contributions.values.items():
+        if name not in values:
+            continue  # of a stage that this test has not
+        if name in SHARED_OF_CHANNELS:
+            _combine_channel(found, name, rows)
+            continue
+        if random is not None and name in random:
+            found[f"{name}_standard_uncertainty"] = random[name]
+        found[f"{name}_random_standard_uncertainty"] = _combine(found, name, rows)
+        # where there is no number, nothing contributes to it
+        found[f"{name}_uncertainty_contribution"] = np.where(np.isnan(values[name]), np.nan, rows)
+    for name, mean in _ALIKE.items():
+        if name in values and mean in contributions.values:
+            shared = contributions.shared_standard_uncertainty(mean)
+            _combine(found, name, shared[None, :, None])
+    return found | component_values(contributions.component)
+
+
+def component_values(component: Sequence[Component]) -> Values:
+    """Return the axis of the shared errors, and what each of them is."""
+    freedom = np.array([one.degrees_of_freedom for one in component], dtype=np.float64)
+    return {
+        COMPONENT: np.arange(1, len(component) + 1),
+        "uncertainty_source": texts([one.source for one in component]),
+        "uncertainty_source_of": texts([one.of for one in component]),
+        "uncertainty_source_number": np.array([one.number for one in component]),
+    } | ({} if np.isinf(freedom).all() else {FREEDOM: freedom})
+
+
+def shared_contributions(archive: xr.Dataset, name: str, *place: int) -> dict[Component, float]:
+    """What each shared error adds to one number of an archive; empty where nothing is known.
+
+    Parameters
+    ----------
+    archive : xarray.Dataset
+        Of a reduced test.
+    name : str
+        Of the quantity.
+    *place : int
+        Along its dimensions.
+
+    Returns
+    -------
+    contributions : dict of Component to float
+        [unit of the quantity]
+    """
+    rows = stored(archive, f"{name}_uncertainty_contribution")
+    if rows is None:
+        return {}
+    components = components_of(archive)
+    found = np.moveaxis(rows.values, 0, -1)[place]
+    return {
+        one: float(value)
+        for one, value in zip(components, found, strict=True)
+        if np.isfinite(value) and value != 0
+    }
+
+
+def components_of(archive: xr.Dataset, experiment: int | None = None) -> list[Component]:
+    """Every shared error of an archive, or of one of its experiments, in order."""
+    names = ("uncertainty_source", "uncertainty_source_of", "uncertainty_source_number")
+    columns = [archive.variables[name].values for name in names]
+    own = columns if experiment is None else [column[experiment] for column in columns]
+    kept = stored(archive, FREEDOM)
+    known = np.full(len(own[0]), np.inf)
+    if kept is not None:
+        known = kept.values if experiment is None else kept.values[experiment]
+        # an experiment with fewer errors than another is filled up
+        known = np.where(np.isnan(known), np.inf, known)
+    return [
+        Component(str(source), str(of), int(number), float(freedom))
+        for source, of, number, freedom in zip(*own, known, strict=True)
+    ]
+
+
+def _combine(values: Values, name: str, rows: Floats) -> Floats:
+    """Make the uncertainty of a quantity the combined one; return its random part."""
+    key = f"{name}_standard_uncertainty"
+    if key not in values:
+        return np.full(np.shape(values.get(name, np.nan)), np.nan)
+    random: Floats = values[key]
+    values[key] = beside(random, combined_standard_uncertainty(rows, random))
+    let_go(rows)
+    return random
+
+
+def _combine_channel(values: Values, name: str, rows: Floats) -> None:
+    """Put both parts of a channel's uncertainty side by side: of a reading, of all samples."""
+    key = f"{name}_standard_uncertainty"
+    reading = np.asarray(values.get(key, np.full(rows.shape[1:], np.nan)), dtype=np.float64)
+    # what is not stated of a reading counts as zero where something else is stated
+    random = np.where(np.isnan(reading) & np.any(rows != 0, axis=0), 0.0, reading)
+    values[f"{name}_random_standard_uncertainty"] = random
+    values[f"{name}_uncertainty_contribution"] = rows
+    values[key] = combined_standard_uncertainty(rows, random)
+
+
+_ONE_CELL = "has_one_load_cell"
+
+
+def stated_errors_of(archive: xr.Dataset) -> StatedErrors:
+    """Standard uncertainties with which a test was reduced.
+
+    Parameters
+    ----------
+    archive : xarray.Dataset
+        Of a reduced test.
+
+    Returns
+    -------
+    errors : StatedErrors
+        Zero where nothing was stated.
+
+    Raises
+    ------
+    ArchiveError
+        If what stands there is no statement.
+
+    Notes
+    -----
+    A key that this version does not know is of a later one, and none of its errors.
+    """
+    settings = json.loads(str(archive.attrs.get("settings") or "{}"))
+    kept = settings.get("uncertainty") or {}
+    one_cell = kept.get(_ONE_CELL, False)
+    if not isinstance(one_cell, bool):
+        raise _fault(_ONE_CELL, one_cell, "true or false")
+    known: dict[str, float] = {}
+    for name in (item.name for item in fields(StatedErrors) if item.name != _ONE_CELL):
+        value = kept.get(name, 0.0)
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise _fault(name, value, "a number in SI")
+        known[name] = float(value)
+    return StatedErrors(has_one_load_cell=one_cell, **known)
+
+
+def _fault(name: str, value: object, needed: str) -> ArchiveError:
+    return ArchiveError(
+        f"the settings of the archive state no standard uncertainty as {name}",
+        found=repr(value),
+        needed=needed,
+    )
+
+
+_OF_STRAIN = frozenset(
+    {"position_gain", "position_offset", "strain_calibration", "strain_gain", "splice_method"}
+)
+
+"""Sources that move a point of the curve along the axis of strain alone."""
+
+# the curve, the modulus that its errors of strain were carried with, and the axis of both
+_CURVES = (
+    ("branch_tension", "tangent_modulus_untrimmed", "strain_bin"),
+    ("branch_tension_first_loading", "tangent_modulus_first_loading", "first_loading_strain_bin"),
+)
+
+_OF_ALL_SAMPLES = (
+    "tension_gain", "tension_offset", "position_gain", "position_offset", "lag", "strain_gain",
+    "stiffness",
+)  # fmt: skip
+
+"""What may be stated of a test that is in its curve: not the noise of a reading."""
+
+_NO_CURVE = (
+    "the archive of the test holds no curve with what its instruments may be wrong by (a specimen "
+    "without a diameter has none): what is stated of load and crosshead is not in the comparison"
+)
+
+
+def curve_errors_of(archive: xr.Dataset, place: int) -> tuple[SharedErrors, tuple[str, ...]]:
+    """Errors that all samples share, at the bins of the curve of one specimen.
+
+    Parameters
+    ----------
+    archive : xarray.Dataset
+        Of a reduced test.
+    place : int
+        Row of the specimen.
+
+    Returns
+    -------
+    errors : SharedErrors
+        Of its cycles, or else of its first rise.
+    notes : tuple of str
+        What a reader has to know where they are not all of them.
+
+    Notes
+    -----
+    The archive keeps what an error adds to the tension at one strain.  Of an error of strain that
+    is minus the slope of the curve times it, and is taken back by the same slope: it can move the
+    curve along its axis then.  What a layout declares of a channel is the noise of one reading,
+    which no other sample shares; it is in the scatter.
+    """
+    for curve, modulus, axis in _CURVES:
+        rows = stored(archive, f"{curve}_uncertainty_contribution")
+        if rows is None or modulus not in archive:
+            continue
+        tension, of_error = archive[curve].values[place], rows.values[:, place]
+        slope = archive[modulus].values[place] * float(archive.variables["area"].values[place])
+        there = np.isfinite(of_error).all(axis=0) & np.isfinite(tension) & (slope != 0)
+        there &= np.isfinite(slope)
+        if there.any():
+            return _errors(archive, archive[axis].values, tension, of_error, slope, there), ()
+    stated = stated_errors_of(archive)
+    has_curve = any(
+        curve in archive and np.isfinite(archive[curve].values[place]).any()
+        for curve, *_ in _CURVES
+    )
+    is_left_out = not has_curve and any(getattr(stated, name) for name in _OF_ALL_SAMPLES)
+    return _of_length(archive, place), (_NO_CURVE,) if is_left_out else ()
+
+
+def _errors(
+    archive: xr.Dataset, strain: Floats, tension: Floats, of_error: Floats, slope: Floats,
+    there: Bools,
+) -> SharedErrors:  # fmt: skip
+    component = components_of(archive)
+    tension, slope, there = tension.copy(), slope.copy(), there.copy()
+    kept = [k for k, row in enumerate(of_error) if np.any(row[there] != 0)]
+    is_strain = np.array([component[k].source in _OF_STRAIN for k in kept], dtype=bool)
+    rows = of_error[kept]
+    known = np.where(there, rows, np.nan)
+    for own, other in ((0, 1), (1, 0)):
+        if not there[own].any():
+            # a first rise is alone; on the way back a lag has the other sign
+            way = np.array([-1.0 if component[k].source == "lag" else 1.0 for k in kept])
+            there[own], tension[own], slope[own] = there[other], tension[other], slope[other]
+            known[:, own] = way[:, None] * known[:, other]
+    moved = -known / np.where(there, slope, np.nan)
+    choice = is_strain[:, None, None]
+    return SharedErrors(
+        tuple(component[k] for k in kept),
+        strain=strain,
+        tension=tension,
+        tension_error=np.where(choice, np.where(there, 0.0, np.nan), known),
+        strain_error=np.where(choice, moved, np.where(there, 0.0, np.nan)),
+    )
+
+
+def _of_length(archive: xr.Dataset, place: int) -> SharedErrors:
+    """A gauge length scales every strain; nothing where strain is not over one."""
+    gauge = _number(archive, "strain_gauge_length", place)
+    spread = _number(archive, "strain_gauge_length_standard_uncertainty", place)
+    return constant_errors(strain_gain=spread / gauge if gauge > 0 and spread > 0 else 0.0)
+
+
+def _number(archive: xr.Dataset, name: str, place: int) -> float:
+    """A number of one specimen, or of all; NaN where it is not there."""
+    if name not in archive:
+        return float("nan")
+    return float(np.broadcast_to(archive.variables[name].values, archive.sizes["specimen"])[place])

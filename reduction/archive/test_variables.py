@@ -1,0 +1,909 @@
+"""Variables of a reduced test, stage by stage."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import fields
+from itertools import chain
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reduction.archive.shared_errors import COMPONENT, SHARED_OF_STEPS
+from reduction.archive.variables import (
+    AXIS,
+    BOUND,
+    CLOCK,
+    CRITERION,
+    MOVEMENT,
+    NO_YES,
+    OF_UNCERTAINTY,
+    PART,
+    SETTING,
+    SPREAD,
+    STATED,
+    Values,
+    Variable,
+    companion,
+    count,
+    flag,
+    label,
+    mask,
+    measured,
+    numbers,
+    pad,
+    stated,
+    texts,
+)
+from reduction.quantities.names import BRANCH_NAMES, BRANCH_VALUES
+from reduction.record.contributions import LINE_METHODS, LineSpread
+from reduction.record.measurement import Floats, Specimen
+from reduction.stages.channel_lag import LAG_REFUSALS, LagEstimate
+from reduction.stages.cycles.cycle_product import Cycles, Loops
+from reduction.stages.holds.relaxation import HoldResult, hold_numbers
+from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair
+from reduction.stages.line.line_product import LineParameters, SlowPull
+from reduction.stages.line.rope_programme import (
+    BeddingIn,
+    CyclesToFailure,
+    DynamicStiffness,
+    RopeStep,
+    TensilePull,
+)
+from reduction.stages.line.slow_pull import (
+    BREAK_SHARES,
+    quasi_static_spring_constant,
+    strain_at_break_share,
+    strain_at_tension,
+    tension_grid,
+)
+from reduction.stages.moduli.modulus_product import (
+    AmplitudeSummary,
+    CycleIdentity,
+    ElastomerFit,
+    EndModuli,
+    ModulusCurves,
+    PeakTrend,
+    Ratio,
+    Segments,
+    Slips,
+)
+from reduction.stages.moduli.stepwise_test import StepwiseResult
+from reduction.stages.standstills import Standstills
+
+
+def cycle_values(cycles: Cycles, *, control: str) -> Values:
+    """Return the cycles and their branches; ``control`` gives band and rate their unit."""
+    band, rate = (
+        ("tension_band", "tension_rate")
+        if control == "load"
+        else ("position_band", "crosshead_rate")
+    )
+    return {
+        "cycle": np.arange(1, cycles.n_cycles + 1),
+        "branch_name": texts(BRANCH_NAMES),
+        "cycle_first_sample": cycles.first,
+        "cycle_last_sample": cycles.last,
+        "branch_first_sample": cycles.branch_first,
+        "branch_last_sample": cycles.branch_last,
+        rate: cycles.plateau_rate,
+        band: np.array(cycles.band),
+        "cycles_counted_by": np.array(cycles.counted_by),
+    }
+
+
+def _with_uncertainty(product: Loops | AmplitudeSummary, prefix: str = "") -> Values:
+    values: Values = {
+        f"{prefix}{item.name}": getattr(product, item.name)
+        for item in fields(product)
+        if item.name != "uncertainty"
+    }
+    for name, uncertainty in product.uncertainty.items():
+        values[f"{prefix}{name}_standard_uncertainty"] = uncertainty
+    return values
+
+
+def loop_values(loops: Loops) -> Values:
+    """Return the numbers of each loop."""
+    return _with_uncertainty(loops)
+
+
+def amplitude_values(amplitude: AmplitudeSummary) -> Values:
+    """Return the means over the cycles of a test; ``test_`` keeps them apart from the cycles'."""
+    return _with_uncertainty(amplitude, "test_")
+
+
+def end_modulus_values(moduli: EndModuli) -> Values:
+    """Return secant and chord modulus of each cycle."""
+    return {item.name: getattr(moduli, item.name) for item in fields(moduli)}
+
+
+def identity_values(identity: CycleIdentity) -> Values:
+    """Return both sides of the closed-cycle identity and what is left."""
+    return {
+        item.name: getattr(identity, item.name) for item in fields(identity) if item.name != "notes"
+    }
+
+
+def trend_values(trend: PeakTrend) -> Values:
+    """Return the slopes against the logarithm of cycle number."""
+    return {item.name: getattr(trend, item.name) for item in fields(trend)}
+
+
+def slip_values(slips: Slips, *, specimens: tuple[str, ...]) -> Values:
+    """Return the steps found; ``n_slips`` of zero says that they were looked for."""
+    return {
+        "n_slips": np.array([slips.specimen.count(name) for name in specimens]),
+        "creep_per_cycle": slips.creep_per_cycle,
+        "slip_specimen": texts(slips.specimen),
+        "slip_cycle": slips.slip_cycle,
+        "slip_cycle_low": slips.slip_cycle_low,
+        "slip_cycle_high": slips.slip_cycle_high,
+        "slip_tension_step": slips.slip_tension_step,
+        "slip_tension_step_standard_uncertainty": slips.slip_tension_step_standard_uncertainty,
+        "slip_length": slips.slip_length,
+        "slip_length_standard_uncertainty": slips.slip_length_standard_uncertainty,
+    }
+
+
+_S = ("specimen",)
+
+_B = ("specimen", "branch_name", "strain_bin")
+
+_F = ("specimen", "branch_name", "first_loading_strain_bin")
+
+_BC = ("specimen", "selected_cycle", "branch_name", "strain_bin")
+
+_G = ("specimen", "branch_name", "segment")
+
+_R = ("comparison", "branch_name", "ratio_strain_bin")
+
+CURVE_ROWS: tuple[Variable, ...] = tuple(
+    chain(
+        stated("strain_window", (), SETTING),
+        measured("tangent_modulus", _B, "_count", "_minimum", "_maximum", "_scatter"),
+        measured("tangent_modulus_untrimmed", _B),
+        measured("branch_tension", _B, "_count"),
+        measured("tangent_modulus_by_cycle", _BC),
+        measured("tangent_modulus_first_loading", _F),
+        measured("branch_tension_first_loading", _F),
+        measured("segment_modulus", _G),
+        stated("segment_strain_low", _G, BOUND),
+        stated("segment_strain_high", _G, BOUND),
+        measured("segment_tension_low", _G),
+        measured("segment_tension_high", _G),
+        stated("segment_misfit", _G, SPREAD),
+        label("segment_criterion"),
+        measured("stress_at_strain", ("specimen", "strain_level")),
+        measured("slack_strain_at_unloading", _S),
+        # the ratio of two specimens
+        label("ratio_numerator", ("comparison",)),
+        label("ratio_denominator", ("comparison",)),
+        measured("modulus_ratio", _R),
+        stated("modulus_ratio_low", _R, BOUND),
+        stated("modulus_ratio_high", _R, BOUND),
+        stated("modulus_ratio_degrees_of_freedom", _R, OF_UNCERTAINTY),
+        flag("modulus_ratio_is_different", _R, NO_YES),
+    )
+)
+
+ELASTOMER_ROWS: tuple[Variable, ...] = tuple(
+    chain(
+        label("elastomer_specimen", ("elastomer_fit",)),
+        label("elastomer_law", ("elastomer_fit",)),
+        stated("elastomer_rms_stress", ("elastomer_fit",), SPREAD),
+        stated("elastomer_strain_low", ("elastomer_fit",), BOUND),
+        stated("elastomer_strain_high", ("elastomer_fit",), BOUND),
+        flag("elastomer_is_stable", ("elastomer_fit",), NO_YES),
+        stated("elastomer_aicc", ("elastomer_fit",), CRITERION),
+        count("elastomer_parameter_fit", ("elastomer_parameter",)),
+        label("elastomer_parameter_name", ("elastomer_parameter",)),
+        measured("elastomer_modulus", ("elastomer_parameter",)),
+        measured("elastomer_exponent", ("elastomer_parameter",)),
+    )
+)
+
+
+def curve_values(curves: ModulusCurves) -> Values:
+    """Return the tangent modulus curves with their companions."""
+    values: Values = {
+        item.name: getattr(curves, item.name)
+        for item in fields(curves)
+        if item.name not in ("window", "notes", "branch_tension_count")
+    }
+    if curves.branch_tension_count is not None:
+        values["branch_tension_count"] = curves.branch_tension_count
+    return values | {
+        "branch_name": texts(BRANCH_NAMES),
+        "strain_window": np.array(curves.window),
+    }
+
+
+def first_loading_values(curves: ModulusCurves) -> Values:
+    """Return the curves of the first loading, on a strain axis of their own."""
+    return {
+        "branch_name": texts(BRANCH_NAMES),
+        "first_loading_strain_bin": curves.strain_bin,
+        "first_loading_strain_bin_bounds": curves.strain_bin_bounds,
+        "tangent_modulus_first_loading": curves.tangent_modulus,
+        "tangent_modulus_first_loading_standard_uncertainty": (
+            curves.tangent_modulus_standard_uncertainty
+        ),
+        "branch_tension_first_loading": curves.branch_tension,
+        "branch_tension_first_loading_standard_uncertainty": (
+            curves.branch_tension_standard_uncertainty
+        ),
+    }
+
+
+def segment_values(segments: Segments) -> Values:
+    """Return the piecewise-linear moduli."""
+    values: Values = {
+        item.name: getattr(segments, item.name)
+        for item in fields(segments)
+        if item.name != "criterion"
+    }
+    return values | {
+        "branch_name": texts(BRANCH_NAMES),
+        "segment": np.arange(1, segments.segment_modulus.shape[-1] + 1),
+        "segment_criterion": np.array(segments.criterion),
+    }
+
+
+def ratio_values(ratios: Sequence[Ratio]) -> Values:
+    """Return the modulus ratios of a test, which share one strain grid."""
+
+    def stacked(name: str) -> NDArray[Any]:
+        return np.stack([getattr(ratio, name) for ratio in ratios])
+
+    return {
+        "branch_name": texts(BRANCH_NAMES),
+        "ratio_numerator": texts([ratio.numerator for ratio in ratios]),
+        "ratio_denominator": texts([ratio.denominator for ratio in ratios]),
+        "ratio_strain_bin": ratios[0].strain_bin,
+        "modulus_ratio": stacked("ratio"),
+        "modulus_ratio_standard_uncertainty": stacked("ratio_standard_uncertainty"),
+        "modulus_ratio_low": stacked("ratio_low"),
+        "modulus_ratio_high": stacked("ratio_high"),
+        "modulus_ratio_degrees_of_freedom": np.stack(
+            [np.broadcast_to(one.degrees_of_freedom, one.ratio.shape) for one in ratios]
+        ),
+        "modulus_ratio_is_different": stacked("is_different"),
+    }
+
+
+def stress_at_strain_values(stress: Floats, uncertainty: Floats, levels: Sequence[float]) -> Values:
+    """Return the stress at stated elongations, in rising order of elongation."""
+    order = np.argsort(np.asarray(levels, dtype=np.float64), kind="stable")
+    return {
+        "strain_level": np.asarray(levels, dtype=np.float64)[order],
+        "stress_at_strain": stress[..., order],
+        "stress_at_strain_standard_uncertainty": uncertainty[..., order],
+    }
+
+
+def elastomer_values(fits: Sequence[ElastomerFit]) -> Values:
+    """Return the fitted laws; their parameters are one row each, a modulus or an exponent."""
+    rows = [
+        (number, name, value, fit.standard_uncertainty.get(name))
+        for number, fit in enumerate(fits, start=1)
+        for name, value in fit.parameters.items()
+    ]
+    is_exponent = ["exponent" in name for _, name, _, _ in rows]
+    values: Values = {
+        "elastomer_specimen": texts([fit.specimen for fit in fits]),
+        "elastomer_law": texts([fit.law for fit in fits]),
+        "elastomer_rms_stress": numbers([fit.rms_stress for fit in fits]),
+        "elastomer_strain_low": numbers([fit.strain_low for fit in fits]),
+        "elastomer_strain_high": numbers([fit.strain_high for fit in fits]),
+        "elastomer_is_stable": np.array([fit.is_stable for fit in fits], dtype=bool),
+        "elastomer_aicc": numbers([fit.aicc for fit in fits]),
+        "elastomer_parameter_fit": np.array([row[0] for row in rows], dtype=np.int32),
+        "elastomer_parameter_name": texts([row[1] for row in rows]),
+    }
+    for name, wanted in (("elastomer_modulus", False), ("elastomer_exponent", True)):
+        chosen = [exponent is wanted for exponent in is_exponent]
+        if any(chosen):
+            value = numbers([row[2] for row in rows])
+            uncertainty = numbers([row[3] for row in rows])
+            values[name] = np.where(chosen, value, np.nan)
+            values[f"{name}_standard_uncertainty"] = np.where(chosen, uncertainty, np.nan)
+    return values
+
+
+HOLD_ROWS: tuple[Variable, ...] = tuple(
+    chain(
+        count("hold_number", ("hold",)),
+        label("hold_specimen", ("hold",)),
+        label("hold_kind", ("hold",)),
+        stated("hold_start_time", ("hold",), CLOCK),
+        stated("hold_duration", ("hold",), CLOCK),
+        stated("hold_ramp_centre_time", ("hold",), CLOCK),
+        measured("hold_strain", ("hold",)),
+        measured("hold_initial_tension", ("hold",)),
+        measured("hold_final_tension", ("hold",)),
+        measured("relaxation_drop", ("hold",)),
+        measured("relaxation_rate_per_decade", ("hold",)),
+        measured("creep_rate_per_decade", ("hold",)),
+        measured("tension_at_time", ("hold", "hold_time")),
+        measured("strain_at_time", ("hold", "hold_time")),
+        measured("prony_tension", ("hold", "prony_term")),
+        measured("prony_time", ("hold", "prony_term")),
+        measured("long_time_tension", ("hold",)),
+        label("hold_criterion", ("hold",)),
+        label("hold_refusal", ("hold",)),
+    )
+)
+
+_PLAIN = (
+    "hold_start_time",
+    "hold_duration",
+    "hold_strain",
+    "hold_strain_standard_uncertainty",
+    "hold_initial_tension",
+    "hold_initial_tension_standard_uncertainty",
+    "hold_final_tension",
+    "hold_final_tension_standard_uncertainty",
+    "relaxation_drop",
+    "relaxation_drop_standard_uncertainty",
+    "long_time_tension",
+    "long_time_tension_standard_uncertainty",
+)
+
+_PRONY = (
+    "prony_tension",
+    "prony_tension_standard_uncertainty",
+    "prony_time",
+    "prony_time_standard_uncertainty",
+)
+
+
+def standstill_values(standstills: Standstills) -> Values:
+    """Return every interval in which the crosshead, or the tension that is kept, stands still."""
+    values: Values = {
+        "standstill_start_time": standstills.start_time,
+        "standstill_end_time": standstills.end_time,
+        "standstill_position": standstills.mean_position,
+        "standstill_tension": standstills.mean_tension,
+        "standstill_is_rest": standstills.is_rest,
+        "standstill_position_tolerance": np.array(standstills.position_tolerance),
+        "slack_tension": np.array(standstills.slack_tension),
+    }
+    if standstills.tension_tolerance is not None:
+        values["hold_tension_tolerance"] = np.array(standstills.tension_tolerance)
+    return values
+
+
+def hold_values(holds: Sequence[HoldResult]) -> Values:
+    """Return one row a hold and specimen, ragged parts padded with NaN."""
+    values: Values = {
+        "hold": np.arange(1, len(holds) + 1),
+        "hold_number": hold_numbers(holds),
+        "hold_specimen": texts([one.specimen for one in holds]),
+        "hold_kind": texts([one.kind for one in holds]),
+        "hold_criterion": texts([one.criterion for one in holds]),
+        "hold_refusal": texts(["; ".join(one.refusals) for one in holds]),
+    }
+    for name in _PLAIN:
+        values[name] = numbers([getattr(one, name) for one in holds])
+    values["hold_ramp_centre_time"] = numbers([one.ramp_centre_time for one in holds])
+    for kind in ("relaxation", "creep"):
+        # share of tension and gain of strain are two quantities, so two names
+        chosen = [one.kind == kind for one in holds]
+        for suffix in ("", "_standard_uncertainty"):
+            rate = numbers([getattr(one, f"rate_per_decade{suffix}") for one in holds])
+            values[f"{kind}_rate_per_decade{suffix}"] = np.where(chosen, rate, np.nan)
+    times = np.unique(np.concatenate([np.empty(0), *(one.times for one in holds)]))
+    values["hold_time"] = times
+    for name in ("tension_at_time", "strain_at_time"):
+        for suffix in ("", "_standard_uncertainty"):
+            values[f"{name}{suffix}"] = _on_common_times(holds, f"{name}{suffix}", times)
+    for name in _PRONY:
+        values[name] = pad([getattr(one, name) for one in holds])
+    values["prony_term"] = np.arange(1, values["prony_time"].shape[1] + 1)
+    return values
+
+
+def _on_common_times(holds: Sequence[HoldResult], name: str, times: Floats) -> Floats:
+    table = np.full((len(holds), times.size), np.nan)
+    for row, one in zip(table, holds, strict=True):
+        given = getattr(one, name)
+        if given.size:
+            row[np.searchsorted(times, one.times)] = given
+    return table
+
+
+LAG_ROWS: tuple[Variable, ...] = tuple(
+    chain(
+        measured("channel_lag", _S),
+        count("channel_lag_turns", _S),
+        flag("channel_lag_refusal", _S, LAG_REFUSALS),
+    )
+)
+
+
+def lag_values(estimate: LagEstimate) -> Values:
+    """Return what the turns of the wave say of the clocks of the channels."""
+    return {
+        "channel_lag": estimate.lag,
+        "channel_lag_standard_uncertainty": estimate.standard_uncertainty,
+        "channel_lag_turns": estimate.n_turns,
+        "channel_lag_refusal": estimate.refusal,
+    }
+
+
+LINE_REFUSALS = {
+    "given": 0,
+    "quasi_static_unknown": 1,
+    "quasi_static_not_positive": 2,
+    "reading_missing": 3,
+    "reading_not_positive": 4,
+    "loss_reaches_apparent": 5,
+    "storage_not_above_quasi_static": 6,
+}
+
+"""Meanings of the codes of `reduction.stages.line.line_product.REASONS`, as a flag has them."""
+
+_LINE = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
+
+_C = ("specimen", "cycle")
+
+_T = ("specimen", "tension_grid")
+
+_P = ("specimen", "pull_term")
+
+LINE_ROWS: tuple[Variable, ...] = tuple(
+    chain(
+        chain.from_iterable(measured(name, _C) for name in _LINE),
+        flag("line_refusal", _C, LINE_REFUSALS),
+        measured("test_quasi_static_spring_constant", _S),
+        chain.from_iterable(measured(f"test_{name}", _S) for name in _LINE),
+        stated("test_line_conditioning", _S, "a sensitivity"),
+        flag("test_line_refusal", _S, LINE_REFUSALS),
+        flag("test_line_uncertainty_method", _S, LINE_METHODS),
+        stated("test_line_without_solution_share", _S, PART),
+        chain.from_iterable(
+            stated(f"test_{name}_{end}", _S, BOUND) for name in _LINE for end in ("low", "high")
+        ),
+        stated("tension_grid", ("tension_grid",), AXIS),
+        measured("quasi_static_spring_constant", _T),
+        measured("quasi_static_strain", _T),
+        count("pull_term", ("pull_term",)),
+        measured("pull_strain_coefficient", _P),
+        stated("pull_spring_constant_coefficient", _P, "a re-expression of the load-strain cubic"),
+        stated("pull_tension_low", _S, BOUND),
+        stated("pull_tension_high", _S, BOUND),
+        stated("pull_strain_rate", _S, MOVEMENT),
+        stated("pull_waiting_time", _S, STATED),
+        label("pull_waiting", _S),
+        stated("pull_residual", _S, SPREAD),
+        stated("pull_reference_tension", _S, STATED),
+        stated("break_share", ("break_share",), SETTING),
+        measured("strain_at_break_share", ("specimen", "break_share")),
+    )
+)
+
+
+def line_values(
+    cycles: LineParameters, test: LineParameters, constant_spread: Floats | None
+) -> Values:
+    """Return parameters of each cycle and of the test, with the uncertainty of its K_0."""
+    values: Values = {
+        "line_refusal": cycles.reason,
+        "test_line_refusal": test.reason,
+        "test_line_conditioning": test.conditioning,
+        "test_quasi_static_spring_constant": test.quasi_static_spring_constant,
+    }
+    if constant_spread is not None:
+        values["test_quasi_static_spring_constant_standard_uncertainty"] = constant_spread
+    for name in _LINE:
+        values[name] = getattr(cycles, name)
+        values[f"{name}_standard_uncertainty"] = cycles.uncertainty[name]
+        values[f"test_{name}"] = getattr(test, name)
+        values[f"test_{name}_standard_uncertainty"] = test.uncertainty[name]
+    return values
+
+
+def random_of_line(cycles: LineParameters, test: LineParameters) -> Values:
+    """Return what is random in lines of cycles and test: the fit of a slow pull is shared."""
+    names = {name: cycles.random_uncertainty[name] for name in _LINE}
+    names |= {f"test_{name}": test.random_uncertainty[name] for name in _LINE}
+    constant = test.quasi_static_spring_constant
+    return names | {"test_quasi_static_spring_constant": np.where(np.isnan(constant), np.nan, 0.0)}
+
+
+def spread_of_line_values(spread: LineSpread, values: Values) -> Values:
+    """Return interval and method of the line of a test, and its uncertainty where drawn."""
+    found: Values = {
+        "test_line_uncertainty_method": spread.method,
+        "test_line_without_solution_share": spread.without_solution_share,
+    }
+    drawn = spread.method == LINE_METHODS["monte_carlo"]
+    for name in _LINE:
+        key = f"test_{name}_standard_uncertainty"
+        found[key] = np.where(drawn, spread.standard_uncertainty[name], values[key])
+        found[f"test_{name}_low"] = spread.low[name]
+        found[f"test_{name}_high"] = spread.high[name]
+    return found
+
+
+def pull_values(pulls: tuple[SlowPull | None, ...], specimens: tuple[Specimen, ...]) -> Values:
+    """Return the slow pull of each specimen on one grid of tension; NaN where one has none."""
+    given = [one for one in pulls if one is not None]
+    if not given:
+        return {}
+    grid = tension_grid(pulls)
+    values: Values = {"tension_grid": grid, "pull_term": np.arange(4)}
+    values |= _on_axis("quasi_static_spring_constant", pulls, quasi_static_spring_constant, grid)
+    values |= _on_axis("quasi_static_strain", pulls, strain_at_tension, grid)
+    columns: dict[str, Callable[[SlowPull], ArrayLike]] = {
+        "pull_strain_coefficient": lambda one: one.strain_coefficient,
+        "pull_strain_coefficient_standard_uncertainty": lambda one: np.sqrt(
+            np.diag(one.strain_coefficient_covariance)
+        ),
+        "pull_spring_constant_coefficient": lambda one: one.polynomial_coefficient,
+        "pull_tension_low": lambda one: one.tension_low,
+        "pull_tension_high": lambda one: one.tension_high,
+        "pull_strain_rate": lambda one: one.strain_rate,
+        "pull_waiting_time": lambda one: one.waiting_time,
+        "pull_residual": lambda one: one.residual_deviation,
+        "pull_reference_tension": lambda one: one.reference_tension,
+    }
+    for name, column in columns.items():
+        missing = np.full(np.shape(column(given[0])), np.nan)
+        values[name] = np.array([missing if one is None else column(one) for one in pulls])
+    values["pull_waiting"] = texts(["" if one is None else one.waiting for one in pulls])
+    strengths = [specimen.rated_break_strength for specimen in specimens]
+    if any(strengths):
+        shares = np.array(BREAK_SHARES)
+        at_share = [
+            (np.full(shares.size, np.nan),) * 2
+            if one is None or strength is None
+            else strain_at_break_share(one, shares, rated_break_strength=strength)
+            for one, strength in zip(pulls, strengths, strict=True)
+        ]
+        values |= _both("strain_at_break_share", at_share) | {"break_share": shares}
+    return values
+
+
+def _on_axis(
+    name: str,
+    pulls: tuple[SlowPull | None, ...],
+    function: Callable[[SlowPull, ArrayLike], tuple[Floats, Floats]],
+    axis: Floats,
+) -> Values:
+    missing = np.full(axis.size, np.nan)
+    return _both(
+        name, [(missing, missing) if one is None else function(one, axis) for one in pulls]
+    )
+
+
+def _both(name: str, pairs: Sequence[tuple[Floats, ...]]) -> Values:
+    return {
+        name: np.array([pair[0] for pair in pairs]),
+        f"{name}_standard_uncertainty": np.array([pair[1] for pair in pairs]),
+    }
+
+
+_HELD_PAIR = ("held_pair",)
+
+_HELD_POINT = ("held_pair", "held_pair_point")
+
+_U = "_standard_uncertainty"
+
+_OVER = re.compile("_over_strength|^creep_compliance")
+
+ROPE_ROWS: tuple[Variable, ...] = tuple(
+    chain(
+        label("programme_step"),
+        # bedding-in
+        count("bedding_cycles", _S),
+        chain.from_iterable(
+            measured(f"bedding_{name}", _S)
+            for name in (
+                "first_stiffness",
+                "last_stiffness",
+                "first_stiffness_over_strength",
+                "last_stiffness_over_strength",
+                "stiffening",
+                "permanent_strain",
+            )
+        ),
+        # dynamic stiffness
+        count("dynamic_cycles", _S),
+        measured("dynamic_stiffness", _S),
+        measured("dynamic_stiffness_over_strength", _S),
+        measured("dynamic_stiffness_drift", _S),
+        measured("dynamic_frequency", _S),
+        measured("dynamic_mean_tension", _S),
+        measured("dynamic_tension_amplitude", _S),
+        measured("dynamic_mean_tension_over_strength", _S),
+        measured("dynamic_tension_amplitude_over_strength", _S),
+        # quasi-static stiffness
+        count("held_pair", _HELD_PAIR),
+        label("held_pair_specimen", _HELD_PAIR),
+        count("held_pair_low_hold", _HELD_PAIR),
+        count("held_pair_high_hold", _HELD_PAIR),
+        measured("held_pair_low_tension", _HELD_PAIR),
+        measured("held_pair_high_tension", _HELD_PAIR),
+        stated("static_reference_time", _HELD_PAIR, SETTING),
+        measured("static_stiffness", _HELD_PAIR),
+        measured("static_stiffness_over_strength", _HELD_PAIR),
+        measured("static_stiffness_per_decade", _HELD_PAIR),
+        measured("static_stiffness_per_decade_over_strength", _HELD_PAIR),
+        label("static_refusal", _HELD_PAIR),
+        count("held_pair_point", ("held_pair_point",)),
+        stated("static_elapsed_time", _HELD_POINT, CLOCK),
+        stated(
+            "static_stiffness_at_time",
+            _HELD_POINT,
+            "mean of readings: static_stiffness has their scatter",
+        ),
+        # creep
+        measured("creep_tension_over_strength", ("hold",)),
+        measured("creep_compliance_per_decade", ("hold",)),
+        # cycles to failure
+        count("cycles_to_failure", _S),
+        flag("cycles_are_run_out", _S, NO_YES),
+        stated("failure_peak_tension", _S, "mean over the cycles; each cycle has an uncertainty"),
+        stated("failure_valley_tension", _S, "mean over the cycles; each cycle has an uncertainty"),
+        stated(
+            "failure_peak_tension_over_strength",
+            _S,
+            "mean over the cycles; each cycle has an uncertainty",
+        ),
+        label("failure_judged_by", _S),
+        # pulls to the end
+        flag("pull_is_break", _S, NO_YES),
+        measured("pull_peak_tension", _S),
+        measured("pull_peak_tension_over_strength", _S),
+        measured("pull_peak_strain", _S),
+        measured("tensile_strength", _S),
+        measured("strain_at_failure", _S),
+    )
+)
+
+
+def rope_values(step: RopeStep, specimens: tuple[Specimen, ...]) -> Values:
+    """Return what one step of a programme gave; a part that it lacks is left out."""
+    strength = numbers([one.rated_break_strength for one in specimens])
+    values: Values = {"programme_step": np.array(step.name)}
+    if step.bedding_in is not None:
+        values |= _bedding_values(step.bedding_in, strength)
+    if step.dynamic is not None:
+        values |= _dynamic_values(step.dynamic)
+    if step.held:
+        values |= _held_values(step.held, dict(zip(_names(specimens), strength, strict=True)))
+    if step.creep:
+        values |= _creep_values(step.creep)
+    if step.lasted is not None:
+        values |= _failure_values(step.lasted)
+    if step.tensile is not None:
+        values |= _tensile_values(step.tensile)
+    if np.isnan(strength).all():
+        values = {name: array for name, array in values.items() if not _OVER.search(name)}
+    return values
+
+
+def _names(specimens: tuple[Specimen, ...]) -> list[str]:
+    return [one.name for one in specimens]
+
+
+def _bedding_values(bedding: BeddingIn, strength: Floats) -> Values:
+    first, last = bedding.first_stiffness, bedding.last_stiffness
+    u_first = bedding.first_stiffness_standard_uncertainty
+    u_last = bedding.last_stiffness_standard_uncertainty
+    return {
+        "bedding_cycles": np.full(first.shape, bedding.n_cycles),
+        "bedding_first_stiffness": first,
+        f"bedding_first_stiffness{_U}": u_first,
+        "bedding_last_stiffness": last,
+        f"bedding_last_stiffness{_U}": u_last,
+        "bedding_first_stiffness_over_strength": bedding.first_stiffness_over_strength,
+        f"bedding_first_stiffness_over_strength{_U}": u_first / strength,
+        "bedding_last_stiffness_over_strength": bedding.last_stiffness_over_strength,
+        f"bedding_last_stiffness_over_strength{_U}": u_last / strength,
+        "bedding_stiffening": bedding.stiffening,
+        f"bedding_stiffening{_U}": bedding.stiffening * np.hypot(u_first / first, u_last / last),
+        "bedding_permanent_strain": bedding.permanent_strain,
+        f"bedding_permanent_strain{_U}": bedding.permanent_strain_standard_uncertainty,
+    }
+
+
+def _dynamic_values(dynamic: DynamicStiffness) -> Values:
+    """The one level of a step."""
+    given: Values = {
+        "dynamic_cycles": dynamic.n_cycles,
+        "dynamic_stiffness": dynamic.dynamic_stiffness,
+        f"dynamic_stiffness{_U}": dynamic.dynamic_stiffness_standard_uncertainty,
+        "dynamic_stiffness_over_strength": dynamic.dynamic_stiffness_over_strength,
+        f"dynamic_stiffness_over_strength{_U}": (
+            dynamic.dynamic_stiffness_over_strength_standard_uncertainty
+        ),
+        "dynamic_stiffness_drift": dynamic.drift_per_cycle,
+        f"dynamic_stiffness_drift{_U}": dynamic.drift_per_cycle_standard_uncertainty,
+        "dynamic_frequency": dynamic.frequency,
+        "dynamic_mean_tension": dynamic.mean_tension,
+        "dynamic_tension_amplitude": dynamic.tension_amplitude,
+        "dynamic_mean_tension_over_strength": dynamic.mean_tension_over_strength,
+        "dynamic_tension_amplitude_over_strength": dynamic.tension_amplitude_over_strength,
+        f"dynamic_frequency{_U}": dynamic.frequency_standard_uncertainty,
+        f"dynamic_mean_tension{_U}": dynamic.mean_tension_standard_uncertainty,
+        f"dynamic_tension_amplitude{_U}": dynamic.tension_amplitude_standard_uncertainty,
+    }
+    for name in ("dynamic_mean_tension", "dynamic_tension_amplitude"):
+        share = given[f"{name}_over_strength"] / given[name]
+        given[f"{name}_over_strength{_U}"] = given[f"{name}{_U}"] * share
+    return {name: array[:, 0] for name, array in given.items()}
+
+
+def _held_values(pairs: Sequence[HeldPair], strength: dict[str, float]) -> Values:
+    """One row a pair of holds and specimen; NaN where its stiffness is refused."""
+    of_pair = numbers([strength[one.specimen] for one in pairs])
+    found = [one.stiffness for one in pairs]
+    level, u_level, slope, u_slope, at = (
+        numbers([None if one is None else getattr(one, name) for one in found])
+        for name in (
+            "stiffness_at_reference",
+            "stiffness_at_reference_standard_uncertainty",
+            "slope_per_decade",
+            "slope_per_decade_standard_uncertainty",
+            "reference_time",
+        )
+    )
+    elapsed = pad([[] if one is None else one.elapsed for one in found])
+    return {
+        "held_pair": np.arange(1, len(pairs) + 1),
+        "held_pair_specimen": texts([one.specimen for one in pairs]),
+        "held_pair_low_hold": np.array([one.low_hold for one in pairs]),
+        "held_pair_high_hold": np.array([one.high_hold for one in pairs]),
+        "held_pair_low_tension": numbers([one.low_tension for one in pairs]),
+        "held_pair_high_tension": numbers([one.high_tension for one in pairs]),
+        f"held_pair_low_tension{_U}": numbers(
+            [one.low_tension_standard_uncertainty for one in pairs]
+        ),
+        f"held_pair_high_tension{_U}": numbers(
+            [one.high_tension_standard_uncertainty for one in pairs]
+        ),
+        "static_reference_time": at,
+        "static_stiffness": level,
+        f"static_stiffness{_U}": u_level,
+        "static_stiffness_over_strength": level / of_pair,
+        f"static_stiffness_over_strength{_U}": u_level / of_pair,
+        "static_stiffness_per_decade": slope,
+        f"static_stiffness_per_decade{_U}": u_slope,
+        "static_stiffness_per_decade_over_strength": slope / of_pair,
+        f"static_stiffness_per_decade_over_strength{_U}": u_slope / of_pair,
+        "static_refusal": texts([one.reason for one in pairs]),
+        "held_pair_point": np.arange(1, elapsed.shape[1] + 1),
+        "static_elapsed_time": elapsed,
+        "static_stiffness_at_time": pad([[] if one is None else one.stiffness for one in found]),
+    }
+
+
+def _creep_values(creep: Sequence[CreepOfHold]) -> Values:
+    """Along the holds of the test, of which each has one entry."""
+    share = numbers([one.tension_over_strength for one in creep])
+    spread = numbers([one.creep_per_decade_standard_uncertainty for one in creep])
+    return {
+        "creep_tension_over_strength": share,
+        f"creep_tension_over_strength{_U}": share
+        * numbers([one.tension_standard_uncertainty / one.tension for one in creep]),
+        "creep_compliance_per_decade": numbers([one.creep_compliance_per_decade for one in creep]),
+        f"creep_compliance_per_decade{_U}": spread / share,
+    }
+
+
+def _failure_values(lasted: CyclesToFailure) -> Values:
+    return {
+        "cycles_to_failure": lasted.cycles,
+        "cycles_are_run_out": ~lasted.failed,
+        "failure_peak_tension": lasted.peak_tension,
+        "failure_valley_tension": lasted.valley_tension,
+        "failure_peak_tension_over_strength": lasted.peak_tension_over_strength,
+        "failure_judged_by": texts(lasted.how),
+    }
+
+
+def _tensile_values(pull: TensilePull) -> Values:
+    """Strength and strain at failure of what broke alone; the greatest tension of any."""
+    u_tension, u_strain = (
+        pull.peak_tension_standard_uncertainty,
+        pull.strain_at_peak_standard_uncertainty,
+    )
+    values: Values = {
+        "pull_is_break": pull.is_break,
+        "pull_peak_tension": pull.peak_tension,
+        f"pull_peak_tension{_U}": u_tension,
+        "pull_peak_tension_over_strength": pull.peak_tension_over_strength,
+        f"pull_peak_tension_over_strength{_U}": (
+            pull.peak_tension_over_strength_standard_uncertainty
+        ),
+        "pull_peak_strain": pull.strain_at_peak,
+        f"pull_peak_strain{_U}": u_strain,
+    }
+    for name, source in (
+        ("tensile_strength", "peak_tension"),
+        ("strain_at_failure", "peak_strain"),
+    ):
+        for suffix in ("", _U):
+            seen = values[f"pull_{source}{suffix}"]
+            values[f"{name}{suffix}"] = np.where(pull.is_break, seen, np.nan)
+    return values
+
+
+STEP_MASKS = {"length_and_elongation_disagree": 1, "creep": 2}
+
+STEP_ROWS: tuple[Variable, ...] = tuple(
+    chain(
+        label("clock", ("step",)),
+        measured("gauge_length", ("step",)),
+        stated("eye_to_eye_length", ("step",), "a tape reading"),
+        stated("printed_strain", ("step",), STATED),
+        mask("step_flag", ("step",), STEP_MASKS),
+        measured("relaxed_gauge_length", ()),
+        stated("interval_strain", ("interval",), "middle of two readings"),
+        measured("interval_modulus", ("interval",)),
+        flag("interval_branch", ("interval",), BRANCH_VALUES),
+    )
+)
+
+STEPWISE: dict[str, Variable] = {
+    row.name: row
+    for row in chain(
+        stated("time", ("step",), CLOCK),
+        measured("tension", ("step",)),
+        measured("strain", ("step",), ancillary=("step_flag",)),
+        flag("branch", ("step",), BRANCH_VALUES),
+        measured("secant_modulus", ("step",)),
+        *(
+            (
+                companion(name, "_random_standard_uncertainty", dims),
+                companion(name, "_uncertainty_contribution", (COMPONENT, *dims)),
+            )
+            for name, dims in SHARED_OF_STEPS.items()
+        ),
+    )
+}
+
+"""Names that stand along ``step`` in a stepwise test."""
+
+
+def stepwise_values(result: StepwiseResult) -> Values:
+    """Return the readings as the contract names them: ``gauge_length`` is the length read."""
+    flags = {
+        "length_and_elongation_disagree": result.is_inconsistent,
+        "creep": result.is_creep,
+    }
+    shape, reading = result.strain.shape, result.length_standard_uncertainty
+    return {
+        "channel": texts(["readings"]),
+        "quality_mask": texts(list(flags)),
+        "n_flagged": np.array([[np.count_nonzero(rows) for rows in flags.values()]]),
+        "n_rows_read": np.array(result.time.size),
+        "n_rows_kept": np.array(result.time.size),
+        "clock": texts(result.clock),
+        "time": result.time,
+        "tension": result.tension,
+        "tension_standard_uncertainty": np.full(shape, result.tension_standard_uncertainty),
+        "gauge_length": result.length,
+        "gauge_length_standard_uncertainty": np.full(shape, reading),
+        "eye_to_eye_length": result.eye_to_eye_length,
+        "printed_strain": result.printed_strain,
+        "strain": result.strain,
+        "strain_standard_uncertainty": np.full(shape, reading / result.gauge_length),
+        "branch": result.branch,
+        "step_flag": np.sum([STEP_MASKS[name] * rows for name, rows in flags.items()], axis=0),
+        "secant_modulus": result.secant_modulus,
+        "secant_modulus_standard_uncertainty": result.secant_modulus_standard_uncertainty,
+        "relaxed_gauge_length": np.array(result.gauge_length),
+        "relaxed_gauge_length_standard_uncertainty": np.array(
+            result.gauge_length_standard_uncertainty
+        ),
+        "interval_strain": result.interval_strain,
+        "interval_modulus": result.interval_modulus,
+        "interval_modulus_standard_uncertainty": result.interval_modulus_standard_uncertainty,
+        "interval_branch": result.interval_branch,
+    }

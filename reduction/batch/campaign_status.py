@@ -1,0 +1,146 @@
+"""Status of each test and each part of a campaign, and progress while it runs."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, Literal, Protocol, cast
+
+from reduction.record.plain_text import bare_cell, safe_cell
+
+Status = Literal["reduced", "reduced_with_notes", "unchanged", "no_work", "failed"]
+
+_COLUMNS = ("test", "status", "exit_status", "message", "raw_sha256", "seconds")
+
+
+@dataclass(frozen=True)
+class TestStatus:
+    """What became of one test.
+
+    Parameters
+    ----------
+    test : str
+        Its id.
+    status : Status
+        ``no_work`` where the campaign asked for something else.
+    exit_status : int
+        As the command line defines it.
+    message : str
+        The error, or the most serious note.
+    n_rows, n_cycles : int
+        Rows of the log; whole cycles found.
+    raw_sha256 : str
+        Hashes of its raw files, parted by blanks.
+    seconds : float
+        Wall time; not part of any product.
+    found : dict
+        What `check` prints: rate, gaps, flags.
+    worker : str
+        Address of the worker that reduced it, where there are several.
+    """
+
+    __test__ = False  # a test of a tether, not of this software
+
+    test: str
+    status: Status
+    exit_status: int
+    message: str
+    n_rows: int
+    n_cycles: int
+    raw_sha256: str
+    seconds: float
+    found: dict[str, Any] = field(default_factory=dict)
+    worker: str = ""
+
+    def document(self) -> dict[str, Any]:
+        """The entry of ``tests`` in the JSON answer."""
+        entry = asdict(self)
+        entry["id"] = entry.pop("test")
+        return entry
+
+
+def status_csv(rows: Sequence[TestStatus]) -> str:
+    """Text of status.csv, one row a test."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\r\n")
+    writer.writerow(_COLUMNS)
+    for row in rows:
+        writer.writerow(
+            [
+                row.test,
+                row.status,
+                row.exit_status,
+                safe_cell(row.message),
+                row.raw_sha256,
+                f"{row.seconds:.3f}",
+            ]
+        )
+    return text.getvalue()
+
+
+def read_status(path: Path) -> dict[str, TestStatus]:
+    """Rows of an earlier status.csv by test; empty where there is none that can be read."""
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        return {
+            row["test"]: TestStatus(
+                test=row["test"],
+                status=cast("Status", row["status"]),
+                exit_status=int(row["exit_status"]),
+                message=bare_cell(row["message"]),
+                n_rows=0,
+                n_cycles=0,
+                raw_sha256=row["raw_sha256"],
+                seconds=float(row["seconds"]),
+            )
+            for row in rows
+        }
+    except (OSError, KeyError, ValueError, TypeError):
+        return {}  # it is made anew, from what this run did
+
+
+@dataclass(frozen=True)
+class PartStatus:
+    """What became of an experiment, a hose or a comparison.
+
+    ``status`` is ``fitted``, ``predicted`` or ``compared``, each also with ``_with_notes``;
+    ``failed``; or ``no_work``.
+    """
+
+    id: str
+    status: str
+    exit_status: int
+    message: str
+
+
+class Progress(Protocol):
+    """One who is told how far a campaign is."""
+
+    def stage(self, name: str, n_tests: int) -> None:
+        """A stage begins that works on so many tests; none for tables and report."""
+        ...
+
+    def begun(self, test: str) -> None:
+        """Work on a test began in this process."""
+        ...
+
+    def ended(self, test: str, status: TestStatus | None = None) -> None:
+        """Work on a test ended in this stage; with its status where nothing more comes."""
+        ...
+
+
+class Silent:
+    """Nobody listens."""
+
+    def stage(self, name: str, n_tests: int) -> None:
+        """Nothing."""
+
+    def begun(self, test: str) -> None:
+        """Nothing."""
+
+    def ended(self, test: str, status: TestStatus | None = None) -> None:
+        """Nothing."""

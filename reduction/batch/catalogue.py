@@ -1,0 +1,1052 @@
+"""The catalogue: tests, conditions and numbers of all campaigns."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import pandas as pd
+import pyarrow  # type: ignore[import-untyped]
+import pyarrow.compute  # type: ignore[import-untyped]
+import pyarrow.csv  # type: ignore[import-untyped]
+import pyarrow.parquet  # type: ignore[import-untyped]
+import xarray as xr
+from numpy.typing import NDArray
+
+from reduction import __version__
+from reduction.archive.atomic_write import remove_abandoned, whole_file
+from reduction.archive.open import OF_CAMPAIGN, Opener, archives_in, reading
+from reduction.quantities.names import QUANTITIES
+from reduction.quantities.units import DIMENSIONS, parse_quantity, scale_of_unit
+from reduction.record.errors import ArchiveError, SettingsError
+from reduction.record.measurement import Floats
+from reduction.record.plain_text import safe_cell
+
+TEXTS: Final = (
+    "campaign", "test", "specimen", "test_kind", "medium", "control", "waveform",
+    "specimen_kind", "specimen_material", "specimen_construction", "specimen_condition",
+    "synthetic", "archive",
+)  # fmt: skip
+
+"""What is said of a test in words."""
+
+NUMBERS: Final = (
+    "n_cycles", "test_frequency", "test_mean_tension", "test_tension_amplitude",
+    "test_mean_strain", "test_strain_amplitude", "least_strain", "greatest_strain", "diameter",
+    "rated_break_strength",
+)  # fmt: skip
+
+"""What is said of a test in numbers, SI."""
+
+CONDITIONS: Final = (*TEXTS[:-2], *NUMBERS, *TEXTS[-2:])
+
+"""Columns of a table of tests, in order."""
+
+NUMBER: Final = ("quantity", "value", "standard_uncertainty")
+
+"""Columns of a number; a row of a test has none."""
+
+LEFT_OUT: Final = frozenset(
+    {"sample", "selected_cycle", "bound", "uncertainty_component", "uncertainty_source"}
+)
+
+"""Dimensions that stay in the archives: samples, curves by cycle, parts of uncertainties."""
+
+
+def column_type(name: str) -> Any:
+    """Arrow type of a column by its row in the vocabulary: text where it has no unit."""
+    if name == "quantity":
+        return pyarrow.string()
+    row = QUANTITIES.get(name)
+    return pyarrow.float64() if row is None or row.unit else pyarrow.string()
+
+
+def standing_for(name: str) -> str:
+    """Name of the mean over a test, where a quantity of the cycles has one.
+
+    Examples
+    --------
+    >>> [standing_for(name) for name in ("frequency", "peak_tension", "mean_tension")]
+    ['test_frequency', 'peak_tension', 'test_mean_tension']
+    """
+    return f"test_{name}" if f"test_{name}" in QUANTITIES else name
+
+
+FILE_NAME = "catalogue.parquet"
+
+MARK = b"reduction_catalogue"
+
+_FORMAT = "2"
+
+_AGAIN = "Run the campaign again, or use --rebuild."
+
+_NO_TESTS = pyarrow.schema(
+    [("row", pyarrow.int32()), ("is_whole", pyarrow.bool_())]
+    + [(name, column_type(name)) for name in CONDITIONS]
+).empty_table()
+
+_NO_VALUES = pyarrow.schema(
+    [("row", pyarrow.int32())] + [(name, column_type(name)) for name in NUMBER]
+).empty_table()
+
+
+@dataclass(frozen=True)
+class Catalogue:
+    """Tests and numbers of a folder.
+
+    Parameters
+    ----------
+    tests : pandas.DataFrame
+        A row for each specimen of each archive, and one before them for the whole archive; the
+        index is counted through.
+    numbers : pandas.DataFrame
+        ``row`` of ``tests``, ``quantity``, ``value``, ``standard_uncertainty`` (SI), and a column
+        for each dimension along which numbers stand.
+    unreadable : dict of str to str
+        Campaigns and archives that are not in it, each with the reason.
+    """
+
+    tests: pd.DataFrame
+    numbers: pd.DataFrame
+    unreadable: dict[str, str]
+
+
+def mark() -> bytes:
+    """What a catalogue of this version says of itself."""
+    return f"{_FORMAT} {__version__}".encode()
+
+
+def load_catalogue(folder: Path, quantities: Sequence[str] | None = None) -> Catalogue:
+    """Read the catalogues of all campaigns of a folder.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Holds a folder for each campaign.
+    quantities : sequence of str, optional
+        Whose numbers are read; left out: all.
+
+    Returns
+    -------
+    catalogue : Catalogue
+        Archives that are gone are not in it.
+
+    Raises
+    ------
+    SettingsError
+        If the folder is none of processed campaigns.
+    """
+    tests, values, unreadable = [_NO_TESTS], [_NO_VALUES], {}
+    n_rows = 0
+    for campaign in campaigns_below(folder):
+        shown = shown_path(campaign.name)
+        try:
+            there = {shown_path(path.name) for path in archives_of(campaign)}
+            if not there:
+                continue
+            about, found = _tables_of(campaign / FILE_NAME, quantities)
+        except (OSError, pyarrow.ArrowException) as error:
+            words = getattr(error, "strerror", None) or str(error).partition("\n")[0]
+            unreadable[shown] = f"{shown}: {FILE_NAME} cannot be read; found {words}. {_AGAIN}"
+            continue
+        known = about["archive"]
+        for name in sorted(there - set(known.to_pylist())):
+            unreadable[f"{shown}/{name}"] = f"{shown}/{name} is not in {FILE_NAME}. {_AGAIN}"
+        about = _counted_from(n_rows, about)
+        path = pyarrow.compute.binary_join_element_wise(shown, known, "/")
+        about = about.set_column(about.schema.get_field_index("archive"), "archive", path)
+        tests.append(about.filter(pyarrow.compute.is_in(known, pyarrow.array(sorted(there)))))
+        values.append(_counted_from(n_rows, found))
+        n_rows += about.num_rows
+    of_tests = pyarrow.concat_tables(tests, promote_options="default").to_pandas()
+    numbers = pyarrow.concat_tables(values, promote_options="default").to_pandas()
+    numbers = numbers[numbers["row"].isin(of_tests["row"])]
+    return Catalogue(of_tests.set_index("row"), numbers, unreadable)
+
+
+def _tables_of(path: Path, quantities: Sequence[str] | None) -> tuple[Any, Any]:
+    """Rows of tests, and of numbers without what their tests say."""
+    # opened here: a path may be no text; in one thread: of many small files each is quickest so
+    with path.open("rb") as opened, pyarrow.parquet.ParquetFile(opened) as file:
+        names = file.schema_arrow.names
+        if (file.schema_arrow.metadata or {}).get(MARK) != mark():
+            raise OSError("one of another version, or of another program")
+        about = file.read_row_group(0, columns=_NO_TESTS.column_names, use_threads=False)
+        numbers = file.read_row_groups(
+            range(1, file.num_row_groups),
+            columns=[name for name in names if name not in (*CONDITIONS, "is_whole")],
+            use_threads=False,
+        )
+    if quantities is not None:
+        wanted = pyarrow.array(list(quantities), pyarrow.string())
+        numbers = numbers.filter(pyarrow.compute.is_in(numbers["quantity"], wanted))
+    return about, numbers
+
+
+def _counted_from(first: int, table: Any) -> Any:
+    row = pyarrow.compute.add(table["row"], pyarrow.scalar(first, pyarrow.int32()))
+    return table.set_column(table.schema.get_field_index("row"), "row", row)
+
+
+def shown_path(path: str) -> str:
+    r"""A path as text that any file takes: bytes that are no text stand as ``\\xff``.
+
+    Examples
+    --------
+    >>> shown_path("campaign\udcff/T-1.nc")
+    'campaign\\xff/T-1.nc'
+    """
+    return path.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
+
+
+def archives_of(campaign: Path) -> list[Path]:
+    """Archives of a campaign, by name; what begins with a dot is none."""
+    return [path for path in archives_in(campaign) if not path.name.startswith(".")]
+
+
+def campaigns_below(folder: Path) -> list[Path]:
+    """Folders of the campaigns of a folder of products.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Holds one folder for each campaign.
+
+    Returns
+    -------
+    campaigns : list of pathlib.Path
+        In order of their names; those whose names begin with a dot are left out.
+
+    Raises
+    ------
+    SettingsError
+        If there is no such folder, it cannot be read, or it is that of one campaign.
+    """
+    if not folder.is_dir():
+        raise SettingsError(
+            f"there is no folder {shown_path(str(folder))}",
+            needed="a folder of processed campaigns",
+            hint="Run a campaign first, or name the folder of its products.",
+        )
+    try:
+        with os.scandir(folder) as entries:
+            inside = sorted((Path(one.path) for one in entries), key=lambda path: path.name)
+    except OSError as error:
+        raise SettingsError(
+            f"the folder {shown_path(str(folder))} cannot be read",
+            found=error.strerror or str(error),
+            needed="a folder of processed campaigns",
+        ) from error
+    for path in inside:
+        if path.suffix == ".nc" and path.is_file():
+            raise SettingsError(
+                f"{shown_path(str(folder))} is the folder of one campaign",
+                found=f"the archive {shown_path(path.name)}",
+                needed="the folder above it, which holds the campaigns",
+                hint="To see one of them, use --campaign.",
+            )
+    return [path for path in inside if not path.name.startswith(".") and path.is_dir()]
+
+
+_FORM = re.compile(r"\s*(\w+)\s*(<=|>=|==|!=|<|>|=)\s*(.*?)\s*", re.DOTALL)
+
+_SHARE = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*%\s*(?:RBS|MBS|MBL)")
+
+_VALUE = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*)?")
+
+_DIMENSION_OF: Final = {unit: name for name, unit in reversed(DIMENSIONS.items())} | {"1": "strain"}
+
+_EXAMPLE = 'such as "frequency >= 0.1 Hz" or "medium = wet"'
+
+
+@dataclass(frozen=True)
+class Condition:
+    """What has to hold of a row.
+
+    Parameters
+    ----------
+    name : str
+        Quantity, as it was written.
+    operator : str
+        ``<``, ``<=``, ``>``, ``>=``, ``=`` or ``!=``; a text has the last two.
+    value : float or str
+        In the unit of the vocabulary, or a text.
+    is_share : bool
+        The value is a share of the rated break strength of the row.
+    """
+
+    name: str
+    operator: str
+    value: float | str
+    is_share: bool = False
+
+
+def condition_of(text: str) -> Condition:
+    """Read a condition.
+
+    Parameters
+    ----------
+    text : str
+        Name, operator, value with its unit.
+
+    Returns
+    -------
+    condition : Condition
+        In SI.
+
+    Raises
+    ------
+    SettingsError
+        If it has another form, the vocabulary lacks the name, or the unit is of another dimension.
+
+    Examples
+    --------
+    >>> condition_of("mean_tension > 100 lbf")
+    Condition(name='mean_tension', operator='>', value=444.82216152605, is_share=False)
+    """
+    form = _FORM.fullmatch(text)
+    if form is None or not form[3]:
+        raise SettingsError("--where is no condition", found=repr(text), needed=_EXAMPLE)
+    name, operator, value = form[1], form[2].replace("==", "="), form[3]
+    row = QUANTITIES.get(name)
+    if row is None:
+        raise SettingsError(
+            f"--where names no quantity: '{name}'",
+            found=repr(text),
+            needed="a name of the vocabulary",
+            hint="docs/glossary.md lists them.",
+        )
+    if not row.unit:
+        if operator not in ("=", "!="):
+            raise SettingsError(
+                f"'{name}' is a text, which is no greater or less",
+                found=repr(text),
+                needed=f'"{name} = ..." or "{name} != ..."',
+            )
+        return Condition(name, operator, value)
+    share = _SHARE.fullmatch(value)
+    if share is not None and row.unit == "N":
+        return Condition(name, operator, _number(share[1], text) / 100, is_share=True)
+    return Condition(name, operator, _value(value, row.unit, name))
+
+
+def _number(digits: str, text: str) -> float:
+    try:
+        return float(digits)
+    except ValueError as error:
+        raise SettingsError("--where has no number", found=repr(text), needed=_EXAMPLE) from error
+
+
+def _value(text: str, unit: str, name: str) -> float:
+    """Value in the unit of a quantity."""
+    dimension = _DIMENSION_OF.get(unit)
+    if dimension is not None:
+        return parse_quantity(text, dimension)
+    form = _VALUE.fullmatch(text)
+    if form is None or form[2] is None:
+        raise SettingsError(
+            f"the value of '{name}' is not a number with a unit",
+            found=repr(text),
+            needed=f'text such as "1.5 {unit}"',
+        )
+    si_unit, factor, offset = scale_of_unit(form[2])
+    own_unit, own_factor, _ = scale_of_unit(unit)
+    if si_unit != own_unit:
+        raise SettingsError(
+            f"'{form[2]}' is not a unit of {name}",
+            found=repr(text),
+            needed=f"a unit such as {unit}",
+        )
+    return (factor * float(form[1]) + offset) / own_factor
+
+
+_SAMPLES_AT_ONCE = 1_000_000
+
+_ROWS_AT_ONCE = 65_536
+
+_WHOLE = -1
+
+_TESTS = pyarrow.schema(
+    [("row", pyarrow.int32()), ("is_whole", pyarrow.bool_())]
+    + [(name, column_type(name)) for name in (*CONDITIONS, *NUMBER)]
+)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What a catalogue keeps of one archive.
+
+    Parameters
+    ----------
+    rows : list of dict
+        Conditions: of the whole test, then of each specimen.
+    numbers : list of pyarrow.Table
+        Numbers that stand on the same dimensions, with which of the rows each is of.
+    """
+
+    rows: list[dict[str, Any]]
+    numbers: list[Any]
+
+
+def write_catalogue(archives: Sequence[Path], path: Path, *, opener: Opener = reading) -> None:
+    """Write the catalogue of a campaign, whole or not at all.
+
+    Parameters
+    ----------
+    archives : sequence of pathlib.Path
+        Of the campaign.
+    path : pathlib.Path
+        Of the catalogue; equal archives give equal bytes.
+    opener : Opener
+        How archives are opened.
+
+    Raises
+    ------
+    ArchiveError
+        If an archive cannot be read, or the disk refuses.
+    """
+    _write([entry_of(one, opener=opener) for one in sorted(archives)], path)
+
+
+def rebuild(folder: Path) -> dict[str, str]:
+    """Write the catalogue of every campaign of a folder from the archives that are there.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Holds a folder for each campaign.
+
+    Returns
+    -------
+    left_out : dict of str to str
+        Archives that cannot be read and folders that take no file, each with the reason.
+    """
+    left_out = {}
+    for campaign in campaigns_below(folder):
+        shown = shown_path(campaign.name)
+        entries = []
+        try:
+            for path in archives_of(campaign):
+                try:
+                    entries.append(entry_of(path))
+                except (ArchiveError, OSError, RuntimeError, ValueError, LookupError) as error:
+                    # one that opens may have parts that are damaged, or not those of an archive
+                    words = (str(error) or type(error).__name__).splitlines()[0]
+                    left_out[f"{shown}/{shown_path(path.name)}"] = shown_path(words)
+            if entries:
+                _write(entries, campaign / FILE_NAME)
+        except OSError as error:
+            left_out[shown] = shown_path(str(error))
+    return left_out
+
+
+def _write(entries: Sequence[Entry], path: Path) -> None:
+    rows: list[dict[str, Any]] = []
+    numbers = []
+    for entry in entries:
+        for one in entry.numbers:
+            row = pyarrow.array(one["row"].to_numpy() + len(rows), pyarrow.int32())
+            numbers.append(one.set_column(0, "row", row))
+        rows += entry.rows
+    tests = pyarrow.Table.from_pylist(
+        [row | {"row": place} for place, row in enumerate(rows)], schema=_TESTS
+    )
+    table = pyarrow.concat_tables([tests.schema.empty_table(), *numbers], promote_options="default")
+    # each number with the conditions of its test: the file can be read by itself
+    for name in ("is_whole", *CONDITIONS):
+        place = table.schema.get_field_index(name)
+        table = table.set_column(place, name, tests[name].take(table["row"]))
+    table = table.sort_by("quantity")
+    schema = table.schema.with_metadata({MARK: mark()})
+    tests = pyarrow.concat_tables([schema.empty_table(), tests], promote_options="default")
+    try:
+        remove_abandoned(path)
+        with whole_file(path) as part:
+            # opened here: a path may be no text
+            with (
+                part.open("wb") as file,
+                pyarrow.parquet.ParquetWriter(file, schema, compression="zstd") as writer,
+            ):
+                writer.write_table(tests, max(1, tests.num_rows))  # the first group are the tests
+                writer.write_table(table, _ROWS_AT_ONCE)
+    except ArchiveError:
+        raise
+    except OSError as error:
+        raise ArchiveError(
+            f"{path} cannot be written",
+            found=getattr(error, "strerror", None) or str(error),
+            hint="What was there before is kept.",
+        ) from error
+
+
+def kept_cycles(n_cycles: int) -> NDArray[np.intp]:
+    """Index of the cycles whose numbers a catalogue keeps: 1, 2, 5, 10, 20, 50, ... and the last.
+
+    Examples
+    --------
+    >>> [int(index) + 1 for index in kept_cycles(3000)]
+    [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 3000]
+    """
+    numbers = [one * 10**power for power in range(len(str(n_cycles))) for one in (1, 2, 5)]
+    return np.array(sorted({n for n in numbers if n < n_cycles} | {n_cycles}), dtype=np.intp) - 1
+
+
+def entry_of(path: Path, *, opener: Opener = reading) -> Entry:
+    """Read what a catalogue keeps of an archive; `ArchiveError` where it cannot be read."""
+    with opener(path) as archive:
+        attributes = archive.attrs
+        stem = path.stem
+        whole: dict[str, Any] = {"synthetic": "no", "campaign": path.parent.name, "test": stem}
+        whole |= {name: str(attributes[name]) for name in TEXTS if name in attributes}
+        whole |= {"archive": path.name, "is_whole": True}
+        part = stem if stem in OF_CAMPAIGN else ""
+        whole["test_kind"] = part or str(attributes.get("test_kind", ""))
+        if "cycle" in archive.sizes:
+            whole["n_cycles"] = float(archive.sizes["cycle"])
+        names = (
+            archive.variables["specimen"].to_numpy().tolist() if "specimen" in archive.sizes else []
+        )
+        ends = _strain_ends(archive) if names else []
+        of_specimens = [
+            whole
+            | {"specimen": str(name), "is_whole": False}
+            | _conditions(archive, place)
+            | ends[place]
+            for place, name in enumerate(names)
+        ]
+        rows = [
+            {name: shown_path(one) if isinstance(one, str) else one for name, one in row.items()}
+            for row in (whole, *of_specimens)
+        ]
+        return Entry(rows, list(_blocks(archive, names)))
+
+
+def _conditions(archive: xr.Dataset, place: int) -> dict[str, str | float]:
+    found: dict[str, str | float] = {}
+    for name in (*TEXTS, *NUMBERS):
+        if name != "specimen" and name in archive and archive.variables[name].dims == ("specimen",):
+            value = archive.variables[name].to_numpy()[place]
+            found[name] = float(value) if name in NUMBERS else str(value)
+    return _known(found)
+
+
+def _known(found: dict[str, str | float]) -> dict[str, str | float]:
+    """Without numbers that are missing."""
+    return {name: one for name, one in found.items() if isinstance(one, str) or np.isfinite(one)}
+
+
+def _strain_ends(archive: xr.Dataset) -> list[dict[str, str | float]]:
+    """Least and greatest strain of each specimen, of its samples, steps and cycles."""
+    n_specimens = archive.sizes["specimen"]
+    low, high = np.full(n_specimens, np.nan), np.full(n_specimens, np.nan)
+    if "strain" in archive and archive.variables["strain"].dims in (
+        ("specimen", "sample"),
+        ("step",),
+    ):
+        strain = archive.variables["strain"]
+        long = strain.dims[-1]
+        for first in range(0, strain.sizes[long], _SAMPLES_AT_ONCE):
+            part = strain.isel({long: slice(first, first + _SAMPLES_AT_ONCE)})
+            spread = np.broadcast_to(part.values, (n_specimens, part.sizes[long]))
+            low, high = _widened(low, high, spread)
+    if {"mean_strain", "strain_amplitude"} <= set(archive.variables) and "cycle" in archive.sizes:
+        mean, half = (
+            archive.variables["mean_strain"].to_numpy(),
+            archive.variables["strain_amplitude"].to_numpy(),
+        )
+        low, high = _widened(low, high, np.concatenate([mean - half, mean + half], axis=-1))
+    return [
+        _known({"least_strain": float(least), "greatest_strain": float(most)})
+        for least, most in zip(low, high, strict=True)
+    ]
+
+
+def _widened(low: Floats, high: Floats, strain: Floats) -> tuple[Floats, Floats]:
+    # fmin and fmax pass over samples that are missing
+    return (
+        np.fmin(low, np.fmin.reduce(strain, axis=-1, initial=np.nan)),
+        np.fmax(high, np.fmax.reduce(strain, axis=-1, initial=np.nan)),
+    )
+
+
+def _blocks(archive: xr.Dataset, names: list[str]) -> Iterator[Any]:
+    """Numbers of an archive, those on the same dimensions together."""
+    groups: dict[tuple[Hashable, ...], list[str]] = {}
+    for name, variable in archive.variables.items():
+        is_number = variable.dtype.kind in "fiu" and "flag_meanings" not in variable.attrs
+        stays = LEFT_OUT & set(variable.dims) or any(
+            str(dim).endswith("_other") for dim in variable.dims
+        )
+        if is_number and not stays and name in QUANTITIES and name not in archive.sizes:
+            groups.setdefault(variable.dims, []).append(str(name))
+    for dims, group in groups.items():
+        yield _block(archive, dims, group, names)
+
+
+def _block(
+    archive: xr.Dataset, dims: tuple[Hashable, ...], group: list[str], specimens: list[str]
+) -> Any:
+    axes = [np.arange(archive.sizes[dim]) for dim in dims]
+    cycles: dict[str, NDArray[np.intp]] = {}
+    if "cycle" in dims and archive.sizes["cycle"]:
+        cycles["cycle"] = kept_cycles(archive.sizes["cycle"])
+        axes[dims.index("cycle")] = cycles["cycle"]
+    shape = tuple(len(axis) for axis in axes)
+    # of many cycles the others are not read
+    read = {
+        name: archive.variables[name].isel(cycles, missing_dims="ignore")
+        for one in group
+        for name in (one, f"{one}_standard_uncertainty")
+        if name in archive.variables
+    }
+    values = np.stack([np.asarray(read[name].values, float) for name in group])
+    spread = np.full_like(values, np.nan)
+    for row, name in enumerate(group):
+        own = read.get(f"{name}_standard_uncertainty")
+        if own is not None:
+            missing = [axis for axis, dim in enumerate(dims) if dim not in own.dims]
+            spread[row] = np.broadcast_to(np.expand_dims(own.values, missing), shape)
+    # where a quantity is known anywhere its other places stand as missing, so that all keep their
+    # order; a quantity of which nothing is known is not there
+    known = np.isfinite(values)
+    has_any = known.reshape(len(group), -1).any(axis=1)
+    found = np.nonzero(np.broadcast_to(has_any.reshape(-1, *[1] * len(dims)), values.shape))
+    at = {dim: axes[axis][found[axis + 1]] for axis, dim in enumerate(dims)}
+    n_values = len(found[0])
+    place = {
+        str(dim): _labels(archive, str(dim))[index]
+        for dim, index in at.items()
+        if dim != "specimen"
+    }
+    only = 0 if len(specimens) == 1 else _WHOLE
+    specimen = np.full(n_values, only, np.int32)
+    if "specimen" in at:
+        specimen = at["specimen"].astype(np.int32)
+    else:
+        for dim, index in at.items():
+            whose = f"{dim}_specimen"
+            if whose in archive and archive.variables[whose].dims == (dim,) and specimens:
+                number = {name: place for place, name in enumerate(specimens)}
+                of_row = [
+                    number.get(str(name), _WHOLE) for name in archive.variables[whose].to_numpy()
+                ]
+                specimen = np.array(of_row, np.int32)[index]
+    columns = {
+        # the row of the whole test stands before those of its specimens
+        "row": 1 + specimen,
+        "quantity": np.array(group, object)[found[0]],
+        "value": values[found],
+        "standard_uncertainty": spread[found],
+    } | place
+    types = {"row": pyarrow.int32()}
+    return pyarrow.table(
+        {
+            name: pyarrow.array(column, types.get(name) or column_type(name), from_pandas=True)
+            for name, column in columns.items()
+        }
+    )
+
+
+def _labels(archive: xr.Dataset, dim: str) -> NDArray[Any]:
+    """Text or number of each place along a dimension; from 1 where the archive names none."""
+    is_text = column_type(dim) == "string"
+    if dim == "comparison" and {"ratio_numerator", "ratio_denominator"} <= set(archive.variables):
+        pairs = zip(
+            archive.variables["ratio_numerator"].to_numpy(),
+            archive.variables["ratio_denominator"].to_numpy(),
+            strict=True,
+        )
+        labels: NDArray[Any] = np.array([f"{over} over {under}" for over, under in pairs])
+    elif dim not in archive.variables:
+        labels = np.arange(1, archive.sizes[dim] + 1)
+    else:
+        labels = archive.variables[dim].to_numpy()
+    return labels.astype(str).astype(object) if is_text else labels.astype(float)
+
+
+_OWN = ("row", *NUMBER)
+
+
+def rows_with(catalogue: Catalogue, tests: pd.DataFrame, asked: Sequence[str]) -> pd.DataFrame:
+    """Rows of tests with the numbers that are asked for.
+
+    Parameters
+    ----------
+    catalogue : Catalogue
+        With those numbers.
+    tests : pandas.DataFrame
+        Rows of ``catalogue.tests`` that count.
+    asked : sequence of str
+        Quantities; without one each specimen of each test is a row.
+
+    Returns
+    -------
+    table : pandas.DataFrame
+        `CONDITIONS`, a column for each dimension, each quantity and its standard uncertainty, and
+        ``row`` of ``catalogue.tests``; in the order of tests, places as in their archives.
+    """
+    values = catalogue.numbers[catalogue.numbers["row"].isin(tests.index)]
+    parts = {name: _numbers_of(values, name) for name in asked}
+    of_tests = {name: part for name, part in parts.items() if not _places(part, name)}
+    placed = [part for name, part in parts.items() if name not in of_tests]
+    listed = catalogue.tests.index[_is_listed(catalogue.tests)].intersection(tests.index)
+    rows = pd.DataFrame({"row": [] if asked else listed}, dtype=np.int64)
+    if placed:
+        together = pd.concat(placed, ignore_index=True)
+        numbers = [name for one in asked for name in _columns_of(one) if name in together]
+        keys = [name for name in together.columns if name not in numbers]
+        rows = together.groupby(keys, sort=False, dropna=False)[numbers].max().reset_index()
+    places = [name for name in rows.columns if name != "row" and not _is_number(name, asked)]
+    if of_tests:
+        # one row without place for tests that have none
+        known = pd.concat([one.dropna(subset=name)["row"] for name, one in of_tests.items()])
+        others = pd.DataFrame({"row": sorted(set(known) - set(rows["row"]))}, dtype=np.int64)
+        rows = pd.concat([rows, others], ignore_index=True) if len(rows) else others
+    for name, part in of_tests.items():
+        rows = _beside(rows, part, name)
+    if asked:
+        rows = rows.dropna(subset=list(asked), how="all")
+    rows = rows.reindex(columns=["row", *places, *(n for name in asked for n in _columns_of(name))])
+    rows = rows.sort_values("row", kind="stable", ignore_index=True)
+    # a condition that is asked for as a quantity stands once, with its uncertainty
+    names = [name for name in CONDITIONS if name not in asked]
+    about = tests.loc[rows["row"], names].reset_index(drop=True)
+    return pd.concat([about, rows], axis=1)
+
+
+def with_quantity(table: pd.DataFrame, catalogue: Catalogue, name: str) -> pd.DataFrame:
+    """The same rows with a quantity of their tests.
+
+    Raises
+    ------
+    SettingsError
+        If the quantity stands in several places of a test.
+    """
+    part = _numbers_of(catalogue.numbers, name)
+    places = _places(part, name)
+    if places:
+        raise SettingsError(
+            f"'{name}' stands in several places of a test",
+            found=f"one number for each {' and '.join(places)}",
+            needed=f"--quantity {name}, so that each place is a row",
+        )
+    return _beside(table, part, name)
+
+
+def _numbers_of(values: pd.DataFrame, name: str) -> pd.DataFrame:
+    """Numbers of a quantity with their places, under its names."""
+    part = values[values["quantity"] == name]
+    places = [one for one in part.columns if one not in _OWN and part[one].notna().any()]
+    part = part[["row", *places, "value", "standard_uncertainty"]]
+    return part.rename(columns=dict(zip(NUMBER[1:], _columns_of(name), strict=True)))
+
+
+def _places(part: pd.DataFrame, name: str) -> list[str]:
+    """Dimensions along which the numbers stand."""
+    return [one for one in part.columns if one not in ("row", *_columns_of(name))]
+
+
+def _columns_of(name: str) -> tuple[str, str]:
+    return name, f"{name}_standard_uncertainty"
+
+
+def _is_number(name: str, asked: Sequence[str]) -> bool:
+    return any(name in _columns_of(one) for one in asked)
+
+
+def _is_listed(tests: pd.DataFrame) -> NDArray[np.bool_]:
+    """A row for each specimen, and for each archive that has none."""
+    is_whole = tests["is_whole"].to_numpy(bool)
+    # the row of the whole stands before those of its specimens
+    listed: NDArray[np.bool_] = ~is_whole | np.append(is_whole[1:], True)[: is_whole.size]
+    return listed
+
+
+def _beside(rows: pd.DataFrame, part: pd.DataFrame, name: str) -> pd.DataFrame:
+    """Numbers of tests beside each of their rows."""
+    of_row = part.set_index("row")
+    return rows.assign(**{one: rows["row"].map(of_row[one]) for one in _columns_of(name)})
+
+
+_WORD = re.compile(r"[\w.]+")
+
+# a value that came by way of another unit is not the same to the last bit
+_ALIKE = 1e-9
+
+_COMPARE: Final[dict[str, Callable[[Any, float], NDArray[np.bool_]]]] = {
+    "<": np.less,
+    "<=": np.less_equal,
+    ">": np.greater,
+    ">=": np.greater_equal,
+    "=": lambda values, value: np.isclose(values, value, rtol=_ALIKE, atol=0.0),
+    "!=": lambda values, value: ~np.isclose(values, value, rtol=_ALIKE, atol=0.0),
+}
+
+
+@dataclass(frozen=True)
+class Query:
+    """What is asked.
+
+    Parameters
+    ----------
+    names : dict of str to tuple of str
+        Column (``campaign``, ``test``, ``test_kind``, ``specimen``) to patterns with ``*``, ``?``
+        and ``[...]``; one of them has to fit, in any case of letters.
+    words : dict of str to str
+        Column (``medium``, ``specimen_material``, ...) to words, each of which begins a word
+        of the text.
+    synthetic : bool, optional
+        Only synthetic data, or only measured data.
+    where : tuple of Condition
+        All have to hold; a number that is missing fits none.
+    quantity : tuple of str
+        Numbers that are shown; a row needs one of them.
+    by_cycle : bool
+        A quantity of the cycles is not its mean over the test, but that of each cycle kept.
+    sort : tuple of str
+        Columns by which rows are sorted.
+    descending : bool
+        From the greatest.
+    limit : int, optional
+        Rows that are given at most.
+    """
+
+    names: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    words: dict[str, str] = field(default_factory=dict)
+    synthetic: bool | None = None
+    where: tuple[Condition, ...] = ()
+    quantity: tuple[str, ...] = ()
+    by_cycle: bool = False
+    sort: tuple[str, ...] = ()
+    descending: bool = False
+    limit: int | None = None
+
+    @property
+    def asked(self) -> tuple[str, ...]:
+        """Quantities by the names of the catalogue."""
+        names = self.quantity if self.by_cycle else map(standing_for, self.quantity)
+        return tuple(dict.fromkeys(names))
+
+    def column(self, name: str) -> str:
+        """Name of the column that a condition or an order means."""
+        return name if name in self.asked else standing_for(name)
+
+
+def needed_quantities(query: Query) -> tuple[str, ...]:
+    """Quantities whose numbers a question needs.
+
+    Raises
+    ------
+    SettingsError
+        If the vocabulary lacks a name.
+    """
+    for option, names in (("--quantity", query.quantity), ("--sort", query.sort)):
+        for name in names:
+            if name not in QUANTITIES:
+                raise SettingsError(
+                    f"{option} names no quantity: '{name}'",
+                    needed="a name of the vocabulary",
+                    hint="docs/glossary.md lists them; `reduction catalogue --list` says which "
+                    "there are.",
+                )
+    others = (query.column(name) for name in (*(one.name for one in query.where), *query.sort))
+    return (*query.asked, *(name for name in dict.fromkeys(others) if name not in query.asked))
+
+
+def answer(catalogue: Catalogue, query: Query) -> Any:
+    """Rows that fit a question.
+
+    Parameters
+    ----------
+    catalogue : Catalogue
+        With the numbers of `needed_quantities`.
+    query : Query
+        What is asked.
+
+    Returns
+    -------
+    table : pyarrow.Table
+        `CONDITIONS`, the places of the numbers, and the quantities, each followed by its
+        ``_standard_uncertainty``; SI.
+
+    Raises
+    ------
+    SettingsError
+        If the vocabulary lacks a name, or a condition or an order is about numbers that stand in
+        several places of a test and are not asked for.
+    """
+    others = [name for name in needed_quantities(query) if name not in query.asked]
+    table = rows_with(catalogue, catalogue.tests[_fits(catalogue.tests, query)], query.asked)
+    for name in others:
+        if name not in table:
+            table = with_quantity(table, catalogue, name)
+    for condition in query.where:
+        table = table[_holds(table, query.column(condition.name), condition)]
+    if query.sort:  # stable: rows that are alike stay in the order of their tests
+        names = [query.column(name) for name in query.sort]
+        table = _sorted(table, names, descending=query.descending)
+    table = table.drop(columns="row").iloc[: query.limit]
+    columns = {
+        str(name): pyarrow.array(table[name], column_type(str(name)), from_pandas=True)
+        for name in table
+    }
+    return pyarrow.table(columns)
+
+
+def quantities_there(catalogue: Catalogue) -> dict[str, int]:
+    """Quantities of a catalogue with all its numbers, and how many numbers each has, by name."""
+    known = catalogue.numbers.dropna(subset="value")
+    return {str(name): int(n) for name, n in known["quantity"].value_counts().sort_index().items()}
+
+
+def _fits(tests: pd.DataFrame, query: Query) -> NDArray[np.bool_]:
+    """Rows of tests that fit names and words."""
+    fits = np.ones(len(tests), np.bool_)
+    for column, patterns in query.names.items():
+        wanted = [pattern.casefold() for pattern in patterns]
+
+        def is_called(text: str, wanted: list[str] = wanted) -> bool:
+            return any(fnmatchcase(text.casefold(), pattern) for pattern in wanted)
+
+        fits &= _texts_that(tests[column], is_called)
+    for column, asked in query.words.items():
+        starts = _WORD.findall(asked.casefold())
+
+        def has_words(text: str, starts: list[str] = starts) -> bool:
+            there = _WORD.findall(text.casefold())
+            return all(any(one.startswith(start) for one in there) for start in starts)
+
+        fits &= _texts_that(tests[column], has_words)
+    if query.synthetic is not None:
+        fits &= (tests["synthetic"] == "yes").to_numpy() == query.synthetic
+    return fits
+
+
+def _texts_that(column: pd.Series[Any], fits: Callable[[str], bool]) -> NDArray[np.bool_]:
+    """Entries of a column whose text fits; each text is asked once."""
+    return column.isin([text for text in column.dropna().unique() if fits(text)]).to_numpy()
+
+
+def _holds(table: pd.DataFrame, name: str, condition: Condition) -> NDArray[np.bool_]:
+    """Rows of which a condition holds; a number or text that is missing fits none."""
+    column = table[name]
+    holds: NDArray[np.bool_]
+    if isinstance(condition.value, str):
+        holds = (column.str.lower() == condition.value.lower()).to_numpy(np.bool_)
+        holds = holds == (condition.operator == "=")
+        return np.logical_and(holds, column.notna().to_numpy(np.bool_))
+    values = column.to_numpy(np.float64)
+    if condition.is_share:
+        values = values / table["rated_break_strength"].to_numpy(np.float64)
+    with np.errstate(invalid="ignore"):
+        holds = _COMPARE[condition.operator](values, condition.value)
+    holds &= np.isfinite(values)
+    return holds
+
+
+def _sorted(table: pd.DataFrame, names: list[str], *, descending: bool) -> pd.DataFrame:
+    """Rows in an order; those without the number last."""
+    for name in reversed(names):
+        table = table.sort_values(name, ascending=not descending, kind="stable")
+    return table
+
+
+_SPREAD = "_standard_uncertainty"
+
+
+def unit_of(name: str) -> str:
+    """Unit of a column; empty for a text.
+
+    Examples
+    --------
+    >>> [unit_of(name) for name in ("test", "diameter", "diameter_standard_uncertainty")]
+    ['', 'm', 'm']
+    """
+    row = QUANTITIES.get(name) or QUANTITIES.get(name.removesuffix(_SPREAD))
+    return "1" if row is None else row.unit
+
+
+def meaning_of(name: str) -> str:
+    """What a column holds, in words."""
+    row = QUANTITIES.get(name)
+    if row is not None:
+        return row.long_name
+    base = QUANTITIES.get(name.removesuffix(_SPREAD))
+    return name if base is None else f"standard uncertainty (k=1) of {base.long_name}"
+
+
+def check_ending(path: Path) -> None:
+    """Refuse a file that is neither CSV nor Parquet, before the work is done.
+
+    Raises
+    ------
+    SettingsError
+        If the name ends otherwise.
+    """
+    if path.suffix.lower() not in (".csv", ".parquet"):
+        raise SettingsError(
+            "--export does not know the ending of the file",
+            found=repr(path.name),
+            needed="FILE.csv or FILE.parquet",
+        )
+
+
+def write_answer(table: Any, path: Path) -> None:
+    """Write a table of `reduction.batch.catalogue.answer`, SI, whole or not at all.
+
+    Parameters
+    ----------
+    table : pyarrow.Table
+        Its columns have names of the vocabulary.
+    path : pathlib.Path
+        Ends in ``.csv`` or ``.parquet``.
+
+    Raises
+    ------
+    SettingsError
+        If the name ends otherwise.
+    ArchiveError
+        If the disk refuses.
+    """
+    check_ending(path)
+    try:
+        with whole_file(path) as part:
+            if path.suffix.lower() == ".csv":
+                units = map(unit_of, table.column_names)
+                heads = [
+                    f"{name} [{unit}]" if unit else name
+                    for name, unit in zip(table.column_names, units, strict=True)
+                ]
+                options = pyarrow.csv.WriteOptions(quoting_style="needed")
+                pyarrow.csv.write_csv(_safe(table).rename_columns(heads), part, options)
+            else:
+                fields = [
+                    one.with_metadata(
+                        {"units": unit_of(one.name), "long_name": meaning_of(one.name)}
+                    )
+                    for one in table.schema
+                ]
+                pyarrow.parquet.write_table(table.cast(pyarrow.schema(fields)), part)
+    except ArchiveError:
+        raise
+    except OSError as error:
+        raise ArchiveError(
+            f"{path} cannot be written",
+            found=getattr(error, "strerror", None) or str(error),
+            hint="What was there before is kept.",
+        ) from error
+
+
+def _safe(table: Any) -> Any:
+    """The table with no text that a spreadsheet program takes for a formula."""
+    for place, column in enumerate(table.schema):
+        if pyarrow.types.is_string(column.type) or pyarrow.types.is_large_string(column.type):
+            texts = [None if one is None else safe_cell(one) for one in table[place].to_pylist()]
+            table = table.set_column(place, column, pyarrow.array(texts, column.type))
+    return table

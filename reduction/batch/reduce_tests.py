@@ -1,0 +1,351 @@
+"""Reduces each test of a campaign, or leaves it where nothing changed."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import xarray as xr
+
+from reduction import __version__
+from reduction.archive.test_dataset import kept_samples, to_dataset
+from reduction.archive.write import write_archive
+from reduction.batch.campaign_status import Progress, Status, TestStatus
+from reduction.batch.reuse import Basis, describe, standing_product
+from reduction.batch.run_lock import RunLock
+from reduction.batch.slow_pulls import pull_conditions
+from reduction.batch.survey import (
+    FirstPass,
+    Survey,
+    as_reduction_error,
+    located_again,
+    note_message,
+    status_row,
+    with_one_log,
+    with_record,
+)
+from reduction.batch.test_history import instruments_of, stepwise_instruments
+from reduction.batch.workers import Task, Workers, work_on
+from reduction.campaign.plan import Campaign
+from reduction.pipeline.plausibility import check_stated_errors
+from reduction.pipeline.reduce_test import reduce_stepwise_test, reduce_test
+from reduction.readers.raw_log import hash_source
+from reduction.record.errors import LogError, ReductionError
+from reduction.stages.line.line_product import SlowPull
+from reduction.stages.reduced_test import History, ReducedTest
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.shared_contributions import PullOrigin
+
+
+def reduce_survey(
+    campaign: Campaign,
+    survey: Survey,
+    models: Sequence[StrainModel],
+    history: History | None,
+    settings: str,
+    pulls: Sequence[SlowPull | None] | None = None,
+    pull_origins: Sequence[PullOrigin | None] = (),
+) -> ReducedTest:
+    """Reduce one surveyed test.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        Where its files, layouts and specimens are.
+    survey : Survey
+        The test after the first pass.
+    models : sequence of StrainModel
+        One a specimen, in the order of the test; none for a stepwise test.
+    history : History or None
+        What the specimens had seen before.
+    settings : str
+        Every setting in force, as JSON, for the product.
+    pulls : sequence of SlowPull or None, optional
+        Slow pull of each specimen, where the test is a run of an experiment.
+    pull_origins : sequence of PullOrigin or None, optional
+        With what each pull was read.
+
+    Returns
+    -------
+    test : ReducedTest
+        Ready for the archive.
+
+    Raises
+    ------
+    SettingsError
+        If what is stated of the instruments cannot be meant of this log.
+    ReductionError
+        If the record cannot support a stage that its kind needs.
+    """
+    description = describe(campaign, survey)
+    specimens = tuple(campaign.specimens[name] for name in survey.plan.specimens)
+    if survey.step_readings is not None:
+        return reduce_stepwise_test(
+            survey.step_readings,
+            description=description,
+            specimens=specimens,
+            history=history,
+            sources=survey.sources,
+            settings_json=settings,
+            instruments=stepwise_instruments(campaign, survey),
+        )
+    located = located_again(campaign, survey)
+    instruments = instruments_of(campaign, survey, models)
+    notes = check_stated_errors(located, instruments, place=f"{campaign.path}: uncertainty")
+    reduced = reduce_test(
+        located,
+        description=description,
+        specimens=specimens,
+        models=models,
+        history=history,
+        sources=survey.sources,
+        settings=survey.plan.settings,
+        settings_json=settings,
+        pulls=pulls,
+        pull_origins=pull_origins,
+        pull_conditions=pull_conditions(campaign, survey),
+        instruments=instruments,
+    )
+    return replace(reduced, notes=(*reduced.notes, *notes))
+
+
+def dataset_of(
+    campaign: Campaign,
+    survey: Survey,
+    basis: Basis,
+    *,
+    command: str,
+) -> tuple[xr.Dataset, tuple[tuple[str, str], ...]]:
+    """Reduce one surveyed test to all that its archive is to hold.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        Where its files, layouts and specimens are.
+    survey : Survey
+        The test after the first pass.
+    basis : Basis
+        What its product rests on beside its own log.
+    command : str
+        For the product's ``command`` attribute, without paths.
+
+    Returns
+    -------
+    dataset : xarray.Dataset
+        The archive, not written.
+    notes : tuple of (stage, text)
+        That it holds.
+
+    Raises
+    ------
+    ReductionError
+        If the record cannot support a stage that its kind needs.
+    """
+    product = reduce_survey(
+        campaign, survey, basis.models, basis.history, basis.settings, basis.pulls,
+        basis.pull_origins,
+    )  # fmt: skip
+    kept = kept_samples(product, survey.plan.settings)
+    of_archive = () if kept is None else (kept.note,)
+    product = replace(product, notes=(*product.notes, *basis.remarks, *of_archive))
+    dataset = to_dataset(product, version=__version__, command=command, kept=kept)
+    return dataset, product.all_notes()
+
+
+def bring_up_to_date(
+    campaign: Campaign,
+    survey: Survey,
+    basis: Basis,
+    path: Path,
+    *,
+    force: bool,
+    command: str,
+    before_writing: Callable[[], None],
+) -> tuple[Status, str]:
+    """Write the archive of one test, unless one stands that is of the same logs and settings.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        Where its files, layouts and specimens are.
+    survey : Survey
+        The test after the first pass.
+    basis : Basis
+        What its product rests on beside its own log.
+    path : pathlib.Path
+        Of the archive.
+    force : bool
+        Write it in any case.
+    command : str
+        For the product's ``command`` attribute, without paths.
+    before_writing : callable
+        Raises an error where nothing may be written any more.
+
+    Returns
+    -------
+    status : Status
+        ``unchanged``, ``reduced`` or ``reduced_with_notes``.
+    message : str
+        What a reader of the table of tests has to know.
+
+    Raises
+    ------
+    ReductionError
+        If the record cannot support a stage that its kind needs, a raw file is not what it was
+        when it was read, or the archive cannot be written.
+    """
+    if not force:
+        notes = standing_product(path, survey, basis.settings, remarks=basis.remarks)
+        if notes is not None:
+            return "unchanged", note_message(notes)
+    dataset, notes = dataset_of(campaign, survey, basis, command=command)
+    _check_raw_files(campaign, survey)
+    before_writing()
+    write_archive(dataset, path)
+    return "reduced_with_notes" if notes else "reduced", note_message(notes)
+
+
+def _check_raw_files(campaign: Campaign, survey: Survey) -> None:
+    """Refuse an archive of a raw file that is another now, or gone, since it was read.
+
+    Times and sizes are not enough: a copy may keep both.
+    """
+    for (name, _), read in zip(survey.plan.files, survey.sources, strict=True):
+        path = campaign.file(name)
+        now = hash_source(path, read.name)
+        if now != read:
+            raise LogError(
+                path,
+                "the file changed while the campaign ran",
+                found=f"sha256 {now.sha256[:16]}... of {now.size} bytes",
+                needed=f"sha256 {read.sha256[:16]}... of {read.size} bytes, as it was read",
+                hint="The product before is kept. Run again when nothing writes to the file.",
+            )
+
+
+@dataclass(frozen=True)
+class _Made:
+    """What became of one test where it was reduced."""
+
+    status: Status
+    message: str
+    error: ReductionError | None
+    seconds: float
+
+
+def reduce_campaign(
+    campaign: Campaign,
+    first: FirstPass,
+    chosen: Sequence[Survey],
+    *,
+    errors: Mapping[str, ReductionError],
+    basis: Callable[[Survey], Basis],
+    folder: Path,
+    workers: Workers | None,
+    lock: RunLock,
+    progress: Progress,
+    clock: Callable[[], float],
+    force: bool,
+    command: str,
+) -> list[TestStatus]:
+    """Bring the archives of tests up to date.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded.
+    first : FirstPass
+        From `survey_campaign`; the records that it keeps are let go.
+    chosen : sequence of Survey
+        The tests that are asked for.
+    errors : mapping of test to ReductionError
+        Tests that cannot be reduced, beside those whose survey says so.
+    basis : callable
+        What the product of a test rests on.
+    folder : pathlib.Path
+        Of the archives.
+    workers : Workers or None
+        Where it is done; None: in this process.
+    lock : RunLock
+        That the run holds.
+    progress : Progress
+        Told of each test.
+    clock : callable
+        Seconds, for the status alone.
+    force : bool
+        Redo tests that stand.
+    command : str
+        For the attribute ``command``.
+
+    Returns
+    -------
+    statuses : list of TestStatus
+        In the order of the tests that were asked for.
+    """
+    progress.stage("reduce", len(chosen))
+    known = {survey.plan.id: survey for survey in chosen}
+    of_log = Counter(survey.plan.log for survey in chosen)
+    kept = {log: first.kept[log] for log in of_log if log in first.kept}
+    first.kept.clear()
+    statuses: dict[str, TestStatus] = {}
+
+    def end(name: str, made: _Made, worker: str = "") -> None:
+        statuses[name] = status_row(
+            campaign, known[name], made.status, error=made.error, message=made.message,
+            seconds=made.seconds, worker=worker,
+        )  # fmt: skip
+        progress.ended(name, statuses[name])
+
+    def tasks() -> Iterator[Task]:
+        for name, survey in known.items():
+            log = survey.plan.log
+            of_log[log] -= 1
+            # each record goes with the last task that takes it
+            record = kept.get(log) if of_log[log] else kept.pop(log, None)
+            error = survey.error or errors.get(name)
+            try:
+                if error is not None:
+                    raise error
+                rests_on = basis(survey)
+            except Exception as failure:
+                # a campaign goes on after a failed test, even where the failure is a defect here
+                end(name, _Made("failed", "", as_reduction_error(failure), 0.0))
+                continue
+            given = (
+                with_one_log(campaign, log), survey, record, rests_on, folder / f"{name}.nc",
+                lock, clock, force, command,
+            )  # fmt: skip
+            yield Task(name, given, survey.n_rows)
+
+    for ended in work_on(_make, tasks(), workers=workers, begun=progress.begun):
+        made = ended.value or _Made("failed", "", ended.error, 0.0)
+        end(ended.test, made, ended.worker)
+    return [statuses[name] for name in known]
+
+
+def _make(
+    campaign: Campaign,
+    survey: Survey,
+    kept: Sequence[Survey] | None,
+    basis: Basis,
+    path: Path,
+    lock: RunLock,
+    clock: Callable[[], float],
+    force: bool,
+    command: str,
+) -> _Made:
+    """Bring one archive up to date, wherever this runs."""
+    lock.confirm()
+    start = clock()
+    status: Status
+    try:
+        status, message = bring_up_to_date(
+            campaign, with_record(survey, kept), basis, path, force=force, command=command,
+            before_writing=lock.confirm,
+        )  # fmt: skip
+    except Exception as failure:
+        # a campaign goes on after a failed test, even where the failure is a defect here
+        return _Made("failed", "", as_reduction_error(failure), clock() - start)
+    return _Made(status, message, None, clock() - start)

@@ -1,0 +1,171 @@
+"""Which products a campaign asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from reduction.archive.open import OF_CAMPAIGN
+from reduction.batch.campaign_status import Progress, TestStatus
+from reduction.batch.reuse import Basis, basis_of
+from reduction.batch.run_lock import RunLock
+from reduction.batch.slow_pulls import fit_pulls
+from reduction.batch.survey import FirstPass, Survey, status_row, survey_campaign
+from reduction.batch.test_history import fit_strain_models, past_of
+from reduction.batch.workers import Workers
+from reduction.campaign.plan import Campaign
+from reduction.record.errors import ReductionError, SettingsError
+from reduction.stages.strain.strain_model import StrainModel
+
+
+def parts_asked(campaign: Campaign) -> set[str]:
+    """Names of the archives of the whole campaign that its campaign.toml asks for."""
+    asked = {
+        "surfaces": bool(campaign.experiments),
+        "predictions": bool(campaign.hoses),
+        "comparisons": bool(campaign.comparisons),
+        "outcomes": campaign.results is not None,
+    }
+    return {name for name, is_asked in asked.items() if is_asked}
+
+
+def products_asked(campaign: Campaign, folder: Path, *, has_lengths: bool) -> dict[str, Path]:
+    """Archives of the whole campaign that it asks for and that are there.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded.
+    folder : pathlib.Path
+        Of its products.
+    has_lengths : bool
+        Whether it has ropes of which change in length is told.
+
+    Returns
+    -------
+    products : dict of str to pathlib.Path
+        By the names of `reduction.archive.open.OF_CAMPAIGN`.
+    """
+    asked = parts_asked(campaign) | ({"change_in_length"} if has_lengths else set())
+    paths = {name: folder / f"{name}.nc" for name in OF_CAMPAIGN if name in asked}
+    return {name: path for name, path in paths.items() if path.exists()}
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """The tests after the first pass, and what the product of each rests on.
+
+    ``errors`` are of tests whose log was read and that cannot be reduced all the same, ``failed``
+    all that cannot.
+    """
+
+    first: FirstPass
+    errors: dict[str, ReductionError]
+    failed: tuple[str, ...]
+    basis: Callable[[Survey], Basis]
+
+
+def find_wanted(
+    campaign: Campaign,
+    *,
+    workers: Workers | None = None,
+    lock: RunLock | None = None,
+    progress: Progress,
+) -> Wanted:
+    """Read every log of a campaign, and fit what its tests share.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded.
+    workers : Workers, optional
+        Where it is done; in this process where left out.
+    lock : RunLock, optional
+        That the run holds.
+    progress : Progress
+        Told of each log.
+
+    Returns
+    -------
+    wanted : Wanted
+        A test that fails carries its error; the others are looked at all the same.
+    """
+    first = survey_campaign(campaign, workers=workers, lock=lock, progress=progress)
+    return wanted_of(campaign, first, workers=workers, progress=progress)
+
+
+def wanted_of(
+    campaign: Campaign,
+    first: FirstPass,
+    *,
+    workers: Workers | None = None,
+    progress: Progress,
+) -> Wanted:
+    """Fit what tests share whose logs are read."""
+    models, errors = fit_strain_models(campaign, first.surveys)
+    pulls, errors_of_pulls = fit_pulls(campaign, first, models, workers=workers, progress=progress)
+    errors |= errors_of_pulls
+    failed = [entry.plan.id for entry in first.surveys if entry.error or entry.plan.id in errors]
+    basis = partial(basis_of, campaign, past=past_of(first.surveys, models), pulls=pulls)
+    return Wanted(first, errors, tuple(failed), basis)
+
+
+def refuse_unknown_tests(campaign: Campaign, tests: Sequence[str]) -> None:
+    """Refuse names that are of no test and of no step, before anything is read or written."""
+    known = set(campaign.tests)
+    known |= {step.product(name) for name, plan in campaign.tests.items() for step in plan.steps}
+    unknown = sorted(set(tests) - known)
+    if unknown:
+        raise SettingsError(
+            "--test names a test that the campaign lacks",
+            found=", ".join(unknown),
+            needed="one of " + ", ".join(sorted(known)),
+        )
+
+
+def selected_surveys(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Survey]:
+    """The surveys that were asked for; a test's name stands for all its steps."""
+    if not tests:
+        return list(surveys)
+    return [
+        survey
+        for survey in surveys
+        if survey.plan.id in tests or survey.plan.id.rpartition(".")[0] in tests
+    ]
+
+
+def check_campaign(
+    campaign: Campaign, *, tests: Sequence[str] = (), progress: Progress | None = None
+) -> tuple[list[TestStatus], dict[tuple[str, str], StrainModel]]:
+    """Read and validate everything, write nothing.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded.
+    tests : sequence of str
+        Only these; all where empty.
+    progress : Progress, optional
+        Told of each log.
+
+    Returns
+    -------
+    statuses : list of TestStatus
+        ``no_work`` (nothing was reduced) or ``failed``.
+    models : dict of (test, specimen) to StrainModel
+        How position would become strain.
+    """
+    refuse_unknown_tests(campaign, tests)
+    surveys = survey_campaign(campaign, progress=progress).surveys
+    models, errors = fit_strain_models(campaign, surveys)
+    statuses = []
+    for survey in selected_surveys(surveys, tests):
+        error = survey.error or errors.get(survey.plan.id)
+        statuses.append(
+            status_row(campaign, survey, "no_work", message="ready for a run")
+            if error is None
+            else status_row(campaign, survey, "failed", error=error)
+        )
+    return statuses, models

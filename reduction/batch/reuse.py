@@ -1,0 +1,288 @@
+"""Whether the product of an earlier run still holds: same log, settings and version."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from reduction import __version__
+from reduction.archive.dataset_builder import key_of
+from reduction.archive.open import reading
+from reduction.batch.slow_pulls import origins_of, pull_tests, pulls_of
+from reduction.batch.survey import Survey
+from reduction.batch.test_history import Past, history_of, history_remarks, instruments_of
+from reduction.campaign.plan import Campaign
+from reduction.record.measurement import Floats
+from reduction.stages.line.line_product import SlowPull
+from reduction.stages.reduced_test import History, TestDescription
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.shared_contributions import PullOrigin
+
+
+def describe(campaign: Campaign, survey: Survey) -> TestDescription:
+    """What the laboratory kept about a test."""
+    plan = survey.plan
+    attributes = campaign.attributes | plan.attributes
+    if plan.part_of is not None:
+        attributes["part_of"] = plan.part_of
+    if plan.failed is not None:
+        attributes["failed"] = "yes" if plan.failed else "no"
+    if plan.target_strain:
+        attributes["target_strain"] = " to ".join(f"{value:g}" for value in plan.target_strain)
+    return TestDescription(
+        campaign_id=campaign.id,
+        test_id=plan.id,
+        kind=plan.kind,
+        control=plan.control,
+        waveform=plan.waveform,
+        order=plan.order,
+        attributes=attributes,
+        failed=plan.failed,
+    )
+
+
+def _plain(values: Floats) -> list[float | None]:
+    """Numbers as JSON has them: a missing one is null."""
+    return [None if math.isnan(value) else value for value in values.tolist()]
+
+
+def _strain_document(campaign: Campaign, model: StrainModel) -> dict[str, Any]:
+    """A strain model, and all that its covariance and the errors of its load cells follow from."""
+    document: dict[str, Any] = {
+        "method": model.method,
+        "coefficients": model.coefficients,
+        "splice_law": model.splice_law,
+        "marks": [
+            list(row)
+            for row in zip(
+                model.mark_test,
+                model.mark_hold,
+                _plain(model.mark_position),
+                _plain(model.mark_tension),
+                model.mark_load_cell or (None,) * len(model.mark_test),
+                strict=True,
+            )
+        ],
+    }
+    if model.mark_test:
+        # every reading of the specimen: the covariance has no digit that these do not give again
+        tape = campaign.marks[model.specimen]
+        lengths = (tape.near_toe, tape.far_toe, tape.far_thimble)
+        document["tape"] = {
+            "standard_uncertainty": tape.reading_uncertainty,
+            "readings": [
+                list(row) for row in zip(tape.test, tape.hold, *map(_plain, lengths), strict=True)
+            ],
+        }
+    return document
+
+
+def settings_json(
+    campaign: Campaign,
+    survey: Survey,
+    models: Sequence[StrainModel],
+    history: History | None,
+    pulls: Sequence[SlowPull | None] | None = None,
+    pull_origins: Sequence[PullOrigin | None] = (),
+) -> str:
+    """Every setting that was in force, so that a product says how it can be made again."""
+    plan = survey.plan
+    document: dict[str, Any] = {
+        "description": asdict(describe(campaign, survey)),
+        "target_strain": plan.target_strain,
+        "reduction": asdict(plan.settings),
+        "uncertainty": asdict(campaign.uncertainty),
+        "layouts": {
+            layout: campaign.layouts[layout].model_dump(exclude_defaults=True)
+            for _, layout in plan.files
+        },
+        "specimens": {name: asdict(campaign.specimens[name]) for name in plan.specimens},
+        "strain": {model.specimen: _strain_document(campaign, model) for model in models},
+        "instruments": {
+            errors.specimen: {
+                "tension": errors.tension_instrument,
+                "crosshead_position": errors.position_instrument,
+            }
+            for errors in instruments_of(campaign, survey, models)
+        },
+        "history": None
+        if history is None
+        else {
+            "earlier_tests": history.earlier_tests,
+            "earlier_maximum_strain": _plain(history.earlier_maximum_strain),
+            "earlier_maximum_tension": _plain(history.earlier_maximum_tension),
+            "earlier_cycles": _plain(history.earlier_cycles),
+            "permanent_set": _plain(history.permanent_set),
+            **(
+                {}
+                if history.earlier_flex_cycles is None
+                else {"earlier_flex_cycles": _plain(history.earlier_flex_cycles)}
+            ),
+        },
+    }
+    if pulls is not None:
+        test_of = pull_tests(campaign, plan.id)
+        read_with = pull_origins or (None,) * len(pulls)
+        document["quasi_static"] = {
+            name: None
+            if pull is None
+            else {
+                "test": test_of[name],
+                "strain_coefficient": pull.strain_coefficient.tolist(),
+                "tension_low": pull.tension_low,
+                "tension_high": pull.tension_high,
+                "instruments": None if origin is None else asdict(origin.errors),
+                "strain": None if origin is None else _strain_document(campaign, origin.model),
+            }
+            for name, pull, origin in zip(plan.specimens, pulls, read_with, strict=True)
+        }
+    return json.dumps(document, sort_keys=True, ensure_ascii=False, allow_nan=False)
+
+
+@dataclass(frozen=True)
+class Basis:
+    """What a test's product rests on now; ``settings`` is all of it as JSON.
+
+    ``remarks`` is what the campaign leaves open about the test.
+    """
+
+    history: History | None
+    models: tuple[StrainModel, ...]
+    pulls: list[SlowPull | None] | None
+    pull_origins: tuple[PullOrigin | None, ...]
+    settings: str
+    remarks: tuple[str, ...]
+
+
+def basis_of(
+    campaign: Campaign,
+    survey: Survey,
+    past: Past,
+    *,
+    pulls: Mapping[tuple[str, str], SlowPull],
+) -> Basis:
+    """Gather what one test rests on.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded.
+    survey : Survey
+        The test.
+    past : Past
+        All tests of the campaign, with their models.
+    pulls : mapping of (test, specimen) to SlowPull
+        Every slow pull that an experiment names.
+
+    Returns
+    -------
+    basis : Basis
+        As it stands in this run.
+    """
+    history = history_of(survey, past, campaign)
+    of_run = pulls_of(campaign, survey, pulls)
+    origins = () if of_run is None else origins_of(campaign, survey, past.surveys, past.models)
+    names = [(survey.plan.id, specimen) for specimen in survey.plan.specimens]
+    of_test = tuple(past.models[name] for name in names if name in past.models)
+    return Basis(
+        history=history,
+        models=of_test,
+        pulls=of_run,
+        pull_origins=origins,
+        settings=settings_json(campaign, survey, of_test, history, of_run, origins),
+        remarks=history_remarks(survey, past, campaign),
+    )
+
+
+NOT_REDUCED = "not reduced yet from logs and settings as they stand now"
+
+_MANY = 4  # runs that are named one by one
+
+
+def standing_product(
+    path: Path, survey: Survey, settings: str, *, remarks: Sequence[str] = ()
+) -> tuple[tuple[str, str], ...] | None:
+    """Notes of the product of an earlier run that stands; None where it has to be made.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Where it would be.
+    survey : Survey
+        The test.
+    settings : str
+        Every setting in force now, as JSON.
+    remarks : sequence of str
+        What the campaign leaves open about the test now; a product that stands says it too.
+
+    Returns
+    -------
+    notes : tuple of (stage, text) or None
+        It stands where raw hash, settings and version are the same.
+    """
+    try:
+        if not path.exists():
+            return None
+        with reading(path) as archive:
+            wanted = {
+                "software_version": __version__,
+                "test": survey.plan.id,  # that of another test may have been put in its place
+                "raw_file_sha256": "\n".join(source.sha256 for source in survey.sources),
+                "key": key_of(settings),
+            }
+            if any(archive.attrs.get(name) != value for name, value in wanted.items()):
+                return None
+            notes: tuple[tuple[str, str], ...] = ()
+            if "note" in archive:
+                stages, texts = (
+                    archive.variables["note_stage"].values,
+                    archive.variables["note"].values,
+                )
+                notes = tuple(
+                    (str(stage), str(text)) for stage, text in zip(stages, texts, strict=True)
+                )
+    except OSError:
+        return None  # an archive that cannot be read is made again
+    # where it lacks a remark another test has failed than then
+    return notes if set(remarks) <= {text for _, text in notes} else None
+
+
+def waiting_runs(
+    folder: Path, surveys: Sequence[Survey], basis_of: Callable[[Survey], Basis]
+) -> set[str]:
+    """Runs that have to be reduced before their experiment is fitted.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Of the campaign's archives.
+    surveys : sequence of Survey
+        Tests that were not asked for, without an error.
+    basis_of : callable
+        What a test rests on now.
+
+    Returns
+    -------
+    waiting : set of str
+        Those whose archive is not there, or not what it would be made again.
+    """
+    waiting = set()
+    for survey in surveys:
+        now = basis_of(survey)
+        path = folder / f"{survey.plan.id}.nc"
+        if standing_product(path, survey, now.settings, remarks=now.remarks) is None:
+            waiting.add(survey.plan.id)
+    return waiting
+
+
+def waiting_in_words(waiting: Collection[str], runs: Collection[str]) -> str:
+    """What has to be run before an experiment is fitted; empty where nothing has."""
+    listed = [run for run in runs if run in waiting]
+    if not listed:
+        return ""
+    named = ", ".join(listed[:_MANY]) + (", .." if len(listed) > _MANY else "")
+    return f"{len(listed)} of its runs {NOT_REDUCED} ({named})"

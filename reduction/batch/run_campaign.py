@@ -1,0 +1,288 @@
+"""Runs a campaign from its logs to its products; each test succeeds or fails by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+from reduction.archive.csv_tables import write_tables
+from reduction.archive.open import OF_CAMPAIGN, Opener, archives_of_tests, read_once
+from reduction.archive.write import keep_details, write_whole
+from reduction.batch.campaign_status import (
+    PartStatus,
+    Progress,
+    Silent,
+    TestStatus,
+    read_status,
+    status_csv,
+)
+from reduction.batch.catalogue import FILE_NAME, write_catalogue
+from reduction.batch.experiment_product import write_experiments
+from reduction.batch.other_products import tests_of_ropes, write_change_in_length, write_outcomes
+from reduction.batch.prediction_product import write_comparisons, write_predictions
+from reduction.batch.reduce_tests import reduce_campaign
+from reduction.batch.requested_products import (
+    find_wanted,
+    products_asked,
+    refuse_unknown_tests,
+    selected_surveys,
+)
+from reduction.batch.reuse import Basis, waiting_runs
+from reduction.batch.run_lock import RunLock, run_lock
+from reduction.batch.survey import Survey
+from reduction.batch.workers import Workers
+from reduction.campaign.plan import Campaign
+from reduction.quantities.units import UnitSystem
+from reduction.record.errors import ArchiveError
+from reduction.report.campaign_page import write_report
+
+
+@dataclass(frozen=True)
+class CampaignResult:
+    """What a run did: one status a test and a part, and what it wrote."""
+
+    tests: tuple[TestStatus, ...]
+    experiments: tuple[PartStatus, ...]
+    hoses: tuple[PartStatus, ...]
+    comparisons: tuple[PartStatus, ...]
+    processed: Path
+    report: Path | None
+    stray: tuple[str, ...]
+    tables: tuple[Path, ...] = ()
+
+    @property
+    def parts(self) -> tuple[PartStatus, ...]:
+        """Everything that is not a test."""
+        return (*self.experiments, *self.hoses, *self.comparisons)
+
+    @property
+    def exit_status(self) -> int:
+        """The highest seen."""
+        seen = [test.exit_status for test in self.tests]
+        return max([*seen, *(one.exit_status for one in self.parts)], default=0)
+
+
+def run_campaign(
+    campaign: Campaign,
+    *,
+    processed: Path,
+    reports: Path,
+    clock: Callable[[], float],
+    tests: Sequence[str] = (),
+    force: bool = False,
+    command: str = "",
+    units: UnitSystem = "si",
+    values_page: str = "",
+    workers: Workers | None = None,
+    progress: Progress | None = None,
+    opener: Opener | None = None,
+) -> CampaignResult:
+    """Reduce a campaign: archives, tables, catalogue, status, report.
+
+    No other run may be at work on the same products.  Tests whose archives stand are left as
+    they are, so that a run that was ended goes on where it was.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded.
+    processed, reports : pathlib.Path
+        Folders of the products and of the report; the campaign's id is added.
+    clock : callable
+        Seconds, for the status table only; no product depends on it.
+    tests : sequence of str
+        Only these; all where empty.
+    force : bool
+        Redo tests whose raw files, settings and version have not changed.
+    command : str
+        For the product's ``command`` attribute, without paths.
+    units : {"si", "us"}
+        What the report shows; files are SI.
+    values_page : str
+        Address of the design-value page from the folder of the report, where one is written.
+    workers : Workers, optional
+        Where the tests are worked on; one after another in this process where left out.  No
+        product depends on it.
+    progress : Progress, optional
+        Told how far it is.
+    opener : Opener, optional
+        How archives are opened once they are made; by this run alone, and kept in memory while it
+        lasts, where left out.
+
+    Returns
+    -------
+    result : CampaignResult
+        A failed test is a row in it, not an exception; its older product is kept.
+
+    Raises
+    ------
+    SettingsError
+        If ``tests`` names a test that the campaign lacks.
+    ArchiveError
+        If the folder or a table cannot be written, or another run holds the folder.
+    WorkerError
+        If the workers or their scheduler are lost.
+    """
+    progress = progress or Silent()
+    refuse_unknown_tests(campaign, tests)
+    with run_lock(processed / campaign.id) as lock:
+        try:
+            return _run(
+                campaign, processed / campaign.id, reports, lock, clock=clock, tests=tests,
+                force=force, command=command, units=units, values_page=values_page,
+                workers=workers, progress=progress, opener=opener or read_once(),
+            )  # fmt: skip
+        except BaseException:
+            if workers is not None:  # nobody writes once the lock is given back
+                workers.end()
+            raise
+
+
+def _run(
+    campaign: Campaign,
+    folder: Path,
+    reports: Path,
+    lock: RunLock,
+    *,
+    clock: Callable[[], float],
+    tests: Sequence[str],
+    force: bool,
+    command: str,
+    units: UnitSystem,
+    values_page: str,
+    workers: Workers | None,
+    progress: Progress,
+    opener: Opener,
+) -> CampaignResult:
+    wanted = find_wanted(campaign, workers=workers, lock=lock, progress=progress)
+    first, basis = wanted.first, wanted.basis
+    surveys = first.surveys
+    chosen = selected_surveys(surveys, tests)
+    statuses = reduce_campaign(
+        campaign, first, chosen, errors=wanted.errors, basis=basis, folder=folder,
+        workers=workers, lock=lock, progress=progress, clock=clock, force=force,
+        command=command,
+    )  # fmt: skip
+    lock.confirm()  # before what is made of all tests
+    failed = {status.test for status in statuses if status.status == "failed"}
+    failed |= set(wanted.failed)
+    asked = {survey.plan.id for survey in chosen}
+    parts = _write_parts(
+        campaign,
+        folder,
+        surveys,
+        asked=asked,
+        failed=failed,
+        basis=basis,
+        command=command,
+        opener=opener,
+    )
+    progress.stage("tables", 0)
+    ours = [folder / f"{survey.plan.id}.nc" for survey in surveys]
+    archives = [path for path in ours if path.exists()]
+    report, tables = None, []
+    rows = _all_rows(folder / "status.csv", surveys, statuses)
+    if statuses:
+        write_whole(folder / "status.csv", status_csv(rows))
+    keep_details(folder, campaign.report)
+    products = products_asked(campaign, folder, has_lengths=parts.has_lengths)
+    if archives or products:
+        tables = write_tables(archives, folder / "tables", opener=opener, **products)
+        write_catalogue([*archives, *products.values()], folder / FILE_NAME, opener=opener)
+    stray = sorted(path.name for path in archives_of_tests(folder) if path not in ours)
+    stray += [
+        f"{name}.nc"
+        for name in OF_CAMPAIGN
+        if name not in products and (folder / f"{name}.nc").exists()
+    ]
+    if archives or products or statuses:  # where all tests failed the page says that and why
+        progress.stage("report", 0)
+        report = write_report(
+            folder, reports / campaign.id, units=units, values_page=values_page, stray=stray,
+            unreadable=partial(_keep_pages, [*ours, *products.values()]), opener=opener,
+        )  # fmt: skip
+    return CampaignResult(
+        tests=tuple(statuses),
+        experiments=parts.experiments,
+        hoses=parts.hoses,
+        comparisons=parts.comparisons,
+        processed=folder,
+        report=report,
+        stray=tuple(stray),
+        tables=tuple(tables),
+    )
+
+
+def _keep_pages(ours: Sequence[Path], name: str, why: str) -> None:
+    """Leave the older pages as they are where new ones would lack what the run has made."""
+    for path in ours:
+        if path.name == name:
+            raise ArchiveError(
+                f"{path} cannot be read, and the report is left as it was",
+                found=why.removesuffix("."),
+                hint="Check the disk, and run again.",
+            )
+
+
+class _Parts(NamedTuple):
+    """What became of the parts of a campaign that are no tests."""
+
+    experiments: tuple[PartStatus, ...]
+    hoses: tuple[PartStatus, ...]
+    comparisons: tuple[PartStatus, ...]
+    has_lengths: bool
+
+
+def _write_parts(
+    campaign: Campaign,
+    folder: Path,
+    surveys: Sequence[Survey],
+    *,
+    asked: set[str],
+    failed: set[str],
+    basis: Callable[[Survey], Basis],
+    command: str,
+    opener: Opener,
+) -> _Parts:
+    """Write the archives of the whole campaign, from those of its tests that are up to date."""
+    runs = {run for plan in campaign.experiments.values() for run in plan.runs}
+    compared = {plan.measured for plan in campaign.comparisons.values()}
+    needed = runs | compared | tests_of_ropes(campaign, surveys)
+    left_out = [entry for entry in surveys if entry.plan.id in needed - asked - failed]
+    waiting = waiting_runs(folder, left_out, basis)
+    experiments = write_experiments(
+        campaign,
+        folder,
+        failed=failed,
+        waiting=waiting,
+        raw_sha256={
+            entry.plan.id: "\n".join(source.sha256 for source in entry.sources)
+            for entry in surveys
+            if entry.plan.id in runs
+        },
+        command=command,
+        opener=opener,
+    )
+    write_outcomes(campaign, folder, command=command)
+    lengths = write_change_in_length(
+        campaign, folder, surveys, models=lambda survey: basis(survey).models,
+        failed=failed, waiting=waiting, command=command, opener=opener,
+    )  # fmt: skip
+    hoses = write_predictions(campaign, folder, command=command)
+    comparisons = write_comparisons(
+        campaign, folder, failed=failed, waiting=waiting, command=command, opener=opener
+    )
+    return _Parts(tuple(experiments), tuple(hoses), tuple(comparisons), lengths is not None)
+
+
+def _all_rows(
+    path: Path, surveys: Sequence[Survey], statuses: Sequence[TestStatus]
+) -> list[TestStatus]:
+    """One row for each test of the campaign; a test that was not asked for keeps its own."""
+    new = {status.test: status for status in statuses}
+    before = read_status(path) if len(new) < len(surveys) else {}
+    rows = [new.get(survey.plan.id) or before.get(survey.plan.id) for survey in surveys]
+    return [row for row in rows if row is not None]

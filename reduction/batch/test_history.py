@@ -1,0 +1,415 @@
+"""What a specimen had seen before a test, its strain model and its instruments."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from operator import itemgetter
+
+import numpy as np
+
+from reduction.batch.survey import Survey, as_reduction_error
+from reduction.campaign.plan import Campaign
+from reduction.pipeline.test_extremes import greatest_strain, growth_of_slack_length
+from reduction.record.contributions import InstrumentErrors
+from reduction.record.errors import ReductionError
+from reduction.record.measurement import Floats, Specimen, SpliceMarks
+from reduction.stages.reduced_test import History
+from reduction.stages.strain.strain_fit import fit_strain_model
+from reduction.stages.strain.strain_model import StrainModel
+
+Models = Mapping[tuple[str, str], StrainModel]
+
+Place = tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Past:
+    """All tests of a campaign, in order.
+
+    Each test asks what came before it, so that what can be answered once is.  ``placed`` holds
+    the tests of each specimen that have a place in its order, oldest first; ``greatest_strain``
+    is by test and specimen [1], NaN where a test failed or has no number of it; ``of_log`` the
+    first test of each log.
+    """
+
+    surveys: Sequence[Survey]
+    models: Models
+    placed: Mapping[str, Sequence[tuple[Place, Survey]]]
+    greatest_strain: Mapping[tuple[str, str], float]
+    of_log: Mapping[str, Survey]
+
+
+def past_of(surveys: Sequence[Survey], models: Models) -> Past:
+    """Put the tests of a campaign in order.
+
+    Parameters
+    ----------
+    surveys : sequence of Survey
+        All tests of the campaign.
+    models : mapping of (test, specimen) to StrainModel
+        How position becomes strain.
+
+    Returns
+    -------
+    past : Past
+        What `history_of` and `history_remarks` ask.
+    """
+    placed: dict[str, list[tuple[Place, Survey]]] = {}
+    strain: dict[tuple[str, str], float] = {}
+    of_log: dict[str, Survey] = {}
+    for entry in surveys:
+        plan = entry.plan
+        of_log.setdefault(plan.log, entry)
+        for name in plan.specimens:
+            model = models.get((plan.id, name))
+            strain[plan.id, name] = greatest_strain(entry.extremes, name, model)
+            if plan.order is not None and plan.part_of is None:
+                placed.setdefault(name, []).append(((plan.order, plan.step_place), entry))
+    for before in placed.values():
+        before.sort(key=itemgetter(0))
+    return Past(surveys, models, placed, strain, of_log)
+
+
+def _set_after_rest(
+    survey: Survey, earlier: Sequence[Survey], name: str, free_length: float
+) -> tuple[float, float, float]:
+    """Growth of the length at which the specimen becomes taut, since its first test. [1]."""
+    if not earlier:
+        return float("nan"), float("nan"), float("nan")
+    return growth_of_slack_length(
+        earlier[0].extremes, survey.extremes, name, free_length=free_length
+    )
+
+
+def _whole(survey: Survey, past: Past) -> Survey:
+    """The test itself, or that of which it repeats a part."""
+    return past.of_log.get(survey.plan.part_of or "", survey)
+
+
+def _place(survey: Survey, past: Past) -> Place | None:
+    """Place in the order of tests; a test that is a part of another has the place of that one."""
+    order = _whole(survey, past).plan.order
+    return None if order is None else (order, survey.plan.step_place)
+
+
+def _earlier(survey: Survey, past: Past, name: str) -> list[Survey]:
+    """Tests of a specimen before a test, oldest first."""
+    place = _place(survey, past)
+    if place is None:
+        return []
+    placed = past.placed.get(name, ())
+    return [entry for _, entry in placed[: bisect_left(placed, place, key=itemgetter(0))]]
+
+
+def _earlier_cycles(earlier: Sequence[Survey], own: Survey, before: int | None) -> float:
+    """Cycles of tension before a test, logged or not; NaN where an earlier test failed."""
+    if any(entry.error is not None for entry in earlier):
+        return float("nan")
+    return float(_unlogged_cycles(earlier, own, before) + sum(one.n_cycles for one in earlier))
+
+
+def _unlogged_cycles(earlier: Sequence[Survey], own: Survey, before: int | None) -> int:
+    """Cycles of tension before a test of which the campaign has the number alone."""
+    # the steps of a log share what came before it
+    between = {entry.plan.log: entry.plan.unlogged_cycles or 0 for entry in (*earlier, own)}
+    return (before or 0) + sum(between.values())
+
+
+def _earlier_flex_cycles(
+    earlier: Sequence[Survey], survey: Survey, before: int | None, surveys: Sequence[Survey]
+) -> float:
+    """Cycles of flexing before a test.
+
+    NaN where the campaign says nothing of flexing of the specimen, or the test is a later step
+    of a log in which it was flexed: how much of it came before is not known.
+    """
+    is_counted = any(entry.plan.n_flex_cycles is not None for entry in surveys)
+    flexed = {entry.plan.log: entry.plan.n_flex_cycles or 0 for entry in earlier}
+    if (before is None and not is_counted) or flexed.get(survey.plan.log):
+        return float("nan")
+    return float((before or 0) + sum(flexed.values()))
+
+
+def history_of(survey: Survey, past: Past, campaign: Campaign) -> History | None:
+    """Earlier maximum strain and tension and cumulative cycles of each specimen.
+
+    Parameters
+    ----------
+    survey : Survey
+        The test; one that is a part of another has the history of that one.
+    past : Past
+        All tests of the campaign.
+    campaign : Campaign
+        What its specimens had seen before.
+
+    Returns
+    -------
+    history : History or None
+        None where the test has no place in the order.  A number is NaN where an earlier test
+        failed or has none of it: a part of a sum, or of a maximum, would pass for the whole.
+    """
+    if _place(survey, past) is None:
+        return None
+    nothing = float("nan")
+    tests: list[tuple[str, ...]] = []
+    strain, tension, cycles, flex, left = [], [], [], [], []
+    own = _whole(survey, past)
+    for name in survey.plan.specimens:
+        earlier = _earlier(survey, past, name)
+        tests.append(tuple(entry.plan.id for entry in earlier))
+        strain.append(_greatest([past.greatest_strain[entry.plan.id, name] for entry in earlier]))
+        tension.append(
+            _greatest([entry.extremes.greatest_tension.get(name, nothing) for entry in earlier])
+        )
+        specimen = campaign.specimens[name]
+        cycles.append(_earlier_cycles(earlier, own, specimen.earlier_cycles))
+        of_name = [entry for entry in past.surveys if name in entry.plan.specimens]
+        flex.append(_earlier_flex_cycles(earlier, survey, specimen.earlier_flex_cycles, of_name))
+        model = past.models.get((survey.plan.id, name))
+        free = nothing if model is None else model.relaxed_length
+        left.append(_set_after_rest(survey, earlier, name, free))
+    return History(
+        earlier_tests=tuple(tests),
+        earlier_maximum_strain=np.array(strain),
+        earlier_maximum_tension=np.array(tension),
+        earlier_cycles=np.array(cycles),
+        permanent_set=np.array([value for value, _, _ in left]),
+        permanent_set_standard_uncertainty=np.array([spread for _, spread, _ in left]),
+        permanent_set_by_tension=np.array([slope for _, _, slope in left]),
+        earlier_flex_cycles=None if np.isnan(flex).all() else np.array(flex),
+    )
+
+
+def _greatest(values: Sequence[float]) -> float:
+    """The greatest; NaN where one of them is not known, or there is none."""
+    return float(np.max(values)) if values else float("nan")
+
+
+def history_remarks(survey: Survey, past: Past, campaign: Campaign) -> tuple[str, ...]:
+    """What the campaign leaves open about the place of a test in its specimens' history.
+
+    Parameters
+    ----------
+    survey : Survey
+        The test.
+    past : Past
+        All tests of the campaign.
+    campaign : Campaign
+        What its specimens had seen before.
+
+    Returns
+    -------
+    remarks : tuple of str
+        Sentences for a reader of the product; empty where nothing is open.
+    """
+    plan = survey.plan
+    remarks = (*_unknown(survey, past), *_unlogged(survey, past, campaign))
+    if plan.part_of is not None:
+        return (
+            f"a part of {plan.part_of}: its history is that of the whole; cycles of the whole "
+            "before this part are not counted",
+            *remarks,
+        )
+    shared = [
+        name
+        for name in plan.specimens
+        if any(name in other.plan.specimens for other in past.surveys if other.plan.log != plan.log)
+    ]
+    if plan.order is None and shared:
+        return (
+            f"no place in the order of tests is given for {', '.join(shared)}: what earlier tests "
+            "did to them is not known here; set order",
+        )
+    return remarks
+
+
+def _unlogged(survey: Survey, past: Past, campaign: Campaign) -> tuple[str, ...]:
+    """Earlier cycles of which the campaign has the number alone."""
+    if _place(survey, past) is None:
+        return ()
+    remarks = []
+    own = _whole(survey, past)
+    for name in survey.plan.specimens:
+        before = campaign.specimens[name].earlier_cycles
+        count = _unlogged_cycles(_earlier(survey, past, name), own, before)
+        if count:
+            remarks.append(
+                f"{name}: {count} earlier cycles are in no log: earlier_maximum_strain and "
+                "earlier_maximum_tension are of the logged tests alone"
+            )
+    return tuple(remarks)
+
+
+def _unknown(survey: Survey, past: Past) -> tuple[str, ...]:
+    """Earlier tests of which a number is lacking, and what has none for it here."""
+    failed: dict[str, list[str]] = {}
+    bare: dict[str, list[str]] = {}
+    for name in survey.plan.specimens:
+        for entry in _earlier(survey, past, name):
+            if entry.error is not None:
+                failed.setdefault(entry.plan.id, []).append(name)
+            elif np.isnan(past.greatest_strain[entry.plan.id, name]):
+                bare.setdefault(entry.plan.id, []).append(name)
+    return (
+        *(
+            f"earlier test {test} failed: what it did to {', '.join(names)} is not known, and "
+            "earlier_cycles, earlier_maximum_strain and earlier_maximum_tension have no number"
+            for test, names in failed.items()
+        ),
+        *(
+            f"earlier test {test} has no strain of {', '.join(names)}: earlier_maximum_strain "
+            "has no number"
+            for test, names in bare.items()
+        ),
+    )
+
+
+def _pooled(
+    marks: SpliceMarks, surveys: Sequence[Survey], measured: Callable[[Survey], dict[str, Floats]]
+) -> Floats:
+    """One tension a mark, in the order of the marks; NaN where its test could not be read."""
+    tension = np.full(len(marks.test), np.nan)
+    of_test = np.array(marks.test)
+    for survey in surveys:
+        values = measured(survey).get(marks.specimen)
+        if values is not None:
+            tension[of_test == survey.plan.log] = values
+    return tension
+
+
+def _failed_logs(surveys: Sequence[Survey]) -> tuple[str, ...]:
+    """Logs of which nothing could be read, so that no mark in them has a tension."""
+    sound = {survey.plan.log for survey in surveys if survey.error is None or survey.mark_tension}
+    return tuple(dict.fromkeys(s.plan.log for s in surveys if s.plan.log not in sound))
+
+
+def _load_cells(campaign: Campaign, surveys: Sequence[Survey], specimen: str) -> dict[str, str]:
+    """By log, the load cell under which the marks of a specimen were read in it."""
+    return {
+        survey.plan.log: campaign.uncertainty.load_cell_name(
+            survey.plan.attributes.get("load_cell", ""),
+            channel=survey.plan.specimens.index(specimen) + 1,
+        )
+        for survey in surveys
+        if specimen in survey.plan.specimens
+    }
+
+
+def fit_strain_models(
+    campaign: Campaign, surveys: Sequence[Survey]
+) -> tuple[dict[tuple[str, str], StrainModel], dict[str, ReductionError]]:
+    """Fit the strain model of each specimen in each test.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        With the pooled marks.
+    surveys : sequence of Survey
+        With the tension at the marks.
+
+    Returns
+    -------
+    models : dict of (test, specimen) to StrainModel
+        Tests whose log could not be read are left out.
+    errors : dict of test to ReductionError
+        Tests that have no way from position to strain.
+    """
+    at_end = {
+        name: _pooled(marks, surveys, lambda survey: survey.mark_tension)
+        for name, marks in campaign.marks.items()
+    }
+    at_start = {
+        name: _pooled(marks, surveys, lambda survey: survey.mark_tension_at_start)
+        for name, marks in campaign.marks.items()
+    }
+    cells = {name: _load_cells(campaign, surveys, name) for name in campaign.specimens}
+    failed = _failed_logs(surveys)
+    models: dict[tuple[str, str], StrainModel] = {}
+    errors: dict[str, ReductionError] = {}
+    for survey in surveys:
+        if survey.error is not None or survey.plan.kind == "stepwise":
+            continue
+        for name in survey.plan.specimens:
+            try:
+                model = fit_strain_model(
+                    campaign.specimens[name],
+                    test_id=survey.plan.log,
+                    marks=campaign.marks.get(name),
+                    mark_tension=at_end.get(name),
+                    mark_tension_at_start=at_start.get(name),
+                    settings=survey.plan.settings.strain,
+                    has_extensometer=survey.extremes.has_extensometer,
+                    reference_position=survey.zero_strain_position,
+                    failed_tests=failed,
+                )
+                read_by = tuple(cells[name].get(test, "") for test in model.mark_test)
+                models[survey.plan.id, name] = replace(
+                    model,
+                    mark_load_cell=read_by,
+                    is_zero_logged=survey.is_zero_logged and model.method == "gauge-length",
+                )
+            except Exception as error:
+                # one test's failure, even where it is a defect here
+                errors.setdefault(survey.plan.id, as_reduction_error(error))
+    return models, errors
+
+
+def instruments_of(
+    campaign: Campaign, survey: Survey, models: Sequence[StrainModel]
+) -> tuple[InstrumentErrors, ...]:
+    """Stated errors of each specimen, with the names by which tests share them.
+
+    Tests share the load cell and the machine that they name in the same words, and the strain
+    model of a specimen where it is of one method and of marks pooled over the campaign; what
+    rests on marks of one test is its own.  A diameter of which nothing is stated has the scatter
+    of its readings.
+    """
+    plan = survey.plan
+    return tuple(
+        _with_readings(
+            campaign.uncertainty.of_channel(
+                model.specimen,
+                channel=number,
+                test=plan.log,
+                load_cell=plan.attributes.get("load_cell", ""),
+                machine=plan.attributes.get("machine", ""),
+                strain_model=_name_of(model, plan.log),
+            ),
+            campaign.specimens[model.specimen],
+        )
+        for number, model in enumerate(models, start=1)
+    )
+
+
+def stepwise_instruments(campaign: Campaign, survey: Survey) -> tuple[InstrumentErrors, ...]:
+    """Stated errors of a test with weights, which has no channels and no strain model."""
+    return tuple(
+        _with_readings(
+            campaign.uncertainty.of_channel(
+                name,
+                channel=number,
+                test=survey.plan.log,
+                load_cell=survey.plan.attributes.get("load_cell", "weights"),
+            ),
+            campaign.specimens[name],
+        )
+        for number, name in enumerate(survey.plan.specimens, start=1)
+    )
+
+
+def _name_of(model: StrainModel, log: str) -> str:
+    """Name of a strain model: models that differ in their coefficients have names that differ."""
+    # constant-fraction has the relaxed length of its own slack row, wherever its share is from
+    has_own_length = model.method == "constant-fraction" and log in model.mark_test
+    is_own = model.marks_from == "this test" or has_own_length
+    return f"{model.specimen}, {model.method}" + (f", marks of {log}" if is_own else "")
+
+
+def _with_readings(errors: InstrumentErrors, specimen: Specimen) -> InstrumentErrors:
+    """Give a diameter of which nothing is stated what its readings say of their mean."""
+    scatter = specimen.diameter_scatter
+    if errors.diameter or not np.isfinite(scatter) or scatter == 0:
+        return errors
+    return replace(errors, diameter=scatter, diameter_readings=len(specimen.diameter))

@@ -1,0 +1,295 @@
+"""Checks products against their raw files and settings."""
+
+from __future__ import annotations
+
+import filecmp
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path, PurePath
+from tempfile import TemporaryDirectory
+from typing import Any, Literal
+
+import xarray as xr
+
+from reduction import __version__
+from reduction.archive.csv_tables import write_tables
+from reduction.archive.open import OF_CAMPAIGN, archives_in, read_once, reading
+from reduction.batch.campaign_status import Progress
+from reduction.batch.experiment_product import settings_of_experiments
+from reduction.batch.requested_products import Wanted, find_wanted, parts_asked, products_asked
+from reduction.batch.reuse import standing_product
+from reduction.batch.survey import Survey
+from reduction.campaign.plan import Campaign
+from reduction.readers.raw_log import hash_source
+from reduction.record.errors import ArchiveError, LogError, ReductionError
+from reduction.record.measurement import Source
+from reduction.record.plain_text import is_address
+
+_BLOCK = 1 << 20  # values of a long variable that are read at a time
+
+_AGAIN = "Run the campaign again."
+
+Kind = Literal["damaged", "missing", "raw_file", "settings", "table"]
+
+"""What is wrong, as docs/verify.md explains it."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that is wrong with one file; ``product`` is its name below the folder."""
+
+    product: str
+    kind: Kind
+    problem: str
+    found: str = ""
+    needed: str = ""
+    hint: str = _AGAIN
+
+    def __str__(self) -> str:
+        """All of it in one line, as errors are written."""
+        parts = [f"{self.product}: {self.problem}"]
+        parts += [f"found {self.found}"] if self.found else []
+        parts += [f"needed {self.needed}"] if self.needed else []
+        return f"{'; '.join(parts)}. {self.hint}"
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What was looked at in the folder of one campaign, and what is wrong there.
+
+    ``remarks`` are what a reader should know and what is no fault.
+    """
+
+    campaign: str
+    n_archives: int
+    n_sources: int
+    n_tables: int
+    findings: tuple[Finding, ...]
+    remarks: tuple[str, ...] = ()
+
+
+def verify_campaign(campaign: Campaign, folder: Path, *, progress: Progress) -> Verification:
+    """Look whether the products of a campaign are what it would make now of its raw files.
+
+    Nothing is written but in a folder for temporary files.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        As loaded.
+    folder : pathlib.Path
+        Of its products, ``processed/CAMPAIGN``.
+    progress : Progress
+        Told how far it is.
+
+    Returns
+    -------
+    verification : Verification
+        Without a finding where everything belongs together.
+
+    Raises
+    ------
+    OSError
+        If the folder cannot be looked into.
+    """
+    paths = archives_in(folder)
+    progress.stage("verify archives", len(paths))
+    findings: list[Finding] = []
+    attributes: dict[str, dict[str, Any]] = {}
+    for path in paths:
+        try:
+            with reading(path) as archive:
+                attributes[path.stem] = archive.attrs
+                _read_to_the_end(archive)
+        except ArchiveError as error:
+            attributes.pop(path.stem, None)
+            findings.append(Finding(path.name, "damaged", "it cannot be read", str(error)))
+        progress.ended(path.stem)
+    sources = _Sources(campaign, folder)
+    of_sources = [
+        one for name, stated in attributes.items() for one in sources.faults(name, stated)
+    ]
+    differing = {one.product for one in of_sources}
+    findings += of_sources
+    as_they_were = {name: one for name, one in attributes.items() if f"{name}.nc" not in differing}
+    findings += _of_settings(campaign, folder, as_they_were, progress)
+    tests = _tests_of(campaign)
+    findings += [
+        Finding(f"{name}.nc", "missing", "it is not there, and the campaign asks for it")
+        for name in (*tests, *sorted(parts_asked(campaign)))
+        if not (folder / f"{name}.nc").exists()
+    ]
+    progress.stage("verify tables", 0)
+    n_tables = 0
+    if len(attributes) == len(paths):  # of what cannot be read no tables can be made
+        there = [folder / f"{name}.nc" for name in tests if name in attributes]
+        whole = products_asked(campaign, folder, has_lengths=True)
+        n_tables, of_tables = _of_tables(folder, there, whole) if there or whole else (0, [])
+        findings += of_tables
+    remarks = (
+        f"{one} lies on the net and was not compared (--allow-remote fetches it)"
+        for one in sources.not_fetched
+    )
+    return Verification(
+        campaign.id, len(paths), sources.n_read, n_tables, tuple(findings), tuple(remarks)
+    )
+
+
+def _read_to_the_end(archive: xr.Dataset) -> None:
+    """Have the library compare the sums of all values, a block of them in memory at a time."""
+    for variable in archive.variables.values():
+        for start in range(0, variable.shape[-1] if variable.ndim else 1, _BLOCK):
+            part = variable[..., start : start + _BLOCK] if variable.ndim else variable
+            part.to_numpy()
+
+
+def _tests_of(campaign: Campaign) -> list[str]:
+    """Ids of the products of tests and steps, in the order of the campaign."""
+    return [
+        product
+        for plan in campaign.tests.values()
+        for product in ([step.product(plan.id) for step in plan.steps] or [plan.id])
+    ]
+
+
+class _Sources:
+    """Compares the files that archives were made from with their sums; each is read once."""
+
+    def __init__(self, campaign: Campaign, folder: Path) -> None:
+        self._campaign = campaign
+        self._folder = folder
+        self._seen: dict[Path, Source | LogError] = {}
+        self.not_fetched: dict[str, None] = {}
+
+    @property
+    def n_read(self) -> int:
+        """Files that were read."""
+        return sum(isinstance(one, Source) for one in self._seen.values())
+
+    def faults(self, archive: str, attributes: Mapping[str, Any]) -> Iterator[Finding]:
+        """Sources of an archive that are not as they were."""
+        product = f"{archive}.nc"
+        names, sums, sizes = (
+            str(attributes.get(key, "")).splitlines()
+            for key in ("raw_file", "raw_file_sha256", "raw_file_bytes")
+        )
+        if not names or not len(names) == len(sums) == len(sizes):
+            yield Finding(product, "damaged", "it does not say what it was made from")
+            return
+        for name, *stated in zip(names, sums, sizes, strict=True):
+            if not is_address(name) and (
+                PurePath(name).is_absolute() or ".." in PurePath(name).parts
+            ):
+                problem = "it names a source outside of the folder of its campaign"
+                yield Finding(product, "damaged", problem, f"'{name}'")
+                continue
+            path = self._place(archive, name)
+            if path is None:
+                continue
+            needed = "sha256 {:.16}... of {} bytes".format(*stated)
+            found = self._read(path, name)
+            if isinstance(found, LogError):
+                problem = f"{name}, from which it was made, cannot be read"
+                yield Finding(product, "raw_file", problem, found.found or found.problem, needed)
+            elif [found.sha256, str(found.size)] != stated:
+                yield Finding(
+                    product, "raw_file", f"{name} is not the file from which it was made",
+                    f"sha256 {found.sha256:.16}... of {found.size} bytes", needed,
+                    f"If {name} should not have changed, take a copy of it that is as it was; if "
+                    "it should, run the campaign again.",
+                )  # fmt: skip
+
+    def _place(self, archive: str, name: str) -> Path | None:
+        """Where a source lies; None of one on the net that was not fetched."""
+        if is_address(name):
+            if name not in self._campaign.copies:
+                self.not_fetched[name] = None
+            return self._campaign.copies.get(name)
+        if archive in OF_CAMPAIGN and name.endswith(".nc"):
+            return self._folder / name
+        if name == self._campaign.path.name:
+            return self._campaign.path
+        return self._campaign.copies.get(name, self._campaign.folder / name)
+
+    def _read(self, path: Path, name: str) -> Source | LogError:
+        if path not in self._seen:
+            try:
+                self._seen[path] = hash_source(path, name)
+            except LogError as error:
+                self._seen[path] = error
+        return self._seen[path]
+
+
+def _of_settings(
+    campaign: Campaign, folder: Path, archives: Mapping[str, Mapping[str, Any]], progress: Progress
+) -> Iterator[Finding]:
+    """Archives that a run would make again from the same files: logs are read as a run does."""
+    wanted = find_wanted(campaign, progress=progress)
+    for survey in wanted.first.surveys:
+        if survey.plan.id in archives:
+            yield from _of_test(survey, wanted, folder, archives[survey.plan.id])
+    of_surfaces = settings_of_experiments(campaign.experiments) if campaign.experiments else None
+    for name in OF_CAMPAIGN:
+        if name in archives:
+            now = of_surfaces if name == "surfaces" else None
+            yield from _made_otherwise(f"{name}.nc", archives[name], now)
+
+
+def _of_test(
+    survey: Survey, wanted: Wanted, folder: Path, attributes: Mapping[str, Any]
+) -> Iterator[Finding]:
+    product = f"{survey.plan.id}.nc"
+    try:
+        error = survey.error or wanted.errors.get(survey.plan.id)
+        if error is not None:
+            raise error
+        basis = wanted.basis(survey)
+    except ReductionError as failure:
+        yield Finding(product, "settings", "the test cannot be reduced now", str(failure))
+        return
+    stands = standing_product(folder / product, survey, basis.settings, remarks=basis.remarks)
+    if stands is None:
+        told = list(_made_otherwise(product, attributes, basis.settings))
+        yield from told or [Finding(product, "settings", "a run would make it again")]
+
+
+def _made_otherwise(
+    product: str, attributes: Mapping[str, Any], settings: str | None
+) -> Iterator[Finding]:
+    version = str(attributes.get("software_version", ""))
+    before = str(attributes.get("settings", ""))
+    if version != __version__:
+        problem = "another version of the software made it"
+        yield Finding(product, "settings", problem, version, __version__)
+    elif settings is not None and before != settings:
+        problem = "it was made with other settings, marks or earlier tests than stand now"
+        pair = json.loads(before or "{}"), json.loads(settings)
+        yield Finding(product, "settings", problem, "; ".join(_differing(*pair)))
+
+
+def _differing(before: Any, now: Any, place: str = "") -> Iterator[str]:
+    """Places of two documents that differ, each with what stood there and stands there."""
+    if isinstance(before, dict) and isinstance(now, dict):
+        for key in sorted({*before, *now}):
+            yield from _differing(before.get(key), now.get(key), f"{place}.{key}".lstrip("."))
+    elif before != now:
+        yield f"{place} {json.dumps(before):.40}, now {json.dumps(now):.40}"
+
+
+def _of_tables(
+    folder: Path, archives: list[Path], products: Mapping[str, Path]
+) -> tuple[int, list[Finding]]:
+    """Make the tables again in another place, and compare them byte for byte."""
+    with TemporaryDirectory(prefix="reduction-verify-") as place:
+        made = write_tables(archives, Path(place), opener=read_once(), **products)
+        names = [path.name for path in made]
+        _, other, missing = filecmp.cmpfiles(place, folder / "tables", names, shallow=False)
+    findings = [
+        Finding(f"tables/{name}", "table", "it is not what the archives give") for name in other
+    ]
+    findings += [
+        Finding(f"tables/{name}", "missing", "it is not there, and the archives fill it")
+        for name in missing
+    ]
+    return len(made), findings

@@ -1,0 +1,409 @@
+"""Where the tests of a campaign are worked on: here, or on worker processes."""
+
+from __future__ import annotations
+
+import logging
+import multiprocessing
+import os
+import platform
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass
+from itertools import islice
+from multiprocessing.resource_tracker import ensure_running
+from queue import Empty, SimpleQueue
+from typing import Any, Generic, TypeVar
+
+from distributed import Client, KilledWorker, Security
+from distributed.comm.addressing import get_address_host_port
+
+from reduction import __version__
+from reduction.record.errors import ReductionError, SettingsError, WorkerError
+
+Result = TypeVar("Result")
+
+PATIENCE = 60.0
+
+"""How long a run waits for a test to end before it looks whether workers are left. [s]."""
+
+_AGAIN = "Products that were finished are kept; run again to go on."
+
+_MEMORY = "Most often the memory did not suffice: take fewer workers, or workers with more memory."
+
+# a worker may have several threads, and the netCDF library bears one
+_AT_WORK = threading.Lock()
+
+
+@dataclass(frozen=True)
+class Task:
+    """Arguments for the work on one test; of tests side by side the largest are begun first."""
+
+    test: str
+    arguments: tuple[Any, ...]
+    size: int = 0
+
+
+@dataclass(frozen=True)
+class Ended(Generic[Result]):
+    """Work that ended: what it gave, or the error where no worker lived to tell.
+
+    ``worker`` names the process that did it where there are several.
+    """
+
+    test: str
+    value: Result | None
+    error: ReductionError | None = None
+    worker: str = ""
+
+
+@dataclass(frozen=True)
+class Workers:
+    """Processes that work on tests side by side.
+
+    Parameters
+    ----------
+    executor : concurrent.futures.Executor
+        Of any kind.
+    end : callable
+        Ends what they are doing, at once.
+    look : callable
+        Raises an error where nobody is left to wait for.
+    deadly : tuple of type
+        Errors that say that workers died at a test and live on for others.
+    number : int
+        How many there are, where that is known.
+    """
+
+    executor: Executor
+    end: Callable[[], None]
+    look: Callable[[], None] = lambda: None
+    deadly: tuple[type[Exception], ...] = ()
+    number: int = 1
+
+
+def work_on(
+    function: Callable[..., Result],
+    tasks: Iterable[Task],
+    *,
+    workers: Workers | None,
+    begun: Callable[[str], None] = lambda test: None,
+) -> Iterator[Ended[Result]]:
+    """Call a function for each task.
+
+    Parameters
+    ----------
+    function : callable
+        Of the arguments of a task; a function of a module, where there are workers.
+    tasks : iterable of Task
+        Without workers they are taken one after another, each when the one before has ended.
+    workers : Workers or None
+        None: this process.
+    begun : callable
+        Told of each test that is begun in this process.
+
+    Yields
+    ------
+    ended : Ended
+        As the tasks end.
+
+    Raises
+    ------
+    ReductionError
+        What the function raises.
+    WorkerError
+        If workers die, the scheduler is lost, or the function raises another error on a worker.
+    """
+    if workers is None:
+        for task in tasks:
+            begun(task.test)
+            yield Ended(task.test, function(*task.arguments))
+        return
+    done: SimpleQueue[Future[tuple[Result, str]]] = SimpleQueue()
+    open_tasks: dict[Future[tuple[Result, str]], str] = {}  # in the order in which they are begun
+    for task in sorted(tasks, key=lambda task: -task.size):
+        try:
+            future = workers.executor.submit(_work, __version__, function, *task.arguments)
+        except BrokenExecutor:
+            raise _died([*open_tasks.values(), task.test], workers) from None
+        open_tasks[future] = task.test
+        future.add_done_callback(done.put)
+    while open_tasks:
+        try:
+            future = done.get(timeout=PATIENCE)
+        except Empty:
+            workers.look()
+            continue
+        yield _ended(future, open_tasks, workers)
+
+
+def _ended(
+    future: Future[tuple[Result, str]],
+    open_tasks: dict[Future[tuple[Result, str]], str],
+    workers: Workers,
+) -> Ended[Result]:
+    """What a task gave; it is no longer among those that are open."""
+    began = list(islice(open_tasks.values(), workers.number))
+    test = open_tasks.pop(future)
+    try:
+        value, worker = future.result()
+        return Ended(test, value, worker=worker)
+    except workers.deadly:
+        died = WorkerError(
+            "every worker that began this test died at it",
+            found="more of them lost than the scheduler allows",
+            needed="workers that live as long as a test takes",
+            hint=_MEMORY,
+        )
+        return Ended(test, None, died)
+    except BrokenExecutor:
+        raise _died(began, workers) from None
+    except CancelledError:
+        raise scheduler_lost() from None
+    except ReductionError:
+        raise
+    except Exception as error:
+        raise WorkerError(
+            "a worker could not do what it was asked",
+            found=f"{type(error).__name__}: {error}",
+            needed=f"workers with reduction {__version__} and the packages of this environment",
+        ) from error
+
+
+def _died(open_tasks: list[str], workers: Workers) -> WorkerError:
+    return WorkerError(
+        "a worker process died",
+        found=f"it at work on one of {', '.join(open_tasks[: workers.number])}",
+        needed="workers that live as long as a test takes",
+        hint=f"{_MEMORY} {_AGAIN}",
+    )
+
+
+def scheduler_lost() -> WorkerError:
+    """The error of a run whose scheduler answers no more."""
+    return WorkerError("the scheduler was lost", hint=_AGAIN)
+
+
+def _work(version: str, function: Callable[..., Result], *arguments: Any) -> tuple[Result, str]:
+    """Do what a task asks for, on a worker."""
+    worker = f"{platform.node()}:{os.getpid()}"
+    if version != __version__:
+        raise SettingsError(
+            f"the worker {worker} has another version of reduction",
+            found=__version__,
+            needed=version,
+        )
+    with _AT_WORK, _alone():
+        return function(*arguments), worker
+
+
+def _alone() -> AbstractContextManager[object]:
+    """On a worker of Dask xarray would ask the scheduler for a lock at every variable."""
+    dask = sys.modules.get("dask")
+    return nullcontext() if dask is None else dask.config.set(scheduler="synchronous")
+
+
+@contextmanager
+def local_workers(number: int) -> Iterator[Workers]:
+    """Start worker processes on this machine, and end them.
+
+    Parameters
+    ----------
+    number : int
+        How many; they share the processors.
+
+    Yields
+    ------
+    workers : Workers
+        They end with this process, however that comes about.
+
+    Raises
+    ------
+    WorkerError
+        If they do not start.
+    """
+    available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    threads = max(1, (available or 1) // number)
+    pool = ProcessPoolExecutor(
+        number, mp_context=multiprocessing.get_context("spawn"), initializer=_begin,
+        initargs=(threads,),
+    )  # fmt: skip
+    try:
+        _start(pool, number)
+        yield Workers(pool, _end_children, number=number)
+    except BaseException:
+        _end_children()
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _start(pool: ProcessPoolExecutor, number: int) -> None:
+    """Have all processes begin, so that it is known that they can."""
+    try:
+        with _interrupts_later():
+            started = [pool.submit(os.getpid) for _ in range(number)]
+        for one in started:
+            one.result()
+    except (OSError, BrokenExecutor) as error:
+        raise WorkerError(
+            "worker processes cannot be started on this machine",
+            found=f"{type(error).__name__}: {error}",
+            hint="Run with --jobs 1, which needs none.",
+        ) from error
+
+
+def _begin(threads: int) -> None:
+    """Share the processors of the machine, before any library looks for them."""
+    os.environ |= {"OMP_NUM_THREADS": str(threads), "OPENBLAS_NUM_THREADS": "1"}
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+def _end_children() -> None:
+    children = multiprocessing.active_children()
+    for child in children:
+        child.terminate()
+    for child in children:
+        child.join()
+
+
+@contextmanager
+def _interrupts_later() -> Iterator[None]:
+    """Start processes that a Ctrl-C on the terminal passes by: this process ends them itself.
+
+    What is blocked here stays so in every thread and process that is started meanwhile.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    ensure_running()  # a process of Python's own, whose start undoes the block
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+_ANSWER = 10.0  # how long a scheduler may take to answer [s]
+
+_PORTS = 65_536
+
+
+@contextmanager
+def users_cluster(address: str) -> Iterator[Workers]:
+    """Use the workers of a scheduler that runs already.
+
+    Parameters
+    ----------
+    address : str
+        ``tcp://HOST:PORT``.
+
+    Yields
+    ------
+    workers : Workers
+        Left as they are at the end.
+
+    Raises
+    ------
+    SettingsError
+        If no scheduler answers there, or that is no address.
+    WorkerError
+        If it has no worker, or is lost while one is waited for.
+    """
+    with _silence(), _client(address) as client:
+        try:
+            client.wait_for_workers(1, timeout=PATIENCE)
+        except TimeoutError as error:
+            raise WorkerError(
+                f"the scheduler {address} has no worker",
+                found=f"none for {PATIENCE:.0f} s",
+                needed=f"one started with `dask worker {address}`",
+            ) from error
+        except OSError as error:
+            raise scheduler_lost() from error
+        executor = client.get_executor(pure=False)
+        yield Workers(
+            executor,
+            end=lambda: executor.shutdown(wait=False),
+            look=lambda: _look(client),
+            deadly=(KilledWorker,),
+        )
+
+
+def _look(client: Client) -> None:
+    """Refuse to wait for workers that do not come."""
+    try:
+        if client.status != "running":
+            raise scheduler_lost()
+        if client.nthreads():
+            return
+    except OSError as gone:  # the client does not know it yet
+        raise scheduler_lost() from gone
+    raise WorkerError(
+        "no worker is left",
+        found=f"none, and no test ended for {PATIENCE:.0f} s",
+        needed="a worker at the scheduler",
+        hint="Products that were finished are kept; start workers, and run again to go on.",
+    )
+
+
+def _client(address: str) -> Client:
+    # a client that fails before it asks waits at its end for an answer, and says so in its words
+    if not _is_address(address):
+        raise _no_answer(address)
+    is_encrypted = address.partition("://")[0] in ("tls", "wss")
+    if is_encrypted and Security().get_connection_args("client")["ssl_context"] is None:
+        raise SettingsError(
+            "the address of --scheduler asks for TLS, and no certificate is known",
+            found=address,
+            needed="distributed.comm.tls in the configuration of Dask, or tcp://",
+        )
+    try:
+        return Client(address, timeout=_ANSWER, set_as_default=False)
+    except (OSError, ValueError, ImportError) as error:
+        raise _no_answer(f"{address}: {error}") from error
+
+
+def _is_address(address: str) -> bool:
+    """Whether a text names a host and a port."""
+    try:
+        return 0 < get_address_host_port(address)[1] < _PORTS
+    except ValueError:
+        return False
+
+
+def _no_answer(found: str) -> SettingsError:
+    return SettingsError(
+        "no scheduler answers at the address of --scheduler",
+        found=found,
+        needed="the address that `dask scheduler` prints, such as tcp://192.0.2.1:8786",
+    )
+
+
+@contextmanager
+def _silence() -> Iterator[None]:
+    """Keep what Dask says of lost workers off the terminal: the run says it in its own words."""
+    loud = [
+        logger
+        for name, logger in logging.root.manager.loggerDict.items()
+        if name.partition(".")[0] in ("distributed", "tornado", "asyncio")
+        and isinstance(logger, logging.Logger)
+    ]
+    before = [logger.level for logger in loud]
+    for logger in loud:
+        logger.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        for logger, level in zip(loud, before, strict=True):
+            logger.setLevel(level)

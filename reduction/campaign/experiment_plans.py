@@ -1,0 +1,810 @@
+"""Experiments of campaign.toml and SPEC.toml, and tables of runs."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal, NoReturn
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from reduction.campaign.csv_cells import CODED, CellColumn, CellSheet, read_cells
+from reduction.campaign.model import ExperimentSection
+from reduction.campaign.plan import ExperimentPlan, TestPlan, product_of
+from reduction.campaign.toml_file import in_toml, read_toml
+from reduction.experiments.designs import DesignKind, FactorLevels, LevelBasis
+from reduction.experiments.response_transform import Transform
+from reduction.experiments.run_sheet import RepeatPlacing
+from reduction.quantities.names import QUANTITIES, quantity
+from reduction.quantities.units import Dimension, parse_quantity, scale_of_unit
+from reduction.record.errors import DataError, LogError, SettingsError
+from reduction.record.measurement import Floats, Specimen, read_only_arrays
+
+NEED_PULL = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
+
+"""Responses that rest on the quasi-static spring constant."""
+
+_DIMENSIONS: dict[str, Dimension] = {
+    "frequency": "frequency",
+    "mean_tension": "force",
+    "tension_amplitude": "force",
+    "mean_strain": "strain",
+    "strain_amplitude": "strain",
+    "temperature": "temperature",
+    "duration": "number",
+    "diameter": "length",
+}
+
+_SHARE = re.compile(r"^\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*%\s*(RBS|MBS|MBL|of mean)\s*$")
+
+_BASIS: dict[str, LevelBasis] = {
+    "RBS": "rated_break_strength",
+    "MBS": "rated_break_strength",
+    "MBL": "rated_break_strength",
+    "of mean": "mean_tension",
+}
+
+_DYNAMIC = ("cyclic", "fatigue", "snap")
+
+_PULLS = ("quasi-static", "tensile")
+
+
+def parse_factor(name: str, levels: tuple[str, str]) -> FactorLevels:
+    """Levels of a factor from text with units.
+
+    Parameters
+    ----------
+    name : str
+        Of the factor; one that is not known takes plain numbers.
+    levels : tuple of str
+        Low and high: ``"0.1 Hz"``, ``"12 %RBS"``, ``"40 % of mean"``.
+
+    Returns
+    -------
+    levels : FactorLevels
+        In SI, or as a share with its basis.
+
+    Raises
+    ------
+    SettingsError
+        If a unit is missing or wrong, the two levels have different bases, or do not rise.
+
+    Examples
+    --------
+    >>> parse_factor("mean_tension", ("12 %RBS", "30 %RBS"))
+    FactorLevels(name='mean_tension', low=0.12, high=0.3, basis='rated_break_strength')
+    """
+    shares = [_SHARE.match(text) for text in levels]
+    bases = {_BASIS[share[2]] if share else "absolute" for share in shares}
+    if len(bases) > 1:
+        raise SettingsError(
+            f"the two levels of {name} are not given in one way",
+            found=" and ".join(levels),
+            needed="both in a unit, both in %RBS, or both in % of mean",
+        )
+    low, high = (
+        float(share[1]) / 100 if share else parse_quantity(text, _DIMENSIONS.get(name, "number"))
+        for share, text in zip(shares, levels, strict=True)
+    )
+    basis: LevelBasis = _BASIS[shares[0][2]] if shares[0] else "absolute"
+    return FactorLevels(name, low, high, basis)
+
+
+def plan_experiment(
+    path: Path,
+    name: str,
+    section: ExperimentSection,
+    *,
+    tests: Mapping[str, TestPlan],
+    specimens: Mapping[str, Specimen],
+) -> ExperimentPlan:
+    """An experiment with every name in it resolved.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        campaign.toml, for the messages.
+    name : str
+        Of the experiment.
+    section : ExperimentSection
+        As written.
+    tests : mapping of str to TestPlan
+        Of the campaign.
+    specimens : mapping of str to Specimen
+        Of the campaign.
+
+    Returns
+    -------
+    plan : ExperimentPlan
+        Runs and pulls named as their products are.
+
+    Raises
+    ------
+    SettingsError
+        If a run, a pull or a specimen is not in the campaign or of the wrong kind, the
+        levels do not pair up with the factors or lie beyond -1 and 1, a response stands
+        twice or only under ``transform``, or a share has no break strength.
+    """
+
+    def refuse(problem: str, *, found: str | None = None, needed: str | None = None) -> NoReturn:
+        raise SettingsError(f"{path}: experiment '{name}': {problem}", found=found, needed=needed)
+
+    try:
+        factors = tuple(parse_factor(key, levels) for key, levels in section.factors.items())
+    except SettingsError as error:
+        raise SettingsError(f"{path}: experiment '{name}': {error}") from error
+    _check_responses(section, refuse)
+    runs: dict[str, tuple[float, ...]] = {}
+    for run, coded in section.runs.items():
+        product, kind = product_of(run, tests) or refuse(
+            "a run is no test of the campaign", found=run,
+            needed="a test, or test/step: " + ", ".join(tests),
+        )  # fmt: skip
+        if kind not in _DYNAMIC:
+            refuse(f"run '{run}' has no cycles", found=kind, needed="a cyclic test or step")
+        is_short = len(coded) < len(factors)
+        if is_short or (section.kind == "box-behnken" and len(coded) != len(factors)):
+            refuse(
+                f"run '{run}' has {len(coded)} coded levels", needed=f"{len(factors)}, one a factor"
+            )
+        # not (a <= 1) also catches NaN
+        beyond = [level for level in coded if not abs(level) <= 1]
+        if beyond:
+            refuse(
+                f"run '{run}' is planned beyond the levels of its factors",
+                found=f"coded {beyond[0]:g}", needed="coded levels from -1 to 1",
+            )  # fmt: skip
+        runs[product] = coded
+    if len({len(coded) for coded in runs.values()}) > 1:
+        refuse("the runs differ in the number of coded levels")
+    pulls: dict[str, str] = {}
+    for specimen, pull in section.quasi_static.items():
+        product, kind = product_of(pull, tests) or refuse(
+            f"the slow pull of '{specimen}' is no test of the campaign", found=pull,
+            needed="a test, or test/step: " + ", ".join(tests),
+        )  # fmt: skip
+        if kind not in _PULLS:
+            refuse(f"'{pull}' is no slow pull", found=kind, needed=" or ".join(_PULLS))
+        if specimen not in tests[pull.partition("/")[0]].specimens:
+            refuse(f"the slow pull '{pull}' does not pull '{specimen}'")
+        pulls[specimen] = product
+    if any(factor.basis == "rated_break_strength" for factor in factors):
+        pulled = {one for run in section.runs for one in tests[run.partition("/")[0]].specimens}
+        bare = sorted(one for one in pulled if specimens[one].rated_break_strength is None)
+        if bare:
+            refuse(
+                "a level is a share of the break strength, which is not stated",
+                found="no rated_break_strength of " + ", ".join(bare),
+                needed='specimens.NAME.rated_break_strength = "6400 lbf"',
+            )
+    return ExperimentPlan(
+        name=name,
+        kind=section.kind,
+        factors=factors,
+        runs=runs,
+        quasi_static=pulls,
+        responses=section.responses,
+        transform={key: value for key, value in section.transform.items() if value != "none"},
+        specimens_as=section.specimens_as,
+        term_reduction=section.term_reduction,
+    )
+
+
+def _check_responses(section: ExperimentSection, refuse: Callable[..., NoReturn]) -> None:
+    """Each response once, and a transform for no other."""
+    listed = ", ".join(section.responses)
+    if len(set(section.responses)) < len(section.responses):
+        refuse("a response stands twice", found=listed, needed="each response once")
+    others = [name for name in section.transform if name not in section.responses]
+    if others:
+        refuse(
+            "a transform is for a response that is not asked for", found=", ".join(others),
+            needed=f"one of responses: {listed}",
+        )  # fmt: skip
+
+
+def agree_on_pulls(
+    path: Path, experiments: Mapping[str, ExperimentPlan], tests: Mapping[str, TestPlan]
+) -> None:
+    """Refuse a run of two experiments that name two slow pulls for one specimen.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        campaign.toml, for the messages.
+    experiments : mapping of str to ExperimentPlan
+        Of the campaign.
+    tests : mapping of str to TestPlan
+        Of the campaign.
+
+    Raises
+    ------
+    SettingsError
+        If a run would have two quasi-static spring constants.  An experiment that names no
+        pull is another answer too, where it asks for a response that rests on one.
+    """
+    first: dict[tuple[str, str], tuple[str, str]] = {}
+    for name, plan in experiments.items():
+        asks = not set(NEED_PULL).isdisjoint(plan.responses)
+        for run in plan.runs:
+            for specimen in tests[run.partition(".")[0]].specimens:
+                pull = plan.quasi_static.get(specimen, "")
+                if not pull and not asks:
+                    continue
+                other, before = first.setdefault((run, specimen), (name, pull))
+                if before != pull:
+                    raise SettingsError(
+                        f"{path}: run '{run}' is in two experiments that do not name one slow "
+                        f"pull of '{specimen}'",
+                        found=f"{before or 'none'} in '{other}', {pull or 'none'} in '{name}'",
+                        needed="the same quasi_static in both: a run has one K_0",
+                    )
+
+
+# stands in a header of the run sheet and in the name of a term
+ColumnName = Annotated[
+    str, StringConstraints(pattern=r"^[^\s\[\]*^,;#][^\[\]*^,;]{0,99}$", strip_whitespace=True)
+]
+
+_UNIT = re.compile(r"^\s*[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*(.*?)\s*$")
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class ExperimentKeys(_Section):
+    """``[experiment]``."""
+
+    kind: DesignKind | None = None
+    levels: Literal["engineering", "coded"] = "engineering"
+    """What the columns of the factors hold in a table of runs, where no header says it."""
+    rated_break_strength: str | None = None
+    load_limit: str | None = None
+    """Greatest tension of machine, cell or laboratory: a force or a share, ``"40 %RBS"``."""
+    n_centre: int | None = Field(default=None, ge=0)
+    n_runs: int | None = None
+    repeats: RepeatPlacing = "together"
+    sigma: str | None = None
+    """Scatter of one run: ``"2 %"`` of the response, or in its unit."""
+    specimens_as: Literal["blocks", "random"] = "blocks"
+
+
+class ResponseKeys(_Section):
+    """``[responses.NAME]``."""
+
+    unit: str = ""
+    transform: Transform = "none"
+
+
+class SpecFile(_Section):
+    """The whole of SPEC.toml."""
+
+    experiment: ExperimentKeys = ExperimentKeys()
+    factors: dict[ColumnName, tuple[str | float, str | float]] = Field(default_factory=dict)
+    responses: dict[ColumnName, ResponseKeys] = Field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class FactorSpec:
+    """A factor with the unit its levels are written in and the SI unit behind it.
+
+    ``levels`` is None of a factor that a table of runs gives coded and nobody has declared.
+    """
+
+    name: str
+    levels: FactorLevels | None = None
+    unit: str = CODED
+    si_unit: str = "1"
+
+    def axis(self, strength: float | None) -> tuple[str, float, float]:
+        """Unit, low and high level on the scale that a surface is fitted on.
+
+        A share of a break strength that is known becomes a force.
+        """
+        if self.levels is None:
+            return self.si_unit, -1.0, 1.0
+        if self.levels.basis == "rated_break_strength" and strength is not None:
+            return "N", strength * self.levels.low, strength * self.levels.high
+        return self.si_unit, self.levels.low, self.levels.high
+
+
+@dataclass(frozen=True)
+class ResponseSpec:
+    """A response as written: unit is empty where none is stated."""
+
+    name: str
+    unit: str = ""
+    transform: Transform = "none"
+
+
+@dataclass(frozen=True)
+class ExperimentSpec:
+    """An experiment in SI; factors and responses are empty where the table of runs names them.
+
+    ``sigma`` is a share of the response where ``sigma_unit`` is 1 [1], else in that unit.
+    """
+
+    kind: DesignKind | None
+    levels: Literal["engineering", "coded"]
+    rated_break_strength: float | None
+    load_limit: float | None
+    peak_share_limit: float | None
+    n_centre: int | None
+    n_runs: int | None
+    repeats: RepeatPlacing
+    sigma: float | None
+    sigma_unit: str
+    specimens_as: Literal["blocks", "random"]
+    factors: tuple[FactorSpec, ...]
+    responses: tuple[ResponseSpec, ...]
+
+
+def _written_unit(text: str) -> str:
+    match = _UNIT.match(text)
+    return match[1] if match else ""
+
+
+def _factor(name: str, written: tuple[str | float, str | float]) -> FactorSpec:
+    low, high = (str(level).strip() for level in written)
+    units = {_written_unit(level) for level in (low, high)}
+    if len(units) > 1:
+        raise SettingsError(
+            f"the two levels of {name} are not given in one way",
+            found=f"{low} and {high}",
+            needed="both in one unit",
+        )
+    (unit,) = units
+    if "%" in unit and unit != "%":
+        return FactorSpec(name, parse_factor(name, (low, high)), unit)
+    if name in ("frequency", "mean_tension", "tension_amplitude"):
+        return FactorSpec(name, parse_factor(name, (low, high)), unit, quantity(name).unit)
+    # any other factor has whatever dimension its unit has
+    si_unit, factor, offset = scale_of_unit(unit)
+    numbers = [parse_quantity(level.removesuffix(unit), "number") for level in (low, high)]
+    bottom, top = (factor * number + offset for number in numbers)
+    return FactorSpec(name, FactorLevels(name, bottom, top), unit, si_unit)
+
+
+def response_unit(name: str, unit: str) -> tuple[str, float, float]:
+    """SI unit of a response, with factor and offset to it.
+
+    Parameters
+    ----------
+    name : str
+        Of the response; the unit of a quantity that the vocabulary has is spelt as there.
+    unit : str
+        As written; empty where none is stated.
+
+    Returns
+    -------
+    si_unit : str
+        Empty where no unit is stated: the numbers stay as they are.
+    factor, offset : float
+        ``factor * value + offset`` is in SI.
+
+    Raises
+    ------
+    SettingsError
+        If the unit is unknown, or not one of the quantity.
+
+    Examples
+    --------
+    >>> response_unit("hysteresis_energy", "lbf")
+    ('J m-1', 4.4482216152605, 0.0)
+    """
+    if not unit:
+        return "", 1.0, 0.0
+    si_unit, factor, offset = scale_of_unit(unit)
+    if name not in QUANTITIES:
+        return si_unit, factor, offset
+    known = quantity(name).unit
+    if scale_of_unit(known)[0] != si_unit:
+        raise SettingsError(
+            f"unit '{unit}' is not a unit of {name}", found=f"'{unit}'", needed=f"such as {known}"
+        )
+    return known, factor, offset
+
+
+def _limit(text: str, strength: float | None) -> tuple[float | None, float | None]:
+    """A load limit in newtons, or as a share of the break strength."""
+    if re.search(r"%\s*(RBS|MBS|MBL)\s*$", text):
+        return None, parse_quantity(text, "force", rated_break_strength=1.0)
+    return parse_quantity(text, "force", rated_break_strength=strength), None
+
+
+def _sigma(text: str) -> tuple[float, str]:
+    unit = _written_unit(text)
+    number = parse_quantity(text.strip().removesuffix(unit), "number")
+    si_unit, factor, _ = scale_of_unit(unit)
+    if not number > 0:
+        raise SettingsError("sigma is not above zero", found=repr(text), needed='such as "2 %"')
+    return factor * number, si_unit
+
+
+def load_spec(path: Path) -> ExperimentSpec:
+    """Read SPEC.toml.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+
+    Returns
+    -------
+    spec : ExperimentSpec
+        In SI, or as shares with their basis.
+
+    Raises
+    ------
+    SettingsError
+        If a value is still ``?``, or a key, a value or a unit cannot be used.
+    """
+    file = read_toml(
+        path,
+        SpecFile,
+        what="the experiment",
+        needed="a SPEC.toml with [experiment], [factors] and [responses]",
+        keys="docs/experiments.md lists every key",
+    )
+    keys = file.experiment
+    place = "experiment"
+    try:
+        strength = None
+        if keys.rated_break_strength is not None:
+            place = "experiment.rated_break_strength"
+            strength = parse_quantity(keys.rated_break_strength, "force")
+            if not strength > 0:
+                raise SettingsError("a break strength is above zero", found=f"{strength:g} N")
+        place = "experiment.load_limit"
+        limit, share = (
+            (None, None) if keys.load_limit is None else _limit(keys.load_limit, strength)
+        )
+        place = "experiment.sigma"
+        sigma, sigma_unit = (None, "1") if keys.sigma is None else _sigma(keys.sigma)
+        factors = []
+        for name, levels in file.factors.items():
+            place = f"factors.{name}"
+            factors.append(_factor(name, levels))
+        for name, response in file.responses.items():
+            place = f"responses.{name}"
+            response_unit(name, response.unit)
+    except SettingsError as error:
+        raise in_toml(
+            path, f"{place}: {error.problem}", found=error.found, needed=error.needed,
+            hint=error.hint,
+        ) from error  # fmt: skip
+    twice = sorted(file.factors.keys() & file.responses.keys())
+    if twice:
+        raise in_toml(path, "a factor is a response too", found=", ".join(twice))
+    return ExperimentSpec(
+        kind=keys.kind,
+        levels=keys.levels,
+        rated_break_strength=strength,
+        load_limit=limit,
+        peak_share_limit=share,
+        n_centre=keys.n_centre,
+        n_runs=keys.n_runs,
+        repeats=keys.repeats,
+        sigma=sigma,
+        sigma_unit=sigma_unit,
+        specimens_as=keys.specimens_as,
+        factors=tuple(factors),
+        responses=tuple(
+            ResponseSpec(name, response.unit, response.transform)
+            for name, response in file.responses.items()
+        ),
+    )
+
+
+_SHARE_UNIT = re.compile(r"%\s*(RBS|MBS|MBL|of mean)")
+
+_OFF_PLAN = 1.0
+
+"""Coded distance of the mean of all runs from the centre of the plan, beyond which the
+levels are in another unit than the plan."""
+
+
+def levels_of_factor(
+    sheet: CellSheet, factor: FactorSpec, spec: ExperimentSpec | None, mean: Floats | None
+) -> tuple[CellColumn, Floats]:
+    """Column and coded levels of a factor."""
+    column = sheet.one(factor.name, "factor")
+    values = sheet.numbers(column)
+    is_coded = factor.levels is None or (spec is not None and spec.levels == CODED)
+    unit = column.unit or (CODED if is_coded else factor.unit)
+    if unit == CODED:
+        return column, values
+
+    def refuse(problem: str, needed: str) -> NoReturn:
+        raise SettingsError(
+            f"{sheet.path}:{sheet.first} [{column.header}]: {problem}", found=f"'{unit}'",
+            needed=needed,
+        )  # fmt: skip
+
+    if factor.levels is None:
+        refuse("a unit without the levels that are -1 and 1", "[factors] in a SPEC.toml")
+    axis, low, high = factor.axis(None if spec is None else spec.rated_break_strength)
+    basis = factor.levels.basis
+    share = _SHARE_UNIT.fullmatch(unit)
+    if share is not None:
+        if basis != ("mean_tension" if share[1] == "of mean" else "rated_break_strength"):
+            refuse(f"{factor.name} is no such share in the plan", f"a unit as {factor.unit}")
+        strength = spec.rated_break_strength if spec is not None and axis == "N" else None
+        found = values / 100 * (1.0 if strength is None else strength)
+    else:
+        try:
+            si_unit, by, offset = scale_of_unit(unit)
+        except SettingsError as error:
+            refuse(error.problem, error.needed or "")
+        found = by * values + offset
+        if basis == "mean_tension" and si_unit == "N" and mean is not None:
+            found = found / mean
+        elif si_unit != axis:
+            beside = "" if basis == "absolute" else ", or rated_break_strength in [experiment]"
+            refuse(f"unit '{unit}' does not fit {factor.name}", f"such as {factor.unit}{beside}")
+    coded: Floats = (found - (low + high) / 2) / ((high - low) / 2)
+    return column, coded
+
+
+def is_of_mean(factor: FactorSpec) -> bool:
+    """Return whether the levels of a factor are shares of the mean tension."""
+    return factor.levels is not None and factor.levels.basis == "mean_tension"
+
+
+def check_levels(
+    sheet: CellSheet, column: CellColumn, name: str, coded: Floats, *, stated: bool
+) -> None:
+    """Refuse levels that lie beside the plan: those of another unit."""
+    known = coded[np.isfinite(coded)]
+    if known.size and abs(known.mean()) > _OFF_PLAN:
+        raise DataError(
+            f"{sheet.path}:{sheet.row[0]} [{column.header}]: the levels of {name} lie beside the "
+            "plan",
+            found=f"{known.min():.4g} to {known.max():.4g} coded",
+            needed="about -1 to 1",
+            hint='Coded levels under [factors] in units need levels = "coded" in [experiment].'
+            if stated
+            else "Levels in units need a SPEC.toml with [factors].",
+        )
+
+
+_LABELS = ("run", "run_order", "block", "specimen")
+
+_DUMMY = re.compile(r"dummy_\d+")
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class RunSeries:
+    """Runs as they were done.
+
+    Parameters
+    ----------
+    factor_names, factor_units : tuple of str, length n_factors
+        SI units of low and high.
+    low, high : ndarray, shape (n_factors,)
+        Levels that are -1 and +1. [SI unit of each factor]
+    coded : ndarray, shape (n_runs, n_factors)
+        As reached; NaN where a run was not done. [1]
+    dummy : ndarray, shape (n_runs, n_dummy)
+        Columns ``dummy_1``, .. of a screening. [1]
+    response_names, response_units : tuple of str, length n_responses
+        A unit is empty where none is stated.
+    responses : ndarray, shape (n_responses, n_runs)
+        NaN where a run gave none. [SI unit of each response]
+    run_names : tuple of str, length n_runs
+    row : tuple of int, length n_runs
+        Of the file, its first line being 1.
+    run_order : ndarray, shape (n_runs,)
+        NaN where not given. [1]
+    blocks : tuple of str, length n_runs, or None
+        Block or specimen of each run, where there are several.
+    notes : tuple of str
+        What a reader of the numbers has to know.
+    """
+
+    factor_names: tuple[str, ...]
+    factor_units: tuple[str, ...]
+    low: Floats
+    high: Floats
+    coded: Floats
+    dummy: Floats
+    response_names: tuple[str, ...]
+    response_units: tuple[str, ...]
+    responses: Floats
+    run_names: tuple[str, ...]
+    row: tuple[int, ...]
+    run_order: Floats
+    blocks: tuple[str, ...] | None
+    notes: tuple[str, ...]
+
+
+def _declared(
+    sheet: CellSheet, spec: ExperimentSpec | None
+) -> tuple[tuple[FactorSpec, ...], tuple[ResponseSpec, ...]]:
+    """Factors and responses: as declared, else the last column and the others."""
+    factors, responses = ((), ()) if spec is None else (spec.factors, spec.responses)
+    named = {factor.name for factor in factors} | {entry.name for entry in responses}
+    free = [
+        column
+        for column in sheet.columns
+        if column.name not in (*_LABELS, *named) and not _DUMMY.fullmatch(column.name)
+    ]
+    if not responses:
+        if not free or sheet.columns[-1] is not free[-1]:
+            raise sheet.fault("the last column is not a response", needed="the response last")
+        responses = (ResponseSpec(free.pop().name),)
+    if not factors:
+        factors = tuple(FactorSpec(column.name) for column in free)
+        if not factors:
+            raise sheet.fault("the table has no factor", needed="a column a factor")
+    return factors, responses
+
+
+def _labels(sheet: CellSheet, name: str) -> tuple[str, ...] | None:
+    found = sheet.named(name)
+    return found[0].cells if found else None
+
+
+def _same_run(sheet: CellSheet, header: str, keys: Iterable[tuple[str, ...]]) -> None:
+    seen: dict[tuple[str, ...], int] = {}
+    for row, key in zip(sheet.row, keys, strict=True):
+        if key[-1] and seen.setdefault(key, row) != row:
+            raise DataError(
+                f"{sheet.path}:{row} [{header}]: a run stands twice",
+                found=f"{key[-1]!r}, also in row {seen[key]}",
+                needed="each run once",
+                hint="A repeat is a run of its own and has a number of its own.",
+            )
+
+
+def read_runs(path: Path, spec: ExperimentSpec | None = None) -> RunSeries:
+    """Read a table of runs.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        CSV with a header; parted by commas, semicolons or tabs.
+    spec : ExperimentSpec, optional
+        What the columns are; without it the last one is the response and the others are
+        coded factors.
+
+    Returns
+    -------
+    runs : RunSeries
+        Every row a run, in order; nothing is left out.
+
+    Raises
+    ------
+    LogError
+        With row and column, if the table cannot be read or a value is not a number.
+    SettingsError
+        If a value is still ``?``, or a unit is unknown or does not fit.
+    DataError
+        If a run stands twice, has a value and no levels, or the levels lie beside the plan.
+    """
+    sheet = read_cells(path)
+    factors, responses = _declared(sheet, spec)
+    strength = None if spec is None else spec.rated_break_strength
+    coded = np.full((len(sheet.row), len(factors)), math.nan)
+    used: set[str] = set()
+    axes = [factor.axis(strength) for factor in factors]
+    mean: Floats | None = None
+    # an amplitude that is a share of the mean comes after the mean
+    for place in sorted(range(len(factors)), key=lambda index: is_of_mean(factors[index])):
+        factor = factors[place]
+        column, coded[:, place] = levels_of_factor(sheet, factor, spec, mean)
+        check_levels(sheet, column, factor.name, coded[:, place], stated=factor.levels is not None)
+        used.add(column.header)
+        unit, low, high = axes[place]
+        if factor.name == "mean_tension" and unit == "N":
+            mean = (low + high) / 2 + coded[:, place] * (high - low) / 2
+    values, units = [], []
+    for response in responses:
+        column = sheet.one(response.name, "response")
+        used.add(column.header)
+        try:
+            unit, by, offset = response_unit(response.name, column.unit or response.unit)
+        except SettingsError as error:
+            raise SettingsError(
+                f"{path}:{sheet.first} [{column.header}]: {error.problem}", found=error.found,
+                needed=error.needed, hint=error.hint,
+            ) from error  # fmt: skip
+        values.append(by * sheet.numbers(column) + offset)
+        units.append(unit)
+    measured = np.array(values)
+    lost = np.isfinite(measured).any(axis=0) & ~np.isfinite(coded).all(axis=1)
+    if lost.any():
+        first = int(np.flatnonzero(lost)[0])
+        name = factors[int(np.flatnonzero(~np.isfinite(coded[first]))[0])].name
+        raise DataError(
+            f"{path}:{sheet.row[first]} [{name}]: a run has a value and no level",
+            needed="the level that the run reached",
+        )
+    dummies = [column for column in sheet.columns if _DUMMY.fullmatch(column.name)]
+    blocks, notes = _blocks(sheet)
+    known = {*_LABELS, *(factor.name for factor in factors)}
+    others = [
+        column.header
+        for column in sheet.columns
+        if column.header not in used and column not in dummies and column.name not in known
+    ]
+    if others:
+        notes.append(f"columns that are not used: {', '.join(others)}")
+    return RunSeries(
+        factor_names=tuple(factor.name for factor in factors),
+        factor_units=tuple(unit for unit, _, _ in axes),
+        low=np.array([low for _, low, _ in axes]),
+        high=np.array([high for _, _, high in axes]),
+        coded=coded,
+        dummy=np.array([sheet.numbers(column) for column in dummies]).T.reshape(
+            len(sheet.row), len(dummies)
+        ),
+        response_names=tuple(response.name for response in responses),
+        response_units=tuple(units),
+        responses=measured,
+        run_names=_run_names(sheet),
+        row=sheet.row,
+        run_order=_order(sheet),
+        blocks=blocks,
+        notes=tuple(notes),
+    )
+
+
+def _blocks(sheet: CellSheet) -> tuple[tuple[str, ...] | None, list[str]]:
+    """Blocks, by the column block before the column specimen, where there are several."""
+    several = {
+        name: labels
+        for name in ("block", "specimen")
+        if (labels := _labels(sheet, name)) and len(set(labels)) > 1
+    }
+    if not several:
+        return None, []
+    name, labels = next(iter(several.items()))
+    empty = [row for row, label in zip(sheet.row, labels, strict=True) if not label]
+    if empty:
+        raise LogError(
+            sheet.path, f"a run has no {name}", row=empty[0], channel=name,
+            needed="a name in every row, or in none",
+        )  # fmt: skip
+    pairs = set(zip(*several.values(), strict=True))
+    if len(several) > 1 and len(pairs) > len(set(labels)):
+        return labels, ["blocks are those of the column block; specimens in one are not told apart"]
+    return labels, []
+
+
+def _run_names(sheet: CellSheet) -> tuple[str, ...]:
+    """Names of the runs, with the specimen where a run has several; their numbers else."""
+    names, specimens = _labels(sheet, "run"), _labels(sheet, "specimen")
+    apart = specimens or _labels(sheet, "block") or ("",) * len(sheet.row)
+    if names is None:
+        return tuple(str(number + 1) for number in range(len(sheet.row)))
+    _same_run(sheet, "run", zip(apart, names, strict=True))
+    empty = [row for row, name in zip(sheet.row, names, strict=True) if not name]
+    if empty:
+        raise LogError(
+            sheet.path,
+            "a run has no name",
+            row=empty[0],
+            channel="run",
+            needed="a name or a number",
+        )
+    many = max(Counter(names).values()) > 1
+    return tuple(f"{name} {of}" if many else name for name, of in zip(names, apart, strict=True))
+
+
+def _order(sheet: CellSheet) -> Floats:
+    """Place of each run in the order; each once in a block."""
+    found = sheet.named("run_order")
+    if not found:
+        return np.full(len(sheet.row), math.nan)
+    apart = _labels(sheet, "specimen") or _labels(sheet, "block") or ("",) * len(sheet.row)
+    order = sheet.numbers(found[0])
+    _same_run(sheet, found[0].header, zip(apart, found[0].cells, strict=True))
+    return order

@@ -1,0 +1,579 @@
+"""Reads TOML and CSV files that a person wrote; reports all faults with file and key."""
+
+from __future__ import annotations
+
+import csv
+import re
+import reprlib
+import tomllib
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path, PureWindowsPath
+from typing import Annotated, Any, TypeVar
+
+from pydantic import BaseModel, Strict, ValidationError
+
+from reduction.quantities.units import Dimension, parse_quantity
+from reduction.readers.layout import check_regular
+from reduction.readers.sniff import UNKNOWN
+from reduction.record.errors import LogError, ReductionError, SettingsError
+from reduction.record.plain_text import bare_cell, cut, is_address, shown_address
+
+_LARGEST = 16_000_000  # bytes; a campaign of 10^5 tests has a third of it
+
+
+def read_small_text(path: Path) -> str:
+    """Text of a small file, in UTF-8 with or without a byte-order mark.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+
+    Returns
+    -------
+    text : str
+        With its line ends.
+
+    Raises
+    ------
+    LogError
+        If it is no regular file (a pipe may never end), or too large to be kept by a person.
+    OSError, UnicodeDecodeError
+        If it cannot be read, or is no such text.
+    """
+    status = path.stat()
+    check_regular(path, status.st_mode)
+    if status.st_size > _LARGEST:
+        raise LogError(
+            path,
+            "the file is too large to be a table or a campaign",
+            found=f"{status.st_size:,} bytes",
+            needed=f"{_LARGEST:,} bytes at most",
+        )
+    return path.read_bytes().decode("utf-8-sig")
+
+
+def read_csv_rows(
+    path: Path, what: str, *, fault: Callable[..., ReductionError] = LogError
+) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
+    """Read a table that is small.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        UTF-8, with or without a byte-order mark.
+    what : str
+        For the messages: ``the table of results``.
+    fault : callable
+        Error of a file and a problem, with ``row``, ``found`` and ``needed``.
+
+    Returns
+    -------
+    header : list of str
+        Without blanks around the names; empty where the file is.
+    rows : iterator of (int, list of str)
+        Number of the line, the header being 1, and as many cells as the header; lines
+        without a filled cell are left out. A row is looked at when it is asked for.
+
+    Raises
+    ------
+    ReductionError
+        From ``fault``, if the file is not text or a row has another number of cells.
+    """
+    try:
+        text = read_small_text(path)
+    except LogError as error:
+        raise fault(path, error.problem, found=error.found, needed=error.needed) from error
+    except UnicodeDecodeError as error:
+        raise fault(path, f"{what} is not UTF-8 text", found=str(error)) from error
+    except OSError as error:
+        raise fault(path, f"{what} cannot be read", found=error.strerror or str(error)) from error
+    lines = split_rows(text)
+
+    def split(number: int, line: str) -> list[str]:
+        cells = split_row(line)
+        if cells is None:
+            raise fault(
+                path, f"a row of {what} cannot be parted into cells", row=number,
+                found=repr(cut(line, 60)),
+                needed="one line a row, every quote closed in it, no cell of 131,072 characters",
+            )  # fmt: skip
+        return cells
+
+    header = [name.strip() for name in split(1, lines[0])]
+
+    def rows() -> Iterator[tuple[int, list[str]]]:
+        for number, line in enumerate(lines[1:], start=2):
+            cells = split(number, line)
+            if not any(cell.strip() for cell in cells):
+                continue
+            if len(cells) != len(header):
+                raise fault(
+                    path, "a row has another number of cells than the header", row=number,
+                    found=str(len(cells)), needed=str(len(header)),
+                )  # fmt: skip
+            yield number, cells
+
+    return header, rows()
+
+
+def split_rows(text: str) -> list[str]:
+    """Lines of a table as an editor counts them; one at least."""
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+
+def split_row(line: str, delimiter: str = ",") -> list[str] | None:
+    """Cells of one line; None where a quote is not closed in it, or a cell is too long.
+
+    Parameters
+    ----------
+    line : str
+        Without its line end.
+    delimiter : str
+        What parts the cells.
+
+    Returns
+    -------
+    cells : list of str or None
+        A quote that goes on into the next line would swallow the rows below without a word.  An
+        apostrophe that keeps a spreadsheet program from a formula is taken off.
+
+    Examples
+    --------
+    >>> split_row('T-1,"a, b",2')
+    ['T-1', 'a, b', '2']
+    >>> split_row('T-1,"a, b,2') is None
+    True
+    """
+    try:
+        cells = next(csv.reader([line], delimiter=delimiter, strict=True), [])
+    except csv.Error:
+        return None
+    return [bare_cell(cell) for cell in cells]
+
+
+_SHOWN = 10
+
+_LONGEST_FOUND = 60
+
+_DEEPEST = 12  # more keys below each other than any setting has
+
+# what stands in the log itself, where a question mark may be one
+_MARKS_OF_A_LOG = {"delimiter", "comment", "quote", "missing", "block_marker"}
+
+_TABLES = {(*section, name) for section in ((), ("campaign",)) for name in ("tests", "results")}
+
+_WORDS = {"missing": "is required", "extra_forbidden": "is not a known key"}
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A value that cannot be used; ``found`` is empty where nothing is to be shown."""
+
+    place: str
+    needed: str
+    found: str
+
+    def __str__(self) -> str:
+        """``place: what is needed; found ...``."""
+        return f"{self.place}: {self.needed}" + (f"; found {self.found}" if self.found else "")
+
+
+def in_toml(path: Path, problem: str, **kwargs: Any) -> SettingsError:
+    """An error of campaign.toml, with the file in front."""
+    return SettingsError(f"{path}: {problem}", **kwargs)
+
+
+def quantity_of(path: Path, place: str, text: str, dimension: Dimension) -> float:
+    """Value in SI of what stands at a place of campaign.toml; its error names file and place."""
+    try:
+        return parse_quantity(text, dimension)
+    except SettingsError as error:
+        raise in_toml(
+            path, f"{place}: {error.problem}", found=error.found, needed=error.needed,
+            hint=error.hint,
+        ) from error  # fmt: skip
+
+
+def listed(headline: str, entries: Sequence[object]) -> str:
+    """A first line, and up to ten entries below it."""
+    lines = [headline, *(f"  {entry}" for entry in entries[:_SHOWN])]
+    if len(entries) > _SHOWN:
+        lines.append(f"  and {len(entries) - _SHOWN} more")
+    return "\n".join(lines)
+
+
+def _shown(value: object) -> str:
+    """A value in quotes, cut where it is long."""
+    if isinstance(value, str):
+        room = _LONGEST_FOUND - 2  # for the quotes
+        return repr(value if len(value) <= room else value[: room - 3].rstrip() + "...")
+    text = reprlib.repr(value)  # tables may be deep
+    return text if len(text) <= _LONGEST_FOUND else text[: _LONGEST_FOUND - 3].rstrip() + "..."
+
+
+def _place(location: Sequence[str | int], table: object, *, is_missing: bool) -> tuple[str, ...]:
+    """Keys of the table on the way to a fault, without the names that pydantic gives to choices."""
+    place: list[str] = []
+    for number, part in enumerate(location, start=1):
+        if isinstance(table, list | tuple) and isinstance(part, int) and part < len(table):
+            table = table[part]
+            place.append(str(part))
+        elif isinstance(table, dict) and part in table:
+            table = table[part]
+            place.append(str(part))
+        elif is_missing and number == len(location):
+            place.append(str(part))
+        elif isinstance(table, dict) and isinstance(part, str):
+            # the channel tension.1 stands in TOML as a table in a table
+            stem, _, rest = part.partition(".")
+            if isinstance(table.get(stem), dict) and rest in table[stem]:
+                table = table[stem][rest]
+                place.append(part)
+    return tuple(place)
+
+
+def faults_of(error: ValidationError, table: object) -> list[Fault]:
+    """Every fault once.
+
+    Parameters
+    ----------
+    error : pydantic.ValidationError
+        As raised for the table.
+    table : object
+        What was validated, as TOML gives it.
+
+    Returns
+    -------
+    faults : list of Fault
+        In order; a value that fits none of several forms has one fault.
+    """
+    found: dict[tuple[str, ...], list[tuple[str, str]]] = {}
+    for entry in error.errors():
+        place = _place(entry["loc"], table, is_missing=entry["type"] == "missing")
+        cause = entry.get("ctx", {}).get("error")
+        if isinstance(cause, ReductionError):
+            needed, value = str(cause), ""
+        else:
+            needed = _WORDS.get(entry["type"], entry["msg"].removeprefix("Value error, "))
+            value = "" if entry["type"] == "missing" else _shown(entry["input"])
+        found.setdefault(place, []).append((needed, value))
+    faults = []
+    above = {place[:length] for place in found for length in range(len(place))}
+    for place, told in found.items():
+        # a table is not a text either, but where its own keys have faults it was meant as a table
+        if place in above:
+            continue
+        needed = " or ".join(
+            text if number == 0 else text.removeprefix("Input should be ")
+            for number, text in enumerate(dict.fromkeys(text for text, _ in told))
+        )
+        faults.append(Fault(".".join(place), needed, told[0][1]))
+    return faults
+
+
+def _leaves(value: object, keys: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], object]]:
+    """Values of a table with their keys; a key that is open itself stands beside them."""
+    if len(keys) > _DEEPEST:
+        return
+    if isinstance(value, dict):
+        for key, entry in value.items():
+            if key == UNKNOWN:
+                yield (*keys, key), key
+            yield from _leaves(entry, (*keys, str(key)))
+    elif isinstance(value, list):
+        for number, entry in enumerate(value):
+            yield from _leaves(entry, (*keys, str(number)) if isinstance(entry, dict) else keys)
+    else:
+        yield keys, value
+
+
+def _is_open(value: object) -> bool:
+    return isinstance(value, str) and value.strip() == UNKNOWN
+
+
+def _cells(folder: Path, name: str) -> Iterator[tuple[int, str, str]]:
+    """Row, column and text of each cell; none of a file that is refused when it is read."""
+    try:
+        path = (folder / name).resolve()
+        if not path.is_relative_to(folder.resolve()) or not path.is_file():
+            return
+        lines = split_rows(read_small_text(path))
+    except (OSError, ValueError, RuntimeError):  # links in a ring
+        return
+    header = [column.strip() for column in split_row(lines[0]) or ()]
+    for number, line in enumerate(lines[1:], start=2):
+        yield from (
+            (number, column, cell.strip())
+            for column, cell in zip(header, split_row(line) or (), strict=False)
+        )
+
+
+def _tables_in(table: dict[str, Any]) -> list[str]:
+    """Tables that campaign.toml names itself."""
+    return [
+        value
+        for keys, value in _leaves(table)
+        if isinstance(value, str)
+        and not _is_open(value)
+        and (keys in _TABLES or keys[-2:] == ("strain", "marks"))
+    ]
+
+
+def named_tables(folder: Path, table: dict[str, Any]) -> Iterator[str]:
+    """Tables of a campaign by their names: of tests, results and marks, each once.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Of the campaign. Each table is looked into after its name was taken, since a table of
+        tests names marks.
+    table : dict
+        campaign.toml, not validated yet.
+
+    Yields
+    ------
+    name : str
+        As written.
+    """
+    names = _tables_in(table)
+    seen: set[str] = set()
+    for name in names:  # grows
+        if name in seen:
+            continue
+        seen.add(name)
+        yield name
+        names.extend(
+            cell
+            for _, column, cell in _cells(folder, name)
+            if column == "marks" and cell and not any(map(_is_open, cell.split(";")))
+        )
+
+
+def open_questions(folder: Path, table: dict[str, Any]) -> list[str]:
+    """Places that still hold ``?``, in campaign.toml, its tables and its marks.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Of the campaign.
+    table : dict
+        campaign.toml, not validated yet.
+
+    Returns
+    -------
+    places : list of str
+        Dotted keys of campaign.toml, then ``FILE:ROW [COLUMN]``.
+    """
+    places = [
+        ".".join(keys)
+        for keys, value in _leaves(table)
+        if _is_open(value) and not (keys[0] == "layouts" and keys[-1] in _MARKS_OF_A_LOG)
+    ]
+    places += [
+        f"{name}:{row} [{column}]"
+        for name in named_tables(folder, table)
+        for row, column, cell in _cells(folder, name)
+        if any(map(_is_open, cell.split(";")))
+    ]
+    return list(dict.fromkeys(places))
+
+
+DEVICE = re.compile(
+    r"(con|prn|aux|nul|conin\$|conout\$|com[0-9¹²³]|lpt[0-9¹²³]) *(\..*)?", re.IGNORECASE
+)
+
+"""Names that are devices of Windows in every folder, whatever stands behind their point."""
+
+
+def file_inside(path: Path, name: str, *, is_needed: bool = True) -> str:
+    """A file name that stays inside the campaign folder.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        campaign.toml.
+    name : str
+        As written there or in one of its tables; the same names are refused on every system.
+    is_needed : bool
+        Whether it has to be there.
+
+    Returns
+    -------
+    name : str
+        As written.
+
+    Raises
+    ------
+    SettingsError
+        If it is an address, or leads out of the folder, by itself or through links.
+    LogError
+        If it is needed and is not there, or is no regular file.
+    """
+    shown = repr(cut(name, 200))
+    if is_address(name):
+        raise in_toml(
+            path, "only the log of a test may be an address on the net",
+            found=repr(shown_address(name)), needed="a file inside the folder of campaign.toml",
+        )  # fmt: skip
+    if any(map(DEVICE.fullmatch, re.split(r"[/\\]", name))):
+        raise _no_name(path, shown)
+    try:
+        folder = path.parent.resolve()
+        target = (folder / name).resolve()
+    except (ValueError, RuntimeError, OSError) as error:  # a null byte, links in a ring, length
+        raise _no_name(path, shown) from error
+    windows = PureWindowsPath(name)
+    is_absolute = Path(name).is_absolute() or windows.drive or windows.root
+    if not name or is_absolute or not target.is_relative_to(folder):
+        raise in_toml(
+            path, "a file lies outside the campaign folder", found=shown,
+            needed="a path inside the folder of campaign.toml, links followed",
+        )  # fmt: skip
+    if is_needed:
+        _check_there(path, target, path.parent / name)
+    return name
+
+
+def _no_name(path: Path, shown: str) -> SettingsError:
+    return in_toml(
+        path, "no file can have such a name", found=shown,
+        needed="a path inside the folder of campaign.toml, links followed",
+    )  # fmt: skip
+
+
+def _check_there(path: Path, target: Path, shown: Path) -> None:
+    try:
+        mode = target.stat().st_mode
+    except FileNotFoundError as error:
+        raise LogError(shown, "the file is not there", needed=f"as {path} says") from error
+    except OSError as error:  # a folder that is closed to this user, a name that is too long
+        raise LogError(
+            shown, "the file cannot be read", found=error.strerror or str(error),
+            needed="a file that this user may read",
+        ) from error  # fmt: skip
+    check_regular(shown, mode)
+
+
+# what the parser takes minutes or gigabytes for, and no setting has
+_DEEP = re.compile(r"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){40}""")
+
+_MOST_LINES = 500_000
+
+_Model = TypeVar("_Model", bound=BaseModel)
+
+
+def read_toml(
+    path: Path,
+    model: type[_Model],
+    *,
+    what: str,
+    needed: str,
+    keys: str,
+    text: str | None = None,
+    hint: Callable[[Path], str | None] = lambda path: None,
+) -> _Model:
+    """Read and validate.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    model : type of BaseModel
+        What it has to be.
+    what, needed, keys : str
+        For the messages: ``the campaign``; what would do where there is no file; where the
+        keys are listed.
+    text : str, optional
+        What the file is to hold; it is read where left out.
+    hint : callable
+        What to do about a file that is not TOML.
+
+    Returns
+    -------
+    file : BaseModel
+        An instance of the model.
+
+    Raises
+    ------
+    SettingsError
+        If the file cannot be read, a value is still ``?``, or a key or value cannot be used:
+        up to ten places, one a line.
+    """
+    try:
+        table = _tables(read_small_text(path) if text is None else text)
+    except LogError as error:
+        raise in_toml(path, error.problem, found=error.found, needed=error.needed) from error
+    except OSError as error:
+        raise in_toml(
+            path, f"{what} cannot be read", found=error.strerror or str(error), needed=needed
+        ) from error
+    except (ValueError, RecursionError) as error:  # a number of too many digits is no TOML error
+        raise in_toml(path, f"{what} is not TOML", found=str(error), hint=hint(path)) from error
+    places = open_questions(path.parent, table)
+    if places:
+        count = f"{len(places)} values are" if len(places) > 1 else "1 value is"
+        raise in_toml(path, listed(f"{count} still '?', first {places[0]}", places))
+    try:
+        return model.model_validate(table)
+    except ValidationError as error:
+        faults = faults_of(error, table)
+        count = f"{len(faults)} settings" if len(faults) > 1 else "1 setting"
+        headline = f"{count} cannot be used, first '{faults[0].place}' ({keys})"
+        raise in_toml(path, listed(headline, faults)) from error
+
+
+def _tables(text: str) -> dict[str, Any]:
+    """What TOML says; `ValueError` where it is none, or more than anybody writes."""
+    if text.count("\n") > _MOST_LINES:
+        raise ValueError(f"more than {_MOST_LINES:,} lines")
+    if deep := _DEEP.search(text):
+        line = text.count("\n", 0, deep.start()) + 1
+        raise ValueError(f"a key of more than 40 parts (at line {line})")
+    return tomllib.loads(text)
+
+
+Number = str | Annotated[float, Strict()]
+
+"""A number of TOML or text with a unit; true and false are neither."""
+
+_GREATEST = 1e15
+
+
+class TableReader:
+    """Values of one table; an error names the file and the key.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    place : str
+        Of the table in it.
+    """
+
+    def __init__(self, path: Path, place: str) -> None:
+        self.path, self.place = path, place
+
+    def value(self, key: str, text: Number, dimension: Dimension) -> float:
+        """Value in SI of what stands under a key."""
+        try:
+            value = parse_quantity(text, dimension)
+            if not abs(value) < _GREATEST:
+                raise SettingsError(
+                    "a number is beyond anything physical", found=str(text), needed="a finite one"
+                )
+            return value
+        except SettingsError as error:
+            raise self.fault(f"{key}: {error.problem}", error) from error
+
+    def optional(self, key: str, text: Number | None, dimension: Dimension) -> float | None:
+        """Value in SI, None where nothing stands there."""
+        return None if text is None else self.value(key, text, dimension)
+
+    def fault(self, problem: str, error: SettingsError) -> SettingsError:
+        """The same error with file and key in front."""
+        return in_toml(
+            self.path, f"{self.place}.{problem}", found=error.found, needed=error.needed,
+            hint=error.hint,
+        )  # fmt: skip

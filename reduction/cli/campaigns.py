@@ -1,0 +1,523 @@
+"""The commands check, run, report, init and sniff."""
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from functools import partial
+from pathlib import Path
+from typing import Any, cast
+
+from rich.markup import escape
+from rich.table import Table
+
+from reduction.archive.atomic_write import whole_file
+from reduction.archive.open import Opener, read_once, reading
+from reduction.batch.campaign_status import PartStatus, TestStatus
+from reduction.batch.experiment_product import experiments_found
+from reduction.batch.other_products import results_found
+from reduction.batch.requested_products import check_campaign as check_tests
+from reduction.batch.run_campaign import run_campaign as run_tests
+from reduction.campaign.plan import Campaign
+from reduction.cli.output import CommandOutput, processed_folders
+from reduction.cli.progress import campaign_progress, chosen_workers
+from reduction.pages.design_values import PAGE_NAME, write_design_page
+from reduction.quantities.units import UnitSystem, display_unit
+from reduction.readers.sniff import sniff_layout
+from reduction.readers.starter_campaign import starter_campaign
+from reduction.record.errors import ArchiveError, SettingsError
+from reduction.record.plain_text import toml_comment
+from reduction.report.campaign_page import write_report
+from reduction.report.client_report import CLIENT_PAGE_NAME
+from reduction.stages.strain.strain_model import StrainModel
+
+
+def print_layout(file: Path, output: CommandOutput) -> None:
+    """Print a proposed layout in TOML, and what in it is a guess."""
+    sniffed = sniff_layout(file)
+    output.say(sniffed.toml, is_verbatim=True)
+    for remark in sniffed.remarks:
+        output.say(f"# {toml_comment(remark)}", is_verbatim=True)
+    output.say("# `reduction init FOLDER` writes it into a campaign.toml beside the logs")
+    output.answer({"layout": sniffed.toml, "remarks": list(sniffed.remarks)})
+
+
+def start_campaign(folder: Path, output: CommandOutput) -> None:
+    """Write campaign.toml and tests.csv into a folder of logs; never over an existing file."""
+    if not folder.is_dir():
+        raise SettingsError(f"{folder}: is not a folder", needed="a folder of logs")
+    texts = starter_campaign(folder)
+    standing = sorted(name for name in texts if (folder / name).exists())
+    if standing:
+        raise SettingsError(
+            f"{folder}: a campaign is there already",
+            found=", ".join(standing),
+            needed="a folder without these files",
+            hint="Move them away first; nothing is written over.",
+        )
+    for name, text in texts.items():
+        with (folder / name).open("x", encoding="utf-8", newline="") as file:
+            file.write(text)
+        output.say(f"wrote {folder / name}")
+    output.say(f"next: replace every ? in them, then: reduction check {folder / 'campaign.toml'}")
+    output.answer({"written": [str(folder / name) for name in texts]})
+
+
+_NAMES = (
+    "chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome",
+    "microsoft-edge", "microsoft-edge-stable", "msedge",
+)  # fmt: skip
+
+# where installers put a browser that is not on the path
+_PLACES = (
+    "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
+    "/Applications/Chromium.app/Contents/MacOS/Chromium",
+    "/Applications/Microsoft Edge.app/Contents/MacOS/Microsoft Edge",
+    r"C:\Program Files\Google\Chrome\Application\chrome.exe",
+    r"C:\Program Files (x86)\Microsoft\Edge\Application\msedge.exe",
+)
+
+# the page is all that it may read: no network, no profile, nothing of what a browser does by itself
+_ALONE = (
+    "--headless", "--disable-gpu", "--no-first-run", "--disable-background-networking",
+    "--disable-component-update", "--disable-default-apps", "--disable-extensions",
+    "--disable-sync", "--proxy-server=127.0.0.1:9", "--proxy-bypass-list=<-loopback>",
+    "--host-resolver-rules=MAP * ~NOTFOUND",
+    "--no-pdf-header-footer",
+)  # fmt: skip
+
+_LONGEST = 180.0
+
+_BY_HAND = "Open the page in any browser and print it to PDF, without headers and footers."
+
+
+def find_browser() -> str:
+    """Return the program that prints: ``BROWSER_PROGRAM``, or the first browser that is there.
+
+    Raises
+    ------
+    SettingsError
+        If there is none.
+    """
+    asked = os.environ.get("BROWSER_PROGRAM")
+    if asked:
+        found = shutil.which(asked)
+        if found is None:
+            raise SettingsError(
+                "BROWSER_PROGRAM is no program", found=repr(asked),
+                needed="Chromium, Chrome or Edge", hint=_BY_HAND,
+            )  # fmt: skip
+        return found
+    candidates = (shutil.which(name) for name in (*_NAMES, *_PLACES))
+    program = next(filter(None, candidates), None)
+    if program is None:
+        raise SettingsError(
+            "there is no browser that could print the report",
+            found="neither Chromium nor Chrome nor Edge",
+            needed="one of them on the path, or its path in BROWSER_PROGRAM",
+            hint=_BY_HAND,
+        )
+    return program
+
+
+def print_page(page: Path, pdf: Path, *, browser: str) -> None:
+    """Print a page to PDF; the file appears whole or not at all.
+
+    Parameters
+    ----------
+    page : pathlib.Path
+        HTML with its paper and its margins in it.
+    pdf : pathlib.Path
+        The file.
+    browser : str
+        Program, as `find_browser` found it.
+
+    Raises
+    ------
+    ArchiveError
+        If the browser fails, or takes longer than three minutes.
+    """
+    with tempfile.TemporaryDirectory(prefix="reduction-print-") as profile, whole_file(pdf) as part:
+        # a browser that is run by root refuses its own sandbox
+        is_root = sys.platform != "win32" and os.geteuid() == 0
+        printed = Path(profile) / "printed.pdf"
+        command = [
+            browser, *_ALONE, *(["--no-sandbox"] if is_root else []),
+            f"--user-data-dir={Path(profile) / 'profile'}", f"--print-to-pdf={printed}",
+            page.absolute().as_uri(),
+        ]  # fmt: skip
+        said = _run(command, browser)
+        if not (printed.is_file() and printed.read_bytes()[:5] == b"%PDF-"):
+            raise ArchiveError(
+                f"{pdf} was not printed", found=f"{browser}: {said or 'no word of why'}",
+                needed="a browser that prints without a window", hint=_BY_HAND,
+            )  # fmt: skip
+        shutil.copyfile(printed, part)
+
+
+def _run(command: list[str], browser: str) -> str:
+    """Run the browser; return the last thing that it said."""
+    try:
+        done = subprocess.run(  # noqa: S603  # a list, no shell; the page is one of ours
+            command, capture_output=True, timeout=_LONGEST, check=False
+        )
+    except subprocess.TimeoutExpired as error:
+        raise ArchiveError(
+            "the browser did not finish the report", found=f"{browser}, ended after {_LONGEST:g} s",
+            hint=_BY_HAND,
+        ) from error  # fmt: skip
+    except OSError as error:
+        raise ArchiveError(
+            "the browser cannot be started", found=f"{browser}: {error.strerror or error}",
+            hint=_BY_HAND,
+        ) from error  # fmt: skip
+    lines = done.stderr.decode("utf-8", "replace").strip().splitlines()
+    return lines[-1] if lines else ""
+
+
+def address_of_design_page(processed: Path, reports: Path, output: CommandOutput) -> str:
+    """Address of the design-value page from the folder of a report; empty where none is written."""
+    return "" if _is_copy(processed, reports, output) else f"../{PAGE_NAME}"
+
+
+def refresh_design_page(
+    processed: Path,
+    reports: Path,
+    output: CommandOutput,
+    *,
+    made: str = "",
+    opener: Opener = reading,
+) -> str | None:
+    """Write the design-value page of a folder of products again, and say where it is.
+
+    Parameters
+    ----------
+    processed : pathlib.Path
+        Folder in which campaigns have theirs.
+    reports : pathlib.Path
+        Folder of the page.
+    output : CommandOutput
+        Knows which folders are copies of what is on the net.
+    made : str
+        Campaign that was just reduced: where an archive of it cannot be read the page is left as
+        it was. One of others is left out, which is said here and on the page.
+    opener : Opener
+        How archives are opened.
+
+    Returns
+    -------
+    path : str or None
+        None where one of the folders is a copy: it holds one campaign, and its page would take
+        the place of one of many.
+
+    Raises
+    ------
+    ArchiveError
+        If the page cannot be written, or would lack what was just made.
+    """
+    if _is_copy(processed, reports, output):
+        return None
+    left_out: dict[Path, str] = {}
+
+    def unreadable(archive: Path, why: str) -> None:
+        if archive.parent.name == made:
+            raise ArchiveError(
+                f"{archive} cannot be read, and the page of design values is left as it was",
+                found=why.removesuffix("."),
+                hint="Check the disk, and run again.",
+            )
+        left_out[archive] = why
+
+    path = str(write_design_page(processed, reports, unreadable=unreadable, opener=opener))
+    for archive, why in left_out.items():
+        output.error(f"{archive} is not on the page of design values: {why}")
+    output.say(f"design values: {path}")
+    return path
+
+
+def _is_copy(processed: Path, reports: Path, output: CommandOutput) -> bool:
+    return any(str(folder) in output.names for folder in (processed, reports))
+
+
+def _status_table(tests: Sequence[TestStatus]) -> Table:
+    rows = []
+    # on one screen the errors stand right below the table
+    is_below = sys.stdout.isatty() and sys.stderr.isatty()
+    for test in tests:
+        message = escape(test.message)  # text from files of strangers: no markup is read in it
+        if is_below and test.exit_status:
+            message = "see below"
+        rate = test.found.get("rate", {}).get("value")
+        rows.append(
+            {
+                "test": test.test,
+                "status": "checked" if test.status == "no_work" else test.status,
+                "rows": str(test.n_rows),
+                "rate [Hz]": "" if rate is None else f"{rate:.4g}",
+                "gaps": str(test.found.get("gaps", "")),
+                "cycles": str(test.n_cycles),
+                "seconds": f"{test.seconds:.1f}" if test.worker else "",
+                "worker": test.worker,
+                "message": message,
+            }
+        )
+    table = Table(box=None, pad_edge=False)
+    # weights hung by hand have no rate, and of a log that was reduced a run keeps none
+    shown = [name for name in rows[0] if any(row[name] for row in rows)] if rows else []
+    for name in shown:
+        is_count = name not in ("test", "status", "worker", "message")
+        table.add_column(escape(name), justify="right" if is_count else "left")
+    for row in rows:
+        table.add_row(*(row[name] for name in shown))
+    return table
+
+
+def _report_failures(
+    output: CommandOutput, tests: Sequence[TestStatus], parts: Sequence[PartStatus] = ()
+) -> None:
+    ended = [(test.exit_status, test.message) for test in tests]
+    ended += [(one.exit_status, one.message) for one in parts]
+    for exit_status, message in ended:
+        if exit_status:
+            output.error(message)
+            output.raise_status(exit_status)
+
+
+def _part_table(kind: str, parts: Sequence[PartStatus]) -> Table:
+    table = Table(box=None, pad_edge=False)
+    for heading in (kind, "status", "message"):
+        table.add_column(heading)
+    for one in parts:
+        table.add_row(one.id, one.status, escape(one.message))
+    return table
+
+
+def _model_lines(
+    models: dict[tuple[str, str], StrainModel], tests: Sequence[TestStatus], units: UnitSystem
+) -> Table:
+    table = Table(box=None, pad_edge=False)
+    length, factor = display_unit("m", units)
+    for heading in ("test", "specimen", "strain method", "marks", f"marked range [{length}]"):
+        table.add_column(escape(heading))
+    shown = {test.test for test in tests}
+    for (test, specimen), model in models.items():
+        if test in shown:
+            low, high = factor * model.position_low, factor * model.position_high
+            marked = "-" if math.isnan(low) else f"{low:.3f} to {high:.3f}"
+            table.add_row(test, specimen, model.method, model.marks_from, marked)
+    return table
+
+
+def _say_results(output: CommandOutput, results: dict[str, Any] | None) -> None:
+    """How many outcomes without a log there are, and what each is."""
+    if results is None:
+        return
+    output.say(f"{results['file']}: {results['outcomes']} outcomes")
+    for quantity, uses in results["quantities"].items():
+        listed = [
+            f"{count} {use.replace('_', ' ')}{'' if count == 1 or use == 'excluded' else 's'}"
+            for use, count in uses.items()
+            if count
+        ]
+        output.say(f"  {quantity}: {', '.join(listed)}")
+
+
+def _say_experiments(
+    output: CommandOutput, experiments: list[dict[str, Any]], units: UnitSystem
+) -> None:
+    """Runs, slow pulls and what would go slack, before anything is run."""
+    force, factor = display_unit("N", units)
+    for one in experiments:
+        output.say(
+            f"experiment {one['id']}: {one['kind']} of {', '.join(one['factors'])}; "
+            f"{len(one['runs_found'])} of {len(one['runs'])} runs found"
+        )
+        if one["runs_failed"]:
+            output.say(f"  failed: {', '.join(one['runs_failed'])}")
+        for pull in one["quasi_static"]:
+            states = {True: "", False: ", which failed", None: ", which was not asked for"}
+            said = states[pull["found"]]
+            output.say(f"  slow pull of {pull['specimen']}: {pull['test']}{said}")
+        for slack in one["slack_runs"]:
+            least = factor * slack["planned_minimum_tension"]["value"]
+            output.say(
+                f"  {slack['run']} {slack['specimen']}: planned minimum tension {least:.4g} "
+                f"{force}: the line goes slack in every cycle"
+            )
+        for note in one["notes"]:
+            output.say(f"  {note}")
+
+
+def check_campaign(campaign: Campaign, *, tests: tuple[str, ...], output: CommandOutput) -> None:
+    """Read and validate everything, print what was found, write nothing."""
+    units = cast("UnitSystem", output.units)
+    with campaign_progress(output) as progress:
+        statuses, models = check_tests(campaign, tests=tests, progress=progress)
+    if statuses or not (campaign.outcomes or campaign.hoses):
+        output.show(_status_table(statuses))
+    for test in statuses:
+        for channel, masks in test.found.get("flags", {}).items():
+            listed = ", ".join(f"{name} {count}" for name, count in masks.items())
+            output.say(f"  {test.test}: {channel}: samples flagged: {listed}")
+        for note in test.found.get("notes", ()):
+            output.say(f"  {test.test}: {note}")
+    lines = _model_lines(models, statuses, units)
+    if lines.row_count:  # weights hung by hand, and logs that failed, have no strain model
+        output.show(lines)
+    results = results_found(campaign)
+    _say_results(output, results)
+    experiments = experiments_found(campaign, statuses)
+    _say_experiments(output, experiments, units)
+    for comparison in campaign.comparisons.values():
+        output.say(
+            f"comparison {comparison.name}: {comparison.measured} of {comparison.specimen} "
+            f"against hose {comparison.predicted}"
+        )
+    output.answer(
+        {
+            "campaign": campaign.id,
+            "tests": [test.document() for test in statuses],
+            "experiments": experiments,
+            "hoses": list(campaign.hoses),
+            "comparisons": [asdict(one) for one in campaign.comparisons.values()],
+            "results": results,
+        }
+    )
+    _report_failures(output, statuses)
+
+
+def run_campaign(
+    campaign: Campaign,
+    *,
+    processed: Path,
+    reports: Path,
+    tests: tuple[str, ...],
+    force: bool,
+    jobs: int | None,
+    scheduler: str | None,
+    output: CommandOutput,
+) -> None:
+    """Reduce a campaign and say what became of each test."""
+    opener = read_once()
+    with (
+        chosen_workers(jobs, scheduler) as workers,
+        campaign_progress(output) as progress,
+    ):
+        if scheduler is not None:
+            # the workers have working folders of their own
+            campaign = replace(campaign, path=campaign.path.absolute())
+            processed = processed.absolute()
+        result = run_tests(
+            campaign,
+            processed=processed,
+            reports=reports,
+            clock=time.perf_counter,
+            tests=tests,
+            force=force,
+            # paths, jobs and choices of tests are left out, so that equal inputs give equal bytes
+            command="reduction run campaign.toml",
+            units=cast("UnitSystem", output.units),
+            values_page=address_of_design_page(processed, reports, output),
+            workers=workers,
+            progress=progress,
+            opener=opener,
+        )
+    client = None if result.report is None else _client_report(result.report)
+    if result.tests or not (campaign.outcomes or campaign.hoses):
+        output.show(_status_table(result.tests))
+    _say_results(output, results_found(campaign))
+    for kind, parts in (
+        ("experiment", result.experiments), ("hose", result.hoses),
+        ("comparison", result.comparisons),
+    ):  # fmt: skip
+        if parts:
+            output.show(_part_table(kind, parts))
+    for name in result.stray:
+        output.error(f"{result.processed / name}: belongs to no test of this campaign; left alone")
+    output.say(f"products: {result.processed}")
+    if result.tables:
+        number, folder = len(result.tables) - 1, result.tables[0].parent
+        output.say(f"tables:   {folder}: {number} tables, and columns.csv, which explains them")
+    document: dict[str, Any] = {
+        "campaign": campaign.id,
+        "tests": [test.document() for test in result.tests],
+        "experiments": [asdict(one) for one in result.experiments],
+        "hoses": [asdict(one) for one in result.hoses],
+        "comparisons": [asdict(one) for one in result.comparisons],
+        "results": results_found(campaign),
+        "processed": str(result.processed),
+        "tables": [str(path) for path in result.tables],
+        "report": None if result.report is None else str(result.report),
+        "client_report": None if client is None else str(client),
+    }
+    if result.report is None:
+        output.say("report:   none; nothing was made that could be shown")
+    else:
+        output.say(f"report:   {result.report}")
+    _say_client_report(client, output)
+    document["design_values"] = refresh_design_page(
+        processed, reports, output, made=campaign.id, opener=opener
+    )
+    output.answer(document)
+    _report_failures(output, result.tests, result.parts)
+
+
+def report_again(
+    processed: Path, *, reports: Path, is_printed: bool = False, output: CommandOutput
+) -> None:
+    """Make the reports of one campaign, or of all below a folder, from archives alone."""
+    folders = processed_folders(processed)
+    written: dict[str, list[str]] = {"reports": [], "client_reports": [], "pdfs": []}
+    for folder in folders:
+        page = write_report(
+            folder, reports / folder.resolve().name, units=cast("UnitSystem", output.units),
+            values_page=address_of_design_page(processed, reports, output),
+            unreadable=partial(_say_unreadable, output, folder),
+        )  # fmt: skip
+        output.say(f"report: {page}")
+        written["reports"].append(str(page))
+        client = _client_report(page)
+        _say_client_report(client, output)
+        if client is not None:
+            written["client_reports"].append(str(client))
+            if is_printed:
+                written["pdfs"].append(str(_printed(client, output)))
+    if is_printed and not written["client_reports"]:
+        raise SettingsError(
+            "there is no report to a client to print", found=f"no report.json in {processed}",
+            needed="[report] in campaign.toml",
+            hint="Add it and run the campaign again: what did not change is not reduced again.",
+        )  # fmt: skip
+    root = processed.resolve().parent if folders == [processed] else processed
+    output.answer(written | {"design_values": refresh_design_page(root, reports, output)})
+
+
+def _say_unreadable(output: CommandOutput, folder: Path, name: str, why: str) -> None:
+    output.error(f"{folder / name} is not in the report: {why}")
+    output.raise_status(ArchiveError.exit_status)
+
+
+def _client_report(page: Path) -> Path | None:
+    """Report to the client beside the page of a campaign, where there is one."""
+    client = page.with_name(CLIENT_PAGE_NAME)
+    return client if client.exists() else None
+
+
+def _say_client_report(client: Path | None, output: CommandOutput) -> None:
+    if client is not None:
+        output.say(f"report to the client: {client}")
+
+
+def _printed(client: Path, output: CommandOutput) -> Path:
+
+    pdf = client.with_suffix(".pdf")
+    print_page(client, pdf, browser=find_browser())
+    output.say(f"printed: {pdf}")
+    return pdf

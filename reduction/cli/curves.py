@@ -1,0 +1,615 @@
+"""The commands composite and assembly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import xarray as xr
+
+from reduction.archive.open import archives_of_tests, failing_reads, open_archive
+from reduction.campaign.assembly_spec import AssemblyCase, load_assembly_case
+from reduction.campaign.toml_file import in_toml
+from reduction.cli.output import CommandOutput, plain, short, table_of
+from reduction.lines.archive_pieces import source_of_tests, specimens_of
+from reduction.lines.assembly import DeployedLine, WorkingState, deploy, stated_model
+from reduction.lines.composite import CompositeCurve, PieceSource, compose, used_of
+from reduction.lines.curve_pieces import CompositeRule, PieceBranch, PieceKind
+from reduction.lines.deck_formats import export_table
+from reduction.lines.export_sources import assembly_table, composite_table, ranges_of
+from reduction.lines.published_source import published_piece_sources, published_sources
+from reduction.quantities.units import UnitSystem, display_unit
+from reduction.record.contributions import Component, coverage_factor
+from reduction.record.errors import DataError, ReductionError, SettingsError
+from reduction.record.measurement import Floats
+from reduction.report.single_pages import write_assembly_page, write_composite_page
+from reduction.stages.strain.strain_model import StrainModel
+
+
+def is_of_pieces(sources: Sequence[str]) -> bool:
+    """Whether SOURCE names several tests: archives, a folder, a published tether."""
+    return (
+        len(sources) > 1
+        or any(Path(one).is_dir() for one in sources)
+        or any(one in published_piece_sources() for one in sources)
+    )
+
+
+def rule_of(precedence: str | None) -> CompositeRule:
+    """The rule, from kinds parted by commas.
+
+    Raises
+    ------
+    SettingsError
+        If one of them is no kind.
+    """
+    if precedence is None:
+        return CompositeRule()
+    kinds = tuple(cast("PieceKind", part.strip()) for part in precedence.split(","))
+    try:
+        return CompositeRule(precedence=kinds)
+    except SettingsError as error:
+        raise SettingsError(
+            f"--precedence: {error.problem}", found=error.found, needed=error.needed
+        ) from error
+
+
+def piece_source(
+    sources: Sequence[str], *, specimen: str | None = None, branch: PieceBranch | None = None
+) -> PieceSource:
+    """Pieces of what SOURCE names.
+
+    Parameters
+    ----------
+    sources : sequence of str
+        A published tether by its name without the test, or archives and folders of processed
+        campaigns.
+    specimen : str, optional
+        Which one; needed where the archives hold several.
+    branch : {"mean", "ascending", "descending"}, optional
+        "mean" of archives where it is not said; a published tether has its ascending one.
+
+    Returns
+    -------
+    source : PieceSource
+        With pieces, splices and notes.
+
+    Raises
+    ------
+    SettingsError
+        If nothing has that name, or the specimen is not there or not said.
+    ArchiveError
+        If an archive cannot be read.
+    DataError
+        If no test gives a piece.
+    """
+    published = published_piece_sources()
+    if any(one in published for one in sources):
+        return _published(sources, specimen, branch)
+    paths = [path for one in sources for path in _archives(one)]
+    named = {Path(one) for one in sources}
+    with failing_reads(" or ".join(map(str, paths))), ExitStack() as opened:
+        datasets = [opened.enter_context(open_archive(path)) for path in paths]
+        name = _specimen(datasets, sources, specimen)
+        for path, one in zip(paths, datasets, strict=True):
+            # of a folder some are of other specimens; what was named was meant
+            if path in named and name not in specimens_of(one):
+                raise SettingsError(
+                    f"{path} has no specimen '{name}'",
+                    found=", ".join(specimens_of(one)) or "no archive of a test",
+                    needed="tests of one specimen",
+                )
+        return source_of_tests(datasets, name, branch=branch or "mean")
+
+
+def _published(
+    sources: Sequence[str], specimen: str | None, branch: PieceBranch | None
+) -> PieceSource:
+    if len(sources) > 1:
+        raise SettingsError(
+            "a published tether stands alone", found=", ".join(sources), needed="one SOURCE"
+        )
+    found = published_piece_sources()[sources[0]]
+    if specimen is not None:
+        raise SettingsError(
+            f"{found.name} is one tether", found=f"specimen {specimen}", needed="no specimen"
+        )
+    if branch not in (None, found.branch):
+        raise SettingsError(
+            f"{found.name} has its {found.branch} branch alone: no other is tabulated",
+            found=str(branch),
+            needed=found.branch,
+        )
+    return found
+
+
+def _archives(source: str) -> list[Path]:
+    path = Path(source)
+    if path.is_file():
+        return [path]
+    if path.is_dir():
+        found = archives_of_tests(path)
+        if found:
+            return found
+        raise SettingsError(
+            f"{path} holds no archive of a test", needed="processed/CAMPAIGN after `reduction run`"
+        )
+    tethers = published_piece_sources()
+    if source in published_sources():
+        near = [name for name in tethers if source.startswith(f"{name}-")]
+        raise SettingsError(
+            f"{source} is one published curve, no pieces of one",
+            needed=", ".join(near or tethers),
+            hint="`reduction export` and `reduction lookup` take it as it is.",
+        )
+    raise SettingsError(
+        f"there is nothing called '{source}'",
+        needed="archives, a folder of a processed campaign, or one of " + ", ".join(tethers),
+    )
+
+
+def _specimen(datasets: Sequence[xr.Dataset], sources: Sequence[str], specimen: str | None) -> str:
+    names = list(dict.fromkeys(name for one in datasets for name in specimens_of(one)))
+    where = ", ".join(sources)
+    if not names:
+        raise SettingsError(f"{where}: no archive of a test", needed="archives of reduced tests")
+    if specimen is None and len(names) > 1:
+        raise SettingsError(
+            f"{where}: several specimens", found=", ".join(names), needed="one specimen",
+            hint="Say which with --specimen, or in the specification.",
+        )  # fmt: skip
+    if specimen is not None and specimen not in names:
+        raise SettingsError(f"{where}: there is no specimen '{specimen}'", needed=", ".join(names))
+    return specimen or names[0]
+
+
+_ROWS = 24
+
+_SHOWN = 1e-3
+
+"""Share of the tension above which a row says that it was moved."""
+
+PAGE = "page"
+
+_FORMATS = {
+    ".csv": "csv", ".json": "json", ".nc": "netcdf", ".md": "markdown", ".tex": "latex",
+    ".html": PAGE,
+}  # fmt: skip
+
+
+def table_format(path: Path) -> str:
+    """Format of a table, or `PAGE`, by the name of its file.
+
+    Raises
+    ------
+    SettingsError
+        If the name ends otherwise.
+    """
+    if path.suffix.lower() not in _FORMATS:
+        raise SettingsError(
+            "the name of the file says its format", found=path.name,
+            needed="a name that ends in " + ", ".join(_FORMATS),
+        )  # fmt: skip
+    return _FORMATS[path.suffix.lower()]
+
+
+def compose_tests(
+    sources: Sequence[str],
+    *,
+    specimen: str | None,
+    branch: PieceBranch | None,
+    precedence: str | None,
+    out: Path | None,
+    output: CommandOutput,
+) -> None:
+    """Print the composite curve of SOURCE; with ``out``, write every node of it."""
+    form = None if out is None else table_format(out)
+    rule = rule_of(precedence)
+    source = piece_source(sources, specimen=specimen, branch=branch)
+    curve = compose(source, rule)
+    source = used_of(source, curve)
+    units = cast("UnitSystem", output.units)
+    _show(source, curve, output, units)
+    if out is not None and form is not None:
+        if form == PAGE:
+            write_composite_page(source, curve, out, units=units)
+        else:
+            export_table(composite_table(source, curve), form, out, units=units)
+        output.say(f"written: {out}")
+    output.answer(_document(source, curve, rule) | {"out": None if out is None else str(out)})
+
+
+def _show(
+    source: PieceSource, curve: CompositeCurve, output: CommandOutput, system: UnitSystem
+) -> None:
+    unit, factor = display_unit("N", system)
+    made = ", SYNTHETIC: nothing was tested" if source.is_synthetic else ""
+    doubt = f"; DOUBTFUL: {curve.doubt}" if curve.doubt else ""
+    output.say(f"{composite_table(source, curve).title}{made}{doubt}")
+    table = table_of(
+        "strain [%]", f"tension [{unit}]", f"standard uncertainty [{unit}]",
+        f"of it shared [{unit}]", "piece", "remark",
+        texts=0,
+    )  # fmt: skip
+    ends = np.flatnonzero(np.diff(curve.is_gap)) + 1
+    some = np.linspace(0, curve.strain.size - 1, _ROWS).round().astype(int)
+    is_moved = np.abs(np.nan_to_num(curve.monotone_change)) > _SHOWN * curve.tension
+    shared = factor * curve.shared_standard_uncertainty
+    for place in np.union1d(ends, some):
+        flags = [
+            word
+            for word, of in (
+                ("gap", curve.is_gap), ("join", curve.is_join),
+            )
+            if place and of[place - 1]
+        ]  # fmt: skip
+        change = factor * float(curve.monotone_change[place])
+        if is_moved[place]:
+            flags.append(f"moved {change:+.3g} by the rule of rising")
+        table.add_row(
+            short(100 * float(curve.strain[place]), 4),
+            short(factor * float(curve.tension[place])),
+            short(factor * float(curve.standard_uncertainty[place]), 3),
+            short(float(shared[place]), 3),
+            curve.piece_words[curve.piece[place]] if curve.piece[place] >= 0 else "-",
+            ", ".join(flags),
+        )
+    output.show(table)
+    for text in curve.notes:
+        output.say(f"note: {text}")
+    for text in source.notes:
+        output.say(f"note: {text}")
+    for text in source.sources:
+        output.say(f"source: {text}")
+
+
+def contributions(component: Sequence[Component], rows: Floats) -> list[dict[str, Any]]:
+    """What each shared error adds to a curve, signed, as ``--json`` says it."""
+    return [
+        {"source": one.source, "of": one.of, "number": one.number, "contribution": plain(row)}
+        for one, row in zip(component, rows, strict=True)
+    ]
+
+
+def _document(source: PieceSource, curve: CompositeCurve, rule: CompositeRule) -> dict[str, Any]:
+    """What ``--json`` says, in SI."""
+    return {
+        "name": source.name,
+        "branch": source.branch,
+        "rule": {
+            "precedence": list(rule.precedence),
+            "taper": rule.taper,
+            "least_slope": rule.least_slope,
+        },
+        "strain": plain(curve.strain),
+        "tension": plain(curve.tension),
+        "tension_standard_uncertainty": plain(curve.standard_uncertainty),
+        "tension_random_standard_uncertainty": plain(curve.random_standard_uncertainty),
+        "tension_shared_standard_uncertainty": plain(curve.shared_standard_uncertainty),
+        "tension_uncertainty_contributions": contributions(curve.component, curve.contribution),
+        "piece": [curve.piece_words[one] if one >= 0 else None for one in curve.piece],
+        "units": {
+            "strain": "1", "tension": "N", "tension_standard_uncertainty": "N",
+            "tension_random_standard_uncertainty": "N",
+            "tension_shared_standard_uncertainty": "N", "tension_uncertainty_contributions": "N",
+            "joins": "1", "gaps": "1", "moved": "1", "monotone_change": "N",
+            "between_pieces": "1",
+        },
+        "pieces": [
+            {
+                "name": one.name,
+                "kind": one.kind,
+                "branch": one.branch,
+                "strain": [float(one.strain[0]), float(one.strain[-1])],
+                "used": one.kind in rule.precedence,
+            }
+            for one in source.pieces
+        ],
+        "joins": [list(one) for one in ranges_of(curve, curve.is_join)],
+        "gaps": [list(one) for one in ranges_of(curve, curve.is_gap)],
+        "moved": [list(one) for one in ranges_of(curve, curve.is_moved)],
+        "monotone_change": plain(curve.monotone_change),
+        "between_pieces": plain(curve.between_pieces),
+        "doubt": curve.doubt,
+        "sources": list(source.sources),
+        "notes": [*curve.notes, *source.notes],
+        "synthetic": source.is_synthetic,
+    }  # fmt: skip
+
+
+def assembly_document(line: DeployedLine) -> dict[str, Any]:
+    """What ``--json`` says, in SI."""
+    deployed, assembly = line.deployed, line.deployed.assembly
+    return {
+        "name": line.name,
+        "n_tethers": assembly.n_tethers,
+        "free_length": plain(np.array(deployed.free_length)),
+        "slack_length": plain(assembly.slack_length),
+        "total_length": plain(assembly.total_length),
+        "tension": plain(assembly.tension),
+        "tension_standard_uncertainty": plain(assembly.standard_uncertainty),
+        "tension_random_standard_uncertainty": plain(assembly.random_standard_uncertainty),
+        "tension_shared_standard_uncertainty": plain(assembly.shared_standard_uncertainty),
+        "tension_uncertainty_contributions": contributions(
+            assembly.component, assembly.contribution
+        ),
+        "strain": plain(deployed.strain),
+        "apparent_spring_constant": plain(deployed.apparent_spring_constant),
+        "secant_spring_constant": plain(deployed.secant_spring_constant),
+        "tether_length": plain(assembly.tether_length),
+        "tether_tension": plain(assembly.tether_tension),
+        "tether_strain": plain(assembly.tether_strain),
+        "is_tested": plain(assembly.is_tested),
+        "is_join": plain(assembly.is_join),
+        "is_moved": plain(assembly.is_moved),
+        "units": {
+            **dict.fromkeys(
+                ("free_length", "slack_length", "total_length", "tether_length", "peak_length",
+                 "minimum_length"), "m",
+            ),
+            **dict.fromkeys(
+                ("tension", "tension_standard_uncertainty", "tension_random_standard_uncertainty",
+                 "tension_shared_standard_uncertainty", "tension_uncertainty_contributions",
+                 "apparent_spring_constant",
+                 "secant_spring_constant",
+                 "tether_tension", "mean_tension", "peak_tension", "minimum_tension",
+                 "peak_tether_tension", "minimum_tether_tension", "greatest_load", "least_load",
+                 "tension_at_slack"), "N",
+            ),
+            **dict.fromkeys(
+                ("strain", "tether_strain", "load_share", "peak_share", "minimum_share"), "1"
+            ),
+            "stiffness": "N m-1",
+        },
+        "working": [_state_document(state) for state in deployed.working],
+        "sources": [line.splices, *line.source.sources],
+        "notes": [*deployed.notes, *line.curve.notes, *line.source.notes],
+        "synthetic": line.source.is_synthetic,
+    }  # fmt: skip
+
+
+def _state_document(state: WorkingState) -> dict[str, Any]:
+    names = (
+        "mean_tension", "peak_tension", "minimum_tension", "total_length", "peak_length",
+        "minimum_length", "stiffness", "apparent_spring_constant", "tether_tension",
+        "peak_tether_tension", "minimum_tether_tension", "load_share", "peak_share",
+        "minimum_share", "is_tested",
+    )  # fmt: skip
+    sharing = None if state.sharing is None else {
+        name: plain(getattr(state.sharing, name))
+        for name in ("greatest_load", "least_load", "tension_at_slack")
+    }  # fmt: skip
+    return {
+        "given": state.level.quantity,
+        **{name: plain(getattr(state.point, name)) for name in names},
+        "tension_standard_uncertainty": state.standard_uncertainty,
+        "tension_random_standard_uncertainty": state.random_standard_uncertainty,
+        "tension_shared_standard_uncertainty": state.shared_standard_uncertainty,
+        "secant_spring_constant": state.secant_spring_constant,
+        "is_moved": state.is_moved,
+        "tether_strain": plain(state.strain),
+        "sharing": sharing,
+    }
+
+
+_ASSEMBLY_ROWS = 16
+
+_KNOWN = float(coverage_factor(np.inf))
+
+"""Coverage factor of a curve of many tests, whose degrees of freedom are not counted. [1]"""
+
+
+def assemble_spec(path: Path, *, out: Path | None, output: CommandOutput) -> None:
+    """Print curve and work of the assembly of SPEC.toml; with ``out``, write every node."""
+    form = None if out is None else table_format(out)
+    line = deployed_line(path)
+    units = cast("UnitSystem", output.units)
+    _show_assembly(line, output, units)
+    if out is not None and form is not None:
+        if form == PAGE:
+            write_assembly_page(line, out, units=units)
+        else:
+            export_table(assembly_table(line), form, out, units=units)
+        output.say(f"written: {out}")
+    output.answer(assembly_document(line) | {"out": None if out is None else str(out)})
+
+
+def deployed_line(path: Path) -> DeployedLine:
+    """Read SPEC.toml, find its curve and its splices, and deploy it.
+
+    Raises
+    ------
+    SettingsError
+        If a key, a value or a source cannot be used.
+    DataError
+        If the assembly cannot be, or a level of its work is none.
+    ArchiveError
+        If an archive cannot be read.
+    """
+    case = load_assembly_case(path)
+    source = _source(path, case)
+    try:
+        curve = compose(source, case.rule)
+    except DataError as error:
+        raise _at(path, "assembly.curve", error) from error
+    model = _model(path, case, source)
+    stated = case.rated_break_strength
+    strength = stated if np.isfinite(stated) else source.rated_break_strength
+    try:
+        deployed = deploy(
+            curve,
+            model,
+            n_tethers=case.n_tethers,
+            free_lengths=case.free_lengths,
+            parts=case.parts,
+            levels=case.working,
+            tolerance=case.tolerance,
+            rated_break_strength=strength,
+            has_stated_splices=case.splices is not None,
+        )
+    except DataError as error:
+        # a level brings its own place
+        raise _at(path, "assembly", error) from error
+    return DeployedLine(
+        name=case.name,
+        deployed=deployed,
+        source=used_of(source, curve),
+        curve=curve,
+        splices=_splices_told(case, model),
+        parts=case.parts,
+    )
+
+
+def _at(path: Path, place: str, error: ReductionError) -> ReductionError:
+    """The same error with file and key in front."""
+    between = "." if error.problem.startswith("working.") else ": "
+    return type(error)(
+        f"{path}: {place}{between}{error.problem}", found=error.found, needed=error.needed,
+        hint=error.hint,
+    )  # fmt: skip
+
+
+def _source(path: Path, case: AssemblyCase) -> PieceSource:
+    """Pieces of the tethers; archives and folders stand beside the specification."""
+    published = published_piece_sources()
+    words = [word if word in published else str(path.parent / word) for word in case.sources]
+    try:
+        return piece_source(words, specimen=case.specimen, branch=case.branch)
+    except ReductionError as error:
+        raise _at(path, "assembly.curve", error) from error
+
+
+def _model(path: Path, case: AssemblyCase, source: PieceSource) -> StrainModel:
+    """How the length of a tether follows: as stated, else as tested."""
+    if case.splices is None:
+        if source.model is None or source.model.method == "extensometer":
+            raise in_toml(
+                path, f"assembly.splices: the tests of {source.name} do not know the splices",
+                found="no strain method with a length" if source.model is None
+                else "strain of an extensometer",
+                needed="[assembly.splices], with length = \"0 m\" where there are none",
+            )  # fmt: skip
+        return source.model
+    tested = float("nan") if source.model is None else source.model.relaxed_length
+    length = case.free_lengths[0] if case.free_lengths else tested
+    if not np.isfinite(length):
+        raise in_toml(
+            path, f"assembly.free_length: the tests of {source.name} do not know it",
+            needed="free_length, or free_lengths",
+        )  # fmt: skip
+    return stated_model(case.splices, length, name=source.name)
+
+
+def _splices_told(case: AssemblyCase, model: StrainModel) -> str:
+    where = "stated" if case.splices is not None else f"as tested ({model.marks_from})"
+    numbers = ", ".join(
+        f"{name.replace('_', ' ')} {value:.4g}" for name, value in model.coefficients.items()
+    )
+    return f"length of a tether by {model.method}, {where}: {numbers}"
+
+
+def _show_assembly(line: DeployedLine, output: CommandOutput, system: UnitSystem) -> None:
+    deployed, assembly = line.deployed, line.deployed.assembly
+    force, per_newton = display_unit("N", system)
+    length, per_metre = display_unit("m", system)
+    made = ", SYNTHETIC: nothing was tested" if line.source.is_synthetic else ""
+    output.say(f"assembly {line.name}: {line.words}{made}")
+    slack = assembly.slack_length
+    output.say(
+        f"slack below {per_metre * float(assembly.total_length[0]):.5g} {length}"
+        + (
+            f"; the longest tether below {per_metre * float(slack.max()):.5g} {length}"
+            if slack.max() > slack.min()
+            else ""
+        )
+    )
+    equal = line.is_equal
+    table = table_of(
+        f"length [{length}]", f"tension [{force}]", f"standard uncertainty [{force}]",
+        f"of it shared [{force}]",
+        f"EA, +- 5 % [{force}]", f"EA, local [{force}]",
+        f"a tether [{force}]" if equal else f"greatest, least [{force}]",
+        "its strain [%]" if equal else "strains [%]", "remark", texts=0,
+    )  # fmt: skip
+    tension = assembly.tension
+    shared = per_newton * assembly.shared_standard_uncertainty
+    rows = np.searchsorted(tension, np.linspace(0.0, tension[-1], _ASSEMBLY_ROWS))
+    for place in np.unique(np.clip(rows, 0, tension.size - 1)):
+        load, strain = assembly.tether_tension[:, place], assembly.tether_strain[:, place]
+        table.add_row(
+            short(per_metre * float(assembly.total_length[place])),
+            short(per_newton * float(tension[place])),
+            short(per_newton * float(assembly.standard_uncertainty[place]), 3),
+            short(float(shared[place]), 3),
+            short(per_newton * float(deployed.secant_spring_constant[place]), 4),
+            short(per_newton * float(deployed.apparent_spring_constant[place]), 4),
+            _pair(per_newton * load, equal=equal),
+            _pair(100 * strain, equal=equal),
+            ", ".join(
+                word
+                for word, flag in (
+                    ("not tested", not assembly.is_tested[place]),
+                    ("join", assembly.is_join[place]),
+                    ("moved: local EA is the rule's", assembly.is_moved[place]),
+                )
+                if flag
+            ),
+        )
+    output.show(table)
+    for number, state in enumerate(deployed.working, start=1):
+        _show_working(number, state, output, system)
+    for text in (*deployed.notes, *line.curve.notes, *line.source.notes):
+        output.say(f"note: {text}")
+    for text in (line.splices, *line.source.sources):
+        output.say(f"source: {text}")
+
+
+def _pair(values: Any, *, equal: bool) -> str:
+    """One number where the tethers are alike, the greatest and the least where they are not."""
+    if equal:
+        return short(float(values[0]), 4)
+    return f"{short(float(values.max()), 4)}, {short(float(values.min()), 4)}"
+
+
+def _show_working(
+    number: int, state: WorkingState, output: CommandOutput, system: UnitSystem
+) -> None:
+    force, per_newton = display_unit("N", system)
+    length, per_metre = display_unit("m", system)
+    point = state.point
+    told = (
+        f"working.{number}: {per_newton * float(point.mean_tension):.4g} {force} "
+        f"+- {per_newton * _KNOWN * state.standard_uncertainty:.3g} (95 %, k = {_KNOWN:.2f}) at "
+        f"{per_metre * float(point.total_length):.5g} {length}, strain of a tether "
+        f"{100 * float(state.strain.max()):.4g} %, EA "
+        f"{per_newton * state.secant_spring_constant:.4g} {force} over "
+    )
+    if not state.level.tension_amplitude:
+        rule = " by the rule of rising, DOUBTFUL" if state.is_moved else ""
+        told += (
+            f"+- 5 % of the length, locally "
+            f"{per_newton * float(point.apparent_spring_constant):.4g} {force}{rule}"
+        )
+    else:
+        told += (
+            "the cycle"
+            f"; cycles {per_newton * float(point.minimum_tension):.4g} to "
+            f"{per_newton * float(point.peak_tension):.4g} {force}, "
+            f"{per_metre * float(point.minimum_length):.5g} to "
+            f"{per_metre * float(point.peak_length):.5g} {length}"
+        )
+    share = float(point.peak_share.max())
+    told += (
+        f"; a tether carries up to {per_newton * float(point.peak_tether_tension.max()):.4g} "
+        f"{force}"
+    ) + (f", {100 * share:.3g} % of its strength" if np.isfinite(share) else "")
+    if state.sharing is not None:
+        told += (
+            f"; by the tolerance of the lengths "
+            f"{per_newton * float(state.sharing.least_load):.4g} to "
+            f"{per_newton * float(state.sharing.greatest_load):.4g} {force} at the mean"
+        )
+    output.say(told + ("" if point.is_tested else "; NOT TESTED there"))

@@ -1,0 +1,367 @@
+"""Output of a command: text, tables, one JSON object, or nothing."""
+
+from __future__ import annotations
+
+import json as json_module
+import math
+import os
+import sys
+import textwrap
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from copy import copy
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+import typer
+from numpy.typing import ArrayLike
+from rich.cells import cell_len
+from rich.console import Console
+from rich.markup import escape
+from rich.measure import Measurement
+from rich.table import Table
+from rich.text import Text
+
+from reduction.archive.open import archives_in
+from reduction.cli.usage import grouped
+from reduction.quantities.digits import fixed_number, places_within, plain_number
+from reduction.quantities.units import UnitSystem, combined_unit, display_unit
+from reduction.readers.remote_files import in_words
+from reduction.record.errors import ArchiveError, ReductionError, SettingsError, refused_by_system
+from reduction.record.plain_text import visible, without_secrets
+
+NOTHING = "-"
+
+"""What stands in an empty cell, so that every line has as many columns."""
+
+
+def plain_table(
+    heads: Sequence[str], columns: Sequence[Sequence[str]], *, is_number: Sequence[bool]
+) -> str:
+    """Return a heading and rows, two spaces or more between the columns.
+
+    Parameters
+    ----------
+    heads : sequence of str
+        One a column; a line end in it counts as a space, as in every cell.
+    columns : sequence of sequence of str
+        Cells, column by column.
+    is_number : sequence of bool
+        Which columns stand flush right.
+
+    Examples
+    --------
+    >>> print(plain_table(["test", "cycles"], [["T-1", "T-10"], ["10", ""]],
+    ...     is_number=[False, True]))
+    test  cycles
+    T-1       10
+    T-10       -
+    """
+    padded = []
+    for head, column, is_right in zip(heads, columns, is_number, strict=True):
+        # nothing inside a cell looks like the space between two
+        cells = [" ".join(cell.split()) or NOTHING for cell in (head, *column)]
+        widths = [len(cell) if cell.isascii() else cell_len(cell) for cell in cells]
+        size = max(widths)
+        spaces = [" " * (size - width) for width in widths]
+        padded.append(
+            [
+                space + cell if is_right else cell + space
+                for cell, space in zip(cells, spaces, strict=True)
+            ]
+        )
+    return "\n".join("  ".join(row).rstrip() for row in zip(*padded, strict=True))
+
+
+INTERRUPTED = 130
+
+_LEAST_WORDS = 20
+
+
+@dataclass
+class CommandOutput:
+    """How one command talks; ``status`` is what it exits with."""
+
+    json: bool = False
+    quiet: bool = False
+    units: str = "si"
+    status: int = 0
+    answered: bool = False
+    names: dict[str, str] = field(default_factory=dict)
+    """Addresses on the net by the paths of their copies, which nothing that is said names."""
+
+    def say(self, text: str, *, is_verbatim: bool = False) -> None:
+        """One line of text on standard output, unless JSON or nothing was asked for.
+
+        At a terminal it is broken between words, but for what is there to be copied as it is.
+        """
+        if self.json or self.quiet:
+            return
+        said = visible(in_words(text, self.names))
+        typer.echo(said if is_verbatim else _between_words(said, sys.stdout))
+
+    @property
+    def is_text(self) -> bool:
+        """Text is said: neither JSON nor nothing was asked for."""
+        return not (self.json or self.quiet)
+
+    def show(self, table: Table) -> None:
+        """A table on standard output, where text is said, with every digit of its numbers.
+
+        Where no terminal is, one line a row; where a terminal has too few columns, row by row.
+        """
+        if not self.is_text:
+            return
+        table = _changed(table, lambda cell, _: visible(in_words(cell, self.names)))
+        if not sys.stdout.isatty():
+            typer.echo(_line_by_line(table))
+            return
+        # for eyes alone: what reads a pipe has no use for a blank in a number
+        table = _changed(table, lambda cell, is_right: grouped(cell) if is_right else cell)
+        console = Console(highlight=False)
+        has_room = _least_width(table, console) <= console.width
+        console.print(table if has_room else _row_by_row(table))
+
+    def answer(self, document: object) -> None:
+        """The JSON object of ``--json``; the only thing on standard output then."""
+        if self.json:
+            # a path in JSON has its backslashes doubled
+            names = {json_module.dumps(path)[1:-1]: name for path, name in self.names.items()}
+            text = json_module.dumps(document, indent=2, allow_nan=False)
+            typer.echo(in_words(text, names))
+            self.answered = True
+
+    def error(self, text: str) -> None:
+        """One error on standard error."""
+        said = visible(without_secrets(in_words(text, self.names)))
+        typer.echo(_between_words(said, sys.stderr), err=True)
+
+    def raise_status(self, status: int) -> None:
+        """Keep the highest status seen."""
+        self.status = max(self.status, status)
+
+
+def _changed(table: Table, change: Callable[[str, bool], str]) -> Table:
+    """A table with other texts: of a cell, and of whether it stands flush right."""
+    said = copy(table)
+    said.columns = [column.copy() for column in table.columns]
+    said.rows = []
+    is_right = [column.justify == "right" for column in table.columns]
+    for row in zip(*(column.cells for column in table.columns), strict=True):
+        pairs = zip(row, is_right, strict=True)
+        said.add_row(*(change(cell, at) if isinstance(cell, str) else cell for cell, at in pairs))
+    return said
+
+
+def _between_words(text: str, stream: TextIO) -> str:
+    """Lines that a terminal would break within a word, broken between words; else as it is.
+
+    A word that is longer than a line, such as an address, stays whole.
+    """
+    if not stream.isatty():
+        return text
+    width = Console(file=stream).width
+    lines = []
+    for line in text.split("\n"):
+        if cell_len(line) <= width:
+            lines.append(line)
+            continue
+        margin = line[: len(line) - len(line.lstrip())] + "  "
+        lines += textwrap.wrap(
+            line, width, subsequent_indent=margin, break_long_words=False, break_on_hyphens=False,
+            replace_whitespace=False,
+        )  # fmt: skip
+    return "\n".join(lines)
+
+
+def _least_width(table: Table, console: Console) -> int:
+    """Columns in which no number is cut, and a column of words has twenty at most."""
+    options = console.options.update(max_width=10_000)
+    total = 0
+    for column in table.columns:
+        sizes = [Measurement.get(console, options, cell) for cell in (column.header, *column.cells)]
+        if column.no_wrap:
+            total += max(size.maximum for size in sizes)
+        else:
+            least = max(_LEAST_WORDS, column.min_width or 0)
+            total += min(least, max(size.maximum for size in sizes))
+    return total + 2 * len(table.columns)
+
+
+def _words(cell: object) -> str:
+    """A cell without its markup, on one line."""
+    return " ".join(Text.from_markup(str(cell), emoji=False).plain.split())
+
+
+def _line_by_line(table: Table) -> str:
+    """A table for a pipe, under its title."""
+    plain = plain_table(
+        [_words(column.header) for column in table.columns],
+        [[_words(cell) for cell in column.cells] for column in table.columns],
+        is_number=[column.justify == "right" for column in table.columns],
+    )
+    return f"{_words(table.title)}\n{plain}" if table.title else plain
+
+
+def _row_by_row(table: Table) -> Table:
+    """A table of a heading and a cell a line, rows parted by an empty line."""
+    found = Table.grid(padding=(0, 2, 0, 0))
+    found.title, found.title_style, found.title_justify = table.title, "bold", "left"
+    heads = [" ".join(str(column.header).split()) for column in table.columns]
+    for place, row in enumerate(zip(*(column.cells for column in table.columns), strict=True)):
+        if place:
+            found.add_row()
+        for head, cell in zip(heads, row, strict=True):
+            found.add_row(head, cell)
+    return found
+
+
+@contextmanager
+def guarded(output: CommandOutput) -> Iterator[CommandOutput]:
+    """Run a command body; turn every ending into a message and an exit status."""
+    try:
+        if output.units not in ("si", "us"):
+            raise SettingsError("--units is not known", found=repr(output.units), needed="si or us")
+        yield output
+    except ReductionError as error:
+        _say_failure(output, error)
+    except KeyboardInterrupt:
+        output.error("interrupted; products that were finished are kept")
+        output.status = INTERRUPTED
+    except BrokenPipeError:
+        # the reader of a pipe went away: not an error of ours, and nothing more can be said
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError as error:
+        if error.errno is None:
+            _say_defect(output, error)
+        else:
+            _say_failure(output, refused_by_system(error))
+    except Exception as error:
+        _say_defect(output, error)
+    raise typer.Exit(output.status)
+
+
+def _say_failure(output: CommandOutput, error: ReductionError) -> None:
+    output.error(str(error))
+    output.raise_status(error.exit_status)
+    if not output.answered:
+        failed = {"tests": [], "error": str(error), "exit_status": error.exit_status}
+        output.answer(failed)
+
+
+def _say_defect(output: CommandOutput, error: Exception) -> None:
+    if os.environ.get("REDUCTION_DEBUG"):
+        raise error
+    output.error(
+        f"internal error, a defect of this program: {type(error).__name__}: {error}. "
+        "Set REDUCTION_DEBUG=1 to see where, and please report it."
+    )
+    output.raise_status(1)
+
+
+_LARGE, _HUGE = 1e5, 1e7
+
+
+def fitted_unit(unit: str, transform: str) -> str:
+    """Unit of the coefficients of a response; empty where none is stated."""
+    names = {"none": unit, "log": f"ln({unit})"}
+    return names.get(transform, f"Box-Cox({unit})") if unit else ""
+
+
+class Shown:
+    """Units of a response and of its factors, as they are shown."""
+
+    def __init__(
+        self, response: str, transform: str, factors: tuple[str, ...], system: UnitSystem
+    ) -> None:
+        # a logarithm has no unit that could be changed
+        self.unit, self.scale = display_unit(
+            fitted_unit(response, transform), system if transform == "none" else "si"
+        )
+        self._factors = [display_unit(unit, system) for unit in factors]
+
+    def of_term(self, powers: tuple[int, ...]) -> tuple[str, float]:
+        """Unit of an engineering coefficient and what it is multiplied with."""
+        units = [unit for unit, _ in self._factors]
+        scales = [scale for _, scale in self._factors]
+        scale = math.prod(one**power for one, power in zip(scales, powers, strict=True))
+        return combined_unit(self.unit, units, powers), self.scale / scale
+
+
+def plain(values: ArrayLike) -> Any:
+    """Numbers for JSON, nested as they are; None where there is no finite one."""
+    array = np.asarray(values)
+    if array.ndim:
+        return [plain(entry) for entry in array]
+    number = array.item()
+    return None if isinstance(number, float) and not math.isfinite(number) else number
+
+
+def short(value: float, digits: int = 5) -> str:
+    """A number for a table; a dash where there is none."""
+    return plain_number(value, digits) if math.isfinite(value) else "-"
+
+
+def as_given(value: float) -> str:
+    """A level for a table: of a large one no digit before the point is lost."""
+    return f"{value:.0f}" if _LARGE <= abs(value) < _HUGE else short(value)
+
+
+def within(value: float, *halves: float) -> str:
+    """A number that is known within half widths of intervals, to two digits of the narrowest.
+
+    Without any it has five digits.
+
+    Examples
+    --------
+    >>> within(280991.3, 2100.0), within(280991.3, float("nan"))
+    ('281000', '280990')
+    """
+    places = places_within(value, *halves) if math.isfinite(value) else None
+    return short(value) if places is None else fixed_number(value, places, mark="")
+
+
+def table_of(*headings: str, texts: int = 1, title: str | None = None) -> Table:
+    """An empty table whose first columns are text and whose others are numbers."""
+    table = Table(box=None, pad_edge=False, title=title, title_justify="left", title_style="bold")
+    for number, heading in enumerate(headings):
+        # where there is little room names are broken, and numbers never
+        if number < texts:
+            table.add_column(escape(heading), overflow="fold")
+        else:
+            table.add_column(escape(heading), justify="right", no_wrap=True)
+    return table
+
+
+def processed_folders(processed: Path) -> list[Path]:
+    """Folders with archives: the one that is given, or those in it.
+
+    Parameters
+    ----------
+    processed : pathlib.Path
+        ``processed/CAMPAIGN``, or ``processed``.
+
+    Returns
+    -------
+    folders : list of pathlib.Path
+        By name.
+
+    Raises
+    ------
+    ArchiveError
+        If there is no archive.
+    OSError
+        If a folder cannot be looked into.
+    """
+    inside = sorted(processed.iterdir()) if processed.is_dir() else []
+    folders = [processed] if archives_in(processed) else [one for one in inside if one.is_dir()]
+    folders = [folder for folder in folders if archives_in(folder)]
+    if not folders:
+        raise ArchiveError(
+            f"{processed}: no archive was found",
+            needed="a folder processed/CAMPAIGN with *.nc in it",
+            hint="`reduction run CAMPAIGN.toml` makes one.",
+        )
+    return folders

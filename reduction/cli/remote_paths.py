@@ -1,0 +1,130 @@
+"""Addresses where a command takes a path: fetched to a local copy.
+
+What a command says names the addresses, never the copies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from signal import SIG_DFL, Signals, default_int_handler, getsignal, signal
+from threading import current_thread, main_thread
+
+from reduction.campaign.load import staged_campaign
+from reduction.campaign.plan import Campaign
+from reduction.cli.output import CommandOutput
+from reduction.cli.progress import campaign_progress
+from reduction.readers.remote_files import (
+    allowed,
+    base_name,
+    fetch,
+    product_fault,
+    renamed,
+    scratch_folder,
+)
+from reduction.record.errors import SettingsError
+from reduction.record.plain_text import shown_address
+
+# a machine that is shut down or a queue that ends a job; a terminal that is closed, where there are
+_REQUESTS = [one for one in Signals if one.name in ("SIGTERM", "SIGHUP")]
+
+
+@contextmanager
+def campaign_at(path: Path, *, allow_remote: bool, output: CommandOutput) -> Iterator[Campaign]:
+    """Load a campaign with its logs at hand.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The campaign.toml.
+    allow_remote : bool
+        Whether logs are fetched from the net.
+    output : CommandOutput
+        Learns what copies are called.
+
+    Yields
+    ------
+    campaign : Campaign
+        Copies of its files are gone when the block ends.
+    """
+    with ExitStack() as opened:
+        opened.enter_context(in_order())
+        with campaign_progress(output) as bar:
+            campaign = opened.enter_context(
+                staged_campaign(
+                    path,
+                    allow_remote=allow_remote,
+                    progress=lambda stage, name: bar.stage(f"{stage} {name}", 0),
+                )
+            )
+        output.names |= campaign.names
+        yield campaign
+
+
+@contextmanager
+def in_order() -> Iterator[None]:
+    """Take a request to end as an interruption: lock, workers and copies are put away first.
+
+    One that the caller ignores, as ``nohup`` does, stays ignored.
+    """
+    before = {}
+    if current_thread() is main_thread():
+        asked = [number for number in _REQUESTS if getsignal(number) == SIG_DFL]
+        before = {number: signal(number, default_int_handler) for number in asked}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal(number, handler)
+
+
+@contextmanager
+def local_sources(
+    sources: Sequence[str], *, allow_remote: bool, output: CommandOutput
+) -> Iterator[list[str]]:
+    """Copy each source that is the address of an archive.
+
+    Parameters
+    ----------
+    sources : sequence of str
+        Names, paths or addresses.
+    allow_remote : bool
+        Whether they may be addresses.
+    output : CommandOutput
+        Learns what copies are called.
+
+    Yields
+    ------
+    sources : list of str
+        The path of the copy in place of an address; the others as they were given.
+
+    Raises
+    ------
+    SettingsError
+        If one is an address and addresses are not allowed, or not of an archive.
+    ArchiveError
+        If it cannot be copied.
+    """
+    with ExitStack() as opened:
+        opened.enter_context(in_order())
+        opened.enter_context(renamed(output.names))
+        found = []
+        for source in sources:
+            if not allowed(source, allow_remote, what="the source"):
+                found.append(source)
+                continue
+            name = base_name(source)
+            if not name.endswith(".nc"):
+                raise SettingsError(
+                    "the source is an address, and not of an archive", found=shown_address(source),
+                    needed="the address of one archive, such as s3://bucket/processed/tmt/T-1.nc; "
+                    "a folder on this machine",
+                    hint="Copy the folder here first, with aws s3 sync, rclone or the like.",
+                )  # fmt: skip
+            above = base_name(shown_address(source).rpartition("/")[0]) or "campaign"
+            copy = opened.enter_context(scratch_folder()) / above / name
+            fetch(source, copy, fault=product_fault)
+            output.names[str(copy)] = shown_address(source)
+            found.append(str(copy))
+        yield found

@@ -1,1 +1,0 @@
-"""A measured hose curve against its prediction, and the calibration of named parameters."""

@@ -1,1 +1,0 @@
-"""Stage: reversals, cycles, branches and closed loops."""

@@ -1,0 +1,1 @@
+"""Designed experiments: response surfaces, screening, outcomes without a log."""

@@ -1,0 +1,514 @@
+"""Checks the runs of an experiment, and fits its response surfaces.
+
+What the runs of an experiment say before any fit: refusals, levels off the plan, cautions.
+
+What runs say of the line beside their surfaces: K_1 and tau, one time, stiffness forms.
+
+From the runs of an experiment to its surfaces, effects and stiffness forms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.experiments.designs import Design, FactorLevels, coded_from_engineering
+from reduction.experiments.experiment import ExperimentResult, RunTable
+from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
+from reduction.experiments.least_squares_fit import replicate_cells
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.response_transform import Transform
+from reduction.experiments.run_sheet import (
+    ON_PLAN,
+    Caution,
+    RunSheet,
+    find_cautions,
+    levels_off_plan,
+)
+from reduction.experiments.screening import ScreeningEffects, screening_effects, screening_remarks
+from reduction.experiments.stiffness_forms import (
+    FormQuality,
+    StiffnessForm,
+    compare_stiffness_forms,
+    fit_del_vecchio_stiffness,
+    fit_mean_load_stiffness,
+)
+from reduction.experiments.surface_warnings import (
+    drift_over_order,
+    drifting_responses,
+    negative_surfaces,
+)
+from reduction.experiments.term_selection import ReducedSurfaces, reduce_terms
+from reduction.record.errors import DataError, FitError, SettingsError
+from reduction.record.measurement import Bools, Floats, Integers
+from reduction.stages.line.line_model import (
+    VERDICTS,
+    SingleTimeCheck,
+    check_single_time,
+    identify_by_fundamental,
+)
+
+_OFF_SCREENING = 0.1
+
+_WRONG_HALF = 0.5
+
+"""Coded distance from which a level of a screening is no more that of its column."""
+
+_OF_ORDER = ("pure-error-excludes-drift", "order-confounded")
+
+_NO_SURFACE = (1, 2, 6)
+
+
+def listed(words: Sequence[str], *, most: int = 5, between: str = ", ") -> str:
+    """The first of several, and how many more."""
+    more = f" and {len(words) - most} more" if len(words) > most else ""
+    return between.join(words[:most]) + more
+
+
+def remarks_of_runs(runs: RunTable) -> list[str]:
+    """One note a remark, with the runs that have it."""
+    of_remark: dict[str, list[str]] = {}
+    for run, remark in zip(runs.names, runs.remark, strict=True):
+        for part in remark.split("; ") if remark else ():
+            of_remark.setdefault(part, []).append(run)
+    return [f"{listed(names)}: {remark}" for remark, names in of_remark.items()]
+
+
+def surface_levels_off_plan(runs: RunTable, coded: Floats, names: Sequence[str]) -> list[str]:
+    """A note where runs of a surface were not run where the plan has them."""
+    words = levels_off_plan(
+        coded, runs.coded_plan[:, : len(names)], beyond=ON_PLAN,
+        run_names=runs.names, factor_names=names,
+    )  # fmt: skip
+    if not words:
+        return []
+    return [
+        f"levels reached disagree with the plan by more than {ON_PLAN:g} coded: "
+        f"{listed(words, between='; ')}; the surfaces are of the levels reached"
+    ]
+
+
+def require_screening_levels(runs: RunTable, coded: Floats, names: Sequence[str]) -> list[str]:
+    """A note where runs of a screening strayed; `DataError` where they left their half."""
+    given = {"run_names": runs.names, "factor_names": names}
+    plan = runs.coded_plan[:, : len(names)]
+    wrong = levels_off_plan(coded, plan, beyond=_WRONG_HALF, **given)
+    if wrong:
+        raise DataError(
+            "levels reached are not those of the plan, on which the effects rest",
+            found=listed(wrong, between="; "),
+            needed=f"levels within {_WRONG_HALF:g} coded of the plan",
+            hint="Look whether runs or logs are swapped; correct runs of the experiment.",
+        )
+    words = levels_off_plan(coded, plan, beyond=_OFF_SCREENING, **given)
+    if not words:
+        return []
+    return [
+        f"levels reached disagree with the plan by more than {_OFF_SCREENING:g} coded: "
+        f"{listed(words, between='; ')}; they count as those of the plan"
+    ]
+
+
+def missing_surfaces(
+    runs: RunTable, surfaces: ResponseSurfaces, response_names: Sequence[str]
+) -> list[str]:
+    """What has no surface, with what the runs say of it; one note where runs miss alike."""
+    alike: dict[tuple[int, bytes], list[int]] = {}
+    for row in range(len(response_names)):
+        reason = int(surfaces.reason[row])
+        if reason in _NO_SURFACE:
+            key = (reason, np.isfinite(runs.response[row]).tobytes())
+            alike.setdefault(key, []).append(row)
+    notes = []
+    for (reason, _), rows in alike.items():
+        has = np.isfinite(runs.response[rows[0]])
+        notes.append(
+            f"refused: surface of {', '.join(response_names[row] for row in rows)}: "
+            f"{FIT_REASONS[reason]} ({int(has.sum())} runs of {has.size}, "
+            f"{len(surfaces.term_names)} terms){_causes(runs, ~has)}"
+        )
+    return notes
+
+
+def _causes(runs: RunTable, chosen: Bools) -> str:
+    """Reasons of the runs that are chosen, which stand first in their remarks, by frequency."""
+    reasons = [runs.remark[row].split("; ")[0] for row in np.flatnonzero(chosen)]
+    often = sorted(set(filter(None, reasons)), key=lambda text: (-reasons.count(text), text))
+    said = [f"{text} ({reasons.count(text)} of them)" for text in often[:2]]
+    return f": {'; '.join(said)}" if said else ""
+
+
+def places_in_order(runs: RunTable, run_order: ArrayLike | None) -> Floats:
+    """Place of each run among those of its specimen, from 1; NaN where no order is stated."""
+    order = np.full(len(runs.run), np.nan)
+    stated = order if run_order is None else np.asarray(run_order, dtype=np.float64)
+    for specimen in set(runs.specimen):
+        rows = np.flatnonzero([one == specimen for one in runs.specimen])
+        rows = rows[np.isfinite(stated[rows])]
+        order[rows] = np.unique(stated[rows], return_inverse=True)[1].ravel() + 1
+    return order
+
+
+def cautions_of_runs(
+    runs: RunTable, factors: tuple[FactorLevels, ...], run_order: ArrayLike | None
+) -> tuple[Caution, ...]:
+    """What a run sheet of the runs as they were reached would warn of, specimen by specimen.
+
+    Specimens that are pulled in one run are one line of the sheet, by the worst of them.
+    """
+    known = np.isfinite(runs.level).all(axis=1) & np.isfinite(runs.peak_tension)
+    rows_of: dict[str, list[int]] = {}
+    for row in np.flatnonzero(known).tolist():
+        rows_of.setdefault(runs.run[row], []).append(row)
+    sheets: dict[tuple[str, ...], list[str]] = {}
+    for run, rows in rows_of.items():
+        sheets.setdefault(tuple(runs.specimen[row] for row in rows), []).append(run)
+    stated = np.full(len(runs.run), np.nan) if run_order is None else np.asarray(run_order)
+    found: list[Caution] = []
+    for specimens, names in sheets.items():
+        order = stated[[rows_of[run][0] for run in names]]
+        is_ordered = bool(np.isfinite(order).all())
+        if is_ordered:
+            names = [names[place] for place in np.argsort(order, kind="stable")]
+        sheet = _sheet(runs, factors, [rows_of[run] for run in names])
+        for caution in find_cautions(sheet, run_names=names, is_measured=True):
+            message = caution.message
+            if len(sheets) > 1 and caution.kind == "no-repeats":
+                continue  # another specimen may hold the repeats
+            if len(sheets) > 1 and not caution.runs:
+                message = f"{', '.join(specimens)}: {message}"
+            if caution.kind in _OF_ORDER and not is_ordered:
+                message += " (runs as the campaign lists them: it states no order)"
+            found.append(replace(caution, message=message))
+    return tuple(found)
+
+
+def _sheet(
+    runs: RunTable, factors: tuple[FactorLevels, ...], rows: Sequence[list[int]]
+) -> RunSheet:
+    """One line a run, numbered by its first row from 1."""
+    first: Integers = np.array([group[0] for group in rows])
+
+    def each(values: Floats, how: np.ufunc | None = None) -> Floats:
+        parts = [values[group] for group in rows]
+        return np.array([part.mean(axis=0) if how is None else how.reduce(part) for part in parts])
+
+    return RunSheet(
+        factors=factors,
+        run=first + 1,
+        coded=runs.coded_plan[first, : len(factors)],
+        engineering=each(runs.level),
+        load_block=np.zeros(first.size, dtype=np.intp),
+        mean_tension=each(runs.mean_tension),
+        tension_amplitude=each(runs.tension_amplitude),
+        peak_tension=each(runs.peak_tension, np.maximum),
+        minimum_tension=each(runs.minimum_tension, np.minimum),
+        peak_share=each(runs.peak_tension / runs.rated_break_strength, np.maximum),
+        minimum_share=each(runs.minimum_tension / runs.rated_break_strength, np.minimum),
+    )
+
+
+REFUSALS = (DataError, FitError, SettingsError)
+
+"""What makes a part of an experiment a note in place of a result."""
+
+
+@dataclass(frozen=True)
+class LineOfRuns:
+    """What derives K_1 and tau from surfaces of E' and E'', one entry a run. [N]."""
+
+    storage_spring_constant: Floats
+    loss_spring_constant: Floats
+    quasi_static_spring_constant: Floats
+
+
+def specimen_blocks(runs: RunTable) -> tuple[str, ...] | None:
+    """Specimen of each run, where there are several."""
+    return runs.specimen if len(set(runs.specimen)) > 1 else None
+
+
+def stiffness_of_runs(
+    runs: RunTable, surfaces: ResponseSurfaces, response_names: Sequence[str]
+) -> tuple[tuple[StiffnessForm, ...], FormQuality | None, list[str]]:
+    """Forms that mooring codes ask for, fitted to the apparent spring constant."""
+    if "apparent_spring_constant" not in response_names:
+        return (), None, []
+    spring = runs.response[response_names.index("apparent_spring_constant")]
+    used = np.isfinite(spring) & np.isfinite(surfaces.coded).all(axis=1)
+    strengths = np.unique(runs.rated_break_strength[used])
+    if strengths.size > 1:
+        return (), None, [
+            "refused: stiffness forms of mooring codes: the runs are of lines of "
+            f"{strengths.size} break strengths, or not of every line is one stated"
+        ]  # fmt: skip
+    strength = float(strengths[0]) if strengths.size and strengths[0] > 0 else None
+    spring, frequency = spring[used], runs.frequency[used]
+    loads: dict[str, Any] = {
+        "mean_tension": runs.mean_tension[used], "rated_break_strength": strength
+    }  # fmt: skip
+    amplitude = runs.tension_amplitude[used]
+    try:
+        forms = (
+            fit_del_vecchio_stiffness(
+                spring, tension_amplitude=amplitude, frequency=frequency,
+                load_amplitude="half-range", **loads,
+            ),
+            fit_mean_load_stiffness(spring, **loads),
+        )  # fmt: skip
+        quality = compare_stiffness_forms(
+            spring, tension_amplitude=amplitude, frequency=frequency,
+            coded=surfaces.coded[used], **loads,
+        )  # fmt: skip
+    except REFUSALS as error:
+        return (), None, [f"refused: stiffness forms of mooring codes: {error}"]
+    if specimen_blocks(runs) is None:
+        return forms, quality, []
+    return forms, quality, [
+        "stiffness forms of mooring codes pool the specimens: what sets one apart from another "
+        "is in their scatter"
+    ]  # fmt: skip
+
+
+def derived_line(
+    runs: RunTable, line: LineOfRuns, names: tuple[str, ...], low: Floats, high: Floats
+) -> tuple[tuple[Floats, Floats], list[str]]:
+    """K_1 and tau at the levels of each run from surfaces of E' and of the logarithm of E''."""
+    missing = np.full(len(runs.run), np.nan)
+    parts = np.array([line.storage_spring_constant, line.loss_spring_constant])
+    try:
+        smooth = fit_surfaces(
+            runs.level, parts, factor_names=names, low=low, high=high, run_names=runs.names,
+            response_names=("storage_spring_constant", "loss_spring_constant"),
+            transforms=("none", "log"), blocks=specimen_blocks(runs),
+        )  # fmt: skip
+    except REFUSALS as error:
+        return (missing, missing), [f"refused: K_1 and tau from surfaces of E' and E'': {error}"]
+    known = np.isfinite(runs.level).all(axis=1)
+    # with the level of the specimen of each run, as its own K_0 is taken off
+    storage, loss = smooth.fitted[0], np.exp(smooth.fitted[1])
+    if smooth.blocks is not None:
+        known &= np.isfinite(smooth.blocks.effect[:, smooth.blocks.index]).all(axis=0)
+    found = identify_by_fundamental(
+        storage_spring_constant=storage[known],
+        loss_spring_constant=loss[known],
+        frequency=runs.frequency[known],
+        quasi_static_spring_constant=line.quasi_static_spring_constant[known],
+    )
+    constant, time = missing.copy(), missing.copy()
+    constant[known], time[known] = found.dissipation_spring_constant, found.relaxation_time
+    return (constant, time), []
+
+
+def single_time_of_runs(
+    runs: RunTable, coded: Floats, frequency: int, response_names: Sequence[str], line: LineOfRuns
+) -> tuple[SingleTimeCheck | None, list[str]]:
+    """Whether one relaxation time holds: runs at equal loads, as reached, are compared."""
+    place = response_names.index("relaxation_time")
+    time = runs.response[place]
+    used = np.isfinite(time) & np.isfinite(coded).all(axis=1)
+    if not used.any():
+        return None, ["refused: check of a single relaxation time: no run has one"]
+    loads = replicate_cells(np.delete(coded, frequency, axis=1))
+    group = [f"{one} {cell}" for one, cell in zip(runs.specimen, loads.tolist(), strict=True)]
+    loss = line.loss_spring_constant / line.storage_spring_constant
+    try:
+        check = check_single_time(
+            runs.frequency[used], time[used], loss[used],
+            group=np.array(group)[used],
+            relative_standard_uncertainty=(runs.response_standard_uncertainty[place] / time)[used],
+        )  # fmt: skip
+    except REFUSALS as error:
+        return None, [f"refused: check of a single relaxation time: {error}"]
+    return check, [VERDICTS[int(check.verdict)]]
+
+
+_PREFIX: dict[str, Transform] = {"log_": "log", "box_cox_": "box-cox"}
+
+_FROM_SLOW_PULL = {"dissipation_spring_constant", "relaxation_time", "dashpot_coefficient"}
+
+_SHARED = (
+    "t and p of the surfaces of K_1 and tau are of the scatter of the runs; the error of K_0, "
+    "which all runs of one slow pull share, is in the uncertainty of the coefficients alone"
+)
+
+
+def fit_experiment(
+    runs: RunTable,
+    line: LineOfRuns,
+    *,
+    name: str,
+    kind: Literal["box-behnken", "plackett-burman"],
+    factors: tuple[FactorLevels, ...],
+    factor_units: tuple[str, ...],
+    response_names: tuple[str, ...],
+    transform: Mapping[str, str],
+    specimens_as: Literal["blocks", "random"],
+    term_reduction: Literal["none", "aicc"] = "none",
+    run_order: ArrayLike | None = None,
+) -> ExperimentResult:
+    """Everything that the runs of one experiment say together.
+
+    Parameters
+    ----------
+    runs : RunTable
+        As measured.
+    line : LineOfRuns
+        Of the same runs.
+    name, kind : str
+        Of the experiment.
+    factors : tuple of FactorLevels
+        In the unit of ``runs.level``.
+    factor_units : tuple of str
+        SI units of the levels.
+    response_names : tuple of str
+        Of the rows of ``runs.response``.
+    transform : mapping of str to str
+        ``log`` or ``box-cox`` by response.
+    specimens_as : {"blocks", "random"}
+        How several specimens enter.
+    term_reduction : {"none", "aicc"}
+        Whether terms are left out too, beside the full surfaces.
+    run_order : array_like, shape (n_runs,), optional
+        When each run was done, in any rising numbers; NaN where it is not stated. [1]
+
+    Returns
+    -------
+    result : ExperimentResult
+        A part that the runs do not carry is None, and a note says why.
+    """
+    low, high = (np.array([getattr(one, end) for one in factors]) for end in ("low", "high"))
+    notes = remarks_of_runs(runs)
+    coded = coded_from_engineering(runs.level, low=low, high=high)
+    surfaces: ResponseSurfaces | None = None
+    screening: ScreeningEffects | None = None
+    forms: tuple[StiffnessForm, ...] = ()
+    quality: FormQuality | None = None
+    single: SingleTimeCheck | None = None
+    reduced: ReducedSurfaces | None = None
+    derived = (np.full(len(runs.run), np.nan),) * 2
+    names = tuple(one.name for one in factors)
+    refusal_status = 0
+    try:
+        if kind == "plackett-burman":
+            screening, remarks = _screening(runs, coded, names, response_names)
+            notes += remarks
+            if not np.isfinite(screening.effect).any():
+                refusal_status = FitError.exit_status
+        else:
+            notes += surface_levels_off_plan(runs, coded, names)
+            surfaces = _surfaces(runs, names, low, high, response_names, transform, specimens_as)
+    except REFUSALS as error:
+        what = "effects" if kind == "plackett-burman" else "response surfaces"
+        notes.append(f"refused: {what}: {error}")
+        refusal_status = error.exit_status
+    if surfaces is not None:
+        notes += missing_surfaces(runs, surfaces, response_names)
+        notes += surfaces.notes
+        notes += negative_surfaces(surfaces)
+        drift = drift_over_order(surfaces, places_in_order(runs, run_order))
+        notes += drifting_responses(surfaces, drift)
+        if _FROM_SLOW_PULL & set(response_names):
+            notes.append(_SHARED)
+        if term_reduction == "aicc":
+            reduced, remarks = _reduced(surfaces)
+            notes += remarks
+        forms, quality, remarks = stiffness_of_runs(runs, surfaces, response_names)
+        notes += remarks
+        derived, remarks = derived_line(runs, line, names, low, high)
+        notes += remarks
+    if "frequency" in names and "relaxation_time" in response_names:
+        single, remarks = single_time_of_runs(
+            runs, coded, names.index("frequency"), response_names, line
+        )
+        notes += remarks
+    return ExperimentResult(
+        name=name,
+        kind=kind,
+        factor_names=names,
+        factor_units=factor_units,
+        low=low,
+        high=high,
+        response_names=response_names,
+        runs=runs,
+        surfaces=surfaces,
+        screening=screening,
+        stiffness_forms=forms,
+        form_quality=quality,
+        single_time=single,
+        derived_dissipation_spring_constant=derived[0],
+        derived_relaxation_time=derived[1],
+        reduced=reduced,
+        cautions=cautions_of_runs(runs, factors, run_order),
+        notes=tuple(dict.fromkeys(notes)),
+        refusal_status=refusal_status,
+    )
+
+
+def _screening(
+    runs: RunTable, coded: Floats, names: tuple[str, ...], response_names: tuple[str, ...]
+) -> tuple[ScreeningEffects, list[str]]:
+    """Effects by the plan, where the runs kept to it."""
+    notes = require_screening_levels(runs, coded, names)
+    n_factors = len(names)
+    design = Design(
+        "plackett-burman", runs.coded_plan[:, :n_factors], runs.coded_plan[:, n_factors:]
+    )
+    effects = screening_effects(design, runs.response, names=names)
+    for reason in dict.fromkeys(effects.reason.tolist()):
+        if reason:
+            of = effects.reason == reason
+            missing = np.isnan(runs.response[of]).any(axis=0)
+            without = [run for run, gone in zip(runs.names, missing, strict=True) if gone]
+            responses = [one for one, taken in zip(response_names, of, strict=True) if taken]
+            notes.append(
+                f"refused: effects on {listed(responses)}: {reason}"
+                + (f"; no value of {listed(without)}" if without else "")
+            )
+    return effects, notes + screening_remarks(
+        design.dummy.shape[1], specimen_blocks(runs) is not None
+    )
+
+
+def _surfaces(
+    runs: RunTable,
+    names: tuple[str, ...],
+    low: Floats,
+    high: Floats,
+    response_names: tuple[str, ...],
+    transform: Mapping[str, str],
+    specimens_as: Literal["blocks", "random"],
+) -> ResponseSurfaces:
+    """Surfaces of every response, and after them of each that is asked for on another scale."""
+    bent = [
+        (f"{prefix}{one}", scale, index)
+        for index, one in enumerate(response_names)
+        for prefix, scale in _PREFIX.items()
+        if transform.get(one) == scale
+    ]
+    as_measured: Transform = "none"
+    scales = [*(as_measured for _ in response_names), *(scale for _, scale, _ in bent)]
+    rows = [*range(len(response_names)), *(index for _, _, index in bent)]
+    return fit_surfaces(
+        runs.level,
+        runs.response[rows],
+        factor_names=names,
+        response_names=(*response_names, *(one for one, _, _ in bent)),
+        low=low,
+        high=high,
+        run_names=runs.names,
+        blocks=specimen_blocks(runs),
+        block_treatment="fixed" if specimens_as == "blocks" else "random",
+        transforms=scales,
+    )
+
+
+def _reduced(surfaces: ResponseSurfaces) -> tuple[ReducedSurfaces | None, list[str]]:
+    try:
+        reduced = reduce_terms(surfaces)
+    except REFUSALS as error:
+        return None, [f"refused: reduction of terms: {error}"]
+    return reduced, list(reduced.notes)

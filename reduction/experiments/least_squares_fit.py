@@ -1,0 +1,664 @@
+r"""Least squares of response surfaces with diagnostics and analysis of variance.
+
+Least squares of one response or ten thousand on one matrix, by one orthogonal factorisation.
+
+.. math::
+
+    X = QR, \qquad b = R^{-1} Q^T y, \qquad \operatorname{cov} b = s^2 (R^T R)^{-1}, \qquad
+    s^2 = \frac{\lVert y - Q Q^T y \rVert^2}{n - p}
+
+Responses that miss the same runs are solved together; there is a loop over the patterns of
+missing runs and none over responses.
+
+Leverage, Cook's distance, studentized residuals, and how straight their probability plot is.
+
+F statistic of a whole surface from its r2: the right one, and the one the report prints.
+
+As printed, [5]_ computes :math:`F = (r^2 / 10) / ((1 - r^2) / 4)` for fifteen runs and ten
+terms, which counts the mean twice, and holds it against 3.48, which is the 5 % point for 4 and
+10 degrees of freedom, transposed.  As computed, r2 is about the mean: 9 and 5.  The two errors
+nearly cancel (3.48 against 3.44 on the printed scale).
+
+Analysis of variance of response surfaces, and lack of fit.
+
+Sources are sequential: blocks, first order, interactions, squares, as R's rsm prints them; in
+a design whose levels are met exactly the order makes no difference.
+
+References
+----------
+.. [1] N. R. Draper and H. Smith, Applied Regression Analysis, 3rd ed. New York: Wiley, 1998.
+.. [2] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3.
+.. [3] R. D. Cook and S. Weisberg, Residuals and Influence in Regression. New York: Chapman and
+   Hall, 1982.
+.. [4] S. S. Shapiro and R. S. Francia, "An Approximate Analysis of Variance Test for
+   Normality," J. Am. Stat. Assoc., vol. 67, pp. 215-216, 1972.
+.. [5] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3, Tables 3-5 and 11-19.
+.. [6] R. V. Lenth, "Response-Surface Methods in R, Using rsm," J. Stat. Softw., vol. 32, no. 7,
+   2009.
+.. [7] N. R. Draper and H. Smith, Applied Regression Analysis, 3rd ed. New York: Wiley, 1998,
+   sec. 2.2 (lack of fit and pure error).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike
+from scipy.special import fdtrc, fdtri, ndtri
+
+from reduction.experiments.fit_results import Anova, Diagnostics, LackOfFit, LeastSquares
+from reduction.experiments.response_matrix import block_contrasts, patterns_of, student_p, times
+from reduction.experiments.run_sheet import is_singular
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Bools, Floats, Integers
+
+_ROUNDING = 1e-12
+
+"""Residuals smaller than this share of the response are rounding of the arithmetic."""
+
+_HUGE = 1e150
+
+"""Numbers beyond it cannot be squared."""
+
+_FIXES_A_TERM = 1 - 1e-9
+
+"""Leverage from which a run is fitted by itself alone."""
+
+
+def two_sided_p(t: ArrayLike, degrees_of_freedom: ArrayLike) -> Floats:
+    r"""Probability of a larger Student's t of either sign.
+
+    .. math:: p = I_{\nu / (\nu + t^2)}(\nu / 2, 1 / 2)
+
+    Parameters
+    ----------
+    t : array_like, shape (...)
+        Statistic. [1]
+    degrees_of_freedom : array_like, shape (...)
+        :math:`\nu`. [1]
+
+    Returns
+    -------
+    p_value : ndarray, shape (...)
+        NaN where t or the degrees of freedom are missing or none. [1]
+
+    Raises
+    ------
+    TypeError
+        If an input is not numeric.
+
+    Notes
+    -----
+    The incomplete beta function keeps its digits where p is small; 1 less a
+    distribution function does not.
+
+    Examples
+    --------
+    2.571 is the 5 % point for 5 degrees of freedom.
+
+    >>> print(two_sided_p(2.570582, 5).round(4))
+    0.05
+    """
+    statistic, nu = np.broadcast_arrays(
+        np.asarray(t, dtype=np.float64), np.asarray(degrees_of_freedom, dtype=np.float64)
+    )
+    if nu.size and (nu == nu.flat[0]).all() and nu.flat[0] > 0:
+        return student_p(statistic.ravel(), float(nu.flat[0])).reshape(statistic.shape)
+    p_value = np.full(statistic.shape, np.nan)
+    for value in np.unique(nu[nu > 0]):
+        p_value[nu == value] = student_p(statistic[nu == value], float(value))
+    return p_value
+
+
+def fit_least_squares(
+    matrix: ArrayLike,
+    responses: ArrayLike,
+    *,
+    n_baseline: int = 1,
+    block: Integers | None = None,
+) -> LeastSquares:
+    """Fit every response to the columns of a matrix, with what tests of it need.
+
+    Parameters
+    ----------
+    matrix : array_like, shape (n_runs, n_columns)
+        Model matrix, baseline columns (the mean, blocks) first; sums of squares are
+        sequential in its order. A row that is NaN is a run without levels. [1]
+    responses : array_like, shape (n_responses, n_runs)
+        NaN where a run is missing. [unit of the response]
+    n_baseline : int
+        Columns about which r2 is taken.
+    block : ndarray of int, shape (n_runs,), optional
+        Block of each run, from 0, where the baseline behind the mean are its contrasts. [1]
+
+    Returns
+    -------
+    fit : LeastSquares
+        NaN and a reason for a response whose runs do not carry the columns.
+
+    Raises
+    ------
+    DataError
+        If the shapes do not pair up, a response is infinite, or a run has a value and no
+        levels.
+
+    Notes
+    -----
+    A response that misses runs is fitted to those it has, and has leverage, covariance and
+    degrees of freedom of its own.  Where it misses a whole block, its mean is that over the
+    blocks it has, and the columns of blocks it does without have no coefficient.  Residuals
+    below 1e-12 of the response are rounding.
+
+    Examples
+    --------
+    Three values about a mean, one of two responses with a run missing:
+
+    >>> fit = fit_least_squares(np.ones((3, 1)), [[1.0, 2.0, 3.0], [1.0, np.nan, 2.0]])
+    >>> print(fit.coefficient.ravel(), fit.sigma.round(4))
+    [2.  1.5] [1.     0.7071]
+    """
+    columns, values = _checked(matrix, responses)
+    is_used, pattern = patterns_of(np.isfinite(values))
+    n_columns, n_patterns = columns.shape[1], is_used.shape[0]
+    out = {
+        name: np.full(shape, np.nan)
+        for name, shape in (
+            ("coefficient", (values.shape[0], n_columns)),
+            ("covariance_factor", (n_patterns, n_columns, n_columns)),
+            ("leverage", is_used.shape),
+            ("fitted", values.shape),
+            ("residual", values.shape),
+            ("sequential_sum_of_squares", (values.shape[0], n_columns)),
+            ("residual_sum_of_squares", values.shape[:1]),
+            ("total_sum_of_squares", values.shape[:1]),
+            ("prediction_sum_of_squares", values.shape[:1]),
+        )
+    }
+    reason = np.zeros(values.shape[0], dtype=np.int8)
+    degrees = np.zeros(values.shape[0], dtype=np.intp)
+    for index in range(n_patterns):
+        rows = slice(None) if n_patterns == 1 else np.flatnonzero(pattern == index)
+        used = is_used[index]
+        part, kept, n_fixed = _present(columns, used, n_baseline, block)
+        degrees[rows] = part.shape[0] - kept.size
+        if part.shape[0] < kept.size or is_singular(part):
+            reason[rows] = 1 if part.shape[0] < kept.size else 2
+            continue
+        whole = kept.size == n_columns
+        basis, upper = np.linalg.qr(part)
+        inverse = np.linalg.inv(upper)
+        known = values[rows][:, used]
+        projection = times(known, basis)
+        residual = known - times(projection, basis.T)
+        leverage = np.sum(basis**2, axis=1)
+        coefficient = times(projection, inverse.T)
+        out["coefficient"][rows] = _spread(coefficient, kept, n_columns)
+        out["covariance_factor"][index][np.ix_(kept, kept)] = inverse @ inverse.T
+        out["leverage"][index, used] = leverage
+        # without its block a run that is missing has no level
+        out["fitted"][rows] = (
+            times(coefficient, columns.T)
+            if whole
+            else _spread(known - residual, np.flatnonzero(used), used.size)
+        )
+        out["residual"][rows] = _spread(residual, np.flatnonzero(used), used.size)
+        out["sequential_sum_of_squares"][rows] = _spread(projection**2, kept, n_columns)
+        remainder = np.sum(residual**2, axis=1)
+        total = remainder + np.sum(projection[:, n_fixed:] ** 2, axis=1)
+        out["residual_sum_of_squares"][rows] = remainder
+        out["total_sum_of_squares"][rows] = total
+        out["prediction_sum_of_squares"][rows] = np.sum(
+            (residual / np.where(leverage < _FIXES_A_TERM, 1 - leverage, np.nan)) ** 2, axis=1
+        )
+        rounding = (_ROUNDING * np.max(np.abs(known), axis=1)) ** 2 * known.shape[1]
+        reason[rows] = np.select(
+            [part.shape[0] == kept.size, total <= rounding, remainder <= rounding], [3, 4, 5], 0
+        )
+    return LeastSquares(
+        **out, is_used=is_used, pattern=pattern, degrees_of_freedom=degrees, reason=reason
+    )
+
+
+def _checked(matrix: ArrayLike, responses: ArrayLike) -> tuple[Floats, Floats]:
+    columns = np.asarray(matrix, dtype=np.float64)
+    values = np.asarray(responses, dtype=np.float64)
+    if columns.ndim != 2 or values.ndim != 2 or values.shape[1:] != columns.shape[:1]:
+        raise DataError(
+            "the responses do not pair up with the runs",
+            found=f"matrix {columns.shape}, responses {values.shape}",
+            needed="(n_runs, n_columns) and (n_responses, n_runs)",
+        )
+    if values.shape[0] == 0:
+        raise DataError("there is no response to fit", needed="at least one")
+    huge = np.abs(values) > _HUGE
+    if huge.any():
+        raise DataError(
+            "a response is infinite, or its square is",
+            found=f"{int(huge.sum())} values, first {values[huge][0]:g}",
+            needed="numbers, or NaN where a run is missing",
+        )
+    without = ~np.isfinite(columns).all(axis=1)
+    valued = without & np.isfinite(values).any(axis=0)
+    if valued.any():
+        raise DataError(
+            "a run has a response and no levels",
+            found=f"run {int(np.flatnonzero(valued)[0]) + 1}",
+            needed="finite levels for every run that has a value",
+        )
+    return columns, values
+
+
+def _present(
+    columns: Floats, used: Bools, n_baseline: int, block: Integers | None
+) -> tuple[Floats, Integers, int]:
+    """Matrix of the runs used, place of its columns, and columns of its baseline."""
+    part, places = columns[used], np.arange(columns.shape[1])
+    if block is None or np.unique(block[used]).size in (0, n_baseline):
+        return part, places, n_baseline
+    contrasts = block_contrasts(block[used])
+    n_fixed = 1 + contrasts.shape[1]
+    part = np.hstack([part[:, :1], contrasts, part[:, n_baseline:]])
+    return part, np.concatenate([places[:n_fixed], places[n_baseline:]]), n_fixed
+
+
+def _spread(values: Floats, places: Integers, count: int) -> Floats:
+    """Columns at their places among all, NaN elsewhere."""
+    if places.size == count:
+        return values
+    wide = np.full((values.shape[0], count), np.nan)
+    wide[:, places] = values
+    return wide
+
+
+"""Leverage from which a run is fitted by itself alone and has no residual to look at."""
+
+
+def diagnose(fit: LeastSquares) -> Diagnostics:
+    r"""Look at the residuals of every run of every surface.
+
+    .. math::
+
+        r_i = \frac{e_i}{s \sqrt{1 - h_i}}, \qquad
+        t_i = r_i \sqrt{\frac{n - p - 1}{n - p - r_i^2}}, \qquad
+        D_i = \frac{r_i^2}{p} \frac{h_i}{1 - h_i}
+
+    Parameters
+    ----------
+    fit : LeastSquares
+        The surfaces.
+
+    Returns
+    -------
+    diagnostics : Diagnostics
+        NaN where a run is missing or fixes a term alone, and where the scatter is rounding.
+
+    Raises
+    ------
+    AttributeError
+        If it is not a fit.
+
+    Notes
+    -----
+    Source: [3]_; the correlation of [4]_ is with the scores of Blom.  Fifteen residuals of a
+    surface of ten terms have five degrees of freedom among them and look more normal than the
+    scatter is: a low correlation says something, a high one little.
+
+    Examples
+    --------
+    Three values about their mean: the leverage of each is a third.
+
+    >>> from reduction.experiments.least_squares_fit import fit_least_squares
+    >>> found = diagnose(fit_least_squares(np.ones((3, 1)), [[1.0, 2.0, 3.0]]))
+    >>> print(found.leverage.round(3), found.cooks_distance.round(3))
+    [[0.333 0.333 0.333]] [[0.75 0.   0.75]]
+    """
+    leverage = fit.leverage[fit.pattern]
+    n_columns = np.isfinite(fit.coefficient).sum(axis=1, keepdims=True)
+    df = fit.degrees_of_freedom[:, None]
+    own = np.where(leverage < _FIXES_A_TERM, 1 - leverage, np.nan)
+    sigma = np.where(fit.reason == 0, fit.sigma, np.nan)[:, None]
+    inner = fit.residual / (sigma * np.sqrt(own))
+    distance = inner**2 * leverage / own / np.maximum(n_columns, 1)
+    # with every other residual nil the scatter without the run is nil, and t has no bound
+    without = df - inner**2
+    safe = (without > 1e-9 * df) & (df > 1)
+    outer = inner * np.sqrt(
+        np.divide(df - 1, without, where=safe, out=np.full(inner.shape, np.inf))
+    )
+    outer = np.where(df > 1, outer, np.nan)
+    return Diagnostics(
+        leverage, distance, inner, outer, _straightness(inner, fit.is_used[fit.pattern])
+    )
+
+
+def _straightness(studentized: Floats, used: Bools) -> Floats:
+    """Squared correlation of ordered residuals with normal scores, shape (n_responses,)."""
+    known = np.isfinite(studentized)
+    count = known.sum(axis=1, keepdims=True)
+    ordered = np.sort(np.where(known, studentized, np.nan), axis=1)
+    place = np.arange(1, used.shape[1] + 1)
+    inside = place <= count
+    score = np.where(inside, ndtri(np.where(inside, (place - 0.375) / (count + 0.25), 0.5)), 0.0)
+    inside &= count > 2
+    middle = np.sum(np.where(inside, ordered, 0.0), axis=1, keepdims=True) / np.maximum(count, 1)
+    centred = np.where(inside, ordered - middle, 0.0)
+    product = np.sum(centred * score, axis=1) ** 2
+    size = np.sum(centred**2, axis=1) * np.sum(score**2, axis=1)
+    return np.asarray(np.divide(product, size, where=size > 0, out=np.full(size.shape, np.nan)))
+
+
+class OverallF(NamedTuple):
+    """Statistics of one r2: the right test, and the one the report printed.
+
+    ``critical`` and ``printed_critical`` are on the scale of their own statistic.
+    """
+
+    f: Floats
+    p_value: Floats
+    critical: Floats
+    printed_f: Floats
+    printed_critical: Floats
+
+
+def statistics_from_r2(
+    r2: ArrayLike, *, n_runs: ArrayLike, n_terms: int, level: float = 0.05
+) -> OverallF:
+    r"""Overall F of a surface from its r2, and the statistic CG-D-39-80 prints.
+
+    .. math::
+
+        F = \frac{r^2 / (p - 1)}{(1 - r^2) / (n - p)}, \qquad
+        F_{printed} = \frac{r^2 / p}{(1 - r^2) / (n - p - 1)}
+
+    Parameters
+    ----------
+    r2 : array_like, shape (...)
+        About the mean. [1]
+    n_runs : array_like, shape (...)
+        Runs fitted. [1]
+    n_terms : int
+        With the mean, two or more.
+    level : float
+        Of the test. [1]
+
+    Returns
+    -------
+    statistics : OverallF
+        f, p_value, critical; printed_f and printed_critical, which is the critical value as
+        the report looked it up, with its degrees of freedom transposed.
+
+    Raises
+    ------
+    SettingsError
+        If there are fewer than two terms, or the level is not between 0 and 1.
+
+    Notes
+    -----
+    Source: [5]_, Tables 3-5 and 11-19: 54 of 58 printed statistics follow from the printed r2
+    and 10 and 4 degrees of freedom within its rounding, 3 from 9 and 5.  The text "if F-Stat >
+    F-Crit the data fits equation 5 with 95 % confidence" is not what the test says: that not
+    all slopes are nil.  NaN where no degree of freedom is left.
+
+    Examples
+    --------
+    Polyester, new, K_ap: 26.98 is printed beside r2 = 0.985, which may be 0.9845 to 0.9855.
+
+    >>> print(statistics_from_r2([0.9845, 0.9855], n_runs=15, n_terms=10).printed_f.round(2))
+    [25.41 27.19]
+
+    >>> found = statistics_from_r2(0.985, n_runs=15, n_terms=10)
+    >>> print(found.printed_f.round(2), found.printed_critical.round(2))
+    26.27 3.48
+    >>> print(found.f.round(2), found.critical.round(2), found.p_value.round(4))
+    36.48 4.77 0.0005
+    """
+    if n_terms < 2:
+        raise SettingsError("a surface of the mean alone has no F", needed="two or more terms")
+    if not 0 < level < 1:
+        raise SettingsError(
+            "the level of a test is a probability", found=f"{level:g}", needed="between 0 and 1"
+        )
+    share = np.asarray(r2, dtype=np.float64)
+    runs = np.asarray(n_runs, dtype=np.float64)
+    above, below = n_terms - 1.0, _positive_or_nan(runs - n_terms)
+    printed_below = _positive_or_nan(runs - n_terms - 1)
+    # critical values are dear, and numbers of runs few
+    different, which = np.unique(runs, return_inverse=True)
+    right = fdtri(above, _positive_or_nan(different - n_terms), 1 - level)
+    transposed = fdtri(_positive_or_nan(different - n_terms - 1), n_terms, 1 - level)
+    none_left = np.where(share >= 1, np.inf, np.nan)
+    odds = np.divide(share, 1 - share, out=none_left, where=share < 1)
+    f = odds * below / above
+    return OverallF(
+        f,
+        np.asarray(fdtrc(above, below, f), dtype=np.float64),
+        np.asarray(right[which.reshape(runs.shape)]),
+        odds * printed_below / n_terms,
+        np.asarray(transposed[which.reshape(runs.shape)]),
+    )
+
+
+def _positive_or_nan(values: Floats) -> Floats:
+    return np.where(values > 0, values, np.nan)
+
+
+_LEVEL_ROUNDING = 1e-9
+
+"""Coded levels closer than this are one level: rounding of the change of units."""
+
+
+def replicate_cells(coded: ArrayLike, *, tolerance: float = 0.1) -> Integers:
+    """Group runs that count as repeats of each other.
+
+    Parameters
+    ----------
+    coded : array_like, shape (n_runs, n_factors)
+        Coded levels as achieved; a row that is NaN is a run without levels. [1]
+    tolerance : float
+        Largest difference of any two runs of a cell in any factor, on the scale where the
+        range of a factor is 2. [1]
+
+    Returns
+    -------
+    cell : ndarray of int, shape (n_runs,)
+        Numbered from 0 in the order of their first run; -1 for a run without levels. [1]
+
+    Raises
+    ------
+    SettingsError
+        If the tolerance is negative or reaches half the step of a design.
+
+    Notes
+    -----
+    Complete linkage: no chain of near runs joins two that are far apart.  The runs of a
+    Box-Behnken design are 1 apart.
+
+    Examples
+    --------
+    >>> print(replicate_cells([[0.0, 1.0], [0.02, -0.01], [-0.03, 0.0], [np.nan, 0.0]]))
+    [ 0  1  1 -1]
+    """
+    if not 0 <= tolerance < 0.5:
+        raise SettingsError(
+            "the tolerance of repeated runs is out of range",
+            found=f"{tolerance:g}",
+            needed="0 or more, below 0.5 in coded units",
+        )
+    levels = np.asarray(coded, dtype=np.float64)
+    cell = np.full(levels.shape[0], -1)
+    known = np.flatnonzero(np.isfinite(levels).all(axis=1))
+    if known.size < 2:
+        cell[known] = 0
+        return cell
+    tree = scipy.cluster.hierarchy.linkage(levels[known], method="complete", metric="chebyshev")
+    label = scipy.cluster.hierarchy.fcluster(
+        tree, tolerance + _LEVEL_ROUNDING, criterion="distance"
+    )
+    _, first, number = np.unique(label, return_index=True, return_inverse=True)
+    cell[known] = np.argsort(np.argsort(first))[number]
+    return cell
+
+
+def lack_of_fit(
+    fit: LeastSquares, cell: Integers, *, baseline: ArrayLike, tolerance: float = 0.1
+) -> LackOfFit:
+    r"""Test whether runs scatter more about the surface than repeats do among themselves.
+
+    .. math::
+
+        SS_{pure} = \sum_i (e_i - \bar e_{cell(i)})^2, \qquad
+        SS_{lack} = \sum_i e_i^2 - SS_{pure}, \qquad
+        F = \frac{SS_{lack} / (m - p)}{SS_{pure} / (n - m)}
+
+    Parameters
+    ----------
+    fit : LeastSquares
+        The surfaces.
+    cell : ndarray of int, shape (n_runs,)
+        As `replicate_cells` gives them. [1]
+    baseline : array_like, shape (n_runs, n_baseline)
+        Columns of the mean and of the blocks, which repeats do not have to share. [1]
+    tolerance : float
+        With which the cells were made, for the record. [1]
+
+    Returns
+    -------
+    lack_of_fit : LackOfFit
+        NaN and a reason where a test cannot be made.
+
+    Raises
+    ------
+    DataError
+        If the cells do not pair up with the runs.
+
+    Notes
+    -----
+    Repeats whose levels differ are compared by their residuals, that is, after the surface has
+    moved each to the same place; for exact repeats the surface drops out and the result is
+    that of [7]_.  With blocks, what is left after an additive model of blocks and cells is
+    pure error (as R's rsm): it holds the scatter of a block's answer to a run.
+
+    Examples
+    --------
+    A mean of runs in two cells:
+
+    >>> from reduction.experiments.least_squares_fit import fit_least_squares
+    >>> fit = fit_least_squares(np.ones((4, 1)), [[1.0, 2.0, 6.0, 8.0]])
+    >>> found = lack_of_fit(fit, np.array([0, 0, 1, 1]), baseline=np.ones((4, 1)))
+    >>> print(found.f.round(3), found.p_value.round(4))
+    [24.2] [0.0389]
+    """
+    columns = np.asarray(baseline, dtype=np.float64)
+    if cell.shape != fit.is_used.shape[1:] or columns.shape[0] != cell.size:
+        raise DataError(
+            "the cells do not pair up with the runs",
+            found=f"{cell.size} cells, {columns.shape[0]} rows of the baseline",
+            needed=f"{fit.is_used.shape[1]} runs",
+        )
+    n_responses = fit.reason.size
+    pure_df = np.zeros(n_responses, dtype=np.intp)
+    pure = np.full(n_responses, np.nan)
+    indicator = (cell[:, None] == np.unique(cell[cell >= 0])).astype(np.float64)
+    for index, used in enumerate(fit.is_used):
+        rows = slice(None) if len(fit.is_used) == 1 else np.flatnonzero(fit.pattern == index)
+        left, values, _ = np.linalg.svd(np.hstack([indicator, columns])[used], full_matrices=False)
+        basis = left[:, values > 1e-9 * values[0]] if values.size else left
+        pure_df[rows] = int(used.sum()) - basis.shape[1]
+        residual = fit.residual[rows][:, used]
+        left_over = residual - times(times(residual, basis), basis.T)
+        pure[rows] = np.sum(left_over**2, axis=1)
+    lack_df = fit.degrees_of_freedom - pure_df
+    lack = fit.residual_sum_of_squares - pure
+    scale = np.maximum(fit.total_sum_of_squares, fit.residual_sum_of_squares)
+    reason = np.select(
+        [fit.reason > 0, pure_df <= 0, lack_df <= 0, pure <= 1e-24 * scale], [4, 1, 2, 3], 0
+    ).astype(np.int8)
+    tested = reason == 0
+    f = np.full(n_responses, np.nan)
+    f[tested] = (lack[tested] / lack_df[tested]) / (pure[tested] / pure_df[tested])
+    p_value = np.asarray(fdtrc(np.maximum(lack_df, 1), np.maximum(pure_df, 1), f), dtype=np.float64)
+    return LackOfFit(lack_df, pure_df, lack, pure, f, p_value, reason, cell, tolerance)
+
+
+def anova_table(
+    fit: LeastSquares, groups: Mapping[str, slice], lack: LackOfFit, *, n_baseline: int = 1
+) -> Anova:
+    """Sums of squares by source, with F and p.
+
+    Parameters
+    ----------
+    fit : LeastSquares
+        The surfaces; its columns stand in the order of the sources.
+    groups : mapping of str to slice
+        Columns of each source, in order.
+    lack : LackOfFit
+        Of the same surfaces.
+    n_baseline : int
+        Columns that are not in total: one, the mean.
+
+    Returns
+    -------
+    anova : Anova
+        The groups, residuals, lack of fit, pure error, total about the mean.
+
+    Raises
+    ------
+    SettingsError
+        If the groups do not cover the columns in order.
+
+    Notes
+    -----
+    Sequential sums: each source after those above it.  Every source is tested against the
+    residuals, lack of fit against pure error.
+
+    Examples
+    --------
+    Four runs on a line, two of them repeated:
+
+    >>> from reduction.experiments.least_squares_fit import fit_least_squares
+    >>> matrix = np.stack([np.ones(4), [-1.0, -1.0, 1.0, 1.0]], axis=1)
+    >>> fit = fit_least_squares(matrix, [[1.0, 2.0, 6.0, 8.0]])
+    >>> lack = lack_of_fit(fit, np.array([0, 0, 1, 1]), baseline=matrix[:, :1])
+    >>> found = anova_table(fit, {"first order": slice(1, 2)}, lack)
+    >>> print(found.source[0], found.f[0, 0].round(3), found.p_value[0, 0].round(4))
+    first order 24.2 0.0389
+    """
+    edges = [(part.start, part.stop) for part in groups.values()]
+    joined = [n_baseline, *[stop for _, stop in edges]]
+    if [start for start, _ in edges] != joined[:-1] or joined[-1] != fit.coefficient.shape[1]:
+        raise SettingsError(
+            "the sources do not cover the columns in order",
+            found=str(edges),
+            needed=f"from {n_baseline} to {fit.coefficient.shape[1]} without a gap",
+        )
+    none = np.where(np.isin(fit.reason, (1, 2, 6)), np.nan, 1.0)
+    # the column of a block that a response does without is NaN and no degree of freedom
+    stands = np.isfinite(fit.sequential_sum_of_squares)
+    squares = [
+        none * np.sum(fit.sequential_sum_of_squares[:, part], axis=1, where=stands[:, part])
+        for part in groups.values()
+    ]
+    degrees = [none * stands[:, part].sum(axis=1) for part in groups.values()]
+    residual_df = none * fit.degrees_of_freedom
+    unexplained = [lack.sum_of_squares, lack.pure_error_sum_of_squares]
+    unexplained_df = [none * lack.degrees_of_freedom, none * lack.pure_error_degrees_of_freedom]
+    left = fit.residual_sum_of_squares
+    sums = np.stack([*squares, left, *unexplained, np.sum([*squares, left], axis=0)], axis=1)
+    total_df = np.sum([*degrees, residual_df], axis=0)
+    df = np.stack([*degrees, residual_df, *unexplained_df, total_df], axis=1)
+    mean_square = np.divide(sums, df, out=np.full(sums.shape, np.nan), where=df > 0)
+    n_groups = len(groups)
+    f, p_value = np.full(sums.shape, np.nan), np.full(sums.shape, np.nan)
+    tested = fit.reason == 0
+    error = mean_square[tested, n_groups, None]
+    f[tested, :n_groups] = mean_square[tested, :n_groups] / error
+    p_value[:, :n_groups] = fdtrc(df[:, :n_groups], df[:, n_groups, None], f[:, :n_groups])
+    f[:, n_groups + 1], p_value[:, n_groups + 1] = lack.f, lack.p_value
+    source = (*groups, "residuals", "lack of fit", "pure error", "total")
+    against = (*(["residuals"] * n_groups), "", "pure error", "", "")
+    return Anova(source, df, sums, mean_square, f, p_value, against)

@@ -1,0 +1,511 @@
+"""Fits response surfaces of many responses over one set of runs.
+
+What has to be right with the runs of an experiment before a surface is fitted to them.
+
+What a reader of response surfaces has to know: runs that miss, repeat, stray or stand alone.
+
+Response surfaces of many responses over one set of runs, in one call.
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3, App. C.
+.. [2] R. V. Lenth, "Response-Surface Methods in R, Using rsm," J. Stat. Softw., vol. 32, no. 7,
+   2009.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import combinations
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.experiments.block_effects import (
+    block_columns,
+    deviations,
+    fixed_estimates,
+    with_blocks,
+)
+from reduction.experiments.designs import (
+    coded_from_engineering,
+    model_matrix,
+    quadratic_exponents,
+    term_kinds,
+    term_names,
+)
+from reduction.experiments.fit_results import (
+    FIT_REASONS,
+    BlockEffects,
+    LackOfFit,
+    LeastSquares,
+    ResponseSurfaces,
+)
+from reduction.experiments.least_squares_fit import (
+    anova_table,
+    diagnose,
+    fit_least_squares,
+    lack_of_fit,
+    replicate_cells,
+    statistics_from_r2,
+    two_sided_p,
+)
+from reduction.experiments.response_matrix import times
+from reduction.experiments.response_transform import Transform, box_cox_exponent, transform
+from reduction.experiments.run_sheet import covariance_factor
+from reduction.experiments.stationary_point import canonical_analysis
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Bools, Floats, Integers
+
+_STILL = 1e-6
+
+"""Coded range below which a factor does not move."""
+
+
+def coded_levels(
+    levels: ArrayLike,
+    *,
+    low: ArrayLike,
+    high: ArrayLike,
+    units: Literal["engineering", "coded"],
+    factor_names: Sequence[str],
+) -> Floats:
+    """Levels as achieved, coded, shape (n_runs, n_factors); NaN rows are runs not done. [1]."""
+    found = np.array(levels, dtype=np.float64)
+    if found.ndim != 2 or found.shape[1] != len(factor_names) or np.shape(low) != found.shape[1:]:
+        raise SettingsError(
+            "the levels do not pair up with the factors",
+            found=f"levels {found.shape}, {len(factor_names)} names, low {np.shape(low)}",
+            needed="one column, one name, one low and one high level a factor",
+        )
+    if np.isinf(found).any():
+        raise DataError(
+            "a level is infinite",
+            found=f"run {int(np.flatnonzero(np.isinf(found).any(axis=1))[0]) + 1}",
+            needed="numbers, or NaN for a run that was not done",
+        )
+    in_coded = coded_from_engineering(found, low=low, high=high)
+    return found if units == "coded" else in_coded
+
+
+def require_names(names: tuple[str, ...], count: int, what: str) -> None:
+    """Refuse names that do not pair up, or a name that stands twice."""
+    if len(set(names)) < len(names):
+        twice = sorted(name for name, count_of in Counter(names).items() if count_of > 1)
+        raise SettingsError(
+            f"a {what} is named twice",
+            found=", ".join(twice),
+            needed=f"a name of its own for every {what}",
+            hint=f"A {what} entered twice is to be left out once.",
+        )
+    if len(names) != count:
+        raise SettingsError(
+            f"the names of the {what}s do not pair up with the {what}s",
+            found=f"{len(names)} names",
+            needed=f"{count}",
+        )
+
+
+def require_motion(coded: Floats, factor_names: Sequence[str]) -> None:
+    """Refuse runs in which a factor keeps its level."""
+    if len(coded) == 0:
+        raise DataError("no run has a value", needed="runs with levels and responses")
+    still = np.flatnonzero(np.ptp(coded, axis=0) < _STILL)
+    if still.size:
+        first = int(still[0])
+        raise DataError(
+            f"{factor_names[first]} never moves",
+            found=f"{coded[0, first]:g} (coded) in all {len(coded)} runs",
+            needed="at least three levels",
+            hint="Leave the factor out, or add the runs that move it.",
+        )
+
+
+_STRAY = 0.1
+
+"""Coded distance beyond the levels of the plan, or short of them, that is worth a word."""
+
+_ALONE = 0.99
+
+"""Leverage from which a run has hardly a residual."""
+
+_ILL = 30.0
+
+"""Condition number of columns of the model matrix above which terms lean on each other."""
+
+
+def remarks(
+    *,
+    coded: Floats,
+    responses: Floats,
+    fit: LeastSquares,
+    lack: LackOfFit,
+    blocks: BlockEffects | None,
+    factor_names: Sequence[str],
+    run_names: Sequence[str],
+    response_names: Sequence[str],
+    condition: float,
+) -> tuple[str, ...]:
+    """Notes of the surfaces, shortest list that leaves nothing out."""
+    used = np.asarray(np.isfinite(responses).any(axis=0))
+    notes = [
+        *_missing(responses, used, run_names, response_names),
+        *_reasons(fit, response_names),
+        *_repeats(coded, responses, used, lack, run_names),
+        *_levels(coded[used], factor_names),
+        *_alone(fit, run_names),
+    ]
+    if condition > _ILL:
+        notes.append(
+            f"terms lean on each other: condition number {condition:.0f}, that of fifteen "
+            "Box-Behnken runs met exactly is 4.24"
+        )
+    if blocks is not None:
+        notes.append(_error_terms(blocks))
+    return tuple(notes)
+
+
+def _listed(names: Sequence[str], chosen: Bools) -> str:
+    found = [name for name, taken in zip(names, chosen, strict=True) if taken]
+    return ", ".join(found[:5]) + (f" and {len(found) - 5} more" if len(found) > 5 else "")
+
+
+def _missing(
+    responses: Floats, used: Bools, run_names: Sequence[str], response_names: Sequence[str]
+) -> list[str]:
+    notes = []
+    if not used.all():
+        notes.append(f"runs without any value: {_listed(run_names, ~used)}")
+    short = np.asarray(np.isnan(responses[:, used]).any(axis=1))
+    if short.any():
+        notes.append(f"responses that miss further runs: {_listed(response_names, short)}")
+    return notes
+
+
+def _reasons(fit: LeastSquares, response_names: Sequence[str]) -> list[str]:
+    return [
+        f"{_listed(response_names, fit.reason == code)}: {text}"
+        for code, text in FIT_REASONS.items()
+        if code and (fit.reason == code).any()
+    ]
+
+
+def _repeats(
+    coded: Floats, responses: Floats, used: Bools, lack: LackOfFit, run_names: Sequence[str]
+) -> list[str]:
+    notes = []
+    # a run typed in twice looks like this, and makes pure error too small
+    twins = [
+        (first, second)
+        for first, second in combinations(np.flatnonzero(used).tolist(), 2)
+        if (coded[first] == coded[second]).all()
+        and np.array_equal(responses[:, first], responses[:, second], equal_nan=True)
+    ]
+    if twins:
+        first, second = twins[0]
+        notes.append(
+            f"runs {run_names[first]} and {run_names[second]} agree in every level and "
+            f"response ({len(twins)} such pairs): repeats, or one run twice?"
+        )
+    spread = max(
+        (np.ptp(coded[lack.cell == cell], axis=0).max() for cell in np.unique(lack.cell[used])),
+        default=0.0,
+    )
+    if spread > 1e-9:
+        notes.append(
+            f"repeated runs differ by up to {spread:.2g} in coded levels (tolerance "
+            f"{lack.tolerance:g}): pure error is taken after the surface has moved them together"
+        )
+    return notes
+
+
+def _levels(coded: Floats, factor_names: Sequence[str]) -> list[str]:
+    notes = []
+    bounds = zip(factor_names, coded.min(axis=0), coded.max(axis=0), strict=True)
+    for name, low, high in bounds:
+        beyond = max(-1 - low, high - 1)
+        short = max(low + 1, 1 - high)
+        if beyond > _STRAY or short > _STRAY:
+            what = "go beyond" if beyond > _STRAY else "fall short of"
+            notes.append(f"levels of {name} {what} the plan: {low:.2f} to {high:.2f} coded")
+    return notes
+
+
+def _alone(fit: LeastSquares, run_names: Sequence[str]) -> list[str]:
+    alone = np.any(np.nan_to_num(fit.leverage) > _ALONE, axis=0)
+    # without degrees of freedom every run is, and the reason says so
+    alone &= bool((fit.degrees_of_freedom > 0).any())
+    if not alone.any():
+        return []
+    return [
+        f"runs that fix a term alone and have no residual to check: {_listed(run_names, alone)}"
+    ]
+
+
+def _error_terms(blocks: BlockEffects) -> str:
+    count = len(blocks.names)
+    if blocks.treatment == "fixed":
+        return (
+            f"{count} specimens as fixed blocks: every term is judged by the residuals, which "
+            "hold each specimen's own answer to the factors; the mean is of these specimens"
+        )
+    return (
+        f"{count} specimens as random draws (REML): the mean is judged by the scatter between "
+        f"specimens ({count - 1} degrees of freedom), the other terms by the residuals within; "
+        "r2, analysis of variance, lack of fit and residuals are those of fixed blocks"
+    )
+
+
+_SEQUENCE = {"linear": "first order", "interaction": "interactions", "square": "squares"}
+
+"""Order of the sources in the analysis of variance, that of R's rsm."""
+
+
+def fit_surfaces(
+    levels: ArrayLike,
+    responses: ArrayLike,
+    *,
+    factor_names: Sequence[str],
+    response_names: Sequence[str],
+    low: ArrayLike,
+    high: ArrayLike,
+    units: Literal["engineering", "coded"] = "engineering",
+    run_names: Sequence[str] | None = None,
+    blocks: Sequence[str] | None = None,
+    block_treatment: Literal["fixed", "random"] = "fixed",
+    transforms: Transform | Sequence[Transform] = "none",
+    replicate_tolerance: float = 0.1,
+) -> ResponseSurfaces:
+    """Fit the quadratic surface of every response over the runs as they were done.
+
+    Parameters
+    ----------
+    levels : array_like, shape (n_runs, n_factors)
+        Levels each run achieved; a row of NaN for a run that was not done. [SI unit of each
+        factor, or 1 where coded]
+    responses : array_like, shape (n_responses, n_runs)
+        NaN where a run gave no value. [unit of the response]
+    factor_names : sequence of str, length n_factors
+        In the order of the columns of ``levels``.
+    response_names : sequence of str, length n_responses
+        In the order of the rows of ``responses``.
+    low, high : array_like, shape (n_factors,)
+        Levels of the plan that are -1 and +1. [SI unit of each factor]
+    units : {'engineering', 'coded'}
+        Of ``levels``.
+    run_names : sequence of str, length n_runs, optional
+        1, 2, .. where not given.
+    blocks : sequence of str, length n_runs, optional
+        Specimen of each run, where there are several.
+    block_treatment : {'fixed', 'random'}
+        These specimens, or draws from those of their kind.
+    transforms : {'none', 'log', 'box-cox'} or one a response
+        Scale each response is fitted on.
+    replicate_tolerance : float
+        Runs count as repeats where no coded level differs by more. [1]
+
+    Returns
+    -------
+    surfaces : ResponseSurfaces
+        One surface a response; NaN and a reason where its runs do not carry one.
+
+    Raises
+    ------
+    SettingsError
+        If names or transforms do not pair up, a run is named twice, or a high level is not
+        above its low one.
+    DataError
+        If a run has a value and no levels, a level or response is infinite, a factor never
+        moves, there is one block, or a response to be transformed is not above zero.
+    FitError
+        If there are fewer runs than terms, or the runs leave terms confounded.
+
+    Notes
+    -----
+    Source: [1]_, eq. 5, with 9 and 5 degrees of freedom where its F statistic has 10 and 4
+    (`statistics_from_r2`).  Numbers are those of R's lm and rsm [2]_; with blocks r2 is about
+    their means, where R's is about the grand mean.  The coded plan is only the plan: levels
+    are used as they were met, so that fifteen runs are seldom orthogonal.  Responses are
+    fitted apart: K_1 and tau of runs that give E' and E'' are better derived from surfaces of
+    those two, which stay positive and smooth.
+
+    Examples
+    --------
+    One factor, six runs: squares before linear terms.
+
+    >>> found = fit_surfaces([[-1.0], [-1.0], [0.0], [0.0], [1.0], [1.0]],
+    ...     [[1.0, 2.0, 4.0, 5.0, 3.0, 4.0]], factor_names=["frequency"],
+    ...     response_names=["stiffness"], low=[0.1], high=[0.5], units="coded")
+    >>> found.term_names
+    ('mean', 'frequency^2', 'frequency')
+    >>> print(found.coefficient, found.sigma.round(4))
+    [[ 4.5 -2.   1. ]] [0.7071]
+    """
+    coded = coded_levels(levels, low=low, high=high, units=units, factor_names=factor_names)
+    measured = np.array(responses, dtype=np.float64)
+    n_runs, n_factors = coded.shape
+    runs = tuple(run_names or (str(number + 1) for number in range(n_runs)))
+    require_names(runs, n_runs, "run")
+    require_names(tuple(response_names), measured.shape[0] if measured.ndim else 0, "response")
+    exponents = quadratic_exponents(n_factors)
+    terms, kinds = term_names(exponents, factor_names), term_kinds(exponents)
+
+    baseline = np.ones((n_runs, 1))
+    grouping = None
+    if blocks is not None:
+        require_names(tuple(str(row) for row in range(len(blocks))), n_runs, "block")
+        grouping = block_columns(blocks)
+        baseline = np.hstack([baseline, grouping[2]])
+    known = np.isfinite(coded).all(axis=1)
+    surface = np.full((n_runs, len(terms)), np.nan)
+    surface[known] = model_matrix(coded[known], exponents)
+    column, groups = _columns(kinds, n_baseline=baseline.shape[1])
+    matrix = np.hstack([baseline, surface[:, np.argsort(column)[1:]]])
+    used = known & np.isfinite(measured).any(axis=0)
+    require_motion(coded[used], factor_names)
+    own = [f"block {number + 1}" for number in range(baseline.shape[1] - 1)]
+    ordered = [terms[0], *own, *(terms[index] for index in np.argsort(column)[1:])]
+    covariance_factor(matrix[used], names=ordered)  # refuses runs that do not carry the terms
+    condition = float(np.linalg.cond(matrix[used]))
+
+    scale, power, interval = _scales(transforms, matrix, measured)
+    values = measured.copy()
+    if set(scale) != {"none"}:
+        bent = np.array([kind != "none" for kind in scale])
+        values[bent] = transform(measured[bent], power[bent, None])
+    fit = fit_least_squares(
+        matrix,
+        values,
+        n_baseline=baseline.shape[1],
+        block=None if grouping is None else grouping[1],
+    )
+    fit = replace(fit, reason=np.where(np.isnan(power), np.int8(6), fit.reason))
+    found = fixed_estimates(fit, column)
+    effects = None
+    if grouping is not None:
+        names, index, _ = grouping
+        found, effects = with_blocks(found, fit, surface, values, names, index, block_treatment)
+    deviation, engineering_deviation, to_engineering = deviations(found, exponents, low, high)
+    judged = (fit.reason == 0)[:, None] & (deviation > 0)
+    t = np.divide(found.coefficient, deviation, out=np.full(deviation.shape, np.nan), where=judged)
+    r2, adjusted, predicted = _shares(fit, baseline.shape[1])
+    overall = statistics_from_r2(
+        np.where(fit.reason == 0, r2, np.nan),
+        n_runs=fit.degrees_of_freedom + len(terms),
+        n_terms=len(terms),
+    )
+    cell = replicate_cells(coded, tolerance=replicate_tolerance)
+    lack = lack_of_fit(fit, cell, baseline=baseline, tolerance=replicate_tolerance)
+    return ResponseSurfaces(
+        response_names=tuple(response_names),
+        factor_names=tuple(factor_names),
+        run_names=runs,
+        low=np.array(low, dtype=np.float64),
+        high=np.array(high, dtype=np.float64),
+        coded=coded,
+        exponents=exponents,
+        term_names=terms,
+        transform=scale,
+        transform_exponent=power,
+        transform_exponent_interval=interval,
+        coefficient=found.coefficient,
+        coefficient_standard_uncertainty=deviation,
+        t=t,
+        p_value=two_sided_p(t, found.degrees_of_freedom),
+        term_degrees_of_freedom=found.degrees_of_freedom,
+        error_term=found.error_term,
+        coefficient_engineering=times(found.coefficient, to_engineering.T),
+        coefficient_engineering_standard_uncertainty=engineering_deviation,
+        covariance_factor=found.covariance_factor,
+        engineering_matrix=to_engineering,
+        pattern=found.pattern,
+        is_used=fit.is_used if found.pattern is fit.pattern else fit.is_used[fit.pattern],
+        sigma=found.sigma,
+        degrees_of_freedom=fit.degrees_of_freedom,
+        r2=r2,
+        adjusted_r2=adjusted,
+        predicted_r2=predicted,
+        overall_f=overall.f,
+        overall_p_value=overall.p_value,
+        # the report had one specimen a surface, or their mean
+        printed_f=overall.printed_f if effects is None else np.full(len(r2), np.nan),
+        fitted=fit.fitted,
+        residual=fit.residual,
+        anova=anova_table(fit, groups, lack),
+        lack_of_fit=lack,
+        canonical=canonical_analysis(
+            found.coefficient,
+            exponents,
+            covariance_factor=found.covariance_factor,
+            pattern=found.pattern,
+            sigma=found.sigma,
+            low=low,
+            high=high,
+        ),
+        diagnostics=diagnose(fit),
+        blocks=effects,
+        condition_number=condition,
+        reason=fit.reason,
+        notes=remarks(
+            coded=coded,
+            responses=measured,
+            fit=fit,
+            lack=lack,
+            blocks=effects,
+            factor_names=factor_names,
+            run_names=runs,
+            response_names=response_names,
+            condition=condition,
+        ),
+    )
+
+
+def _columns(kinds: tuple[str, ...], *, n_baseline: int) -> tuple[Integers, dict[str, slice]]:
+    """Column of each printed term, behind the baseline, and the columns of each source."""
+    column = np.zeros(len(kinds), dtype=np.intp)
+    groups = {"blocks": slice(1, n_baseline)} if n_baseline > 1 else {}
+    start = n_baseline
+    for kind, source in _SEQUENCE.items():
+        members = [index for index, found in enumerate(kinds) if found == kind]
+        column[members] = np.arange(start, start + len(members))
+        if members:
+            groups[source] = slice(start, start + len(members))
+        start += len(members)
+    return column, groups
+
+
+def _scales(
+    transforms: Transform | Sequence[Transform], matrix: Floats, measured: Floats
+) -> tuple[tuple[str, ...], Floats, Floats]:
+    """Scale of each response, its exponent, and the interval of an exponent that was found."""
+    count = measured.shape[0]
+    scale = (transforms,) * count if isinstance(transforms, str) else tuple(transforms)
+    strange = sorted(set(scale) - {"none", "log", "box-cox"})
+    if len(scale) != count or strange:
+        raise SettingsError(
+            "the transforms do not pair up with the responses",
+            found=", ".join(strange) or f"{len(scale)} transforms, {count} responses",
+            needed="none, log or box-cox, one for all or one a response",
+        )
+    power = np.array([0.0 if kind == "log" else 1.0 for kind in scale])
+    interval = np.full((count, 2), np.nan)
+    sought = np.flatnonzero([kind == "box-cox" for kind in scale])
+    if sought.size:
+        found = box_cox_exponent(matrix, measured[sought])
+        power[sought] = found.exponent
+        interval[sought] = np.stack([found.low, found.high], axis=1)
+    return scale, power, interval
+
+
+def _shares(fit: LeastSquares, n_baseline: int) -> tuple[Floats, Floats, Floats]:
+    """r2, adjusted r2, predicted r2 of each response, about the baseline."""
+    total = np.where(fit.reason == 4, np.nan, fit.total_sum_of_squares)
+    df = fit.degrees_of_freedom
+    total_df = df + fit.coefficient.shape[1] - n_baseline
+    left = fit.residual_sum_of_squares / total
+    ratio = np.divide(total_df, df, out=np.full(df.shape, np.nan), where=df > 0)
+    return 1 - left, 1 - left * ratio, 1 - fit.prediction_sum_of_squares / total

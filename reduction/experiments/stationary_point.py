@@ -1,0 +1,360 @@
+r"""Stationary point, principal curvatures and ridge path of quadratic surfaces.
+
+How stationary points and principal curvatures follow the coefficients of a surface.
+
+.. math::
+
+    y = b_0 + x^T b + x^T B x, \qquad x_s = -\tfrac{1}{2} B^{-1} b, \qquad
+    B = V \Lambda V^T
+
+References
+----------
+.. [1] R. H. Myers and D. C. Montgomery, Response Surface Methodology, 2nd ed. New York: Wiley,
+   2002, ch. 6.
+.. [2] S. Bisgaard and B. Ankenman, "Standard Errors for the Eigenvalues in Second-Order
+   Response Surface Models," Technometrics, vol. 38, no. 3, pp. 238-246, 1996.
+.. [3] N. R. Draper, "'Ridge Analysis' of Response Surfaces," Technometrics, vol. 5, no. 4, pp.
+   469-479, 1963.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.experiments.designs import engineering_from_coded, gradient_matrix, model_matrix
+from reduction.experiments.fit_results import Canonical
+from reduction.experiments.run_sheet import variance_factor
+from reduction.record.arrays import as_finite
+from reduction.record.errors import SettingsError
+from reduction.record.measurement import Floats, Integers
+
+
+def canonical_slopes(
+    point: ArrayLike, eigenvalue: ArrayLike, eigenvector: ArrayLike, exponents: Integers
+) -> tuple[Floats, Floats]:
+    r"""What a change of each coefficient does to stationary points and to curvatures.
+
+    .. math::
+
+        \frac{\partial x_s}{\partial \beta} = -(2B)^{-1} D(x_s), \qquad
+        \frac{\partial \lambda_j}{\partial B} = v_j v_j^T
+
+    Parameters
+    ----------
+    point : array_like, shape (n_responses, n_factors)
+        Stationary, coded; NaN where there is none. [1]
+    eigenvalue : array_like, shape (n_responses, n_factors)
+        [unit of the response]
+    eigenvector : array_like, shape (n_responses, n_factors, n_factors)
+        A column each. [1]
+    exponents : ndarray of int, shape (n_terms, n_factors)
+        Powers of the terms. [1]
+
+    Returns
+    -------
+    of_point : ndarray, shape (n_responses, n_factors, n_terms)
+        NaN where there is no point. [1 per unit of the response]
+    of_eigenvalue : ndarray, shape (n_responses, n_factors, n_terms)
+        [1]
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not pair up.
+
+    Notes
+    -----
+    Source: [1]_; of an eigenvalue [2]_.
+
+    Examples
+    --------
+    1 + 2 X - X^2: a curvature that is 0.1 weaker moves the maximum from 1 to 2 / 1.8, by 0.1 to
+    the first order.
+
+    >>> from reduction.experiments.designs import quadratic_exponents
+    >>> of_point, _ = canonical_slopes([[1.0]], [[-1.0]], [[[1.0]]], quadratic_exponents(1))
+    >>> print(of_point @ [0.0, 0.1, 0.0])
+    [[0.1]]
+    """
+    size, vectors = np.asarray(eigenvalue, dtype=np.float64), np.asarray(eigenvector)
+    sound = np.isfinite(np.asarray(point)).all(axis=1)
+    double = np.where(sound[:, None], 2 * size, np.nan)
+    inverse = (vectors / double[:, None, :]) @ vectors.swapaxes(1, 2)
+    at = np.where(sound[:, None], point, 0.0)
+    # v'Bv, term by term
+    squared = model_matrix(np.nan_to_num(vectors.swapaxes(1, 2)), exponents)
+    squared *= exponents.sum(axis=1) == 2
+    return -inverse @ gradient_matrix(at, exponents), squared
+
+
+_FLAT = 1e-10
+
+"""Smallest over largest curvature below which a direction has none."""
+
+_HALVINGS = 100
+
+"""Bisection steps of the multiplier: below the last digit of a double."""
+
+
+class RidgePath(NamedTuple):
+    """Best point at each distance from the centre; coded, engineering, value, multiplier."""
+
+    coded: Floats
+    engineering: Floats
+    value: Floats
+    multiplier: Floats
+
+
+def curvature(coefficient: ArrayLike, exponents: Integers) -> tuple[Floats, Floats]:
+    r"""Linear and quadratic part of surfaces.
+
+    .. math:: y = b_0 + x^T b + x^T B x
+
+    Parameters
+    ----------
+    coefficient : array_like, shape (n_responses, n_terms)
+        Of coded factors. [unit of the response]
+    exponents : ndarray of int, shape (n_terms, n_factors)
+        Powers of the terms. [1]
+
+    Returns
+    -------
+    slope : ndarray, shape (n_responses, n_factors)
+        :math:`b`. [unit of the response]
+    form : ndarray, shape (n_responses, n_factors, n_factors)
+        :math:`B`, symmetric: an interaction stands in two halves. [unit of the response]
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not pair up.
+
+    Examples
+    --------
+    >>> from reduction.experiments.designs import quadratic_exponents
+    >>> _, form = curvature([[0.0, 1.0, 2.0, 0.0, 0.0, 3.0]], quadratic_exponents(2))
+    >>> print(form[0])
+    [[1.  1.5]
+     [1.5 2. ]]
+    """
+    values = np.asarray(coefficient, dtype=np.float64)
+    n_factors = exponents.shape[1]
+    slope = np.zeros((values.shape[0], n_factors))
+    form = np.zeros((values.shape[0], n_factors, n_factors))
+    for index, powers in enumerate(exponents):
+        moved = np.repeat(np.arange(n_factors), powers)
+        if moved.size == 1:
+            slope[:, moved[0]] = values[:, index]
+        elif moved.size == 2:
+            form[:, moved[0], moved[1]] += values[:, index] / 2
+            form[:, moved[1], moved[0]] += values[:, index] / 2
+    return slope, form
+
+
+def canonical_analysis(
+    coefficient: ArrayLike,
+    exponents: Integers,
+    *,
+    covariance_factor: ArrayLike,
+    pattern: Integers,
+    sigma: ArrayLike,
+    low: ArrayLike,
+    high: ArrayLike,
+) -> Canonical:
+    r"""Stationary point and principal curvatures, with first-order uncertainties.
+
+    .. math::
+
+        x_s = -\tfrac{1}{2} B^{-1} b, \qquad
+        \frac{\partial x_s}{\partial \beta} = -(2B)^{-1} D(x_s), \qquad
+        \frac{\partial \lambda_j}{\partial B} = v_j v_j^T
+
+    Parameters
+    ----------
+    coefficient : array_like, shape (n_responses, n_terms)
+        Of coded factors. [unit of the response]
+    exponents : ndarray of int, shape (n_terms, n_factors)
+        Powers of the terms. [1]
+    covariance_factor : array_like, shape (n_patterns, n_terms, n_terms)
+        Of the coefficients, over sigma squared. [1]
+    pattern : ndarray of int, shape (n_responses,)
+        Row of the covariance factor. [1]
+    sigma : array_like, shape (n_responses,)
+        Standard deviation of a run. [unit of the response]
+    low, high : array_like, shape (n_factors,)
+        Levels that are -1 and +1. [SI unit of each factor]
+
+    Returns
+    -------
+    canonical : Canonical
+        NaN and a reason where there is no surface or no single stationary point.
+
+    Raises
+    ------
+    SettingsError
+        If a high level does not lie above its low one.
+
+    Notes
+    -----
+    Source: [1]_; uncertainty of an eigenvalue as [2]_.  Eigenvalues belong to coded units: a
+    change of the levels changes them, not the stationary point.  R's rsm sets small
+    eigenvalues to zero and then moves the stationary point; here they stand as they are.
+
+    Examples
+    --------
+    1 + 2 X - X^2 has its maximum, 2, at X = 1.
+
+    >>> from reduction.experiments.designs import quadratic_exponents
+    >>> found = canonical_analysis([[1.0, -1.0, 2.0]], quadratic_exponents(1), sigma=[0.1],
+    ...     covariance_factor=np.eye(3)[None], pattern=np.array([0]), low=[0.0], high=[10.0])
+    >>> print(found.stationary_point_engineering, found.stationary_value, found.kind)
+    [[10.]] [2.] [2]
+    """
+    values = np.asarray(coefficient, dtype=np.float64)
+    slope, form = curvature(values, exponents)
+    known = np.atleast_1d(np.isfinite(values).all(axis=1))
+    eigenvalue = np.full(slope.shape, np.nan)
+    eigenvector = np.full(form.shape, np.nan)
+    rising, vectors = np.linalg.eigh(form[known])
+    eigenvalue[known], vectors = rising[:, ::-1], vectors[:, :, ::-1]
+    largest = np.take_along_axis(vectors, np.argmax(np.abs(vectors), axis=1)[:, None], axis=1)
+    eigenvector[known] = vectors * np.sign(largest)
+    size = np.abs(eigenvalue)
+    flat = known & ~(size.min(axis=1) > _FLAT * size.max(axis=1))
+    sound = known & ~flat
+
+    # in the axes of the curvature each coordinate of the point is a quotient of its own
+    double = np.where(sound[:, None], 2 * eigenvalue, np.nan)
+    along = np.einsum("rij,ri->rj", eigenvector, slope) / -double
+    point = np.einsum("rij,rj->ri", eigenvector, along)
+    at = np.where(sound[:, None], point, 0.0)
+    value = np.sum(model_matrix(at, exponents) * values, axis=1)
+    deviation = np.asarray(sigma, dtype=np.float64)[:, None]
+    spread = [
+        deviation * np.sqrt(variance_factor(rows, covariance_factor, pattern=pattern))
+        for rows in canonical_slopes(point, eigenvalue, eigenvector, exponents)
+    ]
+    rising_count = np.sum(eigenvalue > 0, axis=1)
+    kind = np.where(rising_count == 0, 2, np.where(rising_count == exponents.shape[1], 1, 3))
+    return Canonical(
+        point,
+        engineering_from_coded(point, low=low, high=high),
+        spread[0],
+        np.where(sound, value, np.nan),
+        eigenvalue,
+        spread[1],
+        eigenvector,
+        np.where(sound, kind, 0).astype(np.int8),
+        (np.abs(point) <= 1).all(axis=1),
+        np.select([~known, flat], [1, 2], 0).astype(np.int8),
+    )
+
+
+def ridge_path(
+    coefficient: ArrayLike,
+    exponents: Integers,
+    *,
+    radius: ArrayLike,
+    low: ArrayLike,
+    high: ArrayLike,
+    direction: Literal["ascent", "descent"] = "ascent",
+) -> RidgePath:
+    r"""Highest (or lowest) point of each surface on spheres about the centre of the design.
+
+    .. math:: (B - \mu I) x = -\tfrac{1}{2} b, \qquad \lVert x \rVert = R, \qquad
+              \mu > \lambda_{max}
+
+    Parameters
+    ----------
+    coefficient : array_like, shape (n_responses, n_terms)
+        Of coded factors. [unit of the response]
+    exponents : ndarray of int, shape (n_terms, n_factors)
+        Powers of the terms. [1]
+    radius : array_like, shape (n_radii,)
+        Of the spheres, zero or more, coded. [1]
+    low, high : array_like, shape (n_factors,)
+        Levels that are -1 and +1. [SI unit of each factor]
+    direction : {'ascent', 'descent'}
+        Of the path.
+
+    Returns
+    -------
+    path : RidgePath
+        Coded and engineering (n_responses, n_radii, n_factors), value and multiplier
+        (n_responses, n_radii); NaN where there is no surface.
+
+    Raises
+    ------
+    SettingsError
+        If a radius is negative, or a high level does not lie above its low one.
+
+    Notes
+    -----
+    Source: [3]_.  The multiplier is found by bisection: the length of x falls with it beyond
+    the largest eigenvalue.  Where b has no part along that eigenvector the path ends on the
+    axis and its sign is free: the positive one is given.  A Box-Behnken design has no runs
+    at the corners of the cube; a radius above sqrt(2) leaves the runs behind.
+
+    Examples
+    --------
+    On a plane the path is straight.
+
+    >>> from reduction.experiments.designs import quadratic_exponents
+    >>> path = ridge_path([[0.0, 0.0, 0.0, 3.0, 4.0, 0.0]], quadratic_exponents(2),
+    ...     radius=[0.0, 1.0], low=[0.0, 0.0], high=[1.0, 1.0])
+    >>> print(path.coded[0].round(6), path.value[0].round(6))
+    [[0.  0. ]
+     [0.6 0.8]] [0. 5.]
+    """
+    length = as_finite("radius", radius)
+    if length.ndim != 1 or (length < 0).any():
+        raise SettingsError(
+            "the radii of a ridge path are a series of distances",
+            found=f"shape {length.shape}, smallest {length.min():g}",
+            needed="numbers of zero or more",
+        )
+    values = np.asarray(coefficient, dtype=np.float64)
+    sign = 1.0 if direction == "ascent" else -1.0
+    known = np.atleast_1d(np.isfinite(values).all(axis=1))
+    slope, form = curvature(sign * np.where(known[:, None], values, 0.0), exponents)
+    eigenvalue, eigenvector = np.linalg.eigh(form)
+    half = np.einsum("rij,ri->rj", eigenvector, slope)[:, None, :] / 2
+    # x = V half / (mu - lambda); written in the excess of mu over the largest eigenvalue
+    gap = (eigenvalue[:, -1:] - eigenvalue)[:, None, :]
+    reach = np.where(length > 0, length, 1.0)
+    least = np.abs(half[..., -1]) / reach
+    most = np.linalg.norm(half, axis=2) / reach
+    for _ in range(_HALVINGS):
+        middle = (least + most) / 2
+        far = _squared_length(half, gap + middle[..., None]) > reach**2
+        least, most = np.where(far, middle, least), np.where(far, most, middle)
+    excess = (least + most)[..., None] / 2
+    turned = _quotient(half, gap + excess)
+    short = np.maximum(reach**2 - np.sum(turned**2, axis=2), 0.0)
+    # what bisection cannot reach lies along the largest eigenvector
+    turned[..., -1] = np.copysign(np.sqrt(turned[..., -1] ** 2 + short), turned[..., -1])
+    turned *= (length > 0)[:, None]
+    coded = np.where(known[:, None, None], np.einsum("rij,rmj->rmi", eigenvector, turned), np.nan)
+    terms = model_matrix(np.nan_to_num(coded), exponents)
+    value = np.einsum("rmt,rt->rm", terms, values)
+    multiplier = sign * (eigenvalue[:, -1:] + excess[..., 0])
+    return RidgePath(
+        coded,
+        engineering_from_coded(coded, low=low, high=high),
+        value,
+        np.where(known[:, None] & (length > 0), multiplier, np.nan),
+    )
+
+
+def _quotient(half: Floats, above: Floats) -> Floats:
+    shape = np.broadcast_shapes(half.shape, above.shape)
+    full = np.broadcast_to(half, shape)
+    return np.divide(full, above, out=np.zeros(shape), where=above > 0)
+
+
+def _squared_length(half: Floats, above: Floats) -> Floats:
+    length: Floats = np.sum(_quotient(half, above) ** 2, axis=2)
+    return length

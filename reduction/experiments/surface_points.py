@@ -1,0 +1,469 @@
+r"""Values of response surfaces at points, with intervals.
+
+What of a plan counts as tested: its levels, and how much its runs say at a point.
+
+Points of the plan at which a surface is worth a number: centre, runs and corners.
+
+Values of response surfaces at points, with intervals and with what the runs say there.
+
+.. math::
+
+    \hat y \pm t_\nu\, s \sqrt{h(x)}, \qquad
+    \hat y \pm t_\nu\, s \sqrt{1 + h(x)}, \qquad
+    \hat y \pm \sqrt{p F_{p, \nu}}\, s \sqrt{h(x)}, \qquad h(x) = x^T C x
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4 ("range of usefulness").
+.. [2] H. Working and H. Hotelling, "Applications of the Theory of Error to the Interpretation
+   of Trends," J. Am. Stat. Assoc., vol. 24, suppl., pp. 73-85, 1929.
+.. [3] H. Scheffe, The Analysis of Variance. New York: Wiley, 1959, sec. 3.5.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import fdtri, stdtrit
+
+from reduction.experiments.designs import (
+    coded_from_engineering,
+    engineering_from_coded,
+    model_matrix,
+)
+from reduction.experiments.fit_results import ResponseSurfaces
+from reduction.experiments.response_matrix import times
+from reduction.experiments.response_transform import back_transform, retransformed_mean
+from reduction.experiments.run_sheet import ON_PLAN, variance_factor
+from reduction.record.arrays import as_finite
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Bools, Floats, read_only_arrays
+
+ABOVE_LEVERAGE = 1 + 1e-9
+
+"""Leverage of a point over the greatest of a tested one beyond which the runs say less. [1]."""
+
+_EDGE = 1e-9
+
+"""Rounding of the change of units, by which a point on the edge may lie outside."""
+
+
+def is_within_levels(coded: ArrayLike, *, allowed: ArrayLike = 0.0) -> Bools:
+    """Whether points lie between the low and the high level of every factor.
+
+    Parameters
+    ----------
+    coded : array_like, shape (..., n_factors)
+        The points. [1]
+    allowed : array_like, shape (n_factors,), optional
+        By how much a point may lie beyond, as where levels are printed in whole units. [1]
+
+    Returns
+    -------
+    is_within : ndarray of bool, shape (...)
+        False where a level is NaN. [1]
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not pair up.
+
+    Notes
+    -----
+    The range is that of the plan ([1]_).  A point within can still lie where no run was near.
+
+    Examples
+    --------
+    >>> is_within_levels([[0.0, 1.0], [0.0, 1.02]])
+    array([ True, False])
+    >>> is_within_levels([[0.0, 1.0], [0.0, 1.02]], allowed=0.05)
+    array([ True,  True])
+    """
+    within = np.abs(np.asarray(coded)) <= 1 + _EDGE + np.asarray(allowed)
+    return np.asarray(within.all(axis=-1))
+
+
+def levels_tested(reached: Floats, plan: Floats) -> Floats:
+    """Coded levels that count as tested: those reached, and those of the plan beside them.
+
+    Parameters
+    ----------
+    reached : ndarray, shape (n_runs, n_factors)
+        As reached. [1]
+    plan : ndarray, shape (n_runs, n_factors)
+        As planned; NaN where a run has no plan. [1]
+
+    Returns
+    -------
+    tested : ndarray, shape (n_tested, n_factors)
+        Those reached first. [1]
+
+    Raises
+    ------
+    ValueError
+        If reached and planned levels do not pair up.
+
+    Notes
+    -----
+    A planned level is no farther from its run than the run is from its plan: that scatter of the
+    machine is no reason to call the level untested.  Of a run that went elsewhere it says nothing.
+
+    Examples
+    --------
+    >>> levels_tested(np.array([[0.98], [0.2]]), np.array([[1.0], [-1.0]])).ravel()
+    array([0.98, 0.2 , 1.  ])
+    """
+    is_near = np.all(np.abs(reached - plan) <= ON_PLAN, axis=1)
+    return np.concatenate([reached, plan[is_near]])
+
+
+def greatest_leverage(surfaces: ResponseSurfaces, plan: ArrayLike | None = None) -> Floats:
+    """Greatest leverage of a tested level, by response: beyond it the runs say less.
+
+    Parameters
+    ----------
+    surfaces : ResponseSurfaces
+        As fitted.
+    plan : array_like, shape (n_runs or more, n_factors), optional
+        Coded levels as planned, in the order of the runs; without it the levels reached count
+        alone. [1]
+
+    Returns
+    -------
+    greatest : ndarray, shape (n_responses,)
+        NaN where a response has no run with a level. [1]
+
+    Raises
+    ------
+    ValueError
+        If the plan has fewer runs, or other factors, than the surfaces.
+
+    Examples
+    --------
+    A parabola through runs at three levels, of which the upper one was nearly reached:
+
+    >>> from reduction.experiments.response_surfaces import fit_surfaces
+    >>> plan = np.array([[-1.0], [-1.0], [0.0], [0.0], [1.0], [1.0]])
+    >>> runs = np.where(plan > 0, 0.9, plan)
+    >>> found = fit_surfaces(runs, [[1.0, 2.0, 4.0, 5.0, 3.0, 4.0]], factor_names=["frequency"],
+    ...     response_names=["stiffness"], low=[0.1], high=[0.5], units="coded")
+    >>> print(greatest_leverage(found).round(3), greatest_leverage(found, plan).round(3))
+    [0.5] [0.71]
+    """
+    coded = surfaces.coded
+    planned = coded if plan is None else np.asarray(plan, dtype=np.float64)[: len(coded)]
+    known = np.isfinite(coded).all(axis=1)
+    found = np.full(len(surfaces.covariance_factor), np.nan)
+    for pattern, (factor, used) in enumerate(
+        zip(surfaces.covariance_factor, surfaces.is_used, strict=True)
+    ):
+        own = known & used
+        levels = levels_tested(coded[own], planned[own])
+        leverage = variance_factor(model_matrix(levels, surfaces.exponents), factor)
+        leverage = leverage[np.isfinite(leverage)]
+        if leverage.size:
+            found[pattern] = leverage.max()
+    return found[surfaces.pattern]
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class PlanPoints:
+    """Points of a plan, none twice.
+
+    Parameters
+    ----------
+    coded : ndarray, shape (n_points, n_factors)
+        Levels. [1]
+    name : tuple of str, length n_points
+        The coded levels, ``(-1, 0, +1)``.
+    kind : tuple of str, length n_points
+        ``centre``, ``face centre``, ``edge midpoint``, ``corner``, or ``design point``.
+    """
+
+    coded: Floats
+    name: tuple[str, ...]
+    kind: tuple[str, ...]
+
+
+def plan_points(plan: ArrayLike) -> PlanPoints:
+    """Centre of the cube, then the points of the plan that differ, then the corners.
+
+    Parameters
+    ----------
+    plan : array_like, shape (n_runs, n_factors)
+        Coded levels as planned, repeats and all. [1]
+
+    Returns
+    -------
+    points : PlanPoints
+        The points of the plan in its order.
+
+    Raises
+    ------
+    DataError
+        If the plan is no table, or a level is not finite.
+
+    Notes
+    -----
+    A Box-Behnken plan of three factors has its runs at the centre and on the 12 edge midpoints:
+    with the 8 corners 21 points.  The corners belong to the tested range of each factor [1]_,
+    and no run was near: an interval there says so.
+
+    Examples
+    --------
+    >>> from reduction.experiments.designs import box_behnken
+    >>> found = plan_points(box_behnken(3).coded)
+    >>> [(kind, found.kind.count(kind)) for kind in dict.fromkeys(found.kind)]
+    [('centre', 1), ('edge midpoint', 12), ('corner', 8)]
+    >>> found.name[1]
+    '(-1, -1, 0)'
+    """
+    levels = as_finite("plan", plan)
+    if levels.ndim != 2 or not levels.shape[1]:
+        raise DataError(
+            "the plan is not a table of runs and factors",
+            found=f"shape {levels.shape}",
+            needed="(n_runs, n_factors)",
+        )
+    n_factors = levels.shape[1]
+    corners = np.array(list(product((-1.0, 1.0), repeat=n_factors)))
+    # a sum with nil makes of -0 the 0 that it is
+    every = np.vstack([np.zeros((1, n_factors)), levels, corners]) + 0.0
+    _, first = np.unique(every, axis=0, return_index=True)
+    kept = every[np.sort(first)]
+    is_corner = (np.abs(kept) == 1).all(axis=1)
+    coded = np.vstack([kept[~is_corner], corners])
+    return PlanPoints(
+        coded=coded,
+        name=tuple(f"({', '.join(f'{x:+g}' if x else '0' for x in row)})" for row in coded),
+        kind=_kinds(coded),
+    )
+
+
+def _kinds(coded: Floats) -> tuple[str, ...]:
+    n_factors = coded.shape[1]
+    nil, ends = np.sum(coded == 0, axis=1), np.sum(np.abs(coded) == 1, axis=1)
+    kind = np.select(
+        [
+            ends == n_factors,
+            nil == n_factors,
+            (ends == n_factors - 1) & (nil == 1),
+            (ends == 1) & (nil == n_factors - 1),
+        ],
+        ["corner", "centre", "edge midpoint", "face centre"],
+        "design point",
+    )
+    return tuple(kind.tolist())
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class SurfaceValues:
+    """Surfaces at points; shape (n_responses, n_points), intervals with a last axis of 2.
+
+    Values and intervals are of the response itself; a transformed one is brought back.
+
+    Parameters
+    ----------
+    coded, engineering : ndarray, shape (n_points, n_factors)
+        The points. [1], [SI unit of each factor]
+    value : ndarray
+        Of the surface; the median response where it was transformed. [unit of the response]
+    mean_value : ndarray
+        The mean response: the same where it was not transformed. [unit of the response]
+    fitted_standard_uncertainty : ndarray
+        Of the surface, on the scale it was fitted on. [unit of the fitted response]
+    run_standard_uncertainty : ndarray
+        Of one more run at the point, on the same scale. [unit of the fitted response]
+    variance_factor : ndarray
+        Leverage of the point. [1]
+    confidence_interval : ndarray
+        Of the surface at this point. [unit of the response]
+    prediction_interval : ndarray
+        Of one more run at this point, of one more specimen where specimens are random.
+        [unit of the response]
+    simultaneous_interval : ndarray
+        Of the surface at all points at once. [unit of the response]
+    is_inside : ndarray of bool, shape (n_points,)
+        Between the low and high levels of every factor.
+    above_leverage : ndarray of bool
+        Inside, and the runs say less there than at the worst of them, as in the corners of the
+        cube of a Box-Behnken design (1.396 against 0.75).
+    degrees_of_freedom : ndarray, shape (n_responses,)
+        Of the intervals. [1]
+    confidence : float
+        Of each interval. [1]
+    notes : tuple of str
+        What the intervals hold and what not.
+    """
+
+    coded: Floats
+    engineering: Floats
+    value: Floats
+    mean_value: Floats
+    fitted_standard_uncertainty: Floats
+    run_standard_uncertainty: Floats
+    variance_factor: Floats
+    confidence_interval: Floats
+    prediction_interval: Floats
+    simultaneous_interval: Floats
+    is_inside: Bools
+    above_leverage: Bools
+    degrees_of_freedom: Floats
+    confidence: float
+    notes: tuple[str, ...] = ()
+
+
+def evaluate_surfaces(
+    surfaces: ResponseSurfaces,
+    points: ArrayLike,
+    *,
+    units: Literal["engineering", "coded"] = "engineering",
+    confidence: float = 0.95,
+    outside: Literal["refuse", "flag"] = "refuse",
+    plan: ArrayLike | None = None,
+) -> SurfaceValues:
+    r"""Value of every surface at every point, with three kinds of interval.
+
+    Parameters
+    ----------
+    surfaces : ResponseSurfaces
+        As fitted.
+    points : array_like, shape (n_points, n_factors)
+        Where to evaluate. [SI unit of each factor, or 1 where coded]
+    units : {'engineering', 'coded'}
+        Of the points.
+    confidence : float
+        Of each interval. [1]
+    outside : {'refuse', 'flag'}
+        What to do with a point beyond the levels of the plan.
+    plan : array_like, shape (n_runs, n_factors), optional
+        Coded levels as planned: those that a run came near count as tested too. [1]
+
+    Returns
+    -------
+    values : SurfaceValues
+        NaN for a response without a surface, NaN intervals for one without scatter.
+
+    Raises
+    ------
+    SettingsError
+        If the confidence is not between 0 and 1.
+    DataError
+        If a point is not finite, has other factors, or lies outside and is not to be flagged.
+
+    Notes
+    -----
+    The range is that of the plan ([1]_, "range of usefulness"); a point inside it can still lie
+    where no run was near: `above_leverage`.  Simultaneous intervals hold for the whole surface
+    at once ([2]_, [3]_) and are the ones to draw; a confidence interval holds for one point
+    chosen beforehand.  With fixed blocks everything is of the mean over these specimens; with
+    random ones of the population, with the fewest degrees of freedom of any term.
+
+    Examples
+    --------
+    A mean of three runs and its slope, at the end of the range:
+
+    >>> from reduction.experiments.response_surfaces import fit_surfaces
+    >>> found = fit_surfaces([[-1.0], [-1.0], [0.0], [0.0], [1.0], [1.0]],
+    ...     [[1.0, 2.0, 4.0, 5.0, 3.0, 4.0]], factor_names=["frequency"],
+    ...     response_names=["stiffness"], low=[0.1], high=[0.5], units="coded")
+    >>> at = evaluate_surfaces(found, [[0.5]])
+    >>> print(at.value, at.variance_factor.round(3), at.confidence_interval.round(2))
+    [[3.5]] [[0.5]] [[[1.91 5.09]]]
+    """
+    if not 0 < confidence < 1:
+        raise SettingsError(
+            "the confidence of an interval is a probability",
+            found=f"{confidence:g}",
+            needed="between 0 and 1",
+        )
+    asked = as_finite("points", points)
+    if asked.ndim != 2 or asked.shape[1] != surfaces.coded.shape[1]:
+        raise DataError(
+            "the points do not have the factors of the surface",
+            found=f"shape {asked.shape}",
+            needed=f"(n_points, {surfaces.coded.shape[1]})",
+        )
+    limits = {"low": surfaces.low, "high": surfaces.high}
+    coded = asked if units == "coded" else coded_from_engineering(asked, **limits)
+    is_inside = is_within_levels(coded)
+    if outside == "refuse" and not is_inside.all():
+        _refuse(surfaces, coded, int(np.flatnonzero(~is_inside)[0]), int((~is_inside).sum()))
+
+    terms = model_matrix(coded, surfaces.exponents)
+    of_pattern = variance_factor(
+        np.broadcast_to(terms, (len(surfaces.covariance_factor), *terms.shape)),
+        surfaces.covariance_factor,
+        pattern=np.arange(len(surfaces.covariance_factor)),
+    )
+    factor = of_pattern[surfaces.pattern]
+    greatest = greatest_leverage(surfaces, plan)
+    fitted = times(surfaces.coefficient, terms.T)
+    sigma = np.where(surfaces.reason == 0, surfaces.sigma, np.nan)[:, None]
+    freedom = np.min(surfaces.term_degrees_of_freedom, axis=1)
+    between = np.zeros_like(sigma)
+    if surfaces.blocks is not None and surfaces.blocks.treatment == "random":
+        between = surfaces.blocks.standard_deviation[:, None]
+    deviation = sigma * np.sqrt(factor)
+    of_run = np.sqrt(sigma**2 + between**2 + deviation**2)
+    student = np.asarray(stdtrit(freedom, (1 + confidence) / 2))[:, None]
+    n_terms = len(surfaces.term_names)
+    scheffe = np.sqrt(n_terms * np.asarray(fdtri(n_terms, freedom, confidence)))[:, None]
+
+    power = surfaces.transform_exponent[:, None]
+    plain = np.array([kind == "none" for kind in surfaces.transform])[:, None]
+
+    def back(values: Floats) -> Floats:
+        return np.where(plain, values, back_transform(values, np.where(plain, 1.0, power)))
+
+    def interval(half: Floats) -> Floats:
+        return np.stack([back(fitted - half), back(fitted + half)], axis=-1)
+
+    mean = retransformed_mean(fitted, np.where(plain, 1.0, power), sigma=np.hypot(sigma, between))
+    return SurfaceValues(
+        coded=coded,
+        engineering=engineering_from_coded(coded, **limits),
+        value=back(fitted),
+        mean_value=np.where(plain, fitted, mean),
+        fitted_standard_uncertainty=deviation,
+        run_standard_uncertainty=of_run,
+        variance_factor=factor,
+        confidence_interval=interval(student * deviation),
+        prediction_interval=interval(student * of_run),
+        simultaneous_interval=interval(scheffe * deviation),
+        is_inside=is_inside,
+        above_leverage=is_inside & (factor > ABOVE_LEVERAGE * greatest[:, None]),
+        degrees_of_freedom=freedom,
+        confidence=confidence,
+        notes=_notes(surfaces),
+    )
+
+
+def _refuse(surfaces: ResponseSurfaces, coded: Floats, row: int, count: int) -> None:
+    column = int(np.argmax(np.abs(coded[row])))
+    level = engineering_from_coded(coded[row], low=surfaces.low, high=surfaces.high)[column]
+    raise DataError(
+        f"{count} of {len(coded)} points lie outside the tested range, first point {row + 1}",
+        found=f"{surfaces.factor_names[column]} = {level:g}",
+        needed=f"{surfaces.low[column]:g} to {surfaces.high[column]:g}",
+        hint="Ask for the value with a flag, or test there.",
+    )
+
+
+def _notes(surfaces: ResponseSurfaces) -> tuple[str, ...]:
+    notes = []
+    if set(surfaces.transform) != {"none"}:
+        notes.append(
+            "values of transformed responses are medians; the exponent counts as known in "
+            "their intervals"
+        )
+    if surfaces.blocks is not None and surfaces.blocks.treatment == "fixed":
+        notes.append("intervals are of the mean over the specimens tested, not of another specimen")
+    return tuple(notes)

@@ -1,1 +1,0 @@
-"""The explorer: a page on this machine that moves the settings of a test and saves them."""

@@ -1,1 +1,0 @@
-"""Stage: relaxation at constant length and creep at constant tension."""

@@ -1,1 +1,0 @@
-"""Edge: raw logs in declared layouts to records in SI."""

@@ -1,1 +1,0 @@
-"""Stage: the three-parameter line from loops and a slow pull; programmes of a rope laboratory."""

@@ -1,0 +1,339 @@
+"""Archives of one specimen as pieces of a tension-strain curve.
+
+Uncertainty of a curve of an archive in two parts: its own, and what it shares with others.
+
+A stepwise test out of its archive as pieces of a tension-strain curve.
+
+Archives of one specimen as pieces of a tension-strain curve.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from reduction.archive.shared_errors import components_of
+from reduction.archive.test_dataset import strain_model_of
+from reduction.archive.test_variables import STEP_MASKS
+from reduction.archive.variables import stored
+from reduction.lines.composite import PieceSource
+from reduction.lines.curve_pieces import (
+    CurvePiece,
+    PieceBranch,
+    mean_piece,
+    piece_of_pull,
+    piece_of_steps,
+    pieces_of_branches,
+)
+from reduction.record.contributions import Contributions
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Floats
+from reduction.stages.moduli.stepwise_test import StepwiseResult
+from reduction.stages.strain.strain_model import StrainModel
+
+_ROWS = "_uncertainty_contribution"
+
+
+def parts_of(
+    dataset: xr.Dataset, name: str, specimen: int | None = None, *, of: str
+) -> tuple[Floats, Contributions | None]:
+    """Both parts of the uncertainty of one curve of an archive.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        An archive of a reduced test.
+    name : str
+        Of the curve.
+    specimen : int, optional
+        Its place, where the curve has one a specimen.
+    of : str
+        What the contributions are called.
+
+    Returns
+    -------
+    random : ndarray, shape (...)
+        Standard uncertainty of the curve by itself; all of it, where the archive keeps the shared
+        part not apart. [unit of the curve]
+    shared : Contributions or None
+        Errors that touch it; None where the archive keeps none apart. [unit of the curve]
+    """
+    rows = stored(dataset, f"{name}{_ROWS}")
+    whole = f"{name}_standard_uncertainty"
+    own = np.asarray(
+        dataset[whole if rows is None else f"{name}_random_standard_uncertainty"].values
+    )
+    random = own if specimen is None else own[specimen]
+    if rows is None:
+        return random, None
+    table = np.array(rows.values if specimen is None else rows.values[:, specimen])
+    # an archive names the errors of all its specimens and quantities
+    touched = np.nan_to_num(table).any(axis=tuple(range(1, table.ndim)))
+    component = tuple(
+        one for one, kept in zip(components_of(dataset), touched, strict=True) if kept
+    )
+    return random, Contributions(component, {of: table[touched]})
+
+
+def pieces_of_weights(
+    dataset: xr.Dataset, branch: PieceBranch, name: str
+) -> tuple[CurvePiece, ...]:
+    """One branch of a stepwise test, or the mean of both.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Its archive.
+    branch : {"ascending", "descending", "mean"}
+        Which way; where weights were never taken off the way up stands for the mean.
+    name : str
+        Of the piece.
+
+    Returns
+    -------
+    pieces : tuple of CurvePiece
+        One.
+    """
+    random, shared = parts_of(dataset, "secant_modulus", of="secant_modulus")
+    steps = _steps(dataset, random)
+    if branch != "mean":
+        return (piece_of_steps(steps, name=name, branch=branch, shared=shared),)
+    up = piece_of_steps(steps, name=name, shared=shared)
+    try:
+        down = piece_of_steps(steps, name=name, branch="descending", shared=shared)
+        return (mean_piece(up, down),)
+    except DataError:
+        # weights were never taken off: the way up stands for the mean, and says so by its branch
+        return (up,)
+
+
+def _steps(dataset: xr.Dataset, random: Floats) -> StepwiseResult:
+    flags = dataset.variables["step_flag"].values
+
+    def number(name: str) -> float:
+        return float(dataset.variables[name].values)
+
+    def series(name: str) -> Any:
+        return np.array(dataset.variables[name].values)
+
+    return StepwiseResult(
+        clock=tuple(dataset.variables["clock"].values.astype(str).tolist()),
+        time=series("time"),
+        tension=series("tension"),
+        length=series("gauge_length"),
+        eye_to_eye_length=series("eye_to_eye_length"),
+        printed_strain=series("printed_strain"),
+        strain=series("strain"),
+        branch=series("branch"),
+        gauge_length=number("relaxed_gauge_length"),
+        gauge_length_standard_uncertainty=number("relaxed_gauge_length_standard_uncertainty"),
+        is_inconsistent=(flags & STEP_MASKS["length_and_elongation_disagree"]) > 0,
+        is_creep=(flags & STEP_MASKS["creep"]) > 0,
+        interval_strain=series("interval_strain"),
+        interval_modulus=series("interval_modulus"),
+        interval_modulus_standard_uncertainty=series("interval_modulus_standard_uncertainty"),
+        interval_branch=series("interval_branch"),
+        secant_modulus=series("secant_modulus"),
+        secant_modulus_standard_uncertainty=np.array(random),
+    )
+
+
+_SAME = 1e-6
+
+"""Relative difference of two diameters that are one."""
+
+
+def specimens_of(dataset: xr.Dataset) -> tuple[str, ...]:
+    """Names of the specimens of an archive of a test; none of another archive."""
+    if "specimen" not in dataset:
+        return ()
+    return tuple(dataset.variables["specimen"].values.astype(str).tolist())
+
+
+def pieces_of_test(
+    dataset: xr.Dataset, specimen: str, *, branch: PieceBranch, name: str
+) -> tuple[CurvePiece, ...]:
+    """Pieces that one test gives: its cycles, its first rise, its weights, or its slow pull.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        An archive of a reduced test.
+    specimen : str
+        One of its specimens.
+    branch : {"ascending", "descending", "mean"}
+        Of cycles and weights; a first rise and a slow pull only rise, and stand in for the mean.
+    name : str
+        Of the pieces.
+
+    Returns
+    -------
+    pieces : tuple of CurvePiece
+        None where the test has no curve of the branch.
+    """
+    place = specimens_of(dataset).index(specimen)
+    if "secant_modulus" in dataset and "step" in dataset.sizes:
+        return pieces_of_weights(dataset, branch, name)
+    pieces: tuple[CurvePiece, ...] = ()
+    if "branch_tension" in dataset:
+        random, shared = parts_of(dataset, "branch_tension", place, of="tension")
+        pieces += pieces_of_branches(
+            dataset.variables["strain_bin"].values,
+            dataset.variables["branch_tension"].values[place],
+            random,
+            name=name,
+            branch=branch,
+            shared=shared,
+        )
+    if branch == "descending":
+        return pieces
+    if "quasi_static_strain" in dataset and "tension_grid" in dataset:
+        strain = dataset.variables["quasi_static_strain"].values[place]
+        if np.count_nonzero(np.isfinite(strain)) > 1:
+            # the first rise of a slow pull is the pull
+            random, shared = parts_of(dataset, "quasi_static_strain", place, of="strain")
+            grid = dataset.variables["tension_grid"].values
+            return (*pieces, piece_of_pull(strain, grid, random, name=name, shared=shared))
+    if "branch_tension_first_loading" in dataset:
+        random, shared = parts_of(dataset, "branch_tension_first_loading", place, of="tension")
+        pieces += pieces_of_branches(
+            dataset.variables["first_loading_strain_bin"].values,
+            dataset.variables["branch_tension_first_loading"].values[place],
+            random,
+            name=name,
+            branch="ascending",
+            kind="first-loading",
+            shared=shared,
+        )
+    return pieces
+
+
+def source_of_tests(
+    datasets: Sequence[xr.Dataset], specimen: str, *, branch: PieceBranch
+) -> PieceSource:
+    """Pieces of one specimen from all of its tests.
+
+    Parameters
+    ----------
+    datasets : sequence of xarray.Dataset
+        Archives of reduced tests.
+    specimen : str
+        Its name, the same in all of them; archives without it are told in a note.
+    branch : {"ascending", "descending", "mean"}
+        As `pieces_of_test`.
+
+    Returns
+    -------
+    source : PieceSource
+        With the strain model of the first test that has one.
+
+    Raises
+    ------
+    SettingsError
+        If one test stands there twice, or diameters differ.
+    DataError
+        If no test gives a piece.
+    """
+    own = [one for one in datasets if specimen in specimens_of(one)]
+    others = sorted(_id(one) for one in datasets if specimen not in specimens_of(one))
+    own.sort(key=lambda one: (_order(one), _id(one)))
+    ids = [_id(one) for one in own]
+    twice = next((one for one in ids if ids.count(one) > 1), None)
+    if twice is not None:
+        raise SettingsError(f"test {twice} stands there twice", needed="each archive once")
+    wholes = {str(one.attrs.get("test", "")) for one in own}
+    one_campaign = len({str(one.attrs.get("campaign", "")) for one in own}) == 1
+    pieces: list[CurvePiece] = []
+    piece_sources: list[str] = []
+    notes = [f"of other specimens: {', '.join(others)}"] if others else []
+    for one in own:
+        test = str(one.attrs.get("test", "")) if one_campaign else _id(one)
+        whole = str(one.attrs.get("part_of", ""))
+        if whole in wholes:
+            notes.append(f"{test} is left out: it is a part of {whole}")
+            continue
+        found = pieces_of_test(one, specimen, branch=branch, name=test)
+        if not found:
+            notes.append(f"{test} ({one.attrs.get('test_kind', 'unknown')}) has no {branch} curve")
+            continue
+        pieces += found
+        piece_sources += [_said(one)] * len(found)
+        place = specimens_of(one).index(specimen)
+        slips = int(one["n_slips"].values[place]) if "n_slips" in one else 0
+        if slips > 0:
+            notes.append(f"{test}: a splice slipped {slips} times, and its strains hold the slip")
+    if not pieces:
+        raise DataError(
+            f"no test of '{specimen}' gives a {branch} curve of tension over strain",
+            found=", ".join(f"{_id(one)} ({one.attrs.get('test_kind', '')})" for one in own),
+            needed="cycles, a first rise, weights or a slow pull",
+        )
+    models = [strain_model_of(one, specimens_of(one).index(specimen)) for one in own]
+    known = [model for model in models if model is not None]
+    if any(_differ(known[0], other) for other in known[1:]):
+        notes.append(
+            f"tests have strain models of their own; lengths are by that of "
+            f"{next(_id(one) for one, model in zip(own, models, strict=True) if model is known[0])}"
+        )
+    return PieceSource(
+        name=specimen,
+        branch=branch,
+        pieces=tuple(pieces),
+        model=known[0] if known else None,
+        diameter=_one_number(own, specimen, "diameter"),
+        rated_break_strength=_one_number(own, specimen, "rated_break_strength"),
+        linear_density=_one_number(own, specimen, "linear_density"),
+        wet_linear_density=_one_number(own, specimen, "wet_linear_density"),
+        sources=tuple(dict.fromkeys(piece_sources)),
+        piece_sources=tuple(piece_sources),
+        notes=tuple(notes),
+        is_synthetic=any(one.attrs.get("synthetic") == "yes" for one in own),
+    )
+
+
+def _id(dataset: xr.Dataset) -> str:
+    return str(dataset.attrs.get("id", dataset.attrs.get("test", "")))
+
+
+def _order(dataset: xr.Dataset) -> float:
+    text = str(dataset.attrs.get("test_order", ""))
+    return float(text) if text.isdigit() else float("inf")
+
+
+def _said(dataset: xr.Dataset) -> str:
+    about = dataset.attrs
+    digest = f", raw file sha256 {about['raw_file_sha256']}" if about.get("raw_file_sha256") else ""
+    origin = f", {about['source']}" if about.get("source") else ""
+    return f"archive {_id(dataset)}{origin}{digest}"
+
+
+def _differ(one: StrainModel, other: StrainModel) -> bool:
+    """Whether two strain models are of two laws; the range of the marks does not matter."""
+    if one.method != other.method or one.coefficients.keys() != other.coefficients.keys():
+        return True
+    values = [np.array(list(model.coefficients.values())) for model in (one, other)]
+    return not np.allclose(values[0], values[1], rtol=_SAME, atol=0)
+
+
+def _one_number(datasets: Sequence[xr.Dataset], specimen: str, name: str) -> float:
+    """What is stated of the specimen; NaN where nothing is."""
+    found = [
+        (float(one[name].values[specimens_of(one).index(specimen)]), _id(one))
+        for one in datasets
+        if name in one
+    ]
+    known = [(value, where) for value, where in found if np.isfinite(value)]
+    if not known:
+        return float("nan")
+    value, where = known[0]
+    for other, there in known[1:]:
+        if abs(other - value) > _SAME * abs(value):
+            raise SettingsError(
+                f"the archives state another {name.replace('_', ' ')} of '{specimen}'",
+                found=f"{value:.6g} in {where}, {other:.6g} in {there}",
+                needed="one specimen",
+            )
+    return value

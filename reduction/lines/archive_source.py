@@ -1,0 +1,519 @@
+"""Archives and processed campaigns as sources of design values.
+
+Curves of a reduced test as they are looked up: moduli and tensions over strain, slow pulls.
+
+Archives as sources of design values: surfaces of an experiment, curves of a test.
+
+Lines of an archive, and of the folder of a processed campaign, as sources of design values.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from reduction.archive.open import Opener, archives_of_tests, reading
+from reduction.archive.shared_errors import components_of
+from reduction.archive.surfaces_dataset import surface_names, surfaces_of
+from reduction.archive.uncertainty_budget import random_freedom
+from reduction.archive.variables import stored
+from reduction.experiments.fit_results import ResponseSurfaces
+from reduction.experiments.surface_points import greatest_leverage
+from reduction.lines.line_lookup import Branch
+from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
+from reduction.quantities.names import RESPONSES, quantity
+from reduction.record.contributions import Component
+from reduction.record.errors import ArchiveError
+from reduction.record.measurement import Bools, Floats
+
+_OVER_STRAIN = ("tangent_modulus", "branch_tension")
+
+_OVER_TENSION = {
+    "quasi_static_spring_constant": ("quasi_static_spring_constant", "mean_tension"),
+    "quasi_static_strain": ("strain", "tension"),
+}
+
+_Parts = dict[str, Any]  # fields of `LineCurve` that say how well it is known
+
+CURVES = (*_OVER_STRAIN, *_OVER_TENSION)
+
+"""Variables of a reduced test that are looked up as curves."""
+
+
+def curves_of_specimen(dataset: xr.Dataset, place: int) -> tuple[LineCurve, ...]:
+    """Curves of one specimen of a reduced test.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        An archive of a reduced test.
+    place : int
+        Of the specimen.
+
+    Returns
+    -------
+    curves : tuple of LineCurve
+        None where the test has none.
+    """
+    return (
+        *(
+            curve
+            for name in _OVER_STRAIN
+            if name in dataset
+            for curve in _branches(dataset, name, place)
+        ),
+        *_of_pull(dataset, place),
+    )
+
+
+def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
+    strain = dataset.variables["strain_bin"].values
+    curves = []
+    branches: tuple[Branch, Branch] = ("ascending", "descending")
+    for index, branch in enumerate(branches):
+        value = dataset.variables[name].values[place, index]
+        seen = np.isfinite(value)
+        if seen.sum() < 2:
+            continue
+        at = strain[seen]
+        # bins without a cycle between two that have one are not known
+        missing = np.flatnonzero(np.diff(np.flatnonzero(seen)) > 1)
+        curves.append(
+            LineCurve(
+                quantity=name,
+                variable="strain",
+                low=float(at[0]),
+                high=float(at[-1]),
+                at=np.array(at),
+                value=np.array(value[seen]),
+                **_uncertainty(dataset, name, (place, index), seen),
+                spread_of="the mean over the cycles of this one test",
+                gaps=np.stack([at[missing], at[missing + 1]], axis=1),
+                branch=branch,
+                notes=(f"gaps between bins, where nothing was measured: {missing.size}",)
+                if missing.size
+                else (),
+            )
+        )
+    return curves
+
+
+def _uncertainty(dataset: xr.Dataset, name: str, place: tuple[int, ...], seen: Bools) -> _Parts:
+    """Uncertainty of a curve where it was seen, by its parts; nothing where it has none."""
+    if f"{name}_standard_uncertainty" not in dataset:
+        return {}
+    spread = np.asarray(
+        dataset.variables[f"{name}_standard_uncertainty"].values[place], dtype=np.float64
+    )
+    freedom = np.broadcast_to(random_freedom(dataset, name), dataset.variables[name].shape)[place]
+    found: _Parts = {
+        "standard_uncertainty": spread[seen],
+        "degrees_of_freedom": np.array(freedom[seen]),
+    }
+    own_rows = stored(dataset, f"{name}_uncertainty_contribution")
+    if own_rows is None:
+        return found
+    rows = np.nan_to_num(np.moveaxis(own_rows.values, 0, -1)[place].T)[:, seen]
+    touched = np.flatnonzero(rows.any(axis=1))
+    component = components_of(dataset)
+    return found | {
+        "component": tuple(component[row] for row in touched),
+        "contribution": rows[touched],
+    }
+
+
+def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
+    """K_0 and strain of a slow pull, by its cubic, over its range of use."""
+    if "pull_strain_coefficient" not in dataset:
+        return []
+    coefficient = np.array(dataset.variables["pull_strain_coefficient"].values[place])
+    if not np.isfinite(coefficient).all():
+        return []
+    everywhere = np.ones(dataset.sizes["tension_grid"], dtype=bool)
+    return [
+        LineCurve(
+            quantity=name,
+            variable=variable,
+            low=float(dataset.variables["pull_tension_low"].values[place]),
+            high=float(dataset.variables["pull_tension_high"].values[place]),
+            coefficient=coefficient,
+            is_inverse_slope=name != "strain",
+            at=np.array(dataset.variables["tension_grid"].values),
+            **_uncertainty(dataset, stored, (place,), everywhere),
+            spread_of="the curve of this one pull",
+        )
+        for stored, (name, variable) in _OVER_TENSION.items()
+    ]
+
+
+_SCALES = ("log_", "box_cox_", "")
+
+"""A surface on a scale that was asked for stands before the one of the quantity itself."""
+
+_TEXTS = {
+    "kind": "specimen_kind",
+    "material": "specimen_material",
+    "construction": "specimen_construction",
+    "condition": "specimen_condition",
+}
+
+_NUMBERS = ("diameter", "linear_density", "wet_linear_density")
+
+Facts = Mapping[str, str | float]
+
+"""Fields of `LineSource` that a specimen states, by name."""
+
+
+def line_source_of_experiment(
+    dataset: xr.Dataset, experiment: str, *, specimens: Mapping[str, Facts] | None = None
+) -> LineSource:
+    """Surfaces of an experiment as a source of design values.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        An archive of experiments.
+    experiment : str
+        Name of one.
+    specimens : mapping of str to mapping, optional
+        What is known of its specimens, by name: `facts_of_specimens` of the archives of its
+        tests.  The line has what all of them agree on.
+
+    Returns
+    -------
+    line : LineSource
+        With a surface of each response that was fitted.
+
+    Raises
+    ------
+    ArchiveError
+        If the archive has no such experiment, it has no surface, or its levels are shares of
+        break strengths that differ.
+    """
+    names = surface_names(dataset, experiment)
+    if not names:
+        raise ArchiveError(f"experiment '{experiment}' has no surface", needed="a Box-Behnken one")
+    row = dataset.variables["experiment"].values.astype(str).tolist().index(experiment)
+    fitted = surfaces_of(dataset, experiment)
+    factors = fitted.factor_names
+    units = dataset.variables["factor_unit"].values[row].astype(str)[: len(factors)]
+    strength = _one_strength(dataset, row)
+    scale = np.array(
+        [
+            _scale(name, unit, strength, experiment)
+            for name, unit in zip(factors, units, strict=True)
+        ]
+    )
+    surfaces = {}
+    for response in RESPONSES:
+        name = next((f"{one}{response}" for one in _SCALES if f"{one}{response}" in names), None)
+        if name is not None:
+            shared = _shared(dataset, row, name, len(fitted.exponents))
+            plan = dataset["run_plan"].to_numpy()[row, :, : len(factors)]
+            surfaces[response] = _surface(
+                fitted, names.index(name), response, name, scale, shared, plan
+            )
+    return LineSource(
+        name=experiment,
+        source=f"{dataset.attrs.get('id', 'surfaces')}, experiment {experiment}",
+        rated_break_strength=strength,
+        factor_names=factors,
+        surfaces=surfaces,
+        notes=_synthetic(dataset),
+        **_agreed([(specimens or {}).get(one, {}) for one in specimens_of(dataset, experiment)]),
+    )
+
+
+def specimens_of(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
+    """Names of the specimens whose runs an experiment is of."""
+    row = dataset.variables["experiment"].values.astype(str).tolist().index(experiment)
+    return tuple(
+        sorted({str(name) for name in dataset.variables["run_specimen"].values[row] if str(name)})
+    )
+
+
+def facts_of_specimens(dataset: xr.Dataset) -> dict[str, Facts]:
+    """What the archive of a reduced test states of each of its specimens, by name."""
+    if "specimen" not in dataset:
+        return {}
+    names = dataset.variables["specimen"].values.astype(str).tolist()
+    return {name: _facts(dataset, place) for place, name in enumerate(names)}
+
+
+def _facts(dataset: xr.Dataset, place: int) -> dict[str, Any]:
+    return {
+        name: str(dataset[stored].values[place]) if stored in dataset else ""
+        for name, stored in _TEXTS.items()
+    } | {
+        name: float(dataset.variables[name].values[place]) if name in dataset else float("nan")
+        for name in _NUMBERS
+    }
+
+
+def _agreed(facts: Sequence[Facts]) -> dict[str, Any]:
+    """What all specimens have alike; nothing is said of what they differ in."""
+    agreed: dict[str, Any] = dict.fromkeys(_TEXTS, "") | dict.fromkeys(_NUMBERS, float("nan"))
+    for name, nothing in agreed.items():
+        found = {one.get(name, nothing) for one in facts}
+        if len(found) == 1:
+            agreed[name] = found.pop()
+    return agreed
+
+
+def _shared(
+    dataset: xr.Dataset, row: int, name: str, n_terms: int
+) -> tuple[tuple[Component, ...], Floats]:
+    """Errors that the runs share, and what each of them adds to the coefficients of a surface.
+
+    Not a number, where that is not kept of every run.
+    """
+    rows = stored(dataset, f"{name}_coefficient_uncertainty_contribution")
+    if rows is None:
+        return (), np.empty((0, n_terms))
+    own = rows.to_numpy()[row, :, :n_terms]
+    component = components_of(dataset, row)
+    # an experiment with fewer errors than another of the archive is filled up
+    is_one = np.array([bool(one.source) for one in component], dtype=bool)
+    known = np.flatnonzero(is_one & own.any(axis=1))
+    return tuple(component[place] for place in known), own[known]
+
+
+def _surface(
+    fitted: ResponseSurfaces,
+    index: int,
+    response: str,
+    name: str,
+    scale: Floats,
+    shared: tuple[tuple[Component, ...], Floats],
+    plan: Floats,
+) -> LineSurface:
+    covariance = fitted.covariance_factor[fitted.pattern[index]]
+    n_terms = len(fitted.exponents)
+    notes = [] if name == response else [f"from the surface of {name}, brought back"]
+    component, rows = shared
+    sigma = float(fitted.sigma[index])
+    if np.isfinite(fitted.coefficient[index]).all() and np.isnan(rows).any():
+        component, rows, sigma = (), rows[:0], float("nan")
+        notes.append(
+            "no interval is given: of some runs it is not kept what they share with the others"
+        )
+    elif not rows.size:
+        notes.append(
+            "the intervals are of the scatter of the runs: of what all runs share, as the load "
+            "cell, nothing is stated"
+        )
+    if not np.isfinite(fitted.coefficient[index]).all():
+        notes.append("the surface was refused")
+    return LineSurface(
+        quantity=response,
+        coefficient=np.array(fitted.coefficient[index]),
+        exponents=np.array(fitted.exponents),
+        low=scale * fitted.low,
+        high=scale * fitted.high,
+        covariance_factor=np.array(covariance[:n_terms, :n_terms]),
+        sigma=sigma,
+        degrees_of_freedom=float(fitted.degrees_of_freedom[index]),
+        greatest_leverage=float(greatest_leverage(fitted, plan)[index]),
+        exponent=float(fitted.transform_exponent[index]),
+        component=component,
+        contribution=rows,
+        notes=tuple(notes),
+    )
+
+
+def _one_strength(dataset: xr.Dataset, row: int) -> float:
+    """Break strength of the runs; NaN where it is not known, or they differ."""
+    if "run_rated_break_strength" not in dataset:
+        return float("nan")
+    found = dataset.variables["run_rated_break_strength"].values[row]
+    known = np.unique(found[np.isfinite(found)])
+    return float(known[0]) if known.size == 1 else float("nan")
+
+
+def _scale(name: str, unit: str, strength: float, experiment: str) -> float:
+    """From the unit of the levels to SI: a share of a break strength becomes a tension."""
+    try:
+        own = quantity(name).unit
+    except KeyError:
+        return 1.0
+    if unit == own:
+        return 1.0
+    if own == "N" and unit == "1" and np.isfinite(strength):
+        return strength
+    raise ArchiveError(
+        f"levels of {name} of experiment '{experiment}' are no {own}",
+        found=f"unit {unit}", needed="one rated_break_strength of all its specimens",
+    )  # fmt: skip
+
+
+def line_source_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
+    """Curves of one specimen of a reduced test as a source of design values.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        An archive of a reduced test.
+    specimen : str
+        One of its specimens.
+
+    Returns
+    -------
+    line : LineSource
+        Tangent modulus and tension over strain on each branch; of a slow pull K_0 over the mean
+        tension and strain over tension.
+
+    Raises
+    ------
+    ArchiveError
+        If the archive has no such specimen, or no curve.
+    """
+    known = (
+        []
+        if "specimen" not in dataset
+        else dataset.variables["specimen"].values.astype(str).tolist()
+    )
+    if specimen not in known:
+        raise ArchiveError(
+            "the archive has no such specimen", found=specimen, needed=", ".join(known) or "none"
+        )
+    place = known.index(specimen)
+    strength = "rated_break_strength"
+    curves = curves_of_specimen(dataset, place)
+    if not curves:
+        raise ArchiveError(
+            f"the archive of test {dataset.attrs.get('test', '')} has no curve",
+            needed="a cyclic test, or a slow pull",
+        )
+
+    return LineSource(
+        name=specimen,
+        source=f"{dataset.attrs.get('id', '')}, specimen {specimen}",
+        rated_break_strength=float(dataset[strength].values[place])
+        if strength in dataset
+        else float("nan"),
+        curves=curves,
+        notes=_synthetic(dataset),
+        **_facts(dataset, place),
+    )
+
+
+def _synthetic(dataset: xr.Dataset) -> tuple[str, ...]:
+    return ("synthetic data",) if dataset.attrs.get("synthetic") == "yes" else ()
+
+
+_SURFACES = "surfaces.nc"
+
+
+def archives_of_lines(folder: Path) -> list[Path]:
+    """Archives of a campaign's folder that may have something to look up, surfaces last."""
+    surfaces = folder / _SURFACES
+    return [*archives_of_tests(folder), *([surfaces] if surfaces.is_file() else [])]
+
+
+def lines_of_archive(path: Path) -> list[LineSource]:
+    """Every line of one archive that has something to look up.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Of a reduced test, or of experiments.
+
+    Returns
+    -------
+    lines : list of LineSource
+        None where there is no surface and no curve.
+
+    Raises
+    ------
+    ArchiveError
+        If the archive cannot be read.
+    """
+    with reading(path) as archive:
+        return lines_of_open_archive(archive, path)
+
+
+def lines_of_open_archive(
+    archive: xr.Dataset, path: Path, opener: Opener = reading
+) -> list[LineSource]:
+    """Every line of one archive that is open, as `lines_of_archive`.
+
+    Parameters
+    ----------
+    archive : xarray.Dataset
+        As `reduction.archive.open.open_archive` gives it.
+    path : pathlib.Path
+        Where it is: of an experiment the tests beside it say what its specimens are.
+    opener : Opener
+        How archives are opened.
+
+    Returns
+    -------
+    lines : list of LineSource
+        None where there is no surface and no curve.
+
+    Raises
+    ------
+    ArchiveError
+        If an archive beside it cannot be read.
+    """
+    if "experiment" in archive.sizes:
+        names = archive.variables["experiment"].values.astype(str).tolist()
+        kinds = archive.variables["experiment_kind"].values.astype(str).tolist()
+        wanted = {one for name in names for one in specimens_of(archive, name)}
+        known = _specimens(path, wanted, opener)
+        return [
+            line_source_of_experiment(archive, name, specimens=known)
+            for name, kind in zip(names, kinds, strict=True)
+            if kind == "box-behnken"
+        ]
+    if not any(name in archive for name in CURVES):
+        return []
+    names = archive.variables["specimen"].values.astype(str).tolist()
+    return [line_source_of_test(archive, name) for name in names]
+
+
+def told_apart(found: Sequence[tuple[str, Sequence[LineSource]]]) -> list[LineSource]:
+    """Lines of a campaign by their files; a specimen that is in several is called TEST SPECIMEN.
+
+    Parameters
+    ----------
+    found : sequence of (str, sequence of LineSource)
+        Name of the test, and the lines of its archive.
+
+    Returns
+    -------
+    lines : list of LineSource
+        In that order.
+
+    Examples
+    --------
+    >>> line = LineSource("new", "", "rubber", "", "", 0.025, 3e3)
+    >>> [one.name for one in told_apart([("T-1", [line]), ("T-2", [line])])]
+    ['T-1 new', 'T-2 new']
+    """
+    lines = [line for _, own in found for line in own]
+    names = names_apart([(test, line.name) for test, own in found for line in own])
+    return [replace(line, name=name) for line, name in zip(lines, names, strict=True)]
+
+
+def names_apart(named: Sequence[tuple[str, str]]) -> list[str]:
+    """Names of lines by their tests and specimens, as `told_apart` gives them."""
+    count = Counter(name for _, name in named)
+    return [f"{test} {name}" if count[name] > 1 else name for test, name in named]
+
+
+def _specimens(path: Path, names: set[str], opener: Opener) -> dict[str, Facts]:
+    """What the archives of tests beside an archive of experiments state of its specimens."""
+    known: dict[str, Facts] = {}
+    for one in archives_of_tests(path.parent):
+        if names <= known.keys():
+            break
+        with opener(one) as archive:
+            known |= facts_of_specimens(archive)
+    return known

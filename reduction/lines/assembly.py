@@ -1,0 +1,1111 @@
+r"""Deployed assemblies: tension against length, stiffness, load of each tether.
+
+What a deployed assembly is made of: tethers with their splices, and parts in line with them.
+
+Splices of a tether that is to be deployed: as they were tested, or as they are stated.
+
+Tethers side by side, other parts in line: tension of a deployed assembly against its length.
+
+All tethers have one length between the bridles; each has the tension of its own curve there, and
+the length of every part in line follows from the tension:
+
+.. math:: T = \sum_i F_i(p), \qquad p = p_i(F_i), \qquad
+          L(T) = p(T) + \sum_j \ell_j\,(1 + \varepsilon_j(T))
+
+Length is explicit in tension part by part, so that the curve is a table and nothing is iterated.
+
+A deployed assembly at work: stiffness, load of each tether, and whether one goes slack.
+
+A deployed assembly from its tethers to its curve, its stiffness and its work.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2.
+.. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3, Table 3.
+.. [3] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2, 2.3.3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.lines.composite import CompositeCurve, PieceSource
+from reduction.lines.line_lookup import cycle_loads
+from reduction.record.arrays import as_positive
+from reduction.record.contributions import (
+    Component,
+    Contributions,
+    combined_standard_uncertainty,
+    stacked,
+)
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Bools, Floats, read_only_arrays
+from reduction.stages.strain.strain_model import StrainModel, position_by_model, with_free_length
+
+
+@dataclass(frozen=True)
+class Tether:
+    """A tether with its splices.
+
+    Parameters
+    ----------
+    curve : CompositeCurve
+        Tension against strain of the free length. [SI]
+    model : StrainModel
+        How strain and tension give its length, thimble to thimble: the strain correction.
+    is_stated : bool
+        The splices are stated: no load cell of the tests is in them.
+    """
+
+    curve: CompositeCurve
+    model: StrainModel
+    is_stated: bool = False
+
+
+@dataclass(frozen=True)
+class SeriesPart:
+    """A part in line with the tethers.
+
+    Parameters
+    ----------
+    name : str
+        Chain, bridle, swivel, wire ...
+    length : float
+        Without tension. [m]
+    spring_constant : float
+        EA, force per unit strain; infinite where it is rigid. [N]
+    curve : CompositeCurve or None
+        In place of a spring constant.
+    """
+
+    name: str
+    length: float
+    spring_constant: float = float("inf")
+    curve: CompositeCurve | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse a part that is no part."""
+        if not self.length >= 0:
+            raise SettingsError(
+                f"{self.name} has no length", found=f"{self.length:g} m", needed="zero or above"
+            )
+        if not self.spring_constant > 0:
+            raise SettingsError(
+                f"the spring constant of {self.name} is not positive",
+                found=f"{self.spring_constant:g} N",
+                needed="above zero",
+            )
+
+    def length_at(self, tension: ArrayLike) -> Floats:
+        """Length [m] at a tension [N]; NaN beyond a curve."""
+        load = np.asarray(tension, dtype=np.float64)
+        if self.curve is not None:
+            return np.asarray(self.length * (1 + self.curve.strain_at(load)))
+        return np.asarray(self.length * (1 + load / self.spring_constant))
+
+
+def equal_tethers(tether: Tether, n_tethers: int) -> tuple[Tether, ...]:
+    """Return tethers that are all alike.
+
+    Parameters
+    ----------
+    tether : Tether
+        One of them.
+    n_tethers : int
+        How many. [1]
+
+    Returns
+    -------
+    tethers : tuple of Tether
+        The same one again and again.
+
+    Raises
+    ------
+    SettingsError
+        If there are none.
+
+    Notes
+    -----
+    Assemblies of [1]_ have one, four and six (sec. 2.3.2).
+
+    Examples
+    --------
+    See `reduction.lines.assembly.assemble`.
+    """
+    if n_tethers < 1:
+        raise SettingsError("an assembly has tethers", found=str(n_tethers), needed="1 or more")
+    return (tether,) * n_tethers
+
+
+def unequal_tethers(tether: Tether, free_length: ArrayLike) -> tuple[Tether, ...]:
+    """Return tethers of one material and one kind of splice, cut to lengths of their own.
+
+    Parameters
+    ----------
+    tether : Tether
+        As it was tested.
+    free_length : array_like, shape (n_tethers,)
+        Relaxed, splice toe to splice toe. [m]
+
+    Returns
+    -------
+    tethers : tuple of Tether
+        In that order.
+
+    Raises
+    ------
+    DataError
+        If a length is not positive, or the strain method knows no splice apart.
+
+    Notes
+    -----
+    The shortest carries most; a load that all share equally is that of equal lengths.
+
+    Examples
+    --------
+    See `reduction.lines.assembly.worst_sharing`.
+    """
+    lengths = np.atleast_1d(as_positive("free_length", free_length))
+    return tuple(
+        replace(tether, model=with_free_length(tether.model, float(length))) for length in lengths
+    )
+
+
+@dataclass(frozen=True)
+class StatedSplices:
+    """Splices of a tether, without a test of their own.
+
+    Parameters
+    ----------
+    length : float
+        Of both together, relaxed; zero where there are none. [m]
+    strain_ratio : float or None
+        Their strain over that of the free length. [1]
+    strain, at_tension : float or None
+        Theirs at a tension; rigid where neither this nor a ratio is stated. [1], [N]
+    exponent : float
+        Of the tension, with ``strain``. [1]
+    """
+
+    length: float
+    strain_ratio: float | None = None
+    strain: float | None = None
+    at_tension: float | None = None
+    exponent: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Refuse splices that are none."""
+        checks = (
+            ("length", self.length, self.length >= 0, "zero or above"),
+            ("strain_ratio", self.strain_ratio, (self.strain_ratio or 0.0) >= 0, "zero or above"),
+            ("strain", self.strain, self.strain is None or self.strain > 0, "above zero"),
+            (
+                "at_tension",
+                self.at_tension,
+                self.at_tension is None or self.at_tension > 0,
+                "above zero",
+            ),
+            ("exponent", self.exponent, 0 < self.exponent < 2, "above 0, below 2"),
+        )
+        for name, value, holds, needed in checks:
+            if not holds:
+                raise SettingsError(
+                    f"{name} is no number of a splice", found=f"{value:g}", needed=needed
+                )
+
+
+def stated_model(splices: StatedSplices, free_length: float, *, name: str) -> StrainModel:
+    r"""Strain model of a tether with stated splices.
+
+    .. math:: \ell_s(F) = \ell_{s0} (1 + \rho\,\varepsilon) \quad \text{or} \quad
+       \ell_{s0} \Big(1 + \varepsilon_1 \big(F / F_1\big)^n\Big)
+
+    Parameters
+    ----------
+    splices : StatedSplices
+        Length and law.
+    free_length : float
+        Relaxed, splice toe to splice toe. [m]
+    name : str
+        Of the tether.
+
+    Returns
+    -------
+    model : StrainModel
+        By gauge-length without splices, by strain-ratio or by tension-driven with them.
+
+    Raises
+    ------
+    DataError
+        If the free length is not positive.
+
+    Notes
+    -----
+    The two laws are those of the strain correction: a splice that strains by a share of what the
+    rubber does, or by its tension ([2]_ has the first one from Table 3).
+
+    Examples
+    --------
+    >>> from reduction.stages.strain.strain_model import position_by_model
+    >>> splices = StatedSplices(1.2, strain=0.4, at_tension=900.0, exponent=0.85)
+    >>> model = stated_model(splices, 2.5, name="T")
+    >>> print(position_by_model(model, strain=1.0, tension=900.0).round(6))
+    6.68
+    """
+    free = float(as_positive("free_length", free_length))
+    if splices.length == 0:
+        return StrainModel(name, "gauge-length", {"reference_position": free, "gauge_length": free})
+    lengths = {"relaxed_free_length": free, "relaxed_splice_length": splices.length}
+    if splices.strain is not None and splices.at_tension is not None:
+        compliance = splices.strain / splices.at_tension**splices.exponent
+        law = {"splice_compliance": compliance, "splice_exponent": splices.exponent}
+        return StrainModel(name, "tension-driven", lengths | law)
+    ratio = splices.strain_ratio or 0.0
+    return StrainModel(name, "strain-ratio", lengths | {"splice_strain_ratio": ratio})
+
+
+def deployed_model(model: StrainModel, free_length: float | None) -> StrainModel:
+    """Strain model of a tether that is deployed, from the one that was tested.
+
+    Parameters
+    ----------
+    model : StrainModel
+        Of the test.
+    free_length : float or None
+        Relaxed, of the deployed tether; None where it is the tested one. [m]
+
+    Returns
+    -------
+    model : StrainModel
+        Whose positions are lengths, thimble to thimble.
+
+    Raises
+    ------
+    DataError
+        If the method says nothing of the length of a tether, or of one of another length.
+
+    Notes
+    -----
+    By gauge-length a position may be a displacement from anywhere: of a tether without splices
+    the free length is the length.  See `reduction.stages.strain.strain_model.with_free_length` for
+    the rest; a third of a tether of [2]_, Table 3, is splices.
+
+    Examples
+    --------
+    >>> model = StrainModel("T", "gauge-length", {"reference_position": 0.0, "gauge_length": 2.0})
+    >>> deployed_model(model, None).coefficients["reference_position"]
+    2.0
+    """
+    if model.method == "extensometer":
+        raise DataError(
+            f"strain of '{model.specimen}' is from an extensometer, which knows no splices",
+            needed="splices that are stated",
+        )
+    if model.method == "gauge-length":
+        own = model.coefficients["gauge_length"]
+        return stated_model(StatedSplices(0.0), free_length or own, name=model.specimen)
+    return model if free_length is None else with_free_length(model, free_length)
+
+
+# nodes of tension beside those of the curve: denser near slack, where splices stretch fastest
+_N_NODES = 400
+
+_OF_CELL = ("tension_gain", "tension_offset")
+
+_APART = 1e-9
+
+"""Share of the range of lengths that two nodes are apart."""
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class AssemblyCurve:
+    """Tension of an assembly against its length; arrays have shape (n,), nodes of straight lines.
+
+    Parameters
+    ----------
+    total_length, tension : ndarray
+        End to end, both rising; the first is where the assembly goes slack, at zero. [m], [N]
+    standard_uncertainty : ndarray
+        Of the tension at one length: that of the curves, which all tethers share; both parts that
+        follow, together. [N]
+    random_standard_uncertainty : ndarray
+        Of the curves by themselves. [N]
+    component : tuple of Component, length n_components
+        Errors that the curves share with others.
+    contribution : ndarray, shape (n_components, n)
+        What each of them adds to the tension at one length, signed. [N]
+    tether_length : ndarray
+        Thimble to thimble, one for all. [m]
+    tether_tension : ndarray, shape (n_tethers, n)
+        Zero where a tether is slack. [N]
+    tether_strain : ndarray, shape (n_tethers, n)
+        Of the free length. [1]
+    slack_length : ndarray, shape (n_tethers,)
+        Length of the assembly below which each tether is slack. [m]
+    is_tested : ndarray of bool
+        Every tether is at a strain that a piece of its curve reaches.
+    is_join, is_moved : ndarray of bool
+        A tether is where pieces of its curve hand over; where the rule of rising has moved it, so
+        that its slope is that of the rule and of no piece.
+    """
+
+    total_length: Floats
+    tension: Floats
+    standard_uncertainty: Floats
+    random_standard_uncertainty: Floats
+    component: tuple[Component, ...]
+    contribution: Floats
+    tether_length: Floats
+    tether_tension: Floats
+    tether_strain: Floats
+    slack_length: Floats
+    is_tested: Bools
+    is_join: Bools
+    is_moved: Bools
+
+    @property
+    def n_tethers(self) -> int:
+        """Tethers side by side."""
+        return int(self.tether_tension.shape[0])
+
+    @property
+    def shared_standard_uncertainty(self) -> Floats:
+        """Of the tension by what is shared with others, all errors together. [N]."""
+        return np.asarray(np.sqrt(np.sum(self.contribution**2, axis=0)))
+
+    def tension_at(self, total_length: ArrayLike) -> Floats:
+        """Tension [N] at a length [m]; zero where it is slack, NaN beyond the curves."""
+        at = np.asarray(total_length, dtype=np.float64)
+        return np.interp(at, self.total_length, self.tension, right=np.nan)
+
+    def length_at(self, tension: ArrayLike) -> Floats:
+        """Length [m] at a tension [N]; NaN below zero and beyond the curves."""
+        at = np.asarray(tension, dtype=np.float64)
+        return np.interp(at, self.tension, self.total_length, left=np.nan, right=np.nan)
+
+    def uncertainty_at(self, total_length: float) -> tuple[float, float, float]:
+        """Standard uncertainty of the tension [N] at a length [m]: both parts, random, shared."""
+        random, *rows = (
+            float(np.interp(total_length, self.total_length, one))
+            for one in (self.random_standard_uncertainty, *self.contribution)
+        )
+        return float(np.hypot(random, np.linalg.norm(rows))), random, float(np.linalg.norm(rows))
+
+    def loads_at(self, tension: ArrayLike) -> Floats:
+        """Load of each tether [N] at a tension of the assembly [N], shape (n_tethers, ...)."""
+        at = np.asarray(tension, dtype=np.float64)
+        rows = [
+            np.interp(at, self.tension, row, left=np.nan, right=np.nan)
+            for row in self.tether_tension
+        ]
+        return np.stack(rows)
+
+
+def assemble(tethers: Sequence[Tether], parts: Sequence[SeriesPart] = ()) -> AssemblyCurve:
+    """Tension of an assembly against its length.
+
+    Parameters
+    ----------
+    tethers : sequence of Tether, length n_tethers
+        Side by side between two bridles.
+    parts : sequence of SeriesPart, optional
+        In line with them.
+
+    Returns
+    -------
+    assembly : AssemblyCurve
+        To where the first tether, or part, is at the end of its curve.
+
+    Raises
+    ------
+    SettingsError
+        If there is no tether.
+    DataError
+        If a tether does not lengthen with tension, or is at its end before another one is taut.
+
+    Notes
+    -----
+    Bridles stay parallel; weight, buoyancy, bending and the twist of the assembly are not in it
+    ([2]_, sec. 2.3.2: a swivel has to turn, or the tethers do not share).  A part is straight at
+    zero tension.  The splices stretch by the tension they carry, as in the test: the length is
+    the inverse of the strain correction.  The uncertainty is that of the curve, which equal
+    tethers share in full; curves that differ share what their tests do, by its sign, and are
+    independent in the rest.  A load cell is taken as the one under which the splices were marked,
+    unless they are stated: then tension at one length is wrong by as much as at one strain.  The
+    splices' own, that of the tolerance of the lengths and of parts in line are not in it.
+
+    Examples
+    --------
+    Two tethers of 100 N per unit strain, 1 m of rubber each, and 0.5 m of bridle:
+
+    >>> from reduction.lines.composite import composite_curve
+    >>> from reduction.lines.curve_pieces import CurvePiece
+    >>> from reduction.lines.assembly import equal_tethers
+    >>> from reduction.stages.strain.strain_model import StrainModel
+    >>> at = np.linspace(0.1, 2.0, 20)
+    >>> curve = composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
+    >>> model = StrainModel("T", "gauge-length", {"reference_position": 1.0, "gauge_length": 1.0})
+    >>> two = assemble(equal_tethers(Tether(curve, model), 2), [SeriesPart("bridle", 0.5)])
+    >>> print(two.slack_length, two.tension_at([1.5, 2.5]).round(6))
+    [1.5 1.5] [  0. 200.]
+    """
+    if not tethers:
+        raise SettingsError("an assembly has tethers", found="none", needed="1 or more")
+    own = [_lengths(one) for one in tethers]
+    begin = min(one.length[0] for one in own)
+    end = min(one.length[-1] for one in own)
+    last = max(one.length[0] for one in own)
+    if last >= end:
+        raise DataError(
+            "a tether is at the end of its curve before another one is taut",
+            found=f"{end:.4g} m",
+            needed=f"above {last:.4g} m",
+            hint="Their lengths differ by more than their stretch.",
+        )
+    nodes = np.unique(np.concatenate([one.length for one in own]))
+    nodes = nodes[(nodes >= begin) & (nodes <= end)]
+    load = np.stack([one.at(nodes, one.tension) for one in own])
+    stretch = np.stack([one.at(nodes, one.strain) for one in own])
+    spread = _random(tethers, np.stack([one.at(nodes, one.random) for one in own]))
+    shared = stacked([one.shared_at(nodes) for one in own])
+    pairs = list(zip(tethers, stretch, strict=True))
+    tested = ~np.any([_has(one.curve, one.curve.is_gap, row) for one, row in pairs], axis=0)
+    joined = np.any([_has(one.curve, one.curve.is_join, row) for one, row in pairs], axis=0)
+    moved = np.any([_has(one.curve, one.curve.is_moved, row) for one, row in pairs], axis=0)
+    tension = load.sum(axis=0)
+    rises = np.concatenate([[True], np.diff(tension) > 0])
+    more = np.sum([part.length_at(tension) for part in parts], axis=0) if parts else 0.0
+    total = nodes + more
+    kept = rises & np.isfinite(total)
+    # lengths of two tethers may differ by rounding alone: no slope stands between such nodes
+    apart = _APART * (nodes[-1] - nodes[0])
+    kept &= np.concatenate([[True], (np.diff(total) > apart) & (np.diff(nodes) > apart)])
+    total, nodes, tension = total[kept], nodes[kept], tension[kept]
+    # compliance in line takes its share of what the tension is wrong by at one length
+    stiffness = np.gradient(tension, total) / np.gradient(tension, nodes)
+    slack = np.interp([one.length[0] for one in own], nodes, total)
+    random = spread[kept] * stiffness
+    moved_by = shared.values["tension"].sum(axis=1)[:, kept] * stiffness
+    return AssemblyCurve(
+        total_length=total,
+        tension=tension,
+        standard_uncertainty=combined_standard_uncertainty(moved_by, random),
+        random_standard_uncertainty=random,
+        component=shared.component,
+        contribution=moved_by,
+        tether_length=nodes,
+        tether_tension=load[:, kept],
+        tether_strain=stretch[:, kept],
+        slack_length=slack,
+        is_tested=tested[kept],
+        is_join=joined[kept],
+        is_moved=moved[kept],
+    )
+
+
+@dataclass(frozen=True)
+class _Loaded:
+    """A tether on nodes of its tension; what is random and ``moved`` is of that at one length."""
+
+    length: Floats
+    tension: Floats
+    strain: Floats
+    random: Floats
+    component: tuple[Component, ...]
+    moved: Floats
+
+    def at(self, length: Floats, values: Floats) -> Floats:
+        """Values at lengths; zero where it is slack."""
+        return np.interp(length, self.length, values, left=0.0)
+
+    def shared_at(self, length: Floats) -> Contributions:
+        """Contributions to ``tension`` at lengths."""
+        rows = np.array([self.at(length, row) for row in self.moved])
+        return Contributions(self.component, {"tension": rows.reshape(-1, length.size)})
+
+
+def _random(tethers: Sequence[Tether], spread: Floats) -> Floats:
+    """What is not shared with other curves: in full by tethers of one curve, else as squares."""
+    curves = [id(one.curve) for one in tethers]
+    of_curves = [
+        spread[[own == curve for own in curves]].sum(axis=0) for curve in dict.fromkeys(curves)
+    ]
+    return np.asarray(np.sqrt(np.sum(np.square(of_curves), axis=0)))
+
+
+def _lengths(tether: Tether) -> _Loaded:
+    """Length, strain, and uncertainty of the tension at one length, on nodes of tension."""
+    curve = tether.curve
+    fine = curve.tension[-1] * np.linspace(0.0, 1.0, _N_NODES) ** 2
+    force = np.union1d(curve.tension, fine)
+    # nodes that rounding has put side by side
+    force = force[np.concatenate([[True], np.diff(force) > 1e-12 * force[-1]])]
+    strain = curve.strain_at(force)
+    length = position_by_model(tether.model, strain=strain, tension=force)
+    if (np.diff(length) <= 0).any():
+        raise DataError(
+            f"a tether by the strain model of '{tether.model.specimen}' does not lengthen "
+            "with tension",
+            found=f"{length[0]:.4g} to {length[-1]:.4g} m",
+            needed="a length that rises",
+        )
+    free = position_by_model(tether.model, strain=strain, tension=np.zeros(force.size))
+    # splices take their share of what the curve is wrong by at one length
+    share = np.gradient(free, force) / np.gradient(length, force)
+    random = np.interp(strain, curve.strain, curve.random_standard_uncertainty) * share
+    # the load cell that read the marks is in the law of the splices too, and moves the whole length
+    is_whole = [not tether.is_stated and one.source in _OF_CELL for one in curve.component]
+    rows = [
+        np.interp(strain, curve.strain, row) * (1.0 if whole else share)
+        for whole, row in zip(is_whole, curve.contribution, strict=True)
+    ]
+    return _Loaded(length, force, strain, random, curve.component, np.array(rows))
+
+
+def _has(curve: CompositeCurve, flags: Bools, strain: Floats) -> Bools:
+    """Whether a strain is in an interval with a flag."""
+    place = np.searchsorted(curve.strain, strain, side="left") - 1
+    return flags[np.clip(place, 0, flags.size - 1)]
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class WorkingPoint:
+    """An assembly under a cycle of tension; arrays have the shape (...) of the points.
+
+    Parameters
+    ----------
+    mean_tension, peak_tension, minimum_tension : ndarray
+        Of the assembly. [N]
+    total_length, peak_length, minimum_length : ndarray
+        At these. [m]
+    stiffness : ndarray
+        Tension over length, between the ends of the cycle; the tangent where the amplitude is
+        zero. [N m-1]
+    apparent_spring_constant : ndarray
+        EA: stiffness times the length at which the assembly goes slack. [N]
+    tether_tension, peak_tether_tension, minimum_tether_tension : ndarray, shape (n_tethers, ...)
+        [N]
+    load_share : ndarray, shape (n_tethers, ...)
+        Of the mean tension. [1]
+    peak_share, minimum_share : ndarray, shape (n_tethers, ...)
+        Of the rated break strength of a tether; NaN where that is not known. [1]
+    is_tested : ndarray of bool
+        Both ends of the cycle are at strains that were tested.
+    """
+
+    mean_tension: Floats
+    peak_tension: Floats
+    minimum_tension: Floats
+    total_length: Floats
+    peak_length: Floats
+    minimum_length: Floats
+    stiffness: Floats
+    apparent_spring_constant: Floats
+    tether_tension: Floats
+    peak_tether_tension: Floats
+    minimum_tether_tension: Floats
+    load_share: Floats
+    peak_share: Floats
+    minimum_share: Floats
+    is_tested: Bools
+
+
+def working_point(
+    assembly: AssemblyCurve,
+    mean_tension: ArrayLike,
+    tension_amplitude: ArrayLike = 0.0,
+    *,
+    rated_break_strength: float = float("nan"),
+) -> WorkingPoint:
+    r"""Stiffness and loads of an assembly under cycles of tension.
+
+    .. math:: EA = L_0 \, \frac{2 A}{L(T + A) - L(T - A)}
+
+    Parameters
+    ----------
+    assembly : AssemblyCurve
+        From `assemble`.
+    mean_tension, tension_amplitude : array_like, shape (...)
+        Of the assembly; the amplitude is half the range. [N]
+    rated_break_strength : float, optional
+        Of one tether; NaN where not known. [N]
+
+    Returns
+    -------
+    point : WorkingPoint
+        With the load of each tether.
+
+    Raises
+    ------
+    DataError
+        If a tether reaches zero tension, an amplitude is above its mean or negative, or the peak
+        is beyond the curves.
+
+    Notes
+    -----
+    [3]_, sec. 2.3.2: a tether must not be allowed to go slack, since it may then tangle and be
+    cut.  The longest does so first, while the assembly is still taut.
+
+    Examples
+    --------
+    One tether of 100 N per unit strain and 1 m, between 60 and 140 N:
+
+    >>> from reduction.lines.composite import composite_curve
+    >>> from reduction.lines.curve_pieces import CurvePiece
+    >>> from reduction.stages.strain.strain_model import StrainModel
+    >>> at = np.linspace(0.1, 2.0, 20)
+    >>> curve = composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
+    >>> model = StrainModel("T", "gauge-length", {"reference_position": 1.0, "gauge_length": 1.0})
+    >>> point = working_point(assemble([Tether(curve, model)]), 100.0, 40.0)
+    >>> print(point.total_length.round(6), point.apparent_spring_constant.round(6))
+    2.0 100.0
+    """
+    cycle = cycle_loads(mean_tension, tension_amplitude, rated_break_strength=float("nan"))
+    peak, least = cycle.peak_tension, cycle.minimum_tension
+    mean = (peak + least) / 2
+    if np.any(peak > assembly.tension[-1]):
+        raise DataError(
+            "the peak tension is beyond the curves of the assembly",
+            found=f"{np.max(peak):.4g} N",
+            needed=f"at most {assembly.tension[-1]:.4g} N",
+        )
+    loads, of_peak, of_least = (assembly.loads_at(one) for one in (mean, peak, least))
+    slack = np.argwhere(of_least <= 0)
+    if slack.size:
+        which = tuple(slack[0])
+        raise DataError(
+            f"tether {which[0] + 1} of {assembly.n_tethers} goes slack",
+            found=f"{least[which[1:]]:.4g} N on the assembly at the least",
+            needed=f"above {_tension_at_slack(assembly):.4g} N",
+            hint="A slack tether tangles and is cut: more stretch, less amplitude, or equal "
+            "lengths.",
+        )
+    long, short = assembly.length_at(peak), assembly.length_at(least)
+    tangent = np.interp(
+        mean, assembly.tension, np.gradient(assembly.tension, assembly.total_length)
+    )
+    # a cycle of less than this is a point
+    apart = long - short > 1e-6 * long
+    stiffness = np.where(apart, (peak - least) / np.where(apart, long - short, 1.0), tangent)
+    ends = [
+        assembly.is_tested[np.clip(np.searchsorted(assembly.tension, one), 0, None)]
+        for one in (peak, least)
+    ]
+    return WorkingPoint(
+        mean_tension=mean,
+        peak_tension=peak,
+        minimum_tension=least,
+        total_length=assembly.length_at(mean),
+        peak_length=long,
+        minimum_length=short,
+        stiffness=stiffness,
+        apparent_spring_constant=stiffness * assembly.total_length[0],
+        tether_tension=loads,
+        peak_tether_tension=of_peak,
+        minimum_tether_tension=of_least,
+        load_share=loads / mean,
+        peak_share=of_peak / rated_break_strength,
+        minimum_share=of_least / rated_break_strength,
+        is_tested=ends[0] & ends[1],
+    )
+
+
+def _tension_at_slack(assembly: AssemblyCurve) -> float:
+    """Tension of the assembly at which its longest tether goes slack."""
+    longest = assembly.slack_length.max()
+    return float(np.interp(longest, assembly.total_length, assembly.tension))
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class LoadSharing:
+    """Worst loads of one tether over a tolerance of lengths; arrays have the shape (...).
+
+    Parameters
+    ----------
+    tension : ndarray
+        Of the assembly. [N]
+    equal_load : ndarray
+        Of each tether, where the lengths are equal. [N]
+    greatest_load : ndarray
+        Of one that is short, where all others are long. [N]
+    least_load : ndarray
+        Of one that is long, where all others are short; zero where it is slack. [N]
+    tension_at_slack : float
+        Of the assembly, at which that long one goes slack. [N]
+    """
+
+    tension: Floats
+    equal_load: Floats
+    greatest_load: Floats
+    least_load: Floats
+    tension_at_slack: float
+
+
+def worst_sharing(
+    tether: Tether,
+    n_tethers: int,
+    tension: ArrayLike,
+    *,
+    free_length: float,
+    tolerance: float,
+    parts: Sequence[SeriesPart] = (),
+) -> LoadSharing:
+    """Greatest and least load of a tether in an assembly whose lengths have a tolerance.
+
+    Parameters
+    ----------
+    tether : Tether
+        As it was tested.
+    n_tethers : int
+        Two or more. [1]
+    tension : array_like, shape (...)
+        Of the assembly. [N]
+    free_length : float
+        Nominal, relaxed. [m]
+    tolerance : float
+        Of a free length: it is between 1 - tolerance and 1 + tolerance of the nominal. [1]
+    parts : sequence of SeriesPart, optional
+        In line; they see the sum, and do not change how it is shared.
+
+    Returns
+    -------
+    sharing : LoadSharing
+        At the same tensions.
+
+    Raises
+    ------
+    SettingsError
+        If there is one tether, or the tolerance is not between 0 and 1.
+    DataError
+        If a tension is not positive, or beyond the curves.
+
+    Notes
+    -----
+    The load of a tether falls with its own length and rises with that of every other one, so the
+    worst case is at a corner: one short and all others long, or the other way round.  [3]_ has
+    no tolerance; it says that an assembly that twists does not share (sec. 2.3.2).
+
+    Examples
+    --------
+    Springs of 100 N per unit strain, 1 m within 1 %, at 100 N each:
+
+    >>> from reduction.lines.composite import composite_curve
+    >>> from reduction.lines.curve_pieces import CurvePiece
+    >>> from reduction.stages.strain.strain_model import StrainModel
+    >>> at = np.linspace(0.1, 2.0, 20)
+    >>> curve = composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
+    >>> model = StrainModel("T", "gauge-length", {"reference_position": 1.0, "gauge_length": 1.0})
+    >>> found = worst_sharing(Tether(curve, model), 2, 200.0, free_length=1.0, tolerance=0.01)
+    >>> print(found.greatest_load.round(2), found.least_load.round(2))
+    102.0 98.0
+    """
+    if n_tethers < 2:
+        raise SettingsError(
+            "one tether shares with no other", found=str(n_tethers), needed="2 or more"
+        )
+    if not 0 <= tolerance < 1:
+        raise SettingsError(
+            "the tolerance is a share of the length", found=f"{tolerance:g}", needed="0 to 1"
+        )
+    load = np.asarray(tension, dtype=np.float64)
+    if not np.all(load > 0):
+        raise DataError(
+            "an assembly without tension shares nothing",
+            found=f"{np.min(load):.4g} N",
+            needed="above zero",
+        )
+    rows = []
+    for sign in (-1.0, 1.0):
+        lengths = np.full(n_tethers, free_length * (1 - sign * tolerance))
+        lengths[0] = free_length * (1 + sign * tolerance)
+        assembly = assemble(unequal_tethers(tether, lengths), parts)
+        if np.any(load > assembly.tension[-1]):
+            raise DataError(
+                "the tension is beyond the curves of the assembly",
+                found=f"{np.max(load):.4g} N",
+                needed=f"at most {assembly.tension[-1]:.4g} N",
+            )
+        rows.append(assembly.loads_at(load)[0])
+    return LoadSharing(load, load / n_tethers, rows[0], rows[1], _tension_at_slack(assembly))
+
+
+_SPAN = 0.05
+
+"""Share of a length to each side over which a secant is taken where no amplitude is stated."""
+
+
+@dataclass(frozen=True)
+class WorkingLevel:
+    """Where an assembly stands: a tension [N], a total length [m], or a strain of its tethers [1].
+
+    ``tension_amplitude`` is half the range about it. [N]
+    """
+
+    quantity: Literal["tension", "total_length", "strain"]
+    value: float
+    tension_amplitude: float = 0.0
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class WorkingState:
+    """An assembly at one working level.
+
+    ``strain`` is that of the free length of each tether, shape (n_tethers,) [1];
+    ``standard_uncertainty`` that of the tension at this length [N], of which
+    ``random_standard_uncertainty`` is of the curve by itself and ``shared_standard_uncertainty`` of
+    what its tests share with others [N]; ``secant_spring_constant`` is
+    EA over the cycle, or over 5 % of the length to each side where it has no amplitude [N];
+    ``is_moved`` is of the tangent there; ``sharing`` is there where the lengths have a
+    tolerance.
+    """
+
+    level: WorkingLevel
+    point: WorkingPoint
+    strain: Floats
+    standard_uncertainty: float
+    random_standard_uncertainty: float
+    shared_standard_uncertainty: float
+    secant_spring_constant: float
+    is_moved: bool
+    sharing: LoadSharing | None
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class DeployedAssembly:
+    """An assembly and its work; arrays have the shape (n,) of the nodes of its curve.
+
+    Parameters
+    ----------
+    assembly : AssemblyCurve
+        Tension against length.
+    strain : ndarray
+        Of the assembly: length over that at which it goes slack, less one. [1]
+    apparent_spring_constant : ndarray
+        EA, tangent: slope of tension on that strain. [N]
+    secant_spring_constant : ndarray
+        EA over 5 % of the length that the assembly has there, to each side. [N]
+    free_length : tuple of float
+        Of each tether, relaxed; NaN where its strain model knows none. [m]
+    working : tuple of WorkingState
+        One a level.
+    notes : tuple of str
+        What is not in it.
+    """
+
+    assembly: AssemblyCurve
+    strain: Floats
+    apparent_spring_constant: Floats
+    secant_spring_constant: Floats
+    free_length: tuple[float, ...]
+    working: tuple[WorkingState, ...]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class DeployedLine:
+    """An assembly with what it was made of.
+
+    ``splices`` says by which law a tether has its length, in words.
+    """
+
+    name: str
+    deployed: DeployedAssembly
+    source: PieceSource
+    curve: CompositeCurve
+    splices: str
+    parts: tuple[SeriesPart, ...] = ()
+
+    @property
+    def is_equal(self) -> bool:
+        """Whether all tethers carry the same."""
+        return bool(np.ptp(self.deployed.assembly.slack_length) == 0)
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        lengths = self.deployed.free_length
+        free = [f"{length:.4g}" for length in dict.fromkeys(lengths)]
+        told = f"{len(lengths)} x {self.source.name}, free length {', '.join(free)} m"
+        named = ", ".join(f"{part.name} {part.length:.4g} m" for part in self.parts)
+        return f"{told}, in line with {named}" if named else told
+
+
+def deploy(
+    curve: CompositeCurve,
+    model: StrainModel,
+    *,
+    n_tethers: int,
+    free_lengths: Sequence[float] = (),
+    parts: Sequence[SeriesPart] = (),
+    levels: Sequence[WorkingLevel] = (),
+    tolerance: float = float("nan"),
+    rated_break_strength: float = float("nan"),
+    has_stated_splices: bool = False,
+) -> DeployedAssembly:
+    """Put tethers side by side and parts in line, and work them.
+
+    Parameters
+    ----------
+    curve : CompositeCurve
+        Tension against strain of the free length of a tether. [SI]
+    model : StrainModel
+        How the length of a tether follows from strain and tension.
+    n_tethers : int
+        Side by side. [1]
+    free_lengths : sequence of float
+        Relaxed, one a tether; that of the model for all where it is empty. [m]
+    parts : sequence of SeriesPart
+        In line.
+    levels : sequence of WorkingLevel
+        Where the assembly stands.
+    tolerance : float
+        Of a free length, of tethers that are all alike; NaN where none is stated. [1]
+    rated_break_strength : float
+        Of one tether; NaN where not known. [N]
+    has_stated_splices : bool
+        The law of the splices is stated, and not of the tests of the curve.
+
+    Returns
+    -------
+    deployed : DeployedAssembly
+        In SI.
+
+    Raises
+    ------
+    SettingsError
+        If there is no tether.
+    DataError
+        If tethers of these lengths cannot be, or a level is beyond the curve or lets a tether go
+        slack; names the level by its place, ``working.1`` the first.
+    """
+    first = free_lengths[0] if free_lengths else None
+    tether = Tether(curve, deployed_model(model, first), is_stated=has_stated_splices)
+    alike = len(set(free_lengths)) < 2
+    tethers = equal_tethers(tether, n_tethers) if alike else unequal_tethers(tether, free_lengths)
+    assembly = assemble(tethers, parts)
+    slack = float(assembly.total_length[0])
+    lengths = tuple(one.model.relaxed_length for one in tethers)
+    states = []
+    for number, level in enumerate(levels, start=1):
+        try:
+            states.append(_state(assembly, tether, level, parts, tolerance, rated_break_strength))
+        except DataError as error:
+            raise DataError(
+                f"working.{number}: {error.problem}", found=error.found, needed=error.needed,
+                hint=error.hint,
+            ) from error  # fmt: skip
+    return DeployedAssembly(
+        assembly=assembly,
+        strain=assembly.total_length / slack - 1,
+        apparent_spring_constant=slack * np.gradient(assembly.tension, assembly.total_length),
+        secant_spring_constant=_secant(assembly, assembly.total_length),
+        free_length=lengths,
+        working=tuple(states),
+        notes=_notes(assembly, model),
+    )
+
+
+def _secant(assembly: AssemblyCurve, length: Floats) -> Floats:
+    """EA over a span about a length, cut off at the ends of the curve. [N]."""
+    low = np.maximum((1 - _SPAN) * length, assembly.total_length[0])
+    high = np.minimum((1 + _SPAN) * length, assembly.total_length[-1])
+    rise = assembly.tension_at(high) - assembly.tension_at(low)
+    return np.asarray(assembly.total_length[0] * rise / (high - low))
+
+
+def _state(
+    assembly: AssemblyCurve,
+    tether: Tether,
+    level: WorkingLevel,
+    parts: Sequence[SeriesPart],
+    tolerance: float,
+    rated_break_strength: float,
+) -> WorkingState:
+    mean = _tension(assembly, level)
+    point = working_point(
+        assembly, mean, level.tension_amplitude, rated_break_strength=rated_break_strength
+    )
+    sharing = None
+    if np.isfinite(tolerance):
+        sharing = worst_sharing(
+            tether,
+            assembly.n_tethers,
+            mean,
+            free_length=tether.model.relaxed_length,
+            tolerance=tolerance,
+            parts=parts,
+        )
+    at = float(point.total_length)
+    both, random, shared = assembly.uncertainty_at(at)
+    return WorkingState(
+        level=level,
+        point=point,
+        strain=np.array(
+            [np.interp(at, assembly.total_length, row) for row in assembly.tether_strain]
+        ),
+        standard_uncertainty=both,
+        random_standard_uncertainty=random,
+        shared_standard_uncertainty=shared,
+        secant_spring_constant=(
+            float(point.apparent_spring_constant)
+            if level.tension_amplitude
+            else float(_secant(assembly, np.array(at)))
+        ),
+        is_moved=bool(assembly.is_moved[_node(assembly, at)]),
+        sharing=sharing,
+    )
+
+
+def _node(assembly: AssemblyCurve, length: float) -> int:
+    """The node at a length, or the next one above: flags are of the way to it."""
+    place = int(np.searchsorted(assembly.total_length, length))
+    return min(place, assembly.total_length.size - 1)
+
+
+def _tension(assembly: AssemblyCurve, level: WorkingLevel) -> float:
+    """Tension at a level; refused where the assembly is slack or its curve ends. [N]."""
+    if level.quantity == "tension":
+        return level.value
+    axis = assembly.total_length if level.quantity == "total_length" else assembly.tether_strain[0]
+    low, high = float(axis[0]), float(axis[-1])
+    if not low < level.value <= high * (1 + 1e-12):
+        unit = "m" if level.quantity == "total_length" else "of the free length"
+        what = "slack" if level.value <= low else "beyond its curve"
+        raise DataError(
+            f"the assembly is {what} at this {level.quantity.replace('_', ' ')}",
+            found=f"{level.value:.5g} {unit}",
+            needed=f"above {low:.5g}, to {high:.5g} {unit}",
+        )
+    return float(np.interp(level.value, axis, assembly.tension))
+
+
+def _notes(assembly: AssemblyCurve, model: StrainModel) -> tuple[str, ...]:
+    notes = [
+        "weight, buoyancy, bending and twist of the assembly are not in it; its bridles stay "
+        "parallel",
+        "the uncertainty is that of the curve, which all tethers share; that of the splices and "
+        "of the lengths is not in it",
+    ]
+    high = float(assembly.tension[-1]) / assembly.n_tethers
+    if model.method == "tension-driven" and high > model.tension_high:
+        notes.append(
+            f"the splices were marked up to {model.tension_high:.4g} N a tether; above that their "
+            "law is extrapolated"
+        )
+    return tuple(notes)

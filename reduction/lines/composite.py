@@ -1,0 +1,970 @@
+r"""One rising curve of tension against strain from the pieces of many tests.
+
+What pieces of a tension-strain curve differ by, and how much of it their own errors explain.
+
+.. math:: d = \frac{T_1 - T_2}{\bar T}, \qquad
+          u^2(d) = \frac{u_1^2 + u_2^2}{\bar T^2}
+              + \sum_k \Bigl(\frac{c_{1k} T_2 - c_{2k} T_1}{\bar T^2}\Bigr)^2
+
+with the mean of both tensions, the random part u of each and the contribution c_k of each error
+that they share.  A gain of one load cell is in both and in no ratio: it explains no difference.
+
+Pieces on one grid of strain: their weights, their mean, and the nearest curve that rises.
+
+What is said of a composite curve: its rule, its gaps, what its pieces differ by, and doubts.
+
+One monotone curve of tension against strain, from zero, out of many tests.
+
+The curve y is the one that rises and is nearest to all pieces T_i:
+
+.. math:: \min_y \int \sum_i w_i(\varepsilon)\,(y - T_i)^2\,d\varepsilon, \quad
+   y' \ge b\,\min_i T_i', \qquad w_i = \frac{h_i\,g_i}{u_i^2 + (s\,\bar T)^2}
+
+u_i is the uncertainty of a piece but for what all of them share, s the relative deviation between
+pieces of its kind where they overlap, h_i falls to zero towards the ends of a piece, and g_i hands
+over to pieces of a kind that goes before.  Without the constraint the answer is the weighted mean.
+
+What the pieces of one line or tether are from: its tests, its splices, what is stated of it.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, Figure 35.
+.. [2] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
+   in measurement," 5.2, F.1.2.3 (correlation by common influence quantities).
+.. [3] R. E. Barlow, D. J. Bartholomew, J. M. Bremner and H. D. Brunk, "Statistical Inference
+   under Order Restrictions," Wiley, 1972 (isotonic regression, and with bounds).
+.. [4] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4.8.
+.. [5] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4.8, Figures 31, 35.
+.. [6] R. E. Barlow, D. J. Bartholomew, J. M. Bremner and H. D. Brunk, "Statistical Inference
+   under Order Restrictions," Wiley, 1972 (isotonic regression).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike
+
+from reduction.lines.curve_pieces import CompositeRule, CurvePiece, PieceBranch, PieceKind
+from reduction.record.contributions import Component, combined_standard_uncertainty, stacked
+from reduction.record.errors import DataError
+from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
+from reduction.stages.strain.strain_model import StrainModel
+
+
+def between_pieces(
+    pieces: Sequence[CurvePiece], tension: Floats, variance: Floats, rows: Floats, known: Bools
+) -> dict[PieceKind, float]:
+    """Relative deviation between pieces of each kind, by pairs, less what their errors explain.
+
+    Parameters
+    ----------
+    pieces : sequence of CurvePiece, length n_pieces
+        Of any kinds.
+    tension, variance : ndarray, shape (n_pieces, n)
+        On one grid, the variance of the random part. [N], [N2]
+    rows : ndarray, shape (n_components, n_pieces, n)
+        What each shared error adds to the tension, signed. [N]
+    known : ndarray of bool, shape (n_pieces, n)
+        Where a piece is. [1]
+
+    Returns
+    -------
+    between : dict of str to float
+        By kind; NaN where no two of it overlap. [1]
+
+    Raises
+    ------
+    IndexError
+        If the arrays are not of these pieces.
+
+    Notes
+    -----
+    First order in the errors (module).  Never below zero: differences that the errors explain
+    leave nothing ([1]_ shows some that they do not).
+
+    Examples
+    --------
+    Two pieces 10 % apart under one cell, and under two cells of which each may be off by 7 %:
+
+    >>> at = np.array([0.5, 1.0])
+    >>> load = np.array([95 * at, 105 * at])
+    >>> two = [CurvePiece("T", "cyclic", "mean", at, one, 0 * at) for one in load]
+    >>> seen = np.ones((2, 2), dtype=bool)
+    >>> one_cell, two_cells = 0.07 * load[None], 0.07 * load * np.eye(2)[:, :, None]
+    >>> for rows in (one_cell, two_cells):
+    ...     print(round(between_pieces(two, load, 0 * load, rows, seen)["cyclic"], 4))
+    0.0707
+    0.0112
+    """
+    found = {one.kind: 0.0 for one in pieces}
+    count = dict.fromkeys(found, 0)
+    for first, one in enumerate(pieces):
+        for second in range(first + 1, len(pieces)):
+            both = known[first] & known[second]
+            if pieces[second].kind != one.kind or np.count_nonzero(both) < 2:
+                continue
+            load, other = tension[first, both], tension[second, both]
+            level = (load + other) / 2
+            apart = ((load - other) / level) ** 2
+            own = (variance[first, both] + variance[second, both]) / level**2
+            moved = (rows[:, first, both] * other - rows[:, second, both] * load) / level**2
+            own += (moved**2).sum(axis=0)
+            # two draws of one deviation are apart by twice its variance
+            found[one.kind] += float(((apart - own) / 2).sum())
+            count[one.kind] += int(np.count_nonzero(both))
+    return {
+        kind: float(np.sqrt(max(sum_, 0.0) / count[kind])) if count[kind] else float("nan")
+        for kind, sum_ in found.items()
+    }
+
+
+def variance_apart(pieces: Sequence[CurvePiece], strain: Floats, tension: Floats) -> Floats:
+    """Variance of each piece by shared errors, without the part that all pieces have alike.
+
+    Parameters
+    ----------
+    pieces : sequence of CurvePiece, length n_pieces
+        Of one curve.
+    strain : ndarray, shape (n,)
+        The grid. [1]
+    tension : ndarray, shape (n_pieces, n)
+        On it, zero where a piece is not. [N]
+
+    Returns
+    -------
+    variance : ndarray, shape (n_pieces, n)
+        Zero of what is a load cell of all of them. [N2]
+
+    Raises
+    ------
+    ValueError
+        If the grid is not that of the tensions.
+
+    Notes
+    -----
+    An error that is in all pieces moves their mean by as much, whatever their weights, and says
+    nothing of which of them to trust.  Of each error what all of them have is the share of the
+    tension that is nearest to zero, and none where the signs differ ([2]_, F.1.2.3).  Beyond its
+    ends a piece has the share of its end, so that no weight jumps where a piece begins.
+
+    Examples
+    --------
+    One of two cells is good to 5 %, a third error of 3 % is in both:
+
+    >>> from reduction.record.contributions import Component
+    >>> at, both = np.array([0.5, 1.0]), Component("position_gain", "crosshead")
+    >>> cell = Component("tension_gain", "cell")
+    >>> load = 100 * at
+    >>> good = CurvePiece("T-1", "cyclic", "mean", at, load, 0 * at, (both,), 0.03 * load[None])
+    >>> bad = CurvePiece("T-2", "cyclic", "mean", at, load, 0 * at, (both, cell),
+    ...     np.stack([0.03 * load, 0.05 * load]))
+    >>> print(np.sqrt(variance_apart([good, bad], at, np.stack([load, load]))))
+    [[0.  0. ]
+     [2.5 5. ]]
+    """
+    relative = [replace(one, contribution=one.contribution / one.tension) for one in pieces]
+    share = stacked([one.shared_at(strain) for one in relative]).values["tension"]
+    common = np.clip(0.0, share.min(axis=1), share.max(axis=1))
+    return np.asarray(((share - common[:, None]) ** 2).sum(axis=0) * tension**2)
+
+
+def beside_loops(
+    pieces: Sequence[CurvePiece], strain: Floats, tension: Floats, known: Bools
+) -> Floats:
+    """Relative difference of first loadings to the kinds before them, over strain.
+
+    Parameters
+    ----------
+    pieces : sequence of CurvePiece, length n_pieces
+        Kind by kind, those that go before first.
+    strain : ndarray, shape (n,)
+        The grid. [1]
+    tension : ndarray, shape (n_pieces, n)
+        On it, zero where a piece is not. [N]
+    known : ndarray of bool, shape (n_pieces, n)
+        Where a piece is. [1]
+
+    Returns
+    -------
+    beside : ndarray, shape (n,)
+        On straight lines between the strains where both are; NaN where they never are. [1]
+
+    Raises
+    ------
+    IndexError
+        If the arrays are not of these pieces.
+
+    Notes
+    -----
+    Another state of the material, not another reading of it: nothing is taken off ([1]_).
+
+    Examples
+    --------
+    >>> at = np.array([0.5, 1.0])
+    >>> load = np.array([110 * at, 90 * at])
+    >>> pair = [CurvePiece("T", kind, "ascending", at, one, 0 * at)
+    ...     for kind, one in zip(("cyclic", "first-loading"), load)]
+    >>> print(beside_loops(pair, at, load, load > 0).round(6))
+    [0.2 0.2]
+    """
+    own = np.array([one.kind == "first-loading" for one in pieces])
+    before = np.cumsum(own) == 0
+    both = known[own].any(axis=0) & known[before].any(axis=0)
+    if not both.any():
+        return np.full(strain.size, np.nan)
+    # tension is zero where a piece is not
+    first, other = (
+        tension[rows][:, both].sum(axis=0) / known[rows][:, both].sum(axis=0)
+        for rows in (own, before)
+    )
+    return np.asarray(np.interp(strain, strain[both], 2 * np.abs(first - other) / (first + other)))
+
+
+# share of a range, from its end, after which a kind that goes before is alone
+_HAND_OVER = 0.1
+
+# weight at the very end of a piece: it decides nothing where another piece is, all where none is
+_LEAST_WEIGHT = 1e-18
+
+# no tension is known better than this share of it: an uncertainty of zero may not decide alone
+_LEAST_UNCERTAINTY = 1e-3
+
+# share of the weight below which a piece has no say
+_NO_SAY = 0.01
+
+# least slope, over the mean one, where pieces themselves fall: the curve has to rise
+_LEAST_SLOPE = 1e-6
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class Blend:
+    """Pieces as one curve on a grid; arrays have shape (n,), of intervals (n - 1,).
+
+    Parameters
+    ----------
+    strain, tension, variance : ndarray
+        Nodes that a piece reaches, the rising curve [N], its variance but for what is shared [N2].
+    component : tuple of Component, length n_components
+        Errors that pieces share.
+    contribution : ndarray, shape (n_components, n)
+        What each of them adds to the rising curve, signed. [N]
+    variance_apart : ndarray
+        By which a piece may lie off the curve: without what all pieces share. [N2]
+    change : ndarray
+        Of the rising curve from the weighted mean. [N]
+    piece : ndarray of int
+        With the greatest weight.
+    is_covered, is_join : ndarray of bool
+        Of each interval: a piece reaches over it; more than one has a say.
+    between_pieces : dict of str to float
+        Relative deviation between pieces of each kind; NaN without an overlap. [1]
+    beside_loops : float
+        Greatest relative difference of first loadings to the kinds before them; NaN where these do
+        not overlap. [1]
+    farthest : ndarray
+        Of the rising curve from a piece that has a say there. [N]
+    """
+
+    strain: Floats
+    tension: Floats
+    variance: Floats
+    component: tuple[Component, ...]
+    contribution: Floats
+    variance_apart: Floats
+    change: Floats
+    piece: Integers
+    is_covered: Bools
+    is_join: Bools
+    between_pieces: dict[PieceKind, float]
+    beside_loops: float
+    farthest: Floats
+
+
+def blend_pieces(
+    pieces: Sequence[CurvePiece], *, taper: float, least_slope: float, n_points: int
+) -> Blend:
+    """Weighted mean of pieces, and the nearest curve that rises.
+
+    Parameters
+    ----------
+    pieces : sequence of CurvePiece
+        Kind by kind, those that go before first. [SI]
+    taper : float
+        Share of a piece at each end over which its weight falls to zero. [1]
+    least_slope : float
+        Share of the least slope of the pieces there, below which the curve may not fall. [1]
+    n_points : int
+        Of the grid. [1]
+
+    Returns
+    -------
+    blend : Blend
+        On the nodes that a piece reaches. [SI]
+
+    Raises
+    ------
+    DataError
+        Never by itself: pieces are checked when they are made.
+
+    Notes
+    -----
+    Isotonic regression ([3]_) of the mean less the integral of the least slope, with the weight
+    of all pieces there, bounded below by zero tension: the least squares solution.  Where one
+    piece is alone its slope is above a share of itself, and nothing is moved.
+
+    A first loading is another state than the loops that follow it.  Behind another kind it has no
+    say where that one reaches, and what it differs by from it there is in its uncertainty beyond,
+    a straight line between the strains where that is known.  Other kinds hand over inside.
+
+    What pieces share is in their mean by its sign, and has no say in how they are weighted as far
+    as all of them have it; the curve that rises has the same share of it.
+
+    Examples
+    --------
+    >>> at = np.array([0.5, 1.0])
+    >>> one = CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)
+    >>> blend_pieces([one], taper=0.5, least_slope=0.5, n_points=3).tension
+    array([ 50.,  75., 100.])
+    """
+    strain, is_covered = _grid(pieces, n_points)
+    tension, variance, fade = _on_grid(pieces, strain, taper)
+    shared = stacked([one.shared_at(strain) for one in pieces])
+    rows = shared.values["tension"] * (fade > 0)
+    apart = variance_apart(pieces, strain, tension)
+    simple = (fade * tension).sum(axis=0) / fade.sum(axis=0)
+    between = between_pieces(pieces, tension, variance, rows, fade > 0)
+    beside = beside_loops(pieces, strain, tension, fade > 0)
+    is_first = np.array([one.kind == "first-loading" for one in pieces])
+    # of the kind of each piece: rises from slack differ by far more than cycles do
+    own_kind = np.nan_to_num([between[one.kind] for one in pieces])[:, None]
+    differs = np.hypot(own_kind, is_first[:, None] * np.nan_to_num(beside)) * simple
+    least = (_LEAST_UNCERTAINTY * simple) ** 2
+    weight = fade / np.maximum(variance + apart + differs**2, least)
+    total = weight.sum(axis=0)
+    share = weight / total
+    mean = (share * tension).sum(axis=0)
+    middle = (share[:, 1:] + share[:, :-1]) / 2
+    slopes = _least_slopes(strain, tension, mean, middle, is_covered, least_slope)
+    rising = _rising(strain, mean, total * _widths(strain, is_covered), slopes)
+    off = (share * (tension - mean) ** 2).sum(axis=0)
+    own = (share * variance).sum(axis=0)
+    own += np.maximum(off, (share * differs**2).sum(axis=0)) + (rising - mean) ** 2
+    return Blend(
+        strain=strain,
+        tension=rising,
+        variance=own,
+        component=shared.component,
+        contribution=(share * rows).sum(axis=1) * (rising / mean),
+        variance_apart=own + (share * apart).sum(axis=0),
+        change=rising - mean,
+        piece=share.argmax(axis=0),
+        is_covered=is_covered,
+        is_join=is_covered & ((middle > _NO_SAY).sum(axis=0) > 1),
+        between_pieces=between,
+        beside_loops=float(beside.max()),
+        farthest=np.where(share > _NO_SAY, np.abs(tension - rising), 0.0).max(axis=0),
+    )
+
+
+def _grid(pieces: Sequence[CurvePiece], n_points: int) -> tuple[Floats, Bools]:
+    """Strains that a piece reaches, and which of the intervals between them one covers."""
+    ends = np.array([(one.strain[0], one.strain[-1]) for one in pieces])
+    fine = np.linspace(ends.min(), ends.max(), n_points)
+    # a node nearer to an end than this is that end
+    near = 0.05 * (fine[1] - fine[0])
+    edges = np.unique(ends)
+    edges = edges[np.concatenate([[True], np.diff(edges) > near])]
+    fine = fine[np.abs(fine[:, None] - edges).min(axis=1) > near]
+    strain = np.union1d(fine, edges)
+    inside = (strain >= ends[:, :1]) & (strain <= ends[:, 1:])
+    strain = strain[inside.any(axis=0)]
+    middle = (strain[1:] + strain[:-1]) / 2
+    covered: Bools = ((middle > ends[:, :1]) & (middle < ends[:, 1:])).any(axis=0)
+    return strain, covered
+
+
+def _on_grid(
+    pieces: Sequence[CurvePiece], strain: Floats, taper: float
+) -> tuple[Floats, Floats, Floats]:
+    """Tension, variance and fading weight of each piece on the grid; zero outside it."""
+    tension, variance, fade = np.zeros((3, len(pieces), strain.size))
+    over, taken = np.zeros((2, strain.size))
+    kind = pieces[0].kind
+    for row, one in enumerate(pieces):
+        if one.kind != kind:  # what goes before has had its say: the rest is left over
+            over, taken, kind = np.maximum(over, taken), np.zeros(strain.size), one.kind
+        inside = (strain >= one.strain[0]) & (strain <= one.strain[-1])
+        at = strain[inside]
+        depth = np.minimum(at - one.strain[0], one.strain[-1] - at)
+        depth /= one.strain[-1] - one.strain[0]
+        tension[row, inside] = np.interp(at, one.strain, one.tension)
+        variance[row, inside] = np.interp(at, one.strain, one.random_standard_uncertainty) ** 2
+        full = np.minimum(depth / taper, 1.0)
+        fade[row, inside] = full * (1 - over[inside]) + _LEAST_WEIGHT
+        alone = np.minimum(depth / _HAND_OVER, 1.0)
+        taken[inside] = np.maximum(taken[inside], alone)
+    for row, one in enumerate(pieces):
+        before = [other for other in pieces[:row] if other.kind != one.kind]
+        if one.kind == "first-loading" and before:
+            inside = (strain >= one.strain[0]) & (strain <= one.strain[-1])
+            hidden = inside & np.any(
+                [(strain >= each.strain[0]) & (strain <= each.strain[-1]) for each in before],
+                axis=0,
+            )
+            fade[row, hidden] = _LEAST_WEIGHT**2
+    return tension, variance, fade
+
+
+def _widths(strain: Floats, is_covered: Bools) -> Floats:
+    """Width of strain that each node stands for; none of a gap."""
+    steps = np.where(is_covered, np.diff(strain), 0.0)
+    widths = (np.concatenate([[0.0], steps]) + np.concatenate([steps, [0.0]])) / 2
+    return np.asarray(np.maximum(widths, 1e-12 * strain[-1]))
+
+
+def _least_slopes(
+    strain: Floats,
+    tension: Floats,
+    mean: Floats,
+    share: Floats,
+    is_covered: Bools,
+    least_slope: float,
+) -> Floats:
+    """Slope below which the curve may not fall in each interval: of the softest piece there."""
+    slopes = np.diff(tension, axis=1) / np.diff(strain)
+    of_pieces = np.where(share > _NO_SAY, slopes, np.inf).min(axis=0)
+    # what a piece says outside its range is nothing: a gap has a chord of those beside it
+    told = np.flatnonzero(is_covered & np.isfinite(of_pieces))
+    place = np.searchsorted(told, np.arange(is_covered.size))
+    chords = np.where(share > _NO_SAY, _chords(strain, tension)[:, None], np.inf).min(axis=0)
+    beside = [chords[told[np.clip(place - back, 0, told.size - 1)]] for back in (1, 0)]
+    softest = np.minimum(*beside)  # infinite where no piece has a chord: it bounds nothing there
+    least = least_slope * np.where(np.isfinite(softest), softest, 0.0)
+    least[told] = least_slope * of_pieces[told]
+    return np.asarray(np.maximum(least, _LEAST_SLOPE * mean.max() / strain[-1]))
+
+
+def _chords(strain: Floats, tension: Floats) -> Floats:
+    """Slope of each piece from its first node to its last one."""
+    reached = tension > 0
+    first = reached.argmax(axis=1)
+    last = strain.size - 1 - reached[:, ::-1].argmax(axis=1)
+    row = np.arange(len(tension))
+    apart = strain[last] - strain[first]
+    # a piece between two nodes of the grid has no chord there
+    risen = tension[row, last] - tension[row, first]
+    return np.asarray(np.divide(risen, apart, out=np.full(row.size, np.inf), where=apart > 0))
+
+
+def _rising(strain: Floats, mean: Floats, weight: Floats, least: Floats) -> Floats:
+    """Nearest curve whose slope is nowhere below the least one, and whose tension is above zero."""
+    given = np.concatenate([[0.0], np.cumsum(least * np.diff(strain))])
+    found = scipy.optimize.isotonic_regression(mean - given, weights=weight / weight.max())
+    rest = np.asarray(found.x, dtype=np.float64)
+    bound = _LEAST_SLOPE * mean.max() * strain[0] / strain[-1]
+    rising = np.maximum(rest, bound) + given
+    # where nothing had to move, the mean itself, not its copy by way of a difference
+    moved = np.abs(rising - mean) > 1e-12 * mean.max()
+    return np.where(moved, rising, mean)
+
+
+_MOVED = 1e-9
+
+_FAR = 2.0
+
+_LITTLE = 0.03
+
+
+def doubt_of(blend: Blend) -> str:
+    """Where the curve is not among its pieces by its own uncertainty, in words.
+
+    Parameters
+    ----------
+    blend : Blend
+        Of the pieces. [SI]
+
+    Returns
+    -------
+    doubt : str
+        Empty where there is none.
+
+    Raises
+    ------
+    ValueError
+        If the blend has no nodes.
+
+    Notes
+    -----
+    What all pieces share moves curve and pieces alike, and is no excuse ([4]_, Figure 35).
+
+    Examples
+    --------
+    >>> from reduction.lines.composite import blend_pieces
+    >>> at = np.array([0.5, 1.0])
+    >>> pieces = [CurvePiece("T", "static", "ascending", at, load * at, 0 * at)
+    ...     for load in (*[100] * 5, 200)]
+    >>> print(doubt_of(blend_pieces(pieces, taper=0.5, least_slope=0.5, n_points=3))[:42])
+    up to 2.24 standard uncertainties from a p
+    """
+    # near slack a little strain is any share of the tension
+    told = blend.farthest > _LITTLE * blend.tension[-1]
+    share = told * blend.farthest / np.sqrt(blend.variance_apart + _MOVED * blend.tension**2)
+    worst = int(np.argmax(share))
+    if share[worst] <= _FAR:
+        return ""
+    far = float(blend.farthest[worst])
+    return (
+        f"up to {share[worst]:.3g} standard uncertainties from a piece: {far:.4g} N "
+        f"({far / blend.tension[worst]:.1%}) at strain {blend.strain[worst]:.4g}"
+    )
+
+
+def notes_of(
+    pieces: Sequence[CurvePiece], rule: CompositeRule, blend: Blend, moved: Bools
+) -> tuple[str, ...]:
+    """Rule, range, joins, gaps, what is between the pieces, and the greatest change.
+
+    Parameters
+    ----------
+    pieces : sequence of CurvePiece
+        That were used. [SI]
+    rule : CompositeRule
+        By which they became one.
+    blend : Blend
+        Of them. [SI]
+    moved : ndarray of bool, shape (n,)
+        Nodes that are not the mean of the pieces. [1]
+
+    Returns
+    -------
+    notes : tuple of str
+        In that order.
+
+    Raises
+    ------
+    IndexError
+        If the flags are not of these nodes.
+
+    Notes
+    -----
+    Shares of tension, since pieces of rubber differ by a share of it ([4]_).
+
+    Examples
+    --------
+    See `reduction.lines.composite.composite_curve`.
+    """
+    named = Counter((one.kind, one.branch, one.name) for one in pieces)
+    used = ", ".join(
+        f"{name} ({kind}, {branch}" + (f", in {count} parts)" if count > 1 else ")")
+        for (kind, branch, name), count in named.items()
+    )
+    strain, change = blend.strain, blend.change
+    notes = [
+        f"tension against strain by {' before '.join(rule.precedence)}, blended over "
+        f"{rule.taper:g} of each piece at its ends: {used}",
+        f"a straight line from zero to strain {strain[0]:.4g}, where the first piece begins",
+    ]
+    notes += [
+        f"no piece between strain {strain[gap]:.4g} and {strain[gap + 1]:.4g}: a straight line"
+        for gap in np.flatnonzero(~blend.is_covered)
+    ]
+    between = {kind: one for kind, one in blend.between_pieces.items() if not np.isnan(one)}
+    if not between:
+        notes.append("no two pieces of one kind overlap: what is between them is not known")
+    notes += [
+        f"{kind} pieces differ by {one:.1%} of tension where they overlap"
+        for kind, one in between.items()
+    ]
+    if not np.isnan(blend.beside_loops):
+        notes.append(
+            f"first loadings differ by up to {blend.beside_loops:.1%} from what goes before them: "
+            "this is in their uncertainty where they stand alone"
+        )
+    if moved.any():
+        share = change / blend.tension
+        worst = int(np.argmax(np.abs(change)))
+        notes.append(
+            f"pieces fall where they hand over: {moved.mean():.0%} of the nodes were moved so that "
+            f"the curve is nowhere softer than {rule.least_slope:g} of the softest piece there, by "
+            f"{np.sqrt(np.mean(change**2)):.4g} N rms, most by {change[worst]:+.4g} N "
+            f"({share[worst]:+.1%}) at strain {strain[worst]:.4g}"
+        )
+        # of all tension: near slack a share says nothing
+        off = float(np.sqrt(np.sum(change**2) / np.sum(blend.tension**2)))
+        apart = next(iter(between.values()), np.inf)
+        if off > apart:
+            several = len({one.kind for one in pieces}) > 1
+            notes.append(
+                f"the curve is {off:.1%} off the mean of its pieces, which differ by {apart:.1%} "
+                "where they overlap: "
+                + (
+                    "they are no pieces of one curve, as loops of a rope and its slow pull are "
+                    "none; name the kinds that are wanted"
+                    if several
+                    else "they hand over between tests in other states; name the tests that are "
+                    "wanted"
+                )
+            )
+    return tuple(notes)
+
+
+_TANGENT_NODES = 5
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class CompositeCurve:
+    """Tension against strain, strictly rising from 0, 0; straight lines between the nodes.
+
+    Parameters
+    ----------
+    strain, tension : ndarray, shape (n,)
+        [1], [N]
+    standard_uncertainty : ndarray, shape (n,)
+        Both parts that follow, together. [N]
+    random_standard_uncertainty : ndarray, shape (n,)
+        Of the pieces by themselves, of their disagreement, and of what making them rise has moved.
+        [N]
+    component : tuple of Component, length n_components
+        Errors that pieces share with each other, and with other curves.
+    contribution : ndarray, shape (n_components, n)
+        What each of them adds to the tension, signed. [N]
+    piece : ndarray of int, shape (n,)
+        Index of the piece with the greatest weight; -1 where there is none.
+    is_join, is_gap, is_moved : ndarray of bool, shape (n - 1,)
+        Of each interval: more than one piece has a say; no piece reaches; the curve is not the
+        mean of the pieces, since that falls or is too soft nearby.
+    monotone_change : ndarray, shape (n,)
+        What making it rise has added to the weighted mean of the pieces; NaN without one. [N]
+    between_pieces : float
+        Relative deviation between pieces where they overlap, of the first kind of the rule that
+        has two; NaN where none has. [1]
+    piece_names, piece_words : tuple of str
+        By index: its test, and its test with its kind.
+    doubt : str
+        Where the curve is farther from a piece that has a say than twice its uncertainty and 3 % of
+        the greatest tension, and how far; else empty.
+    notes : tuple of str
+        Rule, range, joins, gaps, and the greatest change.
+    """
+
+    strain: Floats
+    tension: Floats
+    standard_uncertainty: Floats
+    random_standard_uncertainty: Floats
+    component: tuple[Component, ...]
+    contribution: Floats
+    piece: Integers
+    is_join: Bools
+    is_gap: Bools
+    is_moved: Bools
+    monotone_change: Floats
+    between_pieces: float
+    piece_names: tuple[str, ...]
+    piece_words: tuple[str, ...]
+    doubt: str = ""
+    notes: tuple[str, ...] = field(default=())
+
+    @property
+    def shared_standard_uncertainty(self) -> Floats:
+        """Of the tension by what is shared with others, all errors together. [N]."""
+        return np.asarray(np.sqrt(np.sum(self.contribution**2, axis=0)))
+
+    def tension_at(self, strain: ArrayLike) -> Floats:
+        """Tension [N] at a strain [1]; zero where it is slack, NaN beyond the last node."""
+        return np.interp(
+            np.asarray(strain, dtype=np.float64), self.strain, self.tension, right=np.nan
+        )
+
+    def strain_at(self, tension: ArrayLike) -> Floats:
+        """Strain [1] at a tension [N]; NaN below zero and beyond the last node."""
+        return np.interp(
+            np.asarray(tension, dtype=np.float64),
+            self.tension,
+            self.strain,
+            left=np.nan,
+            right=np.nan,
+        )
+
+
+def composite_curve(
+    pieces: Sequence[CurvePiece], *, rule: CompositeRule | None = None
+) -> CompositeCurve:
+    r"""Monotone curve of tension against strain from zero, nearest to all pieces.
+
+    Parameters
+    ----------
+    pieces : sequence of CurvePiece
+        Of one line or tether, in one condition. [SI]
+    rule : CompositeRule, optional
+        Which kind goes before which, and how pieces fade.
+
+    Returns
+    -------
+    curve : CompositeCurve
+        With joins, gaps and the change that monotony asked for.
+
+    Raises
+    ------
+    DataError
+        If no piece is of a kind that the rule names.
+
+    Notes
+    -----
+    *Overlap.*  Pieces of one kind are blended.  Their own uncertainties are far smaller than what
+    is between them (another state of the rubber), so s decides, and it is one number of a
+    kind: the weights are continuous, and so is the mean.
+
+    *Monotony.*  Isotonic regression ([6]_) with the weight of all pieces there, of the mean less
+    the integral of the least slope: the curve is nowhere softer than a share of the softest
+    piece there, and where one piece is alone it is that piece.
+
+    *To zero.*  A straight line from 0, 0 to the first node; the same over a gap.  If the
+    curvature keeps its sign there, the curve lies between that line and the tangents at its
+    ends: a third of that triangle's height squared is in the variance at the middle node.
+
+    *Uncertainty.*  That of a mixture: the mean variance of the pieces, with the greater of their
+    variance there and (s T)^2, and the square of the change.  It does not fall with the number
+    of pieces, since they are not draws of one state ([5]_, Figure 35).  What pieces share (a load
+    cell) is averaged by its sign, error by error, and added as squares in the end; s is judged
+    without it.
+
+    Examples
+    --------
+    Two windows of one straight line of 100 N per unit strain:
+
+    >>> low, high = np.linspace(0.2, 1.0, 9), np.linspace(0.8, 2.0, 9)
+    >>> pieces = [CurvePiece(name, "cyclic", "mean", at, 100 * at, 0 * at + 0.1)
+    ...     for name, at in (("T-1", low), ("T-2", high))]
+    >>> curve = composite_curve(pieces)
+    >>> print(curve.tension_at([0.1, 0.9, 2.0]).round(6), curve.is_gap.sum())
+    [ 10.  90. 200.] 2
+    """
+    rule = rule or CompositeRule()
+    used = [one for kind in rule.precedence for one in pieces if one.kind == kind]
+    if not used:
+        raise DataError(
+            "no piece is of a kind that the rule names",
+            found=", ".join(sorted({one.kind for one in pieces})) or "no pieces",
+            needed=" or ".join(rule.precedence),
+        )
+    blend = blend_pieces(
+        used, taper=rule.taper, least_slope=rule.least_slope, n_points=rule.n_points
+    )
+    moved = np.abs(blend.change) > _MOVED * blend.tension
+    strain = np.concatenate([[0.0], blend.strain])
+    tension = np.concatenate([[0.0], blend.tension])
+    variance = np.concatenate([[0.0], blend.variance])
+    rows = np.pad(blend.contribution, ((0, 0), (1, 0)))
+    is_gap = np.concatenate([[True], ~blend.is_covered])
+    gaps = np.flatnonzero(is_gap)
+    doubt = _doubt(strain, tension, variance, gaps)
+
+    def with_middles(values: Floats, middle: Floats | float) -> Floats:
+        return np.insert(values, gaps + 1, middle)
+
+    def of_intervals(flags: Bools) -> Bools:
+        return np.insert(flags, gaps, flags[gaps])
+
+    random = np.sqrt(with_middles(variance, doubt))
+    moved_by = np.insert(rows, gaps + 1, (rows[:, gaps] + rows[:, gaps + 1]) / 2, axis=1)
+    return CompositeCurve(
+        strain=with_middles(strain, (strain[gaps] + strain[gaps + 1]) / 2),
+        tension=with_middles(tension, (tension[gaps] + tension[gaps + 1]) / 2),
+        standard_uncertainty=combined_standard_uncertainty(moved_by, random),
+        random_standard_uncertainty=random,
+        component=blend.component,
+        contribution=moved_by,
+        piece=np.insert(np.concatenate([[-1], blend.piece]), gaps + 1, -1),
+        is_join=of_intervals(np.concatenate([[False], blend.is_join])),
+        is_gap=of_intervals(is_gap),
+        is_moved=of_intervals(
+            np.concatenate([[False], blend.is_covered & (moved[1:] | moved[:-1])])
+        ),
+        monotone_change=with_middles(np.concatenate([[np.nan], blend.change]), np.nan),
+        between_pieces=next(
+            (one for one in blend.between_pieces.values() if not np.isnan(one)), float("nan")
+        ),
+        piece_names=tuple(one.name for one in used),
+        piece_words=tuple(one.words for one in used),
+        doubt=doubt_of(blend),
+        notes=notes_of(used, rule, blend, moved),
+    )
+
+
+def _doubt(strain: Floats, tension: Floats, variance: Floats, gaps: Integers) -> Floats:
+    """Variance in the middle of each gap: of its ends, and of what curvature may do."""
+    steps = np.diff(strain)
+    slopes = np.diff(tension) / steps
+    # tangents from the nodes beyond each end; before the first gap there is none
+    last = strain.size - 1
+    after = np.minimum(gaps + 1 + _TANGENT_NODES, last)
+    before = np.maximum(gaps - _TANGENT_NODES, 1)
+    height = np.fmin(
+        np.abs(slopes[gaps] - _slopes(strain, tension, gaps + 1, after)),
+        np.abs(slopes[gaps] - _slopes(strain, tension, before, gaps)),
+    )
+    # above the lower end and below the upper one, whatever the tangents say
+    height = np.nan_to_num(np.minimum(height, slopes[gaps])) * steps[gaps] / 2
+    return (variance[gaps] + variance[gaps + 1]) / 2 + height**2 / 3
+
+
+def _slopes(strain: Floats, tension: Floats, first: Integers, last: Integers) -> Floats:
+    """Slope between pairs of nodes; NaN where they are one."""
+    apart = np.where(last > first, strain[last] - strain[first], np.nan)
+    return (tension[last] - tension[first]) / apart
+
+
+@dataclass(frozen=True)
+class PieceSource:
+    """Pieces of one line or tether.
+
+    Parameters
+    ----------
+    name : str
+        Of the line or tether.
+    branch : {"ascending", "descending", "mean"}
+        Of the cycles.
+    pieces : tuple of CurvePiece
+        In the order of the tests. [SI]
+    model : StrainModel, optional
+        How its length follows from strain and tension, where that is known.
+    diameter, rated_break_strength : float
+        NaN where not stated. [m], [N]
+    linear_density, wet_linear_density : float
+        In air, and less the displaced water; NaN where not stated. [kg m-1]
+    sources : tuple of str
+        Where the pieces are from, and what else is behind them.
+    piece_sources : tuple of str
+        Of each piece, one of ``sources``; empty where they are not told apart.
+    notes : tuple of str
+        What was left out, and what else to know.
+    is_synthetic : bool
+        Nothing was tested: the numbers were made.
+    """
+
+    name: str
+    branch: PieceBranch
+    pieces: tuple[CurvePiece, ...]
+    model: StrainModel | None = None
+    diameter: float = float("nan")
+    rated_break_strength: float = float("nan")
+    linear_density: float = float("nan")
+    wet_linear_density: float = float("nan")
+    sources: tuple[str, ...] = ()
+    piece_sources: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    is_synthetic: bool = False
+
+
+def used_of(source: PieceSource, curve: CompositeCurve) -> PieceSource:
+    """What of a source stands behind a curve: sources of pieces that are not in it are left out.
+
+    Parameters
+    ----------
+    source : PieceSource
+        Of all pieces.
+    curve : CompositeCurve
+        Of some of them.
+
+    Returns
+    -------
+    source : PieceSource
+        With the sources of those, and a note that names the other tests.
+
+    Raises
+    ------
+    ValueError
+        If sources of pieces are told, and not of each.
+
+    Notes
+    -----
+    A rule leaves out kinds: a test with none of those that it names is no source of the curve.
+
+    References
+    ----------
+    .. [1] WHOI-2005-10, as `reduction.lines.composite`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> at = np.array([0.5, 1.0])
+    >>> pieces = [CurvePiece(name, kind, "ascending", at, 100 * at, 0 * at)
+    ...     for name, kind in (("Q", "static"), ("R", "cyclic"))]
+    >>> rope = PieceSource("rope", "ascending", tuple(pieces), None, sources=("log Q", "log R"),
+    ...     piece_sources=("log Q", "log R"))
+    >>> found = used_of(rope, compose(rope, CompositeRule(precedence=("static",))))
+    >>> print(found.sources, found.notes)
+    ('log Q',) ('of other kinds, and not used: R',)
+    """
+    if not source.piece_sources:
+        return source
+    pairs = list(zip(source.pieces, source.piece_sources, strict=True))
+    used = {where for one, where in pairs if one.words in curve.piece_words}
+    left = {where: one.name for one, where in pairs if where not in used}
+    left = {where: name for where, name in left.items() if where in source.sources}
+    if not left:
+        return source
+    return replace(
+        source,
+        sources=tuple(text for text in source.sources if text not in left),
+        notes=(*source.notes, f"of other kinds, and not used: {', '.join(left.values())}"),
+    )
+
+
+def compose(source: PieceSource, rule: CompositeRule) -> CompositeCurve:
+    """Composite curve of the pieces of a source.
+
+    Parameters
+    ----------
+    source : PieceSource
+        Of one line or tether.
+    rule : CompositeRule
+        Which kind goes before which.
+
+    Returns
+    -------
+    curve : CompositeCurve
+        From zero. [SI]
+
+    Raises
+    ------
+    DataError
+        If no piece is of a kind that the rule names; names the source.
+
+    Notes
+    -----
+    See `reduction.lines.composite.composite_curve`.
+
+    References
+    ----------
+    .. [1] WHOI-2005-10, as `reduction.lines.composite`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> at = np.array([0.5, 1.0])
+    >>> piece = CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)
+    >>> source = PieceSource("tether", "ascending", (piece,))
+    >>> print(compose(source, CompositeRule()).tension_at(0.75))
+    75.0
+    """
+    try:
+        return composite_curve(source.pieces, rule=rule)
+    except DataError as error:
+        raise DataError(
+            f"{source.name}: {error.problem}", found=error.found, needed=error.needed,
+            hint=error.hint,
+        ) from error  # fmt: skip

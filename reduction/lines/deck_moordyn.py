@@ -1,0 +1,654 @@
+"""Decks in the grammar of MoorDyn: MoorDyn-C, MoorPy, OpenFAST.
+
+The lines that say where the numbers of an export are from, and over which range they hold.
+
+A deck in the grammar of MoorDyn: one line type, and one line of it to try it with.
+
+MoorDyn: look-up table, static and dynamic stiffness, stiffness that grows with load, Syrope.
+
+What MoorDyn 2.7 does with a file that is not to its liking, and what is done here about it:
+
+* a line end after the last row, or more than 30 rows, and it does not start: neither is written;
+* below the first and beyond the last row it keeps the tension: the first row is 0 0, the header
+  gives the last one;
+* a loop gives nonsense, and a table beside ``|EA_d`` is replaced by its last secant: neither is
+  possible here;
+* a Syrope line without initial conditions ends in a segmentation fault: they are always written;
+* its own choice of a time step (CFL) takes the stiffness of a table as zero, and the line blows up:
+  the deck states a step, from the steepest part of the curve;
+* a measured N beside a table is far too much damping for cycles that are fast against tau, and
+  asks for steps of microseconds: a table has numerical damping, the other forms the measured one;
+* without damping of the fast spring the second-order integration grows without bounds: a little is
+  written, and said to be numerical.
+
+MoorPy: its deck with a table, and its library of line properties.
+
+What MoorPy 1.3 does with a file that is not to its liking, and what is done here about it:
+
+* a file of the EA column is opened without its first and last sign, and only where the name holds
+  ``.txt``; anything else becomes 1,000 MN without a word: ``|name.txt|`` is written;
+* the table ends at a line with ``---``; without it, or with a line after it, reading fails;
+* the table is sought in the working folder: the header says so;
+* the slope of the dynamic stiffness is ``EAD_LM`` in 1.3 and ``EAd_MBL_Lm`` in its own list of
+  names: both are written;
+* a least or greatest diameter in the library ends in an error: none is written.
+
+OpenFAST's MoorDyn module: the grammar of MoorDyn, other options, tables sought elsewhere.
+
+Not run by the tests of this package: OpenFAST is no Python package.
+
+References
+----------
+.. [1] MoorDyn documentation, "Input Files", v2.7.1, 2026.
+.. [2] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1-4.
+.. [3] NREL, "MoorPy documentation", v1.3.0.
+.. [4] MoorDyn documentation, "Input Files", v2.7.1, 2026, notes on MoorDyn-F.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import textwrap
+from typing import Literal
+
+import numpy as np
+
+from reduction import __version__
+from reduction.lines.export_dynamics import Syrope, Viscoelasticity
+from reduction.lines.export_line import (
+    ExportLine,
+    ThinnedCurve,
+    guards_of,
+    local_words,
+    range_of,
+    thin_curve,
+)
+from reduction.quantities.digits import plain_number
+from reduction.record.errors import SettingsError
+
+_WIDTH = 100
+
+
+def number(value: float) -> str:
+    """Shortest of 15 digits: steps that were there before a change of unit are there after it."""
+    return f"{value:.15g}"
+
+
+def real_number(value: float) -> str:
+    """The same with a point, where a number without one is no real."""
+    head, sign, power = number(value).partition("e")
+    return (head if "." in head else f"{head}.0") + sign + power
+
+
+def one_line(text: str) -> str:
+    """Text that every grammar takes as a remark: one line, ASCII, no comment or rule signs."""
+    plain = " ".join(text.split()).encode("ascii", "replace").decode()
+    return re.sub("-{2,}", "-", re.sub(r"[#!%*\\\"|{}&]", " ", plain.replace("%", " percent")))
+
+
+def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) -> list[str]:
+    """Header of a file, without the signs that make it a remark there.
+
+    Parameters
+    ----------
+    line : ExportLine
+        What is exported.
+    curve : ThinnedCurve, optional
+        As it stands in the file; None where no curve does.
+    *remarks : str
+        Of the format.
+
+    Returns
+    -------
+    lines : list of str
+        One sentence each, broken at 100 characters.
+    """
+    told = [f"{line.name}, by reduction {__version__}"]
+    if line.is_synthetic:
+        told.append("SYNTHETIC: made from a formula, nothing was tested")
+    if curve is not None:
+        told += [
+            f"Curve: {line.curve}",
+            f"Holds as {range_of(line)}. The curve ends at strain {curve.strain[-1]:.6g} and "
+            f"tension {plain_number(curve.tension[-1], 6)} N; beyond it nothing is known; "
+            f"some codes keep the "
+            "last tension there",
+            f"{curve.strain.size} points of {line.strain.size}; greatest error "
+            f"{plain_number(curve.error, 3)} N, {curve.share:.2e} of the greatest "
+            f"tension; {local_words(curve)}",
+        ]
+        if curve.words:
+            told.append(f"At the start: {curve.words}")
+    told += [f"Source: {text}" for text in line.sources]
+    told += [f"Note: {text}" for text in line.notes]
+    told += [f"Note: {text}" for text in guards_of(line) if text.startswith("DOUBTFUL")]
+    told += [f"Remark: {text}" for text in remarks if text]
+    return [
+        part
+        for text in told
+        # a hyphen is the sign of an option too, which is nothing when it is cut
+        for part in textwrap.wrap(
+            one_line(text), _WIDTH, subsequent_indent="  ", break_on_hyphens=False
+        )
+    ]
+
+
+_LENGTH, _SEGMENTS = 10.0, 5
+
+NO_GRAVITY = "0 g"
+
+WEIGHTLESS = (
+    f"NO GRAVITY in this deck ({NO_GRAVITY}), so that its tension is that of its strain: put 9.81, "
+    "or take the line type into a deck of your own"
+)
+
+_COURANT = 0.1
+
+_DEPTH = 100.0
+
+_SHORTEST_STEP, _LONGEST_STEP = 1e-4, 0.02
+
+_COLUMNS = (
+    "TypeName Diam Mass/m EA BA/-zeta EI Cd Ca CdAx CaAx",
+    "(name) (m) (kg/m) (N) (N-s/-) (N-m^2) (-) (-) (-) (-)",
+)
+
+
+def _length(line: ExportLine) -> float:
+    """Of the line of a deck: its own where it has one. [m]."""
+    return line.unstretched_length if math.isfinite(line.unstretched_length) else _LENGTH
+
+
+def segment_length(line: ExportLine) -> float:
+    """Length of a segment of the line of a deck. [m]."""
+    return _length(line) / _SEGMENTS
+
+
+def line_type(line: ExportLine, stiffness: str, damping: str) -> str:
+    """Return the row of the line types."""
+    water = line.hydrodynamics
+    numbers = (water.normal_drag, water.normal_added_mass, water.axial_drag, water.axial_added_mass)
+    diameter, mass = line.volume_diameter[0], line.needed("linear_density")
+    row = (line.identifier, number(diameter), number(mass), stiffness, damping, "0")
+    return " ".join((*row, *map(number, numbers)))
+
+
+def deck(
+    line: ExportLine,
+    row: str,
+    head: list[str],
+    *,
+    strain: float,
+    stiffness: float,
+    damping: float = 0.0,
+    conditions: tuple[str, ...] = (),
+    program: str = "MoorDyn",
+) -> str:
+    """A whole input file: one line between two points, with a strain that it may have.
+
+    Parameters
+    ----------
+    line : ExportLine
+        For its name.
+    row : str
+        Of `line_type`.
+    head : list of str
+        Front matter.
+    strain : float
+        At the start. [1]
+    stiffness : float
+        Greatest slope of tension over strain; it limits the time step. [N]
+    damping : float
+        Of the fast spring; it does so too. 0 where it is numerical. [N s]
+    conditions : tuple of str
+        Section of initial conditions, where the form needs one.
+    program : str
+        That the first line names; no grammar reads it.
+
+    Returns
+    -------
+    text : str
+        Point 1 is fixed, point 2 is coupled; the unstretched length of the line, 10 m where it
+        has none. Gravity is left out, so that the tension is that of the strain.
+    """
+    length = _length(line)
+    segments, step = _steps(line.needed("linear_density"), stiffness, damping, segment_length(line))
+    # the upper end stays under water however long the line is
+    depth = max(_DEPTH, 2 * length * (1 + strain))
+    top = length * (1 + strain) - depth
+    rule = "-" * 22
+    return "\n".join(
+        [
+            f"{program} input file with one line type, in a deck that tries it",
+            WEIGHTLESS,
+            *head,
+            f"{rule} LINE TYPES {rule}",
+            *_COLUMNS,
+            row,
+            f"{rule} POINTS {rule}",
+            "ID Attachment X Y Z Mass Volume CdA Ca",
+            "(-) (-) (m) (m) (m) (kg) (m^3) (m^2) (-)",
+            f"1 Fixed 0 0 {number(-depth)} 0 0 0 0",
+            f"2 Coupled 0 0 {number(top)} 0 0 0 0",
+            f"{rule} LINES {rule}",
+            "ID LineType AttachA AttachB UnstrLen NumSegs LineOutputs",
+            "(-) (name) (ID) (ID) (m) (-) (-)",
+            f"1 {line.identifier} 1 2 {number(length)} {segments} -",
+            *conditions,
+            f"{rule} OPTIONS {rule}",
+            "0 writeLog",
+            "1 disableOutTime",
+            NO_GRAVITY,
+            f"{number(2 * depth)} WtrDpth",
+            f"{step:.3g} dtM",
+            "10 TmaxIC",
+            "0.1 dtIC",
+            f"{rule} OUTPUTS {rule}",
+            "FairTen1",
+            "AnchTen1",
+            f"{rule} need this line {rule}",
+            "",
+        ]
+    )
+
+
+def _steps(mass: float, stiffness: float, damping: float, apart: float) -> tuple[int, float]:
+    """Segments of the deck and a stable time step; one segment where five ask for a tiny one."""
+    step = _COURANT * apart * math.sqrt(mass / stiffness)
+    if damping > 0:
+        step = min(step, _COURANT * mass * apart**2 / damping)
+    if step < _SHORTEST_STEP:
+        return 1, _LONGEST_STEP  # no node is free
+    return _SEGMENTS, min(step, _LONGEST_STEP)
+
+
+MoorDynForm = Literal["table", "static-dynamic", "load-dependent", "syrope"]
+
+MOST_POINTS = 30
+
+"""Rows that a table of MoorDyn may have. [1]"""
+
+NUMERICAL_DAMPING = -1.0
+
+"""Internal damping where none was measured, as MoorDyn takes it: share of critical. [1]"""
+
+_FAST_SHARE = 0.1
+
+
+def table_text(line: ExportLine, curve: ThinnedCurve) -> str:
+    """Look-up table: three lines of header, rows with one blank, no line end at the end."""
+    low, high = line.tested
+    where = (
+        f"tested {plain_number(low, 4)} to {plain_number(high, 4)}"
+        if low == low
+        else "nothing tested"
+    )
+    made = "SYNTHETIC; " if line.is_synthetic else ""
+    first = one_line(
+        f"{line.name}; {made}{line.curve}; error {plain_number(curve.error, 3)} N; {where}; "
+        f"{'; '.join(line.sources)}"
+    )
+    rows = zip(curve.strain, curve.tension, strict=True)
+    return "\n".join(
+        [first, "Strain Tension", "(-) (N)", *(f"{number(e)} {number(t)}" for e, t in rows)]
+    )
+
+
+def fast_damping(stiffness: float, linear_density: float, apart: float) -> float:
+    """Numerical damping of the fast spring, a tenth of critical for the segments of a deck. [N s].
+
+    Parameters
+    ----------
+    stiffness : float
+        Of the fast spring. [N]
+    linear_density : float
+        In air. [kg m-1]
+    apart : float
+        Length of a segment. [m]
+
+    Returns
+    -------
+    damping : float
+        [N s]
+
+    Raises
+    ------
+    ValueError
+        If one is negative.
+
+    Examples
+    --------
+    >>> fast_damping(5e4, 0.5, 2.0)
+    31.622776601683796
+    """
+    return _FAST_SHARE * apart * math.sqrt(stiffness * linear_density)
+
+
+def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -> dict[str, str]:
+    """Files of a line type for MoorDyn, the deck first.
+
+    Parameters
+    ----------
+    line : ExportLine
+        What is exported.
+    stem : str
+        Of the names of the files beside the deck.
+    form : {"table", "static-dynamic", "load-dependent", "syrope"}
+        ``table``: the curve. ``static-dynamic``: EA_s|EA_d. ``load-dependent``:
+        EA_s|alpha|beta. ``syrope``: working curves under the original one.
+
+    Returns
+    -------
+    files : dict of str to str
+        Text by name; the key of the deck is empty.
+
+    Raises
+    ------
+    SettingsError
+        If the line has not what the form needs, or the form is not known.
+    DataError
+        If the curve cannot be exported.
+
+    Notes
+    -----
+    EA_s is K_0 and EA_d is K_0 + K_1 of [2]_.  MoorDyn puts the slow spring and its dashpot in
+    series with EA_d, [2]_ puts a spring and a dashpot in series beside K_0: the same line, but
+    not the same dashpot; see `Viscoelasticity.slow_dashpot_coefficient`.
+    """
+    if form == "table":
+        return _table_files(line, stem)
+    if form == "syrope":
+        return _syrope_files(line, stem)
+    if form not in ("static-dynamic", "load-dependent"):
+        raise SettingsError(
+            "the form of a MoorDyn line is not known",
+            found=repr(form),
+            needed="table, static-dynamic, load-dependent or syrope",
+        )
+    part = line.viscoelasticity
+    if part is None:
+        raise SettingsError(
+            f"static and dynamic stiffness of {line.name} are not known",
+            needed="K_0, K_1 and tau of a published line, which are taken at "
+            "--frequency, --mean-tension and --tension-amplitude",
+            hint="Export the curve instead: --form table.",
+        )
+    apart = segment_length(line)
+    fast = fast_damping(part.fast_stiffness, line.needed("linear_density"), apart)
+    damping = f"{number(part.slow_dashpot_coefficient)}|{number(fast)}"
+    if form == "static-dynamic":
+        stiffness = f"{number(part.static_stiffness)}|{number(part.fast_stiffness)}"
+    else:
+        slope = part.dynamic_stiffness_per_mean_tension
+        if not slope > 0:
+            raise SettingsError(
+                f"no growth of the dynamic stiffness of {line.name} with the mean tension can be "
+                "written",
+                found=part.growth or f"slope {slope:g}",
+                needed="a slope above zero, and a stiffness above zero at no tension",
+                hint="Use --form static-dynamic.",
+            )
+        stiffness = "|".join(map(number, (part.static_stiffness, part.dynamic_stiffness, slope)))
+    head = header_lines(
+        line,
+        None,
+        *_said(line),
+        *_stiffness_words(part),
+        ""
+        if form == "static-dynamic"
+        else "MoorDyn takes the running tension of the slow part for "
+        "the mean: about it K_ap of a cycle is 2 to 4 percent above that of static-dynamic on the "
+        "published lines",
+        f"BA_d {plain_number(fast, 4)} N s: {_FAST_SHARE:g} of critical for segments of {apart:g} "
+        "m, numerical, not measured; without it the integration grows",
+    )
+    return {
+        "": deck(
+            line,
+            line_type(line, stiffness, damping),
+            head,
+            strain=line.strain[-1] / 2,
+            stiffness=part.fast_stiffness,
+        )
+    }
+
+
+def _stiffness_words(part: Viscoelasticity) -> tuple[str, ...]:
+    """What the numbers of the stiffness are."""
+    return (
+        f"EA_s {plain_number(part.static_stiffness, 6)} N is K_0; EA_d "
+        f"{plain_number(part.fast_stiffness, 6)} N is K_0 + "
+        f"K_1; relaxation time {part.relaxation_time:.4g} s",
+        f"the dashpot beside the slow spring is "
+        f"{plain_number(part.slow_dashpot_coefficient, 6)} N s, which "
+        f"behaves as N = K_1 tau = {plain_number(part.dashpot_coefficient, 6)} N s of the "
+        f"Maxwell form",
+        f"found at {part.holds}" if part.holds else "",
+        "a spring constant holds about a mean; the strain of the deck starts at zero tension",
+    )
+
+
+def _said(line: ExportLine) -> tuple[str, ...]:
+    return (
+        line.volume_diameter[1],
+        f"hydrodynamic coefficients: {line.hydrodynamics.source}",
+        "bending stiffness 0: not measured",
+    )
+
+
+def _table_files(line: ExportLine, stem: str) -> dict[str, str]:
+    curve = thin_curve(line.strain, line.tension, most=MOST_POINTS)
+    table = f"{stem}_table.txt"
+    head = header_lines(
+        line,
+        curve,
+        *_said(line),
+        f"internal damping {NUMERICAL_DAMPING:g}: MoorDyn takes a number below zero for minus a "
+        "share of critical damping, and finds the damping of each segment by it; numerical, not "
+        "measured",
+        f"{table} belongs beside this file",
+    )
+    row = line_type(line, table, number(NUMERICAL_DAMPING))
+    steepest = float(np.max(np.diff(curve.tension) / np.diff(curve.strain)))
+    return {
+        "": deck(line, row, head, strain=line.strain[-1] / 2, stiffness=steepest),
+        table: table_text(line, curve),
+    }
+
+
+def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
+    part = line.syrope
+    if part is None:
+        raise SettingsError(
+            f"{line.name} has no Syrope working curves",
+            needed="original working curve, alpha, beta, k1, k2 and where the line starts",
+            hint="For a published line with levels: --working-curve, --greatest-mean-tension.",
+        )
+    curve = thin_curve(part.strain, part.tension, most=MOST_POINTS)
+    working, settings = f"{stem}_owc.dat", f"{stem}_syrope.dat"
+    alpha, beta = part.dynamic_stiffness, part.dynamic_stiffness_per_mean_tension
+    row = line_type(
+        line,
+        f"SYROPE:{settings}|{number(alpha)}|{number(beta)}",
+        f"{number(part.slow_damping)}|{number(part.fast_damping)}",
+    )
+    rule = "-" * 22
+    conditions = (
+        f"{rule} SYROPE IC {rule}",
+        "Line(s) Tmax0 Tmean0",
+        "(-) (N) (N)",
+        f"1 {number(part.greatest_mean_tension)} {number(part.mean_tension)}",
+    )
+    head = header_lines(
+        line,
+        curve,
+        *_said(line),
+        f"Syrope, working curves of the form {part.form}; the curve named here is the original one",
+        f"{settings} and {working} belong beside this file",
+    )
+    return {
+        "": deck(
+            line,
+            row,
+            head,
+            strain=part.initial_strain,
+            stiffness=alpha + beta * float(part.tension[-1]),
+            damping=part.fast_damping,
+            conditions=conditions,
+        ),
+        settings: _syrope_text(part, working),
+        working: table_text(line, curve),
+    }
+
+
+def _syrope_text(part: Syrope, working: str) -> str:
+    return "\n".join(
+        [
+            f"{working} OWC",
+            f"{part.form} WCType",
+            f"{number(part.k1)} k1",
+            f"{number(part.k2)} k2",
+        ]
+    )
+
+
+MoorPyForm = Literal["table", "library"]
+
+
+def moorpy_files(line: ExportLine, stem: str, *, form: MoorPyForm = "table") -> dict[str, str]:
+    """Files of a line type for MoorPy, the deck or the library first.
+
+    Parameters
+    ----------
+    line : ExportLine
+        What is exported.
+    stem : str
+        Of the name of the table.
+    form : {"table", "library"}
+        ``table``: a deck with the curve. ``library``: YAML, static and dynamic stiffness over the
+        break strength; linear only.
+
+    Returns
+    -------
+    files : dict of str to str
+        Text by name; the key of the deck or library is empty.
+
+    Raises
+    ------
+    SettingsError
+        If the line has not what the form needs, or the form is not known.
+    DataError
+        If the curve cannot be exported.
+    """
+    if form == "library":
+        return {"": _library(line)}
+    if form != "table":
+        raise SettingsError(
+            "the form of a MoorPy line is not known", found=repr(form), needed="table or library"
+        )
+    curve, table = thin_curve(line.strain, line.tension, most=MOST_POINTS), f"{stem}_moorpy.txt"
+    row = line_type(line, f"|{table}|", number(NUMERICAL_DAMPING))
+    head = header_lines(
+        line,
+        curve,
+        line.volume_diameter[1],
+        f"hydrodynamic coefficients: {line.hydrodynamics.source}",
+        f"MoorPy seeks {table} in the working folder: start it there",
+        "with a table MoorPy takes the line as straight, and halves its weight to the ends",
+    )
+    steepest = float(np.max(np.diff(curve.tension) / np.diff(curve.strain)))
+    text = deck(
+        line, row, head, strain=float(line.strain[-1]) / 2, stiffness=steepest, program="MoorPy"
+    )
+    return {"": text, table: f"{table_text(line, curve)}\n---"}
+
+
+def _library(line: ExportLine) -> str:
+    part = line.viscoelasticity
+    if part is None:
+        raise SettingsError(
+            f"static and dynamic stiffness of {line.name} are not known",
+            needed="K_0, K_1 and tau of a published line, which are taken at --frequency, "
+            "--mean-tension and --tension-amplitude: the library of MoorPy is linear",
+            hint="Export the curve instead: --form table.",
+        )
+    strength, diameter = line.needed("rated_break_strength"), line.needed("diameter")
+    mass, water = line.needed("linear_density"), line.hydrodynamics
+    beta = part.dynamic_stiffness_per_mean_tension
+    volume, words = line.volume_diameter
+    head = header_lines(
+        line,
+        None,
+        words,
+        f"hydrodynamic coefficients: {water.source}",
+        f"holds for the diameter {1000 * diameter:.4g} mm alone: nothing is known of others",
+        f"found at {part.holds}" if part.holds else "",
+        "the dynamic stiffness is K_ap at that frequency, since the library has no damping; "
+        f"K_0 + K_1, that of fast cycles, is {plain_number(part.fast_stiffness, 6)} N"
+        if math.isfinite(part.frequency)
+        else "",
+    )
+    slow = part.apparent_stiffness - part.fast_stiffness
+    rows = {
+        "mass_d2": mass / diameter**2,
+        "MBL_d2": strength / diameter**2,
+        "EA_MBL": part.static_stiffness / strength,
+        "EAd_MBL": (part.dynamic_stiffness + slow) / strength,
+        "EAD_LM": beta,
+        "EAd_MBL_Lm": beta,
+        "dvol_dnom": volume / diameter,
+        "Cd": water.normal_drag,
+        "Cd_ax": water.axial_drag,
+        "Ca": water.normal_added_mass,
+        "Ca_ax": water.axial_added_mass,
+    }
+    text = [f"    {name}: {real_number(value)}" for name, value in rows.items()]
+    return "\n".join(
+        [f"# {one}" for one in head] + ["lineProps:", f'  "{line.identifier}":', *text, ""]
+    )
+
+
+# OpenFAST hands its own gravity to the module, unless the file has another
+_LEFT_OUT = ("0 writeLog", "1 disableOutTime", "10 TmaxIC", "0.1 dtIC", NO_GRAVITY, WEIGHTLESS)
+
+_ABOUT_GRAVITY = "gravity is that of OpenFAST: the line sags, and has more tension than its strain"
+
+
+def openfast_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -> dict[str, str]:
+    """Files of a line type for OpenFAST, the input file of its MoorDyn module first.
+
+    Parameters
+    ----------
+    line : ExportLine
+        What is exported.
+    stem : str
+        Of the names of the files beside it.
+    form : {"table", "static-dynamic", "load-dependent", "syrope"}
+        As `reduction.lines.deck_moordyn.moordyn_files`.
+
+    Returns
+    -------
+    files : dict of str to str
+        Text by name; the key of the input file is empty.
+
+    Raises
+    ------
+    SettingsError, DataError
+        As `reduction.lines.deck_moordyn.moordyn_files`.
+    """
+    files = moordyn_files(line, stem, form=form)
+    remarks = ["grammar of MoorDyn, not run in OpenFAST", _ABOUT_GRAVITY]
+    if form in ("table", "syrope"):
+        remarks.append(
+            "files that are named here are sought beside the executable: put them there, or write "
+            "the path"
+        )
+    if form == "syrope":
+        remarks.append("Syrope needs an OpenFAST of June 2026 or later")
+    first, *rest = files.pop("").split("\n")
+    said = header_lines(line, None, *remarks)
+    said = said[next(place for place, text in enumerate(said) if text.startswith("Remark")) :]
+    kept = [row for row in rest if row not in _LEFT_OUT]
+    return {"": "\n".join([first, *said, *kept]), **files}

@@ -1,0 +1,768 @@
+r"""K_0, K_1 and tau of an exported line, consistent with its K_ap and H.
+
+Stiffness that depends on how fast a line is pulled, and on how far it once was.
+
+What is said of the dynamics of an exported line: how they were found, what is doubtful.
+
+How well K_1 and tau of an exported line are known, from K_ap, H and K_0 of one set of runs.
+
+.. math:: w^2(y) = \sum_i (s_i w_i)^2 + 1.96^2 \sum_k \Bigl(\sum_i s_i c_{ik}\Bigr)^2
+
+over the inputs i with the half width w_i of each alone, the contribution c_ik of each error that
+they share, and the sensitivity s_i of the parameter.  A load cell is in all three: its gain is in
+K_1 as it is, and leaves tau alone.
+
+K_0, K_1 and tau of a line for export, such that it gives back its own K_ap and H.
+
+K_1 and tau have surfaces of their own in [4]_, fitted to what was identified run by run.  Beside
+the surfaces of K_ap and H they are a second fit of the same runs, and the two do not agree: over
+the tested levels of the printed lines the first give K_ap from 0.7 to 2.3 times the second.  K_ap
+and H are what was measured, so K_1 and tau are identified from them at the point that is asked for.
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1-4.
+.. [2] MoorDyn documentation, "Input Files", v2.7.1, 2026, on the Syrope model.
+.. [3] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
+   in measurement," 5.2.
+.. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1-4, Tables 3-19.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from reduction.lines.line_curve import own_half_width, shared_half_width, shared_of
+from reduction.lines.line_lookup import look_up
+from reduction.lines.lookup_product import DesignValues, LineSource
+from reduction.quantities.digits import plain_number
+from reduction.record.contributions import Contributions
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Floats, read_only_arrays
+from reduction.stages.line.line_model import (
+    AMPLITUDE_INPUTS,
+    OUTPUTS,
+    amplitude_sensitivities,
+    apparent_spring_constant,
+    hysteresis_energy,
+    identify_by_amplitude,
+)
+from reduction.stages.line.line_product import REASONS, LineParameters
+from reduction.uncertainty.propagation import line_contributions
+
+_STEPS = 201
+
+
+@dataclass(frozen=True)
+class Viscoelasticity:
+    """A spring K_0 beside a spring K_1 in series with a dashpot: three parameters of [1]_.
+
+    Parameters
+    ----------
+    static_stiffness : float
+        Of a slow pull, K_0, per unit strain: EA_s of mooring codes. [N]
+    dynamic_stiffness : float
+        Of a fast change, K_0 + K_1: EA_d; where it grows with the mean tension, its value at zero
+        mean tension (alpha). [N]
+    dashpot_coefficient : float
+        N = K_1 tau. [N s]
+    dynamic_stiffness_per_mean_tension : float
+        beta: EA_d = alpha + beta T_mean. [1]
+    mean_tension : float
+        At which the numbers hold; needed where beta is not zero. [N]
+    holds : str
+        In words: levels at which the numbers were found.
+    frequency : float
+        At which they were found; NaN where they hold at every one. [Hz]
+    growth : str
+        In words: how beta was found, or why it is zero.
+    """
+
+    static_stiffness: float
+    dynamic_stiffness: float
+    dashpot_coefficient: float
+    dynamic_stiffness_per_mean_tension: float = 0.0
+    mean_tension: float = math.nan
+    holds: str = ""
+    frequency: float = math.nan
+    growth: str = ""
+
+    def __post_init__(self) -> None:
+        """Check that the line is stiffer when it is fast."""
+        numbers = (self.static_stiffness, self.dynamic_stiffness, self.dashpot_coefficient)
+        slope = self.dynamic_stiffness_per_mean_tension
+        if not all(map(math.isfinite, (*numbers, slope))) or min(*numbers, slope) < 0:
+            raise SettingsError(
+                "stiffness and damping of a line are not numbers of at least zero",
+                found=", ".join(plain_number(value, 6) for value in (*numbers, slope)),
+            )
+        if slope and not self.mean_tension >= 0:
+            raise SettingsError(
+                "a dynamic stiffness that grows with the mean tension has no mean tension",
+                needed="the mean tension at which the damping was found",
+            )
+        if not self.fast_stiffness > self.static_stiffness > 0:
+            raise SettingsError(
+                "the dynamic stiffness is not above the static one",
+                found=f"{plain_number(self.fast_stiffness, 6)} N and "
+                f"{plain_number(self.static_stiffness, 6)} N",
+                needed="a static stiffness above zero and a dynamic one above that",
+            )
+
+    @property
+    def fast_stiffness(self) -> float:
+        """EA_d at the mean tension, K_0 + K_1. [N]."""
+        slope = self.dynamic_stiffness_per_mean_tension
+        return self.dynamic_stiffness + (slope * self.mean_tension if slope else 0.0)
+
+    @property
+    def relaxation_time(self) -> float:
+        """Of the tension at constant strain, tau = N / K_1. [s]."""
+        return self.dashpot_coefficient / (self.fast_stiffness - self.static_stiffness)
+
+    @property
+    def apparent_stiffness(self) -> float:
+        """Of a cycle, for a code without damping: K_ap at the frequency, else EA_d. [N]."""
+        known = math.isfinite(self.frequency)
+        return self.apparent_stiffness_at(self.frequency) if known else self.fast_stiffness
+
+    def apparent_stiffness_at(self, frequency: float) -> float:
+        """Tension amplitude over strain amplitude, K_ap, at a frequency in Hz. [N]."""
+        return float(apparent_spring_constant(**self._three, frequency=frequency))
+
+    def hysteresis_energy_at(self, frequency: float, amplitude: float) -> float:
+        """Energy of a cycle, H, at a frequency in Hz and a tension amplitude in N. [J m-1]."""
+        found = hysteresis_energy(**self._three, frequency=frequency, tension_amplitude=amplitude)
+        return float(found)
+
+    @property
+    def _three(self) -> dict[str, float]:
+        return {
+            "quasi_static_spring_constant": self.static_stiffness,
+            "dissipation_spring_constant": self.fast_stiffness - self.static_stiffness,
+            "relaxation_time": self.relaxation_time,
+        }
+
+    @property
+    def slow_dashpot_coefficient(self) -> float:
+        r"""Dashpot of the same line as a spring in series with a spring beside a dashpot. [N s].
+
+        Mooring codes put the slow spring :math:`E_1` and its dashpot :math:`B` in series with
+        :math:`EA_d`; equal static stiffness asks for :math:`1/EA_s = 1/E_1 + 1/EA_d`, equal
+        behaviour at every frequency for :math:`B = N (EA_d / (EA_d - EA_s))^2`.
+        """
+        share = self.fast_stiffness / (self.fast_stiffness - self.static_stiffness)
+        return self.dashpot_coefficient * share**2
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class Syrope:
+    """Working curves of a fibre rope that remembers its greatest mean tension.
+
+    Parameters
+    ----------
+    strain, tension : ndarray, shape (n_points,)
+        Original working curve, from 0 0. [1], [N]
+    form : {"LINEAR", "QUADRATIC", "EXP"}
+        Of the working curves below it.
+    k1, k2 : float
+        LINEAR: k1 below 1 is the strain at zero tension over that at the greatest one, from 1 on
+        the slope; k2 is not used. QUADRATIC: 0 <= k1 < 1, 0 < k2 <= 1. EXP: 0 <= k1 < 1, k2 > 0.
+        [1], [N]
+    dynamic_stiffness, dynamic_stiffness_per_mean_tension : float
+        alpha and beta of EA_d = alpha + beta T_mean. [N], [1]
+    slow_damping, fast_damping : float
+        Dashpots of the slow and of the fast spring. [N s]
+    greatest_mean_tension, mean_tension : float
+        Where the line starts: without them MoorDyn ends with a segmentation fault. [N]
+    """
+
+    strain: Floats
+    tension: Floats
+    form: Literal["LINEAR", "QUADRATIC", "EXP"]
+    k1: float
+    k2: float
+    dynamic_stiffness: float
+    dynamic_stiffness_per_mean_tension: float
+    slow_damping: float
+    fast_damping: float
+    greatest_mean_tension: float
+    mean_tension: float
+
+    def __post_init__(self) -> None:
+        """Check what MoorDyn does not."""
+        allowed = {
+            "LINEAR": (0 < self.k1, "k1 above 0"),
+            "QUADRATIC": (0 <= self.k1 < 1 and 0 < self.k2 <= 1, "0 <= k1 < 1 and 0 < k2 <= 1"),
+            "EXP": (0 <= self.k1 < 1 and self.k2 > 0, "0 <= k1 < 1 and k2 above 0"),
+        }
+        if self.form not in allowed:
+            raise SettingsError(
+                "the form of a Syrope working curve is not known",
+                found=repr(self.form),
+                needed=", ".join(allowed),
+            )
+        is_allowed, needed = allowed[self.form]
+        if not is_allowed:
+            raise SettingsError(
+                f"a Syrope working curve of the form {self.form} cannot have these parameters",
+                found=f"k1 {self.k1:g}, k2 {self.k2:g}",
+                needed=needed,
+            )
+        if not 0 < self.mean_tension <= self.greatest_mean_tension <= self.tension[-1]:
+            raise SettingsError(
+                "the tensions that a Syrope line starts from do not fit its original working curve",
+                found=f"mean {self.mean_tension:g} N, greatest mean {self.greatest_mean_tension:g} "
+                f"N, end of the curve {self.tension[-1]:g} N",
+                needed="0 < mean <= greatest mean <= end of the curve",
+            )
+        alpha, beta = self.dynamic_stiffness, self.dynamic_stiffness_per_mean_tension
+        if not (alpha > 0 and beta >= 0 and self.slow_damping > 0 and self.fast_damping >= 0):
+            raise SettingsError(
+                "stiffness and damping of a Syrope line are out of range",
+                needed="alpha and slow damping above 0, beta and fast damping at least 0",
+            )
+        elastic = np.log1p(beta / alpha * self.tension) / beta if beta else self.tension / alpha
+        steps = np.diff(self.strain - elastic)
+        if np.any(steps <= 0):
+            first = int(np.argmax(steps <= 0))
+            raise SettingsError(
+                "the original working curve is stiffer than the dynamic stiffness: its slow part "
+                "would shrink as the tension grows",
+                found=f"between strains {self.strain[first]:g} and {self.strain[first + 1]:g}",
+                needed="alpha + beta T above the slope of the curve",
+            )
+
+        self._refuse_stiff_working_curve()
+
+    def _refuse_stiff_working_curve(self) -> None:
+        """MoorDyn starts such a line at another tension, without a word."""
+        along = np.linspace(0.0, 1.0, _STEPS)
+        top = float(np.interp(self.greatest_mean_tension, self.tension, self.strain))
+        share, slope = along, np.ones(_STEPS)
+        if self.form == "EXP":
+            share = np.expm1(self.k2 * along) / math.expm1(self.k2)
+            slope = self.k2 * np.exp(self.k2 * along) / math.expm1(self.k2)
+        elif self.form == "QUADRATIC":
+            share = along * (1 - self.k2 + self.k2 * along)
+            slope = 1 - self.k2 + 2 * self.k2 * along
+        if self.form == "LINEAR" and self.k1 >= 1:
+            slope = slope * self.k1
+        else:
+            slope = slope * self.greatest_mean_tension / (top * (1 - self.k1))
+        load = share * self.greatest_mean_tension
+        fast = self.dynamic_stiffness + self.dynamic_stiffness_per_mean_tension * load
+        if np.any(slope >= fast):
+            first = int(np.argmax(slope >= fast))
+            raise SettingsError(
+                "the working curve is stiffer than the dynamic stiffness: its slow part would "
+                "shrink as the tension grows",
+                found=f"{plain_number(slope[first])} N at {plain_number(load[first])} N, "
+                f"dynamic {plain_number(fast[first])} N",
+                needed="a smaller k1, or a less bent form",
+            )
+
+    @property
+    def initial_strain(self) -> float:
+        """Strain at the mean tension, on the working curve of the greatest one. [1]."""
+        top = float(np.interp(self.greatest_mean_tension, self.tension, self.strain))
+        share = self.mean_tension / self.greatest_mean_tension
+        if self.form == "LINEAR" and self.k1 >= 1:
+            return top - (self.greatest_mean_tension - self.mean_tension) / self.k1
+        if self.form == "EXP":
+            share = math.log1p(share * math.expm1(self.k2)) / self.k2
+        elif self.form == "QUADRATIC":
+            # k2 x^2 + (1 - k2) x = T / T_max
+            rest = 1 - self.k2
+            share = (math.sqrt(rest**2 + 4 * self.k2 * share) - rest) / (2 * self.k2)
+        return top * (self.k1 + share * (1 - self.k1))
+
+
+def said_identified(
+    part: Viscoelasticity, amplitude: float, half: Mapping[str, Floats], *, is_exact: bool
+) -> str:
+    """K_1 and tau, what they give back, and how well they are known.
+
+    ``half`` are half widths of 95 % by name; ``is_exact`` where no interval of K_0 is known.
+    """
+    spring = part.fast_stiffness - part.static_stiffness
+    return (
+        f"K_1 {plain_number(spring)} N and tau {plain_number(part.relaxation_time, 4)} s "
+        f"are identified from the surfaces "
+        f"of K_ap and H and from K_0 at these levels: the exported line gives back K_ap "
+        f"{plain_number(part.apparent_stiffness)} N and H "
+        f"{plain_number(part.hysteresis_energy_at(part.frequency, amplitude), 4)} J/m there"
+        + _said_known(half, is_exact=is_exact)
+    )
+
+
+def _said_known(half: Mapping[str, Floats], *, is_exact: bool) -> str:
+    """How well K_1 and tau are known; what K_ap, H and K_0 share, they share here."""
+    spring, time = (
+        float(half[name]) for name in ("dissipation_spring_constant", "relaxation_time")
+    )
+    if not (math.isfinite(spring) and math.isfinite(time)):
+        return "; K_ap or H has no interval, and so have K_1 and tau none"
+    without = ", K_0 taken as exact: it has no interval" if is_exact else ""
+    return (
+        f"; 95 percent of K_1 +-{plain_number(spring, 3)} N, of tau "
+        f"+-{plain_number(time, 3)} s{without}"
+    )
+
+
+def said_printed(
+    rest: float,
+    printed: Mapping[str, DesignValues],
+    measured: Mapping[str, DesignValues],
+    frequency: float,
+    amplitude: float,
+) -> str:
+    """What the surfaces of K_1 and tau would have given; K_0 ``rest`` beside them."""
+    if not printed:
+        return "the source has no surfaces of K_1 and tau that can be used"
+    spring, time = (float(one.value) for one in printed.values())
+    said = (
+        f"the printed surfaces of K_1 and tau, {plain_number(spring)} N and "
+        f"{plain_number(time, 4)} s, are not used"
+    )
+    if not (spring > 0 and time > 0):
+        return f"{said}: they are not above zero"
+    part = Viscoelasticity(rest, rest + spring, spring * time, frequency=frequency)
+    return f"{said}: they would give {_against(part, measured, amplitude)}"
+
+
+def said_instead(
+    part: Viscoelasticity, measured: Mapping[str, DesignValues], amplitude: float, reason: int
+) -> str:
+    """That the printed K_1 and tau stand, and how far off they are."""
+    spring = part.fast_stiffness - part.static_stiffness
+    return (
+        f"DOUBTFUL: K_1 {plain_number(spring)} N and tau "
+        f"{plain_number(part.relaxation_time, 4)} s are those of the "
+        f"printed surfaces; none give back K_ap and H there: {REASONS[reason]}. They give "
+        f"{_against(part, measured, amplitude)}"
+    )
+
+
+def _against(part: Viscoelasticity, measured: Mapping[str, DesignValues], amplitude: float) -> str:
+    model = (part.apparent_stiffness, part.hysteresis_energy_at(part.frequency, amplitude))
+    parts = []
+    for value, (name, unit), found in zip(
+        model, (("K_ap", "N"), ("H", "J/m")), measured.values(), strict=True
+    ):
+        own = float(found.value)
+        share = f", {100 * (value / own - 1):+.1f} percent" if own > 0 else ""
+        parts.append(
+            f"{name} {plain_number(value)} {unit} where the line has {plain_number(own)}{share}"
+        )
+    return "; ".join(parts)
+
+
+def doubts_of_identified(
+    line: LineParameters, half_widths: Mapping[str, Floats], energy: DesignValues
+) -> list[str]:
+    """Intervals in which there is no damping at all, or that are not known."""
+    said = []
+    if not math.isfinite(float(energy.surface_low)):
+        said.append("DOUBTFUL: how well the damping is known is not known: H has no interval")
+    elif float(energy.surface_low) <= 0:
+        said.append(
+            "DOUBTFUL: the damping may be none: the 95 percent interval of H, "
+            f"{interval_of(energy)}, holds zero"
+        )
+    half = float(half_widths["relaxation_time"])
+    time = float(line.relaxation_time)
+    if half >= time:
+        said.append(
+            f"DOUBTFUL: the dashpot is hardly known: tau {plain_number(time, 4)} s with a 95 "
+            f"percent interval of +-{plain_number(half, 3)} s, from those of K_ap, H and K_0"
+        )
+    return said
+
+
+def doubts_of_printed(time: DesignValues) -> list[str]:
+    """The same of a tau that is a design value itself."""
+    if not math.isfinite(float(time.surface_low)):
+        return ["DOUBTFUL: how well the dashpot is known is not known: tau has no interval"]
+    if float(time.surface_low) <= 0:
+        return [
+            "DOUBTFUL: the dashpot may be none: the 95 percent interval of tau, "
+            f"{interval_of(time)}, holds zero"
+        ]
+    return []
+
+
+def said_over_frequency(part: Viscoelasticity, frequencies: Floats, found: DesignValues) -> str:
+    """K_ap of the exported line against the surface at several frequencies."""
+    rows = []
+    for row, frequency in enumerate(frequencies):
+        model, own = part.apparent_stiffness_at(float(frequency)), float(found.value[row])
+        inside = float(found.surface_low[row]) <= model <= float(found.surface_high[row])
+        outside = "" if inside or math.isnan(found.surface_low[row]) else ", OUTSIDE its interval"
+        share = f" ({100 * (model / own - 1):+.1f} percent{outside})" if own > 0 else ""
+        rows.append(
+            f"{plain_number(frequency, 3)} Hz {plain_number(model)} against "
+            f"{plain_number(own)} N{share}"
+        )
+    return (
+        "one K_1 and tau do not hold at every frequency; K_ap of the exported line against the "
+        f"surface at this mean tension and amplitude: {', '.join(rows)}"
+    )
+
+
+def interval_of(found: DesignValues) -> str:
+    """The 95 % interval of one surface, in words."""
+    if not math.isfinite(float(found.surface_low)):
+        return "an interval, which the source does not have"
+    return (
+        f"{plain_number(float(found.surface_low), 4)} to "
+        f"{plain_number(float(found.surface_high), 4)} {found.unit}"
+    )
+
+
+def said_of_value(found: DesignValues) -> str:
+    """Where one design value is from."""
+    known = math.isfinite(float(found.surface_high))
+    is_vague = known and float(found.surface_low) < 0
+    return (
+        f"{found.source}: {found.quantity} {plain_number(float(found.value), 6)} {found.unit}, "
+        + (f"95 percent of the surface {interval_of(found)}" if known else "no interval known")
+        + (": its lower end is below zero: not told from zero" if is_vague else "")
+        + (f", errata {', '.join(found.errata)}" if found.errata else "")
+        + ("" if found.is_inside else ", OUTSIDE what was tested")
+        + (", untested corner" if found.is_untested else "")
+    )
+
+
+_REST_OF_SPREAD = "quasi_static_spring_constant"
+
+_LOOP = ("apparent_spring_constant", "hysteresis_energy")
+
+
+def half_widths(
+    line: LineParameters, rest: DesignValues, apparent: DesignValues, energy: DesignValues
+) -> dict[str, Floats]:
+    """Half widths of the 95 % intervals of what was identified from three design values.
+
+    Parameters
+    ----------
+    line : LineParameters
+        From K_ap, H and K_0, by `reduction.stages.line.line_model.identify_by_amplitude`.
+    rest, apparent, energy : DesignValues
+        K_0, K_ap and H at the point, of the surface. [N], [N], [J m-1]
+
+    Returns
+    -------
+    half : dict of str to ndarray, shape (...)
+        By the names of `reduction.stages.line.line_model.OUTPUTS`; NaN where K_ap or H has no
+        interval; K_0 counts as exact where it has none. [SI]
+
+    Raises
+    ------
+    SettingsError
+        If an error stands twice among those of one value.
+
+    Notes
+    -----
+    First order ([3]_), by the logarithmic derivatives of eqs. 1 and 4 of [1]_.  The levels of a
+    design value are true ones: amplitude and frequency are exact, and what a wrong load cell does
+    to them is in the contributions to the surfaces.
+
+    Examples
+    --------
+    See `tests/unit/test_export_linespread.py`.
+    """
+    given = {_LOOP[0]: apparent, _LOOP[1]: energy, _REST_OF_SPREAD: rest}
+    values: dict[str, Floats] = {name: one.value for name, one in given.items()}
+    values |= {name: getattr(line, name) for name in OUTPUTS}
+    shared = shared_of(given)
+    moved = line_contributions(
+        Contributions(shared.component, {name: shared.values[name] for name in _LOOP}),
+        Contributions(shared.component, {_REST_OF_SPREAD: shared.values[_REST_OF_SPREAD]}),
+        values,
+        reading="amplitude",
+    )
+    slopes = amplitude_sensitivities(
+        line.storage_spring_constant, line.loss_spring_constant, rest.value
+    )
+    own = {name: own_half_width(one, "surface_high") for name, one in given.items()}
+    own[_REST_OF_SPREAD] = np.nan_to_num(own[_REST_OF_SPREAD])
+    columns = [AMPLITUDE_INPUTS.index(name) for name in given]
+    relative = np.stack([own[name] / values[name] for name in given])
+    found = {}
+    for row, name in enumerate(OUTPUTS):
+        alone = values[name] * np.sqrt(np.sum((slopes[row, columns] * relative) ** 2, axis=0))
+        found[name] = np.asarray(np.hypot(alone, shared_half_width(moved.values[name])))
+    return found
+
+
+_REST, _APPARENT, _ENERGY = (
+    "quasi_static_spring_constant", "apparent_spring_constant", "hysteresis_energy",
+)  # fmt: skip
+
+_SPRING, _TIME = "dissipation_spring_constant", "relaxation_time"
+
+_MEANS, _FEWEST_MEANS, _FREQUENCIES = 9, 3, 3
+
+_ROUNDING = 1e-9
+
+Extrapolate = Literal["refuse", "flag"]
+
+
+@dataclass(frozen=True)
+class LineDynamics:
+    """The three parameters at one point, where they are from, and what is against them."""
+
+    part: Viscoelasticity
+    sources: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+def line_dynamics(
+    source: LineSource, levels: Mapping[str, float], extrapolate: Extrapolate = "refuse"
+) -> LineDynamics:
+    """Static and dynamic stiffness and dashpot of a line at a frequency, a mean and an amplitude.
+
+    Parameters
+    ----------
+    source : LineSource
+        With K_0, and K_ap and H, or K_1 and tau.
+    levels : mapping of str to float
+        ``frequency``, ``mean_tension`` and ``tension_amplitude``. [Hz], [N], [N]
+    extrapolate : {"refuse", "flag"}
+        Outside the levels that were tested.
+
+    Returns
+    -------
+    found : LineDynamics
+        With what the line's own surfaces say of K_ap and H beside what is exported.
+
+    Raises
+    ------
+    SettingsError
+        If a level or a quantity is missing.
+    DataError
+        If a level is outside what was tested, or no K_1 and tau give back K_ap within its 95 %
+        interval.
+
+    Notes
+    -----
+    K_1 and tau are identified from K_ap, H and K_0 ([4]_, eqs. 1 and 4 solved at once), as
+    `reduction.stages.line.line_model.identify_by_amplitude` does for a run; so the exported line
+    gives back
+    K_ap and H at that point.  Where there is no such line (E' not above K_0, or H not above zero),
+    the printed K_1 and tau take their place as long as K_ap of them is in the 95 % interval of
+    the surface of K_ap.  How well they are known is by `reduction.lines.export_dynamics`: one load
+    cell
+    is in K_ap, H and K_0.  The growth with the mean tension is that of the straight line of least
+    squares through K_0 + K_1, found in the same way at nine means over the tested ones.
+    """
+    if "mean_tension" not in levels:
+        raise SettingsError(
+            "static and dynamic stiffness need a mean tension", needed="--mean-tension"
+        )
+    rest = _value(source, _REST, levels, extrapolate)
+    known = set(source.quantities)
+
+    def values(*names: str) -> dict[str, DesignValues]:
+        return {name: _value(source, name, levels, extrapolate) for name in names}
+
+    measured = values(_APPARENT, _ENERGY) if {_APPARENT, _ENERGY} <= known else {}
+    printed = values(_SPRING, _TIME) if {_SPRING, _TIME} <= known or not measured else {}
+    amplitude, frequency = (
+        float(levels.get(name, math.nan)) for name in ("tension_amplitude", "frequency")
+    )
+    is_identified = False
+    if measured:
+        line = _identified(rest, measured, levels)
+        reason = int(line.reason)
+        is_identified = reason == 0
+        if is_identified:
+            spring = float(line.dissipation_spring_constant)
+            half = half_widths(line, rest, measured[_APPARENT], measured[_ENERGY])
+            part = _part(rest, spring, float(line.relaxation_time), levels)
+            notes = [
+                said_identified(part, amplitude, half, is_exact=not np.isfinite(rest.surface_high)),
+                said_printed(float(rest.value), printed, measured, frequency, amplitude),
+                *doubts_of_identified(line, half, measured[_ENERGY]),
+            ]
+        else:
+            part = _instead(source, rest, measured, printed, levels, reason)
+            notes = [
+                said_instead(part, measured, amplitude, reason),
+                *doubts_of_printed(printed[_TIME]),
+            ]
+        notes += _over_frequency(source, part, levels)
+    else:
+        spring, time = (float(one.value) for one in printed.values())
+        part = _part(rest, spring, time, levels)
+        notes = [
+            "K_1 and tau are those of the source: it has no K_ap and H to hold them against",
+            *doubts_of_printed(printed[_TIME]),
+        ]
+    slope, growth = _growth(source, levels, part.fast_stiffness, is_identified=is_identified)
+    every = (rest, *measured.values(), *printed.values())
+    texts = dict.fromkeys(text for found in every for text in found.notes)
+    for text in (one for one in texts if one not in source.notes):
+        notes.append(f"{', '.join(one.quantity for one in every if text in one.notes)}: {text}")
+    part = replace(
+        part,
+        dynamic_stiffness=part.fast_stiffness - slope * float(levels["mean_tension"]),
+        dynamic_stiffness_per_mean_tension=slope,
+        growth=growth,
+    )
+    return LineDynamics(part, tuple(map(said_of_value, every)), (*notes, growth))
+
+
+def _part(
+    rest: DesignValues, spring: float, time: float, levels: Mapping[str, float]
+) -> Viscoelasticity:
+    holds = ", ".join(
+        f"{name.replace('_', ' ')} {plain_number(value)}" for name, value in levels.items()
+    )
+    return Viscoelasticity(
+        static_stiffness=float(rest.value),
+        dynamic_stiffness=float(rest.value) + spring,
+        dashpot_coefficient=spring * time,
+        mean_tension=float(levels["mean_tension"]),
+        holds=f"{holds} (SI)",
+        frequency=levels.get("frequency", math.nan),
+    )
+
+
+def _value(
+    source: LineSource, quantity: str, levels: Mapping[str, Any], extrapolate: Extrapolate
+) -> DesignValues:
+    """Design value at those of the levels that the quantity varies with."""
+    if quantity in source.surfaces:
+        names = source.factor_names
+    else:
+        names = tuple(one.variable for one in source.curves if one.quantity == quantity)
+    # a pull is over the tension, which is the mean of the cycles
+    given = {
+        name: levels["mean_tension"] if name == "tension" else levels[name]
+        for name in names
+        if name in levels or name == "tension"
+    }
+    return look_up(source, quantity, extrapolate=extrapolate, **given)
+
+
+def _identified(
+    rest: DesignValues, measured: Mapping[str, DesignValues], levels: Mapping[str, Any]
+) -> LineParameters:
+    """K_1 and tau of K_ap, H and K_0."""
+    return identify_by_amplitude(
+        apparent_spring_constant=measured[_APPARENT].value,
+        hysteresis_energy=measured[_ENERGY].value,
+        tension_amplitude=levels["tension_amplitude"],
+        frequency=levels["frequency"],
+        quasi_static_spring_constant=rest.value,
+    )
+
+
+def _instead(
+    source: LineSource,
+    rest: DesignValues,
+    measured: Mapping[str, DesignValues],
+    printed: Mapping[str, DesignValues],
+    levels: Mapping[str, float],
+    reason: int,
+) -> Viscoelasticity:
+    """Printed K_1 and tau, where K_ap of them is not to be told from that of the surface."""
+    apparent = measured[_APPARENT]
+    why = f"no K_1 and tau of {source.name} give back its K_ap and H there: {REASONS[reason]}"
+    numbers = (
+        f"K_0 {plain_number(float(rest.value))} N, K_ap {plain_number(float(apparent.value))} N, H "
+        f"{plain_number(float(measured[_ENERGY].value), 4)} J/m"
+    )
+    if not printed:
+        raise DataError(why, found=numbers, needed="other levels")
+    spring, time = (float(one.value) for one in printed.values())
+    if not (spring > 0 and time > 0):
+        raise DataError(
+            f"{why}; and the printed ones are not above zero",
+            found=f"K_1 {plain_number(spring, 4)} N, tau {plain_number(time, 4)} s; {numbers}",
+            needed="other levels",
+        )
+    part = _part(rest, spring, time, levels)
+    model = part.apparent_stiffness
+    if not float(apparent.surface_low) <= model <= float(apparent.surface_high):
+        raise DataError(
+            f"{why}; and the printed ones give another K_ap than the line has",
+            found=f"K_ap {plain_number(model)} N; {numbers}",
+            needed=interval_of(apparent),
+            hint="Another level, or the curve alone: leave the levels away.",
+        )
+    return part
+
+
+def _over_frequency(
+    source: LineSource, part: Viscoelasticity, levels: Mapping[str, float]
+) -> list[str]:
+    surface = source.surfaces.get(_APPARENT)
+    if surface is None or "frequency" not in source.factor_names:
+        return []
+    place = source.factor_names.index("frequency")
+    frequencies = np.linspace(surface.low[place], surface.high[place], _FREQUENCIES)
+    over = {name: np.full(_FREQUENCIES, value) for name, value in levels.items()}
+    found = _value(source, _APPARENT, over | {"frequency": frequencies}, "flag")
+    return [said_over_frequency(part, frequencies, found)]
+
+
+def _growth(
+    source: LineSource, levels: Mapping[str, float], fast: float, *, is_identified: bool
+) -> tuple[float, str]:
+    """Slope of K_0 + K_1 over the mean tension, zero where none can be written, and words. [1]."""
+    surface = source.surfaces.get(_APPARENT if is_identified else _SPRING)
+    if surface is None or "mean_tension" not in source.factor_names:
+        return 0.0, "growth of the dynamic stiffness with the mean tension is not known"
+    place = source.factor_names.index("mean_tension")
+    low = max(float(surface.low[place]), levels.get("tension_amplitude", 0.0))
+    means = np.linspace(low, float(surface.high[place]), _MEANS)
+    over = {name: np.full(_MEANS, value) for name, value in levels.items()} | {
+        "mean_tension": means
+    }
+    total = _totals(source, over, is_identified=is_identified)
+    stands = np.isfinite(total)
+    if stands.sum() < _FEWEST_MEANS:
+        return 0.0, (
+            "growth of the dynamic stiffness with the mean tension is not known: K_1 is found at "
+            f"{int(stands.sum())} of {_MEANS} means"
+        )
+    means, total = means[stands], total[stands]
+    slope, start = (float(one) for one in np.polyfit(means, total, 1))
+    worst = float(np.abs(slope * means + start - total).max())
+    words = (
+        f"growth of the dynamic stiffness with the mean tension: {slope:.4g}, a straight line "
+        f"through {means.size} of {_MEANS} means over the tested ones, off by up to "
+        f"{plain_number(worst, 3)} N, "
+        f"{100 * worst / fast:.2g} percent of EA_d"
+    )
+    if slope * np.ptp(means) < _ROUNDING * np.abs(total).max():
+        return 0.0, f"{words}; it does not grow, and no slope is exported"
+    if fast - slope * levels["mean_tension"] <= 0:
+        return 0.0, (
+            f"{words}; with it EA_d would be below zero at no tension, and no slope is exported: "
+            "the stiffness holds at this mean tension alone"
+        )
+    return slope, words
+
+
+def _totals(source: LineSource, over: Mapping[str, Floats], *, is_identified: bool) -> Floats:
+    """K_0 + K_1 at points, NaN where there is none. [N]."""
+    rest = _value(source, _REST, over, "flag")
+    if is_identified:
+        measured = {name: _value(source, name, over, "flag") for name in (_APPARENT, _ENERGY)}
+        spring = _identified(rest, measured, over).dissipation_spring_constant
+    else:
+        spring = _value(source, _SPRING, over, "flag").value
+    # a K_0 that is not trusted says nothing of the growth
+    return np.where(rest.is_inside, rest.value + spring, np.nan)

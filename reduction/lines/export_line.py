@@ -1,0 +1,717 @@
+"""The line to be exported: curve, range, uncertainty, properties.
+
+Uncertainty of the tension of an exported curve: its own part, and what it shares with others.
+
+What a mooring code is told of a line: one curve, its range, its dynamics, its properties.
+
+The straight start of a curve against what other tests of the same tether measured there.
+
+One monotone curve, begun at zero and thinned to few points with a stated error.
+
+What a user of an exported line is told on the screen too: its range, and what does not fit.
+
+References
+----------
+.. [1] M. Bigon and G. Regazzoni, "The Morrow Guide to Knots," Quill, New York, 1982, p. 14,
+   "Comparison between fibers used in ropemaking."
+.. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, Tables 5, 6.
+.. [3] H. Imai and M. Iri, "An optimal algorithm for approximating a piecewise linear function,"
+   J. Inf. Process., vol. 9, no. 3, pp. 159-162, 1986.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import unicodedata
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.lines.export_dynamics import Syrope, Viscoelasticity
+from reduction.lines.lookup_product import LineSource
+from reduction.quantities.digits import plain_number
+from reduction.record.contributions import Component
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Floats, Integers, read_only_arrays
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class CurveSpread:
+    """Standard uncertainties of the tensions of a curve, NaN where they are not known.
+
+    Parameters
+    ----------
+    standard : ndarray, shape (n_points,)
+        Both parts. [N]
+    random : ndarray, shape (n_points,), optional
+        Of the curve by itself; None where the parts are not kept apart. [N]
+    component : tuple of Component, length n_components
+        Errors that the curve shares with others.
+    contribution : ndarray, shape (n_components, n_points)
+        What each of them adds to the tension, signed. [N]
+    """
+
+    standard: Floats
+    random: Floats | None = None
+    component: tuple[Component, ...] = ()
+    contribution: Floats = field(default_factory=lambda: np.empty((0, 0)))
+
+    def __post_init__(self) -> None:
+        """Check that all is of the same points, and make the arrays read-only."""
+        n_points = self.standard.size
+        of_random = n_points if self.random is None else self.random.size
+        rows = (len(self.component), n_points)
+        if of_random != n_points or (self.component and self.contribution.shape != rows):
+            raise DataError(
+                "parts of the uncertainty of a curve are not of the same points",
+                found=f"{n_points} uncertainties, {of_random} random ones, contributions of shape "
+                f"{self.contribution.shape} to {len(self.component)} errors",
+            )
+
+    @property
+    def shared(self) -> Floats:
+        """Of what is shared, all errors together. [N]."""
+        if not self.component:
+            return np.where(np.isnan(self.standard), np.nan, 0.0)
+        return np.asarray(np.sqrt(np.sum(self.contribution**2, axis=0)))
+
+    def at(self, wanted: Floats, strain: Floats) -> CurveSpread:
+        """The same at other strains of the curve.
+
+        Parameters
+        ----------
+        wanted : ndarray, shape (n,)
+            [1]
+        strain : ndarray, shape (n_points,)
+            Of the curve, rising. [1]
+
+        Returns
+        -------
+        spread : CurveSpread
+            Straight lines between the points; NaN beyond them, where nothing was read.
+
+        Raises
+        ------
+        ValueError
+            If the strains are not as many as the points.
+
+        Examples
+        --------
+        >>> both = CurveSpread(np.array([1.0, 3.0]))
+        >>> both.at(np.array([0.0, 0.2, 0.3]), np.array([0.1, 0.3])).standard
+        array([nan,  2.,  3.])
+        """
+
+        def read(values: Floats) -> Floats:
+            return np.interp(wanted, strain, values, left=np.nan, right=np.nan)
+
+        rows = np.array([read(row) for row in self.contribution]).reshape(-1, wanted.size)
+        return CurveSpread(
+            read(self.standard),
+            None if self.random is None else read(self.random),
+            self.component,
+            rows if self.component else np.empty((0, wanted.size)),
+        )
+
+
+SEA_WATER = 1025.0
+
+"""Density that turns a wet mass into a displaced volume. [kg m-3]"""
+
+FIBRE_DENSITY = {"nylon": 1140.0, "polyester": 1380.0}
+
+"""By material; specific gravity of [1]_. [kg m-3]"""
+
+
+@dataclass(frozen=True)
+class Hydrodynamics:
+    """Drag and added-mass coefficients, across the line and along it, and where they are from.
+
+    Drag across refers to diameter times length, drag along to pi times that, as MoorDyn has it.
+    """
+
+    normal_drag: float
+    axial_drag: float
+    normal_added_mass: float
+    axial_added_mass: float
+    source: str
+
+
+CYLINDER = Hydrodynamics(
+    1.2, 0.0, 1.0, 0.0, "assumed, not measured: a smooth cylinder across the flow, none along it"
+)
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class ExportLine:
+    """A line as a mooring code takes it.
+
+    Parameters
+    ----------
+    name : str
+        Becomes the line type; other signs than letters, digits, ``_`` and ``-`` become ``_``.
+    strain, tension : ndarray, shape (n_points,)
+        One curve, strain rising, tension not falling. [1], [N]
+    curve : str
+        What it is, in words: which branch, which cycles, or the mean of what. Never a loop.
+    tested : tuple of float
+        Least and greatest strain that was tested; NaN where nothing was. [1]
+    diameter : float
+        NaN where not stated. [m]
+    linear_density, wet_linear_density : float
+        In air, and less the displaced water; NaN where not stated. [kg m-1]
+    rated_break_strength : float
+        NaN where not stated. [N]
+    unstretched_length : float
+        Of the whole line; NaN where a curve holds for any length. [m]
+    material : str
+        Of the fibre, where it is stated.
+    viscoelasticity : Viscoelasticity, optional
+        Where it was found.
+    syrope : Syrope, optional
+        Where it is known.
+    spread : CurveSpread, optional
+        Uncertainty of the tensions, where it is known.
+    hydrodynamics : Hydrodynamics
+        With their source.
+    sources : tuple of str
+        Where every number came from, over which range, which errata touch it.
+    notes : tuple of str
+        Joins, gaps, what else to know.
+    is_synthetic : bool
+        Nothing was tested: the numbers were made.
+    """
+
+    name: str
+    strain: Floats
+    tension: Floats
+    curve: str
+    tested: tuple[float, float]
+    diameter: float = math.nan
+    linear_density: float = math.nan
+    wet_linear_density: float = math.nan
+    rated_break_strength: float = math.nan
+    unstretched_length: float = math.nan
+    material: str = ""
+    viscoelasticity: Viscoelasticity | None = None
+    syrope: Syrope | None = None
+    spread: CurveSpread | None = None
+    hydrodynamics: Hydrodynamics = field(default_factory=lambda: CYLINDER)
+    sources: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    is_synthetic: bool = False
+
+    def __post_init__(self) -> None:
+        """Check that somebody has said what the curve is and where it is from."""
+        for name, needed in (
+            ("name", "letters or digits"),
+            ("curve", "a branch or a mean, in words"),
+        ):
+            if not re.search(r"\w", getattr(self, name)):
+                raise SettingsError(f"a line for export has no {name}", needed=needed)
+        if self.wet_linear_density >= self.linear_density:
+            raise SettingsError(
+                f"{self.name} is not lighter in water than in air",
+                found=f"{self.wet_linear_density:g} kg/m in water, {self.linear_density:g} kg/m in "
+                "air",
+                needed="a wet linear density below the dry one",
+            )
+        if not self.sources:
+            raise SettingsError(f"{self.name} has no source", needed="where its numbers are from")
+
+    @property
+    def identifier(self) -> str:
+        """The name as one ASCII word that every code takes; accents are left away."""
+        bare = unicodedata.normalize("NFKD", self.name)
+        bare = "".join(sign for sign in bare if not unicodedata.combining(sign))
+        word = re.sub(r"[^A-Za-z0-9_-]+", "_", re.sub("-{2,}", "-", bare)).strip("-")
+        if not word.strip("_"):
+            raise SettingsError(
+                "the name has no sign that a mooring code takes", found=self.name,
+                needed="letters A to Z or digits", hint="csv, json and netcdf take any name.",
+            )  # fmt: skip
+        return word
+
+    @property
+    def volume_diameter(self) -> tuple[float, str]:
+        """Diameter of the cylinder that displaces as much water, and how it was found. [m]."""
+        displaced = (self.linear_density - self.wet_linear_density) / SEA_WATER
+        words = f"dry and wet mass in water of {SEA_WATER:g} kg/m3"
+        density = FIBRE_DENSITY.get(self.material.strip().lower(), math.nan)
+        if not math.isfinite(displaced):
+            displaced = self.linear_density / density
+            words = (
+                f"the mass a length and the density of {self.material} fibre, {density:g} kg/m3 "
+                "(Bigon and Regazzoni, The Morrow Guide to Knots, p. 14), since no wet mass is "
+                "stated"
+            )
+        if displaced > 0:
+            diameter = math.sqrt(4 * displaced / math.pi)
+            nominal = "" if math.isnan(self.diameter) else (
+                f"; drag refers to it, and not to the nominal {1000 * self.diameter:.4g} mm"
+            )  # fmt: skip
+            found = f"{1000 * diameter:.4g} mm, of the displaced volume"
+            return diameter, f"diameter: {found}, from {words}{nominal}"
+        return (
+            self.needed("diameter"),
+            "diameter: nominal; the displaced volume of a rope is smaller",
+        )
+
+    def needed(self, name: str) -> float:
+        """A property that a format cannot do without; `SettingsError` where it is not stated."""
+        value = float(getattr(self, name))
+        if not (math.isfinite(value) and value > 0):
+            raise SettingsError(
+                f"the {name.replace('_', ' ')} of {self.name} is not known, and this format needs "
+                "it",
+                needed=f"{name} above zero",
+                hint=f"Give --{name.replace('_', '-')} with a unit.",
+            )
+        return value
+
+
+_DOUBT = 0.05
+
+
+def siblings_of(line: LineSource, others: Sequence[LineSource]) -> tuple[LineSource, ...]:
+    """Other tests of the same tether in the same condition.
+
+    Parameters
+    ----------
+    line : LineSource
+        One test of a tether.
+    others : sequence of LineSource
+        Among which they are sought.
+
+    Returns
+    -------
+    siblings : tuple of LineSource
+        Empty for a rope, whose tests are one line.
+
+    Raises
+    ------
+    AttributeError
+        If it is no source.
+    """
+    if not line.is_tether:
+        return ()
+    same = ("kind", "material", "construction", "condition", "diameter")
+    return tuple(
+        one
+        for one in others
+        if one.name != line.name and all(getattr(one, key) == getattr(line, key) for key in same)
+    )
+
+
+def start_against(
+    strain: Floats, tension: Floats, branch: str, siblings: Sequence[LineSource]
+) -> tuple[str, ...]:
+    """How far the straight line from 0 0 is from what was measured there in other tests.
+
+    Parameters
+    ----------
+    strain, tension : ndarray, shape (n_points,)
+        Of the curve, without what stands below its first point. [1], [N]
+    branch : str
+        Of the curve.
+    siblings : sequence of LineSource
+        Other tests of the same tether.
+
+    Returns
+    -------
+    words : tuple of str
+        One sentence a test that reaches below the first point; DOUBTFUL from a twentieth on.
+
+    Raises
+    ------
+    AttributeError
+        If one is no source.
+
+    Notes
+    -----
+    The windows of a tether ([2]_) begin at the stretch about which it was cycled.
+    """
+    said = []
+    for other in siblings:
+        for curve in other.curves:
+            if curve.quantity != "branch_tension" or curve.branch != branch or not curve.at.size:
+                continue
+            below = (curve.at > 0) & (curve.at < strain[0]) & (curve.value > 0)
+            if not below.any():
+                continue
+            at, measured = curve.at[below], curve.value[below]
+            off = tension[0] * at / strain[0] / measured - 1
+            worst = int(np.argmax(np.abs(off)))
+            doubt = "DOUBTFUL: " if abs(off[worst]) > _DOUBT else ""
+            said.append(
+                f"{doubt}the straight start is off by {100 * off[worst]:+.0f} percent at strain "
+                f"{plain_number(at[worst], 4)}, where {other.name} has "
+                f"{plain_number(measured[worst], 4)} N; exported "
+                "without the test, the tether has what each measured"
+            )
+    return tuple(said)
+
+
+LIFT = 1e-6
+
+"""Share of the greatest tension that is added over the curve where it does not rise. [1]"""
+
+LEAST_SHARE = 1e-3
+
+"""Tension, over the greatest, below which an error counts as if it were that much. [1]"""
+
+_HALVINGS = 56
+
+_ENOUGH, _LOOSER = 0.01, 1.25
+
+_ROUNDING = 1e-12
+
+_DIGITS = 10
+
+
+class _Close(Protocol):
+    @property
+    def local(self) -> float: ...
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class ThinnedCurve:
+    """A curve from 0 0, strictly rising; arrays have the shape (n_points,).
+
+    ``error`` is the greatest difference in tension from the curve that was given [N], ``share``
+    the same over the greatest tension, ``local`` the greatest difference over the tension there,
+    ``words`` what was done.
+    """
+
+    strain: Floats
+    tension: Floats
+    error: float
+    share: float
+    local: float
+    words: str
+
+
+def curve_from_zero(strain: ArrayLike, tension: ArrayLike) -> tuple[Floats, Floats, str]:
+    """Begin a curve at zero strain and zero tension, and make it rise strictly.
+
+    Parameters
+    ----------
+    strain : array_like, shape (n_points,)
+        Strictly rising. [1]
+    tension : array_like, shape (n_points,)
+        Not falling. [N]
+
+    Returns
+    -------
+    strain : ndarray, shape (n_kept,)
+        The first is zero. [1]
+    tension : ndarray, shape (n_kept,)
+        The first is zero. [N]
+    words : str
+        What was added.
+
+    Raises
+    ------
+    DataError
+        If there are fewer than two points, one is not finite, the curve turns back or falls (a
+        loop), ends at no tension, or has tension where there is no strain.
+
+    Notes
+    -----
+    The rule: points without strain or without tension are left out; the last of them that has
+    strain says where the line comes taut, and below it the line is slack. Where there is none, a
+    straight line joins 0 0 and the first point; it was not measured. Where the curve does not
+    rise, one millionth of the greatest tension is added evenly over the strain.
+
+    Examples
+    --------
+    >>> strain, tension, words = curve_from_zero([0.1, 0.3], [200.0, 500.0])
+    >>> print(strain, tension, words)
+    [0.  0.1 0.3] [  0. 200. 500.] a straight line from 0 0 to the first point at strain 0.1
+    """
+    at = np.asarray(strain, dtype=np.float64)
+    load = np.asarray(tension, dtype=np.float64)
+    if at.ndim != 1 or at.shape != load.shape or at.size < 2:
+        raise DataError(
+            "a curve has not two points or more", found=f"{at.shape} strains, {load.shape} tensions"
+        )
+    if not (np.isfinite(at).all() and np.isfinite(load).all()):
+        raise DataError("a curve has values that are not numbers", needed="finite numbers")
+    back = (np.diff(at) <= 0) | (np.diff(load) < 0)
+    if back.any():
+        first = int(np.argmax(back))
+        raise DataError(
+            f"a curve turns back at {int(back.sum())} of {back.size} steps: a loop is not exported",
+            found=f"strain {at[first]:g} to {at[first + 1]:g}, tension {load[first]:g} to "
+            f"{load[first + 1]:g} N after point {first + 1}",
+            needed="one branch, or a mean: strain rising, tension not falling",
+        )
+    if np.any((at <= 0) & (load > 0)):
+        raise DataError(
+            "a curve has tension where it has no strain",
+            found=f"{load[at <= 0].max():g} N at strain {at[at <= 0].max():g}",
+            needed="strain of the length at zero tension",
+        )
+    kept = load > 0
+    if not kept.any():
+        raise DataError("a curve ends at no tension", found=f"{load[-1]:g} N")
+    slack = at[(at > 0) & ~kept]
+    zero: Floats = np.zeros(1)
+    if slack.size:
+        at = np.concatenate([zero, slack[-1:], at[kept]])
+        load = np.concatenate([zero, zero, load[kept]])
+        words = f"slack from 0 0 to strain {slack[-1]:g}"
+    else:
+        has_zero = bool(np.any(~kept & (at == 0)))
+        at, load = np.concatenate([zero, at[kept]]), np.concatenate([zero, load[kept]])
+        words = "" if has_zero else (
+            f"a straight line from 0 0 to the first point at strain {at[1]:g}"
+        )  # fmt: skip
+    if np.any(np.diff(load) <= _ROUNDING * load[-1]):
+        load = load + LIFT * load[-1] * at / at[-1]
+        added = f"{LIFT:g} of the greatest tension added over the strain, where it did not rise"
+        words = f"{words}; {added}" if words else added
+    return at, load, words
+
+
+def thin_curve(strain: ArrayLike, tension: ArrayLike, *, most: int) -> ThinnedCurve:
+    """Choose few points of a curve so that straight lines between them stay close to it.
+
+    Parameters
+    ----------
+    strain : array_like, shape (n_points,)
+        Strictly rising. [1]
+    tension : array_like, shape (n_points,)
+        Not falling. [N]
+    most : int
+        Points that may be kept, 0 0 among them; at least 3.
+
+    Returns
+    -------
+    curve : ThinnedCurve
+        From 0 0, strictly rising, numbers with ten digits.
+
+    Raises
+    ------
+    DataError
+        If the curve cannot be exported; see `curve_from_zero`.
+
+    Notes
+    -----
+    Small tensions are where a line works, great ones where it breaks: first the error relative to
+    the tension at its place (to a thousandth of the greatest one where it is below that) is made
+    least; then the error over the greatest tension, with the first held to a hundredth, or to a
+    quarter more than its least where that is above a hundredth.
+
+    From each kept point the farthest one is taken whose chord leaves all points between them
+    within a tolerance (a cone of slopes, [3]_); its share is halved between what is enough
+    and what is not. The error is then taken from the points as they are written.
+
+    Examples
+    --------
+    >>> at = np.linspace(0, 1, 5000)
+    >>> curve = thin_curve(at, 100 * at**2, most=30)
+    >>> print(curve.strain.size, curve.error < 0.1, curve.local < 0.01)
+    30 True True
+    """
+    at, load, words = curve_from_zero(strain, tension)
+    high = float(load[-1])
+    chosen: Integers = np.arange(at.size)
+    if at.size > most:
+        scale = np.maximum(load, LEAST_SHARE * high)
+        chosen, least = _fewest(at, load, lambda share: share * scale, most)
+        near = max(_ENOUGH, _LOOSER * least) * scale
+        closer, _ = _fewest(at, load, lambda share: np.minimum(share * high, near), most)
+        chosen = closer if closer.size > 2 else chosen
+    kept, held = _written(at[chosen]), _written(load[chosen])
+    if np.any(np.diff(kept) <= 0) or np.any(np.diff(held) <= 0):
+        kept, held = at[chosen], load[chosen]
+    # tension of the points that were given, where they have strain and tension of their own
+    given, measured = np.asarray(strain, dtype=np.float64), np.asarray(tension, dtype=np.float64)
+    own = given >= 0
+    difference = np.interp(given[own], kept, held) - np.maximum(measured[own], 0.0)
+    error = float(np.abs(difference).max(initial=0.0))
+    local = local_share(difference, measured[own], high)
+    return ThinnedCurve(kept, held, error, error / high, local, words)
+
+
+def local_words(curve: _Close) -> str:
+    """How far a curve is off at small tensions.
+
+    Parameters
+    ----------
+    curve : ThinnedCurve or SmoothCurve
+        As written.
+
+    Returns
+    -------
+    words : str
+        A part of a sentence.
+
+    Raises
+    ------
+    AttributeError
+        If it is no such curve.
+    """
+    return f"{curve.local:.2e} of the tension there, or of {LEAST_SHARE:g} of the greatest"
+
+
+def local_share(difference: ArrayLike, tension: ArrayLike, greatest: float) -> float:
+    """Greatest difference over the tension at its place, or a thousandth of the greatest one.
+
+    Parameters
+    ----------
+    difference : array_like, shape (n_points,)
+        Of two curves. [N]
+    tension : array_like, shape (n_points,)
+        At the points. [N]
+    greatest : float
+        Of the curve. [N]
+
+    Returns
+    -------
+    share : float
+        Zero where there is no point. [1]
+
+    Raises
+    ------
+    ValueError
+        If differences and tensions do not pair up.
+
+    Examples
+    --------
+    >>> print(local_share([1.0, 10.0], [20.0, 1000.0], 1000.0))
+    0.05
+    """
+    scale = np.maximum(np.asarray(tension, dtype=np.float64), LEAST_SHARE * greatest)
+    return float(np.max(np.abs(np.asarray(difference)) / scale, initial=0.0))
+
+
+def _fewest(
+    at: Floats, load: Floats, allowed: Callable[[float], Floats], most: int
+) -> tuple[Integers, float]:
+    """Points of the least share whose tolerances leave few enough, and that share."""
+    chosen: Integers = np.array([0, at.size - 1])
+    low, high = 0.0, 1 / LEAST_SHARE
+    for _ in range(_HALVINGS):
+        middle = max((low + high) / 2, _ROUNDING)
+        found = _within(at, load, allowed(middle), most)
+        if found is None:
+            low = middle
+        else:
+            chosen, high = found, middle
+    return chosen, high
+
+
+def _within(at: Floats, load: Floats, tolerance: Floats, most: int) -> Integers | None:
+    """Points whose chords stay within the tolerances; None where they are too many."""
+    last = at.size - 1
+    chosen = [0]
+    while chosen[-1] < last:
+        if len(chosen) == most:
+            return None
+        here = chosen[-1]
+        run, rise = at[here + 1 :] - at[here], load[here + 1 :] - load[here]
+        slope = rise / run
+        steepest = np.minimum.accumulate((rise + tolerance[here + 1 :]) / run)
+        flattest = np.maximum.accumulate((rise - tolerance[here + 1 :]) / run)
+        reached = np.flatnonzero((slope >= flattest) & (slope <= steepest))
+        chosen.append(here + 1 + int(reached[-1]))
+    return np.array(chosen)
+
+
+def _written(values: Floats) -> Floats:
+    """The numbers that ten digits give back."""
+    return np.array([float(f"{value:.{_DIGITS}g}") for value in values])
+
+
+_SAME = 1e-9
+
+_LEAST_FILL = 0.6  # of the diameter: a third of the area, where ropes have two thirds
+
+
+def range_of(line: ExportLine) -> str:
+    """Over which strains a curve was tested, and what stands below.
+
+    Parameters
+    ----------
+    line : ExportLine
+        What is exported.
+
+    Returns
+    -------
+    words : str
+        One sentence.
+
+    Raises
+    ------
+    AttributeError
+        If it is no line.
+    """
+    low, high = line.tested
+    if not low == low:
+        return "nothing was tested"
+    words = f"tested from strain {plain_number(low, 6)} to {plain_number(high, 6)}"
+    if low > _SAME * high:
+        words += (
+            f"; the start, a line from 0 0 up to strain {low:.6g}, was NOT measured on this curve"
+        )
+    return words
+
+
+def guards_of(line: ExportLine) -> tuple[str, ...]:
+    """What of a line does not fit, or holds over a part alone.
+
+    Parameters
+    ----------
+    line : ExportLine
+        What is exported.
+
+    Returns
+    -------
+    words : tuple of str
+        One sentence each; what is in doubt begins with DOUBTFUL.
+
+    Raises
+    ------
+    AttributeError
+        If it is no line.
+
+    Notes
+    -----
+    A rope of a fibre that is heavier than water does not float, no rope has more mass than a rod of
+    its fibre, and none a third of it; densities of fibres as in [1]_.
+    """
+    words = [range_of(line)]
+    mass, diameter = line.linear_density, line.diameter
+    if not (math.isfinite(mass) and math.isfinite(diameter)):
+        return tuple(words)
+    volume, said = line.volume_diameter
+    words.append(said)
+    is_stated = math.isfinite(line.wet_linear_density)
+    if mass < SEA_WATER * math.pi / 4 * volume**2 and not is_stated:
+        words.append(
+            f"DOUBTFUL: the line floats: {mass:.4g} kg/m displaces "
+            f"{SEA_WATER * math.pi / 4 * volume**2:.4g} kg/m of water. Unless it does, state "
+            "--wet-linear-density"
+        )
+    elif volume > (1 + _SAME) * diameter:
+        words.append(
+            f"DOUBTFUL: the displaced volume has a diameter of {1000 * volume:.4g} mm, above the "
+            f"nominal one of {1000 * diameter:.4g} mm: mass a length and diameter do not fit"
+        )
+    elif volume < _LEAST_FILL * diameter:
+        words.append(
+            f"DOUBTFUL: the displaced volume has a diameter of {1000 * volume:.4g} mm, far below "
+            f"the nominal one of {1000 * diameter:.4g} mm: mass a length and diameter do not fit"
+        )
+    return tuple(words)

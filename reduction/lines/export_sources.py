@@ -1,0 +1,831 @@
+"""Lines for export from archives, assemblies, composites and look-ups.
+
+A line for export from an archive: the curve of a reduced test, or of a predicted hose.
+
+A deployed assembly for export: every node of it as a table, and as one line of its own.
+
+A line for export from a composite curve: its rule, its pieces, its joins and gaps.
+
+A line for export from what is known of it for look-up: its curve, its dynamics at a mean.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4.
+.. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2.
+.. [3] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4.8.
+.. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1-4, Tables 6, 8, 14, 17.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import xarray as xr
+
+from reduction.archive.open import reading
+from reduction.archive.variables import stored
+from reduction.lines.archive_pieces import parts_of
+from reduction.lines.assembly import DeployedLine
+from reduction.lines.composite import CompositeCurve, PieceSource, used_of
+from reduction.lines.export_dynamics import line_dynamics
+from reduction.lines.export_line import CurveSpread, ExportLine, start_against
+from reduction.lines.export_tables import TableColumn, ValueTable, spread_columns
+from reduction.lines.line_curve import evaluate_curve
+from reduction.lines.lookup_product import LineCurve, LineSource
+from reduction.quantities.digits import plain_number
+from reduction.record.contributions import combined_standard_uncertainty
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Bools, Floats
+
+CurveName = Literal["mean", "ascending", "descending"]
+
+_BRANCHES = ("ascending", "descending")
+
+_NOT_APART = (
+    "what the test shares with others, as a load cell, is not kept apart: all that is known of the "
+    "uncertainty counts as that of the curve alone"
+)
+
+_STEP_BACK = 1e-3  # of the greatest tension: noise of a mean, not a loop
+
+
+def line_from_archive(
+    path: Path,
+    *,
+    curve: CurveName | None = None,
+    specimen: str | None = None,
+    **stated: Any,
+) -> ExportLine:
+    """Read one curve of an archive as a line.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Archive of a reduced test, or of predicted hoses.
+    curve : {"mean", "ascending", "descending"}, optional
+        Of a test: mean over the cycles of one branch, or the mean of both; "mean" where it is
+        not said. A hose has one curve.
+    specimen : str, optional
+        Which specimen or hose; needed where there are several.
+    **stated
+        Fields of `ExportLine` that the archive does not hold, or that are better known; None and
+        NaN are passed over.
+
+    Returns
+    -------
+    line : ExportLine
+        With what the archive says of it.
+
+    Raises
+    ------
+    ArchiveError
+        If the archive cannot be opened.
+    SettingsError
+        If the specimen is not there or not said, or a hose is asked for a branch.
+    DataError
+        If there is no curve, or it falls by more than noise.
+    """
+    with reading(path) as archive:
+        return line_from_open_archive(archive, path.stem, curve=curve, specimen=specimen, **stated)
+
+
+def line_from_open_archive(
+    archive: xr.Dataset,
+    stem: str,
+    *,
+    curve: CurveName | None = None,
+    specimen: str | None = None,
+    **stated: Any,
+) -> ExportLine:
+    """One curve of an archive that is open, as `line_from_archive`.
+
+    Parameters
+    ----------
+    archive : xarray.Dataset
+        As `reduction.archive.open.open_archive` gives it.
+    stem : str
+        Of the name of its file.
+    curve : {"mean", "ascending", "descending"}, optional
+        As `line_from_archive`.
+    specimen : str, optional
+        As `line_from_archive`.
+    **stated
+        As `line_from_archive`.
+
+    Returns
+    -------
+    line : ExportLine
+        With what the archive says of it.
+
+    Raises
+    ------
+    SettingsError
+        If the specimen is not there or not said, or a hose is asked for a branch.
+    DataError
+        If there is no curve, or it falls by more than noise.
+    """
+    given = {
+        name: value
+        for name, value in stated.items()
+        if value is not None and not (isinstance(value, float) and math.isnan(value))
+    }
+    if "hose" in archive.dims:
+        if curve is not None:
+            raise SettingsError("a predicted hose has one curve", found=curve, needed="no --curve")
+        fields = _of_hose(archive, specimen)
+    else:
+        fields = _of_test(archive, curve or "mean", specimen)
+    attributes = archive.attrs
+    what = attributes.get("id", stem)
+    sources = [f"archive {what}: {attributes.get('title', 'without a title')}"]
+    if attributes.get("source"):
+        sources.append(f"data: {attributes['source']}")
+    if attributes.get("raw_file_sha256"):
+        sources.append(
+            f"raw file {attributes.get('raw_file', '')}, sha256 {attributes['raw_file_sha256']}"
+        )
+    if attributes.get("references"):
+        sources.append(f"references: {attributes['references']}")
+    sources += [f"{name.replace('_', ' ')}: stated at the export" for name in given]
+    is_synthetic = attributes.get("synthetic", "no") == "yes"
+    return ExportLine(**fields | given, sources=tuple(sources), is_synthetic=is_synthetic)
+
+
+def _place(archive: xr.Dataset, dim: str, name: str | None) -> int:
+    names = [str(value) for value in archive[dim].values]
+    if name is None and len(names) == 1:
+        return 0
+    if name not in names:
+        raise SettingsError(
+            f"which {dim} is meant is not said" if name is None else f"there is no {dim} '{name}'",
+            needed="--specimen " + " or ".join(names),
+        )
+    return names.index(name)
+
+
+def _number(archive: xr.Dataset, name: str, place: int) -> float:
+    return float(archive.variables[name].values[place]) if name in archive else math.nan
+
+
+def _of_hose(archive: xr.Dataset, name: str | None) -> dict[str, Any]:
+    place = _place(archive, "hose", name)
+    strain, tension = (
+        archive.variables["strain"].values[place],
+        archive.variables["tension"].values[place],
+    )
+    state = archive.variables["hose_state"].values[place]
+    flags = str(archive.variables["hose_state"].attrs["flag_meanings"]).split()
+    broken = int(archive.variables["hose_state"].attrs["flag_masks"][flags.index("broken")])
+    known = np.isfinite(strain) & np.isfinite(tension) & ((state & broken) == 0)
+    strain, tension = strain[known], tension[known]
+    spread = stored(archive, "tension_standard_uncertainty")
+    return {
+        "name": str(archive.variables["hose"].values[place]),
+        "spread": None if spread is None else CurveSpread(spread.values[place][known]),
+        **_rising(strain, tension),
+        "curve": "predicted from construction, up to the break of the cords",
+        "tested": (math.nan, math.nan),
+        "diameter": _number(archive, "outer_diameter", place),
+        "notes": ("a prediction: the range is that of the theory",),
+    }
+
+
+def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[str, Any]:
+    if "branch_tension" not in archive:
+        raise DataError(
+            "the archive has no curve of tension over strain",
+            found=f"a test of the kind {archive.attrs.get('test_kind', 'unknown')}",
+            needed="a test with cycles",
+        )
+    place = _place(archive, "specimen", name)
+    branches = [str(value) for value in archive.variables["branch_name"].values]
+    by_branch = archive.variables["branch_tension"].values[place]
+    rows = [branches.index(one) for one in (_BRANCHES if curve == "mean" else (curve,))]
+    # where a branch is not known there is no mean: half a loop is no curve
+    tension = by_branch[rows].mean(axis=0)
+    strain = archive.variables["strain_bin"].values
+    known = np.isfinite(tension)
+    if known.sum() < 2:
+        raise DataError(
+            f"the {curve} curve has not two points", found=f"{int(known.sum())} strain bins"
+        )
+    cycles = "the cycles of the test"
+    words = {
+        "mean": f"mean of the ascending and descending branches, over {cycles}",
+        "ascending": f"ascending branch, mean over {cycles}",
+        "descending": f"descending branch, mean over {cycles}",
+    }[curve]
+    specimen = str(archive.variables["specimen"].values[place])
+    notes = [
+        f"{key.removeprefix('specimen_')}: {archive[key].values[place]}"
+        for key in ("specimen_material", "specimen_condition")
+        if key in archive and str(archive[key].values[place])
+    ]
+    if curve == "mean":
+        gap = np.nanmax(np.abs(np.diff(by_branch[[branches.index(b) for b in _BRANCHES]], axis=0)))
+        notes.append(
+            f"the branches are up to {plain_number(gap, 4)} N apart; the loop is not in this curve"
+        )
+    if np.flatnonzero(known).size <= np.ptp(np.flatnonzero(known)):
+        notes.append("strain bins without a mean lie within the curve: a straight line joins them")
+    strain, tension = strain[known], tension[known]
+    spread = _spread_of(archive, place, rows, known)
+    if spread is not None and spread.random is None:
+        notes.append(_NOT_APART)
+    return {
+        "name": specimen,
+        "spread": spread,
+        **_rising(strain, tension),
+        "curve": words,
+        "tested": (float(strain[0]), float(strain[-1])),
+        "diameter": _number(archive, "diameter", place),
+        "rated_break_strength": _number(archive, "rated_break_strength", place),
+        "linear_density": _number(archive, "linear_density", place),
+        "wet_linear_density": _number(archive, "wet_linear_density", place),
+        "material": (
+            str(archive.variables["specimen_material"].values[place])
+            if "specimen_material" in archive
+            else ""
+        ),
+        "notes": tuple(notes),
+    }
+
+
+def _spread_of(
+    archive: xr.Dataset, place: int, branches: list[int], known: Bools
+) -> CurveSpread | None:
+    """Uncertainty of one branch, or of the mean of both; None where the archive has none."""
+    if "branch_tension_standard_uncertainty" not in archive:
+        return None
+    own, shared = parts_of(archive, "branch_tension", place, of="tension")
+    own = own[branches]
+    # what is of each branch alone scatters, what both share is in their mean by its sign
+    random = np.sqrt(np.sum(own**2, axis=0))[known] / len(branches)
+    if shared is None:
+        return CurveSpread(random)
+    rows = shared.values["tension"][:, branches].mean(axis=1)[:, known]
+    return CurveSpread(combined_standard_uncertainty(rows, random), random, shared.component, rows)
+
+
+def _rising(strain: Floats, tension: Floats) -> dict[str, Floats]:
+    """The curve where it rises; a step back within noise is levelled, a greater one refused."""
+    level = np.maximum.accumulate(tension)
+    fall = float(np.max(level - tension))
+    if fall > _STEP_BACK * float(level[-1]):
+        first = int(np.argmax(level - tension))
+        raise DataError(
+            "the curve falls as the strain rises, and one curve of a mooring code cannot",
+            found=f"by {plain_number(fall, 4)} N at strain {plain_number(strain[first], 4)}",
+            needed=f"a fall of at most {_STEP_BACK:g} of the greatest tension",
+        )
+    return {"strain": np.array(strain), "tension": np.array(level)}
+
+
+def assembly_table(line: DeployedLine) -> ValueTable:
+    """Return every node of an assembly: length, tension, stiffness, and what each tether carries.
+
+    Parameters
+    ----------
+    line : DeployedLine
+        The assembly.
+
+    Returns
+    -------
+    table : ValueTable
+        One column for all tethers where they are alike.
+    """
+    deployed, assembly = line.deployed, line.deployed.assembly
+    columns = [
+        TableColumn("total_length", "m", "end to end", np.array(assembly.total_length)),
+        TableColumn("tension", "N", "of the assembly", np.array(assembly.tension)),
+        *spread_columns(_assembly_spread(line), both="of the curve, at one length: of both parts"),
+        TableColumn(
+            "strain", "1", "of the length at which the assembly goes slack",
+            np.array(deployed.strain),
+        ),
+        TableColumn(
+            "apparent_spring_constant", "N", "EA, tangent, over that length",
+            np.array(deployed.apparent_spring_constant),
+        ),
+        TableColumn(
+            "secant_spring_constant", "N", "EA over 5 % of the length there to each side",
+            np.array(deployed.secant_spring_constant),
+        ),
+        TableColumn("tether_length", "m", "thimble to thimble", np.array(assembly.tether_length)),
+    ]  # fmt: skip
+    several = [(1, "")] if line.is_equal else [
+        (number, f"_{number}") for number in range(1, assembly.n_tethers + 1)
+    ]  # fmt: skip
+    for number, tail in several:
+        which = "of each tether" if line.is_equal else f"of tether {number}"
+        columns += [
+            TableColumn(
+                f"tether_tension{tail}", "N", f"{which}, zero where it is slack",
+                np.array(assembly.tether_tension[number - 1]),
+            ),
+            TableColumn(
+                f"tether_strain{tail}", "1", f"{which}, of its free length",
+                np.array(assembly.tether_strain[number - 1]),
+            ),
+        ]  # fmt: skip
+    columns.append(
+        TableColumn(
+            "is_tested", "", "every tether at a strain that a test reaches",
+            np.array(assembly.is_tested),
+        )
+    )  # fmt: skip
+    columns += [
+        TableColumn("is_join", "", "pieces of a curve hand over", np.array(assembly.is_join)),
+        TableColumn(
+            "is_moved", "", "a curve was made to rise: the tangent is that of the rule",
+            np.array(assembly.is_moved),
+        ),
+    ]  # fmt: skip
+    return ValueTable(
+        title=f"{line.name}: {line.words}",
+        columns=tuple(columns),
+        sources=(line.splices, *line.source.sources),
+        notes=(*deployed.notes, *line.curve.notes, *line.source.notes),
+        is_synthetic=line.source.is_synthetic,
+        component=assembly.component,
+        contribution=np.array(assembly.contribution),
+    )
+
+
+def _assembly_spread(line: DeployedLine) -> CurveSpread:
+    assembly = line.deployed.assembly
+    return CurveSpread(
+        np.array(assembly.standard_uncertainty),
+        np.array(assembly.random_standard_uncertainty),
+        assembly.component,
+        np.array(assembly.contribution),
+    )
+
+
+def line_from_assembly(line: DeployedLine, **stated: Any) -> ExportLine:
+    """Make a line for export of an assembly: its strain is over the length at which it goes slack.
+
+    Parameters
+    ----------
+    line : DeployedLine
+        The assembly.
+    **stated
+        Fields of `ExportLine`; None and NaN are passed over.
+
+    Returns
+    -------
+    line : ExportLine
+        Whose unstretched length stands in its notes.
+
+    Raises
+    ------
+    SettingsError
+        If it cannot be named.
+
+    Notes
+    -----
+    Diameter and mass of several tethers side by side are not those of one, and are left to be
+    stated ([2]_ prints none).
+    """
+    given = {
+        name: value
+        for name, value in stated.items()
+        if value is not None and not (isinstance(value, float) and math.isnan(value))
+    }
+    deployed, assembly = line.deployed, line.deployed.assembly
+    reached = np.flatnonzero(assembly.is_tested)
+    tested = (
+        (float(deployed.strain[reached[0]]), float(deployed.strain[reached[-1]]))
+        if reached.size
+        else (math.nan, math.nan)
+    )
+    return ExportLine(
+        name=line.name,
+        strain=np.array(deployed.strain),
+        tension=np.array(assembly.tension),
+        curve=f"assembly of {line.words}; tension of all tethers together",
+        tested=tested,
+        spread=_assembly_spread(line),
+        sources=(
+            line.splices,
+            *line.source.sources,
+            *(f"{name.replace('_', ' ')}: stated at the export" for name in given),
+        ),
+        notes=(
+            f"strain is of the unstretched length of the whole assembly, "
+            f"{assembly.total_length[0]:.6g} m: this is the length of the line in the deck",
+            *deployed.notes,
+            *line.curve.notes,
+            *line.source.notes,
+        ),
+        is_synthetic=line.source.is_synthetic,
+        **{"unstretched_length": float(assembly.total_length[0])} | given,
+    )
+
+
+_WAYS = {
+    "mean": "mean of both branches",
+    "ascending": "ascending branch",
+    "descending": "descending branch",
+}
+
+
+def ranges_of(curve: CompositeCurve, flags: Bools) -> list[tuple[float, float]]:
+    """Strains between which intervals of a curve have a flag, neighbours joined. [1].
+
+    Examples
+    --------
+    >>> from reduction.lines.composite import composite_curve
+    >>> from reduction.lines.curve_pieces import CurvePiece
+    >>> at = np.array([0.5, 1.0])
+    >>> curve = composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
+    >>> ranges_of(curve, curve.is_gap)
+    [(0.0, 0.5)]
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
+    return [
+        (float(curve.strain[first]), float(curve.strain[stop]))
+        for first, stop in zip(edges[::2], edges[1::2], strict=True)
+    ]
+
+
+def composite_table(source: PieceSource, curve: CompositeCurve) -> ValueTable:
+    """Return every node of a composite curve, its piece, and what is flagged below it.
+
+    Parameters
+    ----------
+    source : PieceSource
+        Of the pieces.
+    curve : CompositeCurve
+        Of them.
+
+    Returns
+    -------
+    table : ValueTable
+        For csv, json, latex, markdown and netcdf.
+    """
+    source = used_of(source, curve)
+    piece = np.array([curve.piece_words[place] if place >= 0 else "" for place in curve.piece])
+
+    def below(flags: Bools) -> Bools:
+        return np.concatenate([[False], flags])
+
+    return ValueTable(
+        title=f"{source.name}: composite curve, {_WAYS[source.branch]}",
+        columns=(
+            TableColumn("strain", "1", "nominal strain", np.array(curve.strain)),
+            TableColumn("tension", "N", "tension", np.array(curve.tension)),
+            *spread_columns(
+                _composite_spread(curve),
+                "of the pieces by themselves, of what is between them, and of what making the "
+                "curve rise has moved",
+            ),
+            TableColumn("piece", "", "with the greatest weight; none in a gap", piece),
+            TableColumn(
+                "is_join", "", "from the node before: more than one piece has a say",
+                below(curve.is_join),
+            ),
+            TableColumn(
+                "is_gap", "", "from the node before: no piece reaches", below(curve.is_gap)
+            ),
+            TableColumn(
+                "is_moved", "", "from the node before: not the mean of the pieces, which falls or "
+                "is too soft nearby", below(curve.is_moved),
+            ),
+            TableColumn(
+                "monotone_change", "N", "what making the curve rise has added to the mean of the "
+                "pieces", np.array(curve.monotone_change),
+            ),
+        ),
+        sources=source.sources,
+        notes=(
+            *([f"DOUBTFUL: {curve.doubt}"] if curve.doubt else []), *curve.notes, *source.notes,
+        ),
+        is_synthetic=source.is_synthetic,
+        component=curve.component,
+        contribution=np.array(curve.contribution),
+    )  # fmt: skip
+
+
+def _composite_spread(curve: CompositeCurve) -> CurveSpread:
+    return CurveSpread(
+        np.array(curve.standard_uncertainty),
+        np.array(curve.random_standard_uncertainty),
+        curve.component,
+        np.array(curve.contribution),
+    )
+
+
+def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: Any) -> ExportLine:
+    """Make a line for export of a composite curve.
+
+    Parameters
+    ----------
+    source : PieceSource
+        Of the pieces.
+    curve : CompositeCurve
+        Of them.
+    **stated
+        Fields of `ExportLine` that are better known; None and NaN are passed over.
+
+    Returns
+    -------
+    line : ExportLine
+        With rule, pieces, joins and gaps in its notes.
+
+    Raises
+    ------
+    SettingsError
+        If the line cannot be named.
+
+    Notes
+    -----
+    Tested from the first node of a piece to the last; a gap between is in the notes ([3]_).
+    """
+    source = used_of(source, curve)
+    given = {
+        name: value
+        for name, value in stated.items()
+        if value is not None and not (isinstance(value, float) and math.isnan(value))
+    }
+    first = int(np.argmax(curve.piece >= 0))
+    n_tests = len(set(curve.piece_names))
+    tests = f"{n_tests} tests" if n_tests > 1 else "1 test"
+    joins = [
+        f"{plain_number(low, 4)} to {plain_number(high, 4)}"
+        for low, high in ranges_of(curve, curve.is_join)
+    ]
+    fields = {
+        "diameter": source.diameter,
+        "rated_break_strength": source.rated_break_strength,
+        "linear_density": source.linear_density,
+        "wet_linear_density": source.wet_linear_density,
+    }
+    return ExportLine(
+        name=source.name,
+        strain=np.array(curve.strain),
+        tension=np.array(curve.tension),
+        curve=f"composite of {tests}, {_WAYS[source.branch]}; one curve, no loop",
+        tested=(float(curve.strain[first]), float(curve.strain[-1])),
+        spread=_composite_spread(curve),
+        sources=(
+            *source.sources,
+            *(f"{name.replace('_', ' ')}: stated at the export" for name in given),
+        ),
+        notes=(
+            *([f"DOUBTFUL: {curve.doubt}"] if curve.doubt else []),
+            *curve.notes,
+            *([f"more than one piece has a say at strain {', '.join(joins)}"] if joins else []),
+            *source.notes,
+        ),
+        is_synthetic=source.is_synthetic,
+        **fields | given,
+    )
+
+
+_POINTS = 201
+
+_LARGE_CONSTANT = 0.01
+
+_MOST_CUT, _LEAST_CUT = 0.9, 0.05  # shares of the greatest tension that a cut may leave or take
+
+_STRAIN = ("strain", "quasi_static_strain")
+
+_TENSION = ("tension", "branch_tension")
+
+Branch = Literal["ascending", "descending"]
+
+
+def line_from_lookup(
+    source: LineSource,
+    *,
+    branch: Branch | None = None,
+    siblings: Sequence[LineSource] = (),
+    levels: Mapping[str, float] | None = None,
+    extrapolate: Literal["refuse", "flag"] = "refuse",
+    **stated: Any,
+) -> ExportLine:
+    """Make a line for export of a source of design values.
+
+    Parameters
+    ----------
+    source : LineSource
+        Published, or of a campaign.
+    branch : {"ascending", "descending"}, optional
+        Where curves differ by it.
+    siblings : sequence of LineSource
+        Other tests of the same tether: what they measured below the first point of the curve is
+        held against the straight line that stands there.
+    levels : mapping of str to float, optional
+        ``frequency``, ``mean_tension`` and ``tension_amplitude`` at which static and dynamic
+        stiffness are taken; without them the line has a curve alone. [Hz], [N], [N]
+    extrapolate : {"refuse", "flag"}
+        Outside the levels that were tested.
+    **stated
+        Fields of `ExportLine` that are better known; None and NaN are passed over.
+
+    Returns
+    -------
+    line : ExportLine
+        With source, range and errata of every number.
+
+    Raises
+    ------
+    SettingsError
+        If there is no curve of strain and tension, or it differs by branch and none is said, or
+        the dynamics were not measured.
+    DataError
+        If the curve falls before its last tenth of tension, or a level is outside what was tested.
+
+    Notes
+    -----
+    Static and dynamic stiffness are those of `reduction.lines.export_dynamics.line_dynamics`: K_0
+    and
+    K_0 + K_1 at the mean tension, N = K_1 tau ([4]_), identified so that the line gives back its
+    own K_ap and H.
+    """
+    curve = _trusted(source, _curve_of(source, branch))
+    strain, tension, cut = _points(source, curve)
+    start = start_against(strain, tension, curve.branch, siblings)
+    notes = [*source.notes, *curve.notes, curve.range_note, *cut, *start]
+    words = "of a pull" if not curve.branch else f"{curve.branch} branch"
+    sources = [f"{source.source}: {curve.quantity} over {curve.variable}, {words}"]
+    if curve.errata:
+        sources.append(f"errata that touch the curve: {', '.join(curve.errata)}")
+    part = None
+    if levels:
+        dynamics = line_dynamics(source, levels, extrapolate)
+        part = dynamics.part
+        sources += dynamics.sources
+        notes += dynamics.notes
+    given = {
+        name: value
+        for name, value in stated.items()
+        if value is not None and not (isinstance(value, float) and math.isnan(value))
+    }
+    sources += [f"{name.replace('_', ' ')}: stated at the export" for name in given]
+    own = {
+        name: getattr(source, name)
+        for name in (
+            "diameter",
+            "rated_break_strength",
+            "linear_density",
+            "wet_linear_density",
+            "material",
+        )
+    }
+    own["rated_break_strength"], said = _strength(source)
+    if "rated_break_strength" not in given:
+        notes.append(said)
+    return ExportLine(
+        name=source.name,
+        strain=strain,
+        tension=tension,
+        curve=f"{curve.quantity} over {curve.variable}, {words}; one curve, no loop",
+        tested=_tested(curve, strain, tension),
+        viscoelasticity=part,
+        sources=tuple(sources),
+        notes=tuple(note for note in dict.fromkeys(notes) if note),
+        **own | given,
+    )
+
+
+def _strength(source: LineSource) -> tuple[float, str]:
+    """Strength that a code is told where none is stated, and why it is not the rated one. [N]."""
+    if source.strength_of:
+        return math.nan, (
+            f"no break strength is exported: that of the source is of {source.strength_of}; state "
+            "--rated-break-strength"
+        )
+    left = source.tensile_strength
+    # NaN where the line is new: then the rated one stands
+    if left < source.rated_break_strength:
+        return left, (
+            f"break strength {plain_number(left)} N: what the line has in its condition; "
+            f"new it was rated "
+            f"{plain_number(source.rated_break_strength)} N"
+        )
+    return source.rated_break_strength, ""
+
+
+def _curve_of(source: LineSource, branch: Branch | None) -> LineCurve:
+    """The one curve of strain and tension."""
+    found = [
+        one
+        for one in source.curves
+        if (one.quantity in _STRAIN and one.variable in ("tension", "mean_tension"))
+        or (one.quantity in _TENSION and one.variable == "strain")
+    ]
+    if not found:
+        why = next(
+            (source.absent[name] for name in (*_STRAIN, *_TENSION) if name in source.absent), ""
+        )
+        raise SettingsError(
+            f"{source.name} has no curve of tension and strain" + (f": {why}" if why else ""),
+            found=", ".join(source.quantities) or "nothing",
+            needed="strain over tension, or tension over strain",
+        )
+    # where one branch alone was measured it need not be asked for
+    wanted = branch or (found[0].branch if len(found) == 1 else "")
+    of_branch = [one for one in found if one.branch in ("", wanted)]
+    if not of_branch:
+        raise SettingsError(
+            f"the curve of {source.name} differs by branch",
+            found=branch or "no branch",
+            needed=" or ".join(one.branch for one in found),
+        )
+    return of_branch[0]
+
+
+def _trusted(source: LineSource, curve: LineCurve) -> LineCurve:
+    """The curve as far as its slope can be trusted, where the source gives K_0 by that slope."""
+    for rest in source.curves:
+        if rest.is_inverse_slope and rest.high < curve.high and curve.variable == "tension":
+            why = f"{curve.range_note}; {rest.range_note}" if curve.range_note else rest.range_note
+            return replace(curve, high=rest.high, range_note=why)
+    return curve
+
+
+def _points(source: LineSource, curve: LineCurve) -> tuple[Floats, Floats, list[str]]:
+    """Strain and tension where both rise, and what was cut."""
+    at = curve.at if curve.at.size else np.linspace(curve.low, curve.high, _POINTS)
+    value = evaluate_curve(curve, at).value
+    strain, tension = (value, at) if curve.quantity in _STRAIN else (at, value)
+    if not (np.isfinite(strain).all() and np.isfinite(tension).all()):
+        raise DataError(
+            f"the curve of {source.name} is not known throughout",
+            found="values that are open or lost",
+            hint="The errata of the source say which.",
+        )
+    # segments that meet give their joint twice
+    new = np.append(True, (np.diff(strain) != 0) | (np.diff(tension) != 0))
+    strain, tension, notes = strain[new], tension[new], []
+    back = np.flatnonzero((np.diff(strain) <= 0) | (np.diff(tension) <= 0))
+    if back.size:
+        first, top = int(back[0]), float(tension.max())
+        if not curve.coefficient.size or tension[first] < _MOST_CUT * top:
+            raise DataError(
+                f"the curve of {source.name} does not rise throughout what was tested",
+                found=f"strain {plain_number(strain[first], 4)} to "
+                f"{plain_number(strain[first + 1], 4)}, tension "
+                f"{plain_number(tension[first])} to {plain_number(tension[first + 1])} N",
+                needed="one that rises",
+            )
+        strain, tension = strain[: first + 1], tension[: first + 1]
+        notes.append(
+            f"ends at {plain_number(tension[-1])} N, where the polynomial turns back; the "
+            f"source gives it up "
+            f"to {plain_number(top)} N"
+        )
+    below = (strain < 0) | ((strain == 0) & (tension > 0))
+    if below.any() and tension[below][-1] < _LEAST_CUT * tension[-1]:
+        notes.append(
+            f"the polynomial has strain below zero up to "
+            f"{plain_number(tension[below][-1], 4)} N, by the "
+            "constant of its fit; that part is left out"
+        )
+        strain, tension = strain[~below], tension[~below]
+    if curve.coefficient.size and strain[0] > 0 and tension[0] == 0:
+        strain, tension, said = _without_constant(strain, tension)
+        notes.append(said)
+    return strain, tension, notes
+
+
+def _without_constant(strain: Floats, tension: Floats) -> tuple[Floats, Floats, str]:
+    """The curve of a regression from where its constant weighs little.
+
+    A pull starts at no strain and no tension; what a cubic has there is an error of its fit, and
+    no slack that anybody measured.  Its share in the strain is a half at twice the constant; there,
+    or at a twentieth of the greatest tension, the straight line from 0 0 joins the curve.
+    """
+    constant = float(strain[0])
+    joins = (strain >= 2 * constant) | (tension >= _LEAST_CUT * tension[-1])
+    first = int(np.argmax(joins))
+    doubt = "DOUBTFUL: " if constant > _LARGE_CONSTANT else ""
+    said = (
+        f"{doubt}the regression has strain {constant:.4g} at no tension, a constant of its fit and "
+        f"no slack that was measured: in its place a straight line from 0 0 joins it at strain "
+        f"{plain_number(strain[first], 4)} and {plain_number(tension[first], 4)} N; as "
+        f"slack it would be "
+        f"{100 * constant:.2g} m in 100 m of line"
+    )
+    return strain[first:], tension[first:], said
+
+
+def _tested(curve: LineCurve, strain: Floats, tension: Floats) -> tuple[float, float]:
+    ends = np.array([curve.low, curve.high])
+    if curve.quantity in _STRAIN:
+        ends = np.interp(ends, tension, strain)
+    return max(float(ends[0]), 0.0), min(float(ends[1]), float(strain[-1]))

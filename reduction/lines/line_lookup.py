@@ -1,0 +1,1052 @@
+r"""Looks up design values of a line from its surfaces and curves.
+
+Peak and minimum tension of a cycle, and the rule of the source for how high or low it may go.
+
+Numbers of a look-up with what has to be told of them.
+
+A quadratic surface at points, with its intervals, in one pass over blocks of points.
+
+.. math:: \hat y = x^T b, \qquad
+          \hat y \pm t_{\nu_{eff}} \sqrt{s^2 (1 + h) + \textstyle\sum_k (x^T c_k)^2}, \qquad
+          h = x^T C x
+
+with the contribution c_k of each error that the runs share, and the degrees of freedom of Welch and
+Satterthwaite; of the surface itself with h in place of 1 + h.
+
+Design values of a curve at points: value, interval, what was tested, loads.
+
+Design values of a surface at points: value, intervals, what was tested, loads.
+
+Look-up of design values of a line: surfaces over frequency and loads, curves over one variable.
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 3.4, 5.0.
+.. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2.
+.. [3] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4, 4.4.1.
+.. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eq. 5, App. C.
+.. [5] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
+   in measurement," 5.2.2, G.4.1.
+.. [6] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.experiments.designs import (
+    box_behnken,
+    coded_from_engineering,
+    model_matrix,
+    quadratic_exponents,
+)
+from reduction.experiments.response_transform import back_transform, back_transformed_change
+from reduction.experiments.run_sheet import variance_factor
+from reduction.experiments.surface_points import ABOVE_LEVERAGE, is_within_levels
+from reduction.lines.line_curve import (
+    End,
+    evaluate_curve,
+    half_width_of_parts,
+    interval_between_lines,
+    is_even,
+    own_half_width,
+    shared_half_width,
+    shared_of,
+)
+from reduction.lines.lookup_product import DesignValues, LineCurve, LineSource, LineSurface
+from reduction.quantities.digits import plain_number
+from reduction.quantities.names import quantity as quantity_of
+from reduction.record.arrays import run_blocks
+from reduction.record.contributions import (
+    Component,
+    combined_standard_uncertainty,
+    coverage_factor,
+    effective_degrees_of_freedom,
+)
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Bools, Floats, read_only_arrays
+
+LOADED_SHARE = 0.6
+
+"""Greatest share of the break strength for a line that is always loaded. [1]"""
+
+SLACK_SHARE = 0.3
+
+"""The same for a line that goes slack. [1]"""
+
+LEAST_SHARE = 0.03
+
+"""Least tension over the break strength with which a line was found to keep its strength. [1]"""
+
+_SLACK = 1e-9
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class CycleLoads:
+    """Ends of a cycle of tension; arrays have the shape (...) of the points.
+
+    ``is_slack`` where the minimum is zero; ``is_above_rule`` where the peak is above the share
+    that the source allows. Shares are of the rated break strength, ``own`` ones of the strength
+    that the line has in its condition; NaN where that is not known.
+    """
+
+    peak_tension: Floats
+    minimum_tension: Floats
+    peak_share: Floats
+    minimum_share: Floats
+    own_peak_share: Floats
+    own_minimum_share: Floats
+    is_slack: Bools
+    is_above_rule: Bools
+
+
+def cycle_loads(
+    mean_tension: ArrayLike,
+    tension_amplitude: ArrayLike,
+    *,
+    rated_break_strength: float,
+    tensile_strength: float = float("nan"),
+) -> CycleLoads:
+    """Peak and minimum tension of a cycle, as loads and as shares of the break strength.
+
+    Parameters
+    ----------
+    mean_tension, tension_amplitude : array_like, shape (...)
+        Amplitude is half the range. [N]
+    rated_break_strength : float
+        NaN where not known. [N]
+    tensile_strength : float, optional
+        That the line has in its condition; the rated one where not known. [N]
+
+    Returns
+    -------
+    loads : CycleLoads
+        With the rule of the source.
+
+    Raises
+    ------
+    DataError
+        If an amplitude is above its mean: the line would be pushed; or is negative.
+
+    Notes
+    -----
+    Source: [1]_: at most 60 % of the break strength where a line is always loaded, 30 % where it
+    goes slack.  Between 3 % and 62 % (sec. 5.0) it kept its strength, from zero to above 30 % it
+    failed; nothing was tested with less than 3 %, and the lower share is taken there.  Of a line
+    that lost strength the share is that of what it has left.
+
+    Examples
+    --------
+    Mean 21 % and amplitude 8.5 % of the break strength:
+
+    >>> loads = cycle_loads(2100.0, 850.0, rated_break_strength=1e4)
+    >>> print(loads.peak_share, loads.minimum_share, loads.is_above_rule)
+    0.295 0.125 False
+    """
+    mean = np.asarray(mean_tension, dtype=np.float64)
+    amplitude = np.asarray(tension_amplitude, dtype=np.float64)
+    mean, amplitude = np.broadcast_arrays(mean, amplitude)
+    if np.any(amplitude < 0):
+        raise DataError("an amplitude is negative", found=f"{amplitude.min():g} N")
+    least = mean - amplitude
+    pushed = least < -_SLACK * np.maximum(mean, 1.0)
+    if np.any(pushed):
+        first = np.unravel_index(int(np.argmax(pushed)), pushed.shape)
+        raise DataError(
+            f"{int(pushed.sum())} of {pushed.size} amplitudes are above their mean tension: the "
+            "line goes slack, and no surface knows of that",
+            found=f"{plain_number(amplitude[first], 4)} N about {plain_number(mean[first], 4)} N",
+            needed="an amplitude of at most the mean",
+        )
+    peak, least = mean + amplitude, np.maximum(least, 0.0)
+    is_slack = least <= _SLACK * peak
+    with np.errstate(invalid="ignore"):
+        peak_share, least_share = peak / rated_break_strength, least / rated_break_strength
+        own_peak, own_least = peak_share, least_share
+        if np.isfinite(tensile_strength):
+            own_peak, own_least = peak / tensile_strength, least / tensile_strength
+        is_low = own_least < LEAST_SHARE * (1 - _SLACK)
+        above = own_peak > np.where(is_low, SLACK_SHARE, LOADED_SHARE) * (1 + _SLACK)
+    return CycleLoads(
+        peak_tension=np.asarray(peak),
+        minimum_tension=np.asarray(least),
+        peak_share=np.asarray(peak_share),
+        minimum_share=np.asarray(least_share),
+        own_peak_share=np.asarray(own_peak),
+        own_minimum_share=np.asarray(own_least),
+        is_slack=np.asarray(is_slack),
+        is_above_rule=np.asarray(above),
+    )
+
+
+def loads_of_line(
+    line: LineSource, given: Mapping[str, Floats], shape: tuple[int, ...], *, branch: str = ""
+) -> CycleLoads:
+    """Ends of the tension at the points of a look-up.
+
+    Parameters
+    ----------
+    line : LineSource
+        Whose rule and break strength count.
+    given : mapping of str to ndarray, shape (...)
+        Levels that broadcast to ``shape``. [SI]
+    shape : tuple of int
+        Of the points.
+    branch : {"", "ascending", "descending"}
+        Of the value that is looked up, where it differs by branch.
+
+    Returns
+    -------
+    loads : CycleLoads
+        Of mean and amplitude; where one tension is given, or follows from the strain on the same
+        branch, peak and minimum are that one; else NaN.
+
+    Raises
+    ------
+    DataError
+        If an amplitude is above its mean, a tension is negative, or a tether goes slack.
+
+    Notes
+    -----
+    The rule of [1]_ is of nylon and polyester, where zero tension lowers what a line stands; a
+    tether of rubber must not go slack at all, since it tangles and is cut ([2]_).  Beyond a
+    curve that is given by points the tension is not known, and no rule can be checked.
+
+    Examples
+    --------
+    >>> rope = LineSource("a", "", "nylon", "braid", "new", 0.0127, 1e4)
+    >>> loads = loads_of_line(rope, {"mean_tension": np.array(3000.0)}, ())
+    >>> print(loads.peak_share, loads.minimum_share)
+    0.3 0.3
+    """
+    if {"mean_tension", "tension_amplitude"} <= set(given):
+        mean, amplitude = given["mean_tension"], given["tension_amplitude"]
+    else:
+        mean, amplitude = _one_tension(line, given, branch), np.zeros(())
+    known = np.where(np.isfinite(mean), mean, 0.0) if np.isnan(mean).any() else mean
+    loads = cycle_loads(
+        np.broadcast_to(known, shape),
+        np.broadcast_to(amplitude, shape),
+        rated_break_strength=line.rated_break_strength,
+        tensile_strength=line.tensile_strength,
+    )
+    if known is not mean:
+        unknown = np.broadcast_to(np.isnan(mean), shape)
+        loads = _unknown_at(loads, unknown)
+    if line.is_tether:
+        _refuse_slack(line, loads)
+        # the shares of the rule are of fibres
+        loads = replace(loads, is_above_rule=np.zeros(shape, dtype=bool))
+    return loads
+
+
+def _one_tension(line: LineSource, given: Mapping[str, Floats], branch: str) -> Floats:
+    """Tension at points without a cycle; NaN where it is not known."""
+    for name in ("tension", "mean_tension"):
+        if name in given:
+            if np.any(given[name] < 0):
+                raise DataError(
+                    f"{name} is negative", found=f"{plain_number(given[name].min(), 4)} N"
+                )
+            return given[name]
+    if "strain" in given:
+        for curve in line.curves:
+            if curve.quantity == "branch_tension" and curve.branch == branch:
+                # noise about zero is zero
+                return np.maximum(evaluate_curve(curve, given["strain"]).value, 0.0)
+    return np.asarray(np.nan)
+
+
+def _unknown_at(loads: CycleLoads, unknown: Bools) -> CycleLoads:
+    numbers = (
+        "peak_tension", "minimum_tension", "peak_share", "minimum_share", "own_peak_share",
+        "own_minimum_share",
+    )  # fmt: skip
+    return replace(
+        loads,
+        **{name: np.where(unknown, np.nan, getattr(loads, name)) for name in numbers},
+        is_slack=loads.is_slack & ~unknown,
+    )
+
+
+def _refuse_slack(line: LineSource, loads: CycleLoads) -> None:
+    if loads.is_slack.any():
+        peak = loads.peak_tension[loads.is_slack].ravel()[0]
+        raise DataError(
+            f"{line.name} goes slack at {int(loads.is_slack.sum())} of {loads.is_slack.size} "
+            "points, and a tether must not",
+            found=f"a minimum tension of zero, peak {plain_number(peak, 4)} N",
+            needed="a minimum above zero",
+            hint="A slack tether tangles and is cut: more stretch, or less amplitude.",
+        )
+
+
+def design_values(
+    line: LineSource,
+    of: LineSurface | LineCurve,
+    *,
+    loads: CycleLoads,
+    inside: Bools,
+    untested: Bools,
+    words: tuple[str, str],
+    more: tuple[str, ...] = (),
+    component: tuple[Component, ...] = (),
+    **numbers: Floats,
+) -> DesignValues:
+    """Put a look-up together.
+
+    Parameters
+    ----------
+    line : LineSource
+        Whose values they are.
+    of : LineSurface or LineCurve
+        That they are of.
+    loads : CycleLoads
+        Ends of the tension at the points.
+    inside, untested : ndarray of bool, shape (...)
+        Inside what was tested, and there farther from the runs than any. [1]
+    words : tuple of str
+        What ``low`` and ``high``, and what ``surface_low`` and ``surface_high`` are of.
+    more : tuple of str, optional
+        Notes beside those of line, surface and curve.
+    component : tuple of Component, optional
+        Errors that ``contribution`` is of.
+    **numbers : ndarray, shape (...)
+        Value, limits and contribution, by name. [SI]
+
+    Returns
+    -------
+    values : DesignValues
+        With notes on what the numbers show.
+
+    Raises
+    ------
+    KeyError
+        If the vocabulary has no such quantity.
+
+    Examples
+    --------
+    See `reduction.lines.line_lookup.values_of_curve`.
+    """
+    notes = [*line.notes, *of.notes, *more]
+    if words[0] or words[1]:
+        notes.append(_scatter_told(of, words))
+    elif isinstance(of, LineCurve):
+        notes.append("no interval is given: the source states no scatter of this curve")
+    if loads.is_above_rule.any():
+        notes.append(f"the peak tension is above what the source allows: {line.rule}")
+    if loads.is_slack.any() and loads.peak_tension.max() > 0:
+        notes.append(
+            "the minimum is zero: a snap load, by which fibres fail (CG-D-39-80, sec. 5.0)"
+        )
+    below = int(np.sum(numbers["value"] < 0))
+    if below:
+        notes.append(
+            f"{below} of {inside.size} values are below zero, which {of.quantity} cannot be: the "
+            "surface says nothing there"
+        )
+    return DesignValues(
+        quantity=of.quantity,
+        unit=quantity_of(of.quantity).unit,
+        component=component,
+        **numbers,
+        is_inside=inside,
+        is_untested=untested,
+        peak_tension=loads.peak_tension,
+        minimum_tension=loads.minimum_tension,
+        peak_share=loads.peak_share,
+        minimum_share=loads.minimum_share,
+        own_peak_share=loads.own_peak_share,
+        own_minimum_share=loads.own_minimum_share,
+        is_slack=loads.is_slack,
+        is_above_rule=loads.is_above_rule,
+        rule=line.rule,
+        source=line.source,
+        errata=of.errata,
+        notes=tuple(dict.fromkeys(notes)),
+        branch=of.branch if isinstance(of, LineCurve) else "",
+        interval_of=words[0],
+        surface_interval_of=words[1],
+    )
+
+
+def _scatter_told(of: LineSurface | LineCurve, words: tuple[str, str]) -> str:
+    """What the intervals hold, and what they do not."""
+    if isinstance(of, LineSurface) and np.isfinite(of.line_scatter):
+        return (
+            f"lines of this kind differ among each other by about {100 * of.line_scatter:.0f} % "
+            f"(CG-D-39-80, sec. 4.4.1), taken with {of.n_lines:.0f} lines and the degrees of "
+            "freedom of the surface: in the intervals of the kind and of another line alone"
+        )
+    told = words[0] or words[1]
+    return f"the interval is of {told}: how lines differ among each other is not in it"
+
+
+_BLOCK = 16_384
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class SurfacePoints:
+    """A surface at points; arrays have the shape (n_points,).
+
+    ``low`` and ``high`` hold one more run there with 95 %, ``surface_low`` and
+    ``surface_high`` the surface itself; NaN where sigma is not known. [unit of the quantity]
+    ``contribution``, of shape (n_components, n_points), is what each error that the runs share adds
+    to the value; ``random`` and ``run_random`` are one standard uncertainty of what is of the
+    surface alone, and of one more run beside that. [unit of the quantity]
+    """
+
+    value: Floats
+    low: Floats
+    high: Floats
+    surface_low: Floats
+    surface_high: Floats
+    leverage: Floats
+    contribution: Floats
+    random: Floats
+    run_random: Floats
+    is_inside: Bools
+
+
+def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
+    """Value of a surface at points, with two intervals.
+
+    Parameters
+    ----------
+    surface : LineSurface
+        One quantity.
+    points : array_like, shape (n_points, n_factors)
+        [SI unit of each factor]
+
+    Returns
+    -------
+    points : SurfacePoints
+        Outside the levels too, and flagged there.
+
+    Raises
+    ------
+    DataError
+        If a point is not finite, or has another number of factors.
+
+    Notes
+    -----
+    Source: [4]_, eq. 5 with the coding of App. C.  A transformed quantity is brought back: value
+    and intervals are of its median.  The factor of an interval is that of [5]_, as of every other
+    number.
+
+    Examples
+    --------
+    The centre of a surface is its first coefficient:
+
+    >>> exponents = quadratic_exponents(3)
+    >>> surface = LineSurface(
+    ...     "apparent_spring_constant", np.array([3.451, *[0.0] * 9]), exponents,
+    ...     np.array([0.1, 768, 320]), np.array([0.5, 1920, 768]), np.eye(10) / 3, 0.1, 5, 0.75,
+    ... )
+    >>> print(evaluate_surface(surface, [[0.3, 1344, 544]]).value)
+    [3.451]
+    """
+    given = np.asarray(points, dtype=np.float64)
+    if given.ndim != 2 or given.shape[1] != surface.low.size:
+        raise DataError(
+            "the points do not pair up with the factors of the surface",
+            found=f"shape {given.shape}", needed=f"(n_points, {surface.low.size})",
+        )  # fmt: skip
+    size = given.shape[0]
+    names = ("value", "low", "high", "surface_low", "surface_high", "leverage", "random",
+             "run_random")  # fmt: skip
+    out = {name: np.empty(size) for name in names}
+    moved = np.empty((surface.contribution.shape[0], size))
+    inside = np.empty(size, dtype=bool)
+    sigma = surface.sigma if surface.degrees_of_freedom > 0 else float("nan")
+    few = np.array([one.degrees_of_freedom for one in surface.component])
+    # a level in round shares of a strength may lie beyond the one that is printed in whole units
+    rounded = surface.rounding if surface.rounding.size else np.zeros(surface.low.size)
+    allowed = 2 * rounded / (surface.high - surface.low)
+
+    def half_of(random: Floats, rows: Floats) -> Floats:
+        """Half width of a 95 % interval."""
+        if not rows.size:
+            return coverage_factor(surface.degrees_of_freedom) * random
+        effective = effective_degrees_of_freedom(
+            random, surface.degrees_of_freedom, contribution=rows, of_contribution=few
+        )
+        return coverage_factor(effective) * combined_standard_uncertainty(rows, random)
+
+    def fill(block: slice) -> None:
+        coded = coded_from_engineering(given[block], low=surface.low, high=surface.high)
+        terms = model_matrix(coded, surface.exponents)
+        leverage = variance_factor(terms, surface.covariance_factor)
+        centre = terms @ surface.coefficient
+        # one error of all runs moves the whole surface, and the next run with it
+        rows = surface.contribution @ terms.T if surface.component else np.empty((0, centre.size))
+        random, run_random = sigma * np.sqrt(leverage), sigma * np.sqrt(1 + leverage)
+        half, own = half_of(run_random, rows), half_of(random, rows)
+        for name, values in (
+            ("value", centre),
+            ("low", centre - half),
+            ("high", centre + half),
+            ("surface_low", centre - own),
+            ("surface_high", centre + own),
+            ("leverage", leverage),
+            ("random", random),
+            ("run_random", run_random),
+        ):
+            out[name][block] = values
+        moved[:, block] = rows
+        inside[block] = is_within_levels(coded, allowed=allowed)
+
+    run_blocks(fill, [slice(start, start + _BLOCK) for start in range(0, size, _BLOCK)])
+    if surface.exponent != 1:
+        # of one standard uncertainty to either side
+        scaled = out["value"]
+        moved = back_transformed_change(scaled, moved, surface.exponent)
+        for name in ("random", "run_random"):
+            out[name] = back_transformed_change(scaled, out[name], surface.exponent)
+        for name in ("value", "low", "high", "surface_low", "surface_high"):
+            out[name] = back_transform(out[name], surface.exponent)
+    return SurfacePoints(**out, contribution=moved, is_inside=inside)
+
+
+def sigma_from_r2(coefficient: ArrayLike, r2: float, *, n_factors: int = 3) -> float:
+    r"""Scatter of a run about a surface of which only coefficients and r2 are printed.
+
+    .. math:: s^2 = \frac{(1 - r^2)}{r^2 \, \nu} \sum_i (\hat y_i - \bar{\hat y})^2
+
+    Parameters
+    ----------
+    coefficient : array_like, shape (n_terms,)
+        Coded, in printed order, of a Box-Behnken design. [unit of the quantity]
+    r2 : float
+        As printed. [1]
+    n_factors : int
+        Of the design.
+
+    Returns
+    -------
+    sigma : float
+        With the residual degrees of freedom of the design, 5 of fifteen runs; NaN where
+        r2 is not between 0 and 1. [unit of the quantity]
+
+    Raises
+    ------
+    DataError
+        If there are not as many coefficients as the quadratic has terms.
+
+    Notes
+    -----
+    Least squares with a mean leaves the mean of the fitted values that of the runs, so that the
+    explained sum of squares follows from the design, which [4]_ states, and the coefficients.  The
+    rounding of r2 moves it: 0.985 stands for 0.9845 to 0.9855, sigma for +-1.7 %.
+
+    Examples
+    --------
+    A slope of 1 alone explains 8 of fifteen runs; with r2 = 0.5 as much is left, over 5:
+
+    >>> round(sigma_from_r2([0, 0, 0, 0, 1, 0, 0, 0, 0, 0], 0.5) ** 2, 12)
+    1.6
+    """
+    values = np.asarray(coefficient, dtype=np.float64)
+    exponents = quadratic_exponents(n_factors)
+    if values.shape != (len(exponents),):
+        raise DataError(
+            "the coefficients are not those of a quadratic", found=str(values.shape),
+            needed=f"({len(exponents)},)",
+        )  # fmt: skip
+    if not 0 < r2 < 1:
+        return float("nan")
+    coded = box_behnken(n_factors).coded
+    fitted = model_matrix(coded, exponents) @ values
+    explained = float(np.sum((fitted - fitted.mean()) ** 2))
+    freedom = len(coded) - len(exponents)
+    return float(np.sqrt(explained * (1 - r2) / r2 / freedom))
+
+
+def values_of_curve(
+    line: LineSource, curve: LineCurve, given: Mapping[str, Floats], extrapolate: str
+) -> DesignValues:
+    """Design values of a curve.
+
+    Parameters
+    ----------
+    line : LineSource
+        Whose curve it is.
+    curve : LineCurve
+        Polynomial or points.
+    given : mapping of str to ndarray, shape (...)
+        The variable of the curve alone. [SI]
+    extrapolate : {"refuse", "flag"}
+        What to do outside the range.
+
+    Returns
+    -------
+    values : DesignValues
+        With one interval, of the curve itself: a curve of one test says nothing of others.
+
+    Raises
+    ------
+    SettingsError
+        If a level is not of the curve.
+    DataError
+        If a point is outside and ``extrapolate`` is "refuse", or the loads are refused.
+
+    Notes
+    -----
+    The interval is Student's, by the effective degrees of freedom of all parts.
+
+    Examples
+    --------
+    >>> pull = LineCurve("strain", "tension", 0.0, 100.0, coefficient=np.array([0.0, 0.01]))
+    >>> rope = LineSource("rope", "", "nylon", "", "new", 0.0127, 1e4, curves=(pull,))
+    >>> found = values_of_curve(rope, pull, {"tension": np.array([10.0, 50.0])}, "refuse")
+    >>> print(found.value, found.peak_share)
+    [0.1 0.5] [0.001 0.005]
+    """
+    unknown = sorted(set(given) - {curve.variable})
+    if unknown:
+        raise SettingsError(
+            f"{curve.quantity} of {line.name} does not vary with {', '.join(unknown)}",
+            needed=f"levels of {curve.variable}",
+        )
+    at = given[curve.variable]
+    found = evaluate_curve(curve, at)
+    value, half, inside = found.value, found.half_width, found.is_inside
+    if extrapolate == "refuse" and not inside.all():
+        first = at.ravel()[np.flatnonzero(~inside.ravel())[0]]
+        unit = _unit(curve.variable)
+        gaps = "".join(
+            f", nothing between {plain_number(low)} and {plain_number(high)}"
+            for low, high in curve.gaps
+            if low < first < high
+        )
+        raise DataError(
+            f"{int((~inside).sum())} of {inside.size} points are outside what was tested of "
+            f"{curve.quantity} of {line.name}",
+            found=f"{curve.variable} {plain_number(first)}{unit}",
+            needed=f"{plain_number(curve.low)} to {plain_number(curve.high)}{unit}{gaps}",
+            hint=". ".join(
+                part
+                for part in (
+                    curve.range_note, "--extrapolate flag gives the number and flags it."
+                )
+                if part
+            ),
+        )  # fmt: skip
+    nothing = np.full(at.shape, np.nan)
+    return design_values(
+        line,
+        curve,
+        loads=loads_of_line(line, given, at.shape, branch=curve.branch),
+        inside=inside,
+        untested=np.zeros(at.shape, dtype=bool),
+        words=("", curve.spread_of if curve.standard_uncertainty.size else ""),
+        more=(*((curve.range_note,) if curve.range_note else ()), *_joints(curve, at)),
+        component=curve.component,
+        contribution=found.contribution,
+        random_standard_uncertainty=found.random,
+        random_degrees_of_freedom=found.freedom,
+        value=value,
+        low=nothing,
+        high=nothing,
+        surface_low=value - half,
+        surface_high=value + half,
+        kind_low=nothing,
+        kind_high=nothing,
+        line_low=nothing,
+        line_high=nothing,
+    )
+
+
+def _unit(name: str) -> str:
+    """Unit as it stands behind a number; a plain number has none."""
+    unit = quantity_of(name).unit
+    return "" if unit == "1" else f" {unit}"
+
+
+def _joints(curve: LineCurve, at: Floats) -> list[str]:
+    """Where two pieces meet with two values, and a point is just there."""
+    if not curve.value.size:
+        return []
+    meet = (np.diff(curve.at) == 0) & (np.diff(curve.value) != 0)
+    return [
+        f"at {curve.variable} {plain_number(curve.at[place])} two pieces meet: "
+        f"{plain_number(curve.value[place], 4)}"
+        f"{_unit(curve.quantity)} below, {plain_number(curve.value[place + 1], 4)} above"
+        for place in np.flatnonzero(meet)
+        if np.any(at == curve.at[place])
+    ]
+
+
+_RUN = "one more run of the same lines"
+
+_SURFACE = "the surface of these lines"
+
+
+def values_of_surface(
+    line: LineSource, surface: LineSurface, given: Mapping[str, Floats], extrapolate: str
+) -> DesignValues:
+    """Design values of a surface.
+
+    Parameters
+    ----------
+    line : LineSource
+        Whose surface it is.
+    surface : LineSurface
+        One quantity.
+    given : mapping of str to ndarray, shape (...)
+        All its factors, of shapes that broadcast. [SI]
+    extrapolate : {"refuse", "flag"}
+        What to do outside the levels.
+
+    Returns
+    -------
+    values : DesignValues
+        Intervals span coefficients and levels that are open.
+
+    Raises
+    ------
+    SettingsError
+        If a level is not of the surface.
+    DataError
+        If a point is outside and ``extrapolate`` is "refuse", or the loads are refused.
+
+    Notes
+    -----
+    See `reduction.lines.line_lookup.evaluate_surface` for a run and the surface, and
+    `reduction.lines.line_curve.interval_between_lines` for other lines.
+
+    Examples
+    --------
+    A surface that is its mean, of one line among lines that differ by a tenth:
+
+    >>> surface = LineSurface(
+    ...     "relaxation_time", np.array([1.5]), np.array([[0]]), np.array([0.1]),
+    ...     np.array([0.5]), np.eye(1) / 15, 0.1, 14.0, 1.0, line_scatter=0.1, n_lines=1.0,
+    ... )
+    >>> rope = LineSource("rope", "", "nylon", "", "new", 0.0127, 1e4, ("frequency",))
+    >>> found = values_of_surface(rope, surface, {"frequency": np.array([0.3])}, "refuse")
+    >>> print(found.value, found.high.round(2), found.line_high.round(2))
+    [1.5] [1.72] [2.1]
+    """
+    unknown = sorted(set(given) - set(line.factor_names))
+    if unknown:
+        raise SettingsError(
+            f"{surface.quantity} of {line.name} does not vary with {', '.join(unknown)}",
+            needed="levels of " + ", ".join(line.factor_names),
+        )
+    columns = np.broadcast_arrays(*(given[name] for name in line.factor_names))
+    shape = columns[0].shape
+    at = np.stack([one.ravel() for one in columns], axis=1)
+    points = evaluate_surface(surface, at)
+    boxes = [(surface.low, surface.high), *surface.alternative_boxes]
+    # the first of all is the surface itself
+    choices = [
+        (low, high, one)
+        for low, high in boxes
+        for one in (surface.coefficient, *surface.alternatives)
+    ]
+    others = [
+        evaluate_surface(replace(surface, coefficient=one, low=low, high=high), at)
+        for low, high, one in choices[1:]
+    ]
+
+    def span(name: str, ends: Callable[..., Floats]) -> Floats:
+        found: Floats = getattr(points, name)
+        for other in others:
+            found = ends(found, getattr(other, name))
+        return found.reshape(shape)
+
+    inside = points.is_inside.reshape(shape)
+    if extrapolate == "refuse" and not inside.all():
+        _refuse_outside(line, surface, columns, inside)
+    untested = points.leverage.reshape(shape) > ABOVE_LEVERAGE * surface.greatest_leverage
+    value = points.value.reshape(shape)
+    low, high = span("low", np.minimum), span("high", np.maximum)
+    surface_low, surface_high = span("surface_low", np.minimum), span("surface_high", np.maximum)
+
+    def between(low: Floats, high: Floats, *, is_another: bool) -> tuple[Floats, Floats]:
+        return interval_between_lines(
+            value, low, high, line_scatter=surface.line_scatter, n_lines=surface.n_lines,
+            degrees_of_freedom=surface.degrees_of_freedom, is_another=is_another,
+        )  # fmt: skip
+
+    kind_low, kind_high = between(surface_low, surface_high, is_another=False)
+    line_low, line_high = between(low, high, is_another=True)
+    has_interval = bool(np.isfinite(surface.sigma))
+    # where other surfaces may be the right one the interval is not of two parts
+    is_apart = bool(surface.component) and not others
+
+    def part(values: Floats) -> Floats:
+        return values.reshape(shape) if is_apart else np.empty(0)
+
+    return design_values(
+        line,
+        surface,
+        loads=loads_of_line(line, given, shape),
+        inside=inside,
+        untested=inside & untested,
+        words=(_RUN, _SURFACE) if has_interval else ("", ""),
+        component=surface.component,
+        contribution=points.contribution.reshape(len(surface.component), *shape),
+        random_standard_uncertainty=part(points.random),
+        random_degrees_of_freedom=part(np.full(points.random.shape, surface.degrees_of_freedom)),
+        run_standard_uncertainty=part(points.run_random),
+        value=value,
+        low=low,
+        high=high,
+        surface_low=surface_low,
+        surface_high=surface_high,
+        kind_low=kind_low,
+        kind_high=kind_high,
+        line_low=line_low,
+        line_high=line_high,
+    )
+
+
+def _refuse_outside(
+    line: LineSource, surface: LineSurface, columns: tuple[Floats, ...], inside: Bools
+) -> None:
+    first = np.flatnonzero(~inside.ravel())[0]
+    told = []
+    for place, (name, column) in enumerate(zip(line.factor_names, columns, strict=True)):
+        value, low, high = column.ravel()[first], surface.low[place], surface.high[place]
+        rounded = surface.rounding[place] if surface.rounding.size else 0.0
+        if not low - rounded <= value <= high + rounded:
+            unit = quantity_of(name).unit
+            told.append(
+                f"{name} {plain_number(value)} {unit}, tested {plain_number(low)} to "
+                f"{plain_number(high)} {unit}"
+            )
+    raise DataError(
+        f"{int((~inside).sum())} of {inside.size} points are outside what was tested of "
+        f"{surface.quantity} of {line.name}",
+        found="; ".join(told),
+        needed="levels inside, which the source calls the range of usefulness",
+        hint="--extrapolate flag gives the number and flags it.",
+    )
+
+
+_DASHPOT = "dashpot_coefficient"
+
+Branch = Literal["ascending", "descending"]
+
+
+def look_up(
+    line: LineSource,
+    quantity: str,
+    *,
+    branch: Branch | None = None,
+    extrapolate: Literal["refuse", "flag"] = "refuse",
+    **levels: ArrayLike,
+) -> DesignValues:
+    """Design values of one quantity of a line.
+
+    Parameters
+    ----------
+    line : LineSource
+        Published, or from a campaign.
+    quantity : str
+        One of its quantities.
+    branch : {"ascending", "descending"}, optional
+        Of a quantity that differs by it; needed where both are there.
+    extrapolate : {"refuse", "flag"}
+        What to do outside the tested range.
+    **levels : array_like, shape (...)
+        By name: the factors of the surface (``frequency``, ``mean_tension``,
+        ``tension_amplitude``), or the variable of the curve (``mean_tension``, ``tension``,
+        ``strain``). They are broadcast together. [SI]
+
+    Returns
+    -------
+    values : DesignValues
+        With interval, range, source and errata.
+
+    Raises
+    ------
+    SettingsError
+        If the line has no such quantity, a level is missing or not of it, is no finite number or
+        does not broadcast, a frequency is not positive, or a branch is asked for where there is
+        none.
+    DataError
+        If a point is outside the tested range and ``extrapolate`` is "refuse", an amplitude is
+        above its mean tension, or a tether goes slack.
+
+    Notes
+    -----
+    [6]_ calls the range of its levels the range of usefulness.  Inside it, the corners of a
+    Box-Behnken cube are farther from the runs than any run is: they are flagged as untested.
+
+    Examples
+    --------
+    >>> line = LineSource(
+    ...     "rope", "an example", "nylon", "braid", "new", 0.0127, 28e3,
+    ...     curves=(LineCurve("strain", "tension", 0.0, 100.0, coefficient=np.array([0, 0.01])),),
+    ... )
+    >>> look_up(line, "strain", tension=[10.0, 50.0]).value
+    array([0.1, 0.5])
+    """
+    if quantity == _DASHPOT and quantity not in line.surfaces and line.has_dashpot:
+        if branch is not None:
+            raise _no_branch(quantity, line, branch)
+        return _dashpot(line, extrapolate, levels)
+    surface = line.surfaces.get(quantity)
+    given = _numbers(levels)
+    if surface is not None and set(given) >= set(line.factor_names):
+        if branch is not None:
+            raise _no_branch(quantity, line, branch)
+        return values_of_surface(line, surface, given, extrapolate)
+    curves = [one for one in line.curves if one.quantity == quantity]
+    if not curves and surface is None:
+        why = line.absent.get(quantity)
+        raise SettingsError(
+            f"{line.name} has no {quantity}" + (f": {why}" if why else ""),
+            needed="one of " + ", ".join(line.quantities),
+        )
+    curves = [one for one in curves if one.variable in given]
+    if not curves:
+        needed = [", ".join(line.factor_names)] if surface is not None else []
+        needed += [one.variable for one in line.curves if one.quantity == quantity]
+        raise SettingsError(
+            f"{quantity} of {line.name} needs another variable",
+            found=", ".join(given) or "none",
+            needed=" or ".join(dict.fromkeys(needed)),
+        )
+    return values_of_curve(line, _of_branch(line, curves, branch), given, extrapolate)
+
+
+def _numbers(levels: Mapping[str, ArrayLike]) -> dict[str, Floats]:
+    """Levels as finite numbers of shapes that broadcast."""
+    given = {}
+    for name, value in levels.items():
+        try:
+            found = np.asarray(value)
+        except ValueError:
+            found = np.array("rows of different lengths")
+        if found.dtype.kind not in "iuf":
+            raise SettingsError(
+                f"{name} is no real number", found=str(found.dtype), needed="numbers, in SI"
+            )
+        if not np.all(np.isfinite(found)):
+            raise SettingsError(f"{name} is not finite", needed="numbers")
+        if name == "frequency" and np.any(found <= 0):
+            raise SettingsError(
+                "a frequency is not positive", found=f"{found.min():.5g} Hz", needed="above zero"
+            )
+        given[name] = found.astype(np.float64, copy=False)
+    try:
+        np.broadcast_shapes(*(value.shape for value in given.values()))
+    except ValueError:
+        raise SettingsError(
+            "the levels do not pair up",
+            found="; ".join(f"{name} of shape {value.shape}" for name, value in given.items()),
+            needed="shapes that broadcast together",
+        ) from None
+    return given
+
+
+def _no_branch(quantity: str, line: LineSource, branch: Branch) -> SettingsError:
+    return SettingsError(
+        f"{quantity} of {line.name} does not differ by branch", found=branch, needed="no branch"
+    )
+
+
+def _dashpot(
+    line: LineSource,
+    extrapolate: Literal["refuse", "flag"],
+    levels: Mapping[str, ArrayLike],
+) -> DesignValues:
+    """N = K_1 tau: what both share by its sign, what is of each alone as independent."""
+    spring, time = (
+        look_up(line, name, branch=None, extrapolate=extrapolate, **levels)
+        for name in ("dissipation_spring_constant", "relaxation_time")
+    )
+    value = spring.value * time.value
+    shared = shared_of({"spring": spring, "time": time})
+    rows = shared.values["spring"] * time.value + shared.values["time"] * spring.value
+
+    parts = _own_parts(spring, time)
+
+    def half(end: End) -> Floats:
+        if parts:
+            random = parts["random" if end.startswith("surface") else "run"]
+            return half_width_of_parts(random, parts["few"], rows, shared.degrees_of_freedom)
+        own = (own_half_width(spring, end) * time.value, own_half_width(time, end) * spring.value)
+        return np.asarray(np.sqrt(np.square(own).sum(axis=0) + shared_half_width(rows) ** 2))
+
+    return replace(
+        spring,
+        quantity=_DASHPOT,
+        unit=quantity_of(_DASHPOT).unit,
+        value=value,
+        component=shared.component,
+        contribution=rows,
+        low=value - half("low"),
+        high=value + half("high"),
+        surface_low=value - half("surface_low"),
+        surface_high=value + half("surface_high"),
+        # of two surfaces together: to be read from the intervals
+        random_standard_uncertainty=np.empty(0),
+        random_degrees_of_freedom=np.empty(0),
+        run_standard_uncertainty=np.empty(0),
+        errata=tuple(dict.fromkeys((*spring.errata, *time.errata))),
+        notes=tuple(
+            dict.fromkeys(
+                (
+                    "N = K_1 tau; the intervals take the scatter of the two as independent, and "
+                    "what the runs share as it is",
+                    *spring.notes,
+                    *time.notes,
+                )
+            )
+        ),
+    )
+
+
+def _of_branch(line: LineSource, curves: list[LineCurve], branch: Branch | None) -> LineCurve:
+    if branch is not None and not any(one.branch for one in curves):
+        raise _no_branch(curves[0].quantity, line, branch)
+    # where one branch alone is known it need not be asked for
+    found = [one for one in curves if branch is None or one.branch == branch]
+    if len(found) == 1:
+        return found[0]
+    branches = [one.branch for one in curves if one.branch]
+    raise SettingsError(
+        f"{curves[0].quantity} of {line.name} differs by branch",
+        found=branch or "no branch",
+        needed="branch = " + " or ".join(branches),
+    )
+
+
+def _own_parts(spring: DesignValues, time: DesignValues) -> dict[str, Floats]:
+    """What the scatter of K_1 and of tau adds to N, a row each; empty where one is not so known."""
+    if not (is_even(spring) and is_even(time)):
+        return {}
+    by = (time.value, spring.value)
+    return {
+        "random": np.stack(
+            [
+                one.random_standard_uncertainty * other
+                for one, other in zip((spring, time), by, strict=True)
+            ]
+        ),
+        "run": np.stack(
+            [
+                one.run_standard_uncertainty * other
+                for one, other in zip((spring, time), by, strict=True)
+            ]
+        ),
+        "few": np.stack([one.random_degrees_of_freedom for one in (spring, time)]),
+    }

@@ -1,1 +1,0 @@
-"""Stage: tangent, secant and segment moduli, and what follows from them."""

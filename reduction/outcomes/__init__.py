@@ -1,1 +1,0 @@
-"""Stage: outcomes without a log: strength, fatigue, abrasion, exposure."""

@@ -1,0 +1,1 @@
+"""The explorer and the page of design values."""

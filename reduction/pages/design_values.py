@@ -1,0 +1,559 @@
+"""The page of design values."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from hashlib import file_digest, sha256
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, cast, get_args
+from urllib.parse import quote
+
+import numpy as np
+from jinja2 import Environment, StrictUndefined
+from numpy.typing import ArrayLike
+
+from reduction import __version__
+from reduction.archive.open import Opener, reading
+from reduction.archive.write import write_whole
+from reduction.experiments.surface_points import ABOVE_LEVERAGE
+from reduction.lines.archive_source import archives_of_lines, lines_of_open_archive, names_apart
+from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
+from reduction.lines.published_source import published_sources
+from reduction.published.printed_cells import REPORTS, ReportId, cells_of, errata_of
+from reduction.published.published_lines import published_lines
+from reduction.quantities.names import quantity
+from reduction.quantities.units import Dimension, UnitSystem, display_unit, scale_to_si
+from reduction.record.contributions import Component, coverage_factor
+from reduction.record.errors import ReductionError
+
+_TEXTS = ("name", "source", "material", "construction", "condition", "kind", "strength_of")
+
+_NUMBERS = (
+    "diameter", "rated_break_strength", "tensile_strength", "linear_density", "wet_linear_density",
+)  # fmt: skip
+
+
+def json_text(data: Any) -> str:
+    """JSON that ends no element of a page, whatever stands in it."""
+    text = json.dumps(data, separators=(",", ":"), allow_nan=False)
+    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
+
+
+def numbers(values: ArrayLike) -> Any:
+    """Numbers for JSON, nested as they are: null is NaN, the text inf is infinite.
+
+    Examples
+    --------
+    >>> numbers([1.5, float("nan"), float("inf")])
+    [1.5, None, 'inf']
+    """
+    array = np.asarray(values)
+    if array.ndim:
+        return [numbers(one) for one in array]
+    number = array.item()
+    if isinstance(number, float) and not math.isfinite(number):
+        return None if math.isnan(number) else "inf" if number > 0 else "-inf"
+    return number
+
+
+def line_data(line: LineSource) -> dict[str, Any]:
+    """All that a look-up needs of a line.
+
+    Parameters
+    ----------
+    line : LineSource
+        Published, or of a campaign.
+
+    Returns
+    -------
+    data : dict
+        For JSON, by the names of the fields; a float is given back by its text to the last bit.
+
+    Examples
+    --------
+    >>> line = LineSource("a", "b", "nylon", "braid", "new", 0.0127, 28e3)
+    >>> line_data(line)["rated_break_strength"]
+    28000.0
+    """
+    return (
+        {name: getattr(line, name) for name in _TEXTS}
+        | {name: numbers(getattr(line, name)) for name in _NUMBERS}
+        | {
+            "factors": list(line.factor_names),
+            "surfaces": {name: _surface(one) for name, one in line.surfaces.items()},
+            "curves": [_curve(one) for one in line.curves],
+            "absent": dict(line.absent),
+            "notes": list(line.notes),
+            "rule": line.rule,
+            "is_tether": line.is_tether,
+            "quantities": list(line.quantities),
+            "has_dashpot": line.has_dashpot,
+        }
+    )
+
+
+def _surface(surface: LineSurface) -> dict[str, Any]:
+    return {
+        "quantity": surface.quantity,
+        "exponents": surface.exponents.tolist(),
+        **{
+            name: numbers(getattr(surface, name))
+            for name in (
+                "coefficient", "low", "high", "covariance_factor", "sigma", "degrees_of_freedom",
+                "greatest_leverage", "exponent", "contribution", "alternatives", "rounding",
+                "line_scatter", "n_lines",
+            )
+        },
+        "alternative_boxes": [[numbers(end) for end in box] for box in surface.alternative_boxes],
+        "component": _components(surface.component),
+        "errata": list(surface.errata),
+        "notes": list(surface.notes),
+    }  # fmt: skip
+
+
+def _curve(curve: LineCurve) -> dict[str, Any]:
+    return {
+        "quantity": curve.quantity,
+        "variable": curve.variable,
+        "branch": curve.branch,
+        "spread_of": curve.spread_of,
+        "range_note": curve.range_note,
+        "is_inverse_slope": curve.is_inverse_slope,
+        **{
+            name: numbers(getattr(curve, name))
+            for name in (
+                "low", "high", "coefficient", "at", "value", "standard_uncertainty",
+                "degrees_of_freedom", "contribution", "gaps",
+            )
+        },
+        "component": _components(curve.component),
+        "errata": list(curve.errata),
+        "notes": list(curve.notes),
+    }  # fmt: skip
+
+
+def _components(component: tuple[Component, ...]) -> list[list[Any]]:
+    """Of each shared error what tells it from others, and its degrees of freedom."""
+    return [[one.source, one.of, one.number, numbers(one.degrees_of_freedom)] for one in component]
+
+
+_LINES: ReportId = "CG-D-39-80"
+
+_TETHER = re.compile(r"WHOI-2005-10, Table (\d+)")
+
+
+def printed_at(line: LineSource) -> dict[str, str]:
+    """Report, table and page of each quantity of a published line, in words.
+
+    Examples
+    --------
+    >>> from reduction.lines.published_source import published_sources
+    >>> line = published_sources()["nylon-double-braid-0.5in-new"]
+    >>> printed_at(line)["relaxation_time"]
+    'CG-D-39-80, Table 17 (page 48), Table 18 (page 49)'
+    """
+    tether = _TETHER.match(line.source)
+    if tether is not None:
+        return dict.fromkeys(line.quantities, _words("WHOI-2005-10", (tether[1],)))
+    found: dict[str, str] = {}
+    for one in published_lines():
+        if one.name != line.name:
+            continue
+        found = {name: _words(_LINES, part.tables) for name, part in one.surfaces.items()}
+        for cubic in (one.load_strain, one.stiffness):
+            if cubic is not None:
+                name = "strain" if cubic.quantity == "quasi_static_strain" else cubic.quantity
+                found[name] = _words(_LINES, cubic.tables)
+    return {name: text for name, text in found.items() if name in line.quantities}
+
+
+def _words(report: ReportId, tables: Iterable[str]) -> str:
+    parts = [f"Table {table} ({_pages(report, table)})" for table in tables]
+    return f"{report}, {', '.join(parts)}"
+
+
+@cache
+def _pages(report: ReportId, table: str) -> str:
+    found = dict.fromkeys(cell.page for cell in cells_of(report) if cell.table == table)
+    return f"page{'s' if len(found) > 1 else ''} {', '.join(found)}"
+
+
+def errata_told(lines: Iterable[LineSource]) -> dict[str, list[str]]:
+    """Place, print and correction, and evidence of every erratum that touches a line, by its id."""
+    touching: set[str] = set()
+    for line in lines:
+        touching.update(*(one.errata for one in line.surfaces.values()))
+        touching.update(*(one.errata for one in line.curves))
+    return {
+        one.id: [
+            f"{one.report}, {one.place}",
+            f"printed {one.printed}; corrected {one.corrected or 'nothing'}"
+            + (f" ({one.confidence})" if one.confidence not in ("", one.corrected) else ""),
+            one.evidence,
+        ]
+        for report in REPORTS
+        for one in errata_of(report)
+        if one.id in touching
+    }
+
+
+_SURFACES = "surfaces"
+
+_STATUS = "status.csv"
+
+"""That every run leaves beside its archives."""
+
+# what a file that was damaged, or made by hand, may end in
+_FAULTS = (ReductionError, OSError, RuntimeError, KeyError, IndexError, ValueError, TypeError)
+
+
+@dataclass(frozen=True)
+class CampaignLines:
+    """A campaign as the page keeps it.
+
+    Parameters
+    ----------
+    name : str
+        Of its folder.
+    files : dict of str to dict
+        By the name of the archive without its end: ``state``, a digest of its bytes by which a
+        change is seen, and ``lines``, none where there is nothing to look up.
+    faults : dict of str to str
+        Archives that cannot be read, with the reason.
+    left_out : int
+        Archives that a page has no room for; they are not read.
+    """
+
+    name: str
+    files: dict[str, dict[str, Any]] = field(default_factory=dict)
+    faults: dict[str, str] = field(default_factory=dict)
+    left_out: int = 0
+
+    @property
+    def names(self) -> list[str]:
+        """Of the lines of all files, as a look-up in the folder calls them."""
+        return names_apart(
+            [(stem, line["name"]) for stem, one in self.files.items() for line in one["lines"]]
+        )
+
+
+def state_of(processed: Path) -> str:
+    """Digest of which archives there are and when each was written; it changes with any of them."""
+    text = "\n".join(
+        f"{path.parent.name}/{path.name} {_stamp(path)}"
+        for folder in _folders(processed)
+        for path in archives_of_lines(folder)
+    )
+    return sha256(text.encode("utf-8", "surrogateescape")).hexdigest()
+
+
+def read_campaigns(
+    processed: Path,
+    known: Mapping[str, Mapping[str, Any]] | None = None,
+    *,
+    room: int,
+    opener: Opener = reading,
+) -> list[CampaignLines]:
+    """Lines of every campaign below a folder, as far as a page has room.
+
+    Parameters
+    ----------
+    processed : pathlib.Path
+        Folder in which campaigns have theirs.
+    known : mapping of str to mapping, optional
+        ``files`` of campaigns by name, as they were read before: an archive that has not changed
+        is not read again.
+    room : int
+        For all of them. Surfaces come first, which are of all tests of an experiment, then tests,
+        those of the campaign that was written last before others. [bytes]
+    opener : Opener
+        How archives are opened.
+
+    Returns
+    -------
+    campaigns : list of CampaignLines
+        By name; an archive that cannot be read is among the faults of its own.
+    """
+    found = [
+        _Reading(folder, (known or {}).get(folder.name, {}), opener)
+        for folder in _folders(processed)
+    ]
+    newest = sorted(found, key=lambda one: -one.changed)
+    for is_surfaces in (True, False):
+        for one in newest:
+            for path in one.paths:
+                if (path.stem == _SURFACES) != is_surfaces:
+                    continue
+                # what comes behind the first that has no room is not read to see how large it is
+                room -= one.read(path) if room > 0 else one.leave(path)
+                if room < 0:
+                    one.leave(path)
+    return [one.campaign for one in found]
+
+
+class _Reading:
+    """A campaign while its archives are read."""
+
+    def __init__(self, folder: Path, known: Mapping[str, Any], opener: Opener) -> None:
+        self.paths = archives_of_lines(folder)
+        self._stamps = {path: _stamp(path) for path in self.paths}
+        self.changed = max(int(stamp.split()[0]) for stamp in self._stamps.values())
+        self._digests: dict[Path, str] = {}
+        self._name, self._known, self._opener = folder.name, known, opener
+        self._files: dict[Path, dict[str, Any]] = {}
+        self._faults: dict[str, str] = {}
+        self._left: set[Path] = set()
+
+    def read(self, path: Path) -> int:
+        """Read an archive, or take it from what is known; the room that it takes. [bytes]."""
+        # surfaces have what the tests beside them say of their specimens
+        rests_on = self.paths if path.stem == _SURFACES else (path,)
+        state = sha256(" ".join(map(self._digest, rests_on)).encode()).hexdigest()
+        before = self._known.get(path.stem)
+        if before is not None and before["state"] == state:
+            self._files[path] = dict(before)
+        else:
+            try:
+                self._files[path] = {"state": state, "lines": _lines(path, self._opener)}
+            except _FAULTS as error:
+                text = str(error) if isinstance(error, ReductionError) else repr(error)
+                self._faults[path.name] = text.replace(str(path), path.name)
+                return 0
+        return len(json_text(self._files[path]))
+
+    def _digest(self, path: Path) -> str:
+        """Of all bytes: by times and numbers of files the page would not be the same elsewhere."""
+        if path not in self._digests:
+            try:
+                with path.open("rb") as file:
+                    self._digests[path] = file_digest(file, "sha256").hexdigest()
+            except OSError:
+                self._digests[path] = ""
+        return self._digests[path]
+
+    def leave(self, path: Path) -> int:
+        """Leave an archive out; it takes no room."""
+        self._files.pop(path, None)
+        self._left.add(path)
+        return 0
+
+    @property
+    def campaign(self) -> CampaignLines:
+        """What was read, in the order of the folder."""
+        files = {path.stem: self._files[path] for path in self.paths if path in self._files}
+        return CampaignLines(self._name, files, self._faults, len(self._left))
+
+
+def _folders(processed: Path) -> list[Path]:
+    try:
+        # a folder that may not be read is no empty one, as `Path.glob` has it
+        found = sorted(processed.iterdir())
+    except FileNotFoundError:
+        return []
+    return [one for one in found if (one / _STATUS).is_file() and archives_of_lines(one)]
+
+
+def _stamp(path: Path) -> str:
+    """Time, size and number of a file; zeros where it was taken away meanwhile."""
+    try:
+        found = path.stat()
+    except OSError:
+        return "0 0 0"
+    return f"{found.st_mtime_ns} {found.st_size} {found.st_ino}"
+
+
+def _lines(path: Path, opener: Opener) -> list[dict[str, Any]]:
+    with opener(path) as archive:
+        return [line_data(line) for line in lines_of_open_archive(archive, path, opener)]
+
+
+PAGE_NAME = "design-values.html"
+
+MOST_BYTES = 2_500_000
+
+"""Of the lines of campaigns on one page; of the rest it says how many archives there are."""
+
+_REPORT = "index.html"
+
+_FORMAT = 2
+
+"""Of what one page keeps for the next."""
+
+_TIMES = 3
+
+_SHARES = np.append(1e-12, np.arange(1, 33) / 32)
+
+"""Inverse degrees of freedom at which the page has the factor of an interval; the first is none."""
+
+_SCRIPTS = (
+    "format.js", "student.js", "surface.js", "curve.js", "loads.js", "lookup.js", "shown.js",
+    "data.js", "chart.js", "form.js", "command.js", "answer.js", "page.js",
+)  # fmt: skip
+
+_DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
+
+_OF_LINES = (
+    "apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant",
+    "dissipation_spring_constant", "relaxation_time", "dashpot_coefficient", "tangent_modulus",
+    "branch_tension", "strain",
+)  # fmt: skip
+
+_SYMBOLS = ("K_ap", "H", "K_0", "K_1", "tau", "N")
+
+_LEVELS: dict[str, Dimension] = {
+    "frequency": "frequency", "mean_tension": "force", "tension_amplitude": "force",
+    "tension": "force", "strain": "strain",
+}  # fmt: skip
+
+_GIVEN: dict[Dimension, tuple[str, ...]] = {
+    "frequency": ("Hz",),
+    "force": ("N", "kN", "lbf"),
+    "strain": ("%", "1"),
+}
+
+
+def write_design_page(
+    processed: Path,
+    reports: Path,
+    *,
+    unreadable: Callable[[Path, str], None] | None = None,
+    opener: Opener = reading,
+) -> Path:
+    """Write the page of a folder of products, or write it again.
+
+    Parameters
+    ----------
+    processed : pathlib.Path
+        Folder in which campaigns have theirs; an archive that cannot be read is named on the page.
+    reports : pathlib.Path
+        Folder of the page; one that is there is replaced in one piece.
+    unreadable : callable, optional
+        Told each archive that cannot be read, and why, before the page is written, which says
+        it too.
+    opener : Opener
+        How archives are opened.
+
+    Returns
+    -------
+    path : pathlib.Path
+        ``design-values.html``.
+
+    Raises
+    ------
+    ArchiveError
+        If the disk refuses.
+    """
+    path = reports / PAGE_NAME
+    known = _files_on(path)
+    for _ in range(_TIMES):
+        state = state_of(processed)
+        campaigns = read_campaigns(processed, known, room=MOST_BYTES, opener=opener)
+        if unreadable is not None:
+            for one in campaigns:
+                for name, why in one.faults.items():
+                    unreadable(processed / one.name / name, why)
+        write_whole(path, render_design_page(campaigns, _reports_beside(reports, campaigns)))
+        if state_of(processed) == state:
+            break
+        # another run ended meanwhile, and the page that it wrote may just have been replaced
+        known = {one.name: one.files for one in campaigns}
+    return path
+
+
+def render_design_page(
+    campaigns: Sequence[CampaignLines] = (), reports: Mapping[str, str] | None = None
+) -> str:
+    """Return the page as HTML that opens from disk.
+
+    Parameters
+    ----------
+    campaigns : sequence of CampaignLines
+        Beside the published lines.
+    reports : mapping of str to str, optional
+        Address of the report of a campaign, from this page, by the name of the campaign.
+
+    Returns
+    -------
+    html : str
+        With everything inside.
+    """
+    room = files("reduction.pages")
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    page = environment.from_string((room / "templates" / PAGE_NAME).read_text("utf-8"))
+    data = _constants() | {
+        "format": _FORMAT,
+        "campaigns": [
+            {"name": one.name, "files": one.files, "names": one.names} for one in campaigns
+        ],
+        "faults": [
+            [one.name, name, text] for one in campaigns for name, text in one.faults.items()
+        ],
+        "reports": dict(reports or {}),
+        "left_out": [[one.name, one.left_out] for one in campaigns if one.left_out],
+    }  # fmt: skip
+    return page.render(
+        style=(room / "design_values_static" / "page.css").read_text("utf-8"),
+        script="\n".join(
+            (room / "design_values_static" / name).read_text("utf-8") for name in _SCRIPTS
+        ),
+        data=json_text(data),
+    )
+
+
+def _reports_beside(reports: Path, campaigns: Sequence[CampaignLines]) -> dict[str, str]:
+    """Address of each campaign's report that is there, as a link takes it."""
+    return {
+        one.name: f"{quote(one.name)}/{_REPORT}"
+        for one in campaigns
+        if (reports / one.name / _REPORT).is_file()
+    }
+
+
+def _constants() -> dict[str, Any]:
+    """What does not depend on any campaign."""
+    lines = tuple(published_sources().values())
+    published = [line_data(line) | {"printed": printed_at(line)} for line in lines]
+    known = {name: quantity(name) for name in (*_OF_LINES, *_LEVELS)}
+    units = {one.unit for one in known.values()}
+    return {
+        "version": __version__,
+        "published": published,
+        "errata": errata_told(lines),
+        "quantities": {name: [one.unit, one.long_name] for name, one in known.items()},
+        "symbols": dict(zip(_OF_LINES, _SYMBOLS, strict=False)),
+        "shown": {
+            unit: {
+                system: list(display_unit(unit, cast("UnitSystem", system)))
+                for system in get_args(UnitSystem)
+            }
+            for unit in sorted(units)
+        },
+        "levels": _LEVELS,
+        "given": {
+            dimension: [[unit, scale_to_si(unit, dimension)[0]] for unit in given]
+            for dimension, given in _GIVEN.items()
+        },
+        "above_leverage": ABOVE_LEVERAGE,
+        "coverage_factors": coverage_factor(1 / _SHARES).tolist(),
+    }
+
+
+def _files_on(path: Path) -> dict[str, dict[str, Any]]:
+    """What the page that is there keeps of campaigns; nothing of one of another version."""
+    try:
+        found = _DATA.search(path.read_text(encoding="utf-8"))
+        data = json.loads(found[1]) if found is not None else {}
+        if (data["format"], data["version"]) != (_FORMAT, __version__):
+            return {}
+        return {one["name"]: one["files"] for one in data["campaigns"]}
+    except (OSError, ValueError, KeyError, TypeError):
+        # no page, or one that is not ours: everything is read
+        return {}

@@ -1,0 +1,756 @@
+"""One campaign that is being explored: its logs, its text, a change of its settings.
+
+Everything is made by the functions of `reduction run`: a text that campaign.toml may hold is
+loaded, the log is surveyed with it, and the test is reduced to the dataset that its archive
+would be written from.  Nothing is written but campaign.toml, and that on request.
+"""
+
+from __future__ import annotations
+
+import codecs
+import difflib
+import errno
+import hashlib
+import os
+import shutil
+import stat
+import time
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal, get_args
+
+import tomlkit
+import xarray as xr
+from tomlkit.container import Container
+from tomlkit.exceptions import TOMLKitError
+from tomlkit.items import AoT, InlineTable, Item, Table
+
+from reduction.archive.atomic_write import whole_file
+from reduction.batch.campaign_status import Progress, Silent
+from reduction.batch.reduce_tests import dataset_of
+from reduction.batch.requested_products import Wanted, find_wanted, wanted_of
+from reduction.batch.reuse import Basis, standing_product
+from reduction.batch.survey import FirstPass, Survey, as_reduction_error, survey_log
+from reduction.campaign.load import load_campaign
+from reduction.campaign.model import dimension_of
+from reduction.campaign.plan import Campaign
+from reduction.campaign.test_plans import read_test_table
+from reduction.record.errors import ArchiveError, SettingsError
+from reduction.record.settings import StrainMethod
+
+Group = Literal[
+    "Trim and cycles",
+    "Modulus windows",
+    "Splice correction",
+    "Phases",
+    "Holds",
+    "Rope",
+    "Slips",
+    "Flags",
+]
+
+"""Headings, in the order of the page."""
+
+_CYCLIC = ("cyclic", "fatigue", "snap", "bedding-in")
+
+
+@dataclass(frozen=True)
+class Slider:
+    """Ends and step of a slider, in the unit that is written behind its number."""
+
+    low: float
+    high: float
+    step: float
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One key of ``[tests.ID]``.
+
+    ``key`` is ``GROUP.NAME`` below ``reduction``, or a key of the test itself; ``choices`` are
+    the words that it may have. It is offered for the ``kinds`` of test; for all where empty.
+    """
+
+    key: str
+    group: Group
+    words: str
+    choices: tuple[str, ...] = ()
+    slider: Slider | None = None
+    kinds: tuple[str, ...] = ()
+
+    @property
+    def path(self) -> tuple[str, ...]:
+        """Keys below ``[tests.ID]``."""
+        parts = tuple(self.key.split("."))
+        return parts if self.key in _OF_TEST else ("reduction", *parts)
+
+
+_OF_TEST = ("control", "waveform", "strain.method")
+
+_SHARE = Slider(0.5, 1.0, 0.005)
+
+SETTINGS: tuple[Setting, ...] = (
+    Setting(
+        "cycles.trim_threshold", "Trim and cycles",
+        "rate over plateau that keeps a sample: higher cuts more of both ends",
+        slider=_SHARE, kinds=_CYCLIC,
+    ),
+    Setting(
+        "cycles.break_in_cycles", "Trim and cycles", "first cycles left out of every mean",
+        slider=Slider(0, 20, 1), kinds=_CYCLIC,
+    ),
+    Setting(
+        "cycles.band", "Trim and cycles", "smallest range that makes a reversal", kinds=_CYCLIC
+    ),
+    Setting(
+        "waveform", "Trim and cycles", "how ends are trimmed and the loop area is taken",
+        choices=("triangular", "sinusoidal", "other"), kinds=_CYCLIC,
+    ),
+    Setting(
+        "control", "Trim and cycles", "channel on which reversals are found",
+        choices=("position", "load"),
+    ),
+    Setting(
+        "modulus.strain_bin_width", "Modulus windows", "spacing of the strain grid",
+        slider=Slider(0.25, 10.0, 0.25, "%"),
+    ),
+    Setting(
+        "modulus.window", "Modulus windows", "width of the regression window",
+        slider=Slider(0.5, 30.0, 0.5, "%"),
+    ),
+    Setting(
+        "modulus.minimum_count", "Modulus windows", "fewest samples in a window that give a slope"
+    ),
+    Setting(
+        "modulus.maximum_segments", "Modulus windows", "most straight segments tried",
+        slider=Slider(1, 8, 1), kinds=_CYCLIC,
+    ),
+    Setting(
+        "modulus.segment_tolerance", "Modulus windows",
+        "distance of the segments from the branch, as a share of its tension range",
+        kinds=_CYCLIC,
+    ),
+    Setting(
+        "modulus.selected_cycles", "Modulus windows",
+        "longest test of which every cycle's curve is kept", kinds=_CYCLIC,
+    ),
+    Setting(
+        "modulus.stress_at_strain", "Modulus windows", "elongations at which stress is given"
+    ),
+    Setting(
+        "strain.method", "Splice correction", "how position becomes strain of the free length",
+        choices=get_args(StrainMethod),
+    ),
+    Setting("phases.minimum_duration", "Phases", "shortest standstill"),
+    Setting("phases.position_tolerance", "Phases", "range of position inside a standstill"),
+    Setting("phases.tension_tolerance", "Phases", "range of tension inside a hold at one tension"),
+    Setting("phases.slack_tension", "Phases", "a standstill at or below it is a rest"),
+    Setting("holds.minimum_duration", "Holds", "shortest hold that gives relaxation numbers"),
+    Setting(
+        "holds.maximum_terms", "Holds", "most Prony terms tried", slider=Slider(1, 5, 1)
+    ),
+    Setting("holds.times", "Holds", "times after the ramp at which tension is given"),
+    Setting("rope.last_cycles", "Rope", "last cycles that give the dynamic stiffness"),
+    Setting("rope.reference_time", "Rope", "time after loading of the static stiffness"),
+    Setting("rope.failure_share", "Rope", "share of the median peak below which it failed"),
+    Setting("slip.minimum_cycles", "Slips", "shortest test in which slips are looked for",
+            kinds=_CYCLIC),
+    Setting("slip.false_alarm", "Slips", "chance that a sound specimen shows a slip",
+            kinds=_CYCLIC),
+    Setting("quality.stuck_samples", "Flags", "equal values that are stuck"),
+    Setting("quality.spike_factor", "Flags", "deviations off both neighbours that are a spike"),
+    Setting("quality.gap_factor", "Flags", "median steps that are a gap"),
+    Setting("quality.rate_tolerance", "Flags", "share by which a step may differ"),
+)  # fmt: skip
+
+_BY_KEY = {one.key: one for one in SETTINGS}
+
+
+def setting_of(key: str) -> Setting | None:
+    """The setting of a key; None where it is not offered."""
+    return _BY_KEY.get(key)
+
+
+def settings_of_kind(kind: str) -> list[Setting]:
+    """Settings that steer a kind of test; of weights hung by hand there is none."""
+    if kind == "stepwise":
+        return []
+    return [one for one in SETTINGS if not one.kinds or kind in one.kinds]
+
+
+Keys = tuple[str | int, ...]
+
+Value = bool | int | float | str | list[Any] | dict[str, Any]
+
+_NAMED = 2
+
+"""Keys of a header that is added where a table is not there, as in ``[tests.T-1]``."""
+
+
+def edited(text: str, changes: Mapping[Keys, Value | None]) -> str:
+    r"""Return a TOML text with some keys set, or left out where the value is None.
+
+    Parameters
+    ----------
+    text : str
+        A document that `tomllib` reads.
+    changes : mapping of path to value
+        In the order in which they are made. The first two keys of a path name a table that
+        need not be there: ``("tests", "T-1", "reduction", "cycles", "band")``.
+
+    Returns
+    -------
+    text : str
+        The same lines but those that change.
+
+    Raises
+    ------
+    SettingsError
+        If the text is written in a way in which a key cannot be changed by itself.
+
+    Examples
+    --------
+    >>> print(edited('[tests.T-1]\nfile = "a.csv"  # raw\n', {("tests", "T-1", "order"): 2}))
+    [tests.T-1]
+    file = "a.csv"  # raw
+    order = 2
+    """
+    for path, value in changes.items():
+        before = tomllib.loads(text)
+        now = value_at(before, path)
+        if now == value and type(now) is type(value):
+            continue
+        try:
+            made = _with(text, path, value)
+            after = tomllib.loads(made)
+            is_meant = value_at(after, path) == value
+            is_meant &= dict(_leaves(before, path)) == dict(_leaves(after, path))
+        except (TOMLKitError, ValueError, KeyError, TypeError, AttributeError):
+            is_meant = False
+        if not is_meant:
+            raise SettingsError(
+                "campaign.toml is written in a way that is not changed here",
+                needed=f"the line taken out by hand: {_dotted(path)}"
+                if value is None
+                else f"the line written by hand: {_line(path, value)}",
+            )
+        text = made
+    return text
+
+
+def value_at(document: object, path: Keys) -> Any:
+    """What stands at a path of a document; None where nothing does."""
+    for key in path:
+        if isinstance(document, dict) and isinstance(key, str):
+            document = document.get(key)
+        elif isinstance(document, list) and isinstance(key, int) and key < len(document):
+            document = document[key]
+        else:
+            return None
+    return document
+
+
+def _leaves(document: Any, left_out: Keys, at: Keys = ()) -> Iterator[tuple[Keys, Any]]:
+    """Every value but one by its path; tables that hold nothing say nothing."""
+    if at == left_out:
+        return
+    if isinstance(document, dict | list):
+        pairs = document.items() if isinstance(document, dict) else enumerate(document)
+        for key, value in pairs:
+            yield from _leaves(value, left_out, (*at, key))
+    else:
+        yield at, document
+
+
+def _with(text: str, path: Keys, value: Value | None) -> str:
+    """The text with one key set, or left out."""
+    document = tomlkit.parse(text)
+    end_of_line = "\r\n" if "\r\n" in text else "\n"
+    holder: Any = document
+    home, keys = holder, path
+    depth, last = 0, len(path) - 1
+    while depth < last and (isinstance(path[depth], int) or path[depth] in holder):
+        holder = holder[path[depth]]
+        depth += 1
+        if isinstance(holder, Table) and not holder.is_super_table():
+            home, keys = holder, path[depth:]
+    key = path[depth]
+    if isinstance(holder, InlineTable):
+        # of a table on one line the whole is written again
+        whole: dict[str, Any] = holder.unwrap()
+        for name in reversed(path[depth + 1 :]):
+            value = {str(name): value}
+        whole[str(key)] = value
+        return _with(text, path[:depth], {k: v for k, v in whole.items() if v is not None} or None)
+    if value is None:
+        del holder[key]
+    elif depth == last and (isinstance(key, int) or key in holder):
+        holder[key] = _item(value)
+    elif depth < min(_NAMED, last):
+        gap = "" if not text else end_of_line if text.endswith("\n") else 2 * end_of_line
+        lines = f"[{_dotted(path[:_NAMED])}]", _line(path[_NAMED:], value), ""
+        return f"{text}{gap}{end_of_line.join(lines)}"
+    else:
+        # below the last key of its table, which is above the comment of the next table
+        before = _last_line(home)
+        before.trail = before.trail or end_of_line
+        before.trail += f"{before.indent}{_line(keys, value)}{end_of_line}"
+    return tomlkit.dumps(document)
+
+
+def _last_line(table: Any) -> Any:
+    """What stands about the last key of a table; about its header where it has no key."""
+    body = table.body if isinstance(table, Container) else table.value.body
+    for key, item in reversed(body):
+        if key is not None and (key.is_dotted() or not isinstance(item, Table | AoT)):
+            return _last_line(item) if isinstance(item, Table) else item.trivia
+    return table.trivia
+
+
+def _dotted(keys: Keys) -> str:
+    return tomlkit.key([str(key) for key in keys]).as_string()
+
+
+def _line(keys: Keys, value: Value) -> str:
+    return f"{_dotted(keys)} = {_item(value).as_string()}"
+
+
+def _item(value: Value) -> Item:
+    """A value as it is written on one line."""
+    if isinstance(value, dict) and value:
+        inside = ", ".join(_line((key,), one) for key, one in value.items())
+        return tomlkit.value(f"{{ {inside} }}")
+    return tomlkit.inline_table() if value == {} else tomlkit.item(value)
+
+
+Place = Literal["test", "defaults", "table", "nowhere"]
+
+_WRITABLE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
+
+_LONGEST_NAME = 1000
+
+_STEP_ENDS = ("from", "to")
+
+
+@dataclass(frozen=True)
+class Written:
+    """What campaign.toml says of a setting, and where; nothing where it is silent."""
+
+    place: Place
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class CampaignText:
+    """A campaign.toml as it stood when it was read; a byte-order mark before its text is kept."""
+
+    path: Path
+    text: str
+    mark: bytes = b""
+
+    @classmethod
+    def read(cls, path: Path) -> CampaignText:
+        """Read it; `SettingsError` where that is not possible."""
+        try:
+            whole = path.read_bytes()
+            mark = codecs.BOM_UTF8 if whole.startswith(codecs.BOM_UTF8) else b""
+            return cls(path, whole.removeprefix(mark).decode("utf-8"), mark)
+        except (OSError, UnicodeDecodeError) as error:
+            raise SettingsError(
+                f"{path}: the campaign cannot be read",
+                found=getattr(error, "strerror", None) or str(error),
+                needed="a campaign.toml",
+            ) from error
+
+    @cached_property
+    def document(self) -> dict[str, Any]:
+        """As TOML gives it."""
+        return tomllib.loads(self.text)
+
+    def as_bytes(self) -> bytes:
+        """Return what the file holds."""
+        return self.mark + self.text.encode("utf-8")
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of the file."""
+        return hashlib.sha256(self.as_bytes()).hexdigest()
+
+    @cached_property
+    def in_table(self) -> dict[str, set[str]]:
+        """Keys of each test that stand in the table of tests, where there is one."""
+        tests = self.document.get("tests")
+        name = tests if isinstance(tests, str) else value_at(self.document, ("campaign", "tests"))
+        if not name:
+            return {}
+        rows = read_test_table(self.path.parent / str(name))
+        return {test: set(row.model_fields_set) for test, row in rows.items()}
+
+    @cached_property
+    def named(self) -> tuple[Path, ...]:
+        """Where every file of the campaign folder would be that the text names, marks among them.
+
+        Any text of it may be a name; one that is none leads to no file.
+        """
+        return tuple(self.path.parent / one for one in dict.fromkeys(_texts(self.document)))
+
+    def written(self, test: str, setting: Setting) -> Written:
+        """What stands of a setting of a test."""
+        if setting.path[0] in self.in_table.get(test, ()):
+            return Written("table")
+        own = ("tests", test, *setting.path)
+        if setting.key == "strain.method":
+            # a table of a test is taken whole: what it leaves out is not in the defaults
+            is_own = value_at(self.document, own[:-1]) is not None
+        else:
+            is_own = value_at(self.document, own) is not None
+        places: tuple[tuple[Place, Keys], ...] = (
+            (("test", own),) if is_own else (("defaults", ("defaults", *setting.path)),)
+        )
+        for place, keys in places:
+            value = value_at(self.document, keys)
+            if value is not None:
+                return Written(place, _as_text(value))
+        return Written("test" if is_own else "nowhere")
+
+    def step_ends(self, test: str, place: int) -> dict[str, str]:
+        """``from`` and ``to`` of a step of a log, by their keys on the page."""
+        return {
+            f"steps.{place}.{end}": _as_text(
+                value_at(self.document, ("tests", test, "steps", place, end)) or ""
+            )
+            for end in _STEP_ENDS
+        }
+
+    def changed(self, test: str, changes: Mapping[str, str], *, control: str) -> CampaignText:
+        """Return what the file would say with settings of one test changed.
+
+        Parameters
+        ----------
+        test : str
+            Key of the test in campaign.toml.
+        changes : mapping of str to str
+            Texts by key, as a person writes them; empty where the key is to be left out.
+        control : str
+            Channel of the test, which says what a band is.
+
+        Returns
+        -------
+        text : CampaignText
+            The same where nothing changes.
+
+        Raises
+        ------
+        SettingsError
+            If a key is not one that may be moved, or stands in the table of tests.
+        """
+        paths: dict[Keys, Value | None] = {}
+        for key, text in changes.items():
+            paths |= self._change(test, key, text.strip(), control)
+        if not paths:
+            return self
+        table = self.document.get("tests")
+        if isinstance(table, str):
+            # beside [tests.ID] the table of tests is named in [campaign]
+            paths = {("tests",): None, ("campaign", "tests"): table, **paths}
+        return replace(self, text=edited(self.text, paths))
+
+    def _change(self, test: str, key: str, text: str, control: str) -> dict[Keys, Value | None]:
+        group, _, rest = key.partition(".")
+        place, _, end = rest.partition(".")
+        if group == "steps" and place.isdecimal() and end in _STEP_ENDS:
+            if not text:
+                raise SettingsError(f"{key}: a step has both ends", needed='such as "1200 s"')
+            return {
+                ("tests", test, "steps", int(place), end): int(text) if text.isdecimal() else text
+            }
+        setting = setting_of(key)
+        if setting is None:
+            raise SettingsError("a setting is not one that is moved here", found=repr(key))
+        if setting.path[0] in self.in_table.get(test, ()):
+            raise SettingsError(
+                f"{key} of test '{test}' stands in the table of tests", needed="a change there"
+            )
+        path = ("tests", test, *setting.path)
+        if setting.key == "strain.method":
+            return self._strain_change(test, text)
+        return {path: _as_value(setting, text, control) if text else None}
+
+    def _strain_change(self, test: str, method: str) -> dict[Keys, Value | None]:
+        """A test that has a strain method of its own names the marks again."""
+        own = value_at(self.document, ("tests", test, "strain"))
+        default = value_at(self.document, ("defaults", "strain")) or {}
+        rest = {key: value for key, value in (own or default).items() if key != "method"}
+        wanted = {"method": method, **rest} if method else rest
+        table = ("tests", test, "strain")
+        if own is None:
+            return {} if wanted == default else {table: wanted}
+        if wanted:
+            return {(*table, "method"): method or None}
+        # an empty table of its own keeps the method of the defaults away
+        return {table: {} if default.get("method") else None}
+
+    def difference(self, other: CampaignText) -> str:
+        """What another text would change, as a unified diff."""
+        name = self.path.name
+        lines = difflib.unified_diff(
+            self.text.splitlines(), other.text.splitlines(), name, f"{name} (changed)", lineterm=""
+        )
+        return "\n".join(lines)
+
+    def replace_with(self, other: CampaignText) -> None:
+        """Put another text in the place of this one, whole or not at all.
+
+        Raises
+        ------
+        SettingsError
+            If the file is not what this text was read from any more.
+        ArchiveError
+            If the disk refuses.
+        """
+        # a link is followed: what it leads to is replaced, and the link stays
+        target = self.path.resolve()
+        if CampaignText.read(target).digest != self.digest:
+            raise SettingsError(
+                f"{self.path} changed on the disk since it was read",
+                needed="the diff looked at again",
+                hint="Nothing was written. Load the file again.",
+            )
+        try:
+            if not target.stat().st_mode & _WRITABLE:
+                # to be renamed over needs no leave of the file itself
+                raise PermissionError(errno.EACCES, "it is read-only")
+            with whole_file(target) as part:
+                part.write_bytes(other.as_bytes())
+                shutil.copymode(target, part)
+        except ArchiveError:
+            raise
+        except OSError as error:
+            raise ArchiveError(
+                f"{self.path} cannot be written",
+                found=error.strerror or str(error),
+                hint="It is what it was before.",
+            ) from error
+
+
+def _texts(value: object) -> Iterator[str]:
+    """Every text of a document that is short enough for the name of a file."""
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, list):
+        for one in value:
+            yield from _texts(one)
+    elif isinstance(value, str) and len(value) < _LONGEST_NAME:
+        yield value
+
+
+def _as_text(value: object) -> str:
+    """A value as a person writes it into a field; entries of a list parted by commas."""
+    if isinstance(value, list):
+        return ", ".join(map(_as_text, value))
+    return str(value)
+
+
+def _as_value(setting: Setting, text: str, control: str) -> Value:
+    """A text of a field as campaign.toml has it; what it means is checked there."""
+    if setting.choices:
+        return text
+    group, _, name = setting.key.partition(".")
+    if setting.key in ("holds.times", "modulus.stress_at_strain"):
+        return [_number(one.strip()) for one in text.split(",") if one.strip()]
+    if dimension_of(group, name, control=control) is None:
+        number = _number(text)
+        if isinstance(number, str):
+            raise SettingsError(
+                f"{setting.key} is not a number", found=repr(text), needed="a number"
+            )
+        return number
+    return _number(text)
+
+
+def _number(text: str) -> Value:
+    """A number where the text is one, else the text: a value with its unit."""
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text
+
+
+COMMAND = "reduction run campaign.toml"
+
+
+@dataclass(frozen=True)
+class Made:
+    """What a text makes of one test.
+
+    ``dataset`` is None where it cannot be reduced, and ``error`` says why. ``is_standing`` where
+    its archive is of this text. ``also`` are other tests that a run would make anew with this text
+    and not with the one on the disk.
+    """
+
+    survey: Survey
+    dataset: xr.Dataset | None
+    error: str
+    seconds: float
+    is_standing: bool
+    also: tuple[str, ...]
+
+
+class Session:
+    """A campaign that is being explored; to be used by one thread at a time.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The campaign.toml.
+    processed : pathlib.Path
+        Folder of its archives.
+    progress : Progress, optional
+        Told of each log of the first pass.
+
+    Raises
+    ------
+    ReductionError
+        If the campaign cannot be loaded.
+    """
+
+    def __init__(self, path: Path, processed: Path, *, progress: Progress | None = None) -> None:
+        self.path = path
+        self._processed = processed
+        self.read_again(progress)
+
+    def read_again(self, progress: Progress | None = None) -> None:
+        """Take campaign.toml, and what is found in its logs, as they are now."""
+        text = CampaignText.read(self.path)
+        campaign = load_campaign(self.path, text=text.text)
+        inputs = _inputs(text, campaign)
+        stamps = tuple(map(_stamp, inputs))
+        now = find_wanted(campaign, progress=progress or Silent())
+        # all of it, or what was there before
+        self.text, self.campaign, self.surveys = text, campaign, now.first.surveys
+        self._inputs, self._stamps, self._settings = inputs, stamps, _settings(now)
+
+    @property
+    def is_changed_on_disk(self) -> bool:
+        """Whether campaign.toml, or a file that it names, is another than the one that was read."""
+        is_same = CampaignText.read(self.path).digest == self.text.digest
+        return not is_same or tuple(map(_stamp, self._inputs)) != self._stamps
+
+    def survey(self, test: str) -> Survey:
+        """The first pass over a test; `SettingsError` where the campaign lacks it."""
+        for one in self.surveys:
+            if one.plan.id == test:
+                return one
+        raise SettingsError("the campaign has no such test", found=repr(test))
+
+    def changed(self, test: str, changes: Mapping[str, str]) -> CampaignText:
+        """What campaign.toml would say; `SettingsError` where a change cannot be written."""
+        plan = self.survey(test).plan
+        control = changes.get("control") or plan.control
+        return self.text.changed(plan.log, changes, control=control)
+
+    def made(self, test: str, text: CampaignText) -> Made:
+        """Reduce a test as a text says.
+
+        Parameters
+        ----------
+        test : str
+            Id of its product.
+        text : CampaignText
+            From `changed`, or as on the disk.
+
+        Returns
+        -------
+        made : Made
+            Of a test that cannot be reduced with its error.
+
+        Raises
+        ------
+        SettingsError
+            If the text is not a campaign that could be run, or a file changed on the disk: what is
+            shown side by side is of the same files.
+        """
+        begun = time.perf_counter()
+        if self.is_changed_on_disk:
+            raise SettingsError(
+                "campaign.toml, or a file that it names, changed on the disk since it was read",
+                needed="it read again",
+            )
+        campaign, now = self._surveyed(text, self.survey(test).plan.log)
+        survey = next(one for one in now.first.surveys if one.plan.id == test)
+        error = survey.error or now.errors.get(test)
+        dataset, is_standing = None, False
+        if error is None:
+            try:
+                basis = now.basis(survey)
+                # what a changed text gives has no archive yet
+                is_same = text.digest == self.text.digest
+                is_standing = is_same and self._is_standing(survey, basis)
+                dataset, _ = dataset_of(campaign, survey, basis, command=COMMAND)
+            except Exception as failure:
+                # one text of many that are tried, even where the failure is a defect here
+                error = as_reduction_error(failure)
+        settings = _settings(now)
+        others = (one.plan.id for one in now.first.surveys if one.plan.id != test)
+        also = tuple(one for one in others if settings.get(one) != self._settings.get(one))
+        said = "" if error is None else campaign.in_words(str(error))
+        seconds = time.perf_counter() - begun
+        return Made(replace(survey, located=None), dataset, said, seconds, is_standing, also)
+
+    def _surveyed(self, text: CampaignText, log: str) -> tuple[Campaign, Wanted]:
+        """The campaign of a text, with one of its logs read again."""
+        campaign = load_campaign(self.path, text=text.text)
+        if list(campaign.tests) != list(self.campaign.tests):
+            raise SettingsError("the tests of the campaign changed", needed="the same tests")
+        own = survey_log(campaign, log)
+        place = [one.plan.log for one in self.surveys].index(log)
+        surveys = [one for one in self.surveys if one.plan.log != log]
+        surveys[place:place] = own
+        first = FirstPass(surveys, {log: own})
+        return campaign, wanted_of(campaign, first, progress=Silent())
+
+    def _is_standing(self, survey: Survey, basis: Basis) -> bool:
+        path = self._processed / f"{survey.plan.id}.nc"
+        found = standing_product(path, survey, basis.settings, remarks=basis.remarks)
+        return found is not None
+
+    def save(self, text: CampaignText) -> None:
+        """Put a text in the place of campaign.toml, and go on from it.
+
+        Raises
+        ------
+        SettingsError
+            If the file changed on the disk meanwhile.
+        ArchiveError
+            If the disk refuses.
+        """
+        load_campaign(self.path, text=text.text)
+        self.text.replace_with(text)
+        self.read_again()
+
+
+def _settings(now: Wanted) -> dict[str, str]:
+    """Every setting in force, by test; tests that failed have none."""
+    sound = (one for one in now.first.surveys if one.plan.id not in now.failed)
+    return {one.plan.id: now.basis(one).settings for one in sound}
+
+
+def _inputs(text: CampaignText, campaign: Campaign) -> tuple[Path, ...]:
+    """Every file that a campaign may be read from: those that its text and its tests name."""
+    own = {campaign.folder / name for plan in campaign.tests.values() for name, _ in plan.files}
+    return tuple(sorted({*text.named, *own, *campaign.copies.values()}))
+
+
+def _stamp(path: Path) -> tuple[int, ...]:
+    """Whatever changes with a file; of one that is not there the reader says so."""
+    try:
+        found = os.stat(path)
+    except (OSError, ValueError):  # the latter of a name that no file can have
+        return ()
+    return found.st_size, found.st_mtime_ns, found.st_ino

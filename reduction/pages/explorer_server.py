@@ -1,0 +1,342 @@
+"""The explorer's server on this machine alone.
+
+A request has to come from a page of this server, by its own name.  How much of it is read and
+how long it may take to arrive is bounded, so that one who dawdles does not hold the others up.
+"""
+
+from __future__ import annotations
+
+import hmac
+import json
+import secrets
+import socket
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from importlib.resources import files
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
+
+from reduction.pages.explorer_campaign import Session
+from reduction.pages.explorer_page import campaign_document, change_document, save_document
+from reduction.quantities.units import UnitSystem
+from reduction.record.errors import ReductionError, SettingsError
+
+HOST = "127.0.0.1"
+
+MOST_BYTES = 64_000
+
+"""Longest body of a request. [1]"""
+
+PATIENCE = 10.0
+
+"""How long a part of a request may take to arrive, and an answer to be taken. [s]"""
+
+DEADLINE = 30.0
+
+"""How long a whole request may take to arrive; each connection is of one. [s]"""
+
+MOST_AT_ONCE = 24
+
+_MOST_CHANGES = 40
+
+_LONGEST = 200
+
+_NAMES = (HOST, "localhost")
+
+_JSON, _PAGE = "application/json; charset=utf-8", "text/html; charset=utf-8"
+
+_SCRIPT, _STYLE = "text/javascript; charset=utf-8", "text/css; charset=utf-8"
+
+_HEADERS = {
+    "Cache-Control": "no-store",
+    # plotly puts its style sheet into the page, so that styles have to be allowed in it
+    "Content-Security-Policy": (
+        "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
+        "img-src data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
+        "frame-ancestors 'none'"
+    ),
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Permissions-Policy": "camera=(), geolocation=(), microphone=()",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+}
+
+"""Of every answer: nothing is kept, framed, guessed or told to others."""
+
+Reply = tuple[int, str, bytes]
+
+
+class _Refused(Exception):  # noqa: N818 - it is an answer, and no error of this program
+    """A request that is not answered: status and words."""
+
+
+class ExploreServer(ThreadingHTTPServer):
+    """A server of one session, on 127.0.0.1.
+
+    Parameters
+    ----------
+    session : Session
+        The campaign; one request at a time is at work on it.
+    units : UnitSystem
+        What a reader is shown.
+    port : int
+        0 for a free one.
+    told_of_defect : callable, optional
+        Told of what is a defect of this program, of which a page learns no more than that.
+
+    Raises
+    ------
+    SettingsError
+        If the port cannot be had.
+    """
+
+    daemon_threads = True
+    block_on_close = False
+    allow_reuse_address = False
+
+    def __init__(
+        self,
+        session: Session,
+        units: UnitSystem,
+        port: int = 0,
+        told_of_defect: Callable[[Exception], None] = lambda error: None,
+    ) -> None:
+        try:
+            super().__init__((HOST, port), _Handler)
+        except (OSError, OverflowError) as error:
+            raise SettingsError(
+                "the port cannot be had",
+                found=f"{port}: {getattr(error, 'strerror', None) or error}",
+                needed="a free one from 1024 to 65535, or none: one is found then",
+            ) from error
+        self.token = secrets.token_urlsafe(32)
+        self.told_of_defect = told_of_defect
+        self.working = threading.Lock()
+        self._places = threading.BoundedSemaphore(MOST_AT_ONCE)
+        ours, report = (
+            files("reduction.pages") / "explorer_static",
+            files("reduction.report") / "static",
+        )
+        self.page = (ours / "explore.html").read_bytes()
+        self.static = {
+            "/explore.css": (_STYLE, (ours / "explore.css").read_bytes()),
+            "/explore.js": (_SCRIPT, (ours / "explore.js").read_bytes()),
+            "/page.css": (_STYLE, (report / "page.css").read_bytes()),
+            "/inflate.js": (_SCRIPT, (report / "inflate.js").read_bytes()),
+            "/figures.js": (_SCRIPT, (report / "figures.js").read_bytes()),
+            "/plotly.js": (_SCRIPT, get_plotlyjs().encode("utf-8")),
+        }
+
+        def again() -> dict[str, Any]:
+            session.read_again()
+            return campaign_document(session, units)
+
+        # what gives the document that is asked for, and the names that it needs of a request
+        self.documents: dict[str, tuple[Callable[..., dict[str, Any]], tuple[str, ...]]] = {
+            "/api/campaign": (partial(campaign_document, session, units), ()),
+            "/api/reload": (again, ()),
+            "/api/change": (partial(change_document, session, units), ("test", "changes")),
+            "/api/save": (partial(save_document, session), ("test", "changes", "before", "after")),
+        }
+
+    @property
+    def address(self) -> str:
+        """The address of the page, with its token."""
+        return f"http://{HOST}:{self.server_port}/?token={self.token}"
+
+    def server_bind(self) -> None:
+        """Bind, without asking a name server for the name of this machine."""
+        self.socket.bind(self.server_address)
+        self.server_address = self.socket.getsockname()
+        self.server_name, self.server_port = HOST, self.server_address[1]
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Give a request a thread, as long as there are not too many."""
+        if not self._places.acquire(blocking=False):
+            self.shutdown_request(request)
+            return
+        super().process_request(request, client_address)
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """Answer, and make room for the next."""
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self._places.release()
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """A connection that broke is nobody's business; requests answer their own faults."""
+
+
+def _cut_off(request: socket.socket) -> None:
+    with suppress(OSError):  # it ended by itself
+        request.shutdown(socket.SHUT_RDWR)
+
+
+class _Handler(BaseHTTPRequestHandler):
+    """One connection, of one request."""
+
+    server: ExploreServer
+    protocol_version = "HTTP/1.1"
+    timeout = PATIENCE
+
+    def setup(self) -> None:
+        super().setup()
+        self._deadline = threading.Timer(DEADLINE, _cut_off, (self.connection,))
+        self._deadline.daemon = True
+        self._deadline.start()
+
+    def finish(self) -> None:
+        self._deadline.cancel()
+        super().finish()
+
+    def do_GET(self) -> None:
+        """The page for one who knows the token; style and scripts hold nothing of a campaign."""
+        self._answer(self._got)
+
+    def do_POST(self) -> None:
+        """A document for a document."""
+        self._answer(self._posted)
+
+    def _answer(self, made: Callable[[str, str], Reply]) -> None:
+        try:
+            reply = made(*self._address())
+        except _Refused as refusal:
+            status, text = refusal.args
+            reply = _as_json(status, {"error": text})
+        except ReductionError as error:
+            reply = _as_json(HTTPStatus.UNPROCESSABLE_ENTITY, {"error": str(error)})
+        except OSError:  # who asked is gone, or dawdles
+            raise
+        except Exception as error:
+            # a stranger learns no more of a defect here than that it is one; the terminal does
+            self.server.told_of_defect(error)
+            said = f"internal error, a defect of this program: {type(error).__name__}"
+            reply = _as_json(HTTPStatus.INTERNAL_SERVER_ERROR, {"error": said})
+        self._send(*reply)
+
+    def _address(self) -> tuple[str, str]:
+        """Path and query, of a request that comes from where it should."""
+        known = {f"{name}:{self.server.server_port}" for name in _NAMES}
+        hosts = self.headers.get_all("Host") or []
+        if len(hosts) != 1 or hosts[0].lower() not in known:
+            # a name of somebody else's that was made to lead here
+            raise _Refused(HTTPStatus.FORBIDDEN, "this server answers to its own address alone")
+        origin = self.headers.get("Origin", f"http://{hosts[0]}").lower()
+        site = self.headers.get("Sec-Fetch-Site", "none")
+        if origin not in {f"http://{one}" for one in known} or site not in ("none", "same-origin"):
+            raise _Refused(HTTPStatus.FORBIDDEN, "a page of another server asked")
+        try:
+            parts = urlsplit(self.path)
+        except ValueError:
+            raise _Refused(HTTPStatus.BAD_REQUEST, "the address cannot be read") from None
+        if parts.scheme or parts.netloc:
+            raise _Refused(HTTPStatus.NOT_FOUND, "there is nothing here")
+        return parts.path, parts.query
+
+    def _needs_token(self, given: list[str]) -> None:
+        # in a time that does not tell how much of it was right
+        own = self.server.token.encode()
+        if len(given) != 1 or not hmac.compare_digest(given[0].encode("utf-8", "replace"), own):
+            raise _Refused(
+                HTTPStatus.FORBIDDEN,
+                "the token is missing or wrong; open the address that the command printed",
+            )
+
+    def _got(self, path: str, query: str) -> Reply:
+        if path in self.server.static:
+            return HTTPStatus.OK, *self.server.static[path]
+        if path != "/":
+            raise _nothing_at(path in self.server.documents)
+        try:
+            given = parse_qs(query, max_num_fields=4).get("token", [])
+        except ValueError:  # more fields than that
+            given = []
+        self._needs_token(given)
+        return HTTPStatus.OK, _PAGE, self.server.page
+
+    def _posted(self, path: str, query: str) -> Reply:
+        scheme, _, given = self.headers.get("Authorization", "").partition(" ")
+        self._needs_token([given.strip()] if scheme.lower() == "bearer" else [])
+        if path not in self.server.documents:
+            raise _nothing_at(path == "/" or path in self.server.static)
+        make, names = self.server.documents[path]
+        asked = _read(self._body())
+        missing = [name for name in names if name not in asked]
+        if missing:
+            raise _Refused(HTTPStatus.BAD_REQUEST, f"the request has no {missing[0]}")
+        # it is here as a whole: the work on it takes as long as it takes
+        self._deadline.cancel()
+        with self.server.working:
+            return _as_json(HTTPStatus.OK, make(**{name: asked[name] for name in names}))
+
+    def _body(self) -> bytes:
+        """The body of a request, which states what it is and how long."""
+        kind = self.headers.get("Content-Type", "").partition(";")[0].strip().lower()
+        length = self.headers.get("Content-Length", "")
+        if kind != "application/json":
+            raise _Refused(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "application/json is needed")
+        if self.headers.get("Transfer-Encoding") or not (length.isascii() and length.isdigit()):
+            raise _Refused(HTTPStatus.LENGTH_REQUIRED, "the length of the request is needed")
+        if len(length) > len(str(MOST_BYTES)) or int(length) > MOST_BYTES:
+            raise _Refused(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, "the request is too long")
+        body = self.rfile.read(int(length))
+        if len(body) != int(length):
+            raise _Refused(HTTPStatus.BAD_REQUEST, "the request is cut off")
+        return body
+
+    def _send(self, status: int, kind: str, body: bytes) -> None:
+        self.request_version = self.protocol_version  # what is no request has headers too
+        self.send_response_only(status)
+        for name, value in _HEADERS.items():
+            self.send_header(name, value)
+        self.send_header("Content-Type", kind)
+        self.send_header("Content-Length", str(len(body)))
+        self.send_header("Connection", "close")
+        self.close_connection = True
+        self.end_headers()
+        if self.command != "HEAD":
+            self.wfile.write(body)
+
+    def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
+        """Refuse what could not be read as a request, in the form of all refusals."""
+        del message, explain  # may repeat what a stranger sent
+        self._send(*_as_json(code, {"error": HTTPStatus(code).phrase.lower()}))
+
+    def log_message(self, format: str, *args: Any) -> None:
+        """Nothing: an address with its token is not for a terminal."""
+
+
+def _nothing_at(is_known: bool) -> _Refused:
+    if is_known:
+        return _Refused(HTTPStatus.METHOD_NOT_ALLOWED, "not in this way")
+    return _Refused(HTTPStatus.NOT_FOUND, "there is nothing here")
+
+
+def _read(body: bytes) -> dict[str, Any]:
+    """A document of a request: short texts, and changes by key that are short texts."""
+    try:
+        asked: dict[str, Any] = json.loads(body)
+        changes = asked.get("changes", {})
+        texts = [*changes, *changes.values()]
+        texts += [value for name, value in asked.items() if name != "changes"]
+        # a half of a character that UTF-16 writes as two can stand in JSON and in no file
+        is_short = all(len(text.encode("utf-8")) <= _LONGEST for text in texts)
+    except (ValueError, RecursionError, AttributeError, TypeError):
+        is_short = False
+    if not is_short or len(changes) > _MOST_CHANGES:
+        raise _Refused(HTTPStatus.BAD_REQUEST, "the request is not one of short texts as JSON")
+    return asked
+
+
+def _as_json(status: int, document: dict[str, Any]) -> Reply:
+    """A document as it is sent; a number that is not finite would be no JSON."""
+    return status, _JSON, json.dumps(document, allow_nan=False).encode("utf-8")

@@ -1,0 +1,298 @@
+"""What the cycles and the first loading of a test give."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+
+from reduction.pipeline.located_test import Located
+from reduction.record.arrays import run_blocks
+from reduction.record.errors import DataError, FitError
+from reduction.record.measurement import Bools, Floats, Specimen, areas_of
+from reduction.record.samples import first_sample
+from reduction.record.settings import ReductionSettings
+from reduction.stages.cycles.loops import close_loops
+from reduction.stages.moduli.elastomer_laws import fit_elastomers
+from reduction.stages.moduli.first_loading import first_loading_curves, stress_at_strain
+from reduction.stages.moduli.loop_balance import check_identity, cycle_tension_level
+from reduction.stages.moduli.modulus_product import ElastomerFit, ModulusCurves, Ratio
+from reduction.stages.moduli.secant_modulus import (
+    compare_curves,
+    compare_cycles,
+    end_moduli,
+    fit_peak_trend,
+    summarise_amplitude,
+)
+from reduction.stages.moduli.segments import find_segments
+from reduction.stages.moduli.splice_slip import find_slips
+from reduction.stages.moduli.tangent_modulus import tangent_curves
+from reduction.stages.reduced_test import History
+
+_SAME_STRAIN = 0.05  # share by which equal greatest strains may differ: one crosshead, two splices
+
+
+def compare_specimens(
+    curves: ModulusCurves, specimens: tuple[Specimen, ...], history: History | None
+) -> list[Ratio]:
+    """Modulus of each specimen over that of the first, with notes on what they had seen.
+
+    Used against new, where the campaign names new first.
+    """
+    first = specimens[0]
+    ratios = []
+    for index, specimen in enumerate(specimens[1:], start=1):
+        ratio = compare_curves(
+            curves, curves, numerator_specimen=index, denominator_specimen=0,
+            numerator_name=specimen.name, denominator_name=first.name,
+        )  # fmt: skip
+        remarks = ["two specimens in one test, under one crosshead: one piece of each"]
+        remarks += _unequal(first, specimen, index, history)
+        pair = f"{specimen.name} over {first.name}"
+        notes = tuple(f"{pair}: {text}" for text in remarks)
+        ratios.append(replace(ratio, notes=(*ratio.notes, *notes)))
+    return ratios
+
+
+def _unequal(first: Specimen, other: Specimen, index: int, history: History | None) -> list[str]:
+    """Every way in which two specimens are known to come from unequal histories."""
+    found = []
+    if first.condition != other.condition:
+        told = " against ".join(
+            f"'{one.condition}'" if one.condition else "not stated" for one in (other, first)
+        )
+        found.append(f"unequal before the campaign: condition {told}")
+    if history is None:
+        return [*found, "what earlier tests did to either is not known: no order is given"]
+    cycles, strain = history.earlier_cycles[[index, 0]], history.earlier_maximum_strain[[index, 0]]
+    if np.isnan(cycles).any():
+        return [*found, "what earlier tests did to them is not wholly known: one of those failed"]
+    if cycles[0] != cycles[1]:
+        found.append(
+            f"unequal histories in the campaign: {cycles[0]:.0f} earlier cycles against "
+            f"{cycles[1]:.0f}"
+        )
+    if history.earlier_flex_cycles is not None:
+        flex = history.earlier_flex_cycles[[index, 0]]
+        if not np.array_equal(flex[:1], flex[1:], equal_nan=True):
+            told = " against ".join("not known" if np.isnan(n) else f"{n:.0f}" for n in flex)
+            found.append(f"unequal histories in the campaign: {told} earlier flex cycles")
+    is_known = np.isfinite(strain)
+    if is_known[0] != is_known[1] or np.ptp(strain) > _SAME_STRAIN * np.max(strain):
+        told = " against ".join(
+            f"{value:.0%}" if known else "none known"
+            for value, known in zip(strain, is_known, strict=True)
+        )
+        softer = "; rubber is softer below what it has seen" if other.is_rubber else ""
+        found.append(f"unequal histories in the campaign: greatest earlier strain {told}{softer}")
+    return found
+
+
+# cycles at each end of a long test of which the kept curves are compared
+ENDS = 6
+
+
+def parts_of_cycles(
+    located: Located,
+    strain: Floats,
+    tension: Floats,
+    *,
+    specimens: tuple[Specimen, ...],
+    history: History | None,
+    settings: ReductionSettings,
+) -> dict[str, Any]:
+    """Loops, curves, segments and what follows from them, by field of `ReducedTest`."""
+    record, cycles = located.record, located.cycles
+    if cycles is None:
+        return {}
+    area = areas_of(specimens)
+    break_in = settings.cycles.break_in_cycles
+    loops = close_loops(record.time, tension, strain, cycles, waveform=settings.cycles.waveform)
+    amplitude = summarise_amplitude(loops, area=area, break_in_cycles=break_in)
+    loops.let_go()
+    if np.isnan(area).any():
+        # a rope without a diameter has spring constants alone
+        return {"loops": loops, "amplitude": amplitude}
+    curves = tangent_curves(
+        strain, tension, area=area, cycles=cycles, settings=settings.modulus,
+        break_in_cycles=break_in,
+    )  # fmt: skip
+    parts: dict[str, Any] = {
+        "loops": loops,
+        "curves": curves,
+        "segments": find_segments(curves, area=area, settings=settings.modulus),
+        "end_moduli": end_moduli(strain, tension, area=area, cycles=cycles),
+        "identity": check_identity(
+            strain, tension, area=area, cycles=cycles, names=record.specimens
+        ),
+        "amplitude": amplitude,
+        "trend": fit_peak_trend(loops, area=area, break_in_cycles=break_in),
+    }
+    loops.let_go()
+    ratios = compare_specimens(curves, specimens, history)
+    if cycles.n_cycles >= settings.slip.minimum_cycles:
+        level, slope = cycle_tension_level(
+            located.position, tension, cycle_number=cycles.cycle_number,
+            branch=cycles.branch, n_cycles=cycles.n_cycles,
+        )  # fmt: skip
+        parts["slips"] = find_slips(
+            loops, specimens=record.specimens, settings=settings.slip,
+            tension_level=level, tension_slope=slope,
+        )  # fmt: skip
+        kept = curves.selected_cycle
+        begin = kept[kept <= ENDS].tolist()
+        end = kept[kept > cycles.n_cycles - ENDS].tolist()
+        for index, name in enumerate(record.specimens):
+            ratio = compare_cycles(
+                curves, specimen=index, numerator_cycles=end, denominator_cycles=begin
+            )
+            ratios.append(
+                replace(
+                    ratio,
+                    numerator=f"{name}, {ratio.numerator}",
+                    denominator=f"{name}, {ratio.denominator}",
+                )
+            )
+    parts["ratios"] = tuple(ratios)
+    loops.let_go()
+    return parts
+
+
+def _elastomers(
+    name: str,
+    strain: Floats,
+    stress: Floats,
+    earlier_maximum_strain: float,
+    *,
+    is_first: bool,
+) -> tuple[tuple[ElastomerFit, ...], str]:
+    """Hyperelastic laws of one first loading, or the reason why there are none."""
+    known = np.isfinite(stress)
+    if not (strain[known] > 0).any():
+        reached = "no stress is known on it"
+        if known.any():
+            reached = f"strain reaches {100 * strain[known].max():.3g} % on it"
+        return (), (
+            f"{name}: no hyperelastic law: the first rise of the record is no pull from slack "
+            f"({reached}); is the kind of the test right, and where strain is zero?"
+        )
+    try:
+        fits = fit_elastomers(strain[known], stress[known], specimen=name)
+    except (DataError, FitError) as error:
+        return (), f"{name}: no hyperelastic law from the first loading: {error}"
+    if is_first:
+        return fits, ""
+    note = (
+        "not a first loading of the specimen: earlier tests reached "
+        f"{100 * earlier_maximum_strain:.0f} %, and below that the rubber is softened"
+        if np.isfinite(earlier_maximum_strain)
+        else "not a first loading of the specimen: how far earlier tests reached is not known"
+    )
+    return tuple(replace(fit, notes=(*fit.notes, note)) for fit in fits), ""
+
+
+def _first_finite(series: Floats) -> float:
+    """First finite sample of a series; NaN where there is none."""
+    at = first_sample(lambda part: np.isfinite(series[part]), 0, series.size, series)
+    return float("nan") if at is None else float(series[at])
+
+
+def _is_new(history: History, index: int) -> bool:
+    """Whether a specimen had seen nothing before the test, logged or not."""
+    return not (history.earlier_tests[index] or history.earlier_cycles[index] > 0)
+
+
+def _without_modulus(curves: ModulusCurves, lacks_area: Bools) -> ModulusCurves:
+    """Leave the tension alone to specimens without an area."""
+    moduli = [item.name for item in fields(curves) if item.name.startswith("tangent_modulus")]
+    emptied = {}
+    for name in moduli:
+        values = getattr(curves, name).copy()
+        values[lacks_area] = 0 if values.dtype.kind == "i" else np.nan
+        emptied[name] = values
+    return replace(curves, **emptied)
+
+
+def parts_of_first_loading(
+    located: Located,
+    strain: Floats,
+    tension: Floats,
+    specimens: tuple[Specimen, ...],
+    settings: ReductionSettings,
+    history: History | None,
+    *,
+    kind: str,
+) -> tuple[dict[str, Any], list[str]]:
+    """The first rise of a record that begins slack: curve; of rubber, stress and laws too.
+
+    Without an area there is one of a bedding-in alone: its tension, and no modulus.  Beside the
+    fields, what a reader has to know of them.
+    """
+    begins = [_first_finite(force) for force in tension]
+    if all(start > located.standstills.slack_tension for start in begins):
+        return {}, []
+    area = areas_of(specimens)
+    has_area = np.isfinite(area)
+    if not has_area.all() and kind != "bedding-in":
+        return (
+            {},
+            [],
+        )  # the slow pull of a rope or hose is `reduction.stages.line`'s, without an area
+    curves = first_loading_curves(
+        strain, tension, area=np.where(has_area, area, 1.0), settings=settings.modulus,
+        standstills=located.standstills,
+    )  # fmt: skip
+    if curves is None or curves.strain_bin.size < 2:
+        return {}, []
+    curves = _without_modulus(curves, ~has_area)
+    rise = curves.branch_tension[:, 0]
+    names = located.record.specimens
+    parts: dict[str, Any] = {"first_loading": curves}
+    rubber = np.array([specimen.is_rubber for specimen in specimens])
+    if not rubber.any():
+        # cords carry a hose: neither a law of rubber nor its trade's stress at an elongation
+        return parts, []
+    levels = settings.modulus.stress_at_strain
+    stresses = run_blocks(
+        lambda row: stress_at_strain(
+            strain[row],
+            tension[row],
+            area=area[row],
+            levels=levels,
+            is_still=located.standstills.covers,
+        ),
+        range(area.size),
+    )
+    notes = [
+        f"{name}: stress at {100 * level:g} % not given: {reason}"
+        for name, (_, _, reasons), given in zip(names, stresses, rubber, strict=True)
+        if given
+        for level, reason in zip(levels, reasons, strict=True)
+        if reason
+    ]
+    stress, spread = (
+        np.where(rubber[:, None], np.array([one[part] for one in stresses]), np.nan)
+        for part in (0, 1)
+    )
+    parts |= {
+        "stress_at_strain": stress,
+        "stress_at_strain_standard_uncertainty": spread,
+        "stress_at_strain_levels": levels,
+    }
+    earlier = np.full(area.size, np.nan) if history is None else history.earlier_maximum_strain
+    is_first = [history is None or _is_new(history, index) for index in range(area.size)]
+    found = [
+        _elastomers(
+            name,
+            curves.strain_bin,
+            rise[index] / area[index],
+            float(earlier[index]),
+            is_first=is_first[index],
+        )
+        for index, name in enumerate(names)
+        if rubber[index]
+    ]
+    parts["elastomers"] = tuple(fit for fits, _ in found for fit in fits)
+    notes += [reason for _, reason in found if reason]
+    return parts, notes

@@ -1,0 +1,226 @@
+"""Where a test rests, holds and cycles, and which samples may be used."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.record.arrays import run_blocks
+from reduction.record.errors import DataError
+from reduction.record.measurement import (
+    UNUSABLE,
+    Floats,
+    Quality,
+    Record,
+    Specimen,
+    SpliceMarks,
+    areas_of,
+)
+from reduction.record.samples import copied, empty_like, let_go, sample_blocks
+from reduction.record.settings import ReductionSettings
+from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.standstills import Standstills, find_standstills, find_tension_stands
+from reduction.stages.strain.splice_marks import MarkReading, measure_mark_tension
+from reduction.stages.strain.strain_model import StrainModel, extrapolated, strain_by_model
+
+CYCLIC = ("cyclic", "fatigue", "snap", "bedding-in")
+
+PULLED = ("quasi-static", "tensile")
+
+HELD = ("relaxation", "creep")
+
+_REPEATS = Quality.SATURATED | Quality.STUCK
+
+
+@dataclass(frozen=True)
+class Located:
+    """A record with its standstills and, where the test has them, its cycles.
+
+    ``position`` (n_samples,) [m] and ``tension`` (n_specimens, n_samples) [N] are those of
+    the record, NaN where they are not usable.
+    """
+
+    record: Record
+    position: Floats
+    tension: Floats
+    standstills: Standstills
+    cycles: Cycles | None
+
+
+def locate(record: Record, *, kind: str, settings: ReductionSettings) -> Located:
+    """Find the standstills and the cycles of a record; only cyclic kinds have cycles."""
+    if kind not in (*CYCLIC, *PULLED, *HELD):
+        raise DataError(
+            f"test '{record.test_id}' is of a kind that this version does not reduce",
+            found=kind,
+            needed="one of " + ", ".join((*CYCLIC, *PULLED, *HELD, "stepwise")),
+        )
+    position = usable(record.crosshead_position, record.crosshead_position_quality_flag)
+    if kind == "creep" or (settings.cycles.control == "load" and kind != "relaxation"):
+        record, standstills = _held_on_tension(record, position, settings)
+        tension = usable(record.tension, record.quality_flag)
+    else:
+        tension = usable(record.tension, record.quality_flag)
+        standstills = find_standstills(record.time, position, tension, settings=settings.phases)
+    if kind not in CYCLIC:
+        return Located(record, position, tension, standstills, None)
+    cycles = find_cycles(
+        record.time,
+        position,
+        tension,
+        standstills,
+        settings=settings.cycles,
+        cycle_counter=record.cycle_counter,
+    )
+    return Located(record, position, tension, standstills, cycles)
+
+
+def _held_on_tension(
+    record: Record, position: Floats, settings: ReductionSettings
+) -> tuple[Record, Standstills]:
+    """Holds at constant tension, in which a load that repeats one value is no fault."""
+    standstills = find_tension_stands(
+        record.time,
+        position,
+        usable(record.tension, record.quality_flag, but=_REPEATS),
+        settings=settings.phases,
+    )
+    flags, freed = copied(record.quality_flag), 0
+    for first, last, is_rest in zip(
+        standstills.first, standstills.last, standstills.is_rest, strict=True
+    ):
+        of_hold = flags[:, first : last + 1]
+        for part in sample_blocks(0 if is_rest else of_hold.shape[1], flags):
+            freed += int(np.count_nonzero(of_hold[:, part] & _REPEATS))
+            of_hold[:, part] &= ~np.uint16(_REPEATS)
+    if not freed:
+        return record, standstills
+    note = (
+        f"{freed} samples in holds at constant tension repeat one value of it: their flags stuck "
+        "and saturated are taken off, since the machine holds it there"
+    )
+    return replace(record, quality_flag=flags, notes=(*record.notes, note)), standstills
+
+
+def usable(values: Floats, flags: NDArray[np.uint16], *, but: int = 0) -> Floats:
+    """A channel without the samples that no number may rest on, NaN there.
+
+    Flags of the masks ``but`` are passed over.
+    """
+    masks = UNUSABLE & ~np.uint16(but)
+    n_samples = values.shape[-1]
+    if not any(np.any(flags[..., part] & masks) for part in sample_blocks(n_samples, flags)):
+        return values
+    kept = empty_like(values)
+    for part in sample_blocks(n_samples, values, flags, kept):
+        flagged = (flags[..., part] & masks) != 0
+        kept[..., part] = np.where(flagged, np.nan, values[..., part])
+    return np.asarray(kept)
+
+
+def strain_of_record(
+    record: Record, position: Floats, tension: Floats, models: Sequence[StrainModel]
+) -> Floats:
+    """Strain of each specimen; NaN where position, or a tension that it needs, is not usable."""
+    strain = empty_like(tension)
+    measured = record.measured_strain
+
+    def fill(place: tuple[int, slice]) -> None:
+        index, part = place
+        strain[place] = strain_by_model(
+            models[index],
+            position=position[part],
+            tension=tension[place],
+            measured_strain=None if measured is None else measured[place],
+        )
+
+    parts = list(sample_blocks(record.n_samples))
+    run_blocks(
+        fill,
+        [(row, part) for row in range(len(models)) for part in parts],
+        samples=(position, tension, strain, *(() if measured is None else (measured,))),
+    )
+    return strain
+
+
+def parts_of_stress(record: Record, specimens: tuple[Specimen, ...]) -> dict[str, Any]:
+    """Uncertainty of one reading of nominal stress, by field of `ReducedTest`.
+
+    Stress itself is tension over an area, and is made where it is stored.
+    """
+    spread = record.tension_standard_uncertainty
+    if not spread or not any(specimen.diameter for specimen in specimens):
+        return {}
+    return {"nominal_stress_standard_uncertainty": np.array(spread) / areas_of(specimens)}
+
+
+def flagged_record(located: Located, models: Sequence[StrainModel]) -> Record:
+    """The record with the flags that only cycles and strain models can set."""
+    record, cycles = located.record, located.cycles
+    position, tension = record.crosshead_position, record.tension
+    flags = copied(record.quality_flag)
+    of_position = copied(record.crosshead_position_quality_flag)
+    for part in sample_blocks(record.n_samples, position, tension, flags, of_position):
+        for index, model in enumerate(models):
+            outside = extrapolated(model, position[part], tension[index, part])
+            flags[index, part][outside] |= np.uint16(Quality.EXTRAPOLATED)
+        if cycles is not None:
+            uneven = (cycles.cycle_number[part] > 0) & ~cycles.is_constant_rate[part]
+            flags[:, part][:, uneven] |= np.uint16(Quality.NOT_CONSTANT_RATE)
+            of_position[part][uneven] |= np.uint16(Quality.NOT_CONSTANT_RATE)
+            let_go(cycles.cycle_number, cycles.is_constant_rate)
+    return replace(record, quality_flag=flags, crosshead_position_quality_flag=of_position)
+
+
+def tension_at_marks(
+    located: Located, marks: Mapping[str, SpliceMarks], specimens: Sequence[str], *, log: str
+) -> dict[MarkReading, dict[str, Floats]]:
+    """Tension of each specimen while each of its marks was read.
+
+    Parameters
+    ----------
+    located : Located
+        The whole log, since a mark belongs to a log and not to a step of it.
+    marks : mapping of str to SpliceMarks
+        Tape readings by specimen, over the campaign.
+    specimens : sequence of str, length n_specimens
+        In the order of the record.
+    log : str
+        Name by which the marks know it.
+
+    Returns
+    -------
+    tension : dict of {"end", "start"} to dict of str to ndarray
+        By specimen, one a mark of this log in the order of the marks, as
+        `reduction.stages.strain.splice_marks.measure_mark_tension` has it; specimens without one
+        are left out. [N]
+
+    Raises
+    ------
+    DataError
+        If marks of the log contradict each other.
+    """
+    in_log = {
+        name: tension
+        for name, tension in zip(specimens, located.tension, strict=True)
+        if name in marks and log in marks[name].test
+    }
+
+    def measured(reading: MarkReading) -> dict[str, Floats]:
+        return {
+            name: measure_mark_tension(
+                marks[name],
+                test_id=log,
+                standstills=located.standstills,
+                tension=tension,
+                reading=reading,
+            )
+            for name, tension in in_log.items()
+        }
+
+    return {"end": measured("end"), "start": measured("start")}

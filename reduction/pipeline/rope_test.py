@@ -1,0 +1,399 @@
+"""What a slow pull and the steps of a rope programme give."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from reduction.pipeline.located_test import Located
+from reduction.record.errors import DataError, FitError
+from reduction.record.measurement import Floats, Integers, Specimen
+from reduction.record.samples import last_sample
+from reduction.record.settings import CycleSettings, RopeSettings
+from reduction.stages.cycles.cycle_product import Cycles, Loops
+from reduction.stages.holds.relaxation import HoldResult
+from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair, creep_of_hold, held_pairs
+from reduction.stages.line.line_model import reasons_in_words
+from reduction.stages.line.line_of_loops import identify_cycles, identify_run
+from reduction.stages.line.line_product import SlowPull
+from reduction.stages.line.rope_programme import (
+    BeddingIn,
+    CyclesToFailure,
+    DynamicStiffness,
+    RopeStep,
+    TensilePull,
+    cycles_to_failure,
+    dynamic_stiffness,
+    parting_sample,
+    summarise_bedding_in,
+    tensile_pull,
+)
+from reduction.stages.line.slow_pull import MISFIT_NOTED, fit_pull, quasi_static_of_run
+from reduction.stages.strain.strain_model import StrainModel
+
+
+@dataclass(frozen=True)
+class PullConditions:
+    """What a slow pull cannot tell of itself; None where not stated.
+
+    ``waiting_time`` [s] is that since the last dynamic test, ``waiting`` the laboratory's words
+    for it; ``reference_length`` [m] is the length at zero strain, ``reference_tension`` [N] the
+    tension at which it was read.
+    """
+
+    waiting: str = ""
+    waiting_time: float | None = None
+    reference_length: float | None = None
+    reference_tension: float | None = None
+
+
+def pull_specimens(
+    located: Located,
+    strain: Floats,
+    tension: Floats,
+    conditions: PullConditions,
+    *,
+    specimens: Sequence[Specimen],
+    models: Sequence[StrainModel],
+) -> tuple[tuple[SlowPull | None, ...], list[str]]:
+    """Load-strain cubic of each specimen of a slow pull; None and a note where it has none.
+
+    A stretch hose has one only where it fits: one that softens, and stiffens again where its
+    cords pick up, would be designed by a slope that it has nowhere.
+    """
+    pulls: list[SlowPull | None] = []
+    notes: list[str] = []
+    for index, name in enumerate(located.record.specimens):
+        length = conditions.reference_length
+        if length is None and np.isfinite(models[index].relaxed_length):
+            length = models[index].relaxed_length
+        try:
+            pull = fit_pull(
+                located.record.time, strain[index], tension[index], specimen=name,
+                reference_tension=conditions.reference_tension,
+                reference_length=length,
+                waiting_time=conditions.waiting_time, waiting=conditions.waiting,
+            )  # fmt: skip
+        except (DataError, FitError) as error:
+            notes.append(f"{name}: refused: quasi-static spring constant: {error}")
+            pulls.append(None)
+            continue
+        if specimens[index].kind == "stretch hose" and pull.misfit_share > MISFIT_NOTED:
+            notes.append(
+                f"{name}: refused: quasi-static spring constant: a cubic of strain misses the "
+                f"curve of this hose by {pull.misfit_share:.1%} of its strain (rms), more than "
+                f"{MISFIT_NOTED:.0%}; the curve stands in the samples, and a comparison with a "
+                "predicted hose has its slope"
+            )
+            pulls.append(None)
+            continue
+        notes += [f"{name}: {note}" for note in pull.notes]
+        pulls.append(pull)
+    return tuple(pulls), notes
+
+
+def parts_of_line(
+    loops: Loops, pulls: Sequence[SlowPull | None], settings: CycleSettings
+) -> dict[str, Any]:
+    """Parameters of the three-parameter line, of each cycle and of the test, and notes."""
+    constant, spread, notes = quasi_static_of_run(
+        loops, pulls, break_in_cycles=settings.break_in_cycles
+    )
+    # the amplitudes of a wave that is no sine are not those of its fundamental
+    reading = "amplitude" if settings.waveform == "sinusoidal" else "fundamental"
+    given: dict[str, Any] = {
+        "quasi_static_spring_constant": constant,
+        "quasi_static_standard_uncertainty": spread,
+        "reading": reading,
+    }
+    of_test = identify_run(loops, break_in_cycles=settings.break_in_cycles, **given)
+    of_cycles = identify_cycles(loops, **given)
+    return {
+        "line": of_cycles,
+        "line_of_test": of_test,
+        "quasi_static_standard_uncertainty": spread,
+        "line_notes": (*notes, *of_test.notes, *reasons_in_words(of_cycles.reason)),
+    }
+
+
+_NAMES = {
+    "bedding-in": "bedding-in",
+    "cyclic": "dynamic stiffness",
+    "quasi-static": "quasi-static stiffness",
+    "creep": "creep",
+    "fatigue": "cycles to failure",
+    "snap": "cycles to failure under snap loads",
+    "tensile": "tensile strength",
+}
+
+# asked for by name, and so of any specimen; the others are a programme with a rope alone
+_OF_ALL = ("bedding-in", "fatigue", "snap", "tensile")
+
+# a drift over the cycles that count is told where it passes this share of the stiffness
+_DRIFT_NOTED = 0.01
+
+_SIGNIFICANT = 3.0
+
+# a first valley this far from the others, over the range, makes its cycle another one
+_UNEQUAL_VALLEY = 0.05
+
+# cycles whose amplitude differs by this share, or mean by an amplitude, are of another level
+_OTHER_LEVEL = 0.3
+
+_FEWEST_OF_LEVEL = 3
+
+# upper part of the stroke, in which a line that is sound is taut
+_TOP = 0.25
+
+
+def rope_step(
+    located: Located,
+    strain: Floats,
+    tension: Floats,
+    *,
+    kind: str,
+    specimens: tuple[Specimen, ...],
+    loops: Loops | None,
+    holds: tuple[HoldResult, ...],
+    failed: bool | None,
+    settings: RopeSettings,
+) -> RopeStep | None:
+    """Reduce one test as a step of a programme; None where its kind, or a tether, has none.
+
+    Parameters
+    ----------
+    located : Located
+        From `reduction.pipeline.located_test`.
+    strain, tension : ndarray, shape (n_specimens, n_samples)
+        NaN where not usable. [1], [N]
+    kind : str
+        Of the test: it says which step it is.
+    specimens : tuple of Specimen, length n_specimens
+        In the order of the rows.
+    loops : Loops or None
+        Of the cycles, where there are some.
+    holds : tuple of HoldResult
+        Of the test.
+    failed : bool or None
+        Whether the specimens broke, in the laboratory's word.
+    settings : RopeSettings
+        Which cycles and which time count.
+
+    Returns
+    -------
+    step : RopeStep or None
+        With notes.
+
+    Raises
+    ------
+    DataError
+        If a rated break strength is not positive.
+    """
+    is_rope = any(specimen.is_rope for specimen in specimens)
+    if kind not in _NAMES or not (is_rope or kind in _OF_ALL):
+        return None
+    strength = np.array(
+        [
+            np.nan if one.rated_break_strength is None else one.rated_break_strength
+            for one in specimens
+        ]
+    )
+    names = located.record.specimens
+    step = RopeStep(_NAMES[kind])
+    if kind in ("creep", "quasi-static"):
+        step = replace(step, creep=_creep(holds, names, strength))
+    notes: list[str] = []
+    if kind in ("cyclic", "bedding-in") and loops is not None:
+        dynamic = dynamic_stiffness(
+            loops, last_cycles=settings.last_cycles, rated_break_strength=strength
+        )
+        bedding = _bedding_in(loops, strength) if kind == "bedding-in" else None
+        notes += _of_cycles(dynamic, names, settings) + _of_levels(loops, dynamic, names)
+        if kind == "bedding-in":
+            notes += _of_first_cycle(loops, names)
+        step = replace(step, bedding_in=bedding, dynamic=dynamic)
+    if kind in ("fatigue", "snap") and loops is not None:
+        lasted = _lasted(located, tension, loops, strength, failed, settings)
+        notes += [f"{name}: {how}" for name, how in zip(names, lasted.how, strict=True)]
+        step = replace(step, lasted=lasted)
+    if kind == "quasi-static":
+        pairs = held_pairs(
+            located.record.time, located.position, tension, strain, located.standstills,
+            specimens=names, rated_break_strength=strength,
+            reference_time=settings.reference_time,
+        )  # fmt: skip
+        notes += _of_pairs(pairs)
+        step = replace(step, held=pairs)
+    if kind == "tensile":
+        pull = tensile_pull(
+            located.position, tension, strain, rated_break_strength=strength, broke=failed
+        )
+        notes += _of_pull(pull, names)
+        step = replace(step, tensile=pull)
+    if step == RopeStep(step.name):
+        return None
+    if np.isnan(strength).any():
+        notes += [
+            f"{name}: no rated break strength is stated: nothing is divided by it"
+            for name, one in zip(names, strength, strict=True)
+            if np.isnan(one)
+        ]
+    return replace(step, notes=tuple(notes))
+
+
+def _creep(
+    holds: tuple[HoldResult, ...], names: Sequence[str], strength: Floats
+) -> tuple[CreepOfHold, ...]:
+    """Every hold where the machine kept the tension; all holds of a test are of one kind."""
+    if any(hold.kind != "creep" for hold in holds):
+        return ()
+    of_name = dict(zip(names, strength.tolist(), strict=True))
+    return tuple(creep_of_hold(hold, rated_break_strength=of_name[hold.specimen]) for hold in holds)
+
+
+def _bedding_in(loops: Loops, strength: Floats) -> BeddingIn | None:
+    if loops.frequency.shape[1] < 2:
+        return None
+    return summarise_bedding_in(loops, rated_break_strength=strength)
+
+
+def _of_first_cycle(loops: Loops, names: Sequence[str]) -> list[str]:
+    """Bedding-in that begins elsewhere than its cycles do."""
+    if loops.frequency.shape[1] < 2:
+        return ["refused: bedding-in: one cycle alone; two are needed"]
+    notes = []
+    for name, valley, amplitude in zip(
+        names, loops.valley_tension, loops.tension_amplitude, strict=True
+    ):
+        usual = float(np.nanmedian(valley))
+        if abs(valley[0] - usual) > _UNEQUAL_VALLEY * 2 * float(np.nanmedian(amplitude)):
+            notes.append(
+                f"{name}: the first cycle begins at {valley[0]:.4g} N, others at {usual:.4g} N: "
+                "its stiffness and the permanent strain hold that part of the rise too"
+            )
+    return notes
+
+
+def _of_cycles(
+    dynamic: DynamicStiffness, names: Sequence[str], settings: RopeSettings
+) -> list[str]:
+    """Too few cycles, and a stiffness that has not settled."""
+    notes = []
+    for row, name in enumerate(names):
+        used = int(dynamic.n_cycles[row, 0])
+        if used < settings.last_cycles:
+            notes.append(
+                f"{name}: dynamic stiffness from {used} cycles; rope.last_cycles asks for "
+                f"{settings.last_cycles}"
+            )
+        drift = float(dynamic.drift_per_cycle[row, 0])
+        spread = float(dynamic.drift_per_cycle_standard_uncertainty[row, 0])
+        share = drift * (used - 1) / float(dynamic.dynamic_stiffness[row, 0])
+        if abs(drift) > _SIGNIFICANT * spread and abs(share) > _DRIFT_NOTED:
+            notes.append(
+                f"{name}: the dynamic stiffness has not settled: it changes by {share:+.1%} over "
+                f"its last {used} cycles"
+            )
+    return notes
+
+
+def _of_levels(loops: Loops, dynamic: DynamicStiffness, names: Sequence[str]) -> list[str]:
+    """Cycles of another level than those that count: a step is one level."""
+    notes = []
+    for row, name in enumerate(names):
+        mean, amplitude = dynamic.mean_tension[row, 0], dynamic.tension_amplitude[row, 0]
+        shift = np.abs(loops.mean_tension[row] - mean) > amplitude
+        other = np.abs(loops.tension_amplitude[row] / amplitude - 1) > _OTHER_LEVEL
+        count = int(np.count_nonzero(shift | other))
+        if count >= _FEWEST_OF_LEVEL:
+            notes.append(
+                f"{name}: {count} of {shift.size} cycles are of another level than the last ones, "
+                "of which the dynamic stiffness is; give each level as a step"
+            )
+    return notes
+
+
+def _lasted(
+    located: Located,
+    tension: Floats,
+    loops: Loops,
+    strength: Floats,
+    failed: bool | None,
+    settings: RopeSettings,
+) -> CyclesToFailure:
+    """Cycles by the machine's own count where it has one, until the record shows a failure."""
+    cycles, counter = located.cycles, located.record.cycle_counter
+    number = parted_in = None
+    if cycles is not None:
+        if cycles.counted_by == "machine counter" and counter is not None:
+            number = counter[cycles.first]
+        parted_in = _parted_in(located, tension, cycles, loops, settings.failure_share)
+    return cycles_to_failure(
+        loops,
+        rated_break_strength=strength,
+        failed=None if failed is None else np.full(strength.size, failed),
+        cycle_number=number,
+        parted_in=parted_in,
+        failure_share=settings.failure_share,
+    )
+
+
+def _parted_in(
+    located: Located, tension: Floats, cycles: Cycles, loops: Loops, failure_share: float
+) -> Integers:
+    """Cycle within or after which each specimen is slack where it was taut; -1 where it is not."""
+    found = np.full(len(tension), -1)
+    for row, peak in enumerate(loops.peak_tension):
+        known = peak[np.isfinite(peak)]
+        if not known.size:
+            continue
+        sound = np.flatnonzero(peak >= failure_share * np.median(known))
+        # a cycle in which it parted may look whole by its peak: the one before it is sound
+        sure = max(int(sound[-1]) - 1, 0)
+        begin, last = int(cycles.first[sure]), int(cycles.last[sure])
+        place, load = located.position[begin : last + 1], tension[row, begin : last + 1]
+        least = np.nanmax(place) - _TOP * np.ptp(place[np.isfinite(place)])
+        slack, lowest = located.standstills.slack_tension, np.fmin.reduce(load[place >= least])
+        if not lowest > slack:  # nor where it is not known
+            continue
+        # as logged: a channel that repeats its zero after a failure is flagged, not wrong
+        sample = parting_sample(
+            located.record.crosshead_position, located.record.tension[row], last=last,
+            least_position=float(least), tension_low=failure_share * float(lowest),
+        )  # fmt: skip
+        taut = _last_taut(located.record.tension[row], sample, slack)
+        if taut is not None:
+            found[row] = max(int(np.searchsorted(cycles.last, taut)), 1)
+    return found
+
+
+def _last_taut(load: Floats, stop: int, slack: float) -> int | None:
+    """Last sample before another at which a specimen is taut."""
+    return last_sample(lambda part: load[part] > slack, 0, stop, load)
+
+
+def _of_pairs(pairs: Sequence[HeldPair]) -> list[str]:
+    notes = []
+    for pair in pairs:
+        where = f"{pair.specimen}: holds {pair.low_hold} and {pair.high_hold}"
+        if pair.stiffness is None:
+            notes.append(f"{where}: refused: static stiffness: {pair.reason}")
+        else:
+            notes += [f"{where}: {note}" for note in pair.stiffness.notes]
+    return notes
+
+
+def _of_pull(pull: TensilePull, names: Sequence[str]) -> list[str]:
+    notes = []
+    for row, name in enumerate(names):
+        if not pull.is_break[row]:
+            notes.append(
+                f"{name}: refused: tensile strength: {pull.how[row]}: the line holds "
+                f"{pull.peak_tension[row]:.4g} N or more"
+            )
+        elif np.isnan(pull.strain_at_peak[row]):
+            notes.append(f"{name}: refused: strain at failure: no strain is known at the peak")
+    return notes

@@ -1,1 +1,0 @@
-"""What errors that samples share do to a test: each module feeds its namesake in uncertainty."""

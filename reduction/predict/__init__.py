@@ -1,1 +1,0 @@
-"""Predictions from construction alone: stretch hose, helical armour, wave load."""

@@ -1,0 +1,1 @@
+"""Hoses, armour and waves from theory, and a measured hose against its prediction."""

@@ -1,0 +1,1348 @@
+r"""Measured minus predicted: over strain, at events, in energy, with a verdict.
+
+What a comparison of a measured hose curve with its prediction takes and gives.
+
+A *comparison error* is predicted less measured, E = S - D in the words of [1]_: positive where
+the hose is softer than predicted.
+
+How many independent points the residuals of a curve are worth.
+
+Comparison error of curves: over strain, at events, in energy, cycle by cycle.
+
+Where a measured curve bends upward: the cords take up load.
+
+Comparison error at what happens to the cords: where they pick up, at working load, at break.
+
+What the two hoses of the report reached, beside the stretch at the working load.
+
+A verdict in words, in the unit of who reads it.
+
+Comparison error against the uncertainty of measurement and prediction together.
+
+.. math:: u_{val}^2 = u_{input}^2 + u_D^2 \qquad (u_{num} = 0)
+
+at every strain, and with the covariance over the strains for the curve as a whole.
+
+References
+----------
+.. [1] ASME V&V 20-2009, "Standard for Verification and Validation in Computational Fluid
+   Dynamics and Heat Transfer."
+.. [2] C. J. Geyer, "Practical Markov chain Monte Carlo," Statist. Sci., vol. 7, 1992 (the
+   initial positive sequence).
+.. [3] N. F. Zhang, "Calculation of the uncertainty of the mean of autocorrelated measurements,"
+   Metrologia, vol. 43, 2006.
+.. [4] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004.
+.. [5] ASME V&V 20-2009, "Standard for Verification and Validation in Computational Fluid
+   Dynamics and Heat Transfer," sec. 1-5 (comparison error E = S - D).
+.. [6] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
+   1.2.
+.. [7] G. A. F. Seber and C. J. Wild, "Nonlinear Regression," Wiley, 1989, ch. 9 (two phases
+   with a change point that is not known).
+.. [8] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
+   3.0.
+.. [9] ASME V&V 20-2009, "Standard for Verification and Validation in Computational Fluid
+   Dynamics and Heat Transfer," sec. 1-5 and 6.
+.. [10] ASME V&V 20.1-2024, "Multivariate Metric for Validation."
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import degrees
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.prediction.hose_product import HoseDesign, HoseEvent, HosePrediction
+from reduction.prediction.hose_tension import find_events, predict_hose
+from reduction.prediction.hose_uncertainty import EventUncertainty, propagate_hose
+from reduction.prediction.measured_curve import CurveName, Loading, MeasuredCurve
+from reduction.record.arrays import as_finite, as_same_shape
+from reduction.record.errors import DataError
+from reduction.record.measurement import Floats, Integers, read_only_arrays
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class Difference:
+    """Comparison error of one curve; ``difference`` has the shape (n_strain,), NaN outside.
+
+    ``relative_rms`` is the RMS of the comparison error over the RMS of the measured tension at
+    the same strains; the worst point is that of the greatest absolute difference.
+    """
+
+    curve: CurveName
+    strain: Floats
+    difference: Floats
+    n_strain: int
+    bias: float
+    rms: float
+    relative_rms: float
+    worst_strain: float
+    worst_difference: float
+
+
+@dataclass(frozen=True)
+class EventDifference:
+    """Comparison error at what happens to the cords, at the judged curve.
+
+    ``tension_difference`` [N] is that at the predicted strain of the event; ``measured_strain``
+    [1] is where the test had the *predicted tension* of the event, and ``strain_difference`` the
+    predicted strain less that.  It is no place of the event in the test: another prediction has
+    another one; where the cords of the test pick up is `Comparison.measured_pick_up_strain`.
+    The standard uncertainties are of the differences, both sides in them.  NaN where the test did
+    not go that far.
+    """
+
+    name: str
+    strain: float
+    tension: float
+    measured_tension: float
+    tension_difference: float
+    tension_difference_standard_uncertainty: float
+    measured_strain: float
+    strain_difference: float
+    strain_difference_standard_uncertainty: float
+
+
+@dataclass(frozen=True)
+class EnergyDifference:
+    """Energies per relaxed length between the same two strains. [J m-1].
+
+    The prediction is elastic and has no loop; ``loop_share`` is the measured loop over the
+    measured energy under the ascending branch. [1]
+    """
+
+    strain_low: float
+    strain_high: float
+    measured: float
+    predicted: float
+    difference: float
+    loop: float
+    loop_share: float
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class CycleDifference:
+    """Comparison error cycle by cycle, at the judged curve of each; shape (n_cycle,). [N].
+
+    ``bias_per_decade`` is the slope of the bias over log10 of the cycle number, over all
+    cycles, break-in too, with its standard uncertainty from the scatter about that line; the
+    bias is taken at the strains that every cycle in it visited. [N]
+    """
+
+    cycle_number: Integers
+    bias: Floats
+    rms: Floats
+    bias_per_decade: float
+    bias_per_decade_standard_uncertainty: float
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class Validation:
+    """Comparison error against what measurement and prediction are uncertain by.
+
+    Arrays have the shape (n_strain,), NaN where nothing was compared. [N]
+
+    Parameters
+    ----------
+    input_standard_uncertainty : ndarray
+        Of the prediction, from the numbers that went into it. [N]
+    measurement_standard_uncertainty : ndarray
+        Of the measured curve, calibration and type A. [N]
+    standard_uncertainty : ndarray
+        u_val, both together. [N]
+    coverage_factor : float
+        What the largest abs(E) / u_val of the whole curve stays below in 95 % of all cases in
+        which the prediction is right. [1]
+    ratio : float
+        Largest abs(E) / u_val. [1]
+    ratio_strain : float
+        Where it is. [1]
+    chi_square, chi_square_freedom, chi_square_probability : float
+        E' V^-1 E, the rank of V, and how often a right prediction exceeds it. [1]
+    share : float
+        Median of U = coverage factor times u_val over the measured tension. [1]
+    agrees, is_informative : bool
+        Whether the ratio is inside; whether U is small enough for that to mean anything.
+    verdict : str
+        In words, with newtons; `reduction.prediction.comparison_error.verdict_words` has other
+        units.
+    ratio_difference : float
+        Comparison error, signed, where the ratio is largest. [N]
+    """
+
+    input_standard_uncertainty: Floats
+    measurement_standard_uncertainty: Floats
+    standard_uncertainty: Floats
+    coverage_factor: float
+    ratio: float
+    ratio_strain: float
+    chi_square: float
+    chi_square_freedom: int
+    chi_square_probability: float
+    share: float
+    agrees: bool
+    is_informative: bool
+    verdict: str
+    ratio_difference: float = float("nan")
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class Identifiability:
+    """Whether the curve can tell the fitted numbers apart.
+
+    Parameters
+    ----------
+    least_change : float
+        RMS change of the curve over its own RMS along the direction that it sees least, for a
+        step of one plausible error; what shared errors can imitate taken off. [1]
+    needed_change : float
+        Below this it cannot be told from an error of the model. [1]
+    direction : ndarray, shape (n_parameter,)
+        That direction, in units of each number. [SI]
+    collinearity : float
+        1 over the least singular value of the sensitivities scaled to unit length. [1]
+    is_identified : bool
+        Whether the least change is the greater one.
+    words : str
+        Which numbers trade against which; empty where they are told apart.
+    open_covariance : ndarray, shape (n_parameter, n_parameter)
+        What an error of the model that the curve cannot show may move the numbers by, along the
+        directions that are not seen; zero where all are. [SI]
+    """
+
+    least_change: float
+    needed_change: float
+    direction: Floats
+    collinearity: float
+    is_identified: bool
+    words: str
+    open_covariance: Floats
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class Calibration:
+    """Numbers of a hose fitted to a measured curve; arrays have the shape (n_parameter,).
+
+    Parameters
+    ----------
+    parameter : tuple of str
+        Names, of `reduction.prediction.hose_product.HOSE_PARAMETERS`.
+    start, value : ndarray
+        Before and after, in the unit of each. [SI]
+    standard_uncertainty, low, high : ndarray
+        Of the value, and its 95 % interval (not cut at the bounds); NaN where it would be wider on
+        either side than all that was allowed. [SI]
+    lower_bound, upper_bound : ndarray
+        What the fit was kept between. [SI]
+    is_at_bound : ndarray of bool
+        Where it was stopped.
+    correlation : ndarray, shape (n_parameter, n_parameter)
+        Of the fitted values. [1]
+    design : HoseDesign
+        The hose with the fitted values.
+    before, after : Difference
+        Judged curve against the prediction, start and fitted.
+    model_error : float
+        Standard deviation that has to be added to type A for the residuals to be explained. [N]
+    effective_points : float
+        Strains over the autocorrelation length of the residuals. [1]
+    shared_error : tuple of str
+        Errors that were fitted beside the numbers, each within its standard uncertainty.
+    shared_error_value : ndarray, shape (n_shared,)
+        What was found for them, in units of it. [1]
+    """
+
+    parameter: tuple[str, ...]
+    start: Floats
+    value: Floats
+    standard_uncertainty: Floats
+    low: Floats
+    high: Floats
+    lower_bound: Floats
+    upper_bound: Floats
+    is_at_bound: np.ndarray
+    correlation: Floats
+    identifiability: Identifiability
+    design: HoseDesign
+    before: Difference
+    after: Difference
+    model_error: float
+    effective_points: float
+    shared_error: tuple[str, ...]
+    shared_error_value: Floats
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A measured curve beside its prediction on the same axis of strain.
+
+    ``differences`` has one entry a curve that was measured, by name; ``judged`` is the one
+    that events, validation and calibration are of.  ``measured_pick_up_strain`` [1] is where that
+    curve bends upward by itself, with its standard uncertainty; NaN where it does not show it, and
+    a note says why.
+    """
+
+    measured: MeasuredCurve
+    prediction: HosePrediction
+    judged: CurveName
+    differences: dict[CurveName, Difference]
+    events: tuple[EventDifference, ...]
+    energy: EnergyDifference
+    cycles: CycleDifference
+    validation: Validation
+    calibration: Calibration | None
+    notes: tuple[str, ...]
+    measured_pick_up_strain: float = float("nan")
+    measured_pick_up_strain_standard_uncertainty: float = float("nan")
+
+
+def autocorrelation_length(residual: ArrayLike) -> float:
+    r"""Number of neighbouring points that err together.
+
+    .. math:: \tau = 1 + 2 \sum_k \rho_k
+
+    Parameters
+    ----------
+    residual : array_like, shape (n_strain,)
+        In the order of strain, about zero, over its standard deviation. [1]
+
+    Returns
+    -------
+    length : float
+        1 for residuals without memory, never less; n for residuals of one sign. [1]
+
+    Raises
+    ------
+    DataError
+        If a residual is not finite.
+
+    Notes
+    -----
+    The sum ends before the first pair of lags whose correlations add up to less than nothing
+    [2]_.  The variance of a mean of such residuals is that of n / tau points [3]_.
+
+    Examples
+    --------
+    Signs that change every ten points: the correlation falls to zero within five, and points
+    err about seven at a time.
+
+    >>> wave = np.tile(np.repeat([1.0, -1.0], 10), 10)
+    >>> print(5 < autocorrelation_length(wave) < 10)
+    True
+    """
+    r: Floats = as_finite("residual", residual)
+    n = r.size
+    power = float(r @ r)
+    if n < 3 or power == 0:
+        return 1.0
+    padded = np.fft.rfft(r, 2 * n)
+    rho = np.fft.irfft(padded * padded.conj(), 2 * n)[:n] / power
+    pairs = rho[: n - n % 2].reshape(-1, 2).sum(axis=1)
+    ended = np.flatnonzero(pairs <= 0)
+    length = 2 * pairs[: ended[0] if ended.size else pairs.size].sum() - 1
+    return float(np.clip(length, 1.0, n))
+
+
+def difference_of(
+    strain: ArrayLike, predicted: ArrayLike, measured: ArrayLike, *, curve: CurveName
+) -> Difference:
+    """Comparison error E = predicted - measured of one curve.
+
+    Parameters
+    ----------
+    strain : array_like, shape (n_strain,)
+        Common axis, equally spaced. [1]
+    predicted : array_like, shape (n_strain,)
+        NaN where the cords are broken. [N]
+    measured : array_like, shape (n_strain,)
+        NaN where not visited. [N]
+    curve : {"ascending", "descending", "midline"}
+        Which curve was measured.
+
+    Returns
+    -------
+    difference : Difference
+        Over the strains at which both are known. [N]
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up, or there is no strain at which both are known.
+
+    Notes
+    -----
+    Positive where the prediction is above the test [5]_.  The relative RMS is the RMS of the
+    error over the RMS of the measured tension, both at the same strains; unlike a mean of
+    relative errors it is not ruled by the start of the curve, where tension goes to zero, and it
+    is 1 for a prediction of nothing.  Strains count alike: the axis is equally spaced.
+
+    Examples
+    --------
+    >>> found = difference_of(
+    ...     [0.0, 0.1, 0.2], [0.0, 33.0, 44.0], [0.0, 30.0, 40.0], curve="midline"
+    ... )
+    >>> print(round(found.rms, 3), found.relative_rms, found.worst_strain, found.worst_difference)
+    2.887 0.1 0.2 4.0
+    """
+    x, model, test = as_same_shape(strain=strain, predicted=predicted, measured=measured)
+    error = model - test
+    both = np.isfinite(error)
+    if not both.any():
+        raise DataError(
+            f"prediction and {curve} curve have no strain in common",
+            found=f"measured at {_range(x, np.isfinite(test))}, "
+            f"predicted at {_range(x, np.isfinite(model))}",
+            needed="a strain at which both are known",
+        )
+    worst = int(np.nanargmax(np.abs(error)))
+    rms = float(np.sqrt(np.mean(error[both] ** 2)))
+    level = float(np.sqrt(np.mean(test[both] ** 2)))
+    return Difference(
+        curve=curve,
+        strain=x,
+        difference=error,
+        n_strain=int(both.sum()),
+        bias=float(error[both].mean()),
+        rms=rms,
+        relative_rms=rms / level if level > 0 else float("nan"),
+        worst_strain=float(x[worst]),
+        worst_difference=float(error[worst]),
+    )
+
+
+def _range(strain: Floats, there: np.ndarray) -> str:
+    if not there.any():
+        return "no strain"
+    return f"{100 * strain[there].min():.4g} to {100 * strain[there].max():.4g} %"
+
+
+def strain_at_tension(strain: ArrayLike, tension: ArrayLike, level: float) -> float:
+    """Strain at which a measured curve first reaches a tension.
+
+    Parameters
+    ----------
+    strain : array_like, shape (n_strain,)
+        Rising. [1]
+    tension : array_like, shape (n_strain,)
+        NaN where not visited. [N]
+    level : float
+        The tension. [N]
+
+    Returns
+    -------
+    reached : float
+        Between two points on the straight line; NaN where the curve begins above the level
+        or does not reach it. [1]
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up.
+
+    Examples
+    --------
+    >>> print(round(strain_at_tension([0.0, 0.1, 0.2], [0.0, 10.0, 30.0], 15.0), 6))
+    0.125
+    """
+    x, y = as_same_shape(strain=strain, tension=tension)
+    there = np.isfinite(y)
+    x, y = x[there], y[there]
+    above = np.flatnonzero(y >= level)
+    if not above.size or (above[0] == 0 and y[0] > level):
+        return float("nan")
+    k = int(above[0])
+    if k == 0:
+        return float(x[0])
+    return float(x[k - 1] + (level - y[k - 1]) / (y[k] - y[k - 1]) * (x[k] - x[k - 1]))
+
+
+def energy_difference(predicted: ArrayLike, measured: MeasuredCurve) -> EnergyDifference:
+    """Energy under the ascending branch, and of the loop, beside the elastic prediction.
+
+    Parameters
+    ----------
+    predicted : array_like, shape (n_strain,)
+        Tension at the strains of the measured curve. [N]
+    measured : MeasuredCurve
+        The test. [SI]
+
+    Returns
+    -------
+    energy : EnergyDifference
+        Between the first and the last strain at which all are known; NaN where there are
+        fewer than two. [J m-1]
+
+    Raises
+    ------
+    DataError
+        If the prediction is not on the axis of the test.
+
+    Notes
+    -----
+    Trapezoid.  What a cyclic test takes up and does not give back is the loop; an elastic
+    prediction has none, and lies below the ascending branch by about half of it even where the
+    midline agrees.
+
+    Examples
+    --------
+    >>> from reduction.prediction.measured_curve import measured_curve
+    >>> stroke = np.linspace(0, 1, 201)
+    >>> pull = measured_curve(stroke, 100 * stroke, loading="static")
+    >>> energy = energy_difference(110 * pull.strain, pull)
+    >>> print(round(energy.measured, 6), round(energy.difference, 6), energy.loop)
+    50.0 5.0 nan
+    """
+    model, up = as_same_shape(predicted=predicted, measured=measured.branch_tension[0])
+    down = measured.branch_tension[1]
+    has_loop = bool(np.isfinite(down).any())
+    there = np.isfinite(model) & np.isfinite(up)
+    if has_loop:
+        there &= np.isfinite(down)
+    if np.count_nonzero(there) < 2:
+        return EnergyDifference(*[float("nan")] * 7)
+    x = measured.strain[there]
+    taken, stored = (float(np.trapezoid(curve[there], x)) for curve in (up, model))
+    loop = taken - float(np.trapezoid(down[there], x)) if has_loop else float("nan")
+    return EnergyDifference(
+        strain_low=float(x[0]),
+        strain_high=float(x[-1]),
+        measured=taken,
+        predicted=stored,
+        difference=stored - taken,
+        loop=loop,
+        loop_share=loop / taken if taken > 0 else float("nan"),
+    )
+
+
+def cycle_differences(predicted: ArrayLike, measured: MeasuredCurve) -> CycleDifference:
+    """Comparison error of every cycle, and its trend over the cycles.
+
+    Parameters
+    ----------
+    predicted : array_like, shape (n_strain,)
+        Tension at the strains of the measured curve. [N]
+    measured : MeasuredCurve
+        The test. [SI]
+
+    Returns
+    -------
+    cycles : CycleDifference
+        Bias and RMS of each, slope of the bias over the logarithm of the cycle number. [N]
+
+    Raises
+    ------
+    DataError
+        If the prediction is not on the axis of the test.
+
+    Notes
+    -----
+    The bias of a cycle is that of the mean curve less what the cycle lies above it, so that a
+    cycle that did not go as far has no bias of its own making.  A hose that softens from cycle
+    to cycle has a bias that rises.
+
+    Examples
+    --------
+    Each cycle 10 N below the one before: 1 to 3 is 0.477 decades.
+
+    >>> from reduction.prediction.measured_curve import measured_curve
+    >>> stroke = np.tile(np.concatenate([np.linspace(0, 1, 301), np.linspace(1, 0, 301)]), 3)
+    >>> number = np.repeat([1, 2, 3], 602)
+    >>> test = measured_curve(
+    ...     stroke, 500 * stroke - 10 * number, loading="static", cycle_number=number,
+    ...     branch=np.tile(np.repeat([1, 2], 301), 3),
+    ... )
+    >>> print(cycle_differences(500 * test.strain, test).bias.round(6))
+    [10. 20. 30.]
+    """
+    model, mean = as_same_shape(predicted=predicted, measured=measured.tension_of(measured.judged))
+    is_midline = measured.judged == "midline"
+    each = measured.tension.mean(axis=1) if is_midline else measured.tension[:, 0]
+    there = np.isfinite(each) & np.isfinite(model) & np.isfinite(mean)
+    n = np.where(there.any(axis=1), there.sum(axis=1), np.nan)
+    whole = np.isfinite(model) & np.isfinite(mean)
+    above = np.where(there, each - mean, 0.0).sum(axis=1) / n
+    squares = np.where(there, (model - each) ** 2, 0.0).sum(axis=1) / n
+    bias = (float((model - mean)[whole].mean()) if whole.any() else np.nan) - above
+    slope, slope_uncertainty = _slope(np.log10(measured.cycle_number), bias)
+    return CycleDifference(
+        cycle_number=measured.cycle_number,
+        bias=bias,
+        rms=np.sqrt(squares),
+        bias_per_decade=slope,
+        bias_per_decade_standard_uncertainty=slope_uncertainty,
+    )
+
+
+def _slope(x: Floats, y: Floats) -> tuple[float, float]:
+    there = np.isfinite(y)
+    x, y = x[there], y[there]
+    if x.size < 3:
+        return float("nan"), float("nan")
+    x, y = x - x.mean(), y - y.mean()
+    slope = float(x @ y / (x @ x))
+    spread = float(np.sum((y - slope * x) ** 2) / (x.size - 2))
+    return slope, float(np.sqrt(spread / (x @ x)))
+
+
+_MARGIN = 5  # bins on either side of a bend, for the curve to be known there
+
+_CANDIDATES = 41
+
+_ENDS = (1.0, 0.8, 0.65, 0.5)  # of the strains: a pull to the break bends in other ways as well
+
+_LEAST_RATIO = 5.0  # of the change of slope to its standard uncertainty
+
+_LEAST_SHARE = 0.1  # of the change of slope to the mean slope: less is no cord
+
+_ORDER = 3  # of the curve on either side
+
+_TINY = 1e-9  # N: points without scatter
+
+
+class PickUp(NamedTuple):
+    """Strain at which the judged curve bends, with its standard uncertainty [1].
+
+    NaN where the curve does not show it; ``reason`` says why.
+    """
+
+    strain: float
+    standard_uncertainty: float
+    reason: str
+
+
+class _Fit(NamedTuple):
+    strain: float
+    uncertainty: float
+    jump: float
+    jump_uncertainty: float
+    is_inside: bool
+
+
+class _Fitted(NamedTuple):
+    squares: float
+    residual: Floats
+    jump: float
+    variance: float  # of the jump, for noise as it is stated
+
+
+def measured_pick_up(measured: MeasuredCurve) -> PickUp:
+    r"""Find the strain at which a measured curve bends, whatever was predicted.
+
+    .. math:: D(\varepsilon) = \sum_{k=0}^{3} b_k \varepsilon^k
+              + \sum_{k=1}^{m} c_k (\varepsilon - \varepsilon_p)_+^k
+
+    Parameters
+    ----------
+    measured : MeasuredCurve
+        The test; its judged curve counts. [SI]
+
+    Returns
+    -------
+    found : PickUp
+        Strain and standard uncertainty, or why there is none. [1]
+
+    Raises
+    ------
+    Nothing
+        A curve without a bend has none.
+
+    Notes
+    -----
+    Below the bend the rubber alone carries, above it the cords as well [6]_: the curve has no
+    jump and its slope has one, :math:`c_1`.  Every place of the bend is tried [7]_, read as the
+    samples were, in the part of the curve from its beginning that shows it best.  Its uncertainty
+    is the width over which the sum of squares stays within one variance of the residuals, times
+    the length over which these err together; and the difference to a curve of the second degree
+    above the bend over half as far, since neither is that of the cords.  An error of the
+    strain moves the bend as it is.
+
+    It is a bend that is found, not a law of a hose: it answers to a hose that was not built as
+    drawn, and is not as fine as a calibrated wrap angle.
+
+    Examples
+    --------
+    >>> from reduction.prediction.measured_curve import measured_curve
+    >>> stroke = np.linspace(0, 1, 2001)
+    >>> bent = 900 * stroke + 3000 * np.maximum(stroke - 0.4137, 0)
+    >>> print(round(measured_pick_up(measured_curve(stroke, bent, loading="static")).strain, 4))
+    0.4137
+    """
+    curve = measured.tension_of(measured.judged)
+    place: Integers = np.flatnonzero(np.isfinite(curve))
+    if place.size < 4 * _MARGIN:
+        return _nothing(f"{place.size} strains of the judged curve are too few to show a bend")
+    place = _window(measured, place)
+    fit = _bend(measured, place, _ORDER)
+    if not (fit.jump > 0 and fit.jump > _LEAST_RATIO * fit.jump_uncertainty):
+        return _nothing("the judged curve has no upward bend that stands out of its scatter")
+    rise = float(np.ptp(curve[place]) / np.ptp(measured.strain[place]))
+    if fit.jump < _LEAST_SHARE * rise:
+        return _nothing("the judged curve bends upward by less than a tenth of its slope")
+    if not fit.is_inside:
+        return _nothing("the judged curve bends too near to its ends")
+    strain = measured.strain[place]
+    near = place[strain < (fit.strain + strain[-1]) / 2]
+    of_model = _bend(measured, near, _ORDER - 1).strain - fit.strain
+    return PickUp(
+        strain=fit.strain,
+        standard_uncertainty=float(
+            np.linalg.norm(
+                [
+                    fit.uncertainty,
+                    of_model,
+                    *(np.interp(fit.strain, measured.strain, row) for row in measured.strain_error),
+                ]
+            )
+        ),
+        reason="",
+    )
+
+
+def _nothing(reason: str) -> PickUp:
+    return PickUp(float("nan"), float("nan"), reason)
+
+
+def _window(measured: MeasuredCurve, place: Integers) -> Integers:
+    """Strains from the first one on among which a bend stands out most."""
+    best, kept = -np.inf, place
+    for end in _ENDS:
+        part = place[: int(end * place.size)]
+        if part.size < 4 * _MARGIN:
+            break
+        axis = measured.strain
+        tried = axis[part[_MARGIN:-_MARGIN]]
+        found = [_fitted(measured, part, at, _ORDER, axis) for at in tried]
+        k = int(np.argmin([one.squares for one in found]))
+        one = found[k]
+        freedom = max(part.size - 2 * _ORDER - 2, 1)
+        ratio = one.jump / np.sqrt(one.variance * max(one.squares / freedom, 1e-12))
+        if ratio > best and 0 < k < len(found) - 1:
+            best, kept = ratio, part
+    return kept
+
+
+def _bend(measured: MeasuredCurve, place: Integers, degree: int) -> _Fit:
+    strain, node = measured.strain[place], measured.reading.node
+    step = float(measured.strain[1] - measured.strain[0])
+    low, high = float(strain[_MARGIN]), float(strain[-1 - _MARGIN])
+
+    def squares_at(tried: Floats, axis: Floats) -> Floats:
+        return np.array([_fitted(measured, place, at, degree, axis).squares for at in tried])
+
+    tried = strain[_MARGIN:-_MARGIN]
+    at = float(tried[np.argmin(squares_at(tried, measured.strain))])
+    width = 2 * step
+    for _ in range(2):
+        tried = np.linspace(max(low, at - width), min(high, at + width), _CANDIDATES)
+        at, width = float(tried[np.argmin(squares_at(tried, node))]), 2 * width / _CANDIDATES
+    fit = _fitted(measured, place, at, degree, node)
+    freedom = max(place.size - _ORDER - 2 - degree, 1)
+    unit = max(fit.squares / freedom, 1e-12) * autocorrelation_length(fit.residual)
+    around = np.linspace(max(low, at - 3 * step), min(high, at + 3 * step), _CANDIDATES)
+    above = squares_at(around, node) - fit.squares
+    inside = around[above <= unit]
+    uncertainty = float(np.ptp(inside)) / 2 if inside.size > 1 else 0.0
+    if uncertainty < 2 * (around[1] - around[0]):  # narrower than the steps: from its curvature
+        near = np.abs(around - at) <= step
+        by_square = (around[near] - at) ** 2
+        bend = float(by_square @ above[near] / (by_square @ by_square))
+        uncertainty = float(np.sqrt(unit / bend)) if bend > 0 else step / np.sqrt(12.0)
+    return _Fit(
+        strain=at,
+        uncertainty=uncertainty,
+        jump=fit.jump,
+        jump_uncertainty=float(np.sqrt(fit.variance * unit)),
+        is_inside=low + step < at < high - step,
+    )
+
+
+def _fitted(
+    measured: MeasuredCurve, place: Integers, at: float, degree: int, axis: Floats
+) -> _Fitted:
+    """Least squares with the bend at one strain, on the nodes of the reading or at the centres."""
+    x, past = axis / axis[-1], np.maximum(axis - at, 0.0)  # powers that are not alike
+    below = [x**k for k in range(_ORDER + 1)]
+    above = [past * (past / axis[-1]) ** k for k in range(degree)]
+    curves = np.array([*below, *above])
+    is_node = axis.size == measured.reading.node.size
+    basis = (measured.reading.of(curves) if is_node else curves)[:, place].T
+    noise = measured.independent_uncertainty()[place]
+    noise = np.maximum(noise, np.median(noise) / 10 + _TINY)
+    tension = measured.tension_of(measured.judged)[place]
+    directions, triangle = np.linalg.qr(basis / noise[:, None])
+    along = directions.T @ (tension / noise)
+    residual = tension / noise - directions @ along
+    of_jump = np.linalg.pinv(triangle)[_ORDER + 1]
+    return _Fitted(
+        squares=float(residual @ residual),
+        residual=residual,
+        jump=float(of_jump @ along),
+        variance=float(of_jump @ of_jump),
+    )
+
+
+EVENTS = ("pick_up", "working", "break")
+
+
+def event_differences(
+    design: HoseDesign,
+    measured: MeasuredCurve,
+    *,
+    standard_uncertainty: Mapping[str, float] | None = None,
+) -> tuple[EventDifference, ...]:
+    r"""Predicted less measured at each event, in tension and in strain.
+
+    With an error :math:`\delta T` and :math:`\delta\varepsilon` of the predicted event, the
+    difference of tension at its strain errs by :math:`\delta T - D' \delta\varepsilon`, where
+    D' is the slope of the measured curve, and by the error of that curve.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose.
+    measured : MeasuredCurve
+        The test; its judged curve counts. [SI]
+    standard_uncertainty : mapping of str to float, optional
+        Of numbers of the design. [SI]
+
+    Returns
+    -------
+    events : tuple of EventDifference
+        In the order of `EVENTS`. [SI]
+
+    Raises
+    ------
+    SettingsError
+        If an uncertainty is of no number of a hose, or below zero.
+
+    Notes
+    -----
+    At pick-up the tension is compared, and the strain at which the test had that tension; neither
+    is where the cords of the test pick up
+    (`reduction.prediction.comparison_error.measured_pick_up`).  The
+    difference of strain at the working load is what a designer asks for: how much less or more
+    the hose stretches under its safe load.  The judged curve counts up to its last sample, which
+    lies beyond the last bin centre.  Between two strains of the curve the difference is taken as
+    straight, since both curves have the kink; near the break, where one of them has no
+    prediction, the measured curve is.
+
+    Examples
+    --------
+    >>> from reduction.prediction.measured_curve import measured_curve
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> from reduction.prediction.hose_tension import predict_hose
+    >>> hose = HoseDesign(1.117, (0.0889, 0.0889), 0.0635, 0.127, 34 / 0.0254, 5.6e-4, 1.4e6,
+    ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
+    >>> stroke = np.linspace(0.0, 1.2, 1201)
+    >>> stiffer = measured_curve(stroke, 1.1 * predict_hose(hose, stroke).tension, loading="static")
+    >>> pick_up = event_differences(hose, stiffer)[0]
+    >>> print(round(pick_up.tension_difference / pick_up.measured_tension, 2))
+    -0.09
+    """
+    found = find_events(design)
+    known = propagate_hose(design, np.zeros(1), standard_uncertainty or {})
+    curve = measured.tension_of(measured.judged)
+    there = np.isfinite(curve)
+    x, y = measured.strain[there], curve[there]
+    own = np.vstack(
+        [
+            measured.independent_uncertainty()[None, there],
+            measured.contribution_of(measured.judged)[:, there],
+            measured.scatter_contribution[:, there],
+        ]
+    )
+    if np.isfinite(measured.end_strain):
+        x, y = np.append(x, measured.end_strain), np.append(y, measured.end_tension)
+        last = own[:, -1].copy()
+        last[0] = measured.end_standard_uncertainty
+        own = np.column_stack([own, last])
+    test = _Test(x, y, predict_hose(design, x).tension, own)
+    pairs = (
+        (found.pick_up, known.pick_up),
+        (found.working, known.working),
+        (found.cord_break, known.cord_break),
+    )
+    return tuple(
+        _compare(name, event, error, test)
+        for name, (event, error) in zip(EVENTS, pairs, strict=True)
+    )
+
+
+class _Test(NamedTuple):
+    """Judged curve up to its last sample, the prediction there, and errors, (n_source, n)."""
+
+    strain: Floats
+    tension: Floats
+    predicted: Floats
+    own: Floats
+
+
+def _compare(
+    name: str, event: HoseEvent, error: EventUncertainty, test_curve: _Test
+) -> EventDifference:
+    x, y, predicted, own = test_curve
+    strain, tension = float(event.strain), float(event.tension)
+    reached = strain_at_tension(x, y, tension)
+    slope = np.gradient(y, x) if x.size > 1 else np.full(x.size, np.nan)
+
+    def uncertainty(at: float) -> float:
+        of_test = np.array([_at(at, x, row) for row in own])
+        of_model = error.tension_contribution - _at(at, x, slope) * error.strain_contribution
+        return float(np.sqrt(np.sum(of_test**2) + np.sum(of_model**2)))
+
+    # between two strains the difference is straight where both curves have a kink
+    apart = _at(strain, x, predicted - y)
+    test = _between(tension - apart, strain, x, y) if np.isfinite(apart) else _at(strain, x, y)
+    return EventDifference(
+        name=name,
+        strain=strain,
+        tension=tension,
+        measured_tension=test,
+        tension_difference=tension - test,
+        tension_difference_standard_uncertainty=uncertainty(strain),
+        measured_strain=reached,
+        strain_difference=strain - reached,
+        strain_difference_standard_uncertainty=uncertainty(reached) / _at(reached, x, slope),
+    )
+
+
+def _between(tension: float, strain: float, x: Floats, y: Floats) -> float:
+    """A tension that is not beyond those of the two strains beside it.
+
+    A test without the kink of the prediction would get the bow of it the other way round.
+    """
+    k = int(np.clip(np.searchsorted(x, strain), 1, max(x.size - 1, 1)))
+    return float(np.clip(tension, y[k - 1 : k + 1].min(), y[k - 1 : k + 1].max()))
+
+
+def _at(strain: float, x: Floats, y: Floats) -> float:
+    """Value on the straight line between two points; NaN outside of them."""
+    if not (x.size and x[0] <= strain <= x[-1]):
+        return float("nan")
+    return float(np.interp(strain, x, y))
+
+
+# [1] sec. 3.0: angle, stretch, cycle; then by its eq. 8 the stretch of a cord of 9.5 % at a third
+# of its break load, and what a degree of angle is worth
+_REPORTED = (
+    (64.0, 0.79, "115,000th", 1.046, 0.086),
+    (68.0, 1.30, "127,000th", 1.461, 0.125),
+)
+
+_NEAR = 1.0  # degree of wrap angle
+
+
+def plausibility_of_working_strain(
+    wrap_angle: float, working_strain: float, *, loading: Loading = "static"
+) -> str:
+    """Say how a stretch at the working load compares with the two hoses that were reported.
+
+    Parameters
+    ----------
+    wrap_angle : float
+        Of the cords at rest, from the axis. [rad]
+    working_strain : float
+        Stretch of the whole length at the working load, predicted or measured. [1]
+    loading : {"static", "dynamic"}
+        Of the stretch that is looked at: that of a static cord curve is static.
+
+    Returns
+    -------
+    note : str
+        Empty for a hose that is neither of the two.
+
+    Raises
+    ------
+    DataError
+        If the angle or the stretch is not a number above zero.
+
+    Notes
+    -----
+    [8]_ reports a maximum stretch of 79 % at the 115,000th cycle for 64 degrees and 130 % at
+    the 127,000th for 68 degrees, "to 1/3rd of its theoretical breaking strength".  These are
+    dynamic, of two hoses whose cord curve and section are not printed, and one cord strain
+    cannot give both (79 % needs 3.3 % in the cord, 130 % needs 5.6 %).  They are a band in
+    which a hose of that angle may lie and no target: a static cord curve with 9.5 % at a third
+    of its break load gives 105 and 146 %.  The band goes from the reported stretch down by one
+    degree of wrap angle, and up to what a static curve adds and one degree more.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> note = plausibility_of_working_strain(np.radians(64.0), 1.05)
+    >>> print(note.split(":")[0])
+    stretch of 105 % at the working load is inside the band of the hose reported at 64 deg
+    """
+    for name, value in (("wrap_angle", wrap_angle), ("working_strain", working_strain)):
+        if not value > 0:
+            raise DataError(f"{name} cannot be compared", found=f"{value:g}", needed="above zero")
+    for angle, reported, cycle, static, slope in _REPORTED:
+        off = degrees(wrap_angle) - angle
+        if abs(off) > _NEAR:
+            continue
+        low, high = (stretch + off * slope for stretch in (reported - slope, static + slope))
+        place = "below" if working_strain < low else "above" if working_strain > high else "inside"
+        at_angle = "" if abs(off) < 0.05 else f" (moved by {off:+.1f} deg)"
+        kind = "static" if loading == "static" else "dynamic"
+        return (
+            f"stretch of {100 * working_strain:.0f} % at the working load is {place} the band of "
+            f"the hose reported at {angle:.0f} deg: {100 * low:.0f} to {100 * high:.0f} %"
+            f"{at_angle}, about {100 * reported:.0f} % at its {cycle} cycle (dynamic, where this "
+            f"is {kind}); a band of plausibility, not a target"
+        )
+    return ""
+
+
+LEAST_PROBABILITY = 0.05
+
+"""Below this the shape of a difference is not one that the stated errors make."""
+
+_SMALLEST = 1e-3  # four thousand draws do not tell smaller ones apart
+
+
+def probability_words(probability: float) -> str:
+    """A probability in per cent, as far as draws can tell.
+
+    Parameters
+    ----------
+    probability : float
+        Of 1. [1]
+
+    Returns
+    -------
+    words : str
+        With its sign of per cent.
+
+    Raises
+    ------
+    Nothing
+        Any number has words.
+
+    Examples
+    --------
+    >>> print(probability_words(0.0153), "and", probability_words(4e-137))
+    1.5 % and below 0.1 %
+    """
+    return "below 0.1 %" if probability < _SMALLEST else f"{100 * probability:.2g} %"
+
+
+def verdict_words(validation: Validation, *, unit: str = "N", factor: float = 1.0) -> str:
+    """What a comparison says, with forces in the unit of the reader.
+
+    Parameters
+    ----------
+    validation : Validation
+        From `reduction.prediction.comparison_error.validate_curve`.
+    unit : str
+        Of force, as it is to stand in the text.
+    factor : float
+        Of that unit in a newton. [1]
+
+    Returns
+    -------
+    words : str
+        One sentence.
+
+    Raises
+    ------
+    Nothing
+        A comparison without an uncertainty is called not judged.
+
+    Notes
+    -----
+    Agreement is one of every strain by itself; where the shape of the difference is one that the
+    stated errors make in less than 5 % of all cases [9]_, the sentence says so.
+
+    Examples
+    --------
+    A difference of 44.5 N for a reader in pounds-force.
+
+    >>> from reduction.prediction.measured_curve import measured_curve
+    >>> from reduction.prediction.measured_curve import constant_errors
+    >>> from reduction.prediction.comparison_error import validate_curve
+    >>> stroke = np.linspace(0, 1, 201)
+    >>> pull = measured_curve(
+    ...     stroke, 100 * stroke + 50, loading="static",
+    ...     shared=constant_errors(tension_offset=10.0),
+    ... )
+    >>> found = validate_curve(
+    ...     100 * pull.strain + 94.5, pull, input_error=np.zeros((0, pull.strain.size))
+    ... )
+    >>> print(verdict_words(found, unit="lbf", factor=1 / 4.4482216).split(" at")[0])
+    differs by +10 lbf
+    """
+    if not np.isfinite(validation.ratio):
+        return "not judged: neither the test nor the prediction has an uncertainty"
+    if not validation.agrees:
+        difference = validation.ratio_difference
+        way = "above" if difference > 0 else "below"
+        return (
+            f"differs by {factor * difference:+.4g} {unit} at strain "
+            f"{validation.ratio_strain:.4g}, {validation.ratio:.1f} times its standard "
+            f"uncertainty ({validation.coverage_factor:.1f} expected at most): the prediction is "
+            f"{way} the test"
+        )
+    limit = factor * validation.coverage_factor * validation.standard_uncertainty
+    size = (
+        f"{np.nanmedian(limit):.3g} {unit} or {100 * validation.share:.2g} % of the tension at "
+        "the median"
+    )
+    words = f"agrees within U, {size}"
+    if validation.chi_square_probability < LEAST_PROBABILITY:
+        chance = probability_words(validation.chi_square_probability)
+        words = f"agrees within U point by point, but its shape does not ({chance}); U is {size}"
+    return words if validation.is_informative else f"{words}: so wide that agreement says little"
+
+
+N_DRAWS = 4000
+
+"""Draws of all errors that a verdict rests on: 5 % of them are 200."""
+
+_PROBABILITY = 0.95
+
+_RANK = 1e-10  # eigenvalues of a correlation matrix below this part of the greatest are rounding
+
+_OUTSIDE = 1e-6
+
+_SEED = 21  # any; that it stays makes answers repeatable
+
+
+@dataclass(frozen=True)
+class _Errors:
+    """At the strains that are compared: own (n,), shared (n_source, n), inputs (n_draws, n)."""
+
+    own: Floats
+    shared: Floats
+    inputs: Floats
+
+    def of_test(self) -> Floats:
+        return np.asarray(np.sqrt(self.own**2 + np.sum(self.shared**2, axis=0)))
+
+    def of_model(self) -> Floats:
+        """Root mean square about the nominal hose: the shift of the mean is in it."""
+        if not self.inputs.size:
+            return np.zeros(self.own.size)
+        return np.asarray(np.sqrt(np.mean(self.inputs**2, axis=0)))
+
+    def covariance(self) -> Floats:
+        n_draws = max(self.inputs.shape[0], 1)
+        by_inputs = _product(self.inputs.T, self.inputs) / n_draws
+        by_shared = _product(self.shared.T, self.shared)
+        return np.asarray(by_inputs + by_shared + np.diag(self.own**2))
+
+    def draw(self) -> Floats:
+        """What E may be if the prediction is right, shape (n_draws, n)."""
+        n_draws = self.inputs.shape[0] or N_DRAWS
+        normal = np.random.default_rng(_SEED).standard_normal
+        errors = _product(normal((n_draws, self.shared.shape[0])), self.shared)
+        errors += normal((n_draws, self.own.size)) * self.own
+        return np.asarray(errors - self.inputs if self.inputs.size else errors)
+
+
+def _product(one: Floats, other: Floats) -> Floats:
+    """Matrix product whose sums are in one order: that of a library depends on its threads."""
+    return np.asarray(np.einsum("ik,kj->ij", one, other, optimize=False))
+
+
+class _Judged(NamedTuple):
+    ratio: float
+    place: int
+    factor: float
+    chi_square: float
+    freedom: int
+    probability: float
+    outside: float  # part of the squared difference that no stated error can make
+
+
+def _judge(error: Floats, errors: _Errors) -> _Judged:
+    nan = float("nan")
+    total = np.hypot(errors.of_test(), errors.of_model())
+    known = np.flatnonzero(total > 0)
+    if not known.size:
+        return _Judged(nan, 0, nan, nan, 0, nan, 0.0)
+    z = error[known] / total[known]
+    draws = errors.draw()[:, known] / total[known]
+    correlation = errors.covariance()[np.ix_(known, known)] / np.outer(total[known], total[known])
+    size, axes = np.linalg.eigh(correlation)
+    kept = size > _RANK * size[-1] * size.size
+    along = axes.T @ z
+    square = float(np.sum(along[kept] ** 2 / size[kept]))
+    of_draws = np.sum(_product(draws, axes[:, kept]) ** 2 / size[kept], axis=1)
+    whole = float(z @ z)
+    place = int(np.argmax(np.abs(z)))
+    return _Judged(
+        ratio=float(np.abs(z[place])),
+        place=int(known[place]),
+        factor=float(np.quantile(np.max(np.abs(draws), axis=1), _PROBABILITY)),
+        chi_square=square,
+        freedom=int(kept.sum()),
+        probability=float(np.mean(of_draws >= square)),
+        outside=float(np.sum(along[~kept] ** 2)) / whole if whole > 0 else 0.0,
+    )
+
+
+def validate_curve(
+    predicted: ArrayLike,
+    measured: MeasuredCurve,
+    *,
+    input_error: ArrayLike,
+    largest_useful_share: float = 0.3,
+) -> Validation:
+    """Whether prediction and test agree within what both are uncertain by.
+
+    Parameters
+    ----------
+    predicted : array_like, shape (n_strain,)
+        Tension at the strains of the measured curve; NaN where the cords are broken. [N]
+    measured : MeasuredCurve
+        The test; its judged curve counts. [SI]
+    input_error : array_like, shape (n_draws, n_strain)
+        What the prediction may be off by, in draws of the numbers that went into it, from
+        `reduction.prediction.hose_comparison.input_draws`; no rows where it counts as exact. [N]
+    largest_useful_share : float
+        Where U is more than this part of the measured tension at half of the strains,
+        agreement says little. [1]
+
+    Returns
+    -------
+    validation : Validation
+        Uncertainties over strain, the largest ratio, chi square, and the verdict.
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up, or prediction and test have no strain in common.
+
+    Notes
+    -----
+    *Verdict.* With many strains the largest ratio abs(E) / u_val exceeds 2 almost always.  It is
+    held against the 95 % quantile of the largest ratio in draws of all errors together, so that
+    a right prediction is called wrong in 5 % of all cases however many strains there are: 1.96
+    for strains that err as one, 3.3 for fifty that err each for itself.  U is that factor
+    times u_val.  Agreement within U means that an error of the model cannot be seen; it does not
+    mean that there is none [9]_.
+
+    *Chi square* E' V^-1 E with the full covariance [10]_ sees a wrong shape that stays inside
+    the band, and needs the uncertainties to be right in every direction; it does not make the
+    verdict, which says so where it does not agree.  Its probability is the share of the draws
+    that exceed it, since tension is no linear function of the angle where cords pick up.
+    Directions in which no stated error can move the curve have no inverse and are left out; if
+    the difference lies in one of them, a note says so.
+
+    The draws are the same every time.
+
+    Nothing is taken for an uncertainty that was not stated: the verdict says which side is
+    missing.
+
+    Examples
+    --------
+    A load cell that may be 10 N off, and a prediction 8 N below.
+
+    >>> from reduction.prediction.measured_curve import measured_curve
+    >>> from reduction.prediction.measured_curve import constant_errors
+    >>> stroke = np.linspace(0, 1, 201)
+    >>> pull = measured_curve(
+    ...     stroke, 100 * stroke + 50, loading="static",
+    ...     shared=constant_errors(tension_offset=10.0),
+    ... )
+    >>> found = validate_curve(
+    ...     100 * pull.strain + 42, pull, input_error=np.zeros((0, pull.strain.size))
+    ... )
+    >>> print(found.agrees, found.verdict.split(",")[0], round(found.ratio, 2))
+    True agrees within U 0.8
+    """
+    model, test = as_same_shape(predicted=predicted, measured=measured.tension_of(measured.judged))
+    inputs = np.asarray(input_error, dtype=np.float64)
+    if inputs.ndim != 2 or inputs.shape[1:] != model.shape:
+        raise DataError(
+            "errors of the prediction are not on the strains",
+            found=str(inputs.shape),
+            needed=f"(n_draws, {model.size})",
+        )
+    there = np.isfinite(model) & np.isfinite(test) & np.isfinite(inputs).all(axis=0)
+    if not there.any():
+        raise DataError(
+            "prediction and test have no strain in common",
+            found=f"{int(np.isfinite(test).sum())} measured strains",
+            needed="one at which both are known",
+        )
+    shared = measured.contribution_of(measured.judged)
+    errors = _Errors(
+        own=measured.independent_uncertainty()[there],
+        shared=np.vstack([shared, measured.scatter_contribution])[:, there],
+        inputs=inputs[:, there],
+    )
+    error = np.where(there, model - test, np.nan)
+    judged = _judge(error[there], errors)
+
+    def on_axis(values: Floats) -> Floats:
+        whole = np.full(model.size, np.nan)
+        whole[there] = values
+        return whole
+
+    of_test, of_model = on_axis(errors.of_test()), on_axis(errors.of_model())
+    total = np.hypot(of_test, of_model)
+    factor, largest = judged.factor, judged.ratio
+    place = int(np.flatnonzero(there)[judged.place])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.where(there & (test > 0), factor * total / test, np.nan)
+    share = float(np.nanmedian(shares)) if np.isfinite(shares).any() else float("nan")
+    agrees = bool(largest <= factor)
+    is_informative = bool(share <= largest_useful_share)
+    found = Validation(
+        input_standard_uncertainty=of_model,
+        measurement_standard_uncertainty=np.where(there, of_test, np.nan),
+        standard_uncertainty=total,
+        coverage_factor=factor,
+        ratio=largest,
+        ratio_strain=float(measured.strain[place]) if np.isfinite(largest) else float("nan"),
+        chi_square=judged.chi_square,
+        chi_square_freedom=judged.freedom,
+        chi_square_probability=judged.probability,
+        share=share,
+        agrees=agrees,
+        is_informative=is_informative,
+        verdict="",
+        ratio_difference=float(error[place]) if np.isfinite(largest) else float("nan"),
+        notes=_notes(inputs, measured, agrees, judged),
+    )
+    return replace(found, verdict=verdict_words(found))
+
+
+def _notes(
+    inputs: Floats, measured: MeasuredCurve, agrees: bool, judged: _Judged
+) -> tuple[str, ...]:
+    notes = []
+    if not inputs.any():
+        notes.append(
+            "no uncertainty of the prediction is stated: it counts as exact, and a difference "
+            "that the angle or the cord curve would explain counts against it"
+        )
+    if not measured.contribution.any():
+        notes.append("no uncertainty of the calibration is stated: the test counts as unbiased")
+    elif not any(one.source.startswith("tension_") for one in measured.component):
+        notes.append("nothing is stated of the load cell: its scale and its zero count as exact")
+    if agrees and judged.probability < LEAST_PROBABILITY:
+        notes.append(
+            f"no strain differs by more than U, but the shape of the difference is one that the "
+            f"stated errors make in {probability_words(judged.probability)} of all cases alone"
+        )
+    if judged.outside > _OUTSIDE:
+        notes.append(
+            f"{100 * judged.outside:.2g} % of the squared difference lies where no stated error "
+            "can be"
+        )
+    return tuple(notes)

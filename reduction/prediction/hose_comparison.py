@@ -1,0 +1,1466 @@
+"""A measured hose against its prediction, and stated parameters fitted to the curve.
+
+Whether one curve can tell several numbers of a hose apart.
+
+A formal interval answers for the noise alone.  A fit of angle, cord scale and dead length to
+one smooth curve gives three narrow intervals, and an error of the model by 1 % of the tension
+moves all three by more than any workshop would be off: the question is what the curve
+*shows* of a plausible error, not what the noise hides.
+
+Tension of a hose at other values of its numbers, without a gap where cords would break.
+
+What the tension of a predicted hose may be off by: its uncertain numbers, and its cord curve.
+
+Measured points and the numbers of a hose that are fitted to them.
+
+Named numbers of a hose fitted to a measured curve.
+
+A measured hose beside its prediction: every number of the comparison.
+
+A reduced test of a hose against its prediction.
+
+References
+----------
+.. [1] R. Brun, P. Reichert and H. R. Kunsch, "Practical identifiability analysis of large
+   environmental simulation models," Water Resour. Res., vol. 37, 2001 (collinearity index).
+.. [2] A. Raue et al., "Structural and practical identifiability analysis of partially observed
+   dynamical models," Bioinformatics, vol. 25, 2009.
+.. [3] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
+   1.2: the numbers that make a hose.
+.. [4] JCGM 101:2008, "Propagation of distributions using a Monte Carlo method."
+.. [5] ASME V&V 20-2009, "Standard for Verification and Validation in Computational Fluid
+   Dynamics and Heat Transfer," sec. 2 (u_num).
+.. [6] G. A. F. Seber and C. J. Wild, "Nonlinear Regression," Wiley, 1989, ch. 2.
+.. [7] R. T. Birge, "The calculation of errors by the method of least squares," Phys. Rev., vol.
+   40, 1932.
+.. [8] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004.
+.. [9] G. A. F. Seber and C. J. Wild, "Nonlinear Regression," Wiley, 1989, ch. 2 and 6.
+.. [10] ASME V&V 20-2009, "Standard for Verification and Validation in Computational Fluid
+   Dynamics and Heat Transfer."
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from math import degrees, pi
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike
+from scipy.special import stdtrit
+
+from reduction.prediction.comparison_error import (
+    N_DRAWS,
+    Calibration,
+    Comparison,
+    EventDifference,
+    Identifiability,
+    PickUp,
+    autocorrelation_length,
+    cycle_differences,
+    difference_of,
+    energy_difference,
+    event_differences,
+    measured_pick_up,
+    plausibility_of_working_strain,
+    validate_curve,
+)
+from reduction.prediction.cord_curve import CordCurve, cord_load
+from reduction.prediction.hose_prediction import HosePlan
+from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseDesign, HosePrediction
+from reduction.prediction.hose_sensitivity import hose_sensitivity
+from reduction.prediction.hose_tension import find_events, predict_hose
+from reduction.prediction.measured_curve import (
+    Loading,
+    MeasuredCurve,
+    SharedErrors,
+    error_words,
+    measured_curve,
+    read_along,
+)
+from reduction.record.arrays import as_spread
+from reduction.record.errors import DataError, FitError, SettingsError
+from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
+
+CALIBRATED = (
+    "wrap_angle",
+    "rubber_modulus",
+    "cord_load_scale",
+    "cord_strain_scale",
+    "dead_length_share",
+)
+
+"""Numbers that may be fitted; diameters and the number of cords are measured or counted."""
+
+_ANGLE = np.radians(1.0)
+
+_PART = 0.1
+
+_DEAD_LENGTH = 0.05
+
+_MODEL = 0.01  # of the tension: no smooth error below this is held against a prediction
+
+_LEAST_SEEN = 1e-6  # of the tension: nothing
+
+_NAMED = 0.1  # of the largest part of a direction: less is not named
+
+
+def plausible_error(name: str, start: float) -> float:
+    """How far a number of a hose may be off before it is measured on the hose.
+
+    Parameters
+    ----------
+    name : str
+        One of `CALIBRATED`.
+    start : float
+        Its value. [SI]
+
+    Returns
+    -------
+    error : float
+        1 degree of wrap angle, a twentieth of the length, a tenth of the others. [SI]
+
+    Raises
+    ------
+    SettingsError
+        If the number is not one to be fitted, or its tenth is nothing.
+
+    Examples
+    --------
+    >>> print(plausible_error("cord_load_scale", 1.0))
+    0.1
+    """
+    if name not in CALIBRATED:
+        raise SettingsError(
+            f"'{name}' cannot be calibrated", found=name, needed="one of " + ", ".join(CALIBRATED)
+        )
+    if name == "wrap_angle":
+        return float(_ANGLE)
+    if name == "dead_length_share":
+        return _DEAD_LENGTH
+    if not start > 0:
+        raise SettingsError(
+            f"{name} has no size to start a calibration from",
+            found=f"{start:g}",
+            needed="a value above zero",
+        )
+    return _PART * start
+
+
+def identify_directions(
+    sensitivity: ArrayLike,
+    *,
+    tension: ArrayLike,
+    names: Sequence[str],
+    plausible: ArrayLike,
+    value: ArrayLike,
+    contribution: ArrayLike,
+    misfit: float,
+) -> Identifiability:
+    r"""Find the directions of the fitted numbers that the curve hardly sees.
+
+    With :math:`S` the change of tension for one plausible error of each number and :math:`C`
+    what shared errors add, all over :math:`\sqrt n` and the RMS tension, a step of unit length
+    along :math:`v` cannot be told from an error of relative size :math:`\delta` where
+
+    .. math:: \min_z \lVert S v + C z \rVert^2 + \delta^2 \lVert z \rVert^2 < \delta^2
+
+    Parameters
+    ----------
+    sensitivity : array_like, shape (n_strain, n_parameter)
+        Derivative of tension by each number. [N a unit]
+    tension : array_like, shape (n_strain,)
+        Of the fitted hose. [N]
+    names : sequence of str, length n_parameter
+        Numbers that were fitted.
+    plausible : array_like, shape (n_parameter,)
+        Of each, from `plausible_error`. [SI]
+    value : array_like, shape (n_parameter,)
+        Of each. [SI]
+    contribution : array_like, shape (n_source, n_strain)
+        Errors that were fitted beside them, each within its standard uncertainty. [N]
+    misfit : float
+        RMS of what the fit left. [N]
+
+    Returns
+    -------
+    found : Identifiability
+        The direction that the curve sees least, and all that it does not see in words.
+
+    Raises
+    ------
+    DataError
+        If the arrays do not pair up.
+
+    Notes
+    -----
+    :math:`\delta` is 1 %, or the relative misfit where that is greater: an error of the model
+    is smooth, so that more strains do not average it out, and a prediction that left 3 %
+    somewhere cannot be trusted to 1 % elsewhere.  Along a direction of which a unit step changes
+    the curve by less, such an error moves the numbers by :math:`\delta` over that change: more
+    than one plausible error, which the noise does not say.  The unit of each number is what it
+    may plausibly be off by, so that a number to which the curve does not answer (the scale of
+    cords that carry little yet) is found as well as two that trade against each other.  The
+    collinearity index of [1]_, which knows only the second kind, is given beside; above 10 to 15
+    it is called poor there.
+
+    Examples
+    --------
+    Two numbers that do the same cannot be told apart, whatever the noise.
+
+    >>> found = identify_directions(
+    ...     [[1.0, 1.0], [2.0, 2.0]], tension=[10.0, 20.0],
+    ...     names=["cord_load_scale", "cord_strain_scale"], plausible=[0.1, 0.1],
+    ...     value=[1.0, 1.0], contribution=np.zeros((0, 2)), misfit=0.0,
+    ... )
+    >>> print(found.is_identified, found.words)
+    False cord_load_scale +7.1 % with cord_strain_scale -7.1 % changes the curve by 0.00 % alone
+    """
+    slopes = np.asarray(sensitivity, dtype=np.float64)
+    level = np.asarray(tension, dtype=np.float64)
+    unit = np.asarray(plausible, dtype=np.float64)
+    shared = np.asarray(contribution, dtype=np.float64)
+    if slopes.shape != (level.size, len(names)) or shared.shape[1:] != level.shape:
+        raise DataError(
+            "sensitivities do not pair up with the curve",
+            found=f"{slopes.shape} and {shared.shape}",
+            needed=f"({level.size}, {len(names)}) and (n_source, {level.size})",
+        )
+    size = float(np.sqrt(np.mean(level**2)))
+    scale = np.sqrt(level.size) * size
+    s, c = slopes * unit / scale, shared.T / scale
+    needed = max(_MODEL, misfit / size)
+    seen = s.T @ s
+    if c.shape[1]:
+        imitated = c.T @ c + needed**2 * np.eye(c.shape[1])
+        seen = seen - s.T @ c @ np.linalg.solve(imitated, c.T @ s)
+    strength, axes = np.linalg.eigh(seen)
+    change = np.sqrt(np.maximum(strength, 0.0))
+    axes = axes * np.where(np.take_along_axis(axes, _largest(axes), 0) < 0, -1.0, 1.0)
+    least = axes[:, 0] * unit
+    words = [
+        _words(names, axes[:, k], unit, np.asarray(value, dtype=np.float64), float(change[k]))
+        for k in range(len(names))
+        if change[k] < needed
+    ]
+    unseen = change < needed
+    reach = needed / np.maximum(change[unseen], _LEAST_SEEN) * axes[:, unseen] * unit[:, None]
+    return Identifiability(
+        least_change=float(change[0]),
+        needed_change=needed,
+        direction=least,
+        collinearity=_collinearity(s),
+        is_identified=not words,
+        words="; ".join(words),
+        open_covariance=reach @ reach.T,
+    )
+
+
+def _largest(axes: Floats) -> np.ndarray:
+    """Row of the first entry of each column that is as large as any, up to rounding."""
+    size = np.abs(axes)
+    return np.asarray(np.argmax(size > 0.999 * size.max(axis=0), axis=0))[None, :]
+
+
+def _collinearity(s: Floats) -> float:
+    length = np.linalg.norm(s, axis=0)
+    if not np.all(length > 0):
+        return float("inf")
+    least = float(np.linalg.svd(s / length, compute_uv=False)[-1])
+    return 1 / least if least > 0 else float("inf")
+
+
+def _words(
+    names: Sequence[str], direction: Floats, unit: Floats, value: Floats, change: float
+) -> str:
+    size = np.abs(direction)
+    parts = [
+        _step(names[k], float(direction[k] * unit[k]), float(value[k]))
+        for k in range(len(names))
+        if size[k] >= _NAMED * size.max()
+    ]
+    return f"{' with '.join(parts)} changes the curve by {100 * change:.2f} % alone"
+
+
+def _step(name: str, step: float, value: float) -> str:
+    if name == "wrap_angle":
+        return f"{name} {degrees(step):+.2f} deg"
+    if name == "dead_length_share":
+        return f"{name} {100 * step:+.1f} points"
+    return f"{name} {100 * step / value:+.1f} %"
+
+
+_LOWEST = {"dead_length_share": 0.0, "rubber_modulus": 0.0}
+
+_SMALLEST = 1e-6  # of what has to be above zero
+
+
+def number_of(design: HoseDesign, name: str) -> float:
+    """A number of one design by its name.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose.
+    name : str
+        Of `reduction.prediction.hose_product.HOSE_PARAMETERS`; ``layer_diameter`` is the mean of
+        the two.
+
+    Returns
+    -------
+    value : float
+        In the unit of the number. [SI]
+
+    Raises
+    ------
+    SettingsError
+        If there is no such number, or the design is many.
+
+    Examples
+    --------
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
+    ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
+    >>> print(round(number_of(design, "layer_diameter"), 6))
+    0.085
+    """
+    if name not in HOSE_PARAMETERS:
+        raise SettingsError(
+            "no such number of a hose", found=name, needed="one of " + ", ".join(HOSE_PARAMETERS)
+        )
+    if design.shape:
+        raise SettingsError(
+            "a comparison is of one hose", found=f"designs of shape {design.shape}", needed="one"
+        )
+    return float(design.wrap_diameter if name == "layer_diameter" else getattr(design, name))
+
+
+def design_with(design: HoseDesign, numbers: Mapping[str, Any]) -> HoseDesign:
+    """The design with some of its numbers replaced.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose.
+    numbers : mapping of str to float or ndarray
+        By name; a ``layer_diameter`` moves both layers alike. [SI]
+
+    Returns
+    -------
+    changed : HoseDesign
+        One hose, or many where a number is an array.
+
+    Raises
+    ------
+    SettingsError
+        If there is no such number, or no hose has these.
+
+    Examples
+    --------
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
+    ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
+    >>> print(design_with(design, {"wrap_angle": 1.2}).wrap_angle)
+    1.2
+    """
+    changes: dict[str, Any] = {}
+    for name, value in numbers.items():
+        before = number_of(design, name)
+        if name == "layer_diameter":
+            inner, outer = design.layer_diameter
+            changes[name] = (inner + (value - before), outer + (value - before))
+        else:
+            changes[name] = value
+    return replace(design, **changes)
+
+
+def trial_tension(
+    design: HoseDesign, names: Sequence[str], values: Floats, strain: Floats
+) -> Floats:
+    """Tension at trial values of some numbers.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose, from which the other numbers are.
+    names : sequence of str, length n_parameter
+        Numbers that are tried.
+    values : ndarray, shape (n_trial, n_parameter)
+        Of each trial. [SI]
+    strain : ndarray, shape (n_strain,)
+        Of the whole length. [1]
+
+    Returns
+    -------
+    tension : ndarray, shape (n_trial, n_strain)
+        Finite everywhere. [N]
+
+    Raises
+    ------
+    SettingsError
+        If no hose has these numbers.
+
+    Notes
+    -----
+    A trial hose whose cords would break below a strain that was measured has no tension there,
+    and a fit would fall into the gap.  Its curve goes on along its tangent at the break, which
+    joins it without a step at any value of the numbers.
+
+    Examples
+    --------
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
+    ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
+    >>> steps = np.array([0.0, 1.0, 5.0])
+    >>> print(np.isfinite(trial_tension(design, ["wrap_angle"], np.array([[1.1]]), steps)).all())
+    True
+    """
+    trials = design_with(design, {name: values[:, k] for k, name in enumerate(names)})
+    tension = np.array(predict_hose(trials, strain).tension)
+    gap = ~np.isfinite(tension)
+    if gap.any():
+        last = find_events(trials).cord_break
+        slope = hose_sensitivity(trials, strain[:1]).cord_break.stiffness
+        onward = last.tension[:, None] + slope[:, None] * (strain - last.strain[:, None])
+        tension[gap] = onward[gap]
+    return tension
+
+
+def range_of(name: str) -> tuple[float, float]:
+    """Between what a number of a hose has to lie.
+
+    Parameters
+    ----------
+    name : str
+        Of `reduction.prediction.hose_product.HOSE_PARAMETERS`.
+
+    Returns
+    -------
+    low, high : float
+        In the unit of the number. [SI]
+
+    Raises
+    ------
+    Nothing
+        A name of no number has the range of one that has to be above zero.
+
+    Examples
+    --------
+    >>> print(range_of("dead_length_share"))
+    (0.0, 0.99)
+    """
+    if name == "wrap_angle":
+        return _SMALLEST, pi / 2 - _SMALLEST
+    return _LOWEST.get(name, _SMALLEST), 0.99 if name == "dead_length_share" else np.inf
+
+
+_CUT = 3.0
+
+_BETWEEN = 16  # steps from one point of a cord curve to the next
+
+_LEAST_POINTS = 4  # of a cord curve, for a spline that is another one than the straight line
+
+_SEED = 20  # any; that it stays makes answers repeatable
+
+
+def input_draws(
+    design: HoseDesign,
+    standard_uncertainty: Mapping[str, float],
+    strain: Floats,
+    *,
+    n_draws: int,
+) -> Floats:
+    """What the tension of a hose may be off by, in draws of its uncertain numbers.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose.
+    standard_uncertainty : mapping of str to float
+        By name of `reduction.prediction.hose_product.HOSE_PARAMETERS`, in SI. [rad, m, m-1, Pa or
+        1]
+    strain : ndarray, shape (n_strain,)
+        Of the whole length. [1]
+    n_draws : int
+        Hoses that are drawn; the same ones every time. [1]
+
+    Returns
+    -------
+    error : ndarray, shape (n_draws, n_strain)
+        Tension of the drawn hose less that of the design; no rows where nothing is uncertain. [N]
+
+    Raises
+    ------
+    SettingsError
+        If there is no such number, an uncertainty is negative or unknown, or so large that
+        what is drawn is no hose.
+
+    Notes
+    -----
+    Normal and independent, cut at three standard uncertainties and at the range of the number
+    (propagation of distributions, [4]_).  Where cords pick up, tension is no linear function
+    of the angle over the width of its uncertainty, and no covariance from derivatives has the
+    shapes of curve that it makes.
+
+    Examples
+    --------
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
+    ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
+    >>> error = input_draws(design, {"rubber_modulus": 1e5}, np.array([0.0, 0.2]), n_draws=500)
+    >>> print(error.shape, error[:, 0].max(), bool(abs(error[:, 1].std() / 143 - 1) < 0.1))
+    (500, 2) 0.0 True
+    """
+    known = known_uncertainties(design, standard_uncertainty)
+    if not known:
+        return np.zeros((0, strain.size))
+    normal = np.random.default_rng(_SEED).standard_normal((n_draws, len(HOSE_PARAMETERS)))
+    steps = np.clip(normal, -_CUT, _CUT)
+    values = np.stack(
+        [
+            np.clip(
+                number_of(design, name) + spread * steps[:, HOSE_PARAMETERS.index(name)],
+                *range_of(name),
+            )
+            for name, spread in known.items()
+        ],
+        axis=1,
+    )
+    centre = np.array([[number_of(design, name) for name in known]])
+    tension = trial_tension(design, tuple(known), np.vstack([centre, values]), strain)
+    return np.asarray(tension[1:] - tension[0])
+
+
+def cord_curve_error(design: HoseDesign, strain: Floats) -> Floats:
+    """What the tension may be off by since the cord curve is known at its points alone.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose.
+    strain : ndarray, shape (n_strain,)
+        Of the whole length. [1]
+
+    Returns
+    -------
+    error : ndarray, shape (n_strain,)
+        Signed, one standard uncertainty; zero for a curve of fewer than four points. [N]
+
+    Raises
+    ------
+    Nothing
+        Where the spline falls, there is no other curve than the monotone one.
+
+    Notes
+    -----
+    Tension with a cubic spline through the points less that with the monotone cubic. Nobody
+    states this error: it is one of the numerical solution [5]_.  It is a few newtons for a curve
+    of fourteen points, far below the noise of any one strain; but it is smooth and bends the
+    curve as a scale of the cord strain does, of which a fit would make two standard deviations.
+
+    Examples
+    --------
+    Points on a straight line leave nothing open.
+
+    >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
+    ...     CordCurve(np.linspace(0.0, 0.2, 5), np.linspace(0.0, 130.0, 5)))
+    >>> print(np.abs(cord_curve_error(design, np.array([0.5, 1.0]))).max() < 1e-6)
+    True
+    """
+    points = design.cord
+    if points.strain.size < _LEAST_POINTS:
+        return np.zeros(strain.size)
+    steps = np.arange(_BETWEEN) / _BETWEEN
+    dense = points.strain[:-1, None] + np.diff(points.strain)[:, None] * steps
+    plain = cord_load(points, dense.ravel()).reshape(dense.shape)
+    other = np.asarray(scipy.interpolate.CubicSpline(points.strain, points.load)(dense))
+    whole = np.hstack([other, points.load[1:, None]])
+    other = np.where(np.all(np.diff(whole, axis=1) > 0, axis=1)[:, None], other, plain)
+    curves = (
+        CordCurve(np.append(dense, points.strain[-1]), np.append(load, points.load[-1]))
+        for load in (other, plain)
+    )
+    scale = np.array([[number_of(design, "cord_load_scale")]])
+    spline, monotone = (
+        trial_tension(replace(design, cord=curve), ("cord_load_scale",), scale, strain)[0]
+        for curve in curves
+    )
+    return np.asarray(spline - monotone)
+
+
+def known_uncertainties(
+    design: HoseDesign, standard_uncertainty: Mapping[str, float]
+) -> dict[str, float]:
+    """Uncertainties above zero, in the order of `HOSE_PARAMETERS`.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose.
+    standard_uncertainty : mapping of str to float
+        By name of `reduction.prediction.hose_product.HOSE_PARAMETERS`. [SI]
+
+    Returns
+    -------
+    known : dict of str to float
+        Those that are stated and not zero. [SI]
+
+    Raises
+    ------
+    SettingsError
+        If there is no such number, or an uncertainty is negative or unknown.
+
+    Examples
+    --------
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
+    ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
+    >>> print(known_uncertainties(design, {"rubber_modulus": 1e5, "wrap_angle": 0.0}))
+    {'rubber_modulus': 100000.0}
+    """
+    for name, spread in standard_uncertainty.items():
+        number_of(design, name)
+        as_spread(name, spread)
+    return {
+        name: float(standard_uncertainty[name])
+        for name in HOSE_PARAMETERS
+        if standard_uncertainty.get(name, 0) > 0
+    }
+
+
+_START_STEPS = (-4.0, -2.0, 0.0, 2.0, 4.0)  # plausible errors, tried in all combinations
+
+_DIFFERENCE = 1e-3  # of a plausible error, for derivatives
+
+_NEAR_BOUND = 1e-4  # of the width between the bounds
+
+_POLISHING_STEPS = 30
+
+_LEAST = 1e-14  # information below this part of the greatest is rounding
+
+
+def parameter_bounds(name: str, start: float) -> tuple[float, float]:
+    """Between what a number is kept while it is fitted.
+
+    Parameters
+    ----------
+    name : str
+        One of `reduction.prediction.hose_comparison.CALIBRATED`.
+    start : float
+        Its value. [SI]
+
+    Returns
+    -------
+    low, high : float
+        10 degrees around a wrap angle, up to half of the length that does not stretch, a fifth to
+        five times the others. [SI]
+
+    Raises
+    ------
+    SettingsError
+        If the number is not one to be fitted.
+
+    Examples
+    --------
+    >>> print(parameter_bounds("cord_load_scale", 1.0))
+    (0.2, 5.0)
+    """
+    plausible_error(name, start)
+    if name == "wrap_angle":
+        low, high = start - np.radians(10.0), start + np.radians(10.0)
+        return max(float(low), float(np.radians(1.0))), min(float(high), float(np.radians(89.0)))
+    if name == "dead_length_share":
+        return 0.0, 0.5
+    return start / 5, start * 5
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class FitProblem:
+    """Measured points and what is to be fitted to them.
+
+    What is fitted stands in one vector: numbers in plausible errors, then errors in standard
+    uncertainties, those of held numbers, of strain, and those in proportion.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        From which the numbers are that are not fitted.
+    names : tuple of str, length n_parameter
+        Numbers that are fitted.
+    unit, low, high : ndarray, shape (n_parameter,)
+        Plausible error of each [SI], and its bounds in that unit.
+    held : mapping of str to float
+        Standard uncertainties of numbers that are not fitted. [SI]
+    moved : ndarray, shape (n_moved, n_node)
+        Errors of strain at the nodes of the reading, signed. [1]
+    measured : MeasuredCurve
+        The test. [SI]
+    noise : ndarray, shape (n_used,)
+        Standard uncertainty that no two measured points share. [N]
+    shared : ndarray, shape (n_source, n_used)
+        Errors in proportion that they share, signed. [N]
+
+    Notes
+    -----
+    A strain that was read high moves the whole curve, and its kink with it.  Minus the slope
+    times the error, the change in proportion, leaves the kink where it is: a fit would find the
+    error by that alone, and call the place of the kink the angle's.  So strains are moved, the
+    numbers that are held are changed in the design, and the hose is read at the strains between
+    the bin centres as the test was.
+    """
+
+    design: HoseDesign
+    names: tuple[str, ...]
+    unit: Floats
+    low: Floats
+    high: Floats
+    held: Mapping[str, float]
+    moved: Floats
+    measured: MeasuredCurve
+    noise: Floats
+    shared: Floats
+
+    @property
+    def used(self) -> Bools:
+        """Which strains of the judged curve were measured, shape (n_strain,)."""
+        return np.isfinite(self.tension_of_test())
+
+    @property
+    def n_traced(self) -> int:
+        """Numbers and errors whose effect is computed by the hose, not in proportion."""
+        return len(self.names) + len(self.held) + len(self.moved)
+
+    @property
+    def n_error(self) -> int:
+        """Errors that are fitted beside the numbers."""
+        return len(self.held) + len(self.moved) + len(self.shared)
+
+    def tension_of_test(self) -> Floats:
+        """Judged curve, shape (n_strain,). [N]."""
+        return self.measured.tension_of(self.measured.judged)
+
+    def tension_at(self, traced: Floats) -> Floats:
+        """Tension of trials (n_trial, n_traced) as the test shows it, (n_trial, n_used). [N]."""
+        p, q = len(self.names), len(self.held)
+        values = [traced[:, :p] * self.unit]
+        for k, (name, spread) in enumerate(self.held.items()):
+            at = number_of(self.design, name) + spread * traced[:, p + k]
+            values.append(np.clip(at, *range_of(name))[:, None])
+        numbers, names = np.hstack(values), (*self.names, *self.held)
+        node = self.measured.reading.node
+        tension = np.empty((traced.shape[0], self.noise.size))
+        used = self.used
+        axes, which = np.unique(traced[:, p + q :], axis=0, return_inverse=True)
+        for k, size in enumerate(axes):
+            trials = which.ravel() == k
+            strain = node - size @ self.moved
+            # a record that is read low has strains just below zero: the curve goes on there
+            curve = trial_tension(self.design, names, numbers[trials], np.abs(strain))
+            tension[trials] = self.measured.reading.of(np.sign(strain) * curve)[:, used]
+        return tension
+
+    def slopes(self, traced: Floats) -> Floats:
+        """Derivative of tension by each number and traced error, (n_used, n_traced)."""
+        step = _DIFFERENCE * np.eye(traced.size)
+        ends = np.vstack([traced - step, traced + step])
+        p = len(self.names)
+        ends[:, :p] = np.clip(ends[:, :p], self.low, self.high)
+        below, above = np.split(self.tension_at(ends), 2)
+        width = np.diagonal(ends[traced.size :] - ends[: traced.size])
+        return np.asarray((above - below) / width[:, None]).T
+
+    def error_slopes(self, x: Floats) -> Floats:
+        """What one standard uncertainty of each error does, shape (n_error, n_used). [N]."""
+        of_traced = self.slopes(x[: self.n_traced])[:, len(self.names) :]
+        return np.vstack([of_traced.T, self.shared])
+
+    def remainder(self, x: Floats) -> Floats:
+        """Fitted curve, shared errors in it, less the measured one, shape (n_used,). [N]."""
+        traced, z = np.split(x, [self.n_traced])
+        curve = self.tension_at(traced[None, :])[0] + z @ self.shared
+        return np.asarray(curve - self.tension_of_test()[self.used])
+
+    def residual(self, x: Floats, noise: Floats) -> Floats:
+        """What is squared and summed: every strain, then every error."""
+        return np.concatenate([self.remainder(x) / noise, x[len(self.names) :]])
+
+    def jacobian(self, x: Floats, noise: Floats) -> Floats:
+        """Of `residual`, by the numbers and the errors."""
+        slopes = self.slopes(x[: self.n_traced])
+        data = np.hstack([slopes, self.shared.T]) / noise[:, None]
+        p, k = len(self.names), self.n_error
+        prior = np.hstack([np.zeros((k, p)), np.eye(k)])
+        return np.vstack([data, prior])
+
+    def start(self, first: Floats) -> Floats:
+        """Best of a few values around the design, since the curve has kinks."""
+        p = first.size
+        offsets = np.array(list(product(_START_STEPS, repeat=p)))
+        tried = np.clip(first + offsets, self.low, self.high)
+        curve = trial_tension(
+            self.design, self.names, tried * self.unit, self.measured.strain[self.used]
+        )
+        error = (curve - self.tension_of_test()[self.used]) / self.noise
+        # a number that the curve does not show stays where the design has it
+        cost = np.sum(error**2, axis=1) + 1e-3 * np.sum(offsets**2, axis=1)
+        return np.asarray(tried[int(np.argmin(cost))])
+
+    def solve(self, first: Floats, noise: Floats) -> Floats:
+        """Least sum of squares, from these numbers; shared errors begin at zero.
+
+        Raises
+        ------
+        FitError
+            If the search does not end.
+        """
+        k = self.n_error
+        margin = 1e-6 * (self.high - self.low)  # a search may not begin on a bound
+        inside = np.clip(first[: self.unit.size], self.low + margin, self.high - margin)
+        x0 = np.concatenate([inside, np.zeros(k)])
+        found = scipy.optimize.least_squares(
+            self.residual,
+            x0,
+            jac=self.jacobian,
+            bounds=(
+                np.concatenate([self.low, np.full(k, -np.inf)]),
+                np.concatenate([self.high, np.full(k, np.inf)]),
+            ),
+            xtol=1e-10,
+            ftol=1e-10,
+            gtol=1e-10,
+            args=(noise,),
+        )
+        if not found.success:
+            raise FitError(
+                "the calibration did not come to an end",
+                found=f"{found.nfev} trials",
+                needed="a least sum of squares",
+                hint="Fit fewer numbers.",
+            )
+        return self._polished(np.asarray(found.x), noise)
+
+    def _polished(self, x: Floats, noise: Floats) -> Floats:
+        """Gauss-Newton steps while they get shorter.
+
+        A search stops where the sum of squares no longer changes, at half the digits of the
+        numbers, by the last digits of a processor.  A number at its bound stays there.
+        """
+        p = len(self.names)
+        margin = _NEAR_BOUND * (self.high - self.low)
+        is_free = np.ones(x.size, dtype=np.bool_)
+        is_free[:p] = (x[:p] > self.low + margin) & (x[:p] < self.high - margin)
+        shortest, left = np.inf, self.residual(x, noise)
+        for _ in range(_POLISHING_STEPS):
+            step = np.zeros_like(x)
+            step[is_free] = -np.linalg.lstsq(self.jacobian(x, noise)[:, is_free], left)[0]
+            trial = x + step
+            length = float(np.linalg.norm(step))
+            if (
+                not length < shortest
+                or np.any(trial[:p] < self.low)
+                or np.any(trial[:p] > self.high)
+            ):
+                break
+            after = self.residual(trial, noise)
+            # not where a kink of the curve lies between: there a step leads anywhere
+            if not after @ after <= (left @ left) * (1 + 1e-9):
+                break
+            x, shortest, left = trial, length, after
+        return x
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class FitSpread:
+    """Covariance of the fitted numbers, in plausible errors, and what it rests on."""
+
+    covariance: Floats
+    freedom: float
+    effective_points: float
+
+
+def spread_of(problem: FitProblem, best: Floats, noise: Floats) -> FitSpread:
+    """Covariance of what was fitted, from the points that the residuals are worth.
+
+    Parameters
+    ----------
+    problem : FitProblem
+        What was fitted.
+    best : ndarray, shape (n_parameter + n_source,)
+        Its answer. [1]
+    noise : ndarray, shape (n_strain,)
+        Standard uncertainty that the points were weighed by. [N]
+
+    Returns
+    -------
+    spread : FitSpread
+        Degrees of freedom at least one.
+
+    Raises
+    ------
+    Nothing
+        A number that the curve does not show has a variance beyond all use, not none.
+
+    Notes
+    -----
+    The information of the data is divided by tau times the reduced chi square, where that is
+    above 1 [7]_; shared errors keep the information of their stated uncertainty.
+
+    Examples
+    --------
+    See `reduction.prediction.hose_comparison.calibrate_hose`.
+
+    >>> FitSpread(np.eye(2), 8.0, 10.0).freedom
+    8.0
+    """
+    p, n = problem.unit.size, noise.size
+    left = problem.remainder(best) / noise
+    length = autocorrelation_length(left)
+    worth = n / length
+    freedom = max(worth - p, 1.0)
+    excess = max(1.0, float(left @ left) / n * length * max(worth / freedom, 1.0))
+    jacobian = problem.jacobian(best, noise)
+    data, prior = jacobian[:n], jacobian[n:]
+    information = data.T @ data / excess + prior.T @ prior
+    diagonal = np.diagonal(information)
+    scale = np.sqrt(np.maximum(diagonal, _LEAST * max(diagonal.max(), 1.0)))
+    size, axes = np.linalg.eigh(information / np.outer(scale, scale))
+    inverse = (axes / np.maximum(size, _LEAST)) @ axes.T
+    covariance = inverse / np.outer(scale, scale)
+    return FitSpread(covariance[:p, :p], freedom, worth)
+
+
+_LEAST_NOISE = 1e-6  # of the RMS tension: points without scatter are not infinitely exact
+
+_AT_BOUND = 1e-4  # of the width between the bounds
+
+_FAR = 2.0  # standard uncertainties
+
+_NOTHING = 1e-3  # of the noise
+
+_WIDE = 0.5  # of the width between the bounds
+
+
+def calibrate_hose(
+    design: HoseDesign,
+    measured: MeasuredCurve,
+    parameters: Sequence[str],
+    *,
+    standard_uncertainty: Mapping[str, float] | None = None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+) -> Calibration:
+    r"""Fit numbers of a hose to the judged curve of a test, with intervals that can be trusted.
+
+    Least of
+
+    .. math:: \sum_i \frac{[T_i(\theta, z) + \sum_j z_j c_{ij} - D_i]^2}{u_i^2 + s^2}
+              + \sum_j z_j^2
+
+    over the numbers :math:`\theta` between their bounds and the shared errors :math:`z`, each of
+    unit variance.  Errors of strain move the strains at which T is taken, uncertain numbers that
+    are not fitted change the hose, and :math:`T_i` is read from it as the curve was from the
+    samples; errors of load and the scatter that cycles have in common are in proportion.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose; where the fit begins, and the numbers that are not fitted.
+    measured : MeasuredCurve
+        The test. [SI]
+    parameters : sequence of str, length n_parameter
+        One to five of `reduction.prediction.hose_comparison.CALIBRATED`.
+    standard_uncertainty : mapping of str to float, optional
+        Of numbers of the design; those of fitted numbers do not hold them back. [SI]
+    bounds : mapping of str to tuple of float, optional
+        Instead of `reduction.prediction.hose_comparison.parameter_bounds`. [SI]
+
+    Returns
+    -------
+    calibration : Calibration
+        Values, intervals, correlations, and whether the curve can tell them apart. [SI]
+
+    Raises
+    ------
+    SettingsError
+        If a number is not one to be fitted, is named twice, or its bounds are empty.
+    DataError
+        If there are fewer points than numbers and two.
+    FitError
+        If the least sum of squares is not found.
+
+    Notes
+    -----
+    *Weights* [9]_. Type A of each strain, and s, one variance for all strains that makes the
+    residuals of a first fit what they should be: where the model is wrong by more than the
+    noise, all strains count alike instead of the few with the least scatter.
+
+    *Intervals.* A model that is wrong is wrong smoothly: neighbouring residuals are no
+    independent witnesses.  The variance of the data is multiplied by the length over which
+    residuals are correlated, tau, and by what is left of the reduced chi square where that
+    is above 1 [7]_; the interval is Student's with n / tau - p degrees of freedom.  Shared
+    errors keep their stated variance.  Not in the interval: a smooth error of the model that
+    fitted numbers can follow and that leaves no residual; but where `identify_directions` finds
+    that the curve does not show a direction, what one percent of it would do is.  An interval
+    that would reach beyond all that a number was allowed is NaN.
+
+    *Start.* Of five values of each number around the design, in all combinations, the best.
+
+    *Break.* Trials whose cords would break within the measured strains go on along their
+    tangent, so that the fit does not fall into a gap.
+
+    Fitted values are those that make the prediction meet this test; a cord scale found from a
+    dynamic test holds what the cord does differently under dynamic load.
+
+    Examples
+    --------
+    A pull of the hose itself, its modulus thought to be a tenth less.
+
+    >>> from reduction.prediction.measured_curve import measured_curve
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> hose = HoseDesign(1.117, (0.0889, 0.0889), 0.0635, 0.127, 34 / 0.0254, 5.6e-4, 1.4e6,
+    ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
+    >>> stroke = np.linspace(0.0, 1.0, 1001)
+    >>> pull = measured_curve(stroke, predict_hose(hose, stroke).tension, loading="static")
+    >>> found = calibrate_hose(
+    ...     design_with(hose, {"rubber_modulus": 1.26e6}), pull, ["rubber_modulus"]
+    ... )
+    >>> print(found.parameter, (found.value / 1e6).round(3), found.identifiability.is_identified)
+    ('rubber_modulus',) [1.4] True
+    """
+    names, stated = tuple(parameters), dict(standard_uncertainty or {})
+    held = {name: u for name, u in stated.items() if name not in names}
+    judged = measured.tension_of(measured.judged)
+    used = np.isfinite(judged)
+    start = np.array([number_of(design, name) for name in names])
+    problem, sources = _pose(design, measured, names, bounds or {}, held)
+    p = len(names)
+    first = problem.solve(problem.start(start / problem.unit), problem.noise)
+    near = design_with(design, dict(zip(names, (first[:p] * problem.unit).tolist(), strict=True)))
+    between = cord_curve_error(near, measured.strain)[used]
+    if np.any(np.abs(between) > problem.noise * _NOTHING):
+        problem = replace(problem, shared=np.vstack([problem.shared, between]))
+        sources = (*sources, "cord curve between its points")
+        first = problem.solve(first, problem.noise)
+    remainder = problem.remainder(first)
+    excess = remainder @ remainder / (remainder.size - p) - np.mean(problem.noise**2)
+    model_error = float(np.sqrt(np.maximum(excess, 0.0)))
+    noise = np.hypot(problem.noise, model_error)
+    best = problem.solve(first, noise)
+    value = best[:p] * problem.unit
+    fitted = design_with(design, dict(zip(names, value.tolist(), strict=True)))
+    spread = spread_of(problem, best, noise)
+    told_apart = identify_directions(
+        problem.slopes(best[: problem.n_traced])[:, :p] / problem.unit,
+        tension=problem.tension_at(best[None, : problem.n_traced])[0],
+        names=names,
+        plausible=problem.unit,
+        value=value,
+        contribution=problem.error_slopes(best),
+        misfit=float(np.sqrt(np.mean(problem.remainder(best) ** 2))),
+    )
+    covariance = spread.covariance * np.outer(problem.unit, problem.unit)
+    covariance += told_apart.open_covariance
+    deviation = np.sqrt(np.diagonal(covariance))
+    width = (problem.high - problem.low) * problem.unit
+    half = stdtrit(spread.freedom, 0.975) * deviation
+    is_wide = 2 * half > _WIDE * width
+    is_known = half <= width
+    half, stated_deviation = (np.where(is_known, one, np.nan) for one in (half, deviation))
+    margin = _AT_BOUND * (problem.high - problem.low)
+    at_bound = (best[:p] - problem.low < margin) | (problem.high - best[:p] < margin)
+    predicted = [predict_hose(one, measured.strain).tension for one in (design, fitted)]
+    before, after = (
+        difference_of(measured.strain, one, judged, curve=measured.judged) for one in predicted
+    )
+    return Calibration(
+        parameter=names,
+        start=start,
+        value=value,
+        standard_uncertainty=stated_deviation,
+        low=value - half,
+        high=value + half,
+        lower_bound=problem.low * problem.unit,
+        upper_bound=problem.high * problem.unit,
+        is_at_bound=at_bound,
+        correlation=covariance / np.outer(deviation, deviation),
+        identifiability=told_apart,
+        design=fitted,
+        before=before,
+        after=after,
+        model_error=model_error,
+        effective_points=spread.effective_points,
+        shared_error=sources,
+        shared_error_value=best[p:],
+        notes=(
+            *_notes_of_numbers(names, told_apart, at_bound, is_wide),
+            *_notes_of_fit(spread, p, sources, best[p:], used & ~np.isfinite(predicted[1])),
+            *_notes_of_stated(names, value - start, stated),
+        ),
+    )
+
+
+def _pose(
+    design: HoseDesign,
+    measured: MeasuredCurve,
+    names: tuple[str, ...],
+    bounds: Mapping[str, tuple[float, float]],
+    held: Mapping[str, float],
+) -> tuple[FitProblem, tuple[str, ...]]:
+    """The problem, and the names of the errors that are fitted beside the numbers."""
+    if not names or len(set(names)) < len(names):
+        raise SettingsError(
+            "what to calibrate cannot be read",
+            found=", ".join(names) or "nothing",
+            needed="one number or more, each once",
+        )
+    start = [number_of(design, name) for name in names]
+    unit = np.array([plausible_error(name, at) for name, at in zip(names, start, strict=True)])
+    limits = []
+    for name, at in zip(names, start, strict=True):
+        low, high = bounds[name] if name in bounds else parameter_bounds(name, at)
+        if not low < high:
+            raise SettingsError(
+                f"the bounds of {name} leave nothing between them",
+                found=f"{low:g} to {high:g}",
+                needed="a lower one below a higher one",
+            )
+        limits.append((low, high))
+    low_high = np.array(limits) / unit[:, None]
+    judged = measured.tension_of(measured.judged)
+    used = np.isfinite(judged)
+    if used.sum() < len(names) + 2:
+        raise DataError(
+            f"too few strains were measured to calibrate {len(names)} numbers",
+            found=f"{int(used.sum())}",
+            needed=f"{len(names) + 2} or more",
+        )
+    floor = _LEAST_NOISE * float(np.sqrt(np.mean(judged[used] ** 2)))
+    stated = known_uncertainties(design, held)
+    is_moved = np.any(measured.strain_error != 0, axis=1)
+    in_proportion = measured.contribution_of(measured.judged)[~is_moved]
+    node = measured.reading.node
+    scatter = measured.scatter_contribution
+    problem = FitProblem(
+        design=design,
+        names=names,
+        unit=unit,
+        low=low_high[:, 0],
+        high=low_high[:, 1],
+        held=stated,
+        moved=np.array(
+            [read_along(node, measured.strain, row) for row in measured.strain_error[is_moved]]
+        ).reshape(-1, node.size),
+        measured=measured,
+        noise=np.maximum(measured.independent_uncertainty()[used], floor),
+        shared=np.vstack([in_proportion, scatter])[:, used],
+    )
+    common = tuple(f"scatter of the cycles {k + 1}" for k in range(scatter.shape[0]))
+    names_of = np.array([error_words(one) for one in measured.component], dtype=object)
+    return problem, (*stated, *names_of[is_moved], *names_of[~is_moved], *common)
+
+
+def _notes_of_numbers(
+    names: tuple[str, ...], told_apart: Identifiability, at_bound: Bools, is_wide: Bools
+) -> list[str]:
+    notes = []
+    if not told_apart.is_identified:
+        notes.append(
+            f"this curve cannot tell {' and '.join(names)} apart: {told_apart.words}, less than "
+            f"the {100 * told_apart.needed_change:.2g} % that an error of the model may be; the "
+            "values are one choice of many, and their intervals are as wide as such an error makes "
+            "them"
+            if len(names) > 1
+            else f"this curve does not show {names[0]}: {told_apart.words}, less than the "
+            f"{100 * told_apart.needed_change:.2g} % that an error of the model may be"
+        )
+    notes += [
+        f"{name} was stopped at a bound: its interval does not hold"
+        for name, stopped in zip(names, at_bound, strict=True)
+        if stopped
+    ]
+    notes += [
+        f"the interval of {name} is wider than half of what it was allowed: not determined"
+        for name, wide in zip(names, is_wide, strict=True)
+        if wide
+    ]
+    return notes
+
+
+def _notes_of_fit(
+    spread: FitSpread, n_fitted: int, sources: tuple[str, ...], z: Floats, broken: Bools
+) -> list[str]:
+    notes = []
+    if spread.effective_points < n_fitted + 1:
+        notes.append(
+            f"residuals are worth {spread.effective_points:.1f} independent points for {n_fitted} "
+            "numbers: what is left is an error of the model, not noise"
+        )
+    notes += [
+        f"{name} would have to be {value:+.1f} of its standard uncertainty off"
+        for name, value in zip(sources, z, strict=True)
+        if abs(value) > _FAR
+    ]
+    if broken.any():
+        notes.append(
+            f"cords of the fitted hose are broken at {int(broken.sum())} of the measured strains: "
+            "there it was held against its tangent"
+        )
+    return notes
+
+
+def _notes_of_stated(
+    names: tuple[str, ...], moved: Floats, stated: Mapping[str, float]
+) -> list[str]:
+    return [
+        f"{name} moved by {step / stated[name]:+.1f} of its stated standard uncertainty"
+        for name, step in zip(names, moved, strict=True)
+        if stated.get(name, 0) > 0 and abs(step) > _FAR * stated[name]
+    ]
+
+
+_DYNAMIC = (
+    "the test is dynamic and the cord curve static: nylon is stiffer under quick load, so that a "
+    "prediction is expected to stretch more than this test; a difference is not of the model alone"
+)
+
+
+def compare_hose(
+    design: HoseDesign,
+    measured: MeasuredCurve,
+    *,
+    standard_uncertainty: Mapping[str, float] | None = None,
+    calibrate: Sequence[str] = (),
+) -> Comparison:
+    """Hold a prediction against a test.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose.
+    measured : MeasuredCurve
+        The test. [SI]
+    standard_uncertainty : mapping of str to float, optional
+        By name of `reduction.prediction.hose_product.HOSE_PARAMETERS`. [SI]
+    calibrate : sequence of str
+        Numbers of the hose to be fitted to the test as well; none where empty.
+
+    Returns
+    -------
+    comparison : Comparison
+        Differences of every curve that was measured; events, energy, cycles, verdict and
+        calibration by the judged one. [SI]
+
+    Raises
+    ------
+    SettingsError
+        If the design is of many hoses, or a name or an uncertainty cannot be used.
+    DataError
+        If prediction and test have no strain in common, or too few for the calibration.
+    FitError
+        If the calibration does not come to an end.
+
+    Notes
+    -----
+    Every difference is predicted less measured [10]_.  The prediction is elastic; it is judged
+    by the midline of the loop, since either branch is off by half of a loop that no cord
+    curve knows of.  The verdict reads the prediction at the strains of the samples, as the curve
+    was, so that a kink is rounded in both.  Where one branch was measured, that one is judged,
+    and a note says so.
+
+    Strains beyond the predicted break of the cords are not in any difference; a note counts them.
+
+    Examples
+    --------
+    >>> from reduction.prediction.measured_curve import measured_curve
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> hose = HoseDesign(1.117, (0.0889, 0.0889), 0.0635, 0.127, 34 / 0.0254, 5.6e-4, 1.4e6,
+    ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
+    >>> stroke = np.linspace(0.0, 1.0, 1001)
+    >>> softer = measured_curve(stroke, 0.9 * predict_hose(hose, stroke).tension, loading="static")
+    >>> found = compare_hose(hose, softer, standard_uncertainty={"rubber_modulus": 0.01e6})
+    >>> print(round(found.differences["ascending"].relative_rms, 3), found.validation.agrees)
+    0.111 False
+    """
+    if design.shape:
+        raise SettingsError(
+            "a comparison is of one hose", found=f"designs of shape {design.shape}", needed="one"
+        )
+    known = dict(standard_uncertainty or {})
+    prediction = predict_hose(design, measured.strain)
+    differences = {
+        curve: difference_of(
+            measured.strain, prediction.tension, measured.tension_of(curve), curve=curve
+        )
+        for curve in measured.curves()
+    }
+    inputs = input_draws(design, known, measured.strain, n_draws=N_DRAWS)
+    events = event_differences(design, measured, standard_uncertainty=known)
+    calibration = (
+        calibrate_hose(design, measured, calibrate, standard_uncertainty=known)
+        if calibrate
+        else None
+    )
+    pick_up = measured_pick_up(measured)
+    return Comparison(
+        measured=measured,
+        prediction=prediction,
+        judged=measured.judged,
+        differences=differences,
+        events=events,
+        energy=energy_difference(prediction.tension, measured),
+        cycles=cycle_differences(prediction.tension, measured),
+        validation=validate_curve(
+            _as_read(design, measured, prediction), measured, input_error=inputs
+        ),
+        calibration=calibration,
+        notes=(*_notes(design, measured, prediction, events[1]), *_of_pick_up(pick_up)),
+        measured_pick_up_strain=pick_up.strain,
+        measured_pick_up_strain_standard_uncertainty=pick_up.standard_uncertainty,
+    )
+
+
+def _as_read(design: HoseDesign, measured: MeasuredCurve, prediction: HosePrediction) -> Floats:
+    """Prediction as the test would show it; plain where it is broken beside a strain."""
+    node = measured.reading.node
+    there = np.isfinite(measured.tension_of(measured.judged))
+    # the curve goes on just below zero, where a record that is read low has strains
+    read = measured.reading.of(np.sign(node) * predict_hose(design, np.abs(node)).tension)
+    return np.where(there & np.isfinite(read), read, prediction.tension)
+
+
+def _of_pick_up(found: PickUp) -> tuple[str, ...]:
+    if not found.reason:
+        return ()
+    return (f"where the cords of the test pick up is not shown: {found.reason}",)
+
+
+def _notes(
+    design: HoseDesign,
+    measured: MeasuredCurve,
+    prediction: HosePrediction,
+    working: EventDifference,
+) -> tuple[str, ...]:
+    notes = list(measured.notes)
+    if measured.loading == "dynamic":
+        notes.append(_DYNAMIC)
+    seen: Bools = np.isfinite(measured.tension_of(measured.judged))
+    n_broken = int(np.sum(seen & prediction.is_broken))
+    if n_broken:
+        notes.append(
+            f"the test went on to strain {measured.strain[seen].max():.4g}; cords are predicted "
+            f"broken at {n_broken} of its {int(seen.sum())} strains, which are in no difference"
+        )
+    angle = float(design.wrap_angle)
+    said = [plausibility_of_working_strain(angle, working.strain)]
+    if np.isfinite(working.measured_strain):
+        said.append(
+            plausibility_of_working_strain(angle, working.measured_strain, loading=measured.loading)
+        )
+    else:
+        last = np.append(measured.strain[seen], measured.end_strain)
+        ended = float(np.nanmax(last))
+        notes.append(
+            f"the judged curve ends at strain {ended:.4g}, before the predicted working load"
+        )
+    sides = ("predicted", "measured")
+    notes += [f"{side} {text}" for side, text in zip(sides, said, strict=False) if text]
+    return tuple(notes)
+
+
+_STATIC = ("quasi-static", "tensile")
+
+_WAY_BACK = 0.5
+
+"""Share of the stroke that a way back has, to be a branch of its own."""
+
+
+def loading_of(kind: str) -> Loading:
+    """How a test of a kind is pulled, where nobody says it.
+
+    >>> loading_of("cyclic")
+    'dynamic'
+    """
+    return "static" if kind in _STATIC else "dynamic"
+
+
+def compare_record(
+    plan: HosePlan,
+    strain: Floats,
+    tension: Floats,
+    *,
+    loading: Loading,
+    cycle_number: Integers | None,
+    branch: Integers | None,
+    break_in_cycles: int = 0,
+    shared: SharedErrors | None = None,
+    calibrate: Sequence[str] = (),
+) -> Comparison:
+    """Hold the prediction of a hose against one test.
+
+    Parameters
+    ----------
+    plan : HosePlan
+        The hose.
+    strain, tension : ndarray, shape (n_samples,)
+        Of the whole relaxed length [1], and axial load [N]; NaN where not usable.
+    loading : {"static", "dynamic"}
+        How it was pulled.
+    cycle_number, branch : ndarray of int, shape (n_samples,), or None
+        Cycles of the test, and their branches; None of a pull, whose way back is a branch too.
+    break_in_cycles : int
+        First cycles that enter no mean.
+    shared : SharedErrors, optional
+        What is wrong alike with all samples; nothing where not given.
+    calibrate : sequence of str
+        Numbers of the hose to be fitted.
+
+    Returns
+    -------
+    comparison : Comparison
+        Differences, verdict, and calibration where asked for.
+
+    Raises
+    ------
+    DataError
+        If no sample is usable, or test and prediction have no strain in common.
+    FitError
+        If the calibration does not come to an end.
+    """
+    usable = np.isfinite(strain) & np.isfinite(tension)
+    if not usable.any():
+        raise DataError(
+            "the test has no sample with strain and tension", found=f"{strain.size} samples",
+            needed="a record with strain and tension",
+        )  # fmt: skip
+    if cycle_number is None or branch is None:
+        cycle_number, branch = _out_and_back(np.where(usable, strain, np.nan))
+    curve = measured_curve(
+        strain,
+        tension,
+        loading=loading,
+        cycle_number=cycle_number,
+        branch=branch,
+        break_in_cycles=break_in_cycles,
+        shared=shared,
+    )
+    return compare_hose(
+        plan.design, curve, standard_uncertainty=plan.standard_uncertainty, calibrate=calibrate
+    )
+
+
+def _out_and_back(strain: Floats) -> tuple[Integers | None, Integers | None]:
+    """A pull and its way back as one cycle; no cycle where it does not come back."""
+    top = int(np.nanargmax(strain))
+    least = np.nanmin(strain[: top + 1])
+    stroke = strain[top] - least
+    back = strain[top] - np.nanmin(strain[top:])
+    if back < _WAY_BACK * stroke:
+        return None, None
+    branch = np.where(np.arange(strain.size) <= top, 1, 2)
+    return np.ones(strain.size, dtype=np.int64), branch

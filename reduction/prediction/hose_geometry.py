@@ -1,0 +1,843 @@
+r"""Geometry of a hose: helix angle, cord length, fabric, helical layers.
+
+Helix on a cylinder at rest: its angle, and how the cylinder's radius follows its stretch.
+
+.. math:: \lambda_r^2 = 1/\lambda_h \text{ (isochoric)}, \qquad \lambda_r = 1 \text{ (rigid)}
+
+Length of a helix on a cylinder that stretches: cords of a hose, wires of an armour layer.
+
+.. math:: \lambda_c^2 = \lambda_h^2 \cos^2 a_0 + \lambda_r^2 \sin^2 a_0
+
+:math:`\lambda_h` is the stretch ratio of the cylinder, :math:`\lambda_c` that of the helix,
+:math:`a_0` the angle at rest between helix and axis.  The radius follows the stretch as
+:math:`\lambda_r^2 = 1/\lambda_h` where wall and filling keep their volume (``isochoric``: the
+water-filled hose), or stays (``rigid``: wires on a core that does not give).
+
+The isochoric form needs both wall and filling incompressible, none of the filling lost, no twist,
+and the ends far away.  A hose that leaks, holds air or turns under load is not of this kind.
+
+Angle of a helix on a cylinder that stretches, and the angle at rest that gives two stretches.
+
+.. math:: \tan a = \tan a_0 \, \lambda_r / \lambda_h
+
+Symbols, and when this holds: `reduction.prediction.hose_geometry`.
+
+From cord fabric to cord layers: ribbon width, number of cords, spacing, dead ends.
+
+A layer is one ribbon of cord fabric, cords along it, butt wrapped: the turns touch.  Rolled
+out, a turn is a parallelogram whose side across the hose is :math:`\pi d_w`, so that
+
+.. math:: w_c = \pi d_w \cos\alpha_0, \qquad N = 2 w_c n_c
+
+The width of the ribbon is what makes the angle: it is cut, and the angle follows from it and
+from the diameter it is wrapped on.
+
+Chart to choose a wrap angle by: cord strain over hose strain.
+
+Layers of a hose that are to carry no load: fish-bite protection, conductors.
+
+They follow the hose as its cords do, :math:`\lambda^2 = \lambda_h^2\cos^2\alpha_0 +
+\sin^2\alpha_0/\lambda_h`, at any diameter: the wall is incompressible and so is its filling,
+and every radius shrinks by the same factor.  The square is convex in the hose stretch, so over
+a range from rest the *greatest* strain stands at an end and the *least* at
+:math:`\lambda_h^3 = \tan^2\alpha_0 / 2`, where the current angle is 54.7356 degrees.
+
+A layer that is steep enough not to be stretched is therefore compressed on the way, the more
+the steeper it is: `least_layer_angle` and `greatest_layer_angle` are the two sides of a window
+that closes when the hose stretches far.
+
+References
+----------
+.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
+   1.2.1.
+.. [2] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, eq.
+   10, 11, 22, 23 and section 2.0.
+.. [3] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, eq. 8
+   and Figure 7.
+.. [4] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004,
+   sections 1.2 and 2.0, eq. 8.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan, pi, sqrt
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.record.arrays import as_finite, as_positive
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Bools, Floats, read_only_arrays
+
+Core = Literal["isochoric", "rigid"]
+
+NEUTRAL_ANGLE = atan(sqrt(2.0))
+
+"""54.7356 deg: wrapped at more, a cord goes slack as a water-filled hose stretches. [rad]."""
+
+
+def squares_of_angle(wrap_angle: ArrayLike) -> tuple[Floats, Floats]:
+    """Squares of cosine and sine of the angle between helix and axis.
+
+    Parameters
+    ----------
+    wrap_angle : array_like, shape (...)
+        At rest. [rad]
+
+    Returns
+    -------
+    cosine2, sine2 : ndarray, shape (...)
+        [1]
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg.
+
+    Examples
+    --------
+    >>> cosine2, sine2 = squares_of_angle(NEUTRAL_ANGLE)
+    >>> print(cosine2.round(4), sine2.round(4))
+    0.3333 0.6667
+    """
+    angle = np.asarray(wrap_angle, dtype=np.float64)
+    is_angle = (angle > 0) & (angle < pi / 2)
+    if not np.all(is_angle):
+        bad = np.atleast_1d(angle)[np.atleast_1d(~is_angle)][0]
+        raise SettingsError(
+            "wrap_angle is no angle of a helix",
+            found=f"{np.degrees(bad):g} deg",
+            needed="between 0 and 90 deg from the axis",
+        )
+    return np.asarray(np.cos(angle) ** 2), np.asarray(np.sin(angle) ** 2)
+
+
+def squared_radius_ratio(stretch_ratio: Floats, core: Core) -> Floats:
+    """Square of the ratio of the radius to that at rest.
+
+    Parameters
+    ----------
+    stretch_ratio : ndarray, shape (...)
+        Of the cylinder. [1]
+    core : {"isochoric", "rigid"}
+        What the radius does.
+
+    Returns
+    -------
+    squared_radius_ratio : ndarray, shape (...)
+        [1]
+
+    Raises
+    ------
+    SettingsError
+        If the core is unknown.
+
+    Examples
+    --------
+    >>> squared_radius_ratio(np.array([1.0, 2.0]), "isochoric")
+    array([1. , 0.5])
+    """
+    check_core(core)
+    unit = np.ones_like(stretch_ratio)
+    return np.asarray(1 / stretch_ratio if core == "isochoric" else unit)
+
+
+def check_core(core: Core) -> None:
+    """Refuse a core that is none.
+
+    Parameters
+    ----------
+    core : {"isochoric", "rigid"}
+        What the radius does.
+
+    Raises
+    ------
+    SettingsError
+        If the core is unknown.
+
+    Examples
+    --------
+    >>> check_core("rigid")
+    """
+    if core not in get_args(Core):
+        raise SettingsError("unknown core", found=str(core), needed=" or ".join(get_args(Core)))
+
+
+def cord_stretch_ratio(
+    stretch_ratio: ArrayLike, wrap_angle: ArrayLike, *, core: Core = "isochoric"
+) -> Floats:
+    r"""Stretch ratio of a helix from that of its cylinder.
+
+    .. math:: \lambda_c = \sqrt{\lambda_h^2 \cos^2 a_0 + \lambda_r^2 \sin^2 a_0}
+
+    Parameters
+    ----------
+    stretch_ratio : array_like, shape (...)
+        :math:`\lambda_h` of the cylinder. [1]
+    wrap_angle : array_like, shape (...)
+        :math:`a_0` at rest, from the axis. [rad]
+    core : {"isochoric", "rigid"}
+        What the radius does.
+
+    Returns
+    -------
+    cord_stretch_ratio : ndarray, shape (...)
+        :math:`\lambda_c`; below one the cord is slack. [1]
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg, or the core is unknown.
+    DataError
+        If a stretch ratio is not a positive number.
+
+    Notes
+    -----
+    Source: [1]_, eq. (8).
+
+    Examples
+    --------
+    A cord at 64 deg is 2.74 % short where it is slackest, and at length again at +61.04 %:
+
+    >>> print((100 * cord_stretch_ratio([1.28096, 1.61039], np.radians(64.0)) - 100).round(2))
+    [-2.74 0. ]
+    """
+    stretch, (cosine2, sine2) = (
+        as_positive("stretch_ratio", stretch_ratio),
+        squares_of_angle(wrap_angle),
+    )
+    return np.asarray(np.sqrt(stretch**2 * cosine2 + squared_radius_ratio(stretch, core) * sine2))
+
+
+def hose_stretch_ratio(
+    cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike, *, core: Core = "isochoric"
+) -> Floats:
+    r"""Stretch ratio of the cylinder at which a helix has a given stretch ratio.
+
+    .. math:: \lambda_h = 2\sqrt{p/3}\,
+       \cos\left(\tfrac13 \arccos\left(-\tfrac32 \frac{q}{p} \sqrt{3/p}\right)\right),
+       \quad p = \lambda_c^2/\cos^2 a_0, \quad q = \tan^2 a_0
+
+    Parameters
+    ----------
+    cord_stretch_ratio : array_like, shape (...)
+        :math:`\lambda_c`. [1]
+    wrap_angle : array_like, shape (...)
+        :math:`a_0` at rest, from the axis. [rad]
+    core : {"isochoric", "rigid"}
+        What the radius does.
+
+    Returns
+    -------
+    stretch_ratio : ndarray, shape (...)
+        :math:`\lambda_h` on the branch where stretch lengthens the helix; NaN where the helix
+        is nowhere as short as asked. [1]
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg, or the core is unknown.
+    DataError
+        If a stretch ratio is not a positive number.
+
+    Notes
+    -----
+    Source: [1]_, eq. (8), which is the cubic :math:`\lambda_h^3 - p \lambda_h + q = 0`; the
+    largest of its three roots in closed form.  With the rigid core the equation is quadratic.
+    At an angle below 54.7356 deg a cord that is shorter than at rest gives a ratio below one.
+
+    Examples
+    --------
+    Cords strained by 3.3 % in a hose with a wrap angle of 64 deg: the 79 % of [1]_, sec. 3.0
+
+    >>> print(hose_stretch_ratio(1.033, np.radians(64.0)).round(4))
+    1.7901
+    """
+    cord, (cosine2, sine2) = (
+        as_positive("cord_stretch_ratio", cord_stretch_ratio),
+        squares_of_angle(wrap_angle),
+    )
+    check_core(core)
+    with np.errstate(invalid="ignore"):
+        if core == "rigid":
+            return np.asarray(np.sqrt(1 + (cord - 1) * (cord + 1) / cosine2))
+        square = cord**2 / cosine2
+        cosine3 = -1.5 * (sine2 / cord**2) * np.sqrt(3 / square)
+        # the shortest helix of all is at -1, and may be found there to rounding only
+        cosine3 = np.where(cosine3 > -1 - 8 * np.finfo(np.float64).eps, cosine3, np.nan)
+        cosine3 = np.maximum(cosine3, -1.0)
+        return np.asarray(2 * np.sqrt(square / 3) * np.cos(np.arccos(cosine3) / 3))
+
+
+def pick_up_stretch_ratio(wrap_angle: ArrayLike) -> Floats:
+    r"""Stretch ratio of a water-filled hose at which its slack cords are at length again.
+
+    .. math:: \lambda_h^* = \tfrac12\left(\sqrt{1 + 4\tan^2 a_0} - 1\right)
+
+    Parameters
+    ----------
+    wrap_angle : array_like, shape (...)
+        :math:`a_0` at rest, from the axis. [rad]
+
+    Returns
+    -------
+    stretch_ratio : ndarray, shape (...)
+        One where the angle is not above 54.7356 deg: the cords bear load from the start. [1]
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg.
+
+    Notes
+    -----
+    Source: [1]_, eq. (8) with :math:`\lambda_c = 1`, divided by its root
+    :math:`\lambda_h = 1`: :math:`\lambda_h^2 + \lambda_h - \tan^2 a_0 = 0`.
+
+    Examples
+    --------
+    >>> print((100 * pick_up_stretch_ratio(np.radians([50.0, 64.0, 68.0])) - 100).round(2))
+    [  0.    61.04 102.51]
+    """
+    cosine2, sine2 = squares_of_angle(wrap_angle)
+    above = np.maximum(sine2 / cosine2 - 2, 0.0)
+    return np.asarray(1 + 2 * above / (3 + np.sqrt(9 + 4 * above)))
+
+
+def slackest_stretch_ratio(wrap_angle: ArrayLike) -> Floats:
+    r"""Stretch ratio of a water-filled hose at which its cords are shortest.
+
+    .. math:: \lambda_h = \left(\tfrac12 \tan^2 a_0\right)^{1/3}
+
+    Parameters
+    ----------
+    wrap_angle : array_like, shape (...)
+        :math:`a_0` at rest, from the axis. [rad]
+
+    Returns
+    -------
+    stretch_ratio : ndarray, shape (...)
+        One where the angle is not above 54.7356 deg. [1]
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg.
+
+    Notes
+    -----
+    Where the derivative of eq. (8) of [1]_ is zero.  The current angle is then 54.7356 deg at
+    any angle at rest, by eq. (7).
+
+    Examples
+    --------
+    >>> from reduction.prediction.hose_geometry import current_wrap_angle
+    >>> slackest = slackest_stretch_ratio(np.radians([64.0, 68.0]))
+    >>> print(slackest.round(4))
+    [1.281 1.4523]
+    >>> print(np.degrees(current_wrap_angle(slackest, np.radians([64.0, 68.0]))).round(4))
+    [54.7356 54.7356]
+    """
+    cosine2, sine2 = squares_of_angle(wrap_angle)
+    return np.asarray(np.maximum(np.cbrt(sine2 / cosine2 / 2), 1.0))
+
+
+def current_wrap_angle(
+    stretch_ratio: ArrayLike, wrap_angle: ArrayLike, *, core: Core = "isochoric"
+) -> Floats:
+    r"""Angle of the helix on the stretched cylinder.
+
+    .. math:: \tan a = \tan a_0 \, \lambda_r / \lambda_h
+
+    Parameters
+    ----------
+    stretch_ratio : array_like, shape (...)
+        :math:`\lambda_h` of the cylinder. [1]
+    wrap_angle : array_like, shape (...)
+        :math:`a_0` at rest, from the axis. [rad]
+    core : {"isochoric", "rigid"}
+        What the radius does.
+
+    Returns
+    -------
+    current_wrap_angle : ndarray, shape (...)
+        :math:`a`, from the axis. [rad]
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg, or the core is unknown.
+    DataError
+        If a stretch ratio is not a positive number.
+
+    Notes
+    -----
+    Source: [1]_, eq. (7), :math:`\lambda_r/\lambda_h = \lambda_h^{-3/2}`.
+
+    Examples
+    --------
+    >>> print(np.degrees(current_wrap_angle(2.3, np.radians(68.0))).round(2))
+    35.36
+    """
+    stretch, (cosine2, sine2) = (
+        as_positive("stretch_ratio", stretch_ratio),
+        squares_of_angle(wrap_angle),
+    )
+    tangent = np.sqrt(squared_radius_ratio(stretch, core) * sine2 / cosine2) / stretch
+    return np.asarray(np.arctan(tangent))
+
+
+def wrap_angle_for(
+    stretch_ratio: ArrayLike, cord_stretch_ratio: ArrayLike, *, core: Core = "isochoric"
+) -> Floats:
+    r"""Angle at rest that gives both stretch ratios at once.
+
+    .. math:: \cos^2 a_0 = \frac{\lambda_c^2 - \lambda_r^2}{\lambda_h^2 - \lambda_r^2}
+
+    Parameters
+    ----------
+    stretch_ratio : array_like, shape (...)
+        :math:`\lambda_h` of the cylinder. [1]
+    cord_stretch_ratio : array_like, shape (...)
+        :math:`\lambda_c` of the helix. [1]
+    core : {"isochoric", "rigid"}
+        What the radius does.
+
+    Returns
+    -------
+    wrap_angle : ndarray, shape (...)
+        :math:`a_0` at rest, from the axis; NaN where no angle between 0 and 90 deg does. [rad]
+
+    Raises
+    ------
+    SettingsError
+        If the core is unknown.
+    DataError
+        If a stretch ratio is not a positive number.
+
+    Notes
+    -----
+    Source: [1]_, eq. (8) solved for the angle.
+
+    Examples
+    --------
+    Cords strained by 5.65 % at the 130 % of the second hose of [1]_, sec. 3.0:
+
+    >>> print(np.degrees(wrap_angle_for(2.3, 1.0565)).round(2))
+    68.
+    """
+    stretch = as_positive("stretch_ratio", stretch_ratio)
+    cord2 = as_positive("cord_stretch_ratio", cord_stretch_ratio) ** 2
+    radius2 = squared_radius_ratio(stretch, core)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        tangent2 = (stretch**2 - cord2) / (cord2 - radius2)
+        is_angle = (tangent2 > 0) & np.isfinite(tangent2)
+        return np.asarray(np.arctan(np.sqrt(np.where(is_angle, tangent2, np.nan))))
+
+
+def ribbon_width(wrap_diameter: ArrayLike, wrap_angle: ArrayLike) -> Floats:
+    r"""Width to which the ribbon of one layer is cut.
+
+    Parameters
+    ----------
+    wrap_diameter : array_like, shape (...)
+        Mean diameter of the layer at rest. [m]
+    wrap_angle : array_like, shape (...)
+        Wanted, from the hose axis, 0 to below pi/2. [rad]
+
+    Returns
+    -------
+    width : ndarray, shape (...)
+        Across the cords, :math:`\pi d_w \cos\alpha_0`. [m]
+
+    Raises
+    ------
+    DataError
+        If a diameter is not positive or an angle is outside its range.
+
+    Notes
+    -----
+    Eq. 10 of [2]_ (module): :math:`p_c \sin\alpha_0` with the pitch :math:`p_c = \pi d_w /
+    \tan\alpha_0` is the same.  Each of two layers needs its own width, as it has its own
+    diameter.
+
+    Examples
+    --------
+    A 3.5 in layer at 64 degrees, in inches.
+
+    >>> print(ribbon_width(3.5, np.radians(64)).round(3))
+    4.82
+    """
+    angle = as_finite("wrap_angle", wrap_angle)
+    if np.any((angle < 0) | (angle >= pi / 2)):
+        raise DataError(
+            "wrap_angle is no angle of a ribbon",
+            found=f"{np.degrees(angle).min():g} to {np.degrees(angle).max():g} deg",
+            needed="from 0 to below 90 deg",
+        )
+    return np.asarray(pi * as_positive("wrap_diameter", wrap_diameter) * np.cos(angle))
+
+
+def number_of_cords(
+    wrap_diameter: ArrayLike, wrap_angle: ArrayLike, cords_per_length: ArrayLike
+) -> Floats:
+    """Cords in a cross-section of the hose, both layers together.
+
+    Parameters
+    ----------
+    wrap_diameter : array_like, shape (...)
+        Mean of the two layers at rest. [m]
+    wrap_angle : array_like, shape (...)
+        From the hose axis, 0 to below pi/2. [rad]
+    cords_per_length : array_like, shape (...)
+        Of the fabric, across the cords. [m-1]
+
+    Returns
+    -------
+    number : ndarray, shape (...)
+        N, not rounded: a ribbon need not end between two cords. [1]
+
+    Raises
+    ------
+    DataError
+        If a diameter or a cord density is not positive, or an angle is outside its range.
+
+    Notes
+    -----
+    Eq. 11 of [2]_ (module), with eq. 10.
+
+    Examples
+    --------
+    3.5 in and 34 cords an inch, 64 and 68 degrees.
+
+    >>> print(number_of_cords(3.5, np.radians([64, 68]), 34).round(1))
+    [327.8 280.1]
+    """
+    density = as_positive("cords_per_length", cords_per_length)
+    return 2 * ribbon_width(wrap_diameter, wrap_angle) * density
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class CordStrainChart:
+    """Cord strain over hose strain for a family of wrap angles.
+
+    Hose strains are of the whole relaxed length.
+
+    Parameters
+    ----------
+    wrap_angle : ndarray, shape (n_angles,)
+        At rest, from the axis. [rad]
+    strain : ndarray, shape (n_strain,)
+        Of the hose. [1]
+    cord_strain : ndarray, shape (n_angles, n_strain)
+        Below zero where a cord is slack. [1]
+    slackest_strain, slackest_cord_strain : ndarray, shape (n_angles,)
+        Of hose and cord where the cords are shortest; zero at 54.7356 degrees and below. [1]
+    pick_up_strain : ndarray, shape (n_angles,)
+        Of the hose where the cords are at length again. [1]
+    neutral_angle : float
+        Above it cords go slack at first: 54.7356 degrees. [rad]
+    """
+
+    wrap_angle: Floats
+    strain: Floats
+    cord_strain: Floats
+    slackest_strain: Floats
+    slackest_cord_strain: Floats
+    pick_up_strain: Floats
+    neutral_angle: float
+
+
+def cord_strain_chart(
+    wrap_angle: ArrayLike, strain: ArrayLike, *, dead_length_share: float = 0.0
+) -> CordStrainChart:
+    """Cord strain over hose strain for a family of wrap angles: Figure 7.
+
+    Parameters
+    ----------
+    wrap_angle : array_like, shape (n_angles,)
+        At rest, from the hose axis. [rad]
+    strain : array_like, shape (n_strain,)
+        Of the whole relaxed length. [1]
+    dead_length_share : float
+        Part of the relaxed length that does not stretch. [1]
+
+    Returns
+    -------
+    chart : CordStrainChart
+        The curves, their lowest points and where they come back to zero.
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg.
+    DataError
+        If a strain is -1 or less, an input is no series, or the share is none.
+
+    Notes
+    -----
+    Eq. 8 of [3]_ (module).  The report reads "about 54 degrees" from its figure for the angle
+    above which cords go slack; it is the arctangent of the root of two.
+
+    Examples
+    --------
+    >>> chart = cord_strain_chart(np.radians([54.0, 64.0, 68.0]), [0.5, 1.0])
+    >>> print(chart.cord_strain.round(3))
+    [[ 0.102 0.307]
+     [-0.015 0.083]
+     [-0.057 -0.004]]
+    >>> print((100 * chart.slackest_cord_strain).round(2) + 0)
+    [ 0. -2.74 -5.77]
+    """
+    angle, along = _series("wrap_angle", wrap_angle), _series("strain", strain)
+    free = _free(dead_length_share)
+    slackest = slackest_stretch_ratio(angle)
+    return CordStrainChart(
+        wrap_angle=np.array(angle),
+        strain=np.array(along),
+        cord_strain=cord_stretch_ratio(1 + along / free, angle[:, None]) - 1,
+        slackest_strain=free * (slackest - 1),
+        slackest_cord_strain=cord_stretch_ratio(slackest, angle) - 1,
+        pick_up_strain=free * (pick_up_stretch_ratio(angle) - 1),
+        neutral_angle=NEUTRAL_ANGLE,
+    )
+
+
+def _series(name: str, values: ArrayLike) -> Floats:
+    series = as_finite(name, values)
+    if series.ndim != 1:
+        raise DataError(f"{name} is not a series", found=f"shape {series.shape}", needed="1-D")
+    return series
+
+
+def _free(dead_length_share: float) -> float:
+    if not 0 <= dead_length_share < 1:
+        raise DataError(
+            "dead_length_share is no share", found=f"{dead_length_share:g}", needed="0 to below 1"
+        )
+    return 1 - dead_length_share
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class LayerRange:
+    """Strain of a helical layer while the hose goes from rest to a strain.
+
+    Arrays have the shape (...) of angles and strains together.
+
+    Parameters
+    ----------
+    least_strain, greatest_strain : ndarray
+        Of the layer. [1]
+    strain_at_least, strain_at_greatest : ndarray
+        Of the hose, where they occur. [1]
+    final_strain : ndarray
+        Of the layer at the end of the range. [1]
+    is_compressed, is_over_limit : ndarray of bool
+        Shorter than at rest somewhere; longer than its limit somewhere.
+    """
+
+    least_strain: Floats
+    greatest_strain: Floats
+    strain_at_least: Floats
+    strain_at_greatest: Floats
+    final_strain: Floats
+    is_compressed: Bools
+    is_over_limit: Bools
+
+
+def layer_range(
+    wrap_angle: ArrayLike,
+    hose_strain: ArrayLike,
+    *,
+    strain_limit: ArrayLike = np.inf,
+    dead_length_share: ArrayLike = 0.0,
+) -> LayerRange:
+    """Least and greatest strain of a layer while the hose is stretched from rest.
+
+    Parameters
+    ----------
+    wrap_angle : array_like, shape (...)
+        Of the layer at rest, from the hose axis. [rad]
+    hose_strain : array_like, shape (...)
+        End of the range, of the whole length: at the working load, or at the break. [1]
+    strain_limit : array_like, shape (...)
+        Greatest tensile strain that the layer bears. [1]
+    dead_length_share : array_like, shape (...)
+        Of the hose. [1]
+
+    Returns
+    -------
+    range : LayerRange
+        Strains of the layer, where they occur, and what is exceeded.
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg.
+    DataError
+        If a strain, limit or share is outside its range.
+
+    Notes
+    -----
+    Eq. 8 of [4]_ (module); convex, hence no search.  The report says that a steep layer will
+    "not be stretched, just changed in [its] geometry": it is also shortened.
+
+    Examples
+    --------
+    A layer at 71.1 degrees over a working range of 146 %: not stretched, but 9 % compressed at
+    62 %.
+
+    >>> layer = layer_range(np.radians(71.1), 1.46)
+    >>> print(layer.greatest_strain, layer.least_strain.round(3), layer.strain_at_least.round(2))
+    0.0 -0.09 0.62
+    """
+    angle = np.asarray(wrap_angle, dtype=np.float64)
+    stretch = _stretch(hose_strain, dead_length_share)
+    limit = _limit("strain_limit", strain_limit)
+    angle, stretch, limit = np.broadcast_arrays(angle, stretch, limit)
+    share = np.asarray(dead_length_share, dtype=np.float64)
+    shortest = np.minimum(slackest_stretch_ratio(angle), stretch)
+    final, least = (
+        # at rest nothing is strained, which rounding may not say
+        np.where(one > 1, cord_stretch_ratio(one, angle) - 1, 0.0)
+        for one in (stretch, shortest)
+    )
+    return LayerRange(
+        least_strain=np.asarray(least),
+        greatest_strain=np.asarray(np.maximum(final, 0)),
+        strain_at_least=np.asarray((1 - share) * (shortest - 1)),
+        strain_at_greatest=np.asarray(np.where(final > 0, (1 - share) * (stretch - 1), 0)),
+        final_strain=np.asarray(final),
+        is_compressed=np.asarray(least < 0),
+        is_over_limit=np.asarray(final > limit),
+    )
+
+
+def least_layer_angle(
+    hose_strain: ArrayLike, *, strain_limit: ArrayLike = 0.0, dead_length_share: ArrayLike = 0.0
+) -> Floats:
+    r"""Smallest wrap angle at which a layer is nowhere stretched beyond its limit.
+
+    Parameters
+    ----------
+    hose_strain : array_like, shape (...)
+        End of the range, of the whole length: at the working load, or at the break. [1]
+    strain_limit : array_like, shape (...)
+        Greatest tensile strain that the layer bears; 0 where it is not to be stretched. [1]
+    dead_length_share : array_like, shape (...)
+        Of the hose. [1]
+
+    Returns
+    -------
+    wrap_angle : ndarray, shape (...)
+        From the hose axis; 0 where every angle will do. [rad]
+
+    Raises
+    ------
+    DataError
+        If a strain, limit or share is outside its range.
+
+    Notes
+    -----
+    The greatest strain stands at the end of the range, so the angle is that of eq. 8 of [4]_
+    (module) there; for no stretch at all :math:`\tan^2\alpha_0 = \lambda_h^2 + \lambda_h`.
+
+    Examples
+    --------
+    A hose that works at 146 %: its protection at 71.1 degrees, or at 69.4 where it bears 5 %.
+
+    >>> print(np.degrees(least_layer_angle(1.46, strain_limit=[0, 0.05])).round(1))
+    [71.1 69.4]
+    """
+    stretch = _stretch(hose_strain, dead_length_share)
+    limit = _limit("strain_limit", strain_limit)
+    stretch, limit = np.broadcast_arrays(stretch, limit)
+    is_free = 1 + limit >= stretch  # even along the hose it is not stretched further
+    safe = np.where(is_free, 2.0, stretch)
+    angle = wrap_angle_for(safe, np.where(is_free, 1.0, 1 + limit))
+    return np.asarray(np.where(is_free, 0.0, angle))
+
+
+def greatest_layer_angle(
+    hose_strain: ArrayLike, *, compression_limit: ArrayLike, dead_length_share: ArrayLike = 0.0
+) -> Floats:
+    r"""Greatest wrap angle at which a layer is nowhere compressed beyond its limit.
+
+    Parameters
+    ----------
+    hose_strain : array_like, shape (...)
+        End of the range, of the whole length: at the working load, or at the break. [1]
+    compression_limit : array_like, shape (...)
+        Greatest compressive strain that the layer bears, a positive number below 1. [1]
+    dead_length_share : array_like, shape (...)
+        Of the hose. [1]
+
+    Returns
+    -------
+    wrap_angle : ndarray, shape (...)
+        From the hose axis; pi/2 where every angle will do. [rad]
+
+    Raises
+    ------
+    DataError
+        If a strain, limit or share is outside its range.
+
+    Notes
+    -----
+    From eq. 8 of [4]_ (module) the least stretch ratio :math:`\lambda` of a layer obeys
+    :math:`\lambda^6 = \tfrac{27}{4} \sin^4\alpha_0 \cos^2\alpha_0`; with :math:`q =
+    \cos^2\alpha_0` that is a cubic, and :math:`q = \tfrac23 [1 + \cos(\tfrac23
+    \arccos\lambda^3 - \tfrac{4\pi}{3})]`.  Where the range ends before that least ratio, the
+    ratio at its end decides.  Below `least_layer_angle` there is no angle that does both.
+
+    Examples
+    --------
+    A conductor that bears 2 % of compression has to lie below 62.7 degrees, where a hose at
+    146 % stretches it by 26 %: no angle avoids both.
+
+    >>> print(np.degrees(greatest_layer_angle(1.46, compression_limit=0.02)).round(1))
+    62.7
+    """
+    stretch = _stretch(hose_strain, dead_length_share)
+    limit = _limit("compression_limit", compression_limit)
+    if np.any(limit >= 1):
+        raise DataError(
+            "compression_limit leaves no length", found=f"{limit.max():g}", needed="below 1"
+        )
+    stretch, limit = np.broadcast_arrays(stretch, limit)
+    ratio = 1 - limit
+    along = 2 / 3 * (1 + np.cos(2 / 3 * np.arccos(ratio**3) - 4 * pi / 3))
+    inside = np.arccos(np.sqrt(np.clip(along, 0, 1 / 3)))
+    # where the range ends early: the angle that is just so short at its end
+    is_free = ratio**2 * stretch <= 1
+    is_at_rest = stretch == 1
+    at_end = wrap_angle_for(
+        np.where(is_free | is_at_rest, 2.0, stretch), np.where(is_free | is_at_rest, 1.0, ratio)
+    )
+    at_end = np.where(is_free | is_at_rest, pi / 2, at_end)
+    return np.asarray(np.where(slackest_stretch_ratio(inside) <= stretch, inside, at_end))
+
+
+def _limit(name: str, limit: ArrayLike) -> Floats:
+    value = np.asarray(limit, dtype=np.float64)
+    if not np.all(value >= 0):
+        raise DataError(f"{name} is negative or missing", needed="zero or more")
+    return value
+
+
+def _stretch(hose_strain: ArrayLike, dead_length_share: ArrayLike) -> Floats:
+    strain = as_finite("hose_strain", hose_strain)
+    share = as_finite("dead_length_share", dead_length_share)
+    if np.any(strain < 0):
+        raise DataError("hose_strain is negative", found=f"{strain.min():g}", needed="zero or more")
+    if np.any((share < 0) | (share >= 1)):
+        raise DataError("dead_length_share is no share", needed="from 0 to below 1")
+    return np.asarray(1 + strain / (1 - share))

@@ -1,0 +1,263 @@
+"""A hose from its plan to its response and events.
+
+A hose prediction as it was asked for and as it came out.
+
+`reduction.prediction.hose_prediction` makes it, `reduction.archive` stores it; neither knows the
+other.
+
+A hose from its plan to its response, its events, and what is to be said of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from reduction.prediction.hose_geometry import (
+    NEUTRAL_ANGLE,
+    greatest_layer_angle,
+    layer_range,
+    least_layer_angle,
+    number_of_cords,
+    ribbon_width,
+)
+from reduction.prediction.hose_product import HoseDesign, HoseEvents, HosePrediction
+from reduction.prediction.hose_tension import find_events, predict_hose
+from reduction.prediction.hose_uncertainty import HoseUncertainty, propagate_hose
+from reduction.record.errors import SettingsError
+from reduction.record.measurement import Bools, Floats
+
+
+@dataclass(frozen=True)
+class HelicalLayer:
+    """A layer that carries no load: fish-bite protection, conductors.
+
+    ``wrap_angle`` is from the axis [rad]; ``strain_limit`` is the greatest tensile strain
+    that it bears and ``compression_limit`` the greatest compressive one, a positive number
+    [1]; NaN where none is stated.
+    """
+
+    name: str
+    wrap_angle: float
+    strain_limit: float
+    compression_limit: float
+
+
+@dataclass(frozen=True)
+class HosePlan:
+    """What is to be predicted.
+
+    ``standard_uncertainty`` is by name of `reduction.prediction.hose_product.HOSE_PARAMETERS`, in
+    the unit of that number; ``strain_step`` and ``greatest_strain`` are of the whole length [1],
+    the latter NaN to go on to the break of the cords.
+    """
+
+    name: str
+    design: HoseDesign
+    standard_uncertainty: dict[str, float] = field(default_factory=dict)
+    strain_step: float = 0.01
+    greatest_strain: float = float("nan")
+    layers: tuple[HelicalLayer, ...] = ()
+
+
+@dataclass(frozen=True)
+class HoseTarget:
+    """What a hose is to do where its cords bear their working share.
+
+    ``strain`` is of the whole length [1], ``tension`` the safe working load, None where any
+    will do [N].
+    """
+
+    strain: float
+    tension: float | None
+
+
+@dataclass(frozen=True)
+class LayerResponse:
+    """Strain of a layer that carries no load while the hose goes to its working load.
+
+    ``least_strain``, ``greatest_strain`` and ``break_strain``, the greatest one up to the
+    break of the cords, are of the layer [1]; ``least_angle`` is the smallest angle at which it
+    is not stretched beyond its limit, ``greatest_angle`` the greatest at which it is not
+    compressed beyond its own, NaN where no limit is stated [rad].
+    """
+
+    layer: HelicalLayer
+    least_strain: float
+    greatest_strain: float
+    break_strain: float
+    least_angle: float
+    greatest_angle: float
+
+
+@dataclass(frozen=True)
+class PredictedHose:
+    """A plan with its response, its events, their uncertainty and its other layers.
+
+    ``ribbon_width`` is of each of the two cord layers [m], ``number_of_cords`` of both [1].
+    """
+
+    plan: HosePlan
+    prediction: HosePrediction
+    events: HoseEvents
+    uncertainty: HoseUncertainty
+    ribbon_width: tuple[float, float]
+    number_of_cords: float
+    layers: tuple[LayerResponse, ...]
+    notes: tuple[str, ...]
+
+
+_MOST_POINTS = 20_000
+
+_HIGH_UNCERTAINTY = 0.2
+
+
+def predict_from_plan(plan: HosePlan) -> PredictedHose:
+    """Predict one hose.
+
+    Parameters
+    ----------
+    plan : HosePlan
+        As read.
+
+    Returns
+    -------
+    hose : PredictedHose
+        At every step of strain, and at the events themselves.
+
+    Raises
+    ------
+    SettingsError
+        If the step is so small that there is no end of points.
+    """
+    design = plan.design
+    events = find_events(design)
+    strain = _strains(plan, float(events.cord_break.strain))
+    prediction = predict_hose(design, strain)
+    uncertainty = propagate_hose(design, strain, plan.standard_uncertainty)
+    working, at_break = float(events.working.strain), float(events.cord_break.strain)
+    share = float(design.dead_length_share)
+    layers = tuple(_layer(layer, working, at_break, share) for layer in plan.layers)
+    first, second = (
+        float(ribbon_width(diameter, design.wrap_angle)) for diameter in design.layer_diameter
+    )
+    relative = float(uncertainty.working.tension_standard_uncertainty) / float(
+        events.working.tension
+    )
+    notes = [*_notes_of_design(plan, prediction), *(text for one in layers for text in _says(one))]
+    if relative > _HIGH_UNCERTAINTY:
+        notes.append(f"the safe working load is uncertain by {100 * relative:.0f} % (k = 1)")
+    return PredictedHose(
+        plan=plan,
+        prediction=prediction,
+        events=events,
+        uncertainty=uncertainty,
+        ribbon_width=(first, second),
+        number_of_cords=float(
+            number_of_cords(design.wrap_diameter, design.wrap_angle, design.cords_per_length)
+        ),
+        layers=layers,
+        notes=tuple(notes),
+    )
+
+
+def _strains(plan: HosePlan, at_break: float) -> Floats:
+    """Whole steps up to the end, and the end itself where it is the break of the cords."""
+    end = at_break if np.isnan(plan.greatest_strain) else plan.greatest_strain
+    if end / plan.strain_step > _MOST_POINTS:
+        raise SettingsError(
+            f"hose '{plan.name}' has no end of strains",
+            found=f"{end / plan.strain_step:.3g} steps of {100 * plan.strain_step:g} %",
+            needed=f"at most {_MOST_POINTS}",
+            hint="Make strain_step larger, or greatest_strain smaller.",
+        )
+    n_steps = int(np.floor(end / plan.strain_step + 1e-9)) + 1
+    steps = np.arange(n_steps, dtype=np.float64) * plan.strain_step
+    if np.isnan(plan.greatest_strain) and steps[-1] < end:
+        return np.append(steps, end)
+    return steps
+
+
+def _layer(
+    layer: HelicalLayer, working: float, at_break: float, dead_length_share: float
+) -> LayerResponse:
+    upto = layer_range(layer.wrap_angle, working, dead_length_share=dead_length_share)
+    further = layer_range(layer.wrap_angle, at_break, dead_length_share=dead_length_share)
+    least = greatest = np.nan
+    if np.isfinite(layer.strain_limit):
+        least = float(
+            least_layer_angle(
+                working, strain_limit=layer.strain_limit, dead_length_share=dead_length_share
+            )
+        )
+    if np.isfinite(layer.compression_limit):
+        greatest = float(
+            greatest_layer_angle(
+                working,
+                compression_limit=layer.compression_limit,
+                dead_length_share=dead_length_share,
+            )
+        )
+    return LayerResponse(
+        layer=layer,
+        least_strain=float(upto.least_strain),
+        greatest_strain=float(upto.greatest_strain),
+        break_strain=float(further.greatest_strain),
+        least_angle=least,
+        greatest_angle=greatest,
+    )
+
+
+def _says(one: LayerResponse) -> list[str]:
+    """What a layer does that it does not bear."""
+    name, said = one.layer.name, []
+    if one.greatest_strain > one.layer.strain_limit:
+        said.append(
+            f"layer {name} is stretched by {100 * one.greatest_strain:.1f} % at the working load, "
+            f"above its {100 * one.layer.strain_limit:g} %: it needs "
+            f"{np.degrees(one.least_angle):.1f} degrees or more"
+        )
+    if -one.least_strain > one.layer.compression_limit:
+        said.append(
+            f"layer {name} is compressed by {-100 * one.least_strain:.1f} % on the way, above its "
+            f"{100 * one.layer.compression_limit:g} %: it needs "
+            f"{np.degrees(one.greatest_angle):.1f} degrees or less"
+        )
+    if one.greatest_angle < one.least_angle:
+        said.append(f"layer {name}: no angle keeps it within both limits up to the working load")
+    return said
+
+
+def _notes_of_design(plan: HosePlan, prediction: HosePrediction) -> list[str]:
+    design: HoseDesign = plan.design
+    notes = []
+    if float(design.wrap_angle) <= NEUTRAL_ANGLE:
+        notes.append(
+            f"at {np.degrees(float(design.wrap_angle)):.2f} degrees there is no slack zone: the "
+            "cords carry from the first"
+        )
+    for name, what in (
+        ("is_jammed", "neighbouring cords touch"),
+        ("is_bore_too_small", "the bore is below its limit"),
+    ):
+        where = _ranges(prediction.strain, getattr(prediction, name))
+        if where:
+            notes.append(f"{what} {where} % strain: the prediction does not hold there")
+    beyond = prediction.strain[prediction.is_broken]
+    if beyond.size:
+        notes.append(f"the cords are broken from {100 * beyond[0]:.1f} % strain: no load is given")
+    if not plan.standard_uncertainty:
+        notes.append("no number of the hose has a stated uncertainty: none is given")
+    return notes
+
+
+def _ranges(strain: Floats, is_so: Bools) -> str:
+    """Where something is so; cords of a steep hose may touch at rest and, again, near the end."""
+    place = np.flatnonzero(is_so)
+    if not place.size:
+        return ""
+    runs = np.split(place, np.flatnonzero(np.diff(place) > 1) + 1)
+    return " and ".join(
+        f"from {100 * strain[run[0]]:.1f} to {100 * strain[run[-1]]:.1f}" for run in runs
+    )

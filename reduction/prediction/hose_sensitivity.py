@@ -1,0 +1,436 @@
+r"""Derivatives of a hose prediction by the numbers of its design.
+
+How the stretch of a water-filled hose goes with the stretch and the angle of its cords.
+
+Derivatives of the kinematics of `reduction.prediction.hose_geometry`.
+
+Where a hose is, at a strain or at an event, and how its numbers move it from there.
+
+With :math:`P` the tension of a cord, :math:`d_w` the mean diameter of the layers and :math:`n`
+the cords per length, the net tension and the fill pressure are
+
+.. math::
+
+    T &= 2\pi n d_w P\, G/\lambda_c + A\,R(\lambda_h), \qquad
+    G = \lambda_h \cos^2\alpha_0 - \sin^2\alpha_0 / (2\lambda_h^2) \\
+    p &= 2 n \left(d_1^{-1} + d_2^{-1}\right) P \sin^2\alpha_0 / (\lambda_h\lambda_c)
+
+A number of the design acts directly, and through :math:`\lambda_h`, :math:`\lambda_c` and
+:math:`P`.  On the curve the strain is held: the angle moves the cord strain, the dead length
+the free stretch.  At an event the cord strain is held: the hose stretch follows.
+
+References
+----------
+.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
+   1.2.1.
+.. [2] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
+   1.2.
+.. [3] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, eq. 8,
+   24 and 26 (the equations that are differentiated, with the end cap by virtual work).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.prediction.cord_curve import cord_load, cord_stiffness, cord_strain_at
+from reduction.prediction.hose_geometry import (
+    NEUTRAL_ANGLE,
+    cord_stretch_ratio,
+    hose_stretch_ratio,
+    pick_up_stretch_ratio,
+    slackest_stretch_ratio,
+)
+from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseDesign
+from reduction.prediction.rubber_wall import rubber_stiffness, rubber_tension
+from reduction.record.arrays import as_finite
+from reduction.record.measurement import Floats, read_only_arrays
+
+
+def stretch_ratio_per_angle(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike) -> Floats:
+    r"""How the stretch of a water-filled hose at a given stretch of its cords goes with the angle.
+
+    .. math:: \frac{\partial\lambda_h}{\partial a_0} = \frac{(\lambda_h^2 - 1/\lambda_h)\sin a_0
+       \cos a_0}{\lambda_h \cos^2 a_0 - \sin^2 a_0/(2\lambda_h^2)}
+
+    Parameters
+    ----------
+    cord_stretch_ratio : array_like, shape (...)
+        :math:`\lambda_c`, held. [1]
+    wrap_angle : array_like, shape (...)
+        :math:`a_0` at rest, from the axis. [rad]
+
+    Returns
+    -------
+    stretch_ratio_per_angle : ndarray, shape (...)
+        NaN where the cord is nowhere as short as asked. [rad-1]
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg.
+    DataError
+        If a stretch ratio is not a positive number.
+
+    Notes
+    -----
+    Eq. (8) of [1]_ differentiated at constant :math:`\lambda_c`.
+
+    Examples
+    --------
+    Points of stretch a degree, at a cord strain of 9.5 %:
+
+    >>> print(np.radians(100 * stretch_ratio_per_angle(1.095, np.radians([64.0, 68.0]))).round(1))
+    [ 8.6 12.5]
+    """
+    stretch, cosine2, sine2 = _stretched(cord_stretch_ratio, wrap_angle)
+    rise = (stretch**2 - 1 / stretch) * np.sqrt(cosine2 * sine2)
+    return np.asarray(rise / rise_of_cord(stretch, cosine2, sine2))
+
+
+def stretch_ratio_per_cord_stretch(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike) -> Floats:
+    r"""How the stretch of a water-filled hose goes with the stretch of its cords.
+
+    .. math:: \frac{\partial\lambda_h}{\partial\lambda_c} =
+       \frac{\lambda_c}{\lambda_h \cos^2 a_0 - \sin^2 a_0/(2\lambda_h^2)}
+
+    Parameters
+    ----------
+    cord_stretch_ratio : array_like, shape (...)
+        :math:`\lambda_c`. [1]
+    wrap_angle : array_like, shape (...)
+        :math:`a_0` at rest, from the axis. [rad]
+
+    Returns
+    -------
+    stretch_ratio_per_cord_stretch : ndarray, shape (...)
+        NaN where the cord is nowhere as short as asked. [1]
+
+    Raises
+    ------
+    SettingsError
+        If an angle is not between 0 and 90 deg.
+    DataError
+        If a stretch ratio is not a positive number.
+
+    Notes
+    -----
+    Eq. (8) of [1]_ differentiated at constant angle.
+
+    Examples
+    --------
+    >>> print(stretch_ratio_per_cord_stretch(1.095, np.radians([64.0, 68.0])).round(1))
+    [3.7 4. ]
+    """
+    stretch, cosine2, sine2 = _stretched(cord_stretch_ratio, wrap_angle)
+    return np.asarray(np.asarray(cord_stretch_ratio) / rise_of_cord(stretch, cosine2, sine2))
+
+
+def rise_of_cord(stretch: Floats, cosine2: Floats, sine2: Floats) -> Floats:
+    """Half the derivative of lambda_c squared: lambda_c times d lambda_c / d lambda_h."""
+    return np.asarray(stretch * cosine2 - sine2 / (2 * stretch**2))
+
+
+def _stretched(
+    cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike
+) -> tuple[Floats, Floats, Floats]:
+    """Stretch of the hose, and squares of cosine and sine of the angle, which it has checked."""
+    stretch = hose_stretch_ratio(cord_stretch_ratio, wrap_angle)
+    angle = np.asarray(wrap_angle, dtype=np.float64)
+    return stretch, np.asarray(np.cos(angle) ** 2), np.asarray(np.sin(angle) ** 2)
+
+
+Rates = Mapping[str, Floats]
+
+
+@dataclass(frozen=True)
+class HoseState:
+    """Where a hose is, and how each parameter moves it from there; ``columns`` adds an axis."""
+
+    stretch: Floats
+    cord_stretch: Floats
+    cord_tension: Floats
+    of_stretch: Rates
+    of_cord_stretch: Rates
+    of_cord_tension: Rates
+    columns: bool = False
+
+
+def as_number(value: ArrayLike, *, columns: bool) -> Floats:
+    """Numbers of designs as float64, with an axis for strain where there are ``columns``."""
+    array = np.asarray(value, dtype=np.float64)
+    return array[..., None] if columns else array
+
+
+def on_the_curve(design: HoseDesign, strain: Floats) -> HoseState:
+    """Where hoses are at strains of their whole length."""
+    angle, dead, load_scale, strain_scale = (
+        as_number(one, columns=True)
+        for one in (
+            design.wrap_angle,
+            design.dead_length_share,
+            design.cord_load_scale,
+            design.cord_strain_scale,
+        )
+    )
+    stretch = 1 + strain / (1 - dead)
+    cord = cord_stretch_ratio(stretch, angle)
+    at = (cord - 1) / strain_scale
+    load = load_scale * cord_load(design.cord, at)
+    stiffness = load_scale / strain_scale * cord_stiffness(design.cord, at)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    by_stretch = rise_of_cord(stretch, cosine**2, sine**2) / cord
+    per_strain = 1 / (1 - dead)
+    of_stretch = {"strain": per_strain, "dead_length_share": (stretch - 1) * per_strain}
+    of_cord = {name: by_stretch * rate for name, rate in of_stretch.items()}
+    of_cord["wrap_angle"] = sine * cosine * (1 / stretch - stretch**2) / cord
+    of_load = {name: stiffness * rate for name, rate in of_cord.items()}
+    of_load["cord_load_scale"] = load / load_scale
+    of_load["cord_strain_scale"] = -stiffness * at
+    return HoseState(stretch, cord, load, of_stretch, of_cord, of_load, columns=True)
+
+
+def at_deepest_slack(design: HoseDesign) -> HoseState:
+    """Where the cords are slackest."""
+    angle = np.asarray(design.wrap_angle, dtype=np.float64)
+    stretch = slackest_stretch_ratio(angle)
+    per_angle = 2 / 3 * stretch / (np.sin(angle) * np.cos(angle))
+    return _slack(design, stretch, per_angle)
+
+
+def at_pick_up(design: HoseDesign) -> HoseState:
+    """Where the cords begin to carry."""
+    angle = np.asarray(design.wrap_angle, dtype=np.float64)
+    stretch = pick_up_stretch_ratio(angle)
+    per_angle = 2 * np.tan(angle) / np.cos(angle) ** 2 / (2 * stretch + 1)
+    return _slack(design, stretch, per_angle)
+
+
+def _slack(design: HoseDesign, stretch: Floats, per_angle: Floats) -> HoseState:
+    """Where the cords carry nothing; below the neutral angle the hose is at rest there."""
+    is_above = np.asarray(design.wrap_angle) > NEUTRAL_ANGLE
+    of_stretch = {
+        "strain": 1 / (1 - np.asarray(design.dead_length_share, dtype=np.float64)),
+        "wrap_angle": np.where(is_above, per_angle, 0.0),
+    }
+    return HoseState(stretch, np.ones(stretch.shape), np.zeros(stretch.shape), of_stretch, {}, {})
+
+
+def at_cord_strain(design: HoseDesign, at: Floats) -> HoseState:
+    """Where the cords are at a strain of their measured curve."""
+    angle, load_scale, strain_scale, dead = (
+        np.asarray(one, dtype=np.float64)
+        for one in (
+            design.wrap_angle,
+            design.cord_load_scale,
+            design.cord_strain_scale,
+            design.dead_length_share,
+        )
+    )
+    load, slope = cord_load(design.cord, at), cord_stiffness(design.cord, at)
+    cord = 1 + strain_scale * at
+    per_cord = stretch_ratio_per_cord_stretch(cord, angle)
+    per_strain = 1 / (1 - dead)
+    return HoseState(
+        hose_stretch_ratio(cord, angle),
+        cord,
+        load_scale * load,
+        of_stretch={
+            "strain": per_strain,
+            "wrap_angle": stretch_ratio_per_angle(cord, angle),
+            "cord_strain_scale": per_cord * at,
+        },
+        of_cord_stretch={"strain": per_strain / per_cord, "cord_strain_scale": at},
+        of_cord_tension={
+            "strain": load_scale / strain_scale * slope * per_strain / per_cord,
+            "cord_load_scale": load,
+        },
+    )
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class EventSensitivity:
+    """Derivatives where something happens to the cords, shape (n_parameters, ...).
+
+    Rows as `reduction.prediction.hose_product.HOSE_PARAMETERS`, in the unit of the quantity a unit
+    of the parameter.  ``strain`` is of the whole length; ``stiffness``, shape (...), is the slope
+    of the tension over it there, at pick-up that of the slack side. [N]
+    """
+
+    strain: Floats
+    tension: Floats
+    fill_pressure: Floats
+    stiffness: Floats
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class HoseSensitivity:
+    """Derivatives of a prediction.
+
+    Parameters
+    ----------
+    strain : ndarray, shape (n_strain,)
+        Of the whole relaxed length, held. [1]
+    tension, fill_pressure : ndarray, shape (n_parameters, ..., n_strain)
+        Rows as `reduction.prediction.hose_product.HOSE_PARAMETERS`; NaN where the cords are broken.
+        [N or Pa, a unit of the parameter]
+    stiffness : ndarray, shape (..., n_strain)
+        Slope of tension over strain. [N]
+    deepest_slack, pick_up, working, cord_break : EventSensitivity
+        Where the cords are shortest, pick up, reach the working share of their break load,
+        and break.
+    """
+
+    strain: Floats
+    tension: Floats
+    fill_pressure: Floats
+    stiffness: Floats
+    deepest_slack: EventSensitivity
+    pick_up: EventSensitivity
+    working: EventSensitivity
+    cord_break: EventSensitivity
+
+
+def hose_sensitivity(design: HoseDesign, strain: ArrayLike) -> HoseSensitivity:
+    r"""Derivatives by every number of the design that may be uncertain.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose, or many.
+    strain : array_like, shape (n_strain,)
+        Of the whole relaxed length. [1]
+
+    Returns
+    -------
+    sensitivity : HoseSensitivity
+        Of the curve at held strain, and of the events.
+
+    Raises
+    ------
+    DataError
+        If a strain is not finite, or -1 or less.
+
+    Notes
+    -----
+    Eq. 8, 24 and 26 of [3]_ (module) differentiated.  A row ``layer_diameter`` moves both
+    layers by the same length.  Every row holds the others: a layer diameter that comes out
+    large *with its ribbon as cut* moves the wrap angle too, by the cotangent of the angle times
+    the relative error (eq. 10).
+
+    At pick-up the derivatives jump: a cord strain of exactly zero counts as slack, also of a
+    hose below 54.7356 degrees at rest.  There the cords pick up at rest at any angle, and the
+    strain of pick-up does not follow it.
+
+    Examples
+    --------
+    Points of stretch a degree at the working load of the two hoses of [3]_, section 3.0, with
+    a cord that has 9.5 % at a third of its break load; and for 1 % of cord strain.
+
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> cord = CordCurve(np.array([0.0, 0.095, 0.26]), np.array([0.0, 44.5, 133.5]))
+    >>> design = HoseDesign(np.radians([64.0, 68.0]), (0.0889, 0.0889), 0.0635, 0.127,
+    ...     34 / 0.0254, 0.022 * 0.0254, 1.379e6, cord)
+    >>> rows = dict(zip(HOSE_PARAMETERS, hose_sensitivity(design, [0.5]).working.strain))
+    >>> print(np.radians(100 * rows["wrap_angle"]).round(1), rows["rubber_modulus"])
+    [ 8.6 12.5] [0. 0.]
+    >>> print((rows["cord_strain_scale"] / 0.095).round(1))
+    [3.7 4. ]
+    """
+    along = as_finite("strain", strain)
+    curve = on_the_curve(design, along)
+    tension, pressure = _chain(design, curve)
+    shape = (*design.shape, along.size)
+    working = cord_strain_at(design.cord, design.working_share * design.cord.break_load)
+    broken = np.where(np.isnan(curve.cord_tension), np.nan, 0.0)  # the rubber knows nothing of it
+    return HoseSensitivity(
+        strain=np.array(along),
+        tension=_rows(tension, shape) + broken,
+        fill_pressure=_rows(pressure, shape) + broken,
+        stiffness=np.broadcast_to(tension["strain"], shape).copy(),
+        deepest_slack=_of_event(design, at_deepest_slack(design)),
+        pick_up=_of_event(design, at_pick_up(design)),
+        working=_of_event(design, at_cord_strain(design, working)),
+        cord_break=_of_event(design, at_cord_strain(design, np.asarray(design.cord.break_strain))),
+    )
+
+
+def _of_event(design: HoseDesign, state: HoseState) -> EventSensitivity:
+    free = 1 - np.asarray(design.dead_length_share, dtype=np.float64)
+    of_strain = {name: free * rate for name, rate in state.of_stretch.items()}
+    of_strain["dead_length_share"] = 1 - state.stretch
+    tension, pressure = _chain(design, state)
+    return EventSensitivity(
+        strain=_rows(of_strain, design.shape),
+        tension=_rows(tension, design.shape),
+        fill_pressure=_rows(pressure, design.shape),
+        stiffness=np.broadcast_to(tension["strain"], design.shape).copy(),
+    )
+
+
+def _chain(design: HoseDesign, state: HoseState) -> tuple[Rates, Rates]:
+    """Tension and fill pressure by every parameter: directly, and through the state."""
+    angle, first, second, bore, skin, density, modulus = (
+        as_number(one, columns=state.columns)
+        for one in (
+            design.wrap_angle,
+            *design.layer_diameter,
+            design.inner_diameter,
+            design.outer_diameter,
+            design.cords_per_length,
+            design.rubber_modulus,
+        )
+    )
+    stretch, cord, load = state.stretch, state.cord_stretch, state.cord_tension
+    cosine, sine = np.cos(angle), np.sin(angle)
+    lever = rise_of_cord(stretch, cosine**2, sine**2) / cord
+    hoop = sine**2 / (stretch * cord)
+    around = pi * density * (first + second)
+    inverse = 2 * density * (1 / first + 1 / second)
+    area = pi / 4 * (skin**2 - bore**2)
+    law = design.rubber_law
+    stress = rubber_tension(stretch, area=1.0, modulus=modulus, law=law)
+
+    tension = {
+        "wrap_angle": -around * load * cosine * sine * (2 * stretch + stretch**-2) / cord,
+        "layer_diameter": 2 * pi * density * load * lever,
+        "inner_diameter": -pi / 2 * bore * stress,
+        "outer_diameter": pi / 2 * skin * stress,
+        "cords_per_length": around / density * load * lever,
+        "rubber_modulus": rubber_tension(stretch, area=area, modulus=1.0, law=law),
+    }
+    pressure = {
+        "wrap_angle": inverse * load * 2 * sine * cosine / (stretch * cord),
+        "layer_diameter": -2 * density * (first**-2 + second**-2) * load * hoop,
+        "cords_per_length": inverse / density * load * hoop,
+    }
+    by_stretch = around * load * (cosine**2 + sine**2 / stretch**3) / cord + rubber_stiffness(
+        stretch, area=area, modulus=modulus, law=law
+    )
+    steps = (
+        (state.of_stretch, by_stretch, -inverse * load * hoop / stretch),
+        (state.of_cord_stretch, -around * load * lever / cord, -inverse * load * hoop / cord),
+        (state.of_cord_tension, around * lever, inverse * hoop),
+    )
+    for rates, of_tension, of_pressure in steps:
+        for name, rate in rates.items():
+            tension[name] = tension.get(name, 0.0) + of_tension * rate
+            pressure[name] = pressure.get(name, 0.0) + of_pressure * rate
+    return tension, pressure
+
+
+def _rows(of: Mapping[str, Floats], shape: tuple[int, ...]) -> Floats:
+    table = np.zeros((len(HOSE_PARAMETERS), *shape))
+    for place, name in enumerate(HOSE_PARAMETERS):
+        table[place, ...] = of.get(name, 0.0)
+    return table

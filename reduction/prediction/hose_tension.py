@@ -1,0 +1,568 @@
+r"""Tension and fill pressure of a water-filled hose: the Snubber calculation.
+
+Loads of a hose from the tension of its cords, wherever on its curve that is.
+
+Virtual work of the cord layers, by layer diameter :math:`d_i`; see
+`reduction.prediction.hose_tension`.
+
+Tension and fill pressure of a water-filled hose from its cords: the "Snubber" calculation.
+
+A hose of relaxed length one holds the energy of its cords and of its rubber.  With the layers
+:math:`i = 1, 2` of mean diameter :math:`d_i`, :math:`n` cords a width of fabric, :math:`P` the
+load on one cord, and :math:`\lambda_c(\lambda_h)` from `reduction.prediction.hose_geometry`,
+
+.. math:: W = \sum_i \pi d_i n \int P \, d\lambda_c + W_r, \qquad T = dW/d\lambda_h =
+   \pi (d_1 + d_2) n \frac{P}{\lambda_c}
+   \left(\lambda_h \cos^2 a_0 - \frac{\sin^2 a_0}{2 \lambda_h^2}\right) + T_r
+
+The first part is the axial load of the :math:`N_i = \pi d_i n \cos a_0` cords of each layer; the
+second is what the pressures of the layers, :math:`p_i = 2 P n \sin^2 a_0/(\lambda_h \lambda_c
+d_i)`, put on the end cap: each on the *current* area :math:`\pi d_i^2/(4\lambda_h)` inside its
+cords, for the rubber inside the cords is under the pressure too.
+
+The hose is long, straight and does not turn; both layers have one angle (with two angles it would
+turn under load); wall and filling keep their volume, so that none of the water may leave; cords
+are elastic.  Where cords are slack the rubber alone carries and there is no pressure.  In
+compression a hose buckles, and there is no prediction.
+
+What happens to the cords of a hose, and at which stretch: closed forms.
+
+The strains belong to a long, straight hose that keeps its volume, and to a slow pull of its cords
+(see `reduction.prediction.hose_tension`).  Where the cords break is where a single cord of the
+curve would: a hose has weaker places, at its ends above all.
+
+References
+----------
+.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, eq.
+   (10), (11), (24), (26).
+.. [2] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
+   1.2.
+.. [3] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
+   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
+   1.2.1, 1.2.4, Fig. 11.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from math import pi, prod
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.prediction.cord_curve import (
+    CordPieces,
+    cord_energy,
+    cord_strain_at,
+    evaluate_into,
+    piece_of,
+    pieces_of,
+)
+from reduction.prediction.hose_geometry import (
+    cord_stretch_ratio,
+    hose_stretch_ratio,
+    pick_up_stretch_ratio,
+    slackest_stretch_ratio,
+)
+from reduction.prediction.hose_product import HoseDesign, HoseEvent, HoseEvents, HosePrediction
+from reduction.prediction.rubber_wall import rubber_energy, rubber_tension, tension_into
+from reduction.record.arrays import as_finite, run_blocks
+from reduction.record.errors import DataError
+from reduction.record.measurement import Floats
+
+
+@dataclass(frozen=True)
+class HoseNumbers:
+    """What the loads need of designs, worked out once.  Arrays of one shape.
+
+    Parameters
+    ----------
+    free_share : ndarray
+        Part of the relaxed length that stretches. [1]
+    cosine2, sine2, tangent : ndarray
+        Of the wrap angle: squares of cosine and sine, and the tangent. [1]
+    axial_factor : ndarray
+        Axial load of the cords over their tension: pi (d1 + d2) n cos^2 a0. [1]
+    end_cap_factor : ndarray
+        End-cap load over cord tension: pi (d1 + d2) n sin^2 a0 / 2. [1]
+    pressure_factor : ndarray
+        Fill pressure over cord tension: 2 n (1/d1 + 1/d2) sin^2 a0. [m-2]
+    cord_spacing : ndarray
+        At rest. [m]
+    inner_diameter, cord_diameter : ndarray
+        As in the design. [m]
+    area : ndarray
+        Of the rubber wall at rest. [m2]
+    modulus : ndarray
+        Of the rubber. [Pa]
+    load_scale, strain_scale : ndarray
+        Of the cord curve. [1]
+    """
+
+    free_share: Floats
+    cosine2: Floats
+    sine2: Floats
+    tangent: Floats
+    axial_factor: Floats
+    end_cap_factor: Floats
+    pressure_factor: Floats
+    cord_spacing: Floats
+    inner_diameter: Floats
+    cord_diameter: Floats
+    area: Floats
+    modulus: Floats
+    load_scale: Floats
+    strain_scale: Floats
+
+    def column(self, rows: slice) -> HoseNumbers:
+        """Some of the designs, flattened, as a column: shape (n_rows, 1)."""
+        parts = {item.name: getattr(self, item.name) for item in fields(self)}
+        return HoseNumbers(**{name: one.reshape(-1, 1)[rows] for name, one in parts.items()})
+
+
+@dataclass(frozen=True)
+class HoseLoads:
+    """Loads of the cords and of the water; ``cord_axial_load`` is after the end cap."""
+
+    fill_pressure: Floats
+    end_cap_load: Floats
+    cord_axial_load: Floats
+
+
+def numbers_of(design: HoseDesign) -> HoseNumbers:
+    """Work out what the loads need of a design.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose or many.
+
+    Returns
+    -------
+    numbers : HoseNumbers
+        Every array of the shape of the designs.
+
+    Raises
+    ------
+    ValueError
+        From numpy, if numbers of the design do not broadcast.
+
+    Notes
+    -----
+    Source: [1]_, eq. (10) and (11): the number of cords is pi d n cos a0 a layer.
+
+    Examples
+    --------
+    Mean diameter 3.5 in and 34 cords an inch, the angles of the hoses of [1]_, sec. 3.0:
+
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> design = HoseDesign(
+    ...     wrap_angle=np.radians([64.0, 68.0]), layer_diameter=(0.0889, 0.0889),
+    ...     inner_diameter=0.0635, outer_diameter=0.127, cords_per_length=34 / 0.0254,
+    ...     cord_diameter=0.00056, rubber_modulus=1.4e6,
+    ...     cord=CordCurve(strain=np.array([0.0, 0.2]), load=np.array([0.0, 130.0])),
+    ... )
+    >>> numbers = numbers_of(design)
+    >>> print((numbers.axial_factor / np.sqrt(numbers.cosine2)).round(1))
+    [327.8 280.1]
+    """
+    first, second = (np.asarray(one, dtype=np.float64) for one in design.layer_diameter)
+    angle = np.asarray(design.wrap_angle, dtype=np.float64)
+    count = np.asarray(design.cords_per_length, dtype=np.float64)
+    bore = np.asarray(design.inner_diameter, dtype=np.float64)
+    skin = np.asarray(design.outer_diameter, dtype=np.float64)
+    cosine2, sine2 = np.cos(angle) ** 2, np.sin(angle) ** 2
+    cords = pi * (first + second) * count
+    parts = {
+        "free_share": 1 - np.asarray(design.dead_length_share, dtype=np.float64),
+        "cosine2": cosine2,
+        "sine2": sine2,
+        "tangent": np.tan(angle),
+        "axial_factor": cords * cosine2,
+        "end_cap_factor": cords * sine2 / 2,
+        "pressure_factor": 2 * count * (1 / first + 1 / second) * sine2,
+        "cord_spacing": 1 / count,
+        "inner_diameter": bore,
+        "cord_diameter": np.asarray(design.cord_diameter, dtype=np.float64),
+        "area": pi / 4 * (skin - bore) * (skin + bore),
+        "modulus": np.asarray(design.rubber_modulus, dtype=np.float64),
+        "load_scale": np.asarray(design.cord_load_scale, dtype=np.float64),
+        "strain_scale": np.asarray(design.cord_strain_scale, dtype=np.float64),
+    }
+    shape = design.shape
+    return HoseNumbers(**{name: np.broadcast_to(one, shape) for name, one in parts.items()})
+
+
+def loads_at(
+    numbers: HoseNumbers,
+    stretch: Floats,
+    cord_stretch: Floats,
+    cord_tension: Floats,
+    *,
+    out: HoseLoads | None = None,
+) -> HoseLoads:
+    r"""Loads of cords and water.
+
+    .. math:: p = \sum_i \frac{2 P n \sin^2 a_0}{\lambda_h \lambda_c d_i}, \qquad
+       F = \frac{\pi (d_1 + d_2) n P \sin^2 a_0}{2 \lambda_h^2 \lambda_c}, \qquad
+       T_c = \pi (d_1 + d_2) n \cos^2 a_0 \frac{\lambda_h P}{\lambda_c} - F
+
+    Parameters
+    ----------
+    numbers : HoseNumbers
+        Of the designs, shape (...) or a column of them.
+    stretch : ndarray, shape (...)
+        :math:`\lambda_h`. [1]
+    cord_stretch : ndarray, shape (...)
+        :math:`\lambda_c`. [1]
+    cord_tension : ndarray, shape (...)
+        :math:`P`. [N]
+    out : HoseLoads, optional
+        Where to write.
+
+    Returns
+    -------
+    loads : HoseLoads
+        Of the shape of all four together.
+
+    Raises
+    ------
+    ValueError
+        From numpy, if shapes do not broadcast.
+
+    Notes
+    -----
+    Source: [1]_, eq. (24) with a pressure for each layer, and eq. (26) with the end cap as the
+    current area inside the cords: :math:`\sum_i p_i \pi d_i^2/(4\lambda_h)`.
+
+    Examples
+    --------
+    The membrane value 2 N P sin a tan a/(pi d^2) at rest, with N/(pi d) = 2 n cos a:
+
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> design = HoseDesign(
+    ...     wrap_angle=np.radians(45.0), layer_diameter=(0.1, 0.1), inner_diameter=0.06,
+    ...     outer_diameter=0.12, cords_per_length=1000.0, cord_diameter=0.0005, rubber_modulus=1e6,
+    ...     cord=CordCurve(strain=np.array([0.0, 0.2]), load=np.array([0.0, 130.0])),
+    ... )
+    >>> one = np.ones(())
+    >>> print(loads_at(numbers_of(design), one, one, 10 * one).fill_pressure.round(6))
+    200000.0
+    """
+    if out is None:
+        shape = np.broadcast_shapes(numbers.cosine2.shape, stretch.shape, cord_tension.shape)
+        out = HoseLoads(np.empty(shape), np.empty(shape), np.empty(shape))
+    along = np.divide(cord_tension, cord_stretch, out=out.cord_axial_load)
+    around = np.divide(along, stretch, out=out.fill_pressure)
+    end_cap = np.divide(around, stretch, out=out.end_cap_load)
+    end_cap *= numbers.end_cap_factor
+    around *= numbers.pressure_factor
+    along *= stretch
+    along *= numbers.axial_factor
+    along -= end_cap
+    return out
+
+
+BLOCK = 131_072
+
+"""Values a block: few enough for a cache, so many that threads seldom wait for the interpreter."""
+
+
+def predict_hose(design: HoseDesign, strain: ArrayLike) -> HosePrediction:
+    """Response of hoses at strains of their whole length.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose or many, shape (...).
+    strain : array_like, shape (n_strain,)
+        Of the relaxed length, dead ends included; zero or more, in any order. [1]
+
+    Returns
+    -------
+    prediction : HosePrediction
+        Arrays of shape (..., n_strain); NaN and flagged where the cords are broken.
+
+    Raises
+    ------
+    DataError
+        If the strains are no series, not finite, or below zero: compression is not of this model.
+
+    Notes
+    -----
+    Source: [2]_, sec. 1.2.  Equation (8) gives the cord strain, the cord curve the cord tension,
+    (24) the fill pressure, (26) the tension, with the end cap on the current area inside the
+    cords and a law of rubber that is zero at rest.  As printed, (25) has the square root closed
+    too late (its unit is lbf/in), (20) has the stretch of the cord for that of the hose, and (26)
+    takes the end cap at the bore.
+
+    Strain of the part that stretches is that of the whole over one less the share of the ends.
+    Cord strain is divided by its scale before the curve is read, load is multiplied by its own.
+    Where there is no tension the share of the cords is zero.
+
+    Designs are worked in blocks, side by side on the processors there are; the answer does not
+    depend on their number.
+
+    Examples
+    --------
+    A hose with a wrap angle of 68 deg: the rubber alone up to +102.5 %, then the cords.
+
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> design = HoseDesign(
+    ...     wrap_angle=np.radians(68.0), layer_diameter=(0.0889, 0.0889), inner_diameter=0.0635,
+    ...     outer_diameter=0.127, cords_per_length=34 / 0.0254, cord_diameter=0.00056,
+    ...     rubber_modulus=1.4e6,
+    ...     cord=CordCurve(strain=np.array([0.0, 0.2]), load=np.array([0.0, 130.0])),
+    ... )
+    >>> prediction = predict_hose(design, [0.0, 1.0, 1.05, 2.0])
+    >>> print(prediction.is_slack, prediction.is_broken)
+    [ True  True False False] [False False False  True]
+    >>> print((prediction.cord_strain * 100).round(2))
+    [ 0.   -0.44  0.45 24.48]
+    """
+    asked = as_finite("strain", strain)
+    if asked.ndim != 1:
+        raise DataError("strain is not a series", found=f"shape {asked.shape}", needed="1-D")
+    if np.any(asked < 0):
+        raise DataError(
+            f"{int(np.sum(asked < 0))} of {asked.size} strains are below zero",
+            found=f"{asked.min():g}",
+            needed="zero or more",
+            hint="A hose buckles in compression; the prediction is for tension.",
+        )
+    numbers, pieces = numbers_of(design), pieces_of(design.cord)
+    n_designs, n_strain = prod(design.shape), asked.size
+    names = [item.name for item in fields(HosePrediction) if item.name != "strain"]
+    flags = [name for name in names if name.startswith("is_")]
+    numerals = [name for name in names if name not in flags]
+    # one piece of memory for all: the system hands out large ones more quickly than many
+    target: dict[str, Any] = {
+        **dict(zip(numerals, np.empty((len(numerals), n_designs, n_strain)), strict=True)),
+        **dict(
+            zip(flags, np.empty((len(flags), n_designs, n_strain), dtype=np.bool_), strict=True)
+        ),
+    }
+    n_rows, n_columns = max(1, BLOCK // max(n_strain, 1)), max(1, min(BLOCK, n_strain))
+
+    def fill(block: tuple[slice, slice]) -> None:
+        rows, columns = block
+        _respond(
+            numbers.column(rows),
+            pieces,
+            asked[columns],
+            design,
+            {name: array[rows, columns] for name, array in target.items()},
+        )
+
+    run_blocks(
+        fill,
+        [
+            (slice(row, row + n_rows), slice(column, column + n_columns))
+            for row in range(0, n_designs, n_rows)
+            for column in range(0, n_strain, n_columns)
+        ],
+    )
+    shape = (*design.shape, n_strain)
+    return HosePrediction(
+        strain=asked.copy(), **{name: array.reshape(shape) for name, array in target.items()}
+    )
+
+
+def _respond(
+    numbers: HoseNumbers,
+    pieces: CordPieces,
+    strain: Floats,
+    design: HoseDesign,
+    out: dict[str, Any],
+) -> None:
+    """Fill a block of each array: operations in place, for new memory costs more than they do."""
+    stretch, inverse, cord_stretch, spare, other = np.empty((5, *out["tension"].shape))
+    free = np.divide(strain, numbers.free_share, out=out["free_strain"])
+    np.add(free, 1, out=stretch)
+    np.reciprocal(stretch, out=inverse)
+    # lambda_c^2 - 1 without the difference of two ones, so that a hose at rest has no cord strain
+    square = np.add(free, 2, out=spare)
+    square *= free
+    square *= numbers.cosine2
+    np.multiply(free, inverse, out=other)
+    other *= numbers.sine2
+    square -= other
+    np.add(square, 1, out=cord_stretch)
+    np.sqrt(cord_stretch, out=cord_stretch)
+    cord_strain = np.add(cord_stretch, 1, out=out["cord_strain"])
+    np.divide(square, cord_strain, out=cord_strain)
+    curve_strain = np.divide(cord_strain, numbers.strain_scale, out=other)
+    piece = piece_of(pieces, curve_strain)
+    np.equal(piece, 0, out=out["is_slack"])
+    np.equal(piece, len(pieces.knot), out=out["is_broken"])
+    cord_tension = evaluate_into(out["cord_tension"], spare, pieces, curve_strain, piece)
+    cord_tension *= numbers.load_scale
+    cords = HoseLoads(out["fill_pressure"], out["end_cap_load"], spare)
+    loads_at(numbers, stretch, cord_stretch, cord_tension, out=cords)
+    tension = tension_into(
+        out["tension"], stretch, numbers.area * numbers.modulus, design.rubber_law
+    )
+    tension += cords.cord_axial_load
+    share = np.maximum(tension, np.finfo(np.float64).tiny, out=out["cord_share"])
+    np.divide(cords.cord_axial_load, share, out=share)
+    np.subtract(1, share, out=out["rubber_share"])
+    thinning = np.sqrt(inverse, out=spare)
+    bore = np.multiply(thinning, numbers.inner_diameter, out=out["current_inner_diameter"])
+    np.less(bore, design.minimum_inner_diameter, out=out["is_bore_too_small"])
+    inverse *= thinning
+    inverse *= numbers.tangent
+    np.arctan(inverse, out=out["current_wrap_angle"])
+    stretch *= thinning
+    stretch /= cord_stretch
+    spacing = np.multiply(stretch, numbers.cord_spacing, out=out["cord_spacing"])
+    np.less(spacing, numbers.cord_diameter, out=out["is_jammed"])
+
+
+def hose_energy(design: HoseDesign, stretch_ratio: ArrayLike) -> Floats:
+    r"""Energy in cords and rubber, a relaxed length of the part that stretches.
+
+    .. math:: W = \pi (d_1 + d_2) n \int P \, d\lambda_c + \int T_r \, d\lambda_h
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose or many, shape (...).
+    stretch_ratio : array_like, shape (n_stretch,)
+        :math:`\lambda_h` of the part that stretches. [1]
+
+    Returns
+    -------
+    energy : ndarray, shape (..., n_stretch)
+        NaN where the cords are broken. [J m-1]
+
+    Raises
+    ------
+    DataError
+        If a stretch ratio is not a positive number.
+
+    Notes
+    -----
+    Cords of both layers together are pi (d1 + d2) n cos a0, each 1/cos a0 long a length of hose
+    ([2]_, eq. (2), (10), (11)).  The water and the dead ends hold none.
+
+    Examples
+    --------
+    With 130 N at 20 % in a straight cord curve, slack cords, and a neo-Hookean wall:
+
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> design = HoseDesign(
+    ...     wrap_angle=np.radians(68.0), layer_diameter=(0.0889, 0.0889), inner_diameter=0.0635,
+    ...     outer_diameter=0.127, cords_per_length=34 / 0.0254, cord_diameter=0.00056,
+    ...     rubber_modulus=1.4e6,
+    ...     cord=CordCurve(strain=np.array([0.0, 0.2]), load=np.array([0.0, 130.0])),
+    ... )
+    >>> area = np.pi / 4 * (0.127**2 - 0.0635**2)
+    >>> print((hose_energy(design, [2.0]) / (1.4e6 * area)).round(6))
+    [0.333333]
+    """
+    stretch, numbers = np.asarray(stretch_ratio, dtype=np.float64), numbers_of(design)
+    cords = numbers.axial_factor + 2 * numbers.end_cap_factor
+    scale = numbers.strain_scale[..., None]
+    cord_strain = cord_stretch_ratio(stretch, np.asarray(design.wrap_angle)[..., None]) - 1
+    held = cord_energy(design.cord, cord_strain / scale) * scale * numbers.load_scale[..., None]
+    rubber = rubber_energy(
+        stretch,
+        area=numbers.area[..., None],
+        modulus=numbers.modulus[..., None],
+        law=design.rubber_law,
+    )
+    return np.asarray(held * cords[..., None] + rubber)
+
+
+def find_events(design: HoseDesign) -> HoseEvents:
+    """Where cords are shortest, pick up, reach their working load, and break.
+
+    Parameters
+    ----------
+    design : HoseDesign
+        One hose or many, shape (...).
+
+    Returns
+    -------
+    events : HoseEvents
+        Arrays of shape (...); strains of the whole relaxed length, dead ends included.
+
+    Raises
+    ------
+    ValueError
+        From numpy, if numbers of the design do not broadcast.
+
+    Notes
+    -----
+    Source: [3]_, eq. (8) and Fig. 11.  The safe working load is the tension of the hose "at which
+    the nylon tire cords are stressed to 1/3rd of their breaking strength" (sec. 1.2.4): of the
+    cords, not of the hose, which the rubber makes another number.
+
+    No search but for the inverse of the cord curve, `cord_strain_at`.  The cord strain at pick-up
+    is exactly zero and at the break exactly that of the last point times its scale.
+
+    Examples
+    --------
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> design = HoseDesign(
+    ...     wrap_angle=np.radians([50.0, 64.0, 68.0]), layer_diameter=(0.0889, 0.0889),
+    ...     inner_diameter=0.0635, outer_diameter=0.127, cords_per_length=34 / 0.0254,
+    ...     cord_diameter=0.00056, rubber_modulus=1.4e6,
+    ...     cord=CordCurve(strain=np.array([0.0, 0.26]), load=np.array([0.0, 130.0])),
+    ... )
+    >>> events = find_events(design)
+    >>> print((100 * events.pick_up.strain).round(2))
+    [  0.    61.04 102.51]
+    >>> print((100 * events.deepest_slack.cord_strain).round(2))
+    [ 0.   -2.74 -5.77]
+    >>> print((100 * events.cord_break.strain).round(2))
+    [ 73.95 157.46 205.04]
+    """
+    numbers, angle = numbers_of(design), np.asarray(design.wrap_angle, dtype=np.float64)
+    slackest = slackest_stretch_ratio(angle)
+    shortest = np.where(slackest > 1, cord_stretch_ratio(slackest, angle) - 1, 0.0)
+    nothing, curve = np.zeros(design.shape), design.cord
+    working_load = design.working_share * curve.break_load
+    working_strain = numbers.strain_scale * cord_strain_at(curve, working_load)
+    break_strain = numbers.strain_scale * curve.break_strain
+    return HoseEvents(
+        deepest_slack=_event(design, numbers, slackest, shortest, nothing),
+        pick_up=_event(design, numbers, pick_up_stretch_ratio(angle), nothing, nothing),
+        working=_event(
+            design,
+            numbers,
+            hose_stretch_ratio(1 + working_strain, angle),
+            working_strain,
+            numbers.load_scale * working_load,
+        ),
+        cord_break=_event(
+            design,
+            numbers,
+            hose_stretch_ratio(1 + break_strain, angle),
+            break_strain,
+            numbers.load_scale * curve.break_load,
+        ),
+    )
+
+
+def _event(
+    design: HoseDesign,
+    numbers: HoseNumbers,
+    stretch: Floats,
+    cord_strain: Floats,
+    cord_tension: Floats,
+) -> HoseEvent:
+    loads = loads_at(numbers, stretch, 1 + cord_strain, cord_tension)
+    rubber = rubber_tension(
+        stretch, area=numbers.area, modulus=numbers.modulus, law=design.rubber_law
+    )
+    return HoseEvent(
+        strain=np.asarray((stretch - 1) * numbers.free_share),
+        tension=np.asarray(rubber + loads.cord_axial_load),
+        fill_pressure=loads.fill_pressure,
+        cord_tension=np.array(np.broadcast_to(cord_tension, design.shape)),
+        cord_strain=np.array(np.broadcast_to(cord_strain, design.shape)),
+    )

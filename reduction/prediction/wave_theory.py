@@ -1,0 +1,1407 @@
+r"""Regular waves: dispersion, breaking, Airy and Stokes theory, which one applies.
+
+Length of a wave from its period, and back, over still water or a current.
+
+A current U along the wave shifts the period that a fixed point sees,
+
+.. math:: (\omega - k U)^2 = g k \tanh k d
+
+An opposing current faster than the group of waves stops them: no length answers then.
+
+Whether a wave length and a period that are given together belong to one wave.
+
+How high a wave can be before it breaks.
+
+.. math:: H_b = \min(0.142\, L \tanh k d,\; 0.78\, d)
+
+A regular wave at one depth below the surface, as amplitudes of harmonics of its phase.
+
+Sums of harmonics of a phase, and the phases at which such a sum vanishes.
+
+A real sum of harmonics up to order M is written with complex coefficients,
+
+.. math:: f(\theta) = \sum_{m=-M}^{M} c_m e^{i m \theta}, \qquad c_{-m} = \overline{c_m}
+
+so that z^M f is a polynomial in :math:`z = e^{i \theta}`, and the zeros of f are those of its
+roots that lie on the unit circle.
+
+Motion of the water under a regular wave: Airy's theory and Stokes' of second order.
+
+With the phase :math:`\theta = k x - \omega t`, z upwards from the mean level, and
+:math:`\sigma = \omega - k U`,
+
+.. math::
+   \eta = \tfrac{H}{2} \cos\theta
+          + \tfrac{k H^2}{16} \frac{\cosh kd\,(2 + \cosh 2kd)}{\sinh^3 kd} \cos 2\theta
+
+   u_x = \tfrac{\sigma H}{2} \frac{\cosh k(z+d)}{\sinh kd} \cos\theta
+         + \tfrac{3 k \sigma H^2}{16} \frac{\cosh 2k(z+d)}{\sinh^4 kd} \cos 2\theta
+
+   u_z = \tfrac{\sigma H}{2} \frac{\sinh k(z+d)}{\sinh kd} \sin\theta
+         + \tfrac{3 k \sigma H^2}{16} \frac{\sinh 2k(z+d)}{\sinh^4 kd} \sin 2\theta
+
+The first terms are Airy's.  Over still water sigma H/2 is pi H/T, eq. (16) and (17) of [8]_.
+
+Table of wave theories by relative depth, as it is meant and to the letter.
+
+Which wave theory applies, and how far a wave is from the limits of each.
+
+With the Ursell number Ur = H L^2 / d^3 and the amplitudes a_1, a_2 of the first and second
+harmonic of Stokes' surface, a_2 / a_1 goes to 3 Ur / (32 pi^2) over shallow water; where it
+passes 1/4, at Ur = 8 pi^2 / 3 = 26.3, the trough has a crest of its own.
+
+Motion of the water at one place over time, from the harmonics of a wave.
+
+References
+----------
+.. [1] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
+   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
+   Petroleum Eng. J., vol. 8, 2015, eq. 14 and Table 4.
+.. [2] C. Eckart, "The propagation of gravity waves from deep to shallow water," in Gravity
+   Waves, Nat. Bur. Standards Circ. 521, 1952, pp. 165-173.
+.. [3] D. H. Peregrine, "Interaction of water waves and currents," Adv. Appl. Mech., vol. 16,
+   1976, pp. 9-117, sec. II.
+.. [4] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
+   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
+   Petroleum Eng. J., vol. 8, 2015, Table 4.
+.. [5] R. Miche, "Mouvements ondulatoires de la mer en profondeur constante ou décroissante,"
+   Annales des Ponts et Chaussées, 1944, pp. 25-78, 131-164, 270-292, 369-406.
+.. [6] J. McCowan, "On the highest wave of permanent type," Phil. Mag., ser. 5, vol. 38, 1894,
+   pp. 351-358.
+.. [7] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
+   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
+   Petroleum Eng. J., vol. 8, 2015, Table 1.
+.. [8] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
+   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
+   Petroleum Eng. J., vol. 8, 2015, eq. 13-17.
+.. [9] J. P. Boyd, "Computing the zeros, maxima and inflection points of Chebyshev, Legendre and
+   Fourier series: solving transcendental equations by spectral interpolation and polynomial
+   rootfinding," J. Eng. Math., vol. 56, 2006, pp. 203-219, sec. 6.
+.. [10] R. G. Dean and R. A. Dalrymple, Water Wave Mechanics for Engineers and Scientists.
+   Singapore: World Scientific, 1991, ch. 3, 4 and 11.
+.. [11] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
+   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
+   Petroleum Eng. J., vol. 8, 2015, Table 1 and sec. 5.
+.. [12] F. Ursell, "The long-wave paradox in the theory of gravity waves," Proc. Cambridge Phil.
+   Soc., vol. 49, 1953, pp. 685-694.
+.. [13] R. G. Dean and R. A. Dalrymple, Water Wave Mechanics for Engineers and Scientists.
+   Singapore: World Scientific, 1991, ch. 11.
+.. [14] R. G. Dean and R. A. Dalrymple, Water Wave Mechanics for Engineers and Scientists.
+   Singapore: World Scientific, 1991, ch. 3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cosh, exp, expm1, pi, sinh, tanh
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reduction.record.arrays import as_finite, as_positive
+from reduction.record.errors import DataError, FitError
+from reduction.record.measurement import Floats, read_only_arrays
+
+STANDARD_GRAVITY = 9.80665
+
+"""Standard acceleration of free fall. [m s-2]"""
+
+_STEP = 1e-14  # last Newton step over the root, at most
+
+_RESIDUAL = 4 * float(np.finfo(np.float64).eps)
+
+_MOST_STEPS = 100  # four or five are enough but at the very edge of blocking
+
+
+def wave_number(
+    wave_period: ArrayLike,
+    water_depth: ArrayLike,
+    *,
+    current_velocity: ArrayLike = 0.0,
+    gravity: float = STANDARD_GRAVITY,
+) -> Floats:
+    r"""Wave number of the linear wave with this period.
+
+    Parameters
+    ----------
+    wave_period : array_like, shape (...)
+        As a fixed point sees it. [s]
+    water_depth : array_like, shape (...)
+        Of the still water. [m]
+    current_velocity : array_like, shape (...)
+        Uniform over the depth, positive along the wave. [m s-1]
+    gravity : float
+        Acceleration of free fall. [m s-2]
+
+    Returns
+    -------
+    wave_number : ndarray, shape (...)
+        Of the longer of the two waves that an opposing current allows: the one whose energy
+        still goes forward. [rad m-1]
+
+    Raises
+    ------
+    DataError
+        If a period or depth is not positive, or the current stops the wave.
+    FitError
+        If the last Newton step is not below 1e-14 of the root.
+
+    Notes
+    -----
+    Eq. (14) of [1]_ prints k = 2 pi / T; a wave number is 2 pi / L (its tables use that).
+
+    Over still water Newton starts from the form of [2]_, which is right to 5 %.  Over a
+    current it starts from there: omega - k U - sqrt(g k tanh k d) is convex in k, so that it
+    cannot pass the wanted root, and a tangent that no longer falls proves there is none.
+
+    Examples
+    --------
+    Table 4 of [1]_ gives 20 m beside 3.57 s, the length over deep water; 3 m deep it is 16.3 m.
+
+    >>> print((2 * np.pi / wave_number(3.57, [100.0, 6.0, 3.0])).round(2))
+    [19.89 19.13 16.31]
+    """
+    period, depth, current = _conditions(wave_period, water_depth, current_velocity)
+    pace = np.sqrt(gravity * depth)
+    frequency = 2 * pi / period * depth / pace
+    root = _still_water(frequency**2)
+    if np.any(current != 0):
+        root = _over_current(frequency, current / pace, root)
+        _refuse_blocked(np.isnan(root), current)
+    return np.asarray(root / depth)
+
+
+def wave_period_of(
+    wave_number: ArrayLike,
+    water_depth: ArrayLike,
+    *,
+    current_velocity: ArrayLike = 0.0,
+    gravity: float = STANDARD_GRAVITY,
+) -> Floats:
+    """Period of the linear wave with this wave number, as a fixed point sees it.
+
+    Parameters
+    ----------
+    wave_number : array_like, shape (...)
+        2 pi over the wave length. [rad m-1]
+    water_depth : array_like, shape (...)
+        Of the still water. [m]
+    current_velocity : array_like, shape (...)
+        Uniform over the depth, positive along the wave. [m s-1]
+    gravity : float
+        Acceleration of free fall. [m s-2]
+
+    Returns
+    -------
+    wave_period : ndarray, shape (...)
+        Period. [s]
+
+    Raises
+    ------
+    DataError
+        If a wave number or depth is not positive, or the current stops the wave.
+
+    Notes
+    -----
+    The inverse of `wave_number`.
+
+    Examples
+    --------
+    The 20 m of Table 4 of [1]_ do not fit its 3.57 s at either depth of its examples.
+
+    >>> print(wave_period_of(2 * np.pi / 20, [6.0, 3.0]).round(3))
+    [3.663 4.172]
+    """
+    number, depth, current = np.broadcast_arrays(
+        as_positive("wave_number", wave_number),
+        as_positive("water_depth", water_depth),
+        as_finite("current_velocity", current_velocity),
+    )
+    group = group_velocity(number, depth, gravity=gravity)
+    _refuse_blocked(current + group <= 0, current)
+    intrinsic = np.sqrt(gravity * number * np.tanh(number * depth))
+    return np.asarray(2 * pi / (intrinsic + number * current))
+
+
+def group_velocity(
+    wave_number: ArrayLike, water_depth: ArrayLike, *, gravity: float = STANDARD_GRAVITY
+) -> Floats:
+    """Speed of the energy of a linear wave through the water.
+
+    Parameters
+    ----------
+    wave_number : array_like, shape (...)
+        2 pi over the wave length. [rad m-1]
+    water_depth : array_like, shape (...)
+        Of the still water. [m]
+    gravity : float
+        Acceleration of free fall. [m s-2]
+
+    Returns
+    -------
+    group_velocity : ndarray, shape (...)
+        An opposing current as fast as this stops the wave. [m s-1]
+
+    Raises
+    ------
+    DataError
+        If a wave number or depth is not positive.
+
+    Notes
+    -----
+    Derivative of the frequency by the wave number ([3]_): half the phase speed over deep water.
+
+    Examples
+    --------
+    >>> print(group_velocity(2 * np.pi / 20, 100.0).round(3))
+    2.794
+    """
+    number = as_positive("wave_number", wave_number)
+    relative_depth = number * as_positive("water_depth", water_depth)
+    phase_speed = np.sqrt(gravity / number * np.tanh(relative_depth))
+    # 2 q / sinh 2q, which neither overflows nor loses digits
+    share = 4 * relative_depth * np.exp(-2 * relative_depth) / -np.expm1(-4 * relative_depth)
+    return np.asarray(phase_speed / 2 * (1 + share))
+
+
+def _conditions(period: ArrayLike, depth: ArrayLike, current: ArrayLike) -> tuple[Floats, ...]:
+    return np.broadcast_arrays(
+        as_positive("wave_period", period),
+        as_positive("water_depth", depth),
+        as_finite("current_velocity", current),
+    )
+
+
+def _still_water(squared_frequency: Floats) -> Floats:
+    """Root q of q tanh q = omega^2 d / g."""
+    root = squared_frequency / np.sqrt(np.tanh(squared_frequency))
+    for _ in range(_MOST_STEPS):
+        tanh = np.tanh(root)
+        step = (root * tanh - squared_frequency) / (tanh + root * (1 - tanh**2))
+        root = root - step
+        if np.all(np.abs(step) <= _STEP * root):
+            return np.asarray(root)
+    raise _no_root()
+
+
+def _over_current(frequency: Floats, current: Floats, start: Floats) -> Floats:
+    """Root q of omega - q U = sqrt(q tanh q), all over sqrt(g / d); NaN where there is none."""
+    root = start.copy()
+    for _ in range(_MOST_STEPS):
+        tanh = np.tanh(root)
+        intrinsic = np.sqrt(root * tanh)
+        miss = frequency - root * current - intrinsic
+        is_there = np.abs(miss) <= _RESIDUAL * (frequency + root * np.abs(current))
+        slope = -current - (tanh + root * (1 - tanh**2)) / (2 * intrinsic)
+        is_blocked = (slope >= 0) & ~is_there
+        step = miss / np.where(slope < 0, slope, np.nan)
+        is_there |= np.abs(step) <= _STEP * root
+        root = np.where(is_blocked, np.nan, np.where(is_there, root, root - step))
+        if np.all(is_there | np.isnan(root)):
+            return np.asarray(root)
+    raise _no_root()
+
+
+def _no_root() -> FitError:
+    return FitError(
+        "the wave number was not found",
+        found=f"no end after {_MOST_STEPS} Newton steps",
+        needed=f"a last step below {_STEP:g} of the root",
+    )
+
+
+def _refuse_blocked(is_blocked: np.ndarray, current: Floats) -> None:
+    if not np.any(is_blocked):
+        return
+    first = int(np.flatnonzero(np.ravel(is_blocked))[0])
+    raise DataError(
+        f"the opposing current stops {int(np.sum(is_blocked))} of {np.size(is_blocked)} waves, "
+        f"first at index {first}",
+        found=f"a current of {np.ravel(current)[first]:g} m/s",
+        needed="an opposing current slower than the group velocity of the wave",
+    )
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class WaveLengthCheck:
+    """A length and a period that were given together, against the dispersion relation.
+
+    Parameters
+    ----------
+    period_of_length : ndarray, shape (...)
+        That a wave of the given length has. [s]
+    length_of_period : ndarray, shape (...)
+        That a wave of the given period has. [m]
+    period_mismatch : ndarray, shape (...)
+        Period of the length over the given period, less one. [1]
+    length_mismatch : ndarray, shape (...)
+        Given length over the length of the period, less one. [1]
+    """
+
+    period_of_length: Floats
+    length_of_period: Floats
+    period_mismatch: Floats
+    length_mismatch: Floats
+
+
+def check_wave_length(
+    wave_length: ArrayLike,
+    wave_period: ArrayLike,
+    water_depth: ArrayLike,
+    *,
+    current_velocity: ArrayLike = 0.0,
+    gravity: float = STANDARD_GRAVITY,
+) -> WaveLengthCheck:
+    """How far a length and a period that were given together are from one wave.
+
+    Parameters
+    ----------
+    wave_length : array_like, shape (...)
+        As given. [m]
+    wave_period : array_like, shape (...)
+        As given. [s]
+    water_depth : array_like, shape (...)
+        Of the still water. [m]
+    current_velocity : array_like, shape (...)
+        Uniform over the depth, positive along the wave. [m s-1]
+    gravity : float
+        Acceleration of free fall. [m s-2]
+
+    Returns
+    -------
+    check : WaveLengthCheck
+        Both mismatches.
+
+    Raises
+    ------
+    DataError
+        If a number is not positive, or the current stops the wave.
+
+    Notes
+    -----
+    By the linear relation; a steep wave is faster, so that a few per cent may be its height.
+
+    Examples
+    --------
+    Table 4 of [4]_ at the depths of its two examples.
+
+    >>> check = check_wave_length(20.0, 3.57, [6.0, 3.0])
+    >>> print(check.period_mismatch.round(3), check.length_mismatch.round(3))
+    [0.026 0.169] [0.045 0.227]
+    """
+    length = as_positive("wave_length", wave_length)
+    period = as_positive("wave_period", wave_period)
+    by_length = wave_period_of(
+        2 * pi / length, water_depth, current_velocity=current_velocity, gravity=gravity
+    )
+    by_period = (
+        2
+        * pi
+        / wave_number(period, water_depth, current_velocity=current_velocity, gravity=gravity)
+    )
+    return WaveLengthCheck(
+        period_of_length=by_length,
+        length_of_period=np.asarray(by_period),
+        period_mismatch=np.asarray(by_length / period - 1),
+        length_mismatch=np.asarray(length / by_period - 1),
+    )
+
+
+GREATEST_STEEPNESS = 0.142
+
+"""Height over length of the steepest wave on deep water (Miche). [1]"""
+
+GREATEST_HEIGHT_TO_DEPTH = 0.78
+
+"""Height over depth of the highest solitary wave (McCowan). [1]"""
+
+
+def breaking_height(wave_number: ArrayLike, water_depth: ArrayLike) -> Floats:
+    """Height at which a wave of this length breaks over a flat bed.
+
+    Parameters
+    ----------
+    wave_number : array_like, shape (...)
+        2 pi over the wave length. [rad m-1]
+    water_depth : array_like, shape (...)
+        Of the still water. [m]
+
+    Returns
+    -------
+    breaking_height : ndarray, shape (...)
+        The lower one of the limits of [5]_ and [6]_. [m]
+
+    Raises
+    ------
+    DataError
+        If a number is not positive.
+
+    Notes
+    -----
+    Not covered: a sloping bed, an opposing current and short-crested seas, which break
+    waves earlier.  NaN is refused.
+
+    Examples
+    --------
+    Table 1 of [7]_ asks for a height of 0.2 lengths or more where it names Stokes' theory. The
+    20 m wave of its examples breaks long before, at 0.136 lengths 6 m deep and 0.105 3 m deep.
+
+    >>> print((breaking_height(2 * np.pi / 20, [6.0, 3.0]) / 20).round(3))
+    [0.136 0.105]
+    """
+    number = as_positive("wave_number", wave_number)
+    depth = as_positive("water_depth", water_depth)
+    miche = GREATEST_STEEPNESS * 2 * pi / number * np.tanh(number * depth)
+    return np.asarray(np.minimum(miche, GREATEST_HEIGHT_TO_DEPTH * depth))
+
+
+def refuse_breaking(*, wave_height: float, wave_number: float, water_depth: float) -> None:
+    """Raise where a wave is higher than it can be.
+
+    Parameters
+    ----------
+    wave_height : float
+        Trough to crest. [m]
+    wave_number : float
+        2 pi over the wave length. [rad m-1]
+    water_depth : float
+        Of the still water. [m]
+
+    Raises
+    ------
+    DataError
+        If the wave is beyond breaking.
+
+    Notes
+    -----
+    A wave of exactly the breaking height passes.
+
+    Examples
+    --------
+    The wave of [7]_ is well below breaking.
+
+    >>> refuse_breaking(wave_height=1.25, wave_number=2 * np.pi / 20, water_depth=3.0)
+    """
+    greatest = float(breaking_height(wave_number, water_depth))
+    if wave_height <= greatest:
+        return
+    raise DataError(
+        f"a wave {2 * pi / wave_number:.4g} m long breaks before it is this high",
+        found=f"{wave_height:.4g} m over {water_depth:.4g} m of water",
+        needed=f"at most {greatest:.4g} m",
+        hint="Give a lower or a longer wave.",
+    )
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class WaveHarmonics:
+    """Amplitudes of the first harmonic and those above it.
+
+    With the phase k x - omega t, harmonic n of the elevation, the horizontal velocity and the
+    vertical acceleration goes with cos n(phase); that of the vertical velocity and the
+    horizontal acceleration with sin n(phase).  Velocities and accelerations may come from
+    different theories: a load does not know them.
+
+    Parameters
+    ----------
+    wave_number : float
+        k. [rad m-1]
+    angular_frequency : float
+        omega. [rad s-1]
+    elevation : ndarray, shape (n_harmonics,)
+        Of the surface. [m]
+    horizontal_velocity, vertical_velocity : ndarray, shape (n_harmonics,)
+        Of a particle. [m s-1]
+    horizontal_acceleration, vertical_acceleration : ndarray, shape (n_harmonics,)
+        Of a particle, local; the vertical one is negative in a progressive wave. [m s-2]
+    """
+
+    wave_number: float
+    angular_frequency: float
+    elevation: Floats
+    horizontal_velocity: Floats
+    vertical_velocity: Floats
+    horizontal_acceleration: Floats
+    vertical_acceleration: Floats
+
+    def __post_init__(self) -> None:
+        """Check that every quantity has the same harmonics, and make the arrays read-only."""
+        shapes = {
+            name: getattr(self, name).shape
+            for name in (
+                "elevation",
+                "horizontal_velocity",
+                "vertical_velocity",
+                "horizontal_acceleration",
+                "vertical_acceleration",
+            )
+        }
+        if len(set(shapes.values())) > 1 or self.elevation.ndim != 1:
+            found = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+            raise DataError("the harmonics do not pair up", found=found, needed="one shape (n,)")
+
+
+Coefficients = NDArray[np.complex128]
+
+_ZERO = 1e-14  # outermost coefficients below this share of the largest are rounding
+
+
+def cosine_series(amplitude: Floats, constant: float = 0.0) -> Coefficients:
+    """Coefficients of a constant and cosines.
+
+    Parameters
+    ----------
+    amplitude : ndarray, shape (n_harmonics,)
+        Of cos n(phase), n from 1. [1] or that of the quantity, e.g. [m s-1]
+    constant : float
+        Mean of the sum, in the same unit. [1]
+
+    Returns
+    -------
+    coefficients : ndarray of complex, shape (2 n_harmonics + 1,)
+        From order -n_harmonics upwards, in the same unit. [1]
+
+    Raises
+    ------
+    DataError
+        If the amplitudes are not a series.
+
+    Notes
+    -----
+    cos x = (e^ix + e^-ix) / 2.
+
+    Examples
+    --------
+    >>> print(cosine_series(np.array([2.0]), 3.0).real)
+    [1. 3. 1.]
+    """
+    half = _amplitudes(amplitude) / 2
+    return np.concatenate([half[::-1], [constant], half]).astype(np.complex128)
+
+
+def sine_series(amplitude: Floats) -> Coefficients:
+    """Coefficients of sines.
+
+    Parameters
+    ----------
+    amplitude : ndarray, shape (n_harmonics,)
+        Of sin n(phase), n from 1. [1] or that of the quantity, e.g. [m s-1]
+
+    Returns
+    -------
+    coefficients : ndarray of complex, shape (2 n_harmonics + 1,)
+        From order -n_harmonics upwards, in the same unit. [1]
+
+    Raises
+    ------
+    DataError
+        If the amplitudes are not a series.
+
+    Notes
+    -----
+    sin x = (e^ix - e^-ix) / 2i.
+
+    Examples
+    --------
+    >>> print(sine_series(np.array([2.0])).imag)
+    [ 1. 0. -1.]
+    """
+    half = _amplitudes(amplitude) / 2j
+    return np.concatenate([-half[::-1], [0.0], half]).astype(np.complex128)
+
+
+def phase_derivative(coefficients: Coefficients) -> Coefficients:
+    """Coefficients of the derivative by the phase.
+
+    Parameters
+    ----------
+    coefficients : ndarray of complex, shape (..., 2 n_harmonics + 1)
+        Of a sum. [1]
+
+    Returns
+    -------
+    derivative : ndarray of complex, shape (..., 2 n_harmonics + 1)
+        Of its derivative, per radian. [rad-1]
+
+    Raises
+    ------
+    DataError
+        If the coefficients are not of an odd number.
+
+    Notes
+    -----
+    i m c_m.
+
+    Examples
+    --------
+    The derivative of 2 cos is -2 sin.
+
+    >>> print(phase_derivative(cosine_series(np.array([2.0]))).imag)
+    [-1. 0. 1.]
+    """
+    return np.asarray(1j * _orders(coefficients) * coefficients)
+
+
+def series_product(first: Coefficients, second: Coefficients) -> Coefficients:
+    """Coefficients of the product of two sums.
+
+    Parameters
+    ----------
+    first, second : ndarray of complex, shape (2 n_harmonics + 1,)
+        Of the factors. [1]
+
+    Returns
+    -------
+    product : ndarray of complex, shape (2 (n_first + n_second) + 1,)
+        Of the product. [1]
+
+    Raises
+    ------
+    DataError
+        If the coefficients are not of an odd number.
+
+    Notes
+    -----
+    The convolution of the two.
+
+    Examples
+    --------
+    4 cos^2 is 2 + 2 cos of the double phase.
+
+    >>> cosine = cosine_series(np.array([2.0]))
+    >>> print(series_product(cosine, cosine).real)
+    [1. 0. 2. 0. 1.]
+    """
+    _orders(first), _orders(second)
+    return np.convolve(first, second)
+
+
+def sum_at(coefficients: Coefficients, phase: Floats) -> Floats:
+    """Value of a sum at phases.
+
+    Parameters
+    ----------
+    coefficients : ndarray of complex, shape (2 n_harmonics + 1,)
+        Of the sum. [1]
+    phase : ndarray, shape (...)
+        Where. [rad]
+
+    Returns
+    -------
+    value : ndarray, shape (...)
+        In the unit of the coefficients. [1]
+
+    Raises
+    ------
+    DataError
+        If the coefficients are not of an odd number.
+
+    Notes
+    -----
+    Real, since the coefficients of opposite orders are conjugate.
+
+    Examples
+    --------
+    >>> print(sum_at(cosine_series(np.array([2.0]), 3.0), np.array([0.0, np.pi])))
+    [5. 1.]
+    """
+    waves = np.exp(1j * np.multiply.outer(phase, _orders(coefficients)))
+    return np.asarray((waves @ coefficients).real)
+
+
+def root_phases(coefficients: Coefficients) -> Floats:
+    """Phases of all roots of z^M f, on the unit circle or not.
+
+    Parameters
+    ----------
+    coefficients : ndarray of complex, shape (..., 2 n_harmonics + 1)
+        Of the sums, in any unit. [1]
+
+    Returns
+    -------
+    phase : ndarray, shape (..., n_roots)
+        Among them every zero of the sum; 0 where a sum has fewer roots than others. [rad]
+
+    Raises
+    ------
+    DataError
+        If the coefficients are not of an odd number.
+
+    Notes
+    -----
+    Eigenvalues of the companion matrix ([9]_).  Roots off the circle are kept: who looks
+    for the greatest value of a function tries them all and needs no tolerance to tell them
+    apart.  Outermost orders that are rounding are left out.
+
+    Examples
+    --------
+    >>> print(np.sort(root_phases(cosine_series(np.array([1.0])))).round(6))
+    [-1.570796  1.570796]
+    """
+    orders = _orders(coefficients)
+    rows = np.reshape(coefficients, (-1, orders.size))
+    size = np.abs(rows)
+    is_there = size > _ZERO * size.max(axis=-1, keepdims=True)
+    order_of = np.max(np.where(is_there, orders, 0), axis=-1)
+    phase = np.zeros((len(rows), max(2 * int(order_of.max(initial=0)), 1)))
+    for order in range(1, int(order_of.max(initial=0)) + 1):
+        alike = order_of == order
+        middle = orders.size // 2
+        falling = rows[alike, middle - order : middle + order + 1][:, ::-1]
+        companion = np.zeros((len(falling), 2 * order, 2 * order), dtype=np.complex128)
+        companion[:, 0, :] = -falling[:, 1:] / falling[:, :1]
+        companion[:, np.arange(1, 2 * order), np.arange(2 * order - 1)] = 1.0
+        phase[alike, : 2 * order] = np.angle(np.linalg.eigvals(companion))
+    return phase.reshape(*np.shape(coefficients)[:-1], phase.shape[1])
+
+
+def _amplitudes(amplitude: Floats) -> Floats:
+    array = np.asarray(amplitude, dtype=np.float64)
+    if array.ndim != 1:
+        raise DataError(
+            "the amplitudes are not a series", found=f"shape {array.shape}", needed="(n_harmonics,)"
+        )
+    return array
+
+
+def _orders(coefficients: Coefficients) -> NDArray[np.int64]:
+    n_coefficients = np.shape(coefficients)[-1]
+    if n_coefficients % 2 == 0:
+        raise DataError(
+            "the coefficients have no middle", found=f"{n_coefficients}", needed="an odd number"
+        )
+    middle = n_coefficients // 2
+    return np.arange(-middle, middle + 1, dtype=np.int64)
+
+
+def airy_wave(
+    *,
+    wave_height: float,
+    wave_period: float,
+    water_depth: float,
+    elevation: float,
+    wave_number: float | None = None,
+    current_velocity: float = 0.0,
+    gravity: float = STANDARD_GRAVITY,
+) -> WaveHarmonics:
+    """Airy's linear wave at one elevation.
+
+    Parameters
+    ----------
+    wave_height : float
+        Trough to crest. [m]
+    wave_period : float
+        As a fixed point sees it. [s]
+    water_depth : float
+        Of the still water. [m]
+    elevation : float
+        Of the place above the mean level; of a floating hose, that of its centre. [m]
+    wave_number : float, optional
+        2 pi over a length given beside the period; None: by the dispersion relation. [rad m-1]
+    current_velocity : float
+        On which the wave rides, positive along it; changes its length and motion. [m s-1]
+    gravity : float
+        Acceleration of free fall; without use where the wave number is given. [m s-2]
+
+    Returns
+    -------
+    wave : WaveHarmonics
+        One harmonic.
+
+    Raises
+    ------
+    DataError
+        If a number is not positive, the place is in the bed or above the crest, the current
+        stops or outruns the wave, or the wave is beyond breaking.
+
+    Notes
+    -----
+    Eq. (13) and (15) of [8]_ print the velocity amplitude H g k / (2 omega) with cosh kd below,
+    and the acceleration 2 pi^2 H / T^2 with sinh kd below.  One is the derivative of the other
+    only where length and period fit.  Here velocities follow the surface (pi H/T over sinh kd)
+    whatever the length, and accelerations are their derivative; see
+    `reduction.prediction.wave_theory` for the mismatch.
+
+    Over a current the motion is that in water that moves with it ([3]_), and so is the
+    acceleration: that of a particle to first order.
+
+    Between the mean level and the crest the motion is that of the formula carried on,
+    which overstates it; the convective acceleration is left out, as in [8]_.
+
+    Examples
+    --------
+    The wave of Table 4 of [8]_ 6 m deep, at the mean level: pi H/T = 1.1 m/s both ways but for
+    coth kd.
+
+    >>> wave = airy_wave(wave_height=1.25, wave_period=3.57, water_depth=6.0, elevation=0.0,
+    ...                  wave_number=2 * np.pi / 20)
+    >>> print(wave.horizontal_velocity.round(3), wave.vertical_velocity.round(3))
+    [1.152] [1.1]
+    """
+    frequency, number = _frequency_and_number(
+        wave_height, wave_period, water_depth, wave_number, current_velocity, gravity
+    )
+    crest = wave_height / 2
+    _refuse_outside(elevation, water_depth, crest)
+    return _harmonics(
+        frequency=2 * pi / wave_period,
+        intrinsic=frequency,
+        number=number,
+        surface=[crest],
+        speed=[frequency * wave_height / 2 * _decay(number, water_depth, elevation)],
+        height_above_bed=water_depth + elevation,
+    )
+
+
+def stokes_wave(
+    *,
+    wave_height: float,
+    wave_period: float,
+    water_depth: float,
+    elevation: float,
+    wave_number: float | None = None,
+    current_velocity: float = 0.0,
+    gravity: float = STANDARD_GRAVITY,
+) -> WaveHarmonics:
+    """Stokes' wave of second order at one elevation.
+
+    Parameters
+    ----------
+    wave_height : float
+        Trough to crest. [m]
+    wave_period : float
+        As a fixed point sees it. [s]
+    water_depth : float
+        Of the still water. [m]
+    elevation : float
+        Of the place above the mean level; of a floating hose, that of its centre. [m]
+    wave_number : float, optional
+        2 pi over a length given beside the period; None: by the dispersion relation. [rad m-1]
+    current_velocity : float
+        On which the wave rides, positive along it; changes its length and motion. [m s-1]
+    gravity : float
+        Acceleration of free fall; without use where the wave number is given. [m s-2]
+
+    Returns
+    -------
+    wave : WaveHarmonics
+        Two harmonics.
+
+    Raises
+    ------
+    DataError
+        If a number is not positive, the place is in the bed or above the crest, the current
+        stops or outruns the wave, or the wave is beyond breaking.
+
+    Notes
+    -----
+    Eq. (16) and (17) of [8]_, which are right as printed; the elevation, which it does not
+    print, from [10]_.  Second order has the dispersion relation of first order: the gain in
+    speed with height is of third order.
+
+    Not flagged here: a secondary crest in the trough where the second harmonic of the surface
+    is above a quarter of the first; see `reduction.prediction.wave_theory`.
+
+    Examples
+    --------
+    The wave of Table 4 of [8]_ 3 m deep, at the mean level.
+
+    >>> wave = stokes_wave(wave_height=1.25, wave_period=3.57, water_depth=3.0, elevation=0.0,
+    ...                    wave_number=2 * np.pi / 20)
+    >>> print(wave.horizontal_velocity.round(3), wave.elevation.round(3))
+    [1.494 0.389] [0.625 0.189]
+    """
+    intrinsic, number = _frequency_and_number(
+        wave_height, wave_period, water_depth, wave_number, current_velocity, gravity
+    )
+    depth = number * water_depth
+    flat = -expm1(-2 * depth)  # 2 exp(-kd) sinh kd: nothing overflows on deep water
+    # cosh kd (2 + cosh 2kd) / sinh^3 kd = coth kd (3 + 2 sinh^2 kd) / sinh^2 kd
+    shape = (2 + 12 * exp(-2 * depth) / flat**2) / tanh(depth)
+    surface = [wave_height / 2, number * wave_height**2 / 16 * shape]
+    _refuse_outside(elevation, water_depth, sum(surface))
+    first = intrinsic * wave_height / 2 * _decay(number, water_depth, elevation)
+    # sinh 2kd / sinh^4 kd = 8 exp(-2 kd) (1 - exp(-4 kd)) / flat^4
+    second = 8 * exp(-2 * depth) * -expm1(-4 * depth) / flat**4
+    second *= 3 / 16 * number * intrinsic * wave_height**2
+    second *= _decay(2 * number, water_depth, elevation)
+    return _harmonics(
+        frequency=2 * pi / wave_period,
+        intrinsic=intrinsic,
+        number=number,
+        surface=surface,
+        speed=[first, second],
+        height_above_bed=water_depth + elevation,
+    )
+
+
+def _frequency_and_number(
+    height: float,
+    period: float,
+    depth: float,
+    number: float | None,
+    current: float,
+    gravity: float,
+) -> tuple[float, float]:
+    """Frequency in water that moves with the current, and wave number."""
+    as_positive("wave_height", height)
+    if number is None:
+        number = float(wave_number(period, depth, current_velocity=current, gravity=gravity))
+    as_positive("wave_number", number)
+    intrinsic = float(2 * pi / as_positive("wave_period", period)) - number * current
+    if intrinsic <= 0:
+        raise DataError(
+            "the current is faster than the wave",
+            found=f"a current of {current:g} m/s, a wave of {2 * pi / (period * number):.4g} m/s",
+            needed="a wave that goes forward through the water",
+        )
+    refuse_breaking(wave_height=height, wave_number=number, water_depth=depth)
+    return intrinsic, number
+
+
+def _refuse_outside(elevation: float, depth: float, crest: float) -> None:
+    if -depth <= elevation <= crest:
+        return
+    raise DataError(
+        "the place is not in the water",
+        found=f"an elevation of {elevation:.4g} m",
+        needed=f"from {-depth:.4g} m, the bed, to {crest:.4g} m, the crest",
+    )
+
+
+def _decay(number: float, depth: float, elevation: float) -> float:
+    """Size exp k(z+d) / (2 sinh kd), which does not overflow."""
+    return exp(number * elevation) / -expm1(-2 * number * depth)
+
+
+def _harmonics(
+    *,
+    frequency: float,
+    intrinsic: float,
+    number: float,
+    surface: list[float],
+    speed: list[float],
+    height_above_bed: float,
+) -> WaveHarmonics:
+    """Motions from the size of their growing part, exp n k(z+d), at each harmonic."""
+    order = np.arange(1, len(speed) + 1)
+    fading = np.exp(-2 * order * number * height_above_bed)
+    horizontal = np.asarray(speed) * (1 + fading)
+    vertical = np.asarray(speed) * (1 - fading)
+    return WaveHarmonics(
+        wave_number=number,
+        angular_frequency=frequency,
+        elevation=np.asarray(surface),
+        horizontal_velocity=horizontal,
+        vertical_velocity=vertical,
+        horizontal_acceleration=order * intrinsic * horizontal,
+        vertical_acceleration=-order * intrinsic * vertical,
+    )
+
+
+WaveTheoryName = Literal["airy", "stokes", "cnoidal or solitary", "beyond the table"]
+
+PrintedTheory = Literal["airy", "stokes", "cnoidal or solitary", "none"]
+
+
+def theory_by_depth(relative_depth: float) -> WaveTheoryName:
+    """Theory by the relative depth alone.
+
+    Parameters
+    ----------
+    relative_depth : float
+        Depth over wave length. [1]
+
+    Returns
+    -------
+    theory : {"airy", "stokes", "cnoidal or solitary", "beyond the table"}
+        Of a wave that does not break.
+
+    Raises
+    ------
+    DataError
+        If the relative depth is not positive.
+
+    Notes
+    -----
+    Table 1 of [11]_ leaves d/L = 0.1 to nobody; it is given to Stokes here, as in sec. 5
+    ("between 2 and 4 meters" of a 20 m wave).  Its lowest limit, "0.04~0.05", is taken as 0.04.
+
+    Examples
+    --------
+    The 20 m wave of [11]_ over 6 m, 3 m and 1.5 m of water.
+
+    >>> [theory_by_depth(depth / 20) for depth in (6.0, 3.0, 1.5)]
+    ['airy', 'stokes', 'cnoidal or solitary']
+    """
+    as_positive("relative_depth", relative_depth)
+    if relative_depth >= 0.2:
+        return "airy"
+    if relative_depth >= 0.1:
+        return "stokes"
+    return "cnoidal or solitary" if relative_depth > 0.04 else "beyond the table"
+
+
+def printed_theory(relative_depth: float, steepness: float) -> PrintedTheory:
+    """Theory by Table 1 to the letter.
+
+    Parameters
+    ----------
+    relative_depth : float
+        Depth over wave length. [1]
+    steepness : float
+        Height over wave length. [1]
+
+    Returns
+    -------
+    printed : {"airy", "stokes", "cnoidal or solitary", "none"}
+        What the table names.
+
+    Raises
+    ------
+    DataError
+        If a number is not positive.
+
+    Notes
+    -----
+    Table 1 of [11]_ contradicts itself: its row of Stokes asks for H/L of 0.2 or more, where
+    every wave has broken (at most 0.142, and 0.12 at d/L = 0.2), and its row of Airy allows
+    up to 0.2.  The second example of the paper, H/L = 0.0625 at d/L = 0.15, is in no row.
+
+    Examples
+    --------
+    >>> printed_theory(0.3, 0.0625), printed_theory(0.15, 0.0625)
+    ('airy', 'none')
+    """
+    as_positive("relative_depth", relative_depth)
+    as_positive("steepness", steepness)
+    if relative_depth >= 0.2:
+        return "airy" if steepness <= 0.2 else "none"
+    if relative_depth > 0.1:
+        return "stokes" if steepness >= 0.2 else "none"
+    return "cnoidal or solitary" if 0.04 < relative_depth < 0.1 else "none"
+
+
+GREATEST_URSELL_NUMBER = 8 * pi**2 / 3
+
+"""Where Stokes' second order has a secondary crest over shallow water. [1]"""
+
+_SECONDARY_CREST = 0.25
+
+_NEGLIGIBLE = 0.05  # second over first harmonic that the linear theory may leave out
+
+_LENGTH_TOLERANCE = 0.01  # given length against that of the period
+
+
+@dataclass(frozen=True)
+class WaveTheory:
+    """What one wave is and which theory it asks for.
+
+    Parameters
+    ----------
+    theory : {"airy", "stokes", "cnoidal or solitary", "beyond the table"}
+        By relative depth, as [11]_ itself reads its Table 1.
+    printed : {"airy", "stokes", "cnoidal or solitary", "none"}
+        By both columns of Table 1, to the letter.
+    wave_length : float
+        As given, else by the dispersion relation. [m]
+    relative_depth, steepness, height_to_depth : float
+        d / L, H / L, H / d. [1]
+    breaking_ratio : float
+        Height over that at which the wave breaks. [1]
+    ursell_number : float
+        H L^2 / d^3. [1]
+    elevation_ratio, velocity_ratio : float
+        Second over first harmonic by Stokes' theory, of the surface and of the horizontal
+        velocity at the mean level. [1]
+    length_mismatch : float
+        Given length over that of the period, less one; 0 where none was given. [1]
+    is_breaking : bool
+        No theory applies, and none is computed.
+    is_computed : bool
+        Whether the package has the theory: not the cnoidal and the solitary wave.
+    is_beyond_stokes : bool
+        Ursell number above 8 pi^2 / 3, or a secondary crest in the trough.
+    is_second_order_small : bool
+        Second harmonics below 5 % of the first.
+    reasons : tuple of str
+        What speaks against the theory, in words; empty where nothing does.
+    """
+
+    theory: WaveTheoryName
+    printed: PrintedTheory
+    wave_length: float
+    relative_depth: float
+    steepness: float
+    height_to_depth: float
+    breaking_ratio: float
+    ursell_number: float
+    elevation_ratio: float
+    velocity_ratio: float
+    length_mismatch: float
+    is_breaking: bool
+    is_computed: bool
+    is_beyond_stokes: bool
+    is_second_order_small: bool
+    reasons: tuple[str, ...]
+
+
+def describe_wave(
+    *,
+    wave_height: float,
+    wave_period: float,
+    water_depth: float,
+    wave_length: float | None = None,
+    current_velocity: float = 0.0,
+    gravity: float = STANDARD_GRAVITY,
+) -> WaveTheory:
+    """Theory, limits and doubts of one wave.
+
+    Parameters
+    ----------
+    wave_height : float
+        Trough to crest. [m]
+    wave_period : float
+        As a fixed point sees it. [s]
+    water_depth : float
+        Of the still water. [m]
+    wave_length : float, optional
+        Where one is given beside the period; None: by the dispersion relation. [m]
+    current_velocity : float
+        On which the wave rides, positive along it. [m s-1]
+    gravity : float
+        Acceleration of free fall. [m s-2]
+
+    Returns
+    -------
+    wave : WaveTheory
+        A breaking wave is flagged, not refused: a description is no prediction.
+
+    Raises
+    ------
+    DataError
+        If a number is not positive, or the current stops the wave.
+
+    Notes
+    -----
+    Limits of height: `reduction.prediction.wave_theory`.  Number of [12]_, secondary crest after
+    [13]_.  What counts as a small second harmonic (5 %) and as a length that fits its period
+    (1 %) is set by this package.
+
+    Examples
+    --------
+    The second example of [11]_ is at the edge of Stokes' second order.
+
+    >>> wave = describe_wave(wave_height=1.25, wave_period=3.57, water_depth=3.0,
+    ...                      wave_length=20.0)
+    >>> print(wave.theory, round(wave.ursell_number, 1), round(wave.elevation_ratio, 2),
+    ...       round(wave.velocity_ratio, 2), wave.is_beyond_stokes)
+    stokes 18.5 0.3 0.26 True
+    """
+    for name, value in (("wave_height", wave_height), ("wave_period", wave_period)):
+        as_positive(name, value)
+    if wave_length is None:
+        number = float(
+            wave_number(
+                wave_period, water_depth, current_velocity=current_velocity, gravity=gravity
+            )
+        )
+        length, mismatch = 2 * pi / number, 0.0
+    else:
+        as_positive("wave_length", wave_length)
+        length, number = wave_length, 2 * pi / wave_length
+        mismatch = float(
+            check_wave_length(
+                length, wave_period, water_depth, current_velocity=current_velocity, gravity=gravity
+            ).length_mismatch
+        )
+    relative_depth, steepness = water_depth / length, wave_height / length
+    theory = theory_by_depth(relative_depth)
+    surface, velocity = _second_harmonics(number * wave_height, number * water_depth)
+    breaking_ratio = wave_height / float(breaking_height(number, water_depth))
+    ursell = wave_height * length**2 / water_depth**3
+    is_beyond = ursell > GREATEST_URSELL_NUMBER or surface > _SECONDARY_CREST
+    is_small = max(surface, velocity) < _NEGLIGIBLE
+    doubts = {
+        f"the wave breaks: {breaking_ratio:.2f} of the breaking height": breaking_ratio > 1,
+        f"cnoidal and solitary waves are not computed, and d/L is {relative_depth:.3f}": (
+            theory not in ("airy", "stokes")
+        ),
+        f"the second harmonic of the surface is {100 * surface:.0f} % of the first": (
+            theory == "airy" and not is_small
+        ),
+        f"Stokes' second order is at its end: Ursell number {ursell:.1f} (at most "
+        f"{GREATEST_URSELL_NUMBER:.1f}), second harmonic of the surface {100 * surface:.0f} % "
+        f"(at most {100 * _SECONDARY_CREST:.0f} %)": is_beyond,
+        f"the given length is {100 * mismatch:+.1f} % off that of the period": (
+            abs(mismatch) > _LENGTH_TOLERANCE
+        ),
+    }
+    return WaveTheory(
+        theory=theory,
+        printed=printed_theory(relative_depth, steepness),
+        wave_length=length,
+        relative_depth=relative_depth,
+        steepness=steepness,
+        height_to_depth=wave_height / water_depth,
+        breaking_ratio=breaking_ratio,
+        ursell_number=ursell,
+        elevation_ratio=surface,
+        velocity_ratio=velocity,
+        length_mismatch=mismatch,
+        is_breaking=breaking_ratio > 1,
+        is_computed=theory in ("airy", "stokes"),
+        is_beyond_stokes=is_beyond,
+        is_second_order_small=is_small,
+        reasons=tuple(text for text, is_so in doubts.items() if is_so),
+    )
+
+
+def regular_wave(
+    wave: WaveTheory,
+    *,
+    wave_height: float,
+    wave_period: float,
+    water_depth: float,
+    elevation: float,
+    theory: WaveTheoryName | None = None,
+    current_velocity: float = 0.0,
+) -> WaveHarmonics:
+    """Motion at one elevation by the theory that applies, or by the one asked for.
+
+    Parameters
+    ----------
+    wave : WaveTheory
+        Of the same wave.
+    wave_height : float
+        Trough to crest. [m]
+    wave_period : float
+        As a fixed point sees it. [s]
+    water_depth : float
+        Of the still water. [m]
+    elevation : float
+        Of the place above the mean level. [m]
+    theory : {"airy", "stokes", "cnoidal or solitary", "beyond the table"}, optional
+        None: that of the description.
+    current_velocity : float
+        On which the wave rides, positive along it. [m s-1]
+
+    Returns
+    -------
+    wave : WaveHarmonics
+        With the wave length of the description.
+
+    Raises
+    ------
+    DataError
+        If the theory is not computed, the wave is beyond breaking, or as `airy_wave`.
+
+    Notes
+    -----
+    Doubts of the description do not stop a prediction: they go with it.
+
+    Examples
+    --------
+    The second example of [11]_ has two harmonics.
+
+    >>> sea = dict(wave_height=1.25, wave_period=3.57, water_depth=3.0)
+    >>> regular_wave(describe_wave(**sea), **sea, elevation=0.0).elevation.size
+    2
+    """
+    by = theory or wave.theory
+    makers = {"airy": airy_wave, "stokes": stokes_wave}
+    if by not in makers:
+        raise DataError(
+            f"the theory of this wave is not computed: {by}",
+            found=f"a depth of {wave.relative_depth:.3f} wave lengths",
+            needed="0.1 or more, for Airy's or Stokes' theory",
+            hint="Ask for one of the two by name to see what it gives outside its range.",
+        )
+    return makers[by](
+        wave_height=wave_height,
+        wave_period=wave_period,
+        water_depth=water_depth,
+        elevation=elevation,
+        wave_number=2 * pi / wave.wave_length,
+        current_velocity=current_velocity,
+    )
+
+
+def _second_harmonics(height: float, depth: float) -> tuple[float, float]:
+    """Second over first harmonic, from k H and k d, of surface and velocity at the mean level.
+
+    kH/8 cosh kd (2 + cosh 2kd) / sinh^3 kd and 3 kH/8 cosh 2kd / (sinh^3 kd cosh kd).
+    """
+    if depth > 20:  # all but 1e-17: cosh would overflow later on
+        return height / 4, 3 * height * exp(-2 * depth)
+    sine, cosine, double = sinh(depth), cosh(depth), cosh(2 * depth)
+    surface = height / 8 * cosine * (2 + double) / sine**3
+    return surface, 3 * height / 8 * double / (sine**3 * cosine)
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class ParticleMotion:
+    """Surface and water at one place over time; arrays have the shape (n_times,).
+
+    Velocities [m s-1] and accelerations [m s-2] are of the wave alone, without a current;
+    the elevation [m] is of the surface above the mean level.
+    """
+
+    elevation: Floats
+    horizontal_velocity: Floats
+    vertical_velocity: Floats
+    horizontal_acceleration: Floats
+    vertical_acceleration: Floats
+
+
+def particle_motion(wave: WaveHarmonics, time: ArrayLike, position: float = 0.0) -> ParticleMotion:
+    """Surface and water at one place over time.
+
+    Parameters
+    ----------
+    wave : WaveHarmonics
+        From a theory or by hand.
+    time : array_like, shape (n_times,)
+        When. [s]
+    position : float
+        Along the wave; the crest is at 0 at time 0. [m]
+
+    Returns
+    -------
+    motion : ParticleMotion
+        Arrays of shape (n_times,).
+
+    Raises
+    ------
+    DataError
+        If a time is not finite.
+
+    Notes
+    -----
+    Sums of the harmonics; a current is not in them.
+
+    Examples
+    --------
+    Under the crest the water goes forward and falls fastest a quarter period later.
+
+    >>> from reduction.prediction.wave_theory import airy_wave
+    >>> wave = airy_wave(wave_height=1.25, wave_period=4.0, water_depth=6.0, elevation=0.0)
+    >>> motion = particle_motion(wave, [0.0, 1.0])
+    >>> print(motion.horizontal_velocity.round(3), motion.vertical_velocity.round(3))
+    [1.06 0.  ] [ 0.    -0.982]
+    """
+    when = np.atleast_1d(as_finite("time", time))
+    phase = wave.wave_number * position - wave.angular_frequency * when
+    order = np.arange(1, wave.elevation.size + 1)
+    cosines, sines = (part(np.multiply.outer(phase, order)) for part in (np.cos, np.sin))
+    return ParticleMotion(
+        elevation=cosines @ wave.elevation,
+        horizontal_velocity=cosines @ wave.horizontal_velocity,
+        vertical_velocity=sines @ wave.vertical_velocity,
+        horizontal_acceleration=sines @ wave.horizontal_acceleration,
+        vertical_acceleration=cosines @ wave.vertical_acceleration,
+    )

@@ -1,0 +1,452 @@
+"""CG-D-39-80: K_0 polynomials and response surfaces, Tables 3 to 9 and 11 to 19.
+
+A coefficient that two tables print is held against the other print; one that only one table
+prints comes from runs that are not printed.  B1 is the mean of the centre runs, so that the
+equations of the line can be put beside it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from reduction.experiments.designs import model_matrix, quadratic_exponents
+from reduction.experiments.least_squares_fit import statistics_from_r2
+from reduction.published.cg_cells import (
+    CENTRE_LINES,
+    ENERGY,  # fmt: skip
+    K_1,  # fmt: skip
+    K_AP,  # fmt: skip
+    NYLON_PLAITED,  # fmt: skip
+    POLYESTER_BRAID,  # fmt: skip
+    POLYNOMIAL_SCALES,
+    TIME,  # fmt: skip
+    Pages,
+    centre_stiffness,  # fmt: skip
+    levels_of,
+    number,
+    rounding,
+)
+from reduction.published.printed_cells import Cell, printed_step
+from reduction.published.reproduced_item import Item, agree, beside, judge, judge_as, not_testable
+from reduction.stages.line.line_model import (
+    apparent_spring_constant,
+    hysteresis_energy,
+    identify_by_amplitude,
+)
+from reduction.stages.line.slow_pull import fit_pull, spring_constant_ratio
+
+REST, STRAIN = "quasi_static_spring_constant", "quasi_static_strain"
+
+RANGE = "mean_tension high"
+
+FITTED = "a fit to pulls that are not printed"
+
+EXPOSED_YEARS = "5 years"
+
+
+def item_of_static(cell: Cell, pages: Pages) -> Item:
+    """Verdict on a cell of Tables 6-9 and D-1."""
+    if cell.table == "D-1":
+        return _rate(cell, pages)
+    term = cell.column.partition(" ")[2]
+    if cell.row == "every line":
+        return _head(cell, pages, term)
+    if term == RANGE:
+        return _static_range(cell, pages)
+    if term == "number of samples":
+        return _static_count(cell, pages)
+    twin = _static_twin(cell, pages)
+    if twin is not None:
+        return judge(cell, twin[0], twin[1])
+    if cell.table in ("6", "7"):
+        return _coefficient_of_stiffness(cell, pages, term)
+    if cell.erratum == "CG-10":
+        return beside(
+            cell, _curvature_of_strain(cell, pages), f"{FITTED}; C that meets K_0 of Table 7"
+        )
+    return not_testable(cell, FITTED)
+
+
+def _static_twin(cell: Cell, pages: Pages) -> tuple[float, str] | None:
+    """The number of the other table, corrected where that is wrong on its own account."""
+    table = {"6": "7", "7": "6", "8": "9", "9": "8"}[cell.table]
+    other = pages.by_key.get((table, cell.row, cell.column))
+    if other is None or (other.erratum and other.erratum != cell.erratum):
+        return None
+    if other.corrected is None:
+        return number(other), f"Table {table}"
+    if cell.erratum == "CG-9" and cell.table == "6":
+        # C of Table 7 has lost its sign, for reasons of its own
+        return other.corrected, f"Table {table}, C with its sign"
+    return None
+
+
+def _slopes(cell: Cell, pages: Pages, tension: float) -> float | None:
+    """K_0 [lb] by the cubic of the same line, where one is printed."""
+    table = "8" if cell.row.endswith("new") else "9"
+    row = cell.row.replace("field exposure", EXPOSED_YEARS)
+    if (table, row, f"{STRAIN} A") not in pages.by_key:
+        return None
+    return pages.slope(table, row, tension)
+
+
+def _coefficient_of_stiffness(cell: Cell, pages: Pages, term: str) -> Item:
+    """Beside a coefficient: what it has to be for the others to meet the slope at mid range."""
+    tension = 0.7 * pages.value(cell.table, cell.row, f"{REST} {RANGE}")
+    slope = _slopes(cell, pages, tension)
+    if slope is None:
+        return not_testable(cell, FITTED)
+    power = "ABCD".index(term)
+    others = pages.polynomial(cell.table, cell.row, tension)
+    scale = tension**power * POLYNOMIAL_SCALES[power]
+    own = pages.value(cell.table, cell.row, cell.column)
+    return beside(
+        cell, own + (slope - others) / scale,
+        f"{FITTED}; beside it what meets the slope of the cubic at {tension:.0f} lb",
+    )  # fmt: skip
+
+
+def _curvature_of_strain(cell: Cell, pages: Pages) -> float:
+    """C [1e-8/lb2] with which the slope of the cubic meets K_0 at the centre of the levels."""
+    tension = 1470.0
+    rest = pages.polynomial("7", cell.row.replace(EXPOSED_YEARS, "field exposure"), tension)
+    _, linear, _, cubic = pages.cubic("9", cell.row)
+    return float((1 / rest - linear - 3 * cubic * tension**2) / (2 * tension) * 1e8)
+
+
+def _head(cell: Cell, pages: Pages, term: str) -> Item:
+    """The form of the polynomial: powers of T, and the power of ten in front."""
+    row, tension = "nylon | double braid | 1/2 in | new", 1344.0
+    if term == "power of ten":
+        ratio = pages.slope("8", row, tension) / (pages.polynomial("7", row, tension) / 1e4)
+        base, _, exponent = cell.printed.partition("^")
+        how = "K_0 of Table 8 over the polynomial, as a power of ten"
+        text = exponent.strip("{}") if base == "10" else ""
+        return judge_as(cell, text, round(np.log10(ratio)), how)
+    expected = "ABCD".index(term[-1])
+    if cell.printed == "T_m":
+        return agree(cell, expected == 1, "Table 7 meets the slopes of Table 8")
+    return judge(cell, float(expected), "Table 7, which meets the slopes of Table 8")
+
+
+def _static_range(cell: Cell, pages: Pages) -> Item:
+    if cell.erratum == "CG-12":
+        off = ", ".join(f"{100 * one:.0f}" for one in _departures(cell.row, pages))
+        return not_testable(cell, f"{off} % off the slope of Table 8 at the three levels")
+    if cell.erratum == "CG-13":
+        return _range_of_strength(cell, pages)
+    years = cell.row.replace("field exposure", EXPOSED_YEARS)
+    exposure = cell.row.replace(EXPOSED_YEARS, "field exposure")
+    table = {"6": "8", "8": "6", "7": "9", "9": "7"}[cell.table]
+    quantity = REST if table in ("6", "7") else STRAIN
+    other = pages.by_key.get(
+        (table, exposure if quantity == REST else years, f"{quantity} {RANGE}")
+    )
+    if other is not None and (not other.erratum or other.erratum == cell.erratum):
+        return judge(cell, number(other), f"Table {table}")
+    strength = pages.by_key.get(("1", cell.row, "rated_break_strength"))
+    if strength is None:
+        return not_testable(cell, "a range that no other table prints")
+    return judge(cell, 0.30 * number(strength), "30 % of the rated break strength of Table 1")
+
+
+def _levels(row: str, pages: Pages) -> list[float]:
+    """Low, centre and high mean load [lb] of the design of a new line."""
+    centre = CENTRE_LINES[row][1]
+    shares = [
+        pages.value("1", levels_of(row), f"mean_tension {end}") for end in ("low", "centre", "high")
+    ]
+    return [centre * share / shares[1] for share in shares]
+
+
+def _departures(row: str, pages: Pages) -> list[float]:
+    """Distance of the polynomial from the slope of the cubic at each level, as a share."""
+    table = CENTRE_LINES[row][0]
+    return [
+        abs(pages.polynomial(table, row, tension) / pages.slope("8", row, tension) - 1)
+        for tension in _levels(row, pages)
+    ]
+
+
+def _range_of_strength(cell: Cell, pages: Pages) -> Item:
+    """Two rows print a break strength where the others have 30 % of it."""
+    if cell.row.startswith("polyester"):
+        strength = pages.printed("10", cell.row, "tensile_strength mean")
+        return judge(cell, 0.30 * strength, "30 % of the strength of Table 10")
+    wet = cell.row.replace("new", "wet, before cycling")
+    strength = pages.printed("A-3", wet, "tensile_strength mean")
+    return judge(cell, 0.30 * strength, "30 % of the strength of Table A-3")
+
+
+def _static_count(cell: Cell, pages: Pages) -> Item:
+    table, quantity = ("8", STRAIN) if cell.table == "6" else ("6", REST)
+    other = pages.by_key.get((table, cell.row, f"{quantity} number of samples"))
+    if other is not None:
+        return judge(cell, number(other), f"Table {table}")
+    if "13/16" in cell.row:
+        return judge(cell, 9.0, "nine of each diameter, sec. A-2.1")
+    return not_testable(cell, "a count that no other table prints")
+
+
+def _rate(cell: Cell, pages: Pages) -> Item:
+    if cell.column != REST:
+        return not_testable(cell, "a setting of the test")
+    load = np.linspace(0, 2000, 100)
+    slowest = "24 h after the dynamic test, slow"
+    pulls = [
+        fit_pull(np.arange(100.0), load / (1e4 * pages.printed("D-1", row, REST)), load)
+        for row in (cell.row, slowest)
+    ]
+    ratio = float(spring_constant_ratio(pulls[0], pulls[1], 1000.0)[0])
+    return not_testable(cell, f"measured; {ratio:.2f} times the slow pull after 24 h")
+
+
+TABLES_OF = {
+    K_AP: ("3", "4", "5"), ENERGY: ("11", "12", "13"), K_1: ("14", "15", "16"),
+    TIME: ("17", "18", "19"),
+}  # fmt: skip
+
+RUNS = "a regression over runs that are not printed"
+
+
+def item_of_surface(cell: Cell, pages: Pages) -> Item:
+    """Verdict on a cell of Tables 3-5 and 11-19."""
+    quantity, _, term = cell.column.partition(" ")
+    if term == "r2":
+        return _share(cell, pages)
+    if term == "F-stat":
+        return _statistic(cell, pages)
+    if term == "F-crit":
+        found = statistics_from_r2(0.9, n_runs=15, n_terms=10)
+        scale = float(found.printed_f / found.f)
+        return judge(
+            cell, float(found.critical) * scale,
+            "F(.05; 9, 5) on the scale of the printed statistic; printed is F(.05; 4, 10)",
+        )  # fmt: skip
+    if term == "number of lines":
+        return _count(cell, pages)
+    if term == "change":
+        return _change(cell, pages)
+    if term.endswith((" low", " high")):
+        return _range(cell, pages)
+    if term.startswith("B") and quantity in TABLES_OF:
+        return _coefficient(cell, pages, quantity, term)
+    return not_testable(cell, "a head of the table")
+
+
+def _twin(cell: Cell, pages: Pages, quantity: str) -> Cell | None:
+    """The same number in another table, unless that print is known to be wrong."""
+    tables = TABLES_OF[quantity]
+    if quantity == K_1 and cell.row == f"{POLYESTER_BRAID} | new":
+        # three prints: Table 11 repeats this column under the head of the energy
+        copied = pages.by_key[("11", cell.row, cell.column.replace(K_1, ENERGY))]
+        own = pages.by_key.get(("14" if cell.table == "16" else "16", cell.row, cell.column))
+        return own if own is not None and number(own) == number(copied) else copied
+    for table in tables:
+        other = pages.by_key.get((table, cell.row, cell.column))
+        if table != cell.table and other is not None and other.confidence in ("", "open"):
+            return other
+    return None
+
+
+def _coefficient(cell: Cell, pages: Pages, quantity: str, term: str) -> Item:
+    twin = _twin(cell, pages, quantity)
+    if twin is not None:
+        return judge(cell, number(twin), f"Table {twin.table}")
+    if cell.erratum == "CG-6":
+        return beside(
+            cell, _energy_by_mean_load(pages, cell.row),
+            f"{RUNS}; half the difference of H at (0, +1, 0) and (0, -1, 0) by the equations",
+        )  # fmt: skip
+    if term != "B1" or cell.row not in CENTRE_LINES:
+        return _exposed_time(cell, pages, quantity, term)
+    recomputed = _centre(pages, cell.row, quantity)
+    return beside(cell, recomputed, f"{RUNS}; the equations at the centre give the number beside")
+
+
+def _centre(pages: Pages, row: str, quantity: str) -> float:
+    """What eqs. 1 and 4 as corrected make of the three other printed means."""
+    _, _, amplitude = CENTRE_LINES[row]
+    rest = centre_stiffness(pages, row)
+    table = {K_AP: "3", ENERGY: "11", K_1: "14", TIME: "17"}
+    mean = {name: pages.value(table[name], row, f"{name} B1") for name in table}
+    if quantity in (K_AP, ENERGY):
+        line = {
+            "quasi_static_spring_constant": rest,
+            "dissipation_spring_constant": 1e4 * mean[K_1],
+            "relaxation_time": mean[TIME],
+            "frequency": 0.3,
+        }
+        if quantity == K_AP:
+            return float(apparent_spring_constant(**line)) / 1e4
+        return float(hysteresis_energy(tension_amplitude=amplitude, **line))
+    return _solved(mean[K_AP], mean[ENERGY], amplitude, rest)[quantity == TIME]
+
+
+def _energy_by_mean_load(pages: Pages, row: str) -> float:
+    """Linear effect of mean load on H by eq. 4, from K_1, tau and the slow pull."""
+    level = levels_of(row)
+    strength = pages.value("1", row, "rated_break_strength") / 100
+    energy = []
+    for end in ("low", "high"):
+        coded = model_matrix([[0.0, 1.0 if end == "high" else -1.0, 0.0]], quadratic_exponents(3))
+        mean = {K_1: pages.surface("14", row, K_1), TIME: pages.surface("17", row, TIME)}
+        found = hysteresis_energy(
+            quasi_static_spring_constant=pages.slope(
+                "8", row, strength * pages.value("1", level, f"mean_tension {end}")
+            ),
+            dissipation_spring_constant=1e4 * (coded @ mean[K_1]),
+            relaxation_time=coded @ mean[TIME],
+            frequency=0.3,
+            tension_amplitude=CENTRE_LINES[row][2],
+        )
+        energy.append(float(found[0]))
+    return (energy[1] - energy[0]) / 2
+
+
+def _solved(stiffness: float, energy: float, amplitude: float, rest: float) -> tuple[float, float]:
+    """K_1 [1e4 lb] and tau [s] from the loop."""
+    line = identify_by_amplitude(
+        apparent_spring_constant=1e4 * stiffness,
+        hysteresis_energy=energy,
+        tension_amplitude=amplitude,
+        frequency=0.3,
+        quasi_static_spring_constant=rest,
+    )
+    return float(line.dissipation_spring_constant) / 1e4, float(line.relaxation_time)
+
+
+def _exposed_time(cell: Cell, pages: Pages, quantity: str, term: str) -> Item:
+    """K_1 and tau of exposed lines beside those solved from their own K_ap and H."""
+    exposed = {
+        f"{NYLON_PLAITED} | 5 years": ("4", "12", 1209.6, 489.6),
+        f"{POLYESTER_BRAID} | 5 years": ("5", "13", 1470.0, 595.0),
+    }
+    if term != "B1" or quantity not in (K_1, TIME) or cell.row not in exposed:
+        return not_testable(cell, RUNS)
+    stiff, lossy, tension, amplitude = exposed[cell.row]
+    rest = pages.polynomial("7", cell.row.replace("5 years", "field exposure"), tension)
+    solved = _solved(
+        pages.value(stiff, cell.row, f"{K_AP} B1"),
+        pages.value(lossy, cell.row, f"{ENERGY} B1"),
+        amplitude,
+        rest,
+    )
+    return beside(
+        cell, solved[quantity == TIME],
+        f"{RUNS}; Tables {stiff}, {lossy} and 7 with the equations give the number beside",
+    )  # fmt: skip
+
+
+def _f_of(r2: float) -> float:
+    return float(statistics_from_r2(r2, n_runs=15, n_terms=10).printed_f)
+
+
+def _share(cell: Cell, pages: Pages) -> Item:
+    f = pages.cell(cell.table, cell.row, cell.column.replace("r2", "F-stat"))
+    if cell.confidence == "certain":
+        return judge(cell, number(_true_column(cell, pages)), "Table 13, new")
+    statistic = number(f)
+    # the statistic is 4/10 of the odds of r2
+    share = float(statistic / (statistic + _f_of(0.5)))
+    return judge(cell, share, "the printed F, of 10 and 4 degrees of freedom")
+
+
+def _true_column(cell: Cell, pages: Pages) -> Cell:
+    return pages.cell("13", cell.row, cell.column)
+
+
+def _statistic(cell: Cell, pages: Pages) -> Item:
+    quantity = cell.column.partition(" ")[0]
+    if cell.erratum == "CG-5":
+        return judge(cell, number(_true_column(cell, pages)), "Table 13, new")
+    r2 = pages.cell(cell.table, cell.row, cell.column.replace("F-stat", "r2"))
+    half = 0.5 * printed_step(r2.printed)
+    allowed = rounding(_f_of, [number(r2)], [half]) + 0.5 * printed_step(cell.printed)
+    by_share = judge(
+        cell, _f_of(number(r2)),
+        "r2 with 10 and 4 degrees of freedom, which counts the mean twice", tolerance=allowed,
+    )  # fmt: skip
+    if by_share.verdict != "reproduced":
+        return by_share
+    cut = _cut_off(cell, pages, quantity)
+    if cut is not None:
+        half = 0.5 * printed_step(cut.printed)
+        how = f"Table {cut.table}, which cuts digits off, and r2"
+        return judge(cell, number(cut) + half, how, tolerance=half)
+    twin = _twin(cell, pages, quantity)
+    if twin is None:
+        return by_share
+    coarser = max(printed_step(cell.printed), printed_step(twin.printed))
+    return judge(cell, number(twin), f"Table {twin.table}, and r2", tolerance=0.5 * coarser)
+
+
+def _cut_off(cell: Cell, pages: Pages, quantity: str) -> Cell | None:
+    """The same statistic in another table, printed with digits cut off."""
+    for table in TABLES_OF[quantity]:
+        other = pages.by_key.get((table, cell.row, cell.column))
+        if table != cell.table and other is not None and other.erratum == "CG-44":
+            return other
+    return None
+
+
+def _count(cell: Cell, pages: Pages) -> Item:
+    for table in ("4", "5", "12", "13"):
+        for quantity in (K_AP, ENERGY):
+            other = pages.by_key.get((table, cell.row, f"{quantity} number of lines"))
+            if other is not None and table != cell.table:
+                return judge(cell, number(other), f"Table {table}")
+    strength = pages.by_key.get(("10", cell.row, "tensile_strength number of samples"))
+    if strength is None:
+        return not_testable(cell, "a count that no other table prints")
+    return judge(cell, number(strength), "samples of Table 10")
+
+
+def _change(cell: Cell, pages: Pages) -> Item:
+    quantity = cell.column.partition(" ")[0]
+    change = change_of_mean(pages, cell.table, cell.row, quantity)
+    if change is None:
+        return not_testable(cell, "the column of the exposed line is lost in the text")
+    value, how = change
+    return judge(cell, value, how)
+
+
+def change_of_mean(pages: Pages, table: str, row: str, quantity: str) -> tuple[float, str] | None:
+    """Per cent by which B1 of an exposed line is above that of the new one.
+
+    Four and five years of the polyester braid count together, weighted by their lines.
+    """
+    new = row.rpartition(" | ")[0] + " | new"
+    column, lines = f"{quantity} B1", f"{quantity} number of lines"
+    if (table, row, column) not in pages.by_key:
+        return None
+    exposed = [row]
+    if row.startswith(POLYESTER_BRAID):
+        exposed = [row.replace("5 years", years) for years in ("4 years", "5 years")]
+    means = [pages.value(table, one, column) for one in exposed]
+    counts = [pages.printed(table, one, lines) for one in exposed]
+    together = float(np.average(means, weights=counts))
+    how = "B1 of four and five years, weighted by lines" if len(exposed) == 2 else "B1"
+    return 100 * (together / pages.value(table, new, column) - 1), f"{how} over B1 of the new line"
+
+
+def _range(cell: Cell, pages: Pages) -> Item:
+    _, what, end = cell.column.split(" ")
+    share = pages.value("1", levels_of(cell.row), f"{what} {end}")
+    if what == "frequency":
+        return judge(cell, share, "Table 1")
+    strength, source = _strength(cell, pages)
+    return judge(cell, share / 100 * strength, f"{share:g} % of {strength:g} lb, {source}")
+
+
+def _strength(cell: Cell, pages: Pages) -> tuple[float, str]:
+    """Rated break strength that the levels are of; the other one where two are printed."""
+    if cell.row.startswith(POLYESTER_BRAID):
+        if cell.table in ("3", "11"):
+            return pages.printed("2", f"{POLYESTER_BRAID} | all", "rated_break_strength"), "Table 2"
+        return pages.printed("10", f"{POLYESTER_BRAID} | new", "tensile_strength mean"), "Table 10"
+    line = cell.row.rpartition(" | ")[0]
+    if line.startswith("nylon | double braid"):
+        size = "nylon | double braid | 1 in" if "1 1/4" in line else line
+        return pages.printed("1", f"{size} | new", "rated_break_strength"), "Table 1"
+    return pages.printed("2", f"{line} | all", "rated_break_strength"), "Table 2"

@@ -1,0 +1,1 @@
+"""Names, units and digits of the numbers that the package gives."""

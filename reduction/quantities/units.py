@@ -1,0 +1,438 @@
+"""Units at the edge: text with a unit in, SI out, and SI to what a reader is shown.
+
+Inside the package every number is SI.  The factors are pint's, which are exact
+by definition for the pound-force, the inch and the foot.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Sequence
+from functools import lru_cache
+from tokenize import TokenError
+from typing import Literal
+
+import pint
+
+from reduction.record.errors import SettingsError
+from reduction.record.plain_text import cut
+
+Dimension = Literal[
+    "time", "length", "force", "strain", "stress", "area", "frequency", "temperature", "angle",
+    "mass", "velocity", "number", "force_rate", "density", "per_length",
+    "linear_density", "information",
+]  # fmt: skip
+
+DIMENSIONS: dict[Dimension, str] = {
+    "time": "s",
+    "length": "m",
+    "force": "N",
+    "strain": "1",
+    "stress": "Pa",
+    "area": "m2",
+    "frequency": "Hz",
+    "temperature": "K",
+    "angle": "rad",
+    "mass": "kg",
+    "velocity": "m s-1",
+    "number": "1",
+    "force_rate": "N s-1",
+    "density": "kg m-3",
+    "per_length": "m-1",
+    "linear_density": "kg m-1",
+    "information": "byte",
+}
+
+_PINT_SI = {
+    "m2": "m**2",
+    "m s-1": "m/s",
+    "N s-1": "N/s",
+    "1": "dimensionless",
+    "kg m-3": "kg/m**3",
+    "m-1": "1/m",
+    "kg m-1": "kg/m",
+}
+
+# as test machines write them, where pint has no such name
+_SPELLINGS = {"Sec": "s", "SEC": "s", "Secs": "s", "lb": "pound", "IN": "in", "KN": "kN"}
+
+# what pint lets out when a text is no unit expression
+_NO_UNIT = (
+    pint.PintError, ValueError, TypeError, AttributeError, SyntaxError, AssertionError,
+    ArithmeticError, TokenError,
+)  # fmt: skip
+
+# no unit of a test house is longer, and a tower of powers would never end
+_LONGEST, _MOST_POWERS = 40, 4
+
+# pint passes over a comment, and over much that follows or precedes a unit
+_STRAY = re.compile(r"[^\w *·/^().%°²³-]")
+
+# a dimension that shares its units with another one stands behind it
+_AS_FORCE_FIRST: tuple[Dimension, ...] = (
+    "force", "number", *(name for name in DIMENSIONS if name not in ("force", "number")),
+)  # fmt: skip
+
+
+@lru_cache(maxsize=1)
+def registry() -> pint.UnitRegistry[float]:
+    """Units of pint, with those of test houses that it lacks."""
+    known: pint.UnitRegistry[float] = pint.UnitRegistry(cache_folder=None)
+    known.define("kip = 1000 * lbf")
+    known.define("tonne_force = 1000 * kgf = tf")
+    known.define("rev = revolution = cyc")
+    known.define("cpm = cycle / minute")
+    return known
+
+
+def _pint_text(unit: str) -> str:
+    text = unit.strip()
+    text = _SPELLINGS.get(text, text)
+    if text in ("", "1", "-"):
+        return "dimensionless"
+    # the degree, square and dot signs that test machines write
+    return (
+        text.replace("%", "percent")
+        .replace("µ", "micro")
+        .replace("μ", "micro")
+        .replace("²", "**2")
+        .replace("³", "**3")
+        .replace("°C", "degC")
+        .replace("°F", "degF")
+        .replace("°", "degree")
+        .replace("·", "*")
+    )
+
+
+@lru_cache(maxsize=512)
+def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
+    """Factor and offset that turn a value in ``unit`` into SI: ``factor * value + offset``.
+
+    Parameters
+    ----------
+    unit : str
+        As the test house writes it: ``lbf``, ``ft``, ``kN``, ``mm``, ``%``, ``°C``.
+    dimension : Dimension
+        What the channel or setting has to be.
+
+    Returns
+    -------
+    factor, offset : float
+        To SI; the offset is zero for all but temperatures.
+
+    Raises
+    ------
+    SettingsError
+        If the unit is unknown or has another dimension.
+
+    Examples
+    --------
+    >>> scale_to_si("lbf", "force")
+    (4.4482216152605, 0.0)
+    >>> scale_to_si("%", "strain")
+    (0.01, 0.0)
+    """
+    known = registry()
+    target = DIMENSIONS[dimension]
+    powers = unit.count("^") + unit.count("**")
+    too_long = len(unit) > _LONGEST or powers > _MOST_POWERS or re.search(r"\d{3}", unit)
+    is_strange = _STRAY.search(unit.strip()) or re.search(r"\*\*\s*\d+\s*\*\*", unit)
+    if too_long or is_strange:
+        raise SettingsError(
+            "a unit is not one that a test house writes",
+            found=repr(unit[:_LONGEST]),
+            needed=f"a unit of {dimension}, such as {target}",
+        )
+    try:
+        # pound is a mass in pint; a test house that writes lb for a load means lbf
+        text = "lbf" if dimension == "force" and unit.strip() in ("lb", "lbs") else _pint_text(unit)
+        target_unit = known.Unit(_PINT_SI.get(target, target))
+        # turns and radians a second are frequencies too; pint has them 2 pi and 1 times a hertz
+        if dimension == "frequency" and "radian" in dict(
+            known.Quantity(1.0, text).to_root_units().unit_items()
+        ):
+            target_unit = known.Unit("turn/s")
+        zero = known.Quantity(0.0, text).to(target_unit).magnitude
+        one = known.Quantity(1.0, text).to(target_unit).magnitude
+    except pint.DimensionalityError as error:
+        raise SettingsError(
+            f"unit '{unit}' is not a unit of {dimension}",
+            found=f"'{unit}', a unit of {error.dim1 or 'another dimension'}",
+            needed=f"a unit of {dimension}, such as {target}",
+        ) from error
+    except _NO_UNIT as error:
+        raise SettingsError(
+            f"unit '{unit}' is not known",
+            found=f"'{unit}'",
+            needed=f"a unit of {dimension}, such as {target}",
+        ) from error
+    return float(one - zero), float(zero)
+
+
+def scale_of_unit(unit: str) -> tuple[str, float, float]:
+    """SI unit of a unit whose dimension nobody has stated, and the way to it.
+
+    Parameters
+    ----------
+    unit : str
+        As a person or a header of this package writes it: ``lbf``, ``J/m``, ``J m-1``,
+        ``Pa s``; ``lb`` is a force here too.
+
+    Returns
+    -------
+    si_unit : str
+        As in `DIMENSIONS` where one fits, else made of base units.
+    factor, offset : float
+        To SI: ``factor * value + offset``.
+
+    Raises
+    ------
+    SettingsError
+        If the unit is unknown.
+
+    Examples
+    --------
+    >>> scale_of_unit("ft lbf")
+    ('kg m2 s-2', 1.35581794833140, 0.0)
+    >>> scale_of_unit("J m-1")
+    ('N', 1.0, 0.0)
+    """
+    # a power may stand behind its unit, as in products
+    text = re.sub(r"(?<=[A-Za-z])(-?\d+)\b", r"**\1", unit.strip())
+    for dimension in _AS_FORCE_FIRST:
+        try:
+            return DIMENSIONS[dimension], *scale_to_si(text, dimension)
+        except SettingsError as error:
+            if "is not a unit of" not in error.problem:
+                hint = "Without a unit the numbers stay as they are."
+                raise SettingsError(
+                    error.problem, found=error.found, needed="a unit that is known", hint=hint
+                ) from error
+    base = registry().Quantity(1.0, _pint_text(text)).to_base_units()
+    powers = pint.util.to_units_container(base.units).items()
+    si_unit = " ".join(
+        registry().get_symbol(name) + ("" if power == 1 else f"{power:g}")
+        for name, power in sorted(powers)
+    )
+    return si_unit, float(base.magnitude), 0.0
+
+
+UnitSystem = Literal["si", "us"]
+
+_US = {
+    "m": "ft",
+    "N": "lbf",
+    "Pa": "psi",
+    "m2": "in2",
+    "J m-1": "ft lbf / ft",
+    "m s-1": "ft s-1",
+    "N s": "lbf s",
+}
+
+_US_PINT = {"in2": "in**2", "ft s-1": "ft/s", "ft lbf / ft": "lbf", "lbf s": "lbf*s"}
+
+_UNIT_AND_POWER = re.compile(r"([^\s\d/-]+)(-?\d+)?")
+
+
+def combined_unit(unit: str, others: Sequence[str], powers: Sequence[int]) -> str:
+    """Unit of a coefficient: that of the response over those of its factors.
+
+    Parameters
+    ----------
+    unit : str
+        Of the response.
+    others : sequence of str
+        Of the factors.
+    powers : sequence of int
+        Of the factors in the term.
+
+    Returns
+    -------
+    combined : str
+        As products write units.
+
+    Examples
+    --------
+    >>> combined_unit("N", ["Hz", "m s-1"], [2, 1])
+    'N Hz-2 m-1 s'
+    >>> combined_unit("N", ["Hz", "N"], [0, 2])
+    'N-1'
+    """
+    # a unit that is no product of powers stands as it is
+    is_product = re.fullmatch(rf"({_UNIT_AND_POWER.pattern}\s*)+", unit) and "(" not in unit
+    total: Counter[str] = Counter()
+    factors = [(unit, 1)] if is_product else []
+    factors += [(other, -power) for other, power in zip(others, powers, strict=True)]
+    for one, times in factors:
+        for name, own in _UNIT_AND_POWER.findall("" if one == "1" else one):
+            total[name] += times * int(own or 1)
+    parts = [name if power == 1 else f"{name}{power}" for name, power in total.items() if power]
+    if not is_product and unit not in ("1", ""):
+        parts.insert(0, f"({unit})" if "/" in unit and parts else unit)
+    return " ".join(parts) or "1"
+
+
+def display_unit(si_unit: str, system: UnitSystem) -> tuple[str, float]:
+    """Unit to show and the factor from SI to it.
+
+    Parameters
+    ----------
+    si_unit : str
+        Unit as in `reduction.quantities.names`.
+    system : {"si", "us"}
+        ``us`` shows psi, lbf and ft.
+
+    Returns
+    -------
+    unit : str
+        What to print.
+    factor : float
+        Value in SI times this is the value to print.
+
+    Raises
+    ------
+    SettingsError
+        If the system is neither.
+
+    Examples
+    --------
+    >>> display_unit("N", "us")
+    ('lbf', 0.22480894309971)
+    """
+    if system == "si":
+        return si_unit, 1.0
+    if system != "us":
+        raise SettingsError("unit system is not known", found=repr(system), needed="si or us")
+    shown = _US.get(si_unit)
+    if shown is None:
+        return si_unit, 1.0
+    source = {"J m-1": "N", "m2": "m**2", "m s-1": "m/s"}.get(si_unit, si_unit)
+    factor = registry().Quantity(1.0, source).to(_US_PINT.get(shown, shown)).magnitude
+    return shown, float(factor)
+
+
+_QUANTITY = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
+
+
+def parse_quantity(
+    text: str | float, dimension: Dimension, *, rated_break_strength: float | None = None
+) -> float:
+    """Value in SI of a text with a unit, such as ``"21.5 ft"`` or ``"12 %RBS"``.
+
+    Parameters
+    ----------
+    text : str or float
+        A number and a unit; a bare number only where the dimension is a plain
+        number or a strain.
+    dimension : Dimension
+        What it has to be.
+    rated_break_strength : float, optional
+        What ``%RBS`` (also ``%MBS``, ``%MBL``) refers to. [N]
+
+    Returns
+    -------
+    value : float
+        In SI.
+
+    Raises
+    ------
+    SettingsError
+        If there is no unit, or the wrong one.
+
+    Examples
+    --------
+    >>> parse_quantity("21.5 ft", "length")
+    6.5532
+    >>> parse_quantity("12 %RBS", "force", rated_break_strength=1000.0)
+    120.0
+    """
+    if isinstance(text, (int, float)) and not isinstance(text, bool):
+        if dimension in ("strain", "number"):
+            return _finite(text, text)
+        raise SettingsError(
+            "a value has no unit",
+            found=repr(text),
+            needed=f'text such as "{text} {DIMENSIONS[dimension]}"',
+        )
+    match = _QUANTITY.match(str(text))
+    if match is None:
+        is_plain = dimension in ("strain", "number")
+        raise SettingsError(
+            f"a value is not a number{'' if is_plain else ' with a unit'}",
+            found=repr(text),
+            needed='0.015 or "1.5 %"'
+            if is_plain
+            else f'text such as "1.5 {DIMENSIONS[dimension]}"',
+        )
+    number, unit = _finite(match[1], text), match[2]
+    if re.fullmatch(r"%\s*(RBS|MBS|MBL)", unit) and dimension == "force":
+        if rated_break_strength is None:
+            raise SettingsError(
+                "a share of the break strength is given, but no break strength",
+                found=repr(text),
+                needed="rated_break_strength of the specimen",
+            )
+        return _finite(number / 100 * rated_break_strength, text)
+    if not unit and dimension not in ("strain", "number"):
+        raise SettingsError(
+            "a value has no unit",
+            found=repr(text),
+            needed=f'text such as "{number:g} {DIMENSIONS[dimension]}"',
+        )
+    factor, offset = scale_to_si(unit, dimension)
+    return _finite(factor * number + offset, text)
+
+
+def _finite(number: str | float, text: str | float) -> float:
+    """A value in SI; `SettingsError` where it is no number or beyond every float."""
+    try:
+        value = float(number)
+    except OverflowError:  # a whole number of hundreds of digits
+        value = math.inf
+    if not math.isfinite(value):
+        raise SettingsError(
+            "a value is not finite", found=repr(cut(str(text), 60)), needed="a finite number"
+        )
+    return value
+
+
+def parse_in_unit(text: str, unit: str) -> float:
+    """Value in SI of a text with a unit, for a quantity of which only the SI unit is known.
+
+    Parameters
+    ----------
+    text : str
+        A number and a unit; a bare number where the quantity is one.
+    unit : str
+        As in `reduction.quantities.names`.
+
+    Returns
+    -------
+    value : float
+        [unit]
+
+    Raises
+    ------
+    SettingsError
+        If it is no number with a unit, or the unit is one of something else.
+
+    Examples
+    --------
+    >>> parse_in_unit("200 psi", "Pa")
+    1378951.45863
+    >>> parse_in_unit("2.5 kN", "J m-1")
+    2500.0
+    """
+    match = _QUANTITY.match(text)
+    if match is None:
+        raise SettingsError(
+            "a value is not a number with a unit", found=repr(text), needed=f"a number in {unit}"
+        )
+    si_unit, factor, offset = scale_of_unit(match[2])
+    if scale_of_unit(unit)[0] != si_unit:
+        raise SettingsError(
+            "a value has the unit of something else", found=repr(text), needed=f"such as {unit}"
+        )
+    return _finite(factor * _finite(match[1], text) + offset, text)

@@ -1,0 +1,1 @@
+"""A log of any format to a record in SI."""

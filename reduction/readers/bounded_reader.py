@@ -1,0 +1,259 @@
+"""Binary files are read in a process of their own, with a bound on its memory and time.
+
+The libraries that read them believe what a file says of itself.  Where that takes more memory or
+time than a log may, or ends the process, it is the process of the reader and not that of the run.
+One such process is kept for all files, because its start takes a second; after a failure the next
+file gets a new one.  It is started anew, not forked: a fork of a process with threads may hang.
+"""
+
+from __future__ import annotations
+
+import atexit
+import faulthandler
+import os
+import pickle
+import secrets
+import signal
+import subprocess
+import sys
+import threading
+import time
+import traceback
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import IO, Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.readers.layout import Parts, Watch
+from reduction.record.errors import ReductionError
+from reduction.record.samples import mapped, name_of_scratch_file, name_scratch_files
+
+if sys.platform == "linux":
+    import resource
+
+Result = TypeVar("Result")
+
+_ROOM = 300_000_000  # bytes beside unpacked_size: columns that are made, libraries at first use
+
+_GRACE = 1.0  # s, for a reader to say itself between two blocks that its time is over
+
+# threads of the libraries take memory, and pools of arrow are set aside a gigabyte at a time
+_ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1", "ARROW_DEFAULT_MEMORY_POOL": "system"}
+
+_AT_WORK = threading.Lock()
+
+
+class _Reader:
+    """The process, and the two pipes to it."""
+
+    def __init__(self) -> None:
+        code = f"import sys; sys.path[:] = {sys.path!r}; from {__name__} import serve; serve()"
+        self.process = subprocess.Popen(  # noqa: S603  # this interpreter and this package
+            [sys.executable, "-P", "-c", code],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            env=os.environ | _ENVIRONMENT,
+        )
+        self.parent = os.getpid()
+
+    def is_ready(self) -> bool:
+        """Whether it can be asked: it did not end, and this process is no fork of its parent."""
+        return self.parent == os.getpid() and self.process.poll() is None
+
+    def ask(self, request: bytes) -> tuple[Any, Exception | None]:
+        """Value or error; `EOFError` where the process ended without."""
+        requests, answers = self.process.stdin, self.process.stdout
+        try:
+            requests.write(request)  # type: ignore[union-attr]  # both are pipes
+            requests.flush()  # type: ignore[union-attr]
+            found: tuple[Any, Exception | None] = pickle.load(answers)  # type: ignore[arg-type]  # noqa: S301
+        except (BrokenPipeError, pickle.UnpicklingError) as error:
+            raise EOFError from error
+        return found
+
+    def end(self) -> None:
+        self.process.kill()
+        for stream in (self.process.stdin, self.process.stdout):
+            with suppress(OSError):
+                stream.close()  # type: ignore[union-attr]
+        self.process.wait()
+
+
+_reader: _Reader | None = None
+
+
+@atexit.register
+def end_reader() -> None:
+    """End the process that reads, if there is one; the next file starts another."""
+    global _reader
+    if _reader is not None and _reader.parent == os.getpid():
+        _reader.end()
+    _reader = None
+
+
+def bounded(
+    function: Callable[..., Result], path: Path, *given: Any, watch: Watch, **named: Any
+) -> Result:
+    """Result of a function in the process that reads.
+
+    Parameters
+    ----------
+    function : callable
+        Of a module.  It is called with the path, what is given, and a watch of its own.
+    path : pathlib.Path
+        The file.
+    *given, **named
+        What can be pickled.
+    watch : Watch
+        The process ends after its ``time``, and may take its ``unpacked_size`` and 300 MB of
+        memory (on Linux; elsewhere the time alone is bounded).
+
+    Returns
+    -------
+    result
+        Columns on disk are not copied.
+
+    Raises
+    ------
+    LogError
+        If the process ends before it has answered, or its memory does.
+    Exception
+        Whatever the function raises.
+    """
+    global _reader
+    scratch = named.get("parts", Parts()).folder, f"reduction-{os.getpid()}-{secrets.token_hex(8)}-"
+    work = pickle.dumps((function, path, given, named))
+    request = pickle.dumps((os.getcwd(), scratch, watch.limits, path, work))
+    with _AT_WORK:
+        if _reader is None or not _reader.is_ready():
+            _reader = _Reader()
+        begin = time.monotonic()
+        try:
+            value, error = _reader.ask(request)
+        except EOFError:
+            status = _reader.process.wait()
+            end_reader()
+            seconds = time.monotonic() - begin
+            if status == 1 and seconds > watch.limits.time:
+                raise watch.too_slow(seconds) from None
+            raise watch.broken(_how_it_ended(status)) from None
+        except BaseException:  # what it would answer later belongs to no other request
+            end_reader()
+            raise
+        finally:
+            _remove(*scratch)
+        if isinstance(error, MemoryError):
+            end_reader()
+            raise watch.too_much_memory()
+    if error is not None:
+        raise error
+    result: Result = value
+    return result
+
+
+def _how_it_ended(status: int) -> str:
+    if status < 0:
+        with suppress(ValueError):
+            return f"an end by {signal.Signals(-status).name}"
+    return f"an end with status {status}"
+
+
+def _taken_over(name: str, folder: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
+    """A column on disk that the process which reads has written."""
+    with open(name, "r+b") as file:
+        return mapped(file, os.fstat(file.fileno()).st_size, folder, dtype)
+
+
+def _remove(folder: Path, prefix: str) -> None:
+    """Remove the names of scratch files; what was taken over stays as long as its arrays."""
+    for left in folder.glob(f"{prefix}*"):
+        with suppress(OSError):  # other systems keep the name of a mapped file
+            left.unlink()
+
+
+# what follows runs in the process that reads
+
+
+class _Answer(pickle.Pickler):
+    """Columns on disk go as the names of their files."""
+
+    def reducer_override(self, given: Any) -> Any:
+        """How to make an array again; all else as usual."""
+        place = name_of_scratch_file(given) if isinstance(given, np.ndarray) else None
+        return NotImplemented if place is None else (_taken_over, (*place, given.dtype))
+
+
+def serve() -> None:
+    """Answer requests until there are no more."""
+    requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    silence = os.open(os.devnull, os.O_RDWR)
+    os.dup2(silence, 0)
+    os.dup2(silence, 1)  # a library that prints
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # which is for the run; it ends this process
+    if sys.platform == "linux":
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    while _is_answered(requests, answers, silence):
+        pass
+
+
+def _is_answered(requests: IO[bytes], answers: IO[bytes], silence: int) -> bool:
+    """Answer one request; False where there is none."""
+    try:
+        folder, scratch, limits, path, work = pickle.load(requests)  # noqa: S301  # of the run
+    except EOFError:
+        return False
+    with suppress(OSError):
+        os.chdir(folder)  # of relative paths
+    name_scratch_files(scratch[1])
+    answer: tuple[Any, Exception | None]
+    watch = Watch(path, limits)
+    try:
+        function, path, given, named = pickle.loads(work)  # noqa: S301  # of the run
+        # a call into a library that does not come back is ended, whether the run is there or not
+        faulthandler.dump_traceback_later(limits.time + _GRACE, exit=True, file=silence)
+        _bound_memory(limits.unpacked_size)
+        watch = Watch(path, limits)  # what was loaded first does not count
+        answer = function(path, *given, watch=watch, **named), None
+    except Exception as error:
+        answer = None, _told(error)
+    except BaseException as error:  # a failed check in a library of Rust
+        answer = None, watch.broken(f"{type(error).__name__}: {error}"[:200])
+    try:
+        _Answer(answers, protocol=5).dump(answer)
+        answers.flush()
+    except BrokenPipeError:  # the run was killed
+        _remove(*scratch)
+        return False
+    faulthandler.cancel_dump_traceback_later()
+    return True
+
+
+def _bound_memory(n_bytes: int) -> None:
+    """Bound what this process may take beside what it has; what is mapped from files is free."""
+    if sys.platform == "linux":
+        pages = int(Path("/proc/self/statm").read_text().split()[5])
+        most = pages * resource.getpagesize() + _ROOM + n_bytes
+        hard = resource.getrlimit(resource.RLIMIT_DATA)[1]
+        resource.setrlimit(
+            resource.RLIMIT_DATA,
+            (most if hard == resource.RLIM_INFINITY else min(most, hard), hard),
+        )
+
+
+def _told(error: Exception) -> Exception:
+    """The error as it goes to the run, with the place where that is a fault of this package."""
+    place = "".join(traceback.format_exception(error))
+    error.__cause__ = error.__context__ = None  # errors of libraries, of which few can be pickled
+    error = error.with_traceback(None)
+    if isinstance(error, (ReductionError, MemoryError)):
+        return error
+    try:
+        made: Exception = pickle.loads(pickle.dumps(error))  # noqa: S301
+    except Exception:
+        made = RuntimeError(f"{type(error).__name__}: {error}")
+    made.add_note(place)
+    return made

@@ -1,0 +1,657 @@
+"""Declared columns of a log: found once, units checked, numbers checked."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from tokenize import TokenError
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.quantities.units import Dimension, scale_to_si
+from reduction.readers.layout import CLOCK, Layout, Parts, Watch
+from reduction.readers.text_rows import split_line
+from reduction.record.errors import LogError, SettingsError
+from reduction.record.measurement import Bools, Floats, Integers
+from reduction.record.plain_text import cut
+from reduction.record.samples import ColumnWriter, check_room
+
+_CLOCK = re.compile(r"(\d{1,2}):?([0-5]\d)(?::([0-5]\d(?:[.,]\d+)?))?")
+
+_DAY = 86400.0
+
+
+def clock_to_seconds(
+    path: Path,
+    texts: Sequence[str],
+    *,
+    channel: str,
+    missing: Sequence[str],
+    row: Integers | None,
+    first_row: int,
+) -> Floats:
+    """Seconds from the first reading, shape (n_rows,); missing marks are NaN. [s].
+
+    A reading more than half a day before the one above it is on the next day; a
+    smaller step back is kept as it is.
+
+    Raises
+    ------
+    LogError
+        If a text is no clock time, with its row.
+    """
+    seconds = np.full(len(texts), np.nan)
+    for index, text in enumerate(texts):
+        if text in missing:
+            continue
+        match = _CLOCK.fullmatch(text)
+        if match is None or int(match[1]) > 23:
+            raise LogError(
+                path,
+                "a reading is not a clock time",
+                row=first_row + index if row is None else int(row[index]),
+                channel=channel,
+                found=f"'{text}'",
+                needed="hours and minutes, such as 0945, 09:45 or 09:45:30",
+            )
+        hours, minutes = int(match[1]), int(match[2])
+        seconds[index] = 3600 * hours + 60 * minutes + float((match[3] or "0").replace(",", "."))
+    valid = np.flatnonzero(np.isfinite(seconds))
+    if valid.size:
+        read = seconds[valid]
+        midnights = np.cumsum(np.diff(read, prepend=read[0]) < -_DAY / 2)
+        seconds[valid] = read + _DAY * midnights - read[0]
+    return seconds
+
+
+_BRACKETS = {"(": ")", "[": "]", "{": "}", "<": ">"}
+
+_SHOWN = 40
+
+_LONGEST_SHOWN = 200
+
+_LONGEST_UNIT = 30
+
+_POWER = re.compile(r"\*\*|\^")  # one at most: 9**9**9 would take for ever
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """One column that a layout asks for; ``key`` is its name in `RawLog.columns`."""
+
+    key: str
+    column: str | int
+    unit: str
+    dimension: Dimension
+    is_compared: bool = True
+    """Whether a unit that the file states must agree: not for a clock, nor for a voltage."""
+
+
+def wanted_columns(layout: Layout) -> tuple[Wanted, ...]:
+    """Columns of a layout in its order; own time stamps follow their channel."""
+    wanted = []
+    for key, channel in layout.channels.items():
+        is_compared = channel.unit != CLOCK and channel.factor == 1
+        dimension = Layout.dimension(key)
+        wanted.append(Wanted(key, channel.column, channel.unit, dimension, is_compared))
+        if channel.time_column is not None:
+            wanted.append(Wanted(f"{key}.time", channel.time_column, channel.time_unit, "time"))
+    return tuple(wanted)
+
+
+def _listing(names: Sequence[str]) -> str:
+    if not names:
+        return "no columns"
+    if not any(names):
+        return f"columns without names, numbers 1 to {len(names)}"
+    shown = ", ".join(repr(name[:_LONGEST_SHOWN]) for name in names[:_SHOWN])
+    return shown if len(names) <= _SHOWN else f"{shown} and {len(names) - _SHOWN} more"
+
+
+def find_column(
+    path: Path,
+    wanted: Wanted,
+    names: Sequence[str],
+    *,
+    where: str = "the file",
+    in_order: bool = True,
+    row: int | None = None,
+) -> int:
+    """Place from 0 of a declared column among the names of a file.
+
+    Names count without the blanks around them.
+
+    Raises
+    ------
+    LogError
+        If the column is not there (with what is there), or is there twice.
+    """
+    stripped = [name.strip() for name in names]
+    if isinstance(wanted.column, int):
+        if in_order and 1 <= wanted.column <= len(names):
+            return wanted.column - 1
+        needed = f"a number from 1 to {len(names)}" if in_order else "a name"
+        raise LogError(
+            path,
+            f"column {wanted.column} is not in {where}",
+            row=row,
+            channel=wanted.key,
+            found=_listing(stripped),
+            needed=needed,
+        )
+    places = [place for place, name in enumerate(stripped) if name == wanted.column.strip()]
+    if len(places) == 1:
+        return places[0]
+    if places:
+        raise LogError(
+            path,
+            f"column '{wanted.column}' is {len(places)} times in {where}",
+            row=row,
+            channel=wanted.key,
+            found="numbers " + ", ".join(str(place + 1) for place in places),
+            needed="one column of that name",
+            hint="Give the column by its number." if in_order else None,
+        )
+    raise LogError(
+        path,
+        f"column '{wanted.column}' is not in {where}",
+        row=row,
+        channel=wanted.key,
+        found=_listing(stripped),
+        needed=f"'{wanted.column}'",
+    )
+
+
+def stated_scale(text: str, dimension: Dimension) -> tuple[float, float]:
+    """Factor and offset to SI of a unit that a file states, which may be any text at all.
+
+    Raises
+    ------
+    SettingsError
+        If it is no unit of that dimension.
+    """
+    try:
+        if len(text) <= _LONGEST_UNIT and len(_POWER.findall(text)) < 2:
+            return scale_to_si(text, dimension)
+    except (AssertionError, TokenError, ArithmeticError):  # pint's answers to "kN/" and "m/0"
+        pass
+    raise SettingsError(
+        f"unit '{text[:_LONGEST_UNIT]}' is not known", needed=f"a unit of {dimension}"
+    )
+
+
+def check_unit(path: Path, wanted: Wanted, found: str, *, row: int | None = None) -> None:
+    """Compare the unit that a file states with the declared one; blank states nothing.
+
+    Two spellings of one unit agree: ``(sec)`` and ``s``, ``lb`` and ``lbf`` of a force.
+
+    Raises
+    ------
+    LogError
+        If they differ, or the file's unit is not known.
+    """
+    text = found.strip()
+    if text[:1] in _BRACKETS and text.endswith(_BRACKETS[text[0]]):
+        text = text[1:-1].strip()
+    if text in ("", "-", wanted.unit.strip()) or not wanted.is_compared:
+        return
+    try:
+        stated = stated_scale(text, wanted.dimension)
+    except SettingsError as error:
+        problem = error.problem
+    else:
+        declared = scale_to_si(wanted.unit, wanted.dimension)
+        if all(math.isclose(a, b, rel_tol=1e-9) for a, b in zip(stated, declared, strict=True)):
+            return
+        problem = "the unit in the file is not the declared one"
+    raise LogError(
+        path,
+        problem,
+        row=row,
+        channel=str(wanted.column),
+        found=f"'{found.strip()}'",
+        needed=f"'{wanted.unit}', as the layout declares",
+    )
+
+
+def check_lengths(path: Path, columns: dict[str, Floats]) -> int:
+    """Number of rows that the columns share; a channel with own time stamps has its own.
+
+    Raises
+    ------
+    LogError
+        If columns differ in length, or there are no rows.
+    """
+    pairs = [(key, f"{key}.time") for key in columns if f"{key}.time" in columns]
+    shared = [key for key in columns if not any(key in pair for pair in pairs)]
+    for group in (shared, *pairs):
+        if len({columns[key].size for key in group}) > 1:
+            raise LogError(
+                path,
+                "the columns have two time bases",
+                found=", ".join(f"{key} {columns[key].size} values" for key in group),
+                needed="columns of one length",
+                hint="Give a channel with its own time stamps a time_column.",
+            )
+    if not columns:
+        raise LogError(path, "the layout declares no channels", needed="at least one channel")
+    n_rows = columns[shared[0]].size if shared else max(columns[key].size for key in columns)
+    if n_rows == 0:
+        raise LogError(path, "there are no data rows", found="0 rows", needed="at least one")
+    return n_rows
+
+
+def without_marks(values: NDArray[Any], layout: Layout) -> Floats:
+    """As float64, with NaN where a missing mark that is a number stands (-9999), shape as given.
+
+    Marks are compared in the column's own precision: -99.9 of a float32 column is found.
+    """
+    marks = []
+    for mark in layout.missing:
+        try:
+            value = float(mark.replace(layout.decimal, "."))
+        except ValueError:
+            continue
+        if math.isfinite(value):
+            marks.append(value)
+    array = values.astype(np.float64, copy=bool(marks))
+    for value in marks:
+        array[values == value] = np.nan
+    return array
+
+
+_LONGEST_NAME = 200  # characters at the end of a name in which a unit may stand
+
+_UNIT_IN_NAME = re.compile(r".*[\(\[]\s*([^()\[\]]*[^()\[\]\d\s][^()\[\]]*)[\)\]]\s*$")
+
+
+def keep_line(metadata: dict[str, str], line: str, row: int, layout: Layout) -> None:
+    """Keep a line as metadata: ``name: value`` or two fields by name, all else by row."""
+    text = line.removeprefix(layout.comment).strip() if layout.comment else line.strip()
+    fields = [field for field in split_line(text, layout) if field]
+    if not fields:
+        return
+    key, value = fields[0].rstrip(": "), " ".join(fields[1:])
+    if not value and ": " in text:
+        key, value = (part.strip() for part in text.split(": ", 1))
+    if not key or not value or line.startswith(layout.comment or "\n"):
+        key, value = f"row {row}", text
+    if key in metadata:
+        key = f"{key} (row {row})"
+    metadata[cut(key)] = cut(value)
+
+
+def check_units(
+    path: Path,
+    wanted: Sequence[tuple[Wanted, int]],
+    *,
+    names: Sequence[str],
+    units: Sequence[str],
+    unit_row: int | None,
+) -> None:
+    """Compare the units that the file states with the declared ones.
+
+    A unit row must agree.  A unit in brackets at the end of a column's name must
+    agree where it is a unit of the channel's dimension; other words in brackets are
+    part of the name.  Not compared are a channel with a factor, of which the file has
+    the volts, and a counter, whose unit may be any word.
+
+    Raises
+    ------
+    LogError
+        If the file contradicts the layout.
+    """
+    for want, place in wanted:
+        if not want.is_compared or want.dimension == "number":
+            continue
+        if unit_row is not None:
+            check_unit(path, want, units[place] if place < len(units) else "", row=unit_row)
+        elif isinstance(want.column, str) and (
+            match := _UNIT_IN_NAME.match(names[place][-_LONGEST_NAME:])
+        ):
+            _check_unit_in_name(path, want, match[1])
+
+
+def _check_unit_in_name(path: Path, want: Wanted, stated: str) -> None:
+    try:
+        found = scale_to_si(stated.strip(), want.dimension)
+    except SettingsError:
+        return
+    declared = scale_to_si(want.unit, want.dimension)
+    if not all(math.isclose(a, b, rel_tol=1e-9) for a, b in zip(found, declared, strict=True)):
+        raise LogError(
+            path,
+            "the unit in the column's name is not the declared one",
+            channel=str(want.column),
+            found=f"'{stated}'",
+            needed=f"'{want.unit}', as the layout declares",
+            hint="Declare the unit of the file, or give the column by its number.",
+        )
+
+
+_EXACT = 2**53  # whole numbers beyond this have no float64 of their own
+
+_KINDS = {
+    "b": "true or false",
+    "c": "complex numbers",
+    "M": "dates",
+    "m": "durations",
+    "S": "text",
+    "U": "text",
+    "T": "text",
+    "O": "text or objects",
+    "V": "records",
+}
+
+_LARGE = (
+    "whole numbers too large to be held exactly", "numbers below 2**53",
+    "Write time as elapsed time.",
+)  # fmt: skip
+
+_MISSING = (
+    "NaN", "a number", 'Add "NaN" to the missing marks of the layout where it means missing.',
+)  # fmt: skip
+
+_INFINITE = ("infinite", "finite numbers", None)
+
+_FAULTS = (_LARGE, _MISSING, _INFINITE)  # what is told first
+
+
+class CheckedColumn:
+    """A declared column, shape (n_rows,); declared missing marks are NaN.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        For messages.
+    wanted : Wanted
+        What it has to be.
+    layout : Layout
+        Missing marks.
+    folder : pathlib.Path or None
+        Where its scratch file lies; None keeps it in memory.
+    """
+
+    def __init__(self, path: Path, wanted: Wanted, layout: Layout, folder: Path | None) -> None:
+        """Begin with no rows."""
+        self._path, self._wanted, self._layout = path, wanted, layout
+        self._writer = ColumnWriter(folder)
+        self._nan_is_missing = any(mark.lower() == "nan" for mark in layout.missing)
+        self._found: dict[tuple[str, str, str | None], tuple[int, int, float]] = {}
+
+    def add(self, values: NDArray[Any]) -> None:
+        """Add rows, shape (n_rows,).
+
+        Raises
+        ------
+        LogError
+            If the values are not real numbers.
+        DataError
+            If the disk is full.
+        """
+        kind = values.dtype.kind
+        if self._wanted.unit == CLOCK or kind not in "fiu":
+            raise LogError(
+                self._path,
+                "a column does not hold numbers",
+                channel=str(self._wanted.column),
+                found=f"{_KINDS.get(kind, 'something else')} ({values.dtype})",
+                needed="elapsed time: a clock is read from text alone"
+                if self._wanted.unit == CLOCK
+                else f"real numbers in {self._wanted.unit}",
+            )
+        # damage makes NaNs that signal; a wider float may be infinite here, which is told
+        with np.errstate(invalid="ignore", over="ignore"):
+            array = values.astype(np.float64, copy=False)
+            column = without_marks(values, self._layout)
+        if kind in "iu":
+            self._look(_LARGE, array, np.abs(array) > _EXACT)
+        elif not np.all(np.isfinite(array)):
+            if not self._nan_is_missing:
+                self._look(_MISSING, array, np.isnan(array))
+            self._look(_INFINITE, array, np.isinf(array))
+            column = np.where(np.isnan(column), np.nan, column)
+        self._writer.append(column)
+
+    def finish(self) -> Floats:
+        """The column.
+
+        Raises
+        ------
+        LogError
+            If values cannot be held exactly, are infinite, or are NaN where the layout does
+            not declare ``NaN`` a missing mark.
+        """
+        for fault in _FAULTS:
+            if fault in self._found:
+                count, first, value = self._found[fault]
+                what, needed, hint = fault
+                raise LogError(
+                    self._path,
+                    f"{count} of {self._writer.size} values are {what}, first value {first + 1}",
+                    channel=str(self._wanted.column),
+                    found=f"{value:.17g}",
+                    needed=needed,
+                    hint=hint,
+                )
+        return self._writer.finish()
+
+    def _look(self, fault: tuple[str, str, str | None], values: Floats, bad: Bools) -> None:
+        """Count values of a fault, and keep the first of them."""
+        places = np.flatnonzero(bad)
+        if places.size:
+            first = (0, self._writer.size + int(places[0]), float(values[places[0]]))
+            count, place, value = self._found.get(fault, first)
+            self._found[fault] = (count + places.size, place, value)
+
+
+_PART = 16 << 20  # bytes of a matrix that are read at a time
+
+
+@dataclass(frozen=True)
+class ColumnTable:
+    """The columns of a binary file, before any is read.
+
+    Parameters
+    ----------
+    names, units : tuple of str
+        As the file has them; empty text where it says nothing.
+    load : callable
+        Values of one column by its place from 0, in parts of so many rows where the file
+        can be read so; one part at least.
+    n_rows : int
+        Of the longest column that is read in parts; 0 where the columns are read whole.
+    where : str
+        What holds the columns, for messages: ``group 'log'``.
+    in_order : bool
+        Whether a column may be named by its number.
+    sizes : tuple of int
+        Values of each column, where the file states them; empty where only reading tells.
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    load: Callable[[int, int], Iterator[NDArray[Any]]]
+    n_rows: int = 0
+    where: str = "the file"
+    in_order: bool = True
+    sizes: tuple[int, ...] = ()
+
+
+class Matrix(Protocol):
+    """An array, or a data set that is read when it is asked for rows."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Rows and columns."""
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """With fields where the columns have names."""
+
+    def __getitem__(self, rows: slice, /) -> NDArray[Any]:
+        """Some rows."""
+
+
+def matrix_table(
+    path: Path,
+    matrix: Matrix,
+    *,
+    where: str,
+    names: tuple[str, ...] | None = None,
+    units: tuple[str, ...] | None = None,
+    n_together: int = 1,
+) -> ColumnTable:
+    """Columns of a matrix, shape (n_rows, n_columns), or of a table with named fields.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        For messages.
+    matrix : Matrix
+        The values.
+    where : str
+        What holds them, for messages.
+    names, units : tuple of str, optional
+        Of the columns.
+    n_together : int
+        Rows that the file keeps in one piece.
+
+    Returns
+    -------
+    table : ColumnTable
+        Parts of its columns come from the same rows, which are read once.
+
+    Raises
+    ------
+    LogError
+        If it has another number of dimensions, or of columns than it has names or units.
+    """
+    fields = matrix.dtype.names
+    if fields is not None:
+        if len(matrix.shape) != 1:
+            matrix = matrix[:].ravel()
+        n_columns = len(fields)
+    elif len(matrix.shape) == 2:
+        n_columns = matrix.shape[1]
+    else:
+        raise LogError(
+            path, f"{where} is not a matrix", found=f"shape {matrix.shape}",
+            needed="rows and columns",
+        )  # fmt: skip
+    for what, texts in (("names", names), ("units", units)):
+        if texts is not None and len(texts) != n_columns:
+            raise LogError(
+                path, f"{where} has another number of columns than of {what}",
+                found=f"{n_columns} columns, {what} {', '.join(texts)}",
+                needed=f"{n_columns} {what}",
+            )  # fmt: skip
+    total = matrix.shape[0]
+    held: list[tuple[slice, NDArray[Any]]] = []  # rows that the columns before have read
+
+    row_size = max(matrix.dtype.itemsize * (1 if fields else n_columns), 1)
+
+    def load(place: int, n_rows: int) -> Iterator[NDArray[Any]]:
+        n_rows = max(min(n_rows, _PART // row_size), 1)  # all columns are read, few may be wanted
+        for part in row_parts(total, n_rows, n_together):
+            if not held or held[0][0] != part:
+                held[:] = [(part, matrix[part])]
+            rows = held[0][1]
+            yield rows[fields[place]] if fields else rows[:, place]
+
+    return ColumnTable(
+        names=names or fields or ("",) * n_columns,
+        units=units or ("",) * n_columns,
+        load=load,
+        n_rows=total,
+        where=where,
+        sizes=(total,) * n_columns,
+    )
+
+
+def row_parts(total: int, n_rows: int, n_together: int = 1) -> Iterator[slice]:
+    """Slices of so many rows, of whole pieces where the file keeps rows together; one at least.
+
+    Examples
+    --------
+    >>> [(part.start, part.stop) for part in row_parts(10, 5, n_together=4)]
+    [(0, 4), (4, 8), (8, 10)]
+    """
+    step = max(n_rows // n_together, 1) * n_together
+    for start in range(0, max(total, 1), step):
+        yield slice(start, min(start + step, total))
+
+
+def read_columns(
+    path: Path,
+    layout: Layout,
+    table: ColumnTable,
+    made: Mapping[str, Callable[[int], Iterator[Floats]]] | None = None,
+    *,
+    parts: Parts | None = None,
+    watch: Watch | None = None,
+) -> tuple[dict[str, Floats], int]:
+    """Declared columns of a binary file by channel key, and how many rows they have.
+
+    ``made`` holds those that the reader makes from properties of the file, in parts of so many
+    rows.  The watch is asked for the time between the parts.
+
+    Raises
+    ------
+    LogError
+        If a column is missing, stands in another unit, holds no numbers, or has another
+        length than the rest.
+    DataError
+        If the disk is full.
+    """
+    made, parts, watch = made or {}, parts or Parts(), watch or Watch(path)
+    watch.check_columns(len(table.names))
+    wanted = wanted_columns(layout)
+    places = {}
+    for want in wanted:
+        if want.key not in made:
+            places[want.key] = _place(path, want, table)
+    n_bytes = 8 * table.n_rows * len(wanted)
+    folder = parts.folder_of(n_bytes)
+    if folder is not None:
+        stated = (
+            [table.sizes[place] for place in places.values()] if table.sizes else [table.n_rows]
+        )
+        check_room(folder, 8 * sum(stated))
+    n_rows = max(parts.length_of(n_bytes) // (8 * max(len(wanted), 1)), 1)
+    checked = {
+        want.key: CheckedColumn(path, want, layout, folder) for want in wanted if want.key in places
+    }
+    writers = {key: ColumnWriter(folder) for key in made}
+    coming = [
+        *((column.add, table.load(places[key], n_rows)) for key, column in checked.items()),
+        *((writer.append, made[key](n_rows)) for key, writer in writers.items()),
+    ]
+    while coming:  # side by side: columns of a matrix come from the same rows
+        watch.check_time()
+        going = []
+        for add, values in coming:
+            if (part := next(values, None)) is not None:
+                add(part)
+                going.append((add, values))
+        coming = going
+    columns = {
+        want.key: (checked[want.key] if want.key in checked else writers[want.key]).finish()
+        for want in wanted
+    }
+    return columns, check_lengths(path, columns)
+
+
+def _place(path: Path, wanted: Wanted, table: ColumnTable) -> int:
+    """Place of a declared column, whose unit is the declared one."""
+    place = find_column(path, wanted, table.names, where=table.where, in_order=table.in_order)
+    if table.units[place]:
+        check_unit(path, wanted, table.units[place])
+    else:  # a name such as "Force (kN)" may state it
+        check_units(path, [(wanted, place)], names=table.names, units=(), unit_row=None)
+    return place

@@ -1,0 +1,263 @@
+"""Delimited text: a preamble, a name row, a unit row, and rows of fields."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from reduction.readers.columns import (
+    Wanted,
+    check_lengths,
+    check_units,
+    find_column,
+    keep_line,
+    wanted_columns,
+)
+from reduction.readers.layout import Layout, Parts, Watch
+from reduction.readers.number_fields import AT_A_TIME, Fields, GrowingLog, in_order, read_fields
+from reduction.readers.raw_log import RawLog, unchanged
+from reduction.readers.text_rows import (
+    TextFile,
+    TextRows,
+    count_lines,
+    line_starts,
+    open_text,
+    split_line,
+)
+from reduction.record.errors import LogError
+
+_LINE = 1 << 12  # bytes that most lines of a header have at most
+
+_KEPT_LINES = 1000
+
+
+@dataclass
+class _Head:
+    """What stands above the data rows."""
+
+    names: list[str] = field(default_factory=list)
+    name_row: int | None = None
+    units: list[str] = field(default_factory=list)
+    unit_row: int | None = None
+    metadata: dict[str, str] = field(default_factory=dict)
+    n_loose: int = 0
+    """Lines that are not data, those that are not kept too."""
+    last_row: int = 0
+    """Editor's row of the last line that is not blank."""
+    first_line: str = ""
+    """First data row."""
+    first_row: int = 0
+    """Its editor's row, 0 where it has not been found yet."""
+    n_fields: int = 0
+    """Fields in it."""
+    wanted: list[tuple[Wanted, int]] = field(default_factory=list)
+    """Each declared column with its place."""
+
+    def keep(self, line: str, row: int, layout: Layout) -> None:
+        """Keep a line that is not data, if it is one of the first."""
+        self.n_loose += 1
+        if self.n_loose <= _KEPT_LINES:
+            keep_line(self.metadata, line, row, layout)
+
+
+def read_delimited(
+    path: Path,
+    layout: Layout,
+    *,
+    name: str,
+    parts: Parts | None = None,
+    watch: Watch | None = None,
+) -> RawLog:
+    """Read a delimited text log.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    layout : Layout
+        What it looks like.
+    name : str
+        File name relative to the campaign folder.
+    parts : Parts, optional
+        How much of it is read at a time.
+    watch : Watch, optional
+        Holds it against its limits.
+
+    Returns
+    -------
+    log : RawLog
+        Declared columns; preamble and comment lines as metadata.
+
+    Raises
+    ------
+    LogError
+        If the file is not what the layout says, naming row and channel.
+    DataError
+        If the disk is full.
+    """
+    head, watch = _Head(), watch or Watch(path)
+    log: GrowingLog | None = None
+    with (
+        unchanged(path),
+        open_text(path, layout.encoding, parts or Parts(), watch) as file,
+        ThreadPoolExecutor(AT_A_TIME) as workers,
+    ):
+        data_rows = _data_rows(path, file, head, layout, watch)
+        for rows, fields in in_order(workers, partial(_fields, head), data_rows):
+            log = log or GrowingLog([want for want, _ in head.wanted], file.folder)
+            log.add(fields, rows.first_row)
+        if log is None:
+            raise _no_rows(path, head)
+        columns = log.finish(path, layout)
+        source = file.source(name)
+    left_out = head.n_loose - _KEPT_LINES
+    return RawLog(
+        source=source,
+        columns=columns,
+        text=log.text,
+        first_row=log.first_row,
+        row=log.row,
+        n_rows_read=check_lengths(path, columns),
+        metadata=head.metadata,
+        notes=(f"{left_out} more lines that are not data are not kept",) if left_out > 0 else (),
+    )
+
+
+def _data_rows(
+    path: Path, file: TextFile, head: _Head, layout: Layout, watch: Watch
+) -> Iterator[TextRows]:
+    """Data rows of each part, once the head has been read."""
+    for part in file:
+        text, row = _tidy(part.text, layout), part.first_row
+        below = row + (part.n_lines if text is part.text else count_lines(text))
+        if not head.first_row:
+            begin = _read_head(head, text, row, layout)
+            if begin is None:
+                continue
+            text, row = text[begin:], head.first_row
+            head.n_fields = _count_fields(path, head, layout)
+            watch.check_columns(head.n_fields, row=head.first_row)
+            head.wanted = _find_columns(path, head, layout)
+        is_open = part.is_open and below == part.first_row + part.n_lines
+        rows = TextRows(
+            path,
+            layout,
+            text,
+            row,
+            is_open=is_open,
+            n_lines=below - row,
+            longest_line=file.longest_line,
+        )
+        yield _without_comments(rows, head)
+
+
+def _fields(head: _Head, rows: TextRows) -> Fields:
+    return read_fields(rows, head.wanted, head.n_fields)
+
+
+def _tidy(text: memoryview, layout: Layout) -> memoryview:
+    """One blank between fields where blanks part them, and no lines of blanks at the end."""
+    if layout.delimiter != " ":
+        return text
+    single = re.sub(rb"[ \t]+", b" ", text)
+    return memoryview(re.sub(rb"(?m)^ | (?=\r?$)", b"", single).rstrip(b"\r\n"))
+
+
+def _read_head(head: _Head, text: memoryview, first_row: int, layout: Layout) -> int | None:
+    """Take in lines above the data; place of the first data row, None where it is not there."""
+    for row, (place, line) in enumerate(_lines(text), first_row):
+        if line.strip():
+            head.last_row = row
+        if row <= layout.preamble_rows or (layout.comment and line.startswith(layout.comment)):
+            head.keep(line, row, layout)
+        elif not line.strip():
+            continue
+        elif layout.has_name_row and not head.names:
+            head.names, head.name_row = split_line(line, layout), row
+        elif layout.has_unit_row and not head.units:
+            head.units, head.unit_row = split_line(line, layout), row
+        else:
+            head.first_line, head.first_row = line, row
+            return place
+    return None
+
+
+def _lines(text: memoryview) -> Iterator[tuple[int, str]]:
+    """Lines one by one with the place of each; those that are not asked for cost nothing."""
+    place, length = 0, _LINE
+    while place < len(text):
+        line, end, _ = bytes(text[place : place + length]).partition(b"\n")
+        if not end and place + length < len(text):
+            length *= 2
+            continue
+        yield place, line.decode("utf-8").strip("\r")
+        place, length = place + len(line) + 1, _LINE
+
+
+def _no_rows(path: Path, head: _Head) -> LogError:
+    row = head.last_row
+    return LogError(
+        path,
+        "there are no data rows",
+        row=row or None,
+        found=f"{row} lines above them" if row > 1 else "one line above them",
+        needed="at least one row below the header",
+        hint="Check preamble_rows, has_name_row and has_unit_row of the layout.",
+    )
+
+
+def _count_fields(path: Path, head: _Head, layout: Layout) -> int:
+    """Fields in a data row; the name row may differ by trailing delimiters only."""
+    first = split_line(head.first_line, layout)
+    n_names, n_fields = len(head.names), len(first)
+    if n_names and (any(first[n_names:]) or any(head.names[n_fields:])):
+        raise LogError(
+            path,
+            f"the first data row has {n_fields} fields, the name row has {n_names}",
+            row=head.first_row,
+            found=f"'{head.first_line.strip()[:60]}'",
+            needed=f"{n_names} fields parted by {layout.delimiter!r}",
+            hint="Check delimiter, decimal and preamble_rows of the layout.",
+        )
+    return n_fields
+
+
+def _find_columns(path: Path, head: _Head, layout: Layout) -> list[tuple[Wanted, int]]:
+    """Each declared column with its place, found in the header and in the declared unit."""
+    names = head.names or [""] * head.n_fields
+    wanted = [
+        (want, find_column(path, want, names[: head.n_fields], row=head.name_row))
+        for want in wanted_columns(layout)
+    ]
+    check_units(path, wanted, names=names, units=head.units, unit_row=head.unit_row)
+    return wanted
+
+
+def _without_comments(rows: TextRows, head: _Head) -> TextRows:
+    """Rows without the comment lines between them, which are kept as metadata."""
+    comment = rows.layout.comment.encode()
+    if not comment or comment not in bytes(rows.text):
+        return rows
+    starts = line_starts(rows.text)
+    lengths = np.diff(starts, append=len(rows.text))
+    is_comment = np.zeros(starts.size, dtype=bool)
+    for match in re.finditer(rb"(?m)^" + re.escape(comment) + rb".*", rows.text):
+        line = int(np.searchsorted(starts, match.start()))
+        is_comment[line] = True
+        text = match[0].decode("utf-8").rstrip("\r")
+        head.keep(text, rows.row_of_line(line), rows.layout)
+    kept = np.frombuffer(rows.text, np.uint8)[np.repeat(~is_comment, lengths)]
+    return TextRows(
+        rows.path,
+        rows.layout,
+        memoryview(kept.tobytes().rstrip(b"\r\n")),
+        rows.first_row,
+        np.flatnonzero(~is_comment) + rows.first_row,
+        is_open=rows.is_open and not is_comment[-1],
+    )

@@ -1,0 +1,428 @@
+"""HDF5 logs.
+
+The attribute ``units`` (or ``unit``) of a data set is checked.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import h5py  # type: ignore[import-untyped]
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.readers.columns import ColumnTable, matrix_table, read_columns, row_parts
+from reduction.readers.layout import Layout, Parts, Watch, short_metadata
+from reduction.readers.raw_log import RawLog, hash_source
+from reduction.record.errors import LogError
+
+_UNIT_KEYS = ("units", "unit", "Units", "Unit")
+
+_LONGEST_UNIT = 200
+
+_PLAIN_CLASSES = (h5py.h5t.INTEGER, h5py.h5t.FLOAT, h5py.h5t.STRING, h5py.h5t.ENUM)
+
+_LARGEST = 1 << 20  # bytes; texts of any length stand elsewhere
+
+
+def is_plain_attribute(item: h5py.Group | h5py.Dataset, name: str) -> bool:
+    """Whether an attribute that is there is of numbers or texts, as long as a file has them.
+
+    Of others, rows of any length above all, the library takes what a damaged file states at its
+    word, and the process may end.
+    """
+    found = item.attrs.get_id(name)
+    if found.get_type().get_class() not in _PLAIN_CLASSES or found.get_storage_size() > _LARGEST:
+        return False
+    try:
+        np.dtype(found.dtype)
+    except (TypeError, ValueError):  # letters of no encoding, a float with more bits than numpy has
+        return False
+    return True
+
+
+def plain_attribute(path: Path, item: h5py.Group | h5py.Dataset, name: str) -> NDArray[Any] | None:
+    """Value of an attribute, None where it is not there; `LogError` where it is not a plain one."""
+    if name not in item.attrs:
+        return None
+    if not is_plain_attribute(item, name):
+        raise LogError(
+            path, f"the attribute '{name}' of '{item.name}' cannot be read",
+            found="a type that is neither number nor text", needed="an intact file",
+        )  # fmt: skip
+    return np.asarray(item.attrs[name])
+
+
+def unit_attribute(path: Path, dataset: h5py.Dataset) -> str:
+    """Unit that a data set states; empty text where it states none."""
+    for key in _UNIT_KEYS:
+        found = plain_attribute(path, dataset, key)
+        if found is not None:
+            text = "".join(
+                v.decode(errors="replace") if isinstance(v, bytes) else str(v)
+                for v in found.ravel()[:1].tolist()
+            )
+            return text[:_LONGEST_UNIT]  # longer than any: refused as another unit
+    return ""
+
+
+_PACKED = ("scale_factor", "add_offset")
+
+_SHOWN = 40
+
+
+@contextmanager
+def open_hdf5(path: Path) -> Iterator[h5py.File]:
+    """Open an HDF5 file for a block.
+
+    Raises
+    ------
+    LogError
+        If the file is none, or is damaged.
+    """
+    try:
+        file = h5py.File(path, "r", locking=False)
+    except OSError as error:
+        raise LogError(
+            path, "the file is not HDF5", found=str(error)[:200], needed="an HDF5 file"
+        ) from error
+    with file:
+        try:
+            yield file
+        except (OSError, RuntimeError, KeyError, UnicodeDecodeError) as error:  # damage
+            raise LogError(
+                path, "the file is damaged", found=str(error)[:200], needed="an intact file"
+            ) from error
+
+
+def names_in(group: h5py.Group) -> Iterator[str]:
+    """Names that a group holds itself."""
+    return (name for name in group if isinstance(group.get(name, getlink=True), h5py.HardLink))
+
+
+def find_member(path: Path, group: h5py.Group, name: str) -> h5py.Group | h5py.Dataset:
+    """Group or data set by its path below a group, never by way of a link."""
+    for part in (part for part in name.split("/") if part):
+        if not isinstance(group, h5py.Group) or part not in group.keys():
+            held = list(islice(names_in(group), _SHOWN)) if isinstance(group, h5py.Group) else []
+            more = ", ..." if len(held) == _SHOWN else ""
+            listed = ", ".join(repr(key) for key in held) or "nothing"
+            raise LogError(
+                path,
+                f"'{name}' is not in the file",
+                found=f"in '{group.name}': {listed}{more}",
+                needed=f"'{part}'",
+            )
+        if not isinstance(group.get(part, getlink=True), h5py.HardLink):
+            raise LogError(
+                path,
+                f"'{name}' is a link",
+                found=repr(group.get(part, getlink=True)),
+                needed="a data set or group of this file itself",
+                hint="Give the place that the link points to, or copy the data into one file.",
+            )
+        group = group[part]
+    return group
+
+
+def read_data_set(
+    path: Path, dataset: h5py.Group | h5py.Dataset, watch: Watch | None = None
+) -> NDArray[Any]:
+    """All values of a data set that stands in this file as it is meant to be read."""
+    found = _plain(path, dataset)
+    return _values(path, found, (), found.size, watch or Watch(path))
+
+
+def _plain(path: Path, dataset: h5py.Group | h5py.Dataset) -> h5py.Dataset:
+    """The data set, where it is one whose values can be read as they are."""
+    problem: str | None = None
+    found: str | None
+    if not isinstance(dataset, h5py.Dataset):
+        problem, found = "is a group, not a data set", "a group"
+    elif (found := _no_type(dataset)) is not None:
+        problem = "has values of a type that is none"
+    elif dataset.shape is None or dataset.shape == ():
+        problem, found = "is a single value, not a series", f"shape {dataset.shape}"
+    elif dataset.is_virtual or dataset.external:
+        problem, found = "keeps its values in other files", "external storage"
+    elif any(key in dataset.attrs for key in _PACKED):
+        problem, found = "is packed", ", ".join(key for key in _PACKED if key in dataset.attrs)
+    elif (found := _not_written(dataset)) is not None:
+        problem = "has values that were never written"
+    if problem is not None:
+        raise LogError(
+            path,
+            f"'{dataset.name}' {problem}",
+            found=found,
+            needed="a data set with the plain values in this file",
+        )
+    return dataset
+
+
+def _no_type(dataset: h5py.Dataset) -> str | None:
+    """What the library says of a type that it cannot give as one of numpy."""
+    try:
+        np.dtype(dataset.dtype)
+    except (TypeError, ValueError) as error:
+        return str(error)[:200]
+    return None
+
+
+def _not_written(dataset: h5py.Dataset) -> str | None:
+    """How much of a data set the file holds, where that is not all."""
+    if not dataset.size:
+        return None
+    if dataset.chunks is None:
+        is_there = dataset.id.get_storage_size() > 0
+        return None if is_there else f"shape {dataset.shape}, and no values"
+    sides = zip(dataset.shape, dataset.chunks, strict=True)
+    n_needed = math.prod(-(-side // chunk) for side, chunk in sides)
+    # an empty one is told by its size, which is quicker than a count of what is there
+    n_stored = dataset.id.get_num_chunks() if dataset.id.get_storage_size() else 0
+    if n_stored >= n_needed:
+        return None
+    return f"shape {dataset.shape}, {n_stored} of its {n_needed} chunks"
+
+
+def _values(
+    path: Path, dataset: h5py.Dataset, selection: Any, n_values: int, watch: Watch
+) -> NDArray[Any]:
+    """Some values of a data set, as many as stated."""
+    each = dataset.dtype.itemsize
+    watch.check_unpacked(n_values * each, f"'{dataset.name}'")
+    if dataset.chunks is not None:
+        watch.check_unpacked(math.prod(dataset.chunks) * each, f"a chunk of '{dataset.name}'")
+    try:
+        return np.asarray(dataset[selection])
+    except (OSError, ValueError, TypeError) as error:
+        raise LogError(
+            path, f"'{dataset.name}' cannot be read", found=str(error)[:200],
+            needed="an intact data set, compressed by a filter that h5py has",
+        ) from error  # fmt: skip
+
+
+def _column(path: Path, dataset: h5py.Group | h5py.Dataset) -> tuple[h5py.Dataset, int]:
+    """A data set of one dimension, and its axis; a single row or column counts."""
+    dataset = _plain(path, dataset)
+    if sum(size != 1 for size in dataset.shape) > 1:
+        raise LogError(
+            path,
+            f"'{dataset.name}' is not one column",
+            found=f"shape {dataset.shape}",
+            needed="one dimension",
+            hint="Name it as the matrix of the layout where it holds many columns.",
+        )
+    return dataset, int(np.argmax(dataset.shape))
+
+
+def series_parts(
+    path: Path, dataset: h5py.Group | h5py.Dataset, n_rows: int, watch: Watch
+) -> Iterator[NDArray[Any]]:
+    """Values of such a data set in parts, each of whole chunks of the file."""
+    dataset, axis = _column(path, dataset)
+    if dataset.dtype.kind not in "biufc":
+        # refused by its kind; texts of any length, read first, could be one text many times
+        yield np.empty(0, dtype=dataset.dtype)
+    for part in row_parts(dataset.shape[axis], n_rows, chunk_length(dataset, axis)):
+        selection = (slice(None),) * axis + (part,)
+        yield _values(path, dataset, selection, part.stop - part.start, watch).ravel()
+
+
+def chunk_length(dataset: h5py.Dataset, axis: int) -> int:
+    """Rows that the file keeps together."""
+    return int(dataset.chunks[axis]) if dataset.chunks else 1
+
+
+@dataclass(frozen=True)
+class _DataSet:
+    """A data set whose rows are read when they are asked for."""
+
+    path: Path
+    dataset: h5py.Dataset
+    watch: Watch
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return tuple(self.dataset.shape)
+
+    @property
+    def ndim(self) -> int:
+        return len(self.dataset.shape)
+
+    @property
+    def size(self) -> int:
+        return int(self.dataset.size)
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        found: np.dtype[Any] = self.dataset.dtype
+        return found
+
+    def __getitem__(self, rows: slice, /) -> NDArray[Any]:
+        start, stop, _ = rows.indices(self.shape[0])
+        n_values = max(stop - start, 0) * math.prod(self.shape[1:])
+        return _values(self.path, self.dataset, rows, n_values, self.watch)
+
+
+def data_set(path: Path, dataset: h5py.Group | h5py.Dataset, watch: Watch) -> _DataSet:
+    """A data set that stands in this file, before any of it is read.
+
+    Raises
+    ------
+    LogError
+        If it is none, or its values do not all stand in this file as they are.
+    """
+    return _DataSet(path, _plain(path, dataset), watch)
+
+
+def read_texts(
+    path: Path, dataset: h5py.Group | h5py.Dataset, watch: Watch | None = None
+) -> tuple[str, ...]:
+    """Texts of a data set of strings, no more than a file may have columns."""
+    watch = watch or Watch(path)
+    dataset, axis = _column(path, dataset)
+    texts: list[str] = []
+    length = 0
+    if dataset.dtype.kind in "OSUT":
+        watch.check_columns(dataset.size)
+        if dataset.dtype.kind == "O" and h5py.check_string_dtype(dataset.dtype) is None:
+            raise _no_text(path, dataset)  # rows of any length, for which there is no bound
+        # one by one: each of them may be the same long text
+        for part in row_parts(dataset.shape[axis], 1):
+            for value in _values(path, dataset, (slice(None),) * axis + (part,), 1, watch).ravel():
+                text = value.decode(errors="replace") if isinstance(value, bytes) else value
+                if not isinstance(text, str):
+                    raise _no_text(path, dataset)
+                length += len(text)
+                watch.check_unpacked(length, f"'{dataset.name}'")
+                texts.append(text)
+        return tuple(texts)
+    raise _no_text(path, dataset)
+
+
+def _no_text(path: Path, dataset: h5py.Dataset) -> LogError:
+    return LogError(
+        path, f"'{dataset.name}' does not hold text", found=str(dataset.dtype),
+        needed="one text a column",
+    )  # fmt: skip
+
+
+def hdf5_table(
+    path: Path, file: h5py.File, layout: Layout, watch: Watch | None = None
+) -> ColumnTable:
+    """Columns of the group or matrix that a layout names."""
+    watch = watch or Watch(path)
+    group = find_member(path, file, layout.group)
+    if layout.matrix:
+        names, units = (
+            read_texts(path, find_member(path, group, entry), watch) if entry else None
+            for entry in (layout.matrix_names, layout.matrix_units)
+        )
+        matrix = data_set(path, find_member(path, group, layout.matrix), watch)
+        if matrix.ndim == 2:
+            watch.check_columns(matrix.shape[1])
+        return matrix_table(
+            path,
+            matrix,
+            where=f"'{layout.matrix}'",
+            names=names,
+            units=units,
+            n_together=chunk_length(matrix.dataset, 0),
+        )
+    if not isinstance(group, h5py.Group):
+        raise LogError(
+            path, f"'{layout.group}' is not a group", found="a data set",
+            needed="a group, or the data set as the matrix of the layout",
+        )  # fmt: skip
+    return group_table(path, group, watch)
+
+
+def group_table(path: Path, group: h5py.Group, watch: Watch) -> ColumnTable:
+    """Columns of a group: its data sets."""
+    watch.check_columns(len(group))
+    members = {
+        name: member for name in names_in(group) if isinstance(member := group[name], h5py.Dataset)
+    }
+    sets = list(members.values())
+    return ColumnTable(
+        names=tuple(members),
+        units=tuple(unit_attribute(path, member) for member in sets),
+        load=lambda place, n_rows: series_parts(path, sets[place], n_rows, watch),
+        n_rows=max((member.size or 0 for member in sets), default=0),
+        where=f"group '{group.name}'",
+        in_order=False,
+        sizes=tuple(member.size or 0 for member in sets),
+    )
+
+
+def _attributes(group: h5py.Group | h5py.Dataset) -> dict[str, str]:
+    """Attributes that are one text or number, as text."""
+    texts = {}
+    for key in group.attrs:
+        if group.attrs.get_id(key).shape != () or not is_plain_attribute(group, key):
+            continue
+        value = group.attrs[key]
+        if isinstance(value, (str, bytes, np.generic)) and not isinstance(value, np.void):
+            texts[key] = value.decode(errors="replace") if isinstance(value, bytes) else str(value)
+    return texts
+
+
+def read_hdf5(
+    path: Path,
+    layout: Layout,
+    *,
+    name: str,
+    parts: Parts | None = None,
+    watch: Watch | None = None,
+) -> RawLog:
+    """Read the declared columns of one group, or of one matrix.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    layout : Layout
+        ``group``, or ``matrix`` with ``matrix_names`` and ``matrix_units`` (paths below the
+        group), ``missing`` and the channels.
+    name : str
+        Name of the file for the product.
+    parts : Parts, optional
+        How much of it is read at a time.
+    watch : Watch, optional
+        Holds it against its limits.
+
+    Returns
+    -------
+    log : RawLog
+        With the attributes of file and group as metadata.
+
+    Raises
+    ------
+    LogError
+        If the file, a data set or a column cannot be used.
+    DataError
+        If the disk is full.
+    """
+    watch = watch or Watch(path)
+    source = hash_source(path, name)
+    with open_hdf5(path) as file:
+        columns, n_rows = read_columns(
+            path, layout, hdf5_table(path, file, layout, watch), parts=parts, watch=watch
+        )
+        metadata, notes = short_metadata(
+            _attributes(file) | _attributes(find_member(path, file, layout.group))
+        )
+    return RawLog(
+        source=source,
+        columns=columns,
+        first_row=0,
+        n_rows_read=n_rows,
+        metadata=metadata,
+        notes=notes,
+    )

@@ -1,0 +1,436 @@
+"""Declared layouts of logs, and their limits."""
+
+from __future__ import annotations
+
+import stat
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+
+from reduction.quantities.units import Dimension, parse_quantity, scale_to_si
+from reduction.record.errors import LogError, SettingsError
+from reduction.record.samples import scratch_folder
+from reduction.record.settings import Limits
+
+CLOCK = "clock"
+
+Format = Literal["delimited", "blocks", "spreadsheet", "tdms", "matlab", "hdf5", "parquet", "json"]
+
+_CHANNEL_DIMENSION: dict[str, Dimension] = {
+    "time": "time",
+    "crosshead_position": "length",
+    "tension": "force",
+    "strain": "strain",
+    "cycle_counter": "number",
+    "gauge_length": "length",
+    "eye_to_eye_length": "length",
+    "temperature": "temperature",
+}
+
+
+class Channel(BaseModel):
+    """One column of a log.
+
+    ``column`` is its name in the file, or its number from 1 where columns have no
+    name.  ``factor`` turns a voltage or count into ``unit`` and is 1 otherwise.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    column: str | int
+    unit: str = "1"
+    """Of time also ``clock``: text such as 0945 or 09:45:30, made elapsed seconds."""
+    factor: float = Field(default=1.0, gt=0, allow_inf_nan=False)
+    unit_key: str = ""
+    """JSON: key of the text that states this channel's unit, checked against ``unit``."""
+    sign: Literal[1, -1] = 1
+    zero: str | None = None
+    """Reading at zero load, subtracted before the sign is applied, with its unit."""
+    datum: Literal["pin-to-pin", "displacement"] | None = None
+    reference_length: str | None = None
+    """Thimble-to-thimble length at displacement zero, with its unit."""
+    reference_tension: str | None = None
+    """Tension at which ``reference_length`` was read; slack where not given."""
+    standard_uncertainty: str | None = None
+    verified_range: tuple[str, str] | None = None
+    time_column: str | int | None = None
+    """The channel's own time stamps, where it has them."""
+    time_unit: str = "s"
+
+
+def _check_keys(name: str, channel: Channel) -> None:
+    """Refuse what a channel declares and nothing would look at."""
+    keys: tuple[str, ...] = ()
+    if name != "crosshead_position":
+        keys = ("datum", "reference_length", "reference_tension")
+    if name == "time":
+        keys += ("sign", "zero")
+        keys += ("factor",) if channel.unit == CLOCK else ()
+    for key in keys:
+        if getattr(channel, key) != Channel.model_fields[key].default:
+            raise SettingsError(
+                f"channel {name} has no {key}", found=f"{key} = {getattr(channel, key)!r}",
+                needed=f"a channel without {key}",
+            )  # fmt: skip
+    if channel.datum == "pin-to-pin" and channel.reference_length is not None:
+        raise SettingsError(
+            "a length from pin to pin has no reference_length",
+            found=f"reference_length = {channel.reference_length!r}",
+            needed='datum = "displacement", or no reference_length',
+        )
+
+
+def _check_units(name: str, channel: Channel, dimension: Dimension) -> None:
+    """Refuse a unit that is not one of the channel's dimension."""
+    if channel.unit != CLOCK or name != "time":
+        scale_to_si(channel.unit, dimension)
+    scale_to_si(channel.time_unit, "time")
+    for text in (channel.zero, channel.standard_uncertainty, *(channel.verified_range or ())):
+        if text is not None:
+            parse_quantity(text, dimension)
+    if channel.reference_length is not None:
+        parse_quantity(channel.reference_length, "length")
+    if channel.reference_tension is not None:
+        parse_quantity(channel.reference_tension, "force")
+
+
+def _are_signs(text: str) -> bool:
+    """Whether every character is one that a parser of lines can part fields by."""
+    return text.isascii() and not set(text) & set("\0\n\r")
+
+
+class Layout(BaseModel):
+    """What a log file looks like.  Rows count from 1, as an editor counts them."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    format: Format
+    # text
+    delimiter: str = ","
+    """One character; a blank stands for any run of blanks and tabs."""
+    decimal: Literal[".", ","] = "."
+    thousands: Literal["", ",", ".", " ", "'"] = ""
+    encoding: str = "utf-8"
+    """A byte-order mark at the start of a file is always accepted."""
+    comment: str = ""
+    """Lines that begin with this are kept as metadata; empty: there are none."""
+    quote: str = '"'
+    missing: tuple[str, ...] = ("", "NaN", "nan")
+    preamble_rows: int = Field(default=0, ge=0)
+    """Lines before the name row, comment lines included; kept as metadata."""
+    has_name_row: bool = True
+    has_unit_row: bool = False
+    """A unit row is checked against the units declared here."""
+    # blocks
+    block_marker: str = ""
+    """Blocks: text at the start of the line that opens a block of data."""
+    # spreadsheets
+    sheet: str | int = 1
+    """Spreadsheets: sheet by name, or by number from 1."""
+    # TDMS, MATLAB, HDF5
+    group: str = ""
+    """TDMS group, HDF5 group path, or MATLAB struct that holds the columns."""
+    matrix: str = ""
+    """MATLAB variable, HDF5 data set or JSON key of a matrix; columns are then numbers,
+    or names where ``matrix_names`` gives them."""
+    matrix_names: str = ""
+    """JSON key, MATLAB variable or HDF5 data set with the column names of ``matrix``."""
+    matrix_units: str = ""
+    """JSON key, MATLAB variable or HDF5 data set with the units of its columns."""
+    sample_interval: str | None = None
+    """Time between rows, with its unit, of a log that has no time column."""
+    channels: dict[str, Channel]
+
+    @field_validator("channels", mode="before")
+    @classmethod
+    def _flatten(cls, value: object) -> object:
+        """TOML's ``tension.1 = {...}`` arrives nested; the key here is ``tension.1``."""
+        if not isinstance(value, dict):
+            return value
+        flat: dict[str, object] = {}
+        for name, entry in value.items():
+            if isinstance(entry, dict) and entry and all(str(k).isdigit() for k in entry):
+                flat.update({f"{name}.{k}": v for k, v in entry.items()})
+            else:
+                flat[str(name)] = entry
+        return flat
+
+    @model_validator(mode="after")
+    def _channels_make_sense(self) -> Layout:
+        for name, channel in self.channels.items():
+            dimension = self.dimension(name)
+            _check_keys(name, channel)
+            try:
+                _check_units(name, channel, dimension)
+            except SettingsError as error:
+                raise SettingsError(
+                    f"channel {name}: {error.problem}", found=error.found, needed=error.needed,
+                    hint=error.hint,
+                ) from error  # fmt: skip
+        if self.sample_interval is not None:
+            parse_quantity(self.sample_interval, "time")
+            if "time" in self.channels:
+                raise SettingsError(
+                    "a layout has both a time channel and a sample_interval",
+                    found=f"sample_interval {self.sample_interval}",
+                    needed="one of the two",
+                )
+        # an MTS file of blocks states its decimal mark itself
+        decimal = "" if self.format == "blocks" else self.decimal
+        marks = [mark for mark in (self.delimiter, decimal, self.thousands) if mark]
+        if len(self.delimiter) != 1 or len(set(marks)) < len(marks):
+            raise SettingsError(
+                "the separators of a layout cannot be told apart",
+                found=f"delimiter {self.delimiter!r}, decimal {self.decimal!r}, "
+                f"thousands {self.thousands!r}",
+                needed="one character each, all different",
+            )
+        quote = self.quote
+        if len(quote) > 1 or quote in marks or not _are_signs(self.delimiter + quote):
+            raise SettingsError(
+                "the quote of a layout cannot be told from its text",
+                found=f"quote {quote!r}, delimiter {self.delimiter!r}, decimal {decimal!r}",
+                needed="one ASCII character each, no line end, all different; or no quote at all",
+            )
+        position = self.channels.get("crosshead_position")
+        if position is not None and position.datum is None:
+            raise SettingsError(
+                "the position channel has no datum",
+                found="crosshead_position without datum",
+                needed='datum = "pin-to-pin" (a length) or datum = "displacement"',
+                hint="A displacement also needs reference_length, read at slack or at a "
+                "stated reference_tension.",
+            )
+        return self
+
+    @staticmethod
+    def dimension(name: str) -> Dimension:
+        """What a channel has to be, from its name; `SettingsError` where it is not known."""
+        dimension = _CHANNEL_DIMENSION.get(name.split(".")[0])
+        if dimension is None:
+            raise SettingsError(
+                f"channel '{name}' is not known",
+                found=f"'{name}'",
+                needed="one of " + ", ".join(sorted(_CHANNEL_DIMENSION)),
+            )
+        return dimension
+
+
+_KINDS = {
+    stat.S_IFDIR: "a folder",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFSOCK: "a socket",
+}
+
+_DAMAGED = "It may be damaged: save it again with the program that wrote it. "
+
+_Limit = Literal["file_size", "unpacked_size", "line_length", "columns", "time"]
+
+
+def check_regular(path: Path, mode: int) -> None:
+    """`LogError` where a path is no regular file: a pipe or a device may never end.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        For the message.
+    mode : int
+        As `os.stat` gives it, links followed.
+
+    Raises
+    ------
+    LogError
+        If it is anything else.
+    """
+    if not stat.S_ISREG(mode):
+        raise LogError(
+            path,
+            "this is no file that can be read",
+            found=_KINDS.get(stat.S_IFMT(mode), "something else"),
+            needed="a regular file",
+        )
+
+
+class Watch:
+    """Holds one log against the limits while it is read.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The log.
+    limits : Limits, optional
+        What it may be; the defaults where left out.
+
+    Examples
+    --------
+    >>> Watch(Path("log.csv"), Limits(columns=100)).check_columns(101, row=1)
+    Traceback (most recent call last):
+    reduction.record.errors.LogError: log.csv:1: the file has too many columns; found 101; needed
+    100 at \
+most. If that is what was logged, raise columns under [limits] of campaign.toml.
+    """
+
+    def __init__(self, path: Path, limits: Limits | None = None) -> None:
+        """Begin to count the time."""
+        self.path = path
+        self.limits = limits or Limits()
+        self._begin = time.monotonic()
+
+    def check_size(self, n_bytes: int) -> None:
+        """`LogError` where the file has more bytes than ``file_size``."""
+        if n_bytes > self.limits.file_size:
+            raise self._beyond(
+                "file_size", "the file is too large", f"{n_bytes:,} bytes",
+                f"{self.limits.file_size:,} bytes at most",
+            )  # fmt: skip
+
+    def check_unpacked(self, n_bytes: int, what: str = "the file") -> None:
+        """`LogError` where what a file unpacks to is more than ``unpacked_size``.
+
+        Parameters
+        ----------
+        n_bytes : int
+            What it states, or what has come out of it so far.
+        what : str
+            For the message: ``the workbook``, ``variable 'A'``.
+
+        Raises
+        ------
+        LogError
+            If it is more.
+        """
+        if n_bytes > self.limits.unpacked_size:
+            raise self._beyond(
+                "unpacked_size", f"{what} unpacks to more than the memory it may take",
+                f"{n_bytes:,} bytes", f"{self.limits.unpacked_size:,} bytes at most",
+            )  # fmt: skip
+
+    def check_columns(self, n_columns: int, *, row: int | None = None) -> None:
+        """`LogError` where there are more columns than ``columns``."""
+        if n_columns > self.limits.columns:
+            raise self._beyond(
+                "columns", "the file has too many columns", f"{n_columns:,}",
+                f"{self.limits.columns:,} at most", row=row,
+            )  # fmt: skip
+
+    def check_time(self) -> None:
+        """`LogError` where reading has taken longer than ``time``; to be called between blocks."""
+        seconds = time.monotonic() - self._begin
+        if seconds > self.limits.time:
+            raise self.too_slow(seconds)
+
+    def too_slow(self, seconds: float) -> LogError:
+        """Error of a file that took so long, and was not read."""
+        return self._beyond(
+            "time", "the file takes too long to read", f"{seconds:.3g} s so far",
+            f"{self.limits.time:g} s at most",
+        )  # fmt: skip
+
+    def too_much_memory(self) -> LogError:
+        """Error of a file whose reader was refused more memory."""
+        return self._beyond(
+            "unpacked_size", "the file takes more memory than it may", "more when it is read",
+            f"{self.limits.unpacked_size:,} bytes at most", before=_DAMAGED,
+        )  # fmt: skip
+
+    def broken(self, found: str) -> LogError:
+        """Error of a file that ended the process of its reader."""
+        return self._beyond(
+            "unpacked_size", "the library that reads this format broke at the file", found,
+            f"an intact file that takes {self.limits.unpacked_size:,} bytes of memory at most",
+            before=_DAMAGED,
+        )  # fmt: skip
+
+    def long_line(self, row: int) -> LogError:
+        """Error of a line that is longer than ``line_length``."""
+        return self._beyond(
+            "line_length", "a line is too long to be a row of a log",
+            f"more than {self.limits.line_length:,} bytes without a line end", "one line a row",
+            row=row, before="Check the format and the encoding of the layout. ",
+        )  # fmt: skip
+
+    def _beyond(
+        self,
+        limit: _Limit,
+        problem: str,
+        found: str,
+        needed: str,
+        *,
+        row: int | None = None,
+        before: str = "",
+    ) -> LogError:
+        return LogError(
+            self.path,
+            problem,
+            row=row,
+            found=found,
+            needed=needed,
+            hint=f"{before}If that is what was logged, raise {limit} under [limits] of "
+            "campaign.toml.",
+        )
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Parts of a raw file; no number depends on them.
+
+    Parameters
+    ----------
+    in_memory : int
+        Bytes of a text file, or of the columns of a binary one, up to which its columns stay
+        in memory. [1]
+    n_bytes : int
+        Bytes of a part, of text or of columns; a shorter file is one part. [1]
+    folder : pathlib.Path
+        Where the scratch files of its columns lie.
+    """
+
+    in_memory: int = 32 << 20
+    n_bytes: int = 16 << 20
+    folder: Path = field(default_factory=scratch_folder)
+
+    def folder_of(self, n_bytes: int) -> Path | None:
+        """Where columns of a file of that length lie; None in memory."""
+        return self.folder if n_bytes > self.in_memory else None
+
+    def length_of(self, n_bytes: int) -> int:
+        """Bytes of a part of a file of that length."""
+        return max(min(self.n_bytes, n_bytes), 1)
+
+
+_LONGEST = 100_000
+
+
+def short_metadata(found: Mapping[str, str]) -> tuple[dict[str, str], tuple[str, ...]]:
+    """Return the texts that are short enough to be kept, and a note on each that is not.
+
+    Parameters
+    ----------
+    found : mapping of str to str
+        Attributes or properties of a file.
+
+    Returns
+    -------
+    metadata : dict
+        Those of 100,000 characters or fewer.
+    notes : tuple of str
+        One a text that is left out.
+
+    Examples
+    --------
+    >>> short_metadata({"operator": "KH", "picture": "x" * 200_000})
+    ({'operator': 'KH'}, ("'picture' of the file is left out: it has 200,000 characters",))
+    """
+    metadata, notes = {}, []
+    for key, text in found.items():
+        if len(key) + len(text) <= _LONGEST:
+            metadata[key] = text
+        else:
+            notes.append(f"{key[:40]!r} of the file is left out: it has {len(text):,} characters")
+    return metadata, tuple(notes)

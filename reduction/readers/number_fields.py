@@ -1,0 +1,351 @@
+"""Text fields to numbers, in parts of a long log."""
+
+from __future__ import annotations
+
+import re
+from codecs import BOM_UTF8
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa  # type: ignore[import-untyped]
+import pyarrow.compute as pc  # type: ignore[import-untyped]
+import pyarrow.csv as pa_csv  # type: ignore[import-untyped]
+
+from reduction.readers.columns import Wanted, clock_to_seconds, without_marks
+from reduction.readers.layout import CLOCK, Layout
+from reduction.readers.text_rows import TextRows, count_lines, split_line
+from reduction.record.errors import LogError, ReductionError
+from reduction.record.measurement import Floats, Integers
+from reduction.record.plain_text import cut
+from reduction.record.samples import BLOCK, ColumnWriter
+
+_BLOCK = 1 << 20  # bytes that the parser takes at a time, a line at least
+
+
+@dataclass(frozen=True)
+class Fields:
+    """Declared columns of delimited rows.
+
+    Parameters
+    ----------
+    numbers : dict of str to list of ndarray
+        By channel key, in the file's unit, in pieces one after another; declared missing
+        marks are NaN.
+    clock : dict of str to list of str
+        Text of the channels that are a clock.
+    n_rows : int
+        Data rows.
+    row : ndarray of int, shape (n_rows,), optional
+        Editor's row of each where they are not those of consecutive lines.
+    """
+
+    numbers: dict[str, list[Floats]]
+    clock: dict[str, list[str]]
+    n_rows: int
+    row: Integers | None
+
+
+def read_fields(rows: TextRows, wanted: Sequence[tuple[Wanted, int]], n_fields: int) -> Fields:
+    """Declared columns of delimited rows: numbers, and the text of a clock.
+
+    Parameters
+    ----------
+    rows : TextRows
+        What to parse.
+    wanted : sequence of (Wanted, int)
+        Each column with its place from 0.
+    n_fields : int
+        Fields in a row.
+
+    Returns
+    -------
+    fields : Fields
+        Of no rows where the lines are blank.
+
+    Raises
+    ------
+    LogError
+        Naming row and channel of the first field that is neither a number nor a
+        declared missing mark, or the first row with another number of fields.
+    """
+    try:
+        return _read(rows, wanted, n_fields)
+    except LogError as error:
+        if error.row is not None:  # what is wrong further up is told first
+            read_fields(rows.above(error.row), wanted, n_fields)
+        raise
+
+
+def _read(rows: TextRows, wanted: Sequence[tuple[Wanted, int]], n_fields: int) -> Fields:
+    layout = rows.layout
+    places = [place for _, place in wanted]
+    clocks = [place for want, place in wanted if want.unit == CLOCK]
+    has_thousands = _has_thousands(rows)
+    if n_fields == 1 or has_thousands:  # a line of blanks would be a field, or one too few
+        rows = _blank_to_empty(rows)
+    table = None
+    if not has_thousands:
+        try:
+            table = _parse(rows, n_fields, places, clocks)
+        except pa.ArrowInvalid:
+            rows = _blank_to_empty(rows)
+    if not rows.text:
+        return Fields({want.key: [] for want, _ in wanted}, {}, 0, None)
+    if table is None:
+        table = _parse_as_text(rows, n_fields, places)
+    row = rows.rows(table.num_rows)
+    numbers: dict[str, list[Floats]] = {}
+    clock: dict[str, list[str]] = {}
+    for want, place in wanted:
+        column = table.column(str(place))
+        if want.unit == CLOCK:
+            clock[want.key] = [field.strip() for field in column.to_pylist()]
+            continue
+        pieces = _numbers(column)
+        if pieces is None:
+            if not pa.types.is_string(column.type):
+                column = _parse_as_text(rows, n_fields, [place]).column(str(place))
+            pieces = [_second_look(rows, row, want, column)]
+        numbers[want.key] = [without_marks(piece, layout) for piece in pieces]
+    return Fields(numbers, clock, table.num_rows, row)
+
+
+def _numbers(column: pa.ChunkedArray) -> list[Floats] | None:
+    """Numbers of a parsed column in pieces, or None where it has to be looked at as text."""
+    if pa.types.is_string(column.type):
+        return None
+    pieces = []
+    for chunk in column.chunks:
+        piece = chunk.to_numpy(zero_copy_only=False)
+        # arrow takes the words nan and inf for numbers; a log may not
+        if np.count_nonzero(np.isfinite(piece)) != len(chunk) - chunk.null_count:
+            return None
+        pieces.append(piece)
+    return pieces
+
+
+def _has_thousands(rows: TextRows) -> bool:
+    mark = rows.layout.thousands.encode()
+    return bool(mark) and re.search(re.escape(mark), rows.text) is not None
+
+
+def _parse(
+    rows: TextRows, n_fields: int, places: Sequence[int], as_text: Sequence[int]
+) -> pa.Table:
+    layout = rows.layout
+    names = [str(place) for place in range(n_fields)]
+    types = {str(place): pa.string() if place in as_text else pa.float64() for place in set(places)}
+    # arrow drops a byte-order mark, which is none within a file; a blank line before it is no row
+    is_marked = bytes(rows.text[: len(BOM_UTF8)]) == BOM_UTF8
+    return pa_csv.read_csv(
+        pa.py_buffer(b"\n" + bytes(rows.text) if is_marked else rows.text),
+        read_options=pa_csv.ReadOptions(
+            column_names=names, block_size=max(_BLOCK, rows.longest_line + 2)
+        ),
+        parse_options=pa_csv.ParseOptions(
+            delimiter=layout.delimiter, quote_char=layout.quote or False
+        ),
+        convert_options=pa_csv.ConvertOptions(
+            include_columns=list(types),
+            column_types=types,
+            null_values=list(layout.missing),
+            strings_can_be_null=False,
+            decimal_point=layout.decimal,
+        ),
+        memory_pool=pa.system_memory_pool(),  # the others clear huge pages, which is slow
+    )
+
+
+def _parse_as_text(rows: TextRows, n_fields: int, places: Sequence[int]) -> pa.Table:
+    try:
+        return _parse(rows, n_fields, places, places)
+    except pa.ArrowInvalid as error:
+        raise _ragged(rows, n_fields, str(error)) from error
+
+
+def _blank_to_empty(rows: TextRows) -> TextRows:
+    """Lines of blanks alone made empty, so that they are no rows; line numbers stay."""
+    blank = rb"(?m)^[ \t]+(?=\r?$)" if rows.layout.delimiter != "\t" else rb"(?m)^ +(?=\r?$)"
+    text = re.sub(blank, b"", rows.text)
+    filled = text.rstrip(b"\r\n")
+    is_open = rows.is_open and filled == text
+    return replace(rows, text=memoryview(filled), is_open=is_open, n_lines=None)
+
+
+def _ragged(rows: TextRows, n_fields: int, message: str) -> LogError:
+    """First row with another number of fields, or in which a quote is not closed."""
+    n_lines = count_lines(rows.text)
+    for line, text in enumerate(rows.lines()):
+        if error := rows.unclosed(line, text):
+            return error
+        found = len(split_line(text, rows.layout))
+        if text.strip("\r") and found != n_fields:
+            is_cut_off = rows.is_open and line == n_lines - 1
+            return LogError(
+                rows.path,
+                f"a row has {found} fields where the first has {n_fields}",
+                row=rows.row_of_line(line),
+                found=repr(text.strip()[:60]),
+                needed=f"{n_fields} fields",
+                hint="The log was cut off; remove its last line." if is_cut_off else None,
+            )
+    return rows.not_told_apart(message)
+
+
+def _second_look(
+    rows: TextRows, row: Integers | None, want: Wanted, column: pa.ChunkedArray
+) -> Floats:
+    """Numbers of a text column, or a `LogError` that names its first bad field."""
+    layout = rows.layout
+    trimmed = pc.utf8_trim_whitespace(column)
+    is_missing = pc.is_in(trimmed, value_set=pa.array(layout.missing, pa.string()))
+    point, mark = re.escape(layout.decimal), re.escape(layout.thousands)
+    whole = rf"\d+|\d{{1,3}}(?:{mark}\d{{3}})+" if mark else r"\d+"
+    number = rf"^[+-]?(?:(?:{whole})(?:{point}\d*)?|{point}\d+)(?:[eE][+-]?\d+)?$"
+    is_number = pc.match_substring_regex(trimmed, number)
+    bad = pc.index(pc.or_(is_missing, is_number), False).as_py()
+    if bad < 0:
+        plain = pc.replace_substring(trimmed, layout.thousands, "") if mark else trimmed
+        plain = pc.replace_substring(plain, layout.decimal, ".")
+        values = pc.if_else(is_missing, None, plain).cast(pa.float64()).to_numpy()
+        infinite = np.flatnonzero(np.isinf(values))
+        if not infinite.size:
+            return np.asarray(values, dtype=np.float64)
+        bad = int(infinite[0])
+    found = trimmed[bad].as_py()
+    sample = f"12{layout.decimal}5"
+    raise LogError(
+        rows.path,
+        "a value is not a number",
+        row=rows.row_of_line(bad) if row is None else int(row[bad]),
+        channel=str(want.column),
+        found=repr(cut(found, 60)) if found else "an empty field",
+        needed=f"a decimal number such as {sample} in {want.unit}, or a declared missing mark",
+        hint="Add it to the missing marks of the layout where it means missing.",
+    )
+
+
+AT_A_TIME = 2
+
+"""Parts whose numbers are read together. [1]."""
+
+_WORKERS = 4
+
+
+def in_order(
+    workers: Executor, read: Callable[[TextRows], Fields], parts: Iterator[TextRows]
+) -> Iterator[tuple[TextRows, Fields]]:
+    """Parts with what has been read from each, a few at the same time.
+
+    An error in the making of a part is told after what stands above it.
+    """
+    waiting: deque[tuple[TextRows, Future[Fields]]] = deque()
+    error: ReductionError | None = None
+    is_done = False
+    while waiting or not is_done:
+        try:
+            part = None if is_done else next(parts, None)
+        except ReductionError as found:
+            part, error = None, found
+        is_done = part is None
+        if part is not None:
+            waiting.append((part, workers.submit(read, part)))
+        while waiting and (is_done or len(waiting) >= AT_A_TIME):
+            first, fields = waiting.popleft()
+            yield first, fields.result()
+    if error is not None:
+        raise error
+
+
+class GrowingLog:
+    """Columns of a text log, in memory or, where a folder is given, in scratch files there.
+
+    Parameters
+    ----------
+    wanted : sequence of Wanted
+        The columns.
+    folder : pathlib.Path or None
+        Where the scratch files lie.  The text of a clock stays in memory.
+    """
+
+    def __init__(self, wanted: Sequence[Wanted], folder: Path | None) -> None:
+        """Begin with no rows."""
+        self._wanted = wanted
+        self._folder = folder
+        self._columns = {want.key: ColumnWriter(folder) for want in wanted if want.unit != CLOCK}
+        self._clock: dict[str, list[str]] = {want.key: [] for want in wanted if want.unit == CLOCK}
+        self._row: ColumnWriter | None = None
+        self.n_rows = 0
+        self.first_row = 0
+
+    def add(self, fields: Fields, first_row: int) -> None:
+        """Add data rows that follow; the first of them stands in an editor's row.
+
+        Raises
+        ------
+        DataError
+            If the disk is full.
+        """
+        if not fields.n_rows:
+            return
+        row = fields.row
+        first = first_row if row is None else int(row[0])
+        last = first_row + fields.n_rows - 1 if row is None else int(row[-1])
+        if not self.n_rows:
+            self.first_row = first
+        is_next = first == self.first_row + self.n_rows
+        if self._row is None and not (is_next and last - first == fields.n_rows - 1):
+            self._row = _counted(self._folder, self.first_row, self.n_rows)
+        if self._row is not None:
+            self._row.append(np.arange(first, last + 1) if row is None else row)
+        with ThreadPoolExecutor(_WORKERS) as workers:  # fresh memory is slow to touch
+            list(workers.map(self._append, fields.numbers, fields.numbers.values()))
+        for key, texts in fields.clock.items():
+            self._clock[key] += texts
+        self.n_rows += fields.n_rows
+
+    def finish(self, path: Path, layout: Layout) -> dict[str, Floats]:
+        """All columns, shape (n_rows,); of a clock the elapsed seconds.
+
+        Raises
+        ------
+        LogError
+            If a text is no clock time.
+        """
+        self.row: Integers | None = None if self._row is None else self._row.finish()
+        self.text = {key: tuple(texts) for key, texts in self._clock.items()}
+        with ThreadPoolExecutor(_WORKERS) as workers:
+            columns = dict(
+                zip(
+                    self._columns,
+                    workers.map(ColumnWriter.finish, self._columns.values()),
+                    strict=True,
+                )
+            )
+        for want in self._wanted:
+            if want.unit == CLOCK:
+                columns[want.key] = clock_to_seconds(
+                    path,
+                    self.text[want.key],
+                    channel=str(want.column),
+                    missing=layout.missing,
+                    row=self.row,
+                    first_row=self.first_row,
+                )
+        return {want.key: columns[want.key] for want in self._wanted}
+
+    def _append(self, key: str, pieces: Sequence[Floats]) -> None:
+        for piece in pieces:
+            self._columns[key].append(piece)
+
+
+def _counted(folder: Path | None, first: int, size: int) -> ColumnWriter:
+    """Rows so far, which were consecutive."""
+    writer = ColumnWriter(folder, np.int64)
+    for start in range(0, size, BLOCK):
+        writer.append(np.arange(first + start, first + min(start + BLOCK, size)))
+    return writer

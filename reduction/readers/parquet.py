@@ -1,0 +1,145 @@
+"""Parquet, read by pyarrow, the declared columns alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow  # type: ignore[import-untyped]
+import pyarrow.parquet  # type: ignore[import-untyped]
+from numpy.typing import NDArray
+
+from reduction.readers.columns import ColumnTable, read_columns
+from reduction.readers.layout import Layout, Parts, Watch, short_metadata
+from reduction.readers.raw_log import RawLog, hash_source
+from reduction.record.errors import LogError
+
+_UNIT_KEYS = (b"units", b"unit")
+
+_BUFFER = 1 << 20  # bytes
+
+_MACHINERY = (b"ARROW:schema", b"pandas")  # for programs, not for a reader
+
+
+def open_parquet(path: Path) -> pyarrow.parquet.ParquetFile:
+    """Open a Parquet file; `LogError` where the file is none."""
+    try:
+        # else each column of a row group is read whole
+        return pyarrow.parquet.ParquetFile(path, buffer_size=_BUFFER, pre_buffer=False)
+    except (pyarrow.ArrowException, OSError) as error:
+        raise LogError(
+            path, "the file is not Parquet", found=str(error)[:200], needed="a .parquet file"
+        ) from error
+
+
+def parquet_table(
+    path: Path, file: pyarrow.parquet.ParquetFile, watch: Watch | None = None
+) -> ColumnTable:
+    """Top-level columns of a Parquet file; a null is read as NaN."""
+    watch = watch or Watch(path)
+    schema = file.schema_arrow
+    watch.check_columns(len(schema))
+
+    def unit(place: int) -> str:
+        metadata = schema.field(place).metadata or {}
+        return next(
+            (metadata[key].decode(errors="replace") for key in _UNIT_KEYS if key in metadata), ""
+        )
+
+    def load(place: int, n_rows: int) -> Iterator[NDArray[Any]]:
+        name = schema.names[place]
+        before = schema.names[:place].count(name)  # a name that stands twice is read twice
+        try:
+            # what is no number is refused by its kind: a text may stand once for a million rows
+            if not file.metadata.num_rows or not _is_number(schema.types[place]):
+                yield _values(pyarrow.array([], schema.types[place]))
+            for batch in file.iter_batches(batch_size=n_rows, columns=[name]):
+                yield _values(batch.column(before))
+        except (pyarrow.ArrowException, OSError) as error:
+            raise LogError(
+                path, "a column cannot be read", channel=name, found=str(error)[:200]
+            ) from error
+
+    return ColumnTable(
+        tuple(schema.names),
+        tuple(unit(place) for place in range(len(schema))),
+        load,
+        n_rows=file.metadata.num_rows,
+        sizes=(file.metadata.num_rows,) * len(schema),
+    )
+
+
+def _is_number(kind: pyarrow.DataType) -> bool:
+    types = pyarrow.types
+    return bool(types.is_integer(kind) or types.is_floating(kind) or types.is_boolean(kind))
+
+
+def _values(column: pyarrow.Array) -> NDArray[Any]:
+    """Values of a column with NaN for null."""
+    if column.null_count and pyarrow.types.is_boolean(column.type):
+        column = column.fill_null(False)
+    if column.null_count and pyarrow.types.is_integer(column.type):
+        try:
+            column = column.cast(pyarrow.float64())
+        except pyarrow.ArrowInvalid:  # a number that float64 cannot hold, which is told
+            column = column.fill_null(0)
+    return np.asarray(column.to_numpy(zero_copy_only=False))
+
+
+def read_parquet(
+    path: Path,
+    layout: Layout,
+    *,
+    name: str,
+    parts: Parts | None = None,
+    watch: Watch | None = None,
+) -> RawLog:
+    """Read the declared columns; a field's ``unit`` or ``units`` is checked.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    layout : Layout
+        ``missing`` and the channels.
+    name : str
+        Name of the file for the product.
+    parts : Parts, optional
+        How much of it is read at a time.
+    watch : Watch, optional
+        Holds it against its limits.
+
+    Returns
+    -------
+    log : RawLog
+        With the key-value metadata of the file.
+
+    Raises
+    ------
+    LogError
+        If the file or a column cannot be used.
+    DataError
+        If the disk is full.
+    """
+    source = hash_source(path, name)
+    with open_parquet(path) as file:
+        columns, n_rows = read_columns(
+            path, layout, parquet_table(path, file, watch), parts=parts, watch=watch
+        )
+        metadata, notes = short_metadata(
+            {
+                key.decode(errors="replace"): value.decode(errors="replace")
+                for key, value in (file.metadata.metadata or {}).items()
+                if key not in _MACHINERY
+            }
+        )
+    return RawLog(
+        source=source,
+        columns=columns,
+        first_row=0,
+        n_rows_read=n_rows,
+        metadata=metadata,
+        notes=notes,
+    )

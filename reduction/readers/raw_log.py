@@ -1,0 +1,193 @@
+"""A log as it was read, and the bytes that it was read from.
+
+A reader works on the bytes that were hashed, so that the hash of a product is the hash of
+what was parsed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from reduction.readers.layout import check_regular
+from reduction.record.errors import LogError, ReductionError
+from reduction.record.measurement import Bools, Floats, Integers, Source
+
+
+@dataclass(frozen=True)
+class RawLog:
+    """What a reader returns.
+
+    Parameters
+    ----------
+    source : Source
+        Name, hash and size of the file.
+    columns : dict of str to ndarray, shape (n_rows,)
+        By channel key (``time``, ``tension.1``; own time stamps as ``tension.1.time``),
+        in the file's unit; a declared missing mark is NaN.  Nothing else may be NaN.
+    text : dict of str to tuple of str
+        Channels that are text by nature (the clock of a stepwise test).
+    first_row : int
+        Row of the first data row, as an editor counts; 0 for formats without rows.
+    row : ndarray of int, shape (n_rows,), optional
+        Editor's row of each data row where the rows are not consecutive.
+    n_rows_read : int
+        Data rows seen; equal to the length of the columns.
+    metadata : dict of str to str
+        Preamble and comment lines, file properties; as printed.
+    notes : tuple of str
+        What the reader wants a person to know.
+    """
+
+    source: Source
+    columns: dict[str, Floats]
+    first_row: int
+    n_rows_read: int
+    text: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    row: Integers | None = None
+    metadata: dict[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    def missing(self, name: str) -> Bools:
+        """Where a channel holds a declared missing mark, shape (n_rows,)."""
+        return np.isnan(self.columns[name])
+
+
+_BLOCK = 1 << 20
+
+
+def hash_source(path: Path, name: str) -> Source:
+    """Hash a file in pieces, so that its size does not matter.
+
+    Raises
+    ------
+    LogError
+        If the file is no regular one, cannot be opened or is empty.
+    """
+    _state(path)
+    digest, size = hashlib.sha256(), 0
+    try:
+        with path.open("rb") as stream:
+            while block := stream.read(_BLOCK):
+                digest.update(block)
+                size += len(block)
+    except OSError as error:
+        raise unreadable(path, error) from error
+    check_not_empty(path, size)
+    return Source(name, digest.hexdigest(), size)
+
+
+class RunningHash:
+    """Hash of a file that is read in parts: a worker hashes one while the next is read."""
+
+    def __init__(self) -> None:
+        """Begin with no bytes."""
+        self._digest = hashlib.sha256()
+        self._size = 0
+        self._worker = ThreadPoolExecutor(1)
+        self._last: Future[None] | None = None
+
+    def add(self, data: memoryview) -> None:
+        """Hash the next bytes, which must stay as they are; those before them are done then."""
+        if self._last is not None:
+            self._last.result()
+        self._size += len(data)
+        self._last = self._worker.submit(self._digest.update, data)
+
+    def source(self, name: str) -> Source:
+        """All of the file."""
+        self.close()
+        return Source(name, self._digest.hexdigest(), self._size)
+
+    def close(self) -> None:
+        """Let the worker go."""
+        self._worker.shutdown()
+
+
+def source_of(data: bytes, name: str) -> Source:
+    """Hash of bytes already read."""
+    return Source(name, hashlib.sha256(data).hexdigest(), len(data))
+
+
+def read_bytes(path: Path) -> bytes:
+    """Read a file whole.
+
+    Raises
+    ------
+    LogError
+        If the file cannot be opened, is empty, or changes meanwhile.
+    """
+    with unchanged(path):
+        try:
+            data = path.read_bytes()
+        except OSError as error:
+            raise unreadable(path, error) from error
+    check_not_empty(path, len(data))
+    return data
+
+
+@contextmanager
+def unchanged(path: Path) -> Iterator[int]:
+    """Bytes of a regular file; `LogError` where it changes in the ``with`` block, or is refused.
+
+    A change stands before what the block itself finds wrong: rows cut off belong to such a file.
+    """
+    before = _state(path)
+    try:
+        yield before[0]
+    except LogError as error:
+        if (found := _change(path, before)) is not None:
+            raise found from error
+        raise
+    except OSError as error:
+        if isinstance(error, ReductionError):
+            raise  # of another file
+        raise _change(path, before) or unreadable(path, error) from error
+    if (found := _change(path, before)) is not None:
+        raise found
+
+
+def _change(path: Path, before: tuple[int, int]) -> LogError | None:
+    """What a file that has changed is told with."""
+    after = _state(path)
+    if after == before:
+        return None
+    verb = "shrank" if after[0] < before[0] else "grew" if after[0] > before[0] else "changed"
+    return LogError(
+        path,
+        f"the file {verb} while it was read",
+        found=f"{before[0]} bytes, then {after[0]} bytes",
+        needed="a file that nothing writes to",
+        hint="Wait until the logger or the copy has ended.",
+    )
+
+
+def _state(path: Path) -> tuple[int, int]:
+    try:
+        status = path.stat()
+    except OSError as error:
+        raise unreadable(path, error) from error
+    check_regular(path, status.st_mode)
+    return status.st_size, status.st_mtime_ns
+
+
+def unreadable(path: Path | str, error: OSError) -> LogError:
+    """Error of a file that the system does not let be read."""
+    return LogError(
+        path,
+        "the file cannot be read",
+        found=error.strerror or type(error).__name__,
+        needed="a file that this user may read",
+    )
+
+
+def check_not_empty(path: Path, size: int) -> None:
+    """`LogError` where a file has no bytes."""
+    if size == 0:
+        raise LogError(path, "the file is empty", found="0 bytes", needed="a log")

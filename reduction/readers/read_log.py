@@ -1,0 +1,243 @@
+"""Reads the files of a test: one entry for every format."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from reduction.quantities.units import parse_quantity, scale_to_si
+from reduction.readers.blocks import read_blocks
+from reduction.readers.bounded_reader import bounded
+from reduction.readers.delimited import read_delimited
+from reduction.readers.hdf5 import read_hdf5
+from reduction.readers.json_matrix import read_json
+from reduction.readers.layout import Channel, Format, Layout, Parts, Watch
+from reduction.readers.matlab import read_matlab
+from reduction.readers.parquet import read_parquet
+from reduction.readers.raw_log import RawLog, unchanged
+from reduction.readers.record_in_si import to_record
+from reduction.readers.spreadsheet import read_spreadsheet
+from reduction.readers.tdms import read_tdms
+from reduction.record.errors import LogError, SettingsError
+from reduction.record.measurement import Floats, Record, Source, StepReadings
+from reduction.record.samples import give_back
+from reduction.record.settings import Limits, QualitySettings
+
+_IN_PARTS: dict[Format, Callable[..., RawLog]] = {
+    "delimited": read_delimited,
+    "blocks": read_blocks,
+    "tdms": read_tdms,
+    "hdf5": read_hdf5,
+    "parquet": read_parquet,
+}
+
+_WHOLE: dict[Format, Callable[..., RawLog]] = {
+    "spreadsheet": read_spreadsheet,
+    "matlab": read_matlab,
+    "json": read_json,
+}
+
+_TEXTS = ("delimited", "blocks", "json")  # read by this package, in this process
+
+
+def read_log(
+    path: Path,
+    layout: Layout,
+    *,
+    name: str,
+    parts: Parts | None = None,
+    limits: Limits | None = None,
+) -> RawLog:
+    """Read a log in its declared layout.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    layout : Layout
+        What it looks like.
+    name : str
+        File name relative to the campaign folder.
+    parts : Parts, optional
+        How much is read at a time, and from which length on columns lie on disk.  No number
+        depends on it.
+    limits : Limits, optional
+        What it may be; the defaults where left out.
+
+    Returns
+    -------
+    log : RawLog
+        Declared columns in the file's own units.
+
+    Raises
+    ------
+    LogError
+        If the file is not what the layout says, is beyond a limit, or changes while it is read.
+    DataError
+        If the scratch files of a long log do not fit on the disk.
+    """
+    watch = Watch(path, limits)
+    with unchanged(path) as n_bytes:
+        watch.check_size(n_bytes)
+        given: dict[str, Any] = {"name": name, "watch": watch}
+        if layout.format in _IN_PARTS:
+            given["parts"] = parts or Parts()
+        read = (_IN_PARTS | _WHOLE)[layout.format]
+        if layout.format in _TEXTS:
+            return read(path, layout, **given)
+        return bounded(read, path, layout, **given)
+
+
+def read_record(
+    files: Sequence[tuple[Path, Layout, str]],
+    *,
+    test_id: str,
+    specimens: Sequence[str],
+    quality: QualitySettings,
+    length_needed: bool = True,
+    parts: Parts | None = None,
+    limits: Limits | None = None,
+) -> tuple[Record, tuple[Source, ...]]:
+    """Read the file or files of a test.
+
+    Parameters
+    ----------
+    files : sequence of (path, layout, name)
+        In order of time; ``name`` is relative to the campaign folder.
+    test_id : str
+        Key of the test.
+    specimens : sequence of str
+        Names; ``tension.1`` belongs to the first.
+    quality : QualitySettings
+        When a sample is flagged.
+    length_needed : bool
+        As in `reduction.readers.record_in_si.to_record`.
+    parts : Parts, optional
+        How much of a file is read at a time.
+    limits : Limits, optional
+        What each file may be.
+
+    Returns
+    -------
+    record : Record
+        In SI, flags set, every row kept.
+    sources : tuple of Source
+        One a file.
+
+    Raises
+    ------
+    LogError
+        If a file cannot be read as its layout says.
+    SettingsError, DataError
+        As in `reduction.readers.record_in_si.to_record`.
+    """
+    logs = [
+        (read_log(path, layout, name=name, parts=parts, limits=limits), layout)
+        for path, layout, name in files
+    ]
+    record = to_record(
+        logs, test_id=test_id, specimens=specimens, quality=quality, length_needed=length_needed
+    )
+    give_back(record.time)
+    return record, tuple(log.source for log, _ in logs)
+
+
+_NEEDED = ("time", "tension.1", "gauge_length")
+
+
+def _si(log: RawLog, layout: Layout, name: str) -> Floats:
+    channel = layout.channels[name]
+    factor, offset = (1.0, 0.0)
+    if channel.unit != "clock":
+        factor, offset = scale_to_si(channel.unit, layout.dimension(name))
+    values = factor * channel.factor * log.columns[name] + offset
+    if channel.zero is not None:
+        values = values - parse_quantity(channel.zero, layout.dimension(name))
+    return channel.sign * values
+
+
+def _uncertainty(channel: Channel, layout: Layout, name: str) -> float:
+    text = channel.standard_uncertainty
+    return float("nan") if text is None else parse_quantity(text, layout.dimension(name))
+
+
+def read_step_readings(
+    files: Sequence[tuple[Path, Layout, str]], *, test_id: str, limits: Limits | None = None
+) -> tuple[StepReadings, tuple[Source, ...]]:
+    """Read the log of a stepwise test.
+
+    Parameters
+    ----------
+    files : sequence of (path, layout, name)
+        One file; a stepwise test is too short to come in pieces.
+    test_id : str
+        For messages.
+    limits : Limits, optional
+        What the file may be.
+
+    Returns
+    -------
+    readings : StepReadings
+        In SI.
+    sources : tuple of Source
+        The file.
+
+    Raises
+    ------
+    SettingsError
+        If there is not one file, or the layout lacks a channel.
+    LogError
+        If the file cannot be read, or a needed reading is missing.
+    """
+    if len(files) != 1:
+        raise SettingsError(
+            f"stepwise test '{test_id}' has several files", found=str(len(files)), needed="one"
+        )
+    path, layout, name = files[0]
+    lacking = [channel for channel in _NEEDED if channel not in layout.channels]
+    if lacking:
+        raise SettingsError(
+            f"the layout of stepwise test '{test_id}' lacks a channel",
+            found=", ".join(layout.channels),
+            needed="time, tension.1 and gauge_length (the length between the marks)",
+        )
+    log = read_log(path, layout, name=name, limits=limits)
+    for channel in _NEEDED:
+        missing = log.missing(channel)
+        if missing.any():
+            first = int(np.flatnonzero(missing)[0])
+            raise LogError(
+                path,
+                "a step has no reading",
+                row=log.first_row + first if log.row is None else int(log.row[first]),
+                channel=str(layout.channels[channel].column),
+                needed="a number; leave the row out if it was not read",
+            )
+    nothing = np.full(log.n_rows_read, np.nan)
+    time = _si(log, layout, "time")
+    return (
+        StepReadings(
+            clock=log.text.get("time", tuple(f"{value:g}" for value in log.columns["time"])),
+            time=time - time[0],
+            tension=_si(log, layout, "tension.1"),
+            length=_si(log, layout, "gauge_length"),
+            eye_to_eye_length=_si(log, layout, "eye_to_eye_length")
+            if "eye_to_eye_length" in layout.channels
+            else nothing,
+            printed_strain=_si(log, layout, "strain.1")
+            if "strain.1" in layout.channels
+            else nothing,
+            length_standard_uncertainty=_uncertainty(
+                layout.channels["gauge_length"], layout, "gauge_length"
+            ),
+            tension_standard_uncertainty=_uncertainty(
+                layout.channels["tension.1"], layout, "tension.1"
+            ),
+            metadata=log.metadata,
+            notes=log.notes,
+        ),
+        (log.source,),
+    )

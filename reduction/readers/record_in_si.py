@@ -1,0 +1,690 @@
+"""Logs in the file's own units to one record in SI."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from reduction.quantities.units import Dimension, parse_quantity, scale_to_si
+from reduction.readers.layout import CLOCK, Channel, Layout
+from reduction.readers.raw_log import RawLog
+from reduction.readers.sample_flags import flag_record
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Floats, Integers, Record
+from reduction.record.samples import (
+    empty_like,
+    finite_extremes,
+    join_columns,
+    sample_blocks,
+    zeros_like,
+)
+from reduction.record.settings import QualitySettings
+
+
+def length_at_slack(layouts: Sequence[Layout]) -> float | None:
+    """Thimble-to-thimble length at which the layouts of a log say that it is slack.
+
+    Parameters
+    ----------
+    layouts : sequence of Layout
+        One a file.
+
+    Returns
+    -------
+    length : float or None
+        ``reference_length`` where it was read at slack; None where none is stated, where it
+        was read under tension, or where the files differ. [m]
+    """
+    lengths = set()
+    for layout in layouts:
+        channel = layout.channels.get("crosshead_position")
+        if channel is None or channel.datum != "displacement" or channel.reference_length is None:
+            return None
+        if parse_quantity(channel.reference_tension or "0 N", "force") > 0:
+            return None
+        lengths.add(parse_quantity(channel.reference_length, "length"))
+    return lengths.pop() if len(lengths) == 1 else None
+
+
+_COUNTED = "cycle_counter"
+
+
+@dataclass(frozen=True)
+class CommonTime:
+    """Channels on one time axis.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n_samples,)
+        Of the slowest channel. [s]
+    values : dict of str to ndarray, shape (n_samples,)
+        By channel key; NaN where a channel has no sample near enough.
+    resampled : frozenset of str
+        Channels that were interpolated.
+    notes : tuple of str
+        What was done, with both rates.
+    """
+
+    time: Floats
+    values: dict[str, Floats]
+    resampled: frozenset[str] = frozenset()
+    notes: tuple[str, ...] = ()
+
+
+@dataclass
+class _Axis:
+    time: Floats
+    keys: list[str]
+
+    @property
+    def step(self) -> float:
+        """Median of the steps forward. [s]."""
+        steps = np.diff(self.time)
+        steps = steps[steps > 0]
+        return float(np.median(steps)) if steps.size else np.nan
+
+
+def on_common_time(
+    shared: Floats | None,
+    values: Mapping[str, Floats],
+    own: Mapping[str, Floats],
+    *,
+    gap_factor: float,
+) -> CommonTime:
+    """Bring channels to the time axis of the slowest by linear interpolation.
+
+    Nothing is interpolated over a gap or a missing value, nor beyond the ends: the
+    value is NaN there.  A cycle counter keeps the count of the sample before.
+
+    Parameters
+    ----------
+    shared : ndarray, shape (n_rows,), optional
+        Time of the channels that have no time stamps of their own. [s]
+    values : mapping of str to ndarray, shape (n_rows_of_channel,)
+        Channels. [any]
+    own : mapping of str to ndarray, shape (n_rows_of_channel,)
+        Time stamps of the channels that have their own. [s]
+    gap_factor : float
+        As in `reduction.record.settings.QualitySettings`. [1]
+
+    Returns
+    -------
+    common : CommonTime
+        The channels as they came where there is one time axis only.
+
+    Raises
+    ------
+    DataError
+        If a channel has no time or fewer than two stamps, or the axes do not overlap.
+    """
+    axes: list[_Axis] = []
+    trimmed: dict[str, Floats] = {}
+    for key, series in values.items():
+        time = own.get(key, shared)
+        if time is None:
+            raise DataError(
+                f"channel '{key}' has no time",
+                found="neither a time channel nor time stamps of its own",
+                needed="a time channel, a time_column, or a sample_interval in the layout",
+            )
+        if own:  # the column of a slower channel ends before the table does
+            stamped = np.flatnonzero(np.isfinite(time))
+            if stamped.size < 2:
+                raise DataError(
+                    f"channel '{key}' has too few time stamps",
+                    found=str(stamped.size),
+                    needed="two or more",
+                )
+            time, series = time[: stamped[-1] + 1], series[: stamped[-1] + 1]
+        trimmed[key] = series
+        same = next((axis for axis in axes if _is_same(axis.time, time)), None)
+        if same is None:
+            axes.append(_Axis(time, [key]))
+        else:
+            same.keys.append(key)
+    if len(axes) == 1:
+        return CommonTime(axes[0].time, trimmed)
+    base = max(axes, key=lambda axis: axis.step)
+    result = {key: trimmed[key] for key in base.keys}
+    notes = []
+    for axis in axes:
+        if axis is base:
+            continue
+        _check_overlap(base, axis)
+        for key in axis.keys:
+            result[key] = _interpolate(
+                base.time, axis, trimmed[key], gap_factor, is_count=key == _COUNTED
+            )
+        notes.append(
+            f"{', '.join(axis.keys)}: {1 / axis.step:.4g} Hz resampled to the "
+            f"{1 / base.step:.4g} Hz of {', '.join(base.keys)} by linear interpolation"
+        )
+    moved = frozenset(key for axis in axes if axis is not base for key in axis.keys)
+    return CommonTime(base.time, {key: result[key] for key in values}, moved, tuple(notes))
+
+
+def _is_same(one: Floats, other: Floats) -> bool:
+    return one is other or np.array_equal(one, other, equal_nan=True)
+
+
+def _check_overlap(base: _Axis, axis: _Axis) -> None:
+    low, high = np.nanmin(axis.time), np.nanmax(axis.time)
+    if np.count_nonzero((base.time >= low) & (base.time <= high)) < 2:
+        raise DataError(
+            "the log has two time bases",
+            found=f"{', '.join(base.keys)} from {np.nanmin(base.time):g} to "
+            f"{np.nanmax(base.time):g} s, {', '.join(axis.keys)} from {low:g} to {high:g} s",
+            needed="time stamps that count from the same moment",
+        )
+
+
+def _interpolate(
+    time: Floats, axis: _Axis, series: Floats, gap_factor: float, *, is_count: bool
+) -> Floats:
+    ahead = np.concatenate([[True], axis.time[1:] > np.fmax.accumulate(axis.time)[:-1]])
+    ahead &= np.isfinite(axis.time)
+    stamps, series = axis.time[ahead], series[ahead]
+    after = np.clip(np.searchsorted(stamps, time), 1, max(stamps.size - 1, 1))
+    if is_count:
+        place = np.clip(np.searchsorted(stamps, time, side="right") - 1, 0, stamps.size - 1)
+        result = series[place]
+    else:
+        result = np.interp(time, stamps, series)
+    in_gap = (stamps[after] - stamps[after - 1] > gap_factor * axis.step) & (
+        (time > stamps[after - 1]) & (time < stamps[after])
+    )
+    outside = ~((time >= stamps[0]) & (time <= stamps[-1]))
+    return np.where(in_gap | outside, np.nan, result)
+
+
+_USED = ("crosshead_position", "tension", "strain", "cycle_counter")
+
+_RESTART_SAMPLES = 3
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One file of a record.
+
+    Parameters
+    ----------
+    log : RawLog
+        As it was read.
+    layout : Layout
+        What it looked like.
+    time : ndarray, shape (n_samples,)
+        Elapsed time as logged. [s]
+    values : dict of str to ndarray, shape (n_samples,)
+        By channel key, in the file's unit.
+    scale : dict of str to (float, float)
+        Factor and shift that bring each channel to SI, sign and zero applied.
+    resampled : frozenset of str
+        Channels that were interpolated.
+    notes : tuple of str
+        What the reader of the product has to know.
+    """
+
+    log: RawLog
+    layout: Layout
+    time: Floats
+    values: dict[str, Floats]
+    scale: dict[str, tuple[float, float]]
+    resampled: frozenset[str]
+    notes: tuple[str, ...]
+
+    def channel(self, key: str) -> Channel:
+        """Declaration of a channel; ``tension`` alone is ``tension.1``."""
+        return self.layout.channels[_declared(self.layout, key)]
+
+    def place_of(self, sample: int, channel: str) -> dict[str, str | int]:
+        """File, row and channel of a sample, as the facts of an error; none without rows."""
+        if self.log.first_row == 0 or self.resampled:
+            return {}
+        row = self.log.first_row + sample if self.log.row is None else int(self.log.row[sample])
+        return {"file": self.log.source.name, "row": row, "channel": channel}
+
+    def row_of(self, sample: int) -> str:
+        """Where a sample stands in its file, in words."""
+        place = self.place_of(sample, "")
+        what = f"row {place['row']}" if place else f"sample {sample + 1}"
+        return f"{what} of {self.log.source.name}"
+
+
+def to_piece(log: RawLog, layout: Layout, *, gap_factor: float) -> Piece:
+    """Bring a log to one time axis.
+
+    Parameters
+    ----------
+    log : RawLog
+        As it was read.
+    layout : Layout
+        What it looked like.
+    gap_factor : float
+        As in `reduction.record.settings.QualitySettings`. [1]
+
+    Returns
+    -------
+    piece : Piece
+        Channels that a record holds; others are named in the notes.
+
+    Raises
+    ------
+    DataError
+        If channels have no time or two time bases, or time starts again.
+    """
+    values, scale, unused = {}, {}, []
+    for name, channel in layout.channels.items():
+        kind = name.split(".")[0]
+        key = f"{kind}.1" if name in ("tension", "strain") else name
+        if kind in _USED:
+            values[key] = log.columns[name]
+            scale[key] = _scale(channel, layout.dimension(name))
+        elif name != "time":
+            unused.append(name)
+    own = {
+        key: _seconds(log.columns[f"{name}.time"], layout.channels[name].time_unit)
+        for key, name in ((key, _declared(layout, key)) for key in values)
+        if f"{name}.time" in log.columns
+    }
+    common = on_common_time(_shared_time(log, layout), values, own, gap_factor=gap_factor)
+    notes = [*log.notes, *common.notes]
+    if unused:
+        notes.append(f"read, but not part of a record: {', '.join(unused)}")
+    piece = Piece(log, layout, common.time, common.values, scale, common.resampled, tuple(notes))
+    _check_restart(piece)
+    return piece
+
+
+def _declared(layout: Layout, key: str) -> str:
+    return key if key in layout.channels else key.split(".")[0]
+
+
+def _scale(channel: Channel, dimension: Dimension) -> tuple[float, float]:
+    """Factor and shift to SI: the zero is taken off first, then the sign is applied."""
+    factor, offset = scale_to_si(channel.unit, dimension)
+    zero = 0.0 if channel.zero is None else parse_quantity(channel.zero, dimension)
+    shift = channel.sign * (offset - zero)
+    if channel.datum == "displacement" and channel.reference_length is not None:
+        shift += parse_quantity(channel.reference_length, "length")
+    return channel.sign * factor * channel.factor, shift
+
+
+def _seconds(values: Floats, unit: str, ticks: float = 1.0) -> Floats:
+    factor = ticks * (1.0 if unit == CLOCK else scale_to_si(unit, "time")[0])
+    if factor == 1:
+        return values
+    seconds = empty_like(values)
+    for part in sample_blocks(values.size, values, seconds):
+        np.multiply(values[part], factor, out=seconds[part])
+    return seconds
+
+
+def _shared_time(log: RawLog, layout: Layout) -> Floats | None:
+    if "time" in layout.channels:
+        channel = layout.channels["time"]
+        return _seconds(log.columns["time"], channel.unit, channel.factor)
+    if layout.sample_interval is None:
+        return None
+    step = parse_quantity(layout.sample_interval, "time")
+    if step <= 0:
+        raise SettingsError(
+            "sample_interval is not positive", found=layout.sample_interval, needed="above zero"
+        )
+    beside = next(iter(log.columns.values()), np.empty(0))
+    time = empty_like(beside, shape=log.n_rows_read)
+    for part in sample_blocks(time.size, time):
+        time[part] = step * np.arange(part.start, part.stop)
+    return time
+
+
+def _check_restart(piece: Piece) -> None:
+    """Refuse a log in which time starts again: a slip of the clock is short or small."""
+    time, low, high = piece.time, np.inf, -np.inf
+    for part in sample_blocks(time.size, time, overlap=1):
+        block = time[part]
+        falls = np.flatnonzero(np.diff(block) < 0)
+        if falls.size:  # of all samples so far: a clock may slip at every hundredth
+            first = np.fmin(np.fmin.accumulate(block)[falls], low)
+            top = np.fmax(np.fmax.accumulate(block)[falls], high)
+            is_far = top - block[falls + 1] > (top - first) / 2
+            for last, reached in zip(part.start + falls[is_far], top[is_far], strict=True):
+                _check_slip(piece, int(last), reached)
+        low, high = np.fmin.reduce(block, initial=low), np.fmax.reduce(block, initial=high)
+
+
+def _check_slip(piece: Piece, last: int, top: float) -> None:
+    """Refuse a fall of time after which it goes on for some samples, below where it was."""
+    time = piece.time
+    after = time[last + 1 : last + 2 + _RESTART_SAMPLES]
+    if after.size <= _RESTART_SAMPLES or after[-1] >= top or not np.all(np.diff(after) > 0):
+        return
+    place = piece.place_of(last + 1, "time")
+    raise DataError(
+        "the log has two time bases: time starts again",
+        found=f"{after[0]:g} s after {time[last]:g} s"
+        + ("" if place else f" at {piece.row_of(last + 1)}"),
+        needed="one time that goes on",
+        hint="Split the log, and give each part a test of its own.",
+        **place,
+    )
+
+
+_WORKERS = 4
+
+_NO_COUNT = -1
+
+_DATUM_SHARE = 0.05
+
+_ABSURD = 1e9  # m, N or 1: no machine is as long or as strong
+
+_ABSURD_TIME = 1e12  # s: 30,000 years, and beyond it a float is no clock
+
+
+def to_record(
+    logs: Sequence[tuple[RawLog, Layout]],
+    *,
+    test_id: str,
+    specimens: Sequence[str],
+    quality: QualitySettings,
+    length_needed: bool = True,
+) -> Record:
+    """Convert the log or logs of a test; several are a record in pieces, in order.
+
+    Parameters
+    ----------
+    logs : sequence of (RawLog, Layout)
+        In order of time.
+    test_id : str
+        Key of the test.
+    specimens : sequence of str
+        Names; ``tension.1`` belongs to the first.
+    quality : QualitySettings
+        When a sample is flagged.
+    length_needed : bool
+        Whether position has to be a thimble-to-thimble length.  False where strain
+        comes from an extensometer or a gauge length, or where cycles alone are wanted:
+        a displacement without a reference length is then kept as a displacement.
+
+    Returns
+    -------
+    record : Record
+        In SI, flags set, every row kept.
+
+    Raises
+    ------
+    SettingsError
+        If the layouts do not fit the test, or a displacement is used as a length.
+    DataError
+        If the logs have two time bases, or a channel holds no number.
+    """
+    if not logs:
+        raise SettingsError(f"test '{test_id}' has no file", needed="one or more logs")
+    n_strain = [_check_channels(layout, test_id, len(specimens)) for _, layout in logs]
+    position_is_length = _check_datum([layout for _, layout in logs], test_id, length_needed)
+    pieces = [to_piece(log, layout, gap_factor=quality.gap_factor) for log, layout in logs]
+    _check_order(pieces)
+    n_samples = sum(piece.time.size for piece in pieces)
+    beside, rows = pieces[0].time, (len(specimens), n_samples)
+    position = empty_like(beside, shape=n_samples)
+    tension = empty_like(beside, shape=rows)
+    strain = empty_like(beside, shape=rows) if any(n_strain) else None
+    targets = [("crosshead_position", position)]
+    targets += [(f"tension.{number}", row) for number, row in enumerate(tension, 1)]
+    if strain is not None:
+        targets += [(f"strain.{number}", row) for number, row in enumerate(strain, 1)]
+    with ThreadPoolExecutor(_WORKERS) as workers:  # fresh memory is slow to touch
+        list(workers.map(lambda target: _fill(target[1], pieces, target[0]), targets))
+    counter, counter_notes = _counter(pieces, n_samples)
+    for piece in pieces:
+        _check_clock(piece)
+    times = [piece.time for piece in pieces]
+    record = Record(
+        test_id=test_id,
+        specimens=tuple(specimens),
+        time=join_columns(times),
+        crosshead_position=position,
+        tension=tension,
+        quality_flag=zeros_like(tension, dtype=np.uint16),
+        crosshead_position_quality_flag=zeros_like(position, dtype=np.uint16),
+        measured_strain=strain,
+        cycle_counter=counter,
+        position_is_length=position_is_length,
+        n_rows_read=sum(log.n_rows_read for log, _ in logs),
+        tension_standard_uncertainty=tuple(
+            _uncertainty(pieces, f"tension.{number}", "force")
+            for number in range(1, len(specimens) + 1)
+        ),
+        position_standard_uncertainty=_uncertainty(pieces, "crosshead_position", "length"),
+        metadata=_metadata(pieces),
+        notes=(*_piece_notes(pieces), *counter_notes),
+    )
+    return flag_record(
+        record,
+        settings=quality,
+        resampled=sorted(frozenset().union(*(piece.resampled for piece in pieces))),
+        verified=_verified(pieces, len(specimens)),
+        notes=_datum_notes(record, pieces[0]),
+    )
+
+
+def _check_channels(layout: Layout, test_id: str, n_specimens: int) -> int:
+    """Channels for every specimen; returns how many strain channels there are."""
+    if "crosshead_position" not in layout.channels:
+        raise SettingsError(
+            f"test '{test_id}': its layout has no crosshead_position channel",
+            found=", ".join(layout.channels),
+            needed="crosshead_position",
+        )
+    counts = {}
+    for kind in ("tension", "strain"):
+        there = [name for name in layout.channels if name.split(".")[0] == kind]
+        wanted = [[f"{kind}.{number}" for number in range(1, len(there) + 1)], [kind]]
+        if there and sorted(there) not in [sorted(names) for names in wanted]:
+            raise SettingsError(
+                f"test '{test_id}': the {kind} channels of its layout are not numbered from 1",
+                found=", ".join(there),
+                needed=", ".join(wanted[0]),
+            )
+        counts[kind] = len(there)
+    if counts["tension"] != n_specimens or counts["strain"] not in (0, n_specimens):
+        kind = "tension" if counts["tension"] != n_specimens else "strain"
+        raise SettingsError(
+            f"test '{test_id}': its layout has {counts[kind]} {kind} channels "
+            f"for {n_specimens} specimens",
+            found=", ".join(name for name in layout.channels if name.startswith(kind)) or "none",
+            needed=", ".join(f"{kind}.{number}" for number in range(1, n_specimens + 1)),
+        )
+    return counts["strain"]
+
+
+def _check_datum(layouts: Sequence[Layout], test_id: str, length_needed: bool) -> bool:
+    """Whether position is a length in every layout."""
+    is_length = set()
+    for layout in layouts:
+        channel = layout.channels["crosshead_position"]
+        is_length.add(channel.datum == "pin-to-pin" or channel.reference_length is not None)
+    if (length_needed and False in is_length) or len(is_length) > 1:
+        raise SettingsError(
+            f"test '{test_id}': a displacement is used as a length",
+            found='crosshead_position with datum = "displacement" and no reference_length',
+            needed="reference_length, the thimble-to-thimble length at displacement zero",
+            hint="Measure it at slack, or at a reference_tension that is stated too.",
+        )
+    return is_length == {True}
+
+
+def _check_order(pieces: Sequence[Piece]) -> None:
+    """Time goes on from piece to piece; strain and counter are in all pieces or in none."""
+    for before, after in pairwise(pieces):
+        end, start = finite_extremes(before.time)[1], finite_extremes(after.time)[0]
+        if start <= end:
+            raise DataError(
+                "the pieces of a record have two time bases",
+                found=f"{after.log.source.name} from {start:g} s, "
+                f"{before.log.source.name} to {end:g} s",
+                needed="pieces in order, whose time goes on",
+                hint="Give pieces that each count from zero tests of their own.",
+            )
+        if set(before.values) != set(after.values):
+            raise SettingsError(
+                "the pieces of a record have different channels",
+                found=f"{', '.join(before.values)} in {before.log.source.name}, "
+                f"{', '.join(after.values)} in {after.log.source.name}",
+                needed="the same channels in all pieces",
+            )
+
+
+def _fill(target: Floats, pieces: Sequence[Piece], key: str) -> None:
+    """Write a channel of all pieces, in SI, one after another."""
+    start = 0
+    for piece in pieces:
+        part = target[start : start + piece.time.size]
+        factor, shift = piece.scale[key]
+        values = piece.values[key]
+        is_absurd = False
+        for block in sample_blocks(part.size, values, target):
+            np.multiply(values[block], factor, out=part[block])
+            if shift:
+                part[block] += shift
+            low, high = part[block].min(), part[block].max()
+            is_absurd |= not (low >= -_ABSURD and high <= _ABSURD)  # so is a NaN, at first
+        if is_absurd:
+            _check_size(part, piece, key)
+        start += piece.time.size
+
+
+def _check_size(part: Floats, piece: Piece, key: str) -> None:
+    """Refuse numbers that no machine can have measured."""
+    absurd = np.concatenate(
+        [
+            block.start + np.flatnonzero(np.abs(part[block]) > _ABSURD)
+            for block in sample_blocks(part.size, part)
+        ]
+    )
+    if absurd.size:
+        raise DataError(
+            f"{key} has {absurd.size} values that nothing measures, "
+            f"first at {piece.row_of(int(absurd[0]))}",
+            found=f"{part[absurd[0]]:g} in SI",
+            needed=f"at most {_ABSURD:g}",
+            hint="Check the unit and the column; a value that stands for none belongs to missing.",
+        )
+
+
+def _check_clock(piece: Piece) -> None:
+    """Refuse times that no clock can have shown."""
+    low, high = finite_extremes(piece.time)
+    if low < -_ABSURD_TIME or high > _ABSURD_TIME:
+        value = low if low < -_ABSURD_TIME else high
+        raise DataError(
+            f"the time of {piece.log.source.name} has values that no clock shows",
+            found=f"{value:g} s",
+            needed=f"at most {_ABSURD_TIME:g} s",
+            hint="Check the unit and the column of the time channel.",
+        )
+
+
+def _counter(pieces: Sequence[Piece], n_samples: int) -> tuple[Integers | None, tuple[str, ...]]:
+    """The machine's own count as whole numbers, -1 where it is missing."""
+    key = "cycle_counter"
+    if key not in pieces[0].values:
+        return None, ()
+    count = empty_like(pieces[0].time, shape=n_samples)
+    _fill(count, pieces, key)
+    whole, n_missing = empty_like(count, dtype=np.int64), 0
+    for part in sample_blocks(n_samples, count, whole):
+        block = count[part]
+        missing = np.isnan(block)
+        n_missing += int(np.count_nonzero(missing))
+        numbers = np.where(missing, _NO_COUNT, block)
+        whole[part] = numbers
+        odd = np.flatnonzero(whole[part] != numbers)
+        if odd.size:
+            raise DataError(
+                "the cycle counter is not a whole number, first at sample "
+                f"{part.start + int(odd[0]) + 1}",
+                found=f"{block[odd[0]]:g}",
+                needed="whole numbers",
+            )
+    if n_missing:
+        return whole, (f"the cycle counter is missing on {n_missing} rows, -1 there",)
+    return whole, ()
+
+
+def _uncertainty(pieces: Sequence[Piece], key: str, dimension: Dimension) -> float:
+    """Largest declared standard uncertainty; NaN where a piece declares none."""
+    texts = [piece.channel(key).standard_uncertainty for piece in pieces]
+    return max(
+        (np.nan if text is None else parse_quantity(text, dimension) for text in texts),
+        key=lambda value: np.inf if np.isnan(value) else value,
+    )
+
+
+def _metadata(pieces: Sequence[Piece]) -> dict[str, str]:
+    metadata: dict[str, str] = {}
+    for piece in pieces:
+        for key, value in piece.log.metadata.items():
+            same = metadata.get(key, value) == value
+            metadata[key if same else f"{key} ({piece.log.source.name})"] = value
+    return metadata
+
+
+def _piece_notes(pieces: Sequence[Piece]) -> list[str]:
+    if len(pieces) == 1:
+        return list(pieces[0].notes)
+    joined = " and ".join(piece.log.source.name for piece in pieces)
+    named = [f"{piece.log.source.name}: {note}" for piece in pieces for note in piece.notes]
+    return [f"one record of {len(pieces)} pieces: {joined}", *named]
+
+
+def _verified(
+    pieces: Sequence[Piece], n_specimens: int
+) -> dict[tuple[int, int, int], tuple[float, float]]:
+    """Verified range of each load cell by specimen, first row and row after the last. [N]."""
+    verified = {}
+    start = 0
+    for piece in pieces:
+        stop = start + int(piece.time.size)
+        for index in range(n_specimens):
+            limits = piece.channel(f"tension.{index + 1}").verified_range
+            if limits is not None:
+                low, high = (parse_quantity(limit, "force") for limit in limits)
+                verified[index, start, stop] = (low, high)
+        start = stop
+    return verified
+
+
+def _datum_notes(record: Record, piece: Piece) -> tuple[str, ...]:
+    """Compare the tension at displacement zero with that at which the length was read."""
+    channel = piece.channel("crosshead_position")
+    if channel.datum != "displacement" or channel.reference_length is None:
+        return ()
+    zero = parse_quantity(channel.reference_length, "length")
+    stated = parse_quantity(channel.reference_tension or "0 N", "force")
+    position = record.crosshead_position
+    before = None
+    for part in sample_blocks(position.size, position, overlap=1):
+        away = position[part] - zero
+        crossing = np.flatnonzero(away[:-1] * away[1:] <= 0)
+        if crossing.size:
+            before = part.start + int(crossing[0])
+            break
+    if before is None:
+        return ()
+    after = before + 1
+    span = position[before] - position[after]
+    weight = (position[before] - zero) / span if span else 0.0
+    notes = []
+    for name, load in zip(record.specimens, record.tension, strict=True):
+        found = float(load[before] + weight * (load[after] - load[before]))
+        low, high = finite_extremes(load)
+        if abs(found - stated) > _DATUM_SHARE * (high - low):
+            notes.append(
+                f"reference_length is stated at {stated:.4g} N, but where displacement is first "
+                f"zero the tension of {name} is {found:.4g} N"
+            )
+    return tuple(notes)

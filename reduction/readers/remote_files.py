@@ -1,0 +1,285 @@
+"""Logs at addresses: copied to this machine before they are read.
+
+How often a store is asked again after a fault is left to the package that speaks to it.  What it
+raises may hold a password or a signature, and is told in words that do not.
+"""
+
+from __future__ import annotations
+
+import errno
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from importlib import import_module
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from reduction.record.errors import ArchiveError, LogError, ReductionError, SettingsError
+from reduction.record.plain_text import is_address, secrets_of, shown_address, without_secrets
+
+PACKAGES = {
+    "s3": "s3fs", "gs": "gcsfs", "gcs": "gcsfs", "abfs": "adlfs", "az": "adlfs",
+    "http": "aiohttp", "https": "aiohttp", "sftp": "paramiko",
+}  # fmt: skip
+
+"""Beginnings of addresses that are fetched, and the package that speaks to each."""
+
+Fault = Callable[..., ReductionError]
+
+"""An error of a place and a problem: `LogError`, or `product_fault`."""
+
+# what tells two states of a file apart, as far as a file system says it; the surest first
+_MARKS = (
+    "ETag", "etag", "generation", "md5Hash", "content_md5", "LastModified", "last_modified",
+    "Last-Modified", "mtime", "modified", "updated", "created",
+)  # fmt: skip
+
+_FULL = (errno.ENOSPC, errno.EDQUOT)
+
+# words in the names of errors, of which each package has its own
+_CLOSED = ("Credential", "Forbidden", "AccessDenied", "Unauthorized", "Authentication")
+
+_CUT_OFF = ("Connect", "Timeout", "Endpoint", "gaierror", "DNS")
+
+_LONGEST = 200
+
+
+def product_fault(place: str, problem: str, **parts: str | None) -> ArchiveError:
+    """An error of a product, its place in front."""
+    return ArchiveError(f"{place}: {problem}", **parts)  # type: ignore[arg-type]  # no facts
+
+
+def allowed(text: str, allow_remote: bool, *, what: str) -> bool:
+    """Whether a text is an address; one that may not be fetched is refused.
+
+    Parameters
+    ----------
+    text : str
+        As it was written.
+    allow_remote : bool
+        Whether the user said so.
+    what : str
+        What is to be found there, for the message.
+
+    Returns
+    -------
+    is_remote : bool
+        False of a file of this machine.
+
+    Raises
+    ------
+    SettingsError
+        If it is an address and addresses are not allowed, or one of another kind.
+    """
+    if not is_address(text):
+        return False
+    shown = repr(shown_address(text))
+    if not allow_remote:
+        raise SettingsError(
+            f"{what} is an address on the net, and none is fetched unasked", found=shown,
+            needed="--allow-remote (in Python allow_remote=True), or a file on this machine",
+            hint="Allow it where you know who wrote the campaign.",
+        )  # fmt: skip
+    # one that is chained, or leads to this machine, is none of these
+    if text.partition("://")[0].lower() not in PACKAGES or "::" in text or not text.isprintable():
+        raise SettingsError(
+            f"{what} is no address that can be used", found=shown,
+            needed=f"one address that begins with {', '.join(f'{one}://' for one in PACKAGES)}; "
+            "a file on this machine by its path",
+        )  # fmt: skip
+    return True
+
+
+def base_name(address: str) -> str:
+    """Name of the file that an address ends with; empty where that is no name."""
+    name = shown_address(address).rstrip("/").rpartition("/")[2]
+    return "" if name in (".", "..") else name
+
+
+def fetch(address: str, target: Path, *, fault: Fault = LogError) -> None:
+    """Copy a file from the net.
+
+    Parameters
+    ----------
+    address : str
+        As `allowed` lets it pass.
+    target : pathlib.Path
+        The copy; its folder is made. Nothing stands there where the copy is not whole.
+    fault : callable
+        Makes the error.
+
+    Raises
+    ------
+    ReductionError
+        From ``fault``, if the file is not there, may not be read, breaks off or changes meanwhile.
+    SettingsError
+        If no package speaks to such an address.
+    """
+    system, path = _file_system(address)
+    shown = shown_address(address)
+    told: ReductionError | None = None
+    try:
+        before = _state(system, path)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        system.get_file(path, str(target))
+        size, after = target.stat().st_size, _state(system, path)
+        if after != before:
+            told = fault(
+                shown, "the file changed while it was read",
+                found=f"{_in_words(before)}, then {_in_words(after)}",
+                needed="a file that nothing writes to",
+                hint="Wait until the logger or the copy has ended.",
+            )  # fmt: skip
+        elif before[0] not in (None, size):
+            told = fault(
+                shown, "the transfer broke off", found=f"{size} bytes",
+                needed=f"{before[0]} bytes", hint="Run again.",
+            )  # fmt: skip
+    except Exception as error:
+        told = _fault_of(error, address, fault)
+    if told is not None:
+        with suppress(OSError):  # a name that no disk can have
+            target.unlink()
+        raise told  # out here it has no cause and no context
+
+
+def _file_system(address: str) -> tuple[Any, str]:
+    """File system and path behind an address."""
+    protocol, _, rest = address.partition("://")
+    protocol = protocol.lower()
+    try:
+        system, path = import_module("fsspec").url_to_fs(f"{protocol}://{rest}")
+    except ImportError as error:
+        package = "fsspec" if error.name == "fsspec" else PACKAGES[protocol]
+        raise SettingsError(
+            f"addresses that begin with {protocol}:// need a package that is not installed",
+            found=shown_address(address), needed=package,
+            hint=f'Install it: pip install "mooring-reduction[remote]" {PACKAGES[protocol]}.',
+        ) from None  # fmt: skip
+    except (TypeError, ValueError) as error:
+        # settings of the user's package: what it says may hold a key
+        raise SettingsError(
+            f"addresses that begin with {protocol}:// cannot be used",
+            found=f"{shown_address(address)}, {type(error).__name__}",
+            needed="the settings that fsspec has for them",
+        ) from None
+    return system, path
+
+
+def _state(system: Any, path: str) -> tuple[int | None, str]:
+    """Size, where it is said, and a mark that changes with the file."""
+    system.invalidate_cache()
+    about = system.info(path)
+    if about.get("type") == "directory":
+        raise IsADirectoryError
+    mark = next((about[name] for name in _MARKS if about.get(name) is not None), "")
+    size = about.get("size")
+    return None if size is None else int(size), str(mark)
+
+
+def _in_words(state: tuple[int | None, str]) -> str:
+    size, mark = state
+    words = "an unknown size" if size is None else f"{size} bytes"
+    return f"{words} ({mark})" if mark else words
+
+
+def _fault_of(error: Exception, address: str, fault: Fault) -> ReductionError:
+    """The error of a package as one of this program, not raised yet."""
+    chain = list(_chain(error))
+    # a package may call every answer but the right one a file that is not there
+    statuses = {_status(one): one for one in chain if _status(one) is not None}
+    status, speaker = next(iter(statuses.items()), (None, error))
+    said = without_secrets(" ".join(str(speaker).split()))
+    for secret in secrets_of(address):
+        said = said.replace(secret, "...")
+    found: str | None = f"{type(speaker).__name__}: {said[:_LONGEST]}".rstrip(": ")
+    names = [type(one).__name__ for one in chain]
+    needed: str | None = None
+    hint: str | None = None
+    if any(isinstance(one, OSError) and one.errno in _FULL for one in chain):
+        problem = "there is no room on this machine for a copy"
+        hint = "Free some space, or name another folder in the variable TMPDIR."
+    elif status in (401, 403) or _is_any(chain, PermissionError) or _has_word(names, _CLOSED):
+        problem = "there is no permission: it cannot be read"
+        needed = "credentials as the package of this kind of address takes them"
+    elif isinstance(error, IsADirectoryError):
+        problem, found, needed = "it is a folder", None, "the address of a file"
+    elif _is_any(chain, ConnectionError, TimeoutError) or _has_word(names, _CUT_OFF):
+        problem = "its host cannot be reached, or the transfer broke off"
+    elif status == 404 or (status is None and isinstance(error, FileNotFoundError)):
+        problem, found, needed = "there is no such file", None, "the address of a file"
+    else:
+        problem = "it cannot be read"
+    return fault(shown_address(address), problem, found=found, needed=needed, hint=hint)
+
+
+def _chain(error: BaseException) -> Iterator[BaseException]:
+    """An error and what caused it, from the one that was raised last."""
+    seen: list[BaseException] = []
+    following: BaseException | None = error
+    while following is not None and following not in seen:
+        yield following
+        seen.append(following)
+        following = following.__cause__ or following.__context__
+
+
+def _status(error: BaseException) -> int | None:
+    """Status of HTTP, under the names that packages give it."""
+    for name in ("status", "status_code", "code"):
+        value = getattr(error, name, None)
+        if isinstance(value, int):
+            return value
+    return None
+
+
+def _is_any(chain: list[BaseException], *kinds: type[BaseException]) -> bool:
+    return any(isinstance(one, kinds) for one in chain)
+
+
+def _has_word(names: list[str], words: tuple[str, ...]) -> bool:
+    return any(word in name for name in names for word in words)
+
+
+@contextmanager
+def scratch_folder() -> Iterator[Path]:
+    """Make a folder for copies, as ``TMPDIR`` says; it is taken away at the end."""
+    with TemporaryDirectory(prefix="reduction-", ignore_cleanup_errors=True) as name:
+        yield Path(name).resolve()
+
+
+def in_words(text: str, names: Mapping[str, str]) -> str:
+    """A text with addresses instead of the paths of their copies.
+
+    Parameters
+    ----------
+    text : str
+        A message.
+    names : mapping of str to str
+        What may be shown of an address, by the path of its copy.
+
+    Returns
+    -------
+    text : str
+        The same where it names no copy.
+
+    Examples
+    --------
+    >>> in_words("copies/0/T-1.csv:5 [time]: a gap", {"copies/0/T-1.csv": "s3://bucket/T-1.csv"})
+    's3://bucket/T-1.csv:5 [time]: a gap'
+    """
+    for path in sorted(names, key=len, reverse=True):
+        text = text.replace(path, names[path])
+    return text
+
+
+@contextmanager
+def renamed(names: Mapping[str, str]) -> Iterator[None]:
+    """Let errors from the ``with`` block name addresses instead of the paths of their copies."""
+    try:
+        yield
+    except ReductionError as error:
+        for part in ("problem", "found", "needed", "hint", "path"):
+            value = getattr(error, part, None)
+            if value is not None:
+                setattr(error, part, in_words(str(value), names))
+        raise

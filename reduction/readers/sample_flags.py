@@ -1,0 +1,991 @@
+"""Quality flags of samples: missing, stuck, saturated, spikes, gaps."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.record.arrays import run_blocks
+from reduction.record.errors import DataError
+from reduction.record.measurement import Bools, Floats, Integers, Quality, Record
+from reduction.record.samples import (
+    BLOCK,
+    any_sample,
+    copied,
+    count_samples,
+    finite_extremes,
+    first_sample,
+    interval_labels,
+    over_intervals,
+    sample_blocks,
+    take_samples,
+    zeros_like,
+)
+from reduction.record.settings import QualitySettings
+
+LONGEST = 10  # samples of an excursion
+
+_NEIGHBOURS = 4  # steps on each side that tell the course
+
+_JUMP_TO_STEPS = 5.0
+
+_OFF_COURSE = 0.5  # of the jump, at least, at every sample between
+
+_RETURN = 0.1  # of the jump: how near to its course the channel comes back
+
+_SMALL_JUMP = 0.2  # of the largest nearby: the start of a ramp beside an excursion
+
+_MOST_IN_A_ROW = 3  # more that follow each other closely are a signal
+
+_SIGNAL_SHARE = 0.1  # of a series in excursions: they are its signal
+
+
+def usual_step(values: Floats, first: Integers, last: Integers) -> Floats:
+    """Third largest of the eight steps before the first and after the last step of a place.
+
+    Another spike nearby makes two large steps, which are passed over.
+    """
+    around = np.arange(1, _NEIGHBOURS + 1)
+    left = np.concatenate([first[:, np.newaxis] - around, last[:, np.newaxis] + around], axis=1)
+    is_inside = (left >= 0) & (left < values.size - 1)
+    left = np.where(is_inside, left, 0)
+    change = np.abs(take_samples(values, left + 1) - take_samples(values, left))
+    steps = np.where(is_inside, change, 0.0)
+    usual: Floats = np.sort(np.nan_to_num(steps), axis=1)[:, -3]
+    return usual
+
+
+def find_excursions(values: Floats, jumps: Integers, *, limit: float) -> Integers:
+    """Samples between a jump off the course of a series and the jump back to it.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        A channel. [any]
+    jumps : ndarray of int, shape (n_jumps,)
+        Steps that may be jumps, in order, each by the sample before it. [1]
+    limit : float
+        Smallest jump. [as values]
+
+    Returns
+    -------
+    off : ndarray of int, shape (n_off,)
+        Samples of excursions of two to ten samples, whose jumps have opposite signs and are five
+        times the usual step nearby.  Every sample between is off the line across by half
+        the jump, and the channel comes back to its course, extrapolated from before and
+        after, a turn within allowed for, within a tenth of the jump.
+
+    Notes
+    -----
+    Levels that change there and back again and again are a signal: more than three
+    excursions with ten samples or fewer between them are none, nor are two or three of which
+    one is longer than what is between them, nor any where together they make more than a
+    tenth of the series.
+    """
+    none = np.empty(0, dtype=np.intp)
+    size = take_samples(values, jumps + 1) - take_samples(values, jumps)
+    is_jump = np.abs(size) > np.fmax(limit, _JUMP_TO_STEPS * usual_step(values, jumps, jumps))
+    jumps, size = jumps[is_jump], np.abs(size[is_jump])
+    if not jumps.size:
+        return none
+    row_start, n_jumps = _rows(jumps)
+    largest = np.repeat(np.maximum.reduceat(size, row_start), n_jumps)
+    out, back = _pairs(jumps[size > _SMALL_JUMP * largest])
+    returns = _returns(values, out, back, limit)
+    off = np.unique(_between(out[returns], back[returns]))
+    return none if off.size > _SIGNAL_SHARE * values.size else off
+
+
+def _rows(jumps: Integers) -> tuple[Integers, Integers]:
+    """First jump and number of jumps of each row of jumps that are close to each other."""
+    row_start = np.flatnonzero(np.diff(jumps, prepend=-np.inf) > LONGEST)
+    return row_start, np.diff(row_start, append=jumps.size)
+
+
+def _pairs(jumps: Integers) -> tuple[Integers, Integers]:
+    """Jumps out and back, in turn, of each short row of jumps that are close to each other."""
+    row_start, n_jumps = _rows(jumps)
+    even = (n_jumps % 2 == 0) & (n_jumps <= 2 * _MOST_IN_A_ROW)
+    place = np.arange(jumps.size) - np.repeat(row_start, n_jumps)
+    in_even = np.repeat(even, n_jumps)
+    out, back = jumps[in_even & (place % 2 == 0)], jumps[in_even & (place % 2 == 1)]
+    if not out.size:
+        return out, back
+    n_pairs = n_jumps[even] // 2
+    first = np.cumsum(n_pairs) - n_pairs
+    between = np.append(out[1:] - back[:-1], 0).astype(np.float64)
+    between[first + n_pairs - 1] = np.inf
+    is_sparse = np.maximum.reduceat(back - out, first) <= np.minimum.reduceat(between, first)
+    kept = np.repeat(is_sparse, n_pairs)
+    return out[kept], back[kept]
+
+
+def _between(out: Integers, back: Integers) -> Integers:
+    """Samples after each jump out up to the jump back, the last one repeated, ten a row."""
+    rows = out[:, np.newaxis] + np.arange(1, LONGEST + 1)
+    return np.asarray(np.minimum(rows, back[:, np.newaxis]))
+
+
+def _returns(values: Floats, out: Integers, back: Integers, limit: float) -> Bools:
+    """Whether what lies between two jumps is off the course, and the course goes on after it."""
+    n_steps = back + 1 - out
+    before, after = take_samples(values, out), take_samples(values, back + 1)
+    leaves = take_samples(values, out + 1) - before
+    comes = after - take_samples(values, back)
+    size = np.fmin(np.abs(leaves), np.abs(comes))
+    earlier = np.maximum(out - _NEIGHBOURS, 0)
+    later = np.minimum(back + 1 + _NEIGHBOURS, values.size - 1)
+    rise_before = (before - take_samples(values, earlier)) / np.maximum(out - earlier, 1)
+    rise_after = (take_samples(values, later) - after) / np.maximum(later - back - 1, 1)
+    ends = n_steps * np.nan_to_num(np.stack([rise_before, rise_after]))
+    change = after - before
+    missed = np.fmax(np.fmax(ends.min(axis=0) - change, change - ends.max(axis=0)), 0)
+    rows = _between(out, back)
+    line = before[:, np.newaxis] + (rows - out[:, np.newaxis]) * (change / n_steps)[:, np.newaxis]
+    off = np.sign(leaves)[:, np.newaxis] * (take_samples(values, rows) - line)
+    is_large = (n_steps > 2) & (
+        size > np.fmax(limit, _JUMP_TO_STEPS * usual_step(values, out, back))
+    )
+    is_back = (leaves * comes < 0) & (missed <= limit + _RETURN * size)
+    return np.asarray(is_large & is_back & (off > _OFF_COURSE * size[:, np.newaxis]).all(axis=1))
+
+
+_WINDOWS, _WINDOW = 64, 1024
+
+_SPIKE_TO_NEIGHBOURS = 3.0
+
+_MAD_TO_SIGMA = 1.4826
+
+_SECOND_DIFFERENCE = np.sqrt(6.0)  # sd of x[i-1] - 2 x[i] + x[i+1] over that of x
+
+_STEP = np.sqrt(12.0)  # one step of a quantised value over its standard deviation
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Faults of a time axis.
+
+    Parameters
+    ----------
+    step : float
+        Median time step. [s]
+    gap, backward : ndarray of bool, shape (n_samples,)
+        First sample after a gap; samples not later than one before them.
+    n_uneven : int
+        Steps, gaps apart, that differ from the median by more than the tolerance.
+    shortest, longest : float
+        Of the steps that are neither gaps nor backward. [s]
+    """
+
+    step: float
+    gap: Bools
+    backward: Bools
+    n_uneven: int
+    shortest: float
+    longest: float
+
+
+@dataclass(frozen=True)
+class RowAccount:
+    """Every row of a record accounted for.
+
+    Parameters
+    ----------
+    n_read, n_kept : int
+        Rows in the files, rows in the record.
+    n_flagged : dict of str to dict of str to int
+        By channel (``crosshead_position``, ``tension of NAME``) and mask; masks that
+        flag nothing are left out.
+    """
+
+    n_read: int
+    n_kept: int
+    n_flagged: dict[str, dict[str, int]]
+
+
+def account_rows(record: Record) -> RowAccount:
+    """Rows read, kept, and flagged by mask and channel."""
+    channels = {"crosshead_position": record.crosshead_position_quality_flag}
+    for name, flags in zip(record.specimens, record.quality_flag, strict=True):
+        channels[f"tension of {name}"] = flags
+    n_flagged = {}
+    for channel, flags in channels.items():
+        found: Counter[int] = Counter()
+        for part in sample_blocks(flags.size, flags):
+            flagged = flags[part][flags[part] != 0]
+            values, counts = np.unique(flagged, return_counts=True)
+            found.update(dict(zip(values.tolist(), counts.tolist(), strict=True)))
+        of_mask = {
+            mask.name.lower(): sum(count for value, count in found.items() if value & mask)
+            for mask in Quality
+            if mask.name is not None
+        }
+        n_flagged[channel] = {name: count for name, count in of_mask.items() if count}
+    return RowAccount(record.n_rows_read, record.n_samples, n_flagged)
+
+
+def find_missing(values: Floats) -> Bools:
+    """Where a value is NaN, shape (n_samples,)."""
+    missing = zeros_like(values, dtype=bool)
+    for part in sample_blocks(values.size, values, missing):
+        if not np.isfinite(values[part].sum()):
+            np.isnan(values[part], out=missing[part])
+    return missing
+
+
+def find_outside_range(values: Floats, low: float, high: float) -> Bools:
+    """Where a value lies outside the range a load cell is verified for, shape (n_samples,)."""
+    outside = zeros_like(values, dtype=bool)
+    for part in sample_blocks(values.size, values, outside):
+        block = values[part]
+        outside[part] = (block < low) | (block > high)
+    return outside
+
+
+def sampled_windows(values: Floats) -> Floats:
+    """Windows spread evenly over a series, one a row; a short series is one window."""
+    if values.size <= _WINDOWS * _WINDOW:
+        return values[np.newaxis]
+    starts = np.linspace(0, values.size - _WINDOW, _WINDOWS).astype(np.int64)
+    windows: Floats = take_samples(values, starts[:, np.newaxis] + np.arange(_WINDOW))
+    return windows
+
+
+def time_faults(time: Floats, *, gap_factor: float, rate_tolerance: float) -> Timing:
+    """Gaps, backward or repeated time, and steps that differ from the median.
+
+    A gap is a step ``gap_factor`` times as long as the median of the record and of the
+    steps around it, so that a slow part of a log is not a row of gaps.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n_samples,)
+        Elapsed time; NaN where missing. [s]
+    gap_factor : float
+        As in `reduction.record.settings.QualitySettings`. [1]
+    rate_tolerance : float
+        Likewise. [1]
+
+    Returns
+    -------
+    timing : Timing
+        Masks and steps.
+    """
+    n_samples = time.size
+    gap, backward = zeros_like(time, dtype=bool), zeros_like(time, dtype=bool)
+    steps = np.diff(sampled_windows(time), axis=1).ravel()
+    steps = steps[steps > 0]
+    if not steps.size:
+        backward[1:] = True
+        return Timing(np.nan, gap, backward, 0, np.nan, np.nan)
+    step = float(np.median(steps))
+    low, high = (1 - rate_tolerance) * step, (1 + rate_tolerance) * step
+    latest, n_uneven, shortest, longest = -np.inf, 0, np.inf, -np.inf
+    for part in sample_blocks(n_samples, time, gap, backward, overlap=1):
+        piece = time[part]
+        step_here = np.diff(piece)
+        least, most = (step_here.min(), step_here.max()) if step_here.size else (step, step)
+        if low <= least and most <= high and piece[0] >= latest:  # the usual case; False on NaN
+            latest = piece[-1]
+            shortest, longest = min(shortest, least), max(longest, most)
+            continue
+        reached = np.fmax.accumulate(np.concatenate([[latest], piece]))
+        late = piece[1:] <= reached[1:-1]
+        backward[part][1:] = late
+        latest = reached[-1]
+        ahead = piece[1:] - reached[1:-1]  # of all before it: a slip back makes no gap after it
+        long = np.flatnonzero(ahead > gap_factor * step)
+        stands_out = ahead[long] > gap_factor * _usual_time_step(time, long + part.start)
+        gap[1 + part.start + long[stands_out]] = True
+        usual = ahead[(ahead > 0) & ~gap[part][1:]]
+        if usual.size:
+            n_uneven += int(np.count_nonzero((usual < low) | (usual > high)))
+            shortest, longest = min(shortest, usual.min()), max(longest, usual.max())
+    return Timing(step, gap, backward, n_uneven, float(shortest), float(longest))
+
+
+def _usual_time_step(time: Floats, place: Integers) -> Floats:
+    """Median of the steps forward around each step; 0 where there are none."""
+    around = np.concatenate([np.arange(-_NEIGHBOURS, 0), np.arange(1, _NEIGHBOURS + 1)])
+    near = place[:, np.newaxis] + around
+    is_inside = (near >= 0) & (near < time.size - 1)
+    near = np.where(is_inside, near, 0)
+    steps = take_samples(time, near + 1) - take_samples(time, near)
+    steps = np.where(is_inside & (steps > 0), steps, np.nan)
+    usual = np.zeros(place.size)
+    is_known = np.isfinite(steps).any(axis=1)
+    usual[is_known] = np.nanmedian(steps[is_known], axis=1)
+    return usual
+
+
+def noise_of(values: Floats) -> tuple[float, float]:
+    """Standard deviation of a series about its own course, and the step it is printed in.
+
+    From second differences in windows over the series (median absolute deviation), so
+    that ramps, reversals and holds do not count; never below what the step makes.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        A channel. [any]
+
+    Returns
+    -------
+    noise : float
+        Standard deviation of one sample. [as values]
+    step : float
+        Smallest change between neighbours; 0 for a constant series. [as values]
+    """
+    windows = sampled_windows(values)
+    changes = np.abs(np.diff(windows, axis=1))
+    changes = changes[changes > 0]
+    step = float(changes.min()) if changes.size else 0.0
+    second = np.abs(np.diff(windows, n=2, axis=1))
+    second = second[np.isfinite(second)]
+    spread = float(np.median(second)) if second.size else 0.0
+    return max(_MAD_TO_SIGMA * spread / _SECOND_DIFFERENCE, step / _STEP), step
+
+
+def find_spikes(values: Floats, *, noise: float, factor: float) -> Bools:
+    """Samples off the course of their neighbours: single ones, and excursions of up to ten.
+
+    A sample is off by ``factor`` times the noise and by three times the usual step
+    nearby, so that a reversal, the start of a ramp, a step and a rough stretch are none;
+    for excursions of several samples see `reduction.readers.sample_flags`.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        A channel. [any]
+    noise : float
+        From `noise_of`. [as values]
+    factor : float
+        ``spike_factor`` of the settings. [1]
+
+    Returns
+    -------
+    is_spike : ndarray of bool, shape (n_samples,)
+        True at the samples that are off.
+    """
+    is_spike = zeros_like(values, dtype=bool)
+    limit = factor * noise
+    if limit <= 0:
+        return is_spike
+    jumps = []
+    for part in sample_blocks(values.size, values, overlap=3):
+        step = np.diff(values[part])
+        bend = step[1:] - step[:-1]
+        # a jump bends the course at both its ends, against each other; a spike is two jumps
+        product = bend[:-1] * bend[1:]
+        jumps.append(np.flatnonzero(product < -(limit**2)) + 1 + part.start)
+    jump = np.unique(np.concatenate(jumps))
+    if not jump.size:
+        return is_spike
+    place = np.unique(np.concatenate([jump, jump + 1]))
+    before, here, after = (take_samples(values, place + step) for step in (-1, 0, 1))
+    off = np.minimum(np.abs(here - before), np.abs(here - after))
+    opposite = (here - before) * (after - here) < -(limit**2)
+    nearby = np.fmax(np.abs(after - before), usual_step(values, place - 1, place))
+    single = place[opposite & (off > limit) & (off > _SPIKE_TO_NEIGHBOURS * nearby)]
+    is_spike[single] = True
+    of_single = is_spike[jump] | is_spike[jump + 1]
+    is_spike[find_excursions(values, jump[~of_single], limit=limit)] = True
+    return is_spike
+
+
+_STEP_TO_STEPS = 5.0
+
+_SHARE_OF_RANGE = 0.05
+
+_STAYS = 0.5  # of the step, at least, is left of it between the levels on its sides
+
+_OUTER = (0.01, 0.99)
+
+
+def find_lone_steps(
+    values: Floats, beside: Floats, *, noise: float, noise_beside: Floats, factor: float
+) -> Integers:
+    """Steps of a channel that stay, at which no channel beside it steps.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        A channel; NaN where it is flagged. [any]
+    beside : ndarray, shape (n_beside, n_samples)
+        Those that would step with it. [any]
+    noise : float
+        From `reduction.readers.sample_flags.noise_of`. [as values]
+    noise_beside : ndarray, shape (n_beside,)
+        Likewise. [as beside]
+    factor : float
+        ``spike_factor`` of the settings. [1]
+
+    Returns
+    -------
+    step : ndarray of int, shape (n_steps,)
+        The sample before each step, which is larger than ``factor`` times the noise, than five
+        times the usual step nearby and than a twentieth of the range of the channel. [1]
+
+    Examples
+    --------
+    >>> time = np.arange(200.0)
+    >>> tension = np.sin(time / 10) + np.where(time > 120, 3.0, 0.0)
+    >>> position = np.sin(time / 10)[np.newaxis]
+    >>> given = {"noise": 0.01, "noise_beside": np.array([0.01]), "factor": 12.0}
+    >>> find_lone_steps(tension, position, **given)
+    array([120])
+    >>> find_lone_steps(tension, tension[np.newaxis], **given).size
+    0
+    """
+    seen = sampled_windows(values)
+    low, high = np.quantile(seen[np.isfinite(seen)], _OUTER) if np.isfinite(seen).any() else (0, 0)
+    limit = max(factor * noise, _SHARE_OF_RANGE * float(high - low))
+    found = []
+    for part in sample_blocks(values.size, values, overlap=1):
+        some = _candidates(np.abs(np.diff(values[part])), limit) + part.start
+        found.append(some[_stands_out(values, some, limit)])
+    step: Integers = np.concatenate(found)
+    change = take_samples(values, step + 1) - take_samples(values, step)
+    step = step[_level_change(values, step) * np.sign(change) > _STAYS * np.abs(change)]
+    for channel, its_noise in zip(beside, noise_beside, strict=True):
+        step = step[~_stands_out(channel, step, factor * float(its_noise))]
+    return step
+
+
+def _candidates(step: Floats, limit: float) -> Integers:
+    """Steps that are five times the least of three beside them: few, also of coarse samples."""
+    is_large = step > limit
+    if step.size > 3 and is_large.any():
+        # what the third largest of eight is not below; missing neighbours say nothing
+        near = np.fmin(np.fmin(step[:-3], step[1:-2]), step[3:])
+        is_large[2:-1] &= ~(step[2:-1] <= _STEP_TO_STEPS * near)
+    return np.flatnonzero(is_large)
+
+
+def _stands_out(values: Floats, step: Integers, limit: float) -> Bools:
+    change = np.abs(take_samples(values, step + 1) - take_samples(values, step))
+    return np.asarray(change > np.fmax(limit, _STEP_TO_STEPS * usual_step(values, step, step)))
+
+
+def _level_change(values: Floats, step: Integers) -> Floats:
+    """Median of the samples after a step less that of those before it."""
+    after = step[:, np.newaxis] + np.arange(1, _NEIGHBOURS + 1)
+    before = after - _NEIGHBOURS
+    last = values.size - 1
+    levels = [np.nanmedian(take_samples(values, np.clip(rows, 0, last)), axis=1)
+              for rows in (after, before)]  # fmt: skip
+    return np.asarray(levels[0] - levels[1], dtype=np.float64)
+
+
+_EDGES = 1 << 10  # of runs, looked at together: a quantised channel has one for every level
+
+_SATURATED_SAMPLES = 5
+
+_SATURATED_STEPS = 16.0
+
+_MOVING_NOISE = 10.0
+
+_MOVING_SHARE = 1e-3
+
+# places in a run at which position is looked at; uneven, or cycles could hide in between
+_LOOKS = np.sort(np.arange(16) * (np.sqrt(5) - 1) / 2 % 1)
+
+_SLACK_SHARE = 0.02
+
+_JUMP_SHARE = 0.1
+
+_RISE_SHARE = 0.25
+
+_RISE_NOISE = 20.0
+
+
+@dataclass(frozen=True)
+class Runs:
+    """Runs of equal values: first sample and the one after the last, shape (n_runs,) each."""
+
+    start: Integers
+    stop: Integers
+
+    def where(self, keep: Bools) -> Runs:
+        """Some of the runs."""
+        return Runs(self.start[keep], self.stop[keep])
+
+    def mask(self, like: Floats) -> Bools:
+        """True inside the runs, for each sample of a series like that."""
+        return interval_labels(like, self.start, self.stop, np.ones(self.start.size, dtype=bool))
+
+
+def constant_runs(values: Floats, minimum: int) -> Runs:
+    """Runs of at least ``minimum`` equal values.
+
+    A run that long holds a whole block of half that length, and a block can be ruled
+    out by three of its samples.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        A channel. [any]
+    minimum : int
+        Shortest run. [1]
+
+    Returns
+    -------
+    runs : Runs
+        In order.
+    """
+    length = max(minimum // 2, 1)
+    found = [np.empty(0, dtype=np.intp)]
+    step = length * max(BLOCK // length, 1)
+    for part in sample_blocks(values.size // length * length, values, size=step):
+        grid = values[part].reshape(-1, length)
+        equal = np.flatnonzero((grid[:, 0] == grid[:, length // 2]) & (grid[:, 0] == grid[:, -1]))
+        equal = equal[(grid[equal] == grid[equal, :1]).all(axis=1)]
+        found.append(part.start // length + equal)
+    place = np.concatenate(found)
+    if not place.size:
+        return Runs(place, place)
+    level = take_samples(values, place * length)
+    is_first = np.concatenate([[True], (np.diff(place) > 1) | (np.diff(level) != 0)])
+    is_last = np.concatenate([is_first[1:], [True]])
+    start, stop = place[is_first] * length, (place[is_last] + 1) * length
+    start = start - _repeats(values, start, -np.arange(1, length))
+    stop = stop + _repeats(values, stop - 1, np.arange(1, length))
+    runs = Runs(start, stop)
+    return runs.where(stop - start >= minimum)
+
+
+def _repeats(values: Floats, edge: Integers, reach: Integers) -> Integers:
+    """Samples next to each edge, in the order of the reach, that repeat its value."""
+    repeats = np.empty(edge.size, dtype=np.intp)
+    for part in sample_blocks(edge.size, size=_EDGES):
+        beyond = edge[part, np.newaxis] + reach
+        inside = np.clip(beyond, 0, values.size - 1)
+        same = take_samples(values, inside) == take_samples(values, edge[part])[:, np.newaxis]
+        same &= inside == beyond
+        repeats[part] = np.cumprod(same, axis=1).sum(axis=1)
+    return repeats
+
+
+def moves(position: Floats, runs: Runs) -> Bools:
+    """Whether the crosshead moves in each run, shape (n_runs,)."""
+    if not runs.start.size:
+        return np.empty(0, dtype=bool)
+    noise, _ = noise_of(position)
+    low, high = finite_extremes(position)
+    reach = np.fmax(high - position[0], position[0] - low)
+    tolerance = _MOVING_NOISE * noise + _MOVING_SHARE * reach
+    length = (runs.stop - runs.start)[:, np.newaxis]
+    places = runs.start[:, np.newaxis] + (_LOOKS * length).astype(np.int64)
+    looks = take_samples(position, places)
+    travel = np.fmax.reduce(looks, axis=1) - np.fmin.reduce(looks, axis=1)
+    return np.asarray(travel > tolerance)
+
+
+def find_stuck(tension: Floats, position: Floats, *, samples: int) -> Bools:
+    """Where a load channel repeats one value while the crosshead moves.
+
+    Parameters
+    ----------
+    tension : ndarray, shape (n_samples,)
+        Load. [N]
+    position : ndarray, shape (n_samples,)
+        Crosshead position. [m]
+    samples : int
+        ``stuck_samples`` of the settings. [1]
+
+    Returns
+    -------
+    is_stuck : ndarray of bool, shape (n_samples,)
+        A run at the level of a slack specimen counts only where the load jumps to it
+        or from it, as when a cable comes loose.
+    """
+    runs = constant_runs(tension, samples)
+    runs = runs.where(moves(position, runs))
+    if not runs.start.size:
+        return runs.mask(tension)
+    low, high = finite_extremes(tension)
+    level = take_samples(tension, runs.start)
+    into = np.abs(level - take_samples(tension, np.maximum(runs.start - 1, 0)))
+    out = np.abs(level - take_samples(tension, np.minimum(runs.stop, tension.size - 1)))
+    is_slack = (level <= low + _SLACK_SHARE * (high - low)) & (high > low)
+    jumps = np.fmax(into, out) > _JUMP_SHARE * (high - low)
+    return runs.where(~is_slack | jumps).mask(tension)
+
+
+def find_saturated(tension: Floats, position: Floats) -> Bools:
+    """Where a load channel stands at its greatest or least value because it can go no further.
+
+    A quantised peak repeats its greatest value as well.  It is saturated only where the
+    load came, in as many samples before or after, from further than a rounded peak does.
+
+    Parameters
+    ----------
+    tension : ndarray, shape (n_samples,)
+        Load. [N]
+    position : ndarray, shape (n_samples,)
+        Crosshead position. [m]
+
+    Returns
+    -------
+    is_saturated : ndarray of bool, shape (n_samples,)
+        Runs of at least five samples while the crosshead moves.
+    """
+    starts: list[Integers] = [np.empty(0, dtype=np.intp)]
+    stops = list(starts)
+    low, high = finite_extremes(tension)
+    for level in (low, high):
+        if level == low and (low == high or abs(low) <= _SLACK_SHARE * (high - low)):
+            continue  # a slack specimen reads zero, a dead channel is stuck
+        place = np.concatenate(
+            [
+                part.start + np.flatnonzero(tension[part] == level)
+                for part in sample_blocks(tension.size, tension)
+            ]
+        )
+        if place.size < _SATURATED_SAMPLES:
+            continue
+        is_first = np.concatenate([[True], np.diff(place) > 1])
+        is_last = np.concatenate([is_first[1:], [True]])
+        runs = Runs(place[is_first], place[is_last] + 1)
+        length = runs.stop - runs.start
+        runs = runs.where(length >= _SATURATED_SAMPLES)
+        if not runs.start.size:
+            continue
+        runs = runs.where(_comes_from_afar(tension, runs))
+        runs = runs.where(moves(position, runs))
+        starts.append(runs.start)
+        stops.append(runs.stop)
+    return Runs(np.sort(np.concatenate(starts)), np.sort(np.concatenate(stops))).mask(tension)
+
+
+def _comes_from_afar(tension: Floats, runs: Runs) -> Bools:
+    """Whether the load beside a run changes by far more than it does at a rounded peak.
+
+    Where the top of a sine is one printed step high and as wide as the run, the load one
+    width further out is eight such steps lower; that of a triangle, two.
+    """
+    length, last = runs.stop - runs.start, tension.size - 1
+    level = take_samples(tension, runs.start)
+
+    def away(places: Integers) -> Floats:
+        return np.asarray(np.abs(level - take_samples(tension, np.clip(places, 0, last))))
+
+    step = np.fmin(
+        away(runs.start - 1) + np.where(runs.start == 0, np.inf, 0),
+        away(runs.stop) + np.where(runs.stop > last, np.inf, 0),
+    )
+    before, after = away(runs.start - length), away(runs.stop - 1 + length)
+    return np.asarray(np.fmax(before, after) >= _SATURATED_STEPS * step)
+
+
+def find_stuck_position(position: Floats, tension: Floats, *, samples: int) -> Bools:
+    """Where position stands still although tension rises: a hold does not make it rise.
+
+    Parameters
+    ----------
+    position : ndarray, shape (n_samples,)
+        Crosshead position. [m]
+    tension : ndarray, shape (n_specimens, n_samples)
+        Loads. [N]
+    samples : int
+        ``stuck_samples`` of the settings. [1]
+
+    Returns
+    -------
+    is_stuck : ndarray of bool, shape (n_samples,)
+        Runs in which any load rises by a quarter of its range.
+    """
+    runs = constant_runs(position, samples)
+    if not runs.start.size:
+        return runs.mask(position)
+    rises = np.zeros(runs.start.size, dtype=bool)
+    middle = (runs.start + runs.stop) // 2
+    for load in tension:
+        noise, _ = noise_of(load)
+        low, high = finite_extremes(load)
+        enough = max(_RISE_SHARE * (high - low), _RISE_NOISE * noise)
+        halves = (runs.start, middle), (middle, runs.stop - 1)
+        most = [over_intervals(np.fmax, load, *half) for half in halves]
+        least = [over_intervals(np.fmin, load, *half) for half in halves]
+        rises |= most[1] - least[0] > enough
+        rises |= np.fmax(*most) - take_samples(load, runs.start) > enough
+        rises |= take_samples(load, runs.stop - 1) - np.fmin(*least) > enough
+    return runs.where(rises).mask(position)
+
+
+_STEPS_READ = 100_001
+
+
+def bridge_stamps(time: Floats, missing: Bools) -> Floats:
+    """Time without missing stamps: even steps between neighbours, the median step at the ends.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n_samples,)
+        Elapsed time; NaN where missing, at least one stamp there. [s]
+    missing : ndarray of bool, shape (n_samples,)
+        Where it is NaN. [1]
+
+    Returns
+    -------
+    bridged : ndarray, shape (n_samples,)
+        The stamps that are there as they are. [s]
+    """
+    lost = np.concatenate(
+        [part.start + np.flatnonzero(missing[part]) for part in sample_blocks(time.size, missing)]
+    )
+    if not lost.size:
+        return time
+    # rows before and after each run of lost ones; -1 and n_samples at the ends of the record
+    is_first = np.diff(lost, prepend=-2) > 1
+    run = np.cumsum(is_first) - 1
+    before = lost[is_first] - 1
+    after = lost[np.append(is_first[1:], True)] + 1
+    known = before >= 0, after < time.size
+    left = take_samples(time, np.where(known[0], before, after))
+    right = take_samples(time, np.where(known[1], after, before))
+    step = np.where(known[0] & known[1], (right - left) / (after - before), _step(time))
+    # before the first stamp rows count back from it
+    start = np.where(known[0], left, right - (after - before) * step)
+    bridged = copied(time)
+    bridged[lost] = start[run] + (lost - before[run]) * step[run]
+    return bridged
+
+
+def _step(time: Floats) -> float:
+    """Median step of time, 0 where no two stamps follow each other."""
+    first = np.arange(0, time.size - 1, max(1, time.size // _STEPS_READ))
+    steps = take_samples(time, first + 1) - take_samples(time, first)
+    steps = steps[np.isfinite(steps)]
+    return float(np.median(steps)) if steps.size else 0.0
+
+
+_Flags = NDArray[np.uint16]
+
+_NO_READING = np.uint16(Quality.MISSING | Quality.STUCK)
+
+_TOLD_OTHERWISE = np.uint16(
+    Quality.MISSING | Quality.STUCK | Quality.SATURATED | Quality.SPIKE | Quality.GAP
+    | Quality.REPEATED_OR_BACKWARD_TIME
+)  # fmt: skip
+
+_IMPOSSIBLE_SHARE = 0.01  # of a record in lengths of zero or less: the datum is wrong
+
+
+def flag_record(
+    record: Record,
+    *,
+    settings: QualitySettings,
+    resampled: Sequence[str] = (),
+    verified: Mapping[tuple[int, int, int], tuple[float, float]] | None = None,
+    notes: Sequence[str] = (),
+) -> Record:
+    """Return the record with its flags set and what they mean in its notes.
+
+    Parameters
+    ----------
+    record : Record
+        In SI.
+    settings : QualitySettings
+        When a sample is flagged.
+    resampled : sequence of str
+        Channel keys (``crosshead_position``, ``tension.1``) that were interpolated.
+    verified : mapping of (int, int, int) to (float, float), optional
+        By specimen, first row and row after the last: the range that the load cell is
+        verified for. [N]
+    notes : sequence of str
+        Further notes of the record.
+
+    Returns
+    -------
+    record : Record
+        Every row kept.
+
+    Raises
+    ------
+    DataError
+        If a channel holds no number that can be used, a tension is zero throughout, or a
+        pin-to-pin length is not positive.
+    """
+    position_flag: _Flags = zeros_like(record.time, dtype=np.uint16)
+    tension_flag: _Flags = zeros_like(record.tension, dtype=np.uint16)
+    position = record.crosshead_position
+    no_stamp = _missing("time", record.time)
+    record = replace(record, time=bridge_stamps(record.time, no_stamp))
+    timing = time_faults(
+        record.time, gap_factor=settings.gap_factor, rate_tolerance=settings.rate_tolerance
+    )
+    _set(position_flag, no_stamp, Quality.MISSING)
+    _set(position_flag, _missing("crosshead_position", position), Quality.MISSING)
+    _set(position_flag, timing.gap, Quality.GAP)
+    _set(position_flag, timing.backward, Quality.REPEATED_OR_BACKWARD_TIME)
+    _set(position_flag, _spikes(position, settings), Quality.SPIKE)
+    if record.position_is_length:
+        _set(position_flag, _no_length(position, position_flag), Quality.SPIKE)
+    if "crosshead_position" in resampled:
+        _set_all(position_flag, Quality.RESAMPLED)
+
+    def flag_tension(index: int) -> None:
+        load, flags = record.tension[index], tension_flag[index]
+        _set(flags, _missing(f"tension of '{record.specimens[index]}'", load), Quality.MISSING)
+        saturated = find_saturated(load, position)
+        stuck = find_stuck(load, position, samples=settings.stuck_samples)
+        _set(flags, stuck, Quality.STUCK)
+        _set(flags, saturated, Quality.SATURATED, instead_of=Quality.STUCK)
+        _set(flags, _spikes(load, settings), Quality.SPIKE)
+        if f"tension.{index + 1}" in resampled:
+            _set_all(flags, Quality.RESAMPLED)
+
+    run_blocks(flag_tension, range(len(record.specimens)))
+    for (index, start, stop), (low, high) in (verified or {}).items():
+        outside = find_outside_range(record.tension[index, start:stop], low, high)
+        _set(tension_flag[index, start:stop], outside, Quality.OUTSIDE_VERIFIED_RANGE)
+    stuck = find_stuck_position(position, record.tension, samples=settings.stuck_samples)
+    _set(position_flag, stuck, Quality.STUCK)
+    flagged = replace(
+        record, quality_flag=tension_flag, crosshead_position_quality_flag=position_flag
+    )
+    found = [*record.notes, *notes]
+    first_lost = first_sample(no_stamp.__getitem__, 0, no_stamp.size, no_stamp)
+    if first_lost is not None:
+        found.append(
+            f"{count_samples(no_stamp)} rows have no time, first sample {first_lost + 1}: "
+            "their time is that of even steps between the rows beside them, and their position is "
+            "not used"
+        )
+    _check_usable(flagged)
+    if timing.n_uneven:
+        found.append(
+            f"the sampling rate is not constant: {timing.n_uneven} of {record.n_samples - 1} time "
+            f"steps differ by more than {settings.rate_tolerance:.0%} from their median "
+            f"{timing.step:.4g} s ({timing.shortest:.4g} to {timing.longest:.4g} s, gaps apart)"
+        )
+    found += _lone_steps(flagged, settings)
+    account = account_rows(flagged)
+    if any(account.n_flagged.values()):
+        listed = "; ".join(
+            f"{channel} " + ", ".join(f"{mask} {count}" for mask, count in masks.items())
+            for channel, masks in account.n_flagged.items()
+            if masks
+        )
+        found.append(f"{account.n_read} rows read, {account.n_kept} kept, flagged: {listed}")
+    return replace(flagged, notes=tuple(found))
+
+
+def _set(flags: _Flags, where: Bools, mask: Quality, *, instead_of: int = 0) -> None:
+    """Set a mask on some samples, and take another off them."""
+    for part in sample_blocks(flags.size, flags, where):
+        chosen = where[part]
+        if chosen.any():
+            flags[part][chosen] &= ~np.uint16(instead_of)
+            flags[part][chosen] |= np.uint16(mask)
+
+
+def _set_all(flags: _Flags, mask: Quality) -> None:
+    for part in sample_blocks(flags.size, flags):
+        flags[part] |= np.uint16(mask)
+
+
+def _missing(name: str, values: Floats) -> Bools:
+    missing = find_missing(values)
+    if count_samples(missing) == missing.size:
+        raise DataError(
+            f"{name} holds no number", found=f"{values.size} missing values", needed="a channel"
+        )
+    return missing
+
+
+def _spikes(values: Floats, settings: QualitySettings) -> Bools:
+    noise, _ = noise_of(values)
+    return find_spikes(values, noise=noise, factor=settings.spike_factor)
+
+
+def _lone_steps(record: Record, settings: QualitySettings) -> list[str]:
+    """A note for each channel that steps, and stays, where what it is measured with does not."""
+    position, tension = record.crosshead_position[np.newaxis], record.tension
+    of_time = record.crosshead_position_quality_flag
+    channels = [("crosshead_position", "m", position[0], tension, of_time)]
+    for name, load, of_load in zip(record.specimens, tension, record.quality_flag, strict=True):
+        channels.append((f"tension of '{name}'", "N", load, position, of_load))
+    noise = [noise_of(channel[2])[0] for channel in channels]
+    notes = [""] * len(channels)
+
+    def look(index: int) -> None:
+        name, unit, values, beside, flags = channels[index]
+        step = find_lone_steps(
+            values, beside, noise=noise[index], factor=settings.spike_factor,
+            noise_beside=np.array(noise[1:] if index == 0 else noise[:1]),
+        )  # fmt: skip
+        # what is known against a sample beside it has been told
+        told = take_samples(flags, step) | take_samples(flags, step + 1)
+        told |= take_samples(of_time, step + 1)
+        step = step[(told & _TOLD_OTHERWISE) == 0]
+        if step.size:
+            first = int(step[0])
+            low, high = values[first : first + 2].tolist()
+            others = f", and at {step.size - 1} more" if step.size > 1 else ""
+            notes[index] = (
+                f"{name} steps from {low:.4g} to {high:.4g} {unit} between sample {first + 1} "
+                f"({record.time[first]:.6g} s) and the next{others}, and stays there, while "
+                f"{'tension does' if index == 0 else 'the position does'} not: a slip, a break, a "
+                "zero that was set again, or another unit from there on; numbers across it mix both"
+            )
+
+    run_blocks(look, range(len(channels)))
+    return [note for note in notes if note]
+
+
+def _no_length(position: Floats, flags: _Flags) -> Bools:
+    """Where a pin-to-pin length is zero or less although nothing else is known against it."""
+    not_positive: Bools = zeros_like(position, dtype=bool)
+    for part in sample_blocks(position.size, position, flags, not_positive):
+        not_positive[part] = (position[part] <= 0) & (flags[part] == 0)
+    share = count_samples(not_positive) / position.size
+    if share > _IMPOSSIBLE_SHARE:
+        raise DataError(
+            "a pin-to-pin length is not positive",
+            found=f"{share:.0%} of the samples at or below 0 m, least "
+            f"{finite_extremes(position)[0]:.4g} m",
+            needed="the distance between the pins",
+            hint='Set datum = "displacement", with a reference_length where one is known, or '
+            "correct zero and sign.",
+        )
+    return not_positive
+
+
+def _any_reading(flags: _Flags) -> bool:
+    """Whether any sample of a channel holds a number that can be used."""
+    return any_sample(lambda part: (flags[part] & _NO_READING) == 0, flags.size, flags)
+
+
+def _check_usable(record: Record) -> None:
+    """Refuse a channel that says nothing, whose flags would leave no sample."""
+    position = record.crosshead_position
+    if not _any_reading(record.crosshead_position_quality_flag):
+        known = position[np.isfinite(position)]
+        stuck = f" or stuck at {known.mean():.4g} m while tension changes" if known.size else ""
+        raise DataError(
+            "the crosshead position has no sample that can be used",
+            found=f"{position.size} samples missing{stuck}",
+            needed="a position that follows the crosshead",
+            hint="Is it the right column, and was the transducer connected?",
+        )
+    for name, load, flags in zip(
+        record.specimens, record.tension, record.quality_flag, strict=True
+    ):
+        if not count_samples(load):
+            raise DataError(
+                f"tension of '{name}' is zero throughout",
+                found=f"{load.size} samples of 0 N",
+                needed="a load cell that is connected, or a test without this specimen",
+            )
+        if not _any_reading(flags):
+            raise DataError(
+                f"tension of '{name}' has no sample that can be used",
+                found=f"{load.size} samples missing or stuck at {np.nanmean(load):.4g} N",
+                needed="a load that changes while the crosshead moves",
+            )

@@ -1,0 +1,949 @@
+"""Looks at an unknown log and proposes a layout.
+
+The proposal is text, never a `Layout`: what is not known is ``?`` in it, and a layout
+with a ``?`` does not load.
+"""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import math
+import re
+import zipfile
+from collections import Counter, deque
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import h5py  # type: ignore[import-untyped]
+import numpy as np
+
+from reduction.quantities.units import DIMENSIONS, Dimension
+from reduction.readers.bounded_reader import bounded
+from reduction.readers.columns import ColumnTable, matrix_table, stated_scale
+from reduction.readers.hdf5 import data_set, group_table, open_hdf5, read_texts
+from reduction.readers.json_matrix import json_content
+from reduction.readers.layout import CLOCK, Format, Layout, Watch
+from reduction.readers.matlab import (
+    matlab_table,
+    open_matlab,
+    read_cell_texts,
+    struct_fields,
+    struct_place,
+)
+from reduction.readers.parquet import open_parquet, parquet_table
+from reduction.readers.raw_log import check_not_empty, unchanged, unreadable
+from reduction.readers.spreadsheet import open_workbook, read_rows
+from reduction.readers.tdms import WAVEFORM_COLUMN, open_tdms, tdms_table
+from reduction.record.errors import LogError, SettingsError
+from reduction.record.measurement import Floats
+from reduction.record.plain_text import toml_comment, toml_text
+from reduction.record.settings import Limits
+
+UNKNOWN = "?"
+
+_NOT_MEASURED = (
+    r"sollwert|set ?point|command|target|maximum|minimum|max|min|rate|speed|velocity|"
+    r"geschwindigkeit|digital"
+)
+
+# ranked: the first pattern that fits a column wins; the second text rules a column out
+_NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
+    "time": (
+        "time",
+        (r"^(elapsed|test|total|run|running)? ?time$", r"^(lauf|prüf|pruef|mess)?zeit$",
+         r"^time\b", r"\b(time|zeit)$", r"^t$", r"^wf increment$"),
+        r"cycle|date|datum|stamp|start",
+    ),
+    "crosshead_position": (
+        "length",
+        (r"crosshead|traverse", r"^position|^pos$", r"weg$|\bweg\b", r"extension",
+         r"displace?ment|\bdisp\b|^disp",
+         r"stroke|tool separation", r"^machine$|^maschine$"),
+        _NOT_MEASURED,
+    ),
+    "tension": (
+        "force",
+        (r"load|force|kraft|tension|zuglast", r"weight|gewicht"),
+        _NOT_MEASURED + r"|friction|cell",
+    ),
+    "strain": ("strain", (r"strain|dehnung|extensometer|elongation",), _NOT_MEASURED + "|true"),
+    "cycle_counter": (
+        "number",
+        (r"^total cycles$", r"^(cycle|zyklus|zyklen|lastspiele?)( number| count(er)?)?$",
+         r"^total cycle count$", r"^cycles$"),
+        r"elapsed|time",
+    ),
+    "temperature": ("temperature", (r"^temp(erature?|eratur)?\b",), _NOT_MEASURED),
+}  # fmt: skip
+
+_MANY = ("tension", "strain")  # one a specimen
+
+_SUFFIXES = {
+    "s": "s", "sec": "s", "ms": "ms", "min": "min", "ft": "ft", "in": "inch", "mm": "mm",
+    "cm": "cm", "m": "m", "lb": "lbf", "lbs": "lbf", "lbf": "lbf", "kip": "kip", "n": "N",
+    "kn": "kN", "kgf": "kgf", "pct": "%", "percent": "%", "degc": "degC", "degf": "degF",
+}  # fmt: skip
+
+_BRACKETED = re.compile(r"\s*[\(\[]([^()\[\]]*)[\)\]]\s*$")
+
+_CLOCK = re.compile(r"([01]?\d|2[0-3]):[0-5]\d(:[0-5]\d([.,]\d+)?)?|([01]\d|2[0-3])[0-5]\d")
+
+_RISING = 0.9  # share of the steps of a time column that do not go back
+
+
+@dataclass(frozen=True)
+class SeenColumn:
+    """One column as it was seen: ``texts`` and ``values`` (NaN where no number) of some rows.
+
+    ``is_named`` is false where the reader will not find the name in the file.
+    """
+
+    number: int
+    name: str = ""
+    unit: str = ""
+    values: Floats = field(default_factory=lambda: np.empty(0))
+    texts: tuple[str, ...] = ()
+    is_named: bool = True
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """Channels as lines of TOML, whether any was found, and what is a guess in them."""
+
+    lines: tuple[str, ...]
+    keys: tuple[str, ...]
+    remarks: tuple[str, ...]
+
+
+@lru_cache(maxsize=4096)
+def is_unit(text: str, dimension: Dimension | None = None) -> bool:
+    """Whether a text is a unit, of one dimension or of any."""
+    if not text:
+        return False
+    for wanted in (dimension,) if dimension is not None else DIMENSIONS:
+        try:
+            stated_scale(text, wanted)
+        except SettingsError:
+            continue
+        return True
+    return False
+
+
+def _plain(name: str) -> str:
+    """A name in lower case, without unit in brackets or suffix, words parted by blanks."""
+    text = _BRACKETED.sub("", name).strip()
+    words = [word for word in re.split(r"[\W_]+", text.lower()) if word]
+    if len(words) > 1 and words[-1] in _SUFFIXES:
+        words.pop()
+    return " ".join(words)
+
+
+def _unit(column: SeenColumn, dimension: Dimension) -> str | None:
+    """Unit that a column states; ``?`` where it states none, None where it is another kind."""
+    stated = column.unit.strip().strip("()[]").strip()
+    bracketed = _BRACKETED.search(column.name)
+    for text in (stated, bracketed[1].strip() if bracketed else ""):
+        if is_unit(text, dimension):
+            return "lbf" if dimension == "force" and text in ("lb", "lbs") else text
+        if is_unit(text):
+            return None
+    suffix = re.split(r"[\s_.]+", column.name.strip())[-1]
+    unit = _SUFFIXES.get(suffix.lower(), "") if suffix != column.name.strip() else ""
+    if unit and is_unit(unit):
+        return unit if is_unit(unit, dimension) else None
+    return "1" if dimension == "number" else UNKNOWN
+
+
+def _is_clock(column: SeenColumn) -> bool:
+    """Whether all texts are clock times; four digits only where one begins with 0."""
+    return (
+        bool(column.texts)
+        and all(_CLOCK.fullmatch(text) for text in column.texts)
+        and any(":" in text or text.startswith("0") for text in column.texts)
+    )
+
+
+def _fits(key: str, column: SeenColumn) -> bool:
+    """Whether the values can be those of a channel."""
+    values = column.values[np.isfinite(column.values)]
+    if key == "time" and _is_clock(column):
+        return True
+    if not values.size:
+        return False
+    if key == "time":
+        return values.size == 1 or float(np.mean(np.diff(values) >= 0)) >= _RISING
+    if key == "cycle_counter":
+        return bool(np.all(values == np.round(values)) and np.all(np.diff(values) >= 0))
+    return True
+
+
+def _candidates(key: str, columns: Sequence[SeenColumn]) -> list[tuple[SeenColumn, str]]:
+    """Columns that may be a channel, best first, each with its unit."""
+    dimension, patterns, barred = _NAMES[key]
+    found = []
+    for rank, pattern in enumerate(patterns):
+        for column in columns:
+            plain = _plain(column.name)
+            if not re.search(pattern, plain) or re.search(rf"\b({barred})\b", plain):
+                continue
+            unit = _unit(column, dimension)
+            if unit is not None and _fits(key, column):
+                found.append((rank, column, unit))
+    best: dict[int, tuple[SeenColumn, str]] = {}
+    for _, column, unit in found:
+        best.setdefault(column.number, (column, unit))
+    return list(best.values())
+
+
+def _label(column: SeenColumn) -> str:
+    return toml_text(column.name.strip()) if column.name else str(column.number)
+
+
+def _reference(column: SeenColumn, columns: Sequence[SeenColumn]) -> str:
+    """The column's name where it is the only one of that name, else its number."""
+    names = [other.name.strip() for other in columns if other.is_named]
+    return _label(column) if names.count(column.name.strip()) == 1 else str(column.number)
+
+
+def _line(key: str, column: str, unit: str, *, is_commented: bool = False) -> str:
+    datum = f', datum = "{UNKNOWN}"' if key == "crosshead_position" else ""
+    text = f"{key} = {{ column = {column}, unit = {toml_text(unit)}{datum} }}"
+    if datum:
+        text += "\n# datum: pin-to-pin, or displacement with a reference_length"
+    return f"# {text}" if is_commented else text
+
+
+def propose_channels(columns: Sequence[SeenColumn]) -> Proposal:
+    """Lines of a layout's ``channels`` table for the columns of a log."""
+    lines: list[str] = []
+    keys: list[str] = []
+    remarks: list[str] = []
+    used: set[int] = set()
+    first = columns[0] if columns and not any(column.name for column in columns) else None
+    if first is not None and first.values.size > 1 and np.all(np.diff(first.values) > 0):
+        unit = _unit(first, "time") or UNKNOWN
+        lines.append(_line("time", "1", unit))
+        keys.append("time")
+        used.add(1)
+        remarks.append("guess: time is column 1, because it rises all the time")
+        if unit == UNKNOWN:
+            remarks.append("unknown: the unit of column 1")
+    for key in _NAMES:
+        candidates = [c for c in _candidates(key, columns) if c[0].number not in used]
+        if not candidates:
+            continue
+        taken = sorted(candidates, key=lambda c: c[0].number) if key in _MANY else candidates[:1]
+        for place, (column, unit) in enumerate(taken, start=1):
+            full = f"{key}.{place}" if key in _MANY else key
+            if key == "time" and unit == UNKNOWN and _is_clock(column):
+                unit = CLOCK
+            lines.append(_line(full, _reference(column, columns), unit))
+            keys.append(full)
+            used.add(column.number)
+            remarks.append(f"guess: {full} is column {_label(column)}, by its name")
+            if key == "time" and np.any(np.diff(column.values) < 0):
+                remarks.append("sure: time goes back at least once")
+            if unit == UNKNOWN:
+                remarks.append(f"unknown: the unit of column {_label(column)}")
+        others = [_label(column) for column, _ in candidates if column.number not in used]
+        if others:
+            remarks.append(f"guess: {key} may also be column {', '.join(others)}")
+    if "crosshead_position" in keys:
+        remarks.append("unknown: whether the position is pin-to-pin or a displacement (datum)")
+    if any(key == "tension.2" for key in keys):
+        remarks.append("guess: each load column is one position of a specimen, in file order")
+    is_blind = not {"crosshead_position", "tension.1"} & set(keys)
+    for key in ("crosshead_position", "tension.1"):
+        if key not in keys:
+            lines.append(
+                _line(key, f'"{UNKNOWN}"', UNKNOWN, is_commented=not is_blind or bool(keys[1:]))
+            )
+            remarks.append(f"unknown: which column is {key}, if one is")
+    lines += [
+        f"# not used: column {column.number}{_described(column)}"
+        for column in columns
+        if column.number not in used
+    ]
+    return Proposal(tuple(lines), tuple(keys), tuple(remarks))
+
+
+def _described(column: SeenColumn) -> str:
+    name = f", {_label(column)}" if column.name else ""
+    unit = f" in {toml_comment(column.unit)}" if column.unit.strip() else ""
+    values = column.values[np.isfinite(column.values)]
+    seen = f", {values.min():g} to {values.max():g} at the start" if values.size else ""
+    return f"{name}{unit}{seen}"
+
+
+_ROWS = 400
+
+_RUN = 3  # rows in a row that make a table
+
+_NUMBER = {
+    mark: re.compile(rf"[+-]?(\d+({re.escape(mark)}\d*)?|{re.escape(mark)}\d+)([eE][+-]?\d+)?")
+    for mark in ".,"
+}
+
+
+@dataclass(frozen=True)
+class TableShape:
+    """Where a table stands in rows of fields; rows count from 0."""
+
+    start: int
+    """First data row."""
+    n_fields: int
+    name_row: int | None
+    unit_row: int | None
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    """Fields of some data rows."""
+
+
+def is_number(text: str, decimal: str) -> bool:
+    """Whether a field is a number with this decimal mark and no thousands mark."""
+    return _NUMBER[decimal].fullmatch(text) is not None
+
+
+def look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> TableShape | None:
+    """Header and data of rows of fields; None where no table of numbers is among them."""
+    counts = [sum(is_number(text, decimal) for text in row) for row in rows]
+    data = [
+        len(row) > 1 and 2 * count >= sum(map(bool, row)) > 0
+        for row, count in zip(rows, counts, strict=True)
+    ]
+    sizes = Counter(len(row) for row, is_data in zip(rows, data, strict=True) if is_data)
+    if not sizes:
+        return None
+    n_fields = sizes.most_common(1)[0][0]
+    data = [is_data and len(row) == n_fields for row, is_data in zip(rows, data, strict=True)]
+    usual = np.median([count for count, is_data in zip(counts, data, strict=True) if is_data])
+    # a line of the preamble with a number in it has fewer numbers than a row of the table
+    good = [is_data and 2 * count > usual for count, is_data in zip(counts, data, strict=True)]
+    run = max(2, min(_RUN, sum(good)))
+    start = next((i for i in range(len(rows)) if sum(good[i : i + run]) == run), None)
+    if start is None:
+        return None
+    above = [i for i in range(start) if any(rows[i])]
+    name_row, unit_row = None, None
+    if above and _is_header(rows[above[-1]], n_fields):
+        name_row = above[-1]
+        if (
+            len(above) > 1
+            and _is_unit_row(rows[name_row])
+            and _is_header(rows[above[-2]], n_fields)
+        ):
+            name_row, unit_row = above[-2], name_row
+    names = rows[name_row] if name_row is not None else ()
+    units = rows[unit_row] if unit_row is not None else ()
+    pad = ("",) * n_fields
+    return TableShape(
+        start=start,
+        n_fields=n_fields,
+        name_row=name_row,
+        unit_row=unit_row,
+        names=(*names, *pad)[:n_fields],
+        units=(*units, *pad)[:n_fields],
+        rows=tuple(
+            tuple(row)
+            for row, is_data in zip(rows[start : start + _ROWS], data[start:], strict=False)
+            if is_data
+        ),
+    )
+
+
+def _is_header(fields: Sequence[str], n_fields: int) -> bool:
+    """Whether fields can be names or units of the columns: as many but for trailing blanks."""
+    return 1 < len(fields) and not any(fields[n_fields:]) and sum(map(bool, fields)) * 2 > n_fields
+
+
+def _is_unit_row(fields: Sequence[str]) -> bool:
+    filled = [text.strip("()[] ") for text in fields if text.strip("()[] -")]
+    known = sum(is_unit(text) for text in filled)
+    return bool(filled) and 2 * known >= len(filled)
+
+
+def seen_columns(table: TableShape, decimal: str, thousands: str = "") -> list[SeenColumn]:
+    """Columns of a table with the values of its rows."""
+    columns = []
+    for place in range(table.n_fields):
+        texts = tuple(row[place] for row in table.rows)
+        plain = [text.replace(thousands, "") if thousands else text for text in texts]
+        values = [
+            float(text.replace(decimal, ".")) if is_number(text, decimal) else math.nan
+            for text in plain
+        ]
+        columns.append(
+            SeenColumn(place + 1, table.names[place], table.units[place], np.array(values), texts)
+        )
+    if columns and not columns[-1].name and not any(columns[-1].texts):
+        columns.pop()  # a delimiter at the end of each line
+    return columns
+
+
+_HEAD = 1 << 18
+
+_LINES = 20_000  # that are looked at
+
+_DELIMITERS = ("\t", ";", ",", "|", " ")
+
+_COMMENTS = ("#", "%", "//", "!", "*")
+
+_MTS = "MTS793|"
+
+_LEAST_SHARE = (0.5, 0.8)  # of the fields are numbers; more where blanks part them
+
+_THOUSANDS = {
+    ".": re.compile(r"[+-]?\d{1,3}(,\d{3})+(\.\d*)?"),
+    ",": re.compile(r"[+-]?\d{1,3}(\.\d{3})+(,\d*)?"),
+}
+
+_MARKED = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+
+
+@dataclass(frozen=True)
+class SeenText:
+    """A text log: its columns, the layout settings that read it, and remarks."""
+
+    format: Format
+    columns: list[SeenColumn]
+    settings: dict[str, object]
+    remarks: tuple[str, ...]
+
+
+def _decode(path: Path, head: bytes) -> tuple[str, str, str]:
+    """Text, encoding, and how sure that is."""
+    for mark, encoding in _MARKED:
+        if head.startswith(mark):
+            text = head.decode(encoding, errors="ignore").removeprefix("\ufeff")
+            return text, encoding, f"sure: encoding {encoding}, by the byte-order mark"
+    if b"\0" in head:
+        raise LogError(
+            path, "the file is of no known format", found="binary content",
+            needed="text, .xlsx, .xls, .ods, TDMS, MATLAB, HDF5, Parquet or JSON",
+        )  # fmt: skip
+    decoder = codecs.getincrementaldecoder("utf-8")()
+    try:
+        text = decoder.decode(head)
+    except UnicodeDecodeError:
+        text = head.decode("latin-1")
+        return text, "latin-1", "guess: encoding latin-1, because it is not UTF-8"
+    return text, "utf-8", "sure: encoding utf-8" + (" (plain ASCII)" if head.isascii() else "")
+
+
+def _split(lines: Sequence[str], delimiter: str) -> list[list[str]]:
+    if delimiter == " ":
+        return [re.split(r"[ \t]+", line.strip()) for line in lines]
+    short = ("" if len(line) > csv.field_size_limit() else line for line in lines)
+    return [
+        [text.strip() for text in next(csv.reader([line], delimiter=delimiter), [])]
+        for line in short
+    ]
+
+
+def _comment(lines: Sequence[str]) -> str:
+    """Mark at the start of the first filled line, where it is a usual one."""
+    first = next((line for line in lines if line.strip()), "")
+    return next((mark for mark in _COMMENTS if first.startswith(mark)), "")
+
+
+def _without_comments(lines: Sequence[str], comment: str) -> list[str]:
+    return ["" if comment and line.startswith(comment) else line for line in lines]
+
+
+def _best_table(lines: Sequence[str]) -> tuple[str, str, TableShape] | None:
+    """Delimiter, decimal mark and table that make the most of the fields numbers."""
+    best, best_score = None, (0.0, 0)
+    for delimiter in _DELIMITERS:
+        rows = _split(lines, delimiter)
+        for decimal in ".,":
+            table = look_at_table(rows, decimal) if decimal != delimiter else None
+            if table is None:
+                continue
+            fields = [text for row in table.rows for text in row if text]
+            numbers = sum(is_number(text, decimal) for text in fields)
+            score = (round(numbers / len(fields), 2), numbers)
+            if score > best_score and score[0] > _LEAST_SHARE[delimiter == " "]:
+                best, best_score = (delimiter, decimal, table), score
+    return best
+
+
+def _number_settings(
+    table: TableShape, delimiter: str, decimal: str
+) -> tuple[dict[str, object], list[str]]:
+    """Thousands mark and missing marks, and how sure the decimal mark is."""
+    fields = [text for row in table.rows for text in row if text]
+    remarks = []
+    marked = [text for text in fields if decimal in text and is_number(text, decimal)]
+    if not marked:
+        remarks.append(f"guess: decimal mark '{decimal}', because no number has one")
+    elif decimal == "," and all(re.fullmatch(r"[+-]?\d{1,3},\d{3}", text) for text in marked):
+        remarks.append("guess: decimal mark ',': every number could also have it for thousands")
+    else:
+        remarks.append(f"sure: decimal mark '{decimal}'")
+    settings: dict[str, object] = {}
+    odd: list[str] = []
+    is_parted = False
+    for place in range(table.n_fields):
+        texts = [row[place] for row in table.rows if row[place]]
+        strange = [text for text in texts if not is_number(text, decimal)]
+        parted = [text for text in strange if _THOUSANDS[decimal].fullmatch(text)]
+        if 2 * (len(strange) - len(parted)) < len(texts):
+            odd += strange
+            is_parted |= bool(parted)
+    if is_parted:
+        settings["thousands"] = "," if decimal == "." else "."
+        remarks.append(f"guess: thousands mark '{settings['thousands']}'")
+    marks = list(dict.fromkeys(text for text in odd if not _THOUSANDS[decimal].fullmatch(text)))
+    marks = [mark for mark in marks if mark not in ("NaN", "nan")]
+    if marks:
+        settings["missing"] = ["", "NaN", "nan", *marks]
+        shown = ", ".join(repr(mark) for mark in marks)
+        remarks.append(f"guess: {shown} stands for a missing value")
+    if not any(row[-1] for row in table.rows) and not table.names[-1]:
+        remarks.append(f"sure: each row ends with a delimiter {delimiter!r}")
+    return settings, remarks
+
+
+def look_at_text(path: Path) -> SeenText:
+    """Shape of the table in a text file, from its first 256 kB.
+
+    Raises
+    ------
+    LogError
+        If the file is binary, or no table of numbers stands at its start.
+    """
+    with path.open("rb") as stream:
+        head = stream.read(_HEAD)
+        is_whole = not stream.read(1)
+    text, encoding, remark = _decode(path, head)
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines = (lines if is_whole else lines[:-1])[:_LINES]
+    comment = _comment(lines)
+    found = _best_table(_without_comments(lines, comment))
+    if found is None:
+        raise LogError(
+            path, "no table of numbers stands at the start of the file",
+            found=f"{len(lines)} lines", needed="rows of two or more numbers",
+        )  # fmt: skip
+    delimiter, decimal, table = found
+    settings: dict[str, object] = {"delimiter": delimiter, "decimal": decimal, "encoding": encoding}
+    remarks = [remark, f"sure: delimiter {delimiter!r}, {table.n_fields} fields a row"]
+    more, more_remarks = _number_settings(table, delimiter, decimal)
+    remarks += more_remarks
+    columns = seen_columns(table, decimal, str(more.get("thousands", "")))
+    if comment:
+        settings["comment"] = comment
+        remarks.append(f"guess: lines that begin with '{comment}' are comments")
+        if table.name_row is None:
+            columns, named = _named_by_comment(lines[: table.start], comment, delimiter, columns)
+            remarks += named
+    if lines[0].startswith(_MTS):
+        opener = next(i for i in range((table.name_row or table.start) - 1, -1, -1) if lines[i])
+        settings = {
+            "delimiter": delimiter,
+            "encoding": encoding,
+            "block_marker": lines[opener].split(delimiter)[0],
+        }
+        remarks.append("sure: repeated blocks of MTS 793; its first line states the decimal mark")
+        remarks.append(f"guess: a block opens at '{settings['block_marker']}' (row {opener + 1})")
+    else:
+        top = table.start if table.name_row is None else table.name_row
+        if any(line.strip() for line in _without_comments(lines[:top], comment)):
+            settings["preamble_rows"] = top
+            remarks.append(f"sure: the table begins below row {top}")
+    settings |= more
+    settings["has_name_row"] = table.name_row is not None
+    settings["has_unit_row"] = table.unit_row is not None
+    if table.name_row is None:
+        remarks.append("guess: there is no row of names; columns are numbers")
+    else:
+        remarks.append(f"guess: names stand in row {table.name_row + 1}")
+    if table.unit_row is not None:
+        remarks.append(f"guess: units stand in row {table.unit_row + 1}")
+    is_blocks = "block_marker" in settings
+    return SeenText("blocks" if is_blocks else "delimited", columns, settings, tuple(remarks))
+
+
+def _named_by_comment(
+    above: Sequence[str], comment: str, delimiter: str, columns: list[SeenColumn]
+) -> tuple[list[SeenColumn], list[str]]:
+    """Names from the last comment line, where it has as many as there are columns."""
+    last = next((line for line in reversed(above) if line.startswith(comment)), "")
+    names = _split([last.removeprefix(comment)], delimiter)[0]
+    if len(names) != len(columns) or not all(names):
+        return columns, []
+    named = [
+        replace(column, name=name, is_named=False)
+        for column, name in zip(columns, names, strict=True)
+    ]
+    return named, ["guess: the names of the columns stand in the last comment line"]
+
+
+_LONGEST_NAME = 1000
+
+_PART = 1 << 20  # rows that are loaded at a time
+
+Candidate = tuple[dict[str, object], ColumnTable]
+
+"""Layout settings and the table that they read."""
+
+
+@dataclass(frozen=True)
+class SeenTable:
+    """A table that may be the log: its columns, the layout settings that read it, remarks."""
+
+    format: Format
+    columns: list[SeenColumn]
+    settings: dict[str, object] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
+
+
+def table_sheets(path: Path, watch: Watch) -> list[tuple[str, TableShape]]:
+    """Sheets of a workbook that hold a table of two or more rows of numbers."""
+    workbook = open_workbook(path, watch)
+    found = []
+    for place, name in enumerate(workbook.sheet_names):
+        table = look_at_table(read_rows(path, workbook, place, _ROWS), ".")
+        if table is not None:
+            found.append((name, table))
+    return found
+
+
+def look_at_sheet(path: Path, sheet: str | None, watch: Watch) -> SeenTable:
+    """One sheet of a workbook, or the one that holds the longest table."""
+    found = table_sheets(path, watch)
+    chosen = [entry for entry in found if sheet in (None, entry[0])]
+    if not chosen:
+        raise LogError(
+            path, "no sheet holds a table of numbers",
+            found=", ".join(repr(name) for name, _ in found) or "no such sheet",
+            needed=repr(sheet) if sheet else "rows of two or more numbers",
+        )  # fmt: skip
+    name, table = max(chosen, key=lambda entry: len(entry[1].rows))
+    remarks = [f"guess: the log is on sheet '{name}'"] if sheet is None else []
+    if sheet is None and len(found) > 1:
+        others = ", ".join(repr(other) for other, _ in found if other != name)
+        remarks.append(f"sure: tables stand also on {others}")
+    settings: dict[str, object] = {"sheet": name}
+    top = table.start if table.name_row is None else table.name_row
+    if top:
+        settings["preamble_rows"] = top
+        remarks.append(f"sure: the table begins below row {top}")
+    settings["has_name_row"] = table.name_row is not None
+    settings["has_unit_row"] = table.unit_row is not None
+    return SeenTable("spreadsheet", seen_columns(table, "."), settings, tuple(remarks))
+
+
+def _seen(table: ColumnTable) -> list[SeenColumn]:
+    """Columns of numbers that share the most common length."""
+    columns, sizes = [], []
+    for place, (name, unit) in enumerate(zip(table.names, table.units, strict=True)):
+        if len(name) > _LONGEST_NAME:  # no layout would write it
+            continue
+        try:
+            parts = table.load(place, _ROWS if table.sizes else _PART)
+            values = next(parts)
+            size = values.size
+            # where the file states how many there are, the rest is not read
+            size = table.sizes[place] if table.sizes else size + sum(part.size for part in parts)
+        except LogError:  # not a series: no column
+            continue
+        if values.ndim == 1 and size > 1 and values.dtype.kind in "fiu":
+            first = values[:_ROWS].astype(np.float64)
+            columns.append(SeenColumn(place + 1, name, unit, first, is_named=bool(name)))
+            sizes.append(size)
+    if not sizes:
+        return []
+    length = Counter(sizes).most_common(1)[0][0]
+    return [column for column, size in zip(columns, sizes, strict=True) if size == length]
+
+
+def _named_matrix(
+    path: Path, key: str, matrix: Any, texts: Mapping[str, Sequence[str]], group: str = ""
+) -> tuple[dict[str, object], ColumnTable]:
+    """A matrix with the lists of texts beside it that may be its names and units."""
+    settings: dict[str, object] = {"group": group} if group else {}
+    settings["matrix"] = key
+    given: dict[str, tuple[str, ...]] = {}
+    for name, entries in texts.items():
+        if matrix.ndim == 2 and len(entries) == matrix.shape[1]:
+            filled = [text for text in entries if text]
+            kind = "units" if 2 * sum(map(is_unit, filled)) >= len(filled) else "names"
+            if kind not in given:
+                given[kind] = tuple(entries)
+                settings[f"matrix_{kind}"] = name
+    return settings, matrix_table(
+        path, matrix, where=key, names=given.get("names"), units=given.get("units")
+    )
+
+
+def _is_matrix(values: Any) -> bool:
+    return bool(values.dtype.names and values.size > 1) or (
+        values.ndim == 2 and min(values.shape) > 1 and values.dtype.kind in "fiu"
+    )
+
+
+def _hdf5_candidates(path: Path, file: h5py.File, watch: Watch) -> Iterator[Candidate]:
+    """Groups and matrices of a file; a group that is reached in two ways is looked at once."""
+    waiting: deque[h5py.Group] = deque([file])
+    seen = set()
+    while waiting:
+        watch.check_time()
+        group = waiting.popleft()
+        address = h5py.h5o.get_info(group.id).addr
+        if address in seen:
+            continue
+        seen.add(address)
+        place = (group.name or "").strip("/")
+        settings = {"group": place} if place else {}
+        yield settings, group_table(path, group, watch)
+        texts, matrices = {}, {}
+        for name in group:
+            if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+                continue
+            member = group[name]
+            if isinstance(member, h5py.Group):
+                waiting.append(member)
+                continue
+            try:
+                values = data_set(path, member, watch)
+                if _is_matrix(values):
+                    matrices[name] = values
+                elif values.dtype.kind in "OSUT":
+                    texts[name] = read_texts(path, member, watch)
+            except LogError:  # neither a matrix nor texts
+                continue
+        for name, values in matrices.items():
+            yield _named_matrix(path, name, values, texts, place)
+
+
+def _matlab_candidates(
+    path: Path, scope: Mapping[str, Any], group: str, seen: set[int], watch: Watch
+) -> Iterator[Candidate]:
+    watch.check_time()
+    yield (
+        {"group": group} if group else {},
+        matlab_table(path, scope, Layout(format="matlab", channels={})),
+    )
+    texts, matrices = {}, {}
+    for name in scope:
+        try:
+            value = scope[name]
+            fields = struct_fields(value)
+            if fields is not None:
+                inside = f"{group}.{name}".strip(".")
+                place = struct_place(fields)
+                if place not in seen:  # a struct of version 7.3 may hold itself
+                    seen |= set() if place is None else {place}
+                    yield from _matlab_candidates(path, fields, inside, seen, watch)
+            elif isinstance(value, np.ndarray) and _is_matrix(value) and not value.dtype.names:
+                matrices[name] = value
+            else:
+                texts[name] = read_cell_texts(path, name, value)
+        except LogError:  # neither a struct, a matrix nor texts
+            continue
+    for name, values in matrices.items():
+        yield _named_matrix(path, name, values, texts, group)
+
+
+def _tdms_candidates(path: Path, file: Any, watch: Watch) -> Iterator[Candidate]:
+    groups = file.groups()
+    for group in groups:
+        settings = {"group": group.name} if len(groups) > 1 else {}
+        yield settings, tdms_table(path, file, group, watch)
+
+
+def look_at_binary(path: Path, kind: Format, watch: Watch) -> SeenTable:
+    """The largest table of a TDMS, MATLAB, HDF5 or Parquet file."""
+    with ExitStack() as stack:
+        candidates: Iterator[Candidate]
+        if kind == "tdms":
+            file = stack.enter_context(open_tdms(path))
+            candidates = _tdms_candidates(path, file, watch)
+        elif kind == "hdf5":
+            hdf5 = stack.enter_context(open_hdf5(path))
+            candidates = _hdf5_candidates(path, hdf5, watch)
+        elif kind == "matlab":
+            variables = stack.enter_context(open_matlab(path, watch))
+            candidates = _matlab_candidates(path, variables, "", set(), watch)
+        else:
+            parquet = stack.enter_context(open_parquet(path))
+            candidates = iter([({}, parquet_table(path, parquet, watch))])
+        best: tuple[dict[str, object], list[SeenColumn]] = ({}, [])
+        count = 0
+        for settings, table in candidates:
+            columns = _seen(table)
+            count += len(columns) > 1
+            if sum(c.values.size for c in columns) > sum(c.values.size for c in best[1]):
+                best = settings, columns
+        settings, columns = best
+        if kind == "tdms" and columns:
+            columns = columns + _waveform(file, settings, columns)
+    remarks = [f"sure: {len(columns)} columns of numbers of one length"]
+    if count > 1:
+        remarks.append(f"guess: the largest of {count} tables of the file is the log")
+    return SeenTable(kind, columns, settings, tuple(remarks))
+
+
+def _waveform(
+    file: Any, settings: Mapping[str, object], columns: list[SeenColumn]
+) -> list[SeenColumn]:
+    """Time by the waveform properties, as one more column where the channels have them."""
+    group = file[settings["group"]] if "group" in settings else file.groups()[0]
+    if all(channel.properties.get(WAVEFORM_COLUMN, 0) for channel in group.channels()):
+        return [SeenColumn(len(columns) + 1, WAVEFORM_COLUMN, "s", np.arange(2.0))]
+    return []
+
+
+def look_at_json(path: Path, watch: Watch) -> SeenTable:
+    """The largest matrix of a JSON object."""
+    _, content = json_content(path, watch)
+    texts, matrices = {}, {}
+    for key, value in content.items():
+        if not isinstance(value, list) or not value:
+            continue
+        if all(isinstance(entry, str) for entry in value):
+            texts[key] = value
+        elif isinstance(value[0], list):
+            first = [
+                row for row in value[:_ROWS] if isinstance(row, list) and len(row) == len(value[0])
+            ]
+            numbers = [[x if isinstance(x, (int, float)) else np.nan for x in row] for row in first]
+            matrices[key] = np.array(numbers, dtype=np.float64)
+    if not matrices:
+        raise LogError(
+            path, "no key holds a matrix of numbers", found=", ".join(map(repr, content)),
+            needed="a list of rows",
+        )  # fmt: skip
+    key = max(matrices, key=lambda name: matrices[name].size)
+    settings, table = _named_matrix(path, key, matrices[key], texts)
+    columns = _seen(table)
+    stated = {
+        name: value for name, value in content.items() if isinstance(value, str) and is_unit(value)
+    }
+    of_time = [value for name, value in stated.items() if "time" in name.lower()]
+    if columns and len(of_time) == 1 and not columns[0].name:
+        columns[0] = replace(columns[0], unit=of_time[0])
+    remarks = [f"sure: '{key}' is a matrix of {len(table.names)} columns"]
+    remarks += [
+        f"sure: the file states {name!r} as {value!r}; give it as unit_key of its channel"
+        for name, value in stated.items()
+    ]
+    return SeenTable("json", columns, settings, tuple(remarks))
+
+
+_LIMITS = Limits(time=60.0)
+
+_MAGIC: tuple[tuple[bytes, Format], ...] = (
+    (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "spreadsheet"),
+    (b"TDSm", "tdms"),
+    (b"PAR1", "parquet"),
+    (b"MATLAB", "matlab"),
+    (b"\x89HDF\r\n\x1a\n", "hdf5"),
+)
+
+
+@dataclass(frozen=True)
+class SniffedLayout:
+    """A proposal.
+
+    Parameters
+    ----------
+    toml : str
+        ``[layouts.NAME]`` as for campaign.toml.
+    remarks : tuple of str
+        What stands behind it; each begins with ``sure:``, ``guess:`` or ``unknown:``.
+    keys : tuple of str
+        Channels that were found.
+    """
+
+    toml: str
+    remarks: tuple[str, ...]
+    keys: tuple[str, ...]
+
+    @property
+    def settings(self) -> str:
+        """What the layout says, without comments: equal for logs that look alike."""
+        return "\n".join(line.split("  # ")[0] for line in self.toml.split("\n") if line[:1] != "#")
+
+
+def format_of(path: Path) -> Format:
+    """Format of a file by its first bytes; text that is not JSON is ``delimited``."""
+    try:
+        with path.open("rb") as stream:
+            head = stream.read(16)
+    except OSError as error:
+        raise unreadable(path, error) from error
+    for magic, name in _MAGIC:
+        if head.startswith(magic):
+            return name
+    if zipfile.is_zipfile(path):
+        return "spreadsheet"
+    return "json" if head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{") else "delimited"
+
+
+def _look(path: Path, sheet: str | None, watch: Watch) -> SeenTable:
+    kind = format_of(path)
+    if kind == "spreadsheet":
+        return bounded(look_at_sheet, path, sheet, watch=watch)
+    if kind == "json":
+        return look_at_json(path, watch)
+    if kind != "delimited":
+        return bounded(look_at_binary, path, kind, watch=watch)
+    text = look_at_text(path)
+    return SeenTable(text.format, text.columns, text.settings, text.remarks)
+
+
+def sheets_with_tables(path: Path) -> list[str]:
+    """Names of the sheets of a workbook that hold a table of numbers."""
+    return [name for name, _ in bounded(table_sheets, path, watch=Watch(path, _LIMITS))]
+
+
+def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> SniffedLayout:
+    """Propose a layout for a log.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The log.
+    name : str
+        Key of the layout.
+    sheet : str, optional
+        Sheet of a workbook; the first that holds a table of numbers where not given.
+
+    Returns
+    -------
+    sniffed : SniffedLayout
+        To be confirmed by a person.
+
+    Raises
+    ------
+    LogError
+        If the file cannot be read or is beyond a limit, or no table of numbers is found.
+    """
+    watch = Watch(path, _LIMITS)
+    with unchanged(path) as n_bytes:
+        watch.check_size(n_bytes)
+        check_not_empty(path, n_bytes)
+        seen = _look(path, sheet, watch)
+    if not seen.columns:
+        raise LogError(path, "no columns of numbers are found", needed="a log")
+    proposal = propose_channels(seen.columns)
+    lines = [f"[layouts.{name}]", f'format = "{seen.format}"']
+    lines += [f"{key} = {toml_text(value)}" for key, value in seen.settings.items()]
+    remarks = [*seen.remarks, *proposal.remarks]
+    if "time" not in proposal.keys:
+        lines.append(f'sample_interval = "{UNKNOWN}"  # or a time channel below')
+        remarks.append("unknown: the time between rows, because no column looks like time")
+    lines += [f"[layouts.{name}.channels]", *proposal.lines, ""]
+    return SniffedLayout("\n".join(lines), tuple(remarks), proposal.keys)

@@ -1,0 +1,155 @@
+"""Checks of arrays that physics functions share, and blocks of work side by side."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Bools, Floats
+from reduction.record.samples import any_sample, give_back, let_go
+
+
+def _refuse(name: str, values: Floats, bad: Bools, what: str, needed: str) -> None:
+    first = int(np.flatnonzero(bad.ravel())[0])
+    raise DataError(
+        f"{int(bad.sum())} of {bad.size} values of {name} are {what}, first at index {first}",
+        found=f"{values.ravel()[first]:g}",
+        needed=needed,
+    )
+
+
+def as_finite(name: str, values: ArrayLike) -> Floats:
+    """Return the values as float64, or raise `DataError` where one is not finite."""
+    array = np.asarray(values, dtype=np.float64)
+    # a mask of all samples is made where one is wrong
+    if array.ndim == 1 and not any_sample(
+        lambda part: ~np.isfinite(array[part]), array.size, array
+    ):
+        return array
+    bad = ~np.isfinite(array)
+    if bad.any():
+        _refuse(name, array, np.atleast_1d(bad), "not finite", "finite numbers")
+    return array
+
+
+def as_positive(name: str, values: ArrayLike) -> Floats:
+    """Return the values as float64, or raise `DataError` where one is not above zero."""
+    array = as_finite(name, values)
+    bad = ~(array > 0)
+    if bad.any():
+        _refuse(name, array, np.atleast_1d(bad), "not positive", "numbers above zero")
+    return array
+
+
+def as_increasing(name: str, values: ArrayLike) -> Floats:
+    """Return a one-dimensional series, or raise `DataError` where it does not increase."""
+    array = as_finite(name, values)
+    if array.ndim != 1:
+        raise DataError(f"{name} is not a series", found=f"shape {array.shape}", needed="1-D")
+    if any_sample(lambda part: array[1:][part] <= array[:-1][part], array.size - 1, array):
+        bad = np.concatenate([[False], np.diff(array) <= 0])
+        _refuse(name, array, bad, "not above the one before", "strictly increasing numbers")
+    return array
+
+
+def as_same_shape(**named: ArrayLike) -> tuple[Floats, ...]:
+    """Return the arrays as float64, or raise `DataError` where their shapes differ."""
+    arrays = {name: np.asarray(values, dtype=np.float64) for name, values in named.items()}
+    shapes = {array.shape for array in arrays.values()}
+    if len(shapes) > 1:
+        found = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+        raise DataError("series do not pair up", found=found, needed="equal shapes")
+    return tuple(arrays.values())
+
+
+def as_spread(name: str, value: float) -> float:
+    """Return a standard uncertainty, or raise `SettingsError` where it is negative or unknown."""
+    if not (np.isfinite(value) and value >= 0):
+        raise SettingsError(
+            f"the standard uncertainty of {name} cannot be used",
+            found=f"{value:g}",
+            needed="zero or more",
+        )
+    return float(value)
+
+
+_TOGETHER = 1 << 20  # samples of blocks that run at a time, if one is long
+
+Item = TypeVar("Item")
+
+Result = TypeVar("Result")
+
+
+def run_blocks(
+    function: Callable[[Item], Result],
+    items: Iterable[Item],
+    *,
+    samples: Sequence[NDArray[Any]] = (),
+    longest: int = 1,
+) -> list[Result]:
+    """Results of a function for each item, in the order of the items.
+
+    The blocks run in as many threads as the process may use processors.  What a block
+    holds must not depend on that number, and sums over blocks must be taken from the list,
+    so that a product has the same bytes on every machine.
+
+    Parameters
+    ----------
+    function : callable
+        Of one item; changes nothing that another block reads or writes.
+    items : iterable
+        The blocks.
+    samples : sequence of ndarray
+        Series that the blocks read or write; those on disk are let go behind each block.
+    longest : int
+        Samples of the longest block: of long ones fewer run at a time, lest their memory grows
+        with the processors. [1]
+
+    Returns
+    -------
+    results : list
+        One an item.
+
+    Raises
+    ------
+    Exception
+        What the function raises for the first item for which it does.
+
+    Examples
+    --------
+    >>> run_blocks(lambda block: sum(range(block.start, block.stop)), [slice(0, 3), slice(3, 5)])
+    [3, 7]
+    """
+    todo = list(items)
+
+    def run(item: Item) -> Result:
+        result = function(item)
+        let_go(*samples)
+        return result
+
+    n_workers = min(_n_processors(), len(todo), max(1, _TOGETHER // longest))
+    if n_workers < 2:
+        results = [run(item) for item in todo]
+    else:
+        with ThreadPoolExecutor(n_workers) as workers:
+            results = list(workers.map(run, todo))
+    give_back(*samples)
+    return results
+
+
+def _n_processors() -> int:
+    """Processors this process may use: of those of the machine, as many as it is given.
+
+    OMP_NUM_THREADS says so too, as to numerical libraries, where several processes share them.
+    """
+    available = os.cpu_count() or 1
+    if hasattr(os, "sched_getaffinity"):
+        available = len(os.sched_getaffinity(0))
+    asked = os.environ.get("OMP_NUM_THREADS", "")
+    return max(1, min(available, int(asked))) if asked.isdecimal() else available

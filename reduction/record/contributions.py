@@ -1,0 +1,677 @@
+"""Errors of a measurement, and what each one adds to a number.
+
+References
+----------
+.. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
+   in measurement," 5.1, 5.2 and F.1.2.3 (correlation by common influence quantities).
+.. [2] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
+   in measurement," 5.2, G.4 (effective degrees of freedom, Welch and Satterthwaite).
+.. [3] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
+   in measurement," F.1.2.3 (correlation by common influence quantities).
+.. [4] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
+   in measurement," 4.3.3 (expanded), 4.3.7 (rectangular), 4.3.9 (triangular), F.2.2.1
+   (resolution).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import stdtrit
+
+from reduction.record.arrays import as_positive
+from reduction.record.errors import SettingsError
+from reduction.record.measurement import Floats, Integers, read_only_arrays
+
+LINE_METHODS = {"not_given": 0, "linear": 1, "monte_carlo": 2}
+
+"""How the uncertainty of a line was found, by its code in `LineSpread`."""
+
+
+@dataclass(frozen=True)
+class InstrumentErrors:
+    """Standard uncertainties of the instruments of one specimen; zero where not stated.
+
+    All but those of a reading are of what all samples share.
+
+    Parameters
+    ----------
+    specimen : str
+        Whose tension channel it is.
+    tension_gain : float
+        Relative, of the load cell and its amplifier. [1]
+    tension_offset : float
+        Of the zero of the load cell. [N]
+    position_gain : float
+        Relative, of the crosshead's scale. [1]
+    position_offset : float
+        Of the crosshead's zero. [m]
+    lag : float
+        Of the time by which tension is logged late (or early) against position. [s]
+    diameter : float
+        Of the mean diameter. [m]
+    diameter_readings : int
+        Readings whose scatter the error of the diameter is; 0 where it is stated. [1]
+    strain_gain : float
+        Relative, of strain: what the strain method itself may miss. [1]
+    rated_break_strength : float
+        Relative. [1]
+    stiffness : float
+        Relative, of the material for the temperature of the test, which is its own. [1]
+    test : str
+        Which test.
+    tension_reading, position_reading : float
+        Of a single reading, which no other sample shares. [N], [m]
+    tension_instrument, position_instrument : str
+        Channels with one name share their gain and offset.
+    strain_model : str
+        Strain models with one name share the errors of their coefficients.
+    """
+
+    specimen: str
+    tension_gain: float = 0.0
+    tension_offset: float = 0.0
+    position_gain: float = 0.0
+    position_offset: float = 0.0
+    lag: float = 0.0
+    diameter: float = 0.0
+    diameter_readings: int = 0
+    strain_gain: float = 0.0
+    rated_break_strength: float = 0.0
+    stiffness: float = 0.0
+    tension_reading: float = 0.0
+    position_reading: float = 0.0
+    test: str = ""
+    tension_instrument: str = "load cell"
+    position_instrument: str = "crosshead"
+    strain_model: str = ""
+
+    def __post_init__(self) -> None:
+        """Refuse what is no standard uncertainty."""
+        for item in fields(self):
+            value = getattr(self, item.name)
+            if isinstance(value, float) and not (np.isfinite(value) and value >= 0):
+                raise SettingsError(
+                    f"{item.name} of '{self.specimen}' is no standard uncertainty",
+                    found=f"{value:g} in SI",
+                    needed="zero or more",
+                )
+
+
+@dataclass(frozen=True, order=True)
+class Component:
+    """One error that is drawn once.
+
+    Parameters
+    ----------
+    source : str
+        What it is called in a budget: ``tension_gain``, ``strain_calibration``, ...
+    of : str
+        Of which instrument, specimen or model; with `source` it names the error.
+    number : int
+        Where one source is several independent errors (the coefficients of a fit). [1]
+    degrees_of_freedom : float
+        Of its standard uncertainty: infinite where that is stated, few where it is the scatter of
+        a few readings. It does not tell two errors apart. [1]
+    """
+
+    source: str
+    of: str
+    number: int = 0
+    degrees_of_freedom: float = field(default=math.inf, compare=False)
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class Contributions:
+    """What each component adds to some quantities.
+
+    Parameters
+    ----------
+    component : tuple of Component, length n_components
+        Each once.
+    values : dict of str to ndarray
+        By name of the quantity: shape (n_components, ...) before the axes of the quantity;
+        the error that one standard deviation of the component makes, with its sign. [as quantity]
+    """
+
+    component: tuple[Component, ...]
+    values: dict[str, Floats] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Check that every quantity has a row for each component, and make arrays read-only."""
+        if len(set(self.component)) != len(self.component):
+            raise SettingsError("a component stands twice among the contributions")
+        for name, rows in self.values.items():
+            rows.setflags(write=False)
+            if rows.shape[:1] != (len(self.component),):
+                raise SettingsError(
+                    f"contributions to {name} do not fit their components",
+                    found=f"shape {rows.shape}",
+                    needed=f"({len(self.component)}, ...)",
+                )
+
+    @property
+    def degrees_of_freedom(self) -> Floats:
+        """Of the standard uncertainty of each component, shape (n_components,). [1]."""
+        return np.array([one.degrees_of_freedom for one in self.component])
+
+    def shared_standard_uncertainty(self, name: str) -> Floats:
+        """Root of the sum of squares over the components, in the shape of the quantity."""
+        return np.asarray(np.sqrt(np.sum(self.values[name] ** 2, axis=0)))
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class LineSpread:
+    """Uncertainty and 95 % interval of K_1, tau and N of a test, and how they were found.
+
+    Parameters
+    ----------
+    method : ndarray of int, shape (n_specimens,)
+        Of `LINE_METHODS`: linear where Monte Carlo agrees within 5 %, else Monte Carlo. [1]
+    without_solution_share : ndarray, shape (n_specimens,)
+        Of the draws. [1]
+    standard_uncertainty, low, high : dict of str to ndarray, each of shape (n_specimens,)
+        By name of the parameter; NaN where not given. [N], [s], [N s]
+    """
+
+    method: Integers
+    without_solution_share: Floats
+    standard_uncertainty: dict[str, Floats]
+    low: dict[str, Floats]
+    high: dict[str, Floats]
+
+
+CONFIDENCE = 0.95
+
+_FEWEST, _MANY = 1.0, 1e9
+
+"""Degrees of freedom below which none are counted, and above which Student's is the normal."""
+
+
+def combined_standard_uncertainty(contribution: ArrayLike, random: ArrayLike) -> Floats:
+    """Root of the sum of the squares of all contributions and of the random part.
+
+    Parameters
+    ----------
+    contribution : array_like, shape (n_components, ...)
+        Signed. [any]
+    random : array_like, shape (...)
+        Type A of the number itself. [as contribution]
+
+    Returns
+    -------
+    standard_uncertainty : ndarray, shape (...)
+        NaN where the random part is NaN. [as contribution]
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not fit.
+
+    Examples
+    --------
+    >>> print(combined_standard_uncertainty([[3.0], [0.0]], [4.0]))
+    [5.]
+    """
+    rows = np.asarray(contribution, dtype=np.float64)
+    return np.asarray(np.sqrt(np.sum(rows**2, axis=0) + np.asarray(random) ** 2))
+
+
+def effective_degrees_of_freedom(
+    random: ArrayLike,
+    degrees_of_freedom: ArrayLike,
+    *,
+    contribution: ArrayLike | None = None,
+    of_contribution: ArrayLike = np.inf,
+) -> Floats:
+    r"""Degrees of freedom of a combined uncertainty, by those of its parts.
+
+    .. math:: \nu_{eff} = \frac{u^4}{u_r^4 / \nu_r + \sum_k c_k^4 / \nu_k}
+
+    Parameters
+    ----------
+    random : array_like, shape (...)
+        Random part. [any]
+    degrees_of_freedom : array_like, shape (...)
+        Of the random part: those of the cycles, samples or readings that it is from. [1]
+    contribution : array_like, shape (n_components, ...), optional
+        Of shared errors; what is not a number counts as none. [as random]
+    of_contribution : array_like, shape (n_components,) or of the contributions, optional
+        Degrees of freedom of each of them; infinite where it is stated. [1]
+
+    Returns
+    -------
+    effective : ndarray, shape (...)
+        Infinite where nothing that is known from few readings adds to it; NaN where the random part
+        is NaN. [1]
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not fit.
+
+    Notes
+    -----
+    Welch and Satterthwaite, [2]_, G.4.1, eq. G.2b.
+
+    Examples
+    --------
+    Scatter of ten cycles alone, and beside a stated error of twice its size; the same beside a
+    diameter of three readings:
+
+    >>> print(effective_degrees_of_freedom(1.0, 9.0))
+    9.0
+    >>> for freedom in (np.inf, 2.0):
+    ...     print(effective_degrees_of_freedom(
+    ...         1.0, 9.0, contribution=[2.0], of_contribution=[freedom]).round(1))
+    225.0
+    3.1
+    """
+    part = np.asarray(random, dtype=np.float64)
+    rows = np.zeros((0, *part.shape)) if contribution is None else np.nan_to_num(contribution)
+    freedom = np.asarray(of_contribution, dtype=np.float64)
+    if freedom.ndim == 1:
+        freedom = freedom.reshape(-1, *(1,) * (rows.ndim - 1))
+    total = part**2 + np.sum(rows**2, axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # shares of the variance: fourth powers of small numbers are no numbers
+        own, shared = part**2 / total, rows**2 / total
+        few = own**2 / np.asarray(degrees_of_freedom) + np.sum(shared**2 / freedom, axis=0)
+        effective = np.where(total > 0, 1 / few, np.inf)
+    return np.asarray(np.where(np.isnan(part), np.nan, effective))
+
+
+def coverage_factor(degrees_of_freedom: ArrayLike, *, confidence: float = CONFIDENCE) -> Floats:
+    """Factor of the expanded uncertainty.
+
+    Parameters
+    ----------
+    degrees_of_freedom : array_like, shape (...)
+        Effective ones; below 1 counts as 1. [1]
+    confidence : float
+        Of the interval. [1]
+
+    Returns
+    -------
+    factor : ndarray, shape (...)
+        k; 1.96 where what is taken as known is most of it. [1]
+
+    Raises
+    ------
+    ValueError
+        Never by itself.
+
+    Notes
+    -----
+    Student's, [2]_, G.3.
+
+    Examples
+    --------
+    Ten cycles, three readings, and what is stated:
+
+    >>> print(coverage_factor([9.0, 2.0, np.inf]).round(2))
+    [2.26 4.3  1.96]
+    """
+    freedom = np.asarray(degrees_of_freedom, dtype=np.float64)
+    bounded = np.clip(freedom, _FEWEST, _MANY)
+    return np.asarray(stdtrit(bounded, (1 + confidence) / 2))
+
+
+def merged(parts: Sequence[Contributions]) -> Contributions:
+    """Contributions to different quantities, on the components of all of them.
+
+    Parameters
+    ----------
+    parts : sequence of Contributions
+        Each quantity in one of them; of one that stands in several, the last. [as quantity]
+
+    Returns
+    -------
+    contributions : Contributions
+        A component that a part does not know adds nothing to its quantities. [as quantity]
+
+    Raises
+    ------
+    SettingsError
+        If a component stands twice in a part.
+
+    Notes
+    -----
+    Components that are equal are one error ([3]_).
+
+    Examples
+    --------
+    >>> from reduction.record.contributions import Component
+    >>> gain, zero = Component("tension_gain", "cell"), Component("tension_offset", "cell")
+    >>> both = merged([Contributions((zero,), {"force": np.array([[2.0]])}),
+    ...     Contributions((gain,), {"share": np.array([[0.01]])})])
+    >>> print([one.source for one in both.component], both.values["force"].ravel())
+    ['tension_gain', 'tension_offset'] [0. 2.]
+    """
+    component, place = _together(parts)
+    values = {}
+    for part in parts:
+        rows = [place[one] for one in part.component]
+        for name, array in part.values.items():
+            table = np.zeros((len(component), *array.shape[1:]))
+            table[rows] = array
+            values[name] = table
+    return Contributions(component, values)
+
+
+def added(parts: Sequence[Contributions]) -> Contributions:
+    """Contributions to a sum, of which each part adds some.
+
+    Parameters
+    ----------
+    parts : sequence of Contributions
+        To the same quantities, in the same shapes. [as quantity]
+
+    Returns
+    -------
+    contributions : Contributions
+        What the parts say of one component, added with their signs. [as quantity]
+
+    Raises
+    ------
+    SettingsError
+        If a component stands twice in a part.
+
+    Notes
+    -----
+    Components that are equal are one error ([3]_).
+
+    Examples
+    --------
+    >>> from reduction.record.contributions import Component
+    >>> gain = (Component("tension_gain", "cell"),)
+    >>> both = added([Contributions(gain, {"force": np.array([row])}) for row in (2.0, -0.5)])
+    >>> print(both.values["force"])
+    [1.5]
+    """
+    component, place = _together(parts)
+    values: dict[str, Floats] = {}
+    for part in parts:
+        rows = [place[one] for one in part.component]
+        for name, array in part.values.items():
+            table = values.setdefault(name, np.zeros((len(component), *array.shape[1:])))
+            table[rows] += array
+    return Contributions(component, values)
+
+
+def stacked(entries: Sequence[Contributions]) -> Contributions:
+    """Contributions to the same quantities of several specimens, holds, ... along one axis.
+
+    Parameters
+    ----------
+    entries : sequence of Contributions, length n_entries
+        One a specimen; a quantity that one of them lacks is zero there. [as quantity]
+
+    Returns
+    -------
+    contributions : Contributions
+        Shape (n_components, n_entries, ...). [as quantity]
+
+    Raises
+    ------
+    ValueError
+        If a quantity has different shapes.
+
+    Notes
+    -----
+    Components that are equal are one error ([3]_).
+
+    Examples
+    --------
+    >>> from reduction.record.contributions import Component
+    >>> new, used = (Contributions((Component("diameter", name),), {"area": np.array([size])})
+    ...     for name, size in (("new", 2.0), ("used", 3.0)))
+    >>> print(stacked([new, used]).values["area"])
+    [[2. 0.]
+     [0. 3.]]
+    """
+    component, place = _together(entries)
+    shapes = {name: array.shape[1:] for part in entries for name, array in part.values.items()}
+    values = {}
+    rows = [[place[one] for one in part.component] for part in entries]
+    for name, shape in shapes.items():
+        table = np.zeros((len(component), len(entries), *shape))
+        for index, part in enumerate(entries):
+            if name in part.values:
+                table[rows[index], index] = part.values[name]
+        values[name] = table
+    return Contributions(component, values)
+
+
+def renamed(found: Contributions, names: dict[str, str]) -> Contributions:
+    """Contributions under other names; a quantity without one is left out.
+
+    Parameters
+    ----------
+    found : Contributions
+        As computed. [as quantity]
+    names : dict of str to str
+        Name to new name.
+
+    Returns
+    -------
+    contributions : Contributions
+        [as quantity]
+
+    Raises
+    ------
+    KeyError
+        If a name is not there.
+
+    Notes
+    -----
+    Nothing is computed ([3]_).
+
+    Examples
+    --------
+    >>> from reduction.record.contributions import Component
+    >>> cell = Contributions((Component("tension_gain", "cell"),), {"tension": np.array([1.0])})
+    >>> print(list(renamed(cell, {"tension": "peak_tension"}).values))
+    ['peak_tension']
+    """
+    return Contributions(found.component, {new: found.values[name] for name, new in names.items()})
+
+
+def _together(
+    parts: Sequence[Contributions],
+) -> tuple[tuple[Component, ...], dict[Component, int]]:
+    """Components of all parts, each once, and the row of each."""
+    component = tuple(sorted({one for part in parts for one in part.component}))
+    return component, {one: row for row, one in enumerate(component)}
+
+
+Shape = Literal["rectangular", "triangular", "arcsine"]
+
+_SHAPE: dict[Shape, float] = {
+    "rectangular": np.sqrt(3),
+    "triangular": np.sqrt(6),
+    "arcsine": np.sqrt(2),
+}
+
+
+def of_half_width(half_width: float, shape: Shape = "rectangular") -> float:
+    """Standard uncertainty of limits.
+
+    Parameters
+    ----------
+    half_width : float
+        The error lies within plus or minus this. [any]
+    shape : {"rectangular", "triangular", "arcsine"}
+        How it is spread between the limits; rectangular where nothing is known.
+
+    Returns
+    -------
+    standard_uncertainty : float
+        [as half_width]
+
+    Raises
+    ------
+    SettingsError
+        If the shape is not known.
+
+    Notes
+    -----
+    [4]_, 4.3.7 and 4.3.9; arcsine is that of something that swings.
+
+    Examples
+    --------
+    >>> print(round(of_half_width(0.3), 4), round(of_half_width(0.3, "triangular"), 4))
+    0.1732 0.1225
+    """
+    if shape not in _SHAPE:
+        raise SettingsError(
+            "the shape of an error is not known", found=shape, needed=" or ".join(_SHAPE)
+        )
+    return half_width / float(_SHAPE[shape])
+
+
+def of_expanded(expanded: float, coverage_factor: float) -> float:
+    """Standard uncertainty of an expanded one.
+
+    Parameters
+    ----------
+    expanded : float
+        As a certificate prints it. [any]
+    coverage_factor : float
+        Its k. [1]
+
+    Returns
+    -------
+    standard_uncertainty : float
+        [as expanded]
+
+    Raises
+    ------
+    DataError
+        If k is not positive.
+
+    Notes
+    -----
+    [4]_, 4.3.3.
+
+    Examples
+    --------
+    >>> of_expanded(0.002, 2.0)
+    0.001
+    """
+    as_positive("coverage_factor", coverage_factor)
+    return expanded / coverage_factor
+
+
+def of_resolution(resolution: float) -> float:
+    """Standard uncertainty of a last digit.
+
+    Parameters
+    ----------
+    resolution : float
+        One step of the indication. [any]
+
+    Returns
+    -------
+    standard_uncertainty : float
+        [as resolution]
+
+    Raises
+    ------
+    DataError
+        Never.
+
+    Notes
+    -----
+    [4]_, F.2.2.1: half a step to either side, all equally likely.
+
+    Examples
+    --------
+    >>> print(round(of_resolution(0.1), 4))
+    0.0289
+    """
+    return resolution / float(np.sqrt(12))
+
+
+@dataclass(frozen=True)
+class StatedErrors:
+    """Standard uncertainties that a campaign states; zero where it says nothing.
+
+    Parameters
+    ----------
+    tension_gain, position_gain : float
+        Relative. [1]
+    tension_offset, tension_reading : float
+        Of the zero, and of a single reading (noise and resolution). [N]
+    position_offset, position_reading : float
+        The same of the crosshead. [m]
+    lag : float
+        [s]
+    diameter : float
+        Of the mean diameter of a specimen. [m]
+    strain_gain, rated_break_strength, stiffness : float
+        Relative: of the strain method, of the break strength, and of the stiffness for the
+        temperature of the test. [1]
+    has_one_load_cell : bool
+        All tension channels share the errors of one load cell.
+    """
+
+    tension_gain: float = 0.0
+    tension_offset: float = 0.0
+    tension_reading: float = 0.0
+    position_gain: float = 0.0
+    position_offset: float = 0.0
+    position_reading: float = 0.0
+    lag: float = 0.0
+    diameter: float = 0.0
+    strain_gain: float = 0.0
+    rated_break_strength: float = 0.0
+    stiffness: float = 0.0
+    has_one_load_cell: bool = False
+
+    @property
+    def has_any(self) -> bool:
+        """True where an error is stated at all."""
+        return any(getattr(self, item.name) for item in fields(self) if item.type == "float")
+
+    def of_channel(
+        self,
+        specimen: str,
+        *,
+        channel: int,
+        test: str,
+        load_cell: str = "",
+        machine: str = "",
+        strain_model: str = "",
+    ) -> InstrumentErrors:
+        """What they are for one specimen of one test; channels count from 1."""
+        return InstrumentErrors(
+            specimen=specimen,
+            test=test,
+            tension_gain=self.tension_gain,
+            tension_offset=self.tension_offset,
+            position_gain=self.position_gain,
+            position_offset=self.position_offset,
+            lag=self.lag,
+            diameter=self.diameter,
+            strain_gain=self.strain_gain,
+            rated_break_strength=self.rated_break_strength,
+            stiffness=self.stiffness,
+            tension_reading=self.tension_reading,
+            position_reading=self.position_reading,
+            tension_instrument=self.load_cell_name(load_cell, channel=channel),
+            position_instrument=machine or "crosshead",
+            strain_model=strain_model or specimen,
+        )
+
+    def load_cell_name(self, load_cell: str, *, channel: int) -> str:
+        """By which tests share the errors of a load cell; channels count from 1."""
+        cell = load_cell or "load cell"
+        return cell if self.has_one_load_cell else f"{cell}, channel {channel}"

@@ -1,0 +1,392 @@
+"""Specimens, splice marks, records with quality flags, and where they came from.
+
+No clock and no file access here: hashes are taken in `reduction.readers`, times
+come in from the command line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import IntFlag
+from math import pi
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.record.errors import DataError
+
+_T = TypeVar("_T")
+
+Floats = NDArray[np.float64]
+
+Integers = NDArray[np.integer[Any]]
+
+Bools = NDArray[np.bool_]
+
+
+class Quality(IntFlag):
+    """Masks of `quality_flag`: what is known against a sample.  Nothing is deleted.
+
+    The order is the contract's; the values are powers of two and never change.
+    """
+
+    MISSING = 1
+    GAP = 2
+    REPEATED_OR_BACKWARD_TIME = 4
+    SATURATED = 8
+    STUCK = 16
+    SPIKE = 32
+    OUTSIDE_VERIFIED_RANGE = 64
+    NOT_CONSTANT_RATE = 128
+    RESAMPLED = 256
+    EXTRAPOLATED = 512
+
+
+# of the width of a flag, lest a sum with it is wider
+UNUSABLE = np.uint16(Quality.MISSING | Quality.SATURATED | Quality.STUCK | Quality.SPIKE)
+
+"""Flags of samples that no number may rest on."""
+
+
+def read_only_arrays(cls: type[_T]) -> type[_T]:
+    """Make every array of an instance non-writeable when it is made, before its own checks."""
+    check: Callable[[Any], None] | None = cls.__dict__.get("__post_init__")
+
+    def freeze_and_check(self: Any) -> None:
+        for value in vars(self).values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+        if check is not None:
+            check(self)
+
+    cls.__post_init__ = freeze_and_check  # type: ignore[attr-defined]
+    return cls
+
+
+def require_shapes(product: object, shapes: Mapping[str, tuple[int, ...]], *, of: str) -> None:
+    """Raise `DataError` where an array of a product has another shape than it has to have."""
+    for name, shape in shapes.items():
+        found = getattr(product, name).shape
+        if found != shape:
+            raise DataError(f"{name} does not fit the {of}", found=str(found), needed=str(shape))
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """One tether, hose or rope as it was before the test.
+
+    Parameters
+    ----------
+    name : str
+        Key of the specimen in the campaign.
+    kind : str
+        ``rubber tether``, ``stretch hose``, ``rope``, ``wire`` or ``elastomer``.
+    diameter : tuple of float
+        Readings before stretch; the nominal area uses their mean. Empty where
+        no diameter is known. [m]
+    stretched_diameters : tuple of (float, float)
+        Pairs (strain, diameter) read on the stretched specimen, for the
+        constant-volume check. [1], [m]
+    rated_break_strength : float or None
+        Stated once for a specimen. [N]
+    linear_density, wet_linear_density : float or None
+        Mass a length in air, and less the water it displaces, where stated; the wet one of what
+        floats is negative. [kg m-1]
+    gauge_length : float or None
+        Distance between gauge marks at zero tension, where marked. [m]
+    gauge_length_standard_uncertainty : float or None
+        Its standard uncertainty, where stated. [m]
+    earlier_cycles, earlier_flex_cycles : int or None
+        Cycles of tension, and of flexing, before the first test of the campaign. [1]
+    material, condition, construction : str
+        In the laboratory's words; empty where not given.
+    """
+
+    name: str
+    kind: str = "rubber tether"
+    material: str = ""
+    condition: str = ""
+    diameter: tuple[float, ...] = ()
+    stretched_diameters: tuple[tuple[float, float], ...] = ()
+    rated_break_strength: float | None = None
+    rated_break_strength_source: str = ""
+    gauge_length: float | None = None
+    notes: tuple[str, ...] = ()
+    construction: str = ""
+    gauge_length_standard_uncertainty: float | None = None
+    earlier_cycles: int | None = None
+    earlier_flex_cycles: int | None = None
+    linear_density: float | None = None
+    wet_linear_density: float | None = None
+
+    @property
+    def mean_diameter(self) -> float:
+        """Mean of the diameter readings before stretch. [m]."""
+        if not self.diameter:
+            raise DataError(
+                f"specimen '{self.name}' has no diameter",
+                needed="at least one diameter reading before stretch",
+                hint=f"Give specimens.{self.name}.diameter in campaign.toml.",
+            )
+        return float(np.mean(self.diameter))
+
+    @property
+    def diameter_scatter(self) -> float:
+        """Standard uncertainty of the mean diameter by its readings; NaN of one alone. [m]."""
+        if len(self.diameter) < 2:
+            return float("nan")
+        return float(np.std(self.diameter, ddof=1) / np.sqrt(len(self.diameter)))
+
+    @property
+    def area(self) -> float:
+        """Cross-sectional area at zero tension (WHOI-2005-10, eq. 2). [m2]."""
+        return pi * self.mean_diameter**2 / 4
+
+    @property
+    def is_rubber(self) -> bool:
+        """Whether laws of rubber apply: not where cords, fibres or wires carry."""
+        return self.kind in ("rubber tether", "elastomer")
+
+    @property
+    def is_rope(self) -> bool:
+        """Whether a rope laboratory's programme applies."""
+        return self.kind in ("rope", "wire")
+
+
+def areas_of(specimens: tuple[Specimen, ...]) -> Floats:
+    """Cross-sectional area of each specimen; NaN without diameter, but of rubber. [m2].
+
+    A rope or a hose is known by its spring constants, which need no area; rubber without one
+    is refused.
+    """
+    return np.array([one.area if one.diameter or one.is_rubber else np.nan for one in specimens])
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class SpliceMarks:
+    """Tape readings at the splice toes of one specimen, one row a reading.
+
+    ``near_toe``, ``far_toe`` and ``far_thimble`` are read from the near thimble.
+
+    Parameters
+    ----------
+    specimen : str
+        Which specimen was read.
+    test : tuple of str, length n_marks
+        Test in which each row was read.
+    hold : tuple of str, length n_marks
+        ``slack``, ``min``, ``centre``, ``max`` or a strain as text.
+    near_toe, far_toe, far_thimble : ndarray, shape (n_marks,)
+        Positions of the toes and of the far thimble. [m]
+    reading_uncertainty : float
+        Standard uncertainty of one tape reading. [m]
+    """
+
+    specimen: str
+    test: tuple[str, ...]
+    hold: tuple[str, ...]
+    near_toe: Floats
+    far_toe: Floats
+    far_thimble: Floats
+    reading_uncertainty: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check that a row is 0 < near toe < far toe < far thimble."""
+        ordered = (
+            (self.near_toe > 0) & (self.near_toe < self.far_toe) & (self.far_toe < self.far_thimble)
+        )
+        if not np.all(ordered):
+            bad = int(np.flatnonzero(~ordered)[0])
+            raise DataError(
+                f"{int(np.sum(~ordered))} of {ordered.size} mark rows of '{self.specimen}' "
+                f"contradict themselves, first test {self.test[bad]}, hold {self.hold[bad]}",
+                found=f"near toe {self.near_toe[bad]:g} m, far toe {self.far_toe[bad]:g} m, "
+                f"far thimble {self.far_thimble[bad]:g} m",
+                needed="0 < near toe < far toe < far thimble",
+                hint="Correct the row in the marks file.",
+            )
+
+    @property
+    def free_length(self) -> Floats:
+        """Splice toe to splice toe, shape (n_marks,). [m]."""
+        return self.far_toe - self.near_toe
+
+    @property
+    def splice_length(self) -> Floats:
+        """Both splices together, shape (n_marks,). [m]."""
+        return self.far_thimble - self.free_length
+
+    @property
+    def is_slack(self) -> Bools:
+        """Rows read on the slack specimen, shape (n_marks,)."""
+        return np.array([hold == "slack" for hold in self.hold], dtype=bool)
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class Record:
+    """One test in SI, every row of the log kept.
+
+    A sample that is missing is NaN and carries a flag.  Position and tension are as they
+    were logged: a sample that is flagged (a spike, a stuck or saturated channel) keeps its
+    number here, and `reduction.pipeline.located_test` hands on a copy without those that no
+    number may rest on.
+
+    Parameters
+    ----------
+    test_id : str
+        Key of the test in the campaign.
+    specimens : tuple of str, length n_specimens
+        Names, in the order of the first axis of ``tension``.
+    time : ndarray, shape (n_samples,)
+        Elapsed time as logged. [s]
+    crosshead_position : ndarray, shape (n_samples,)
+        Thimble-to-thimble length, or a displacement where
+        ``position_is_length`` is false; as logged, flagged samples too. [m]
+    tension : ndarray, shape (n_specimens, n_samples)
+        As logged, flagged samples too; sign and zero applied. [N]
+    quality_flag : ndarray of uint16, shape (n_specimens, n_samples)
+        Masks of `Quality` for tension.
+    crosshead_position_quality_flag : ndarray of uint16, shape (n_samples,)
+        Masks of `Quality` for time and position.
+    measured_strain : ndarray, shape (n_specimens, n_samples), optional
+        From an extensometer, where there is one. [1]
+    cycle_counter : ndarray of int, shape (n_samples,), optional
+        The machine's own count.
+    n_rows_read : int
+        Data rows in the file or files.
+    tension_standard_uncertainty : tuple of float, length n_specimens
+        As declared in the layout; NaN where not declared. [N]
+    position_standard_uncertainty : float
+        As declared in the layout; NaN where not declared. [m]
+    metadata : dict of str to str
+        Preamble rows of the file, as printed there.
+    notes : tuple of str
+        What a reader of the product has to know.
+    """
+
+    test_id: str
+    specimens: tuple[str, ...]
+    time: Floats
+    crosshead_position: Floats
+    tension: Floats
+    quality_flag: NDArray[np.uint16]
+    crosshead_position_quality_flag: NDArray[np.uint16]
+    measured_strain: Floats | None = None
+    cycle_counter: Integers | None = None
+    position_is_length: bool = True
+    n_rows_read: int = 0
+    tension_standard_uncertainty: tuple[float, ...] = ()
+    position_standard_uncertainty: float = float("nan")
+    metadata: dict[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Check shapes once and make the arrays read-only."""
+        n_samples = self.time.shape[0]
+        shapes = {
+            "crosshead_position": (n_samples,),
+            "crosshead_position_quality_flag": (n_samples,),
+            "tension": (len(self.specimens), n_samples),
+            "quality_flag": (len(self.specimens), n_samples),
+        }
+        require_shapes(self, shapes, of="record")
+
+    @property
+    def n_samples(self) -> int:
+        """Number of rows kept."""
+        return int(self.time.shape[0])
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class StepReadings:
+    """Readings of a stepwise test in SI, one row a weight; arrays have shape (n_steps,).
+
+    ``clock`` is the text of the log; ``printed_strain`` the elongation as recorded,
+    ``eye_to_eye_length`` and it NaN where the log lacks them.
+    """
+
+    clock: tuple[str, ...]
+    time: Floats
+    tension: Floats
+    length: Floats
+    eye_to_eye_length: Floats
+    printed_strain: Floats
+    length_standard_uncertainty: float = float("nan")
+    tension_standard_uncertainty: float = float("nan")
+    metadata: dict[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Source:
+    """One raw file.
+
+    Parameters
+    ----------
+    name : str
+        File name relative to the campaign folder.
+    sha256 : str
+        Hash of its bytes, hexadecimal.
+    size : int
+        Number of bytes.
+    """
+
+    name: str
+    sha256: str
+    size: int
+
+
+@dataclass(frozen=True)
+class Step:
+    """One stage that has returned, with what it used.
+
+    Parameters
+    ----------
+    name : str
+        The stage, as the folder is called.
+    text : str
+        What it did, with the numbers it found or was given.
+    """
+
+    name: str
+    text: str
+
+    def line(self, version: str) -> str:
+        """One line of the netCDF ``history`` attribute; no clock in it."""
+        return f"reduction {version} {self.name}: {self.text}"
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where an archive that several tests or files go into came from, and how it was made.
+
+    Parameters
+    ----------
+    campaign_id : str
+        Of the campaign.
+    attributes : mapping of str to str
+        What the laboratory said of the campaign.
+    sources : sequence of Source
+        The files that it was made from.
+    steps : sequence of Step
+        History lines.
+    settings_json : str
+        Every setting that was in force, and every number that was given.
+    version : str
+        Version of this software.
+    command : str
+        What the user asked for, without paths, jobs and scheduler.
+    """
+
+    campaign_id: str
+    attributes: Mapping[str, str]
+    sources: Sequence[Source]
+    steps: Sequence[Step]
+    settings_json: str
+    version: str
+    command: str

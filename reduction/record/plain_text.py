@@ -1,0 +1,260 @@
+"""Texts from files of strangers, as they may be shown.
+
+An address may hold a password before its host, or a signature behind its path.  Neither is
+ever said, written or kept.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import unicodedata
+
+_LONGEST = 2000  # characters of a part of a message
+
+_KEPT = "\n\t"
+
+_FORMULA = re.compile(r"'*[=+\-@\t\r]")
+
+_NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?|[+-]?(inf|nan)|-")
+
+# controls; format characters, which turn or hide text; line and paragraph separators; halves of
+# pairs, which no file can hold
+_CATEGORIES = ("Cc", "Cf", "Zl", "Zp", "Cs")
+
+
+class _Shown(dict[int, str]):
+    """What each character is shown as, found when it is first met."""
+
+    def __missing__(self, code: int) -> str:
+        sign = chr(code)
+        if sign not in _KEPT and unicodedata.category(sign) in _CATEGORIES:
+            sign = sign.encode("unicode_escape").decode("ascii")
+        self[code] = sign
+        return sign
+
+
+_SHOWN = _Shown()
+
+
+def visible(text: str) -> str:
+    r"""A text with its control characters spelt out.
+
+    Parameters
+    ----------
+    text : str
+        Any; line ends and tabs stay.
+
+    Returns
+    -------
+    shown : str
+        The same where it has none.
+
+    Examples
+    --------
+    >>> print(visible("red\x1b[31m, \u202ebackwards"))
+    red\x1b[31m, \u202ebackwards
+    """
+    return text if text.isprintable() else text.translate(_SHOWN)
+
+
+def toml_text(value: object) -> str:
+    r"""Texts, lists of them and plain values as TOML, with nothing in them that is not seen.
+
+    Parameters
+    ----------
+    value : object
+        Text, number, boolean, or a list of these.
+
+    Returns
+    -------
+    toml : str
+        What stands behind the sign of equality.
+
+    Examples
+    --------
+    >>> print(toml_text(["mm", "a\"b\x7f"]))
+    ["mm", "a\"b\u007f"]
+    """
+    text = json.dumps(value, ensure_ascii=False)
+    if text.isprintable():
+        return text
+    return "".join(sign if sign.isprintable() else _escaped(ord(sign)) for sign in text)
+
+
+def _escaped(code: int) -> str:
+    return f"\\u{code:04x}" if code < 1 << 16 else f"\\U{code:08x}"
+
+
+def toml_comment(text: str) -> str:
+    """A text on one line, to stand behind ``#``."""
+    return " ".join(visible(text.replace("\n", "\\n")).split())
+
+
+def safe_cell(text: str) -> str:
+    """A text as a cell of a CSV file that no spreadsheet program takes for a formula.
+
+    Parameters
+    ----------
+    text : str
+        As it is.
+
+    Returns
+    -------
+    cell : str
+        With an apostrophe in front where it begins with ``=``, ``+``, ``-``, ``@``, a tab or a
+        carriage return and is no number, or where apostrophes alone stand before such a sign.
+
+    Examples
+    --------
+    >>> [safe_cell(text) for text in ("=1+1", "-1.5", "-x", "T-1", "'=a")]
+    ["'=1+1", '-1.5', "'-x", 'T-1', "''=a"]
+    """
+    is_formula = _FORMULA.match(text) is not None and _NUMBER.fullmatch(text) is None
+    return f"'{text}" if is_formula else text
+
+
+def bare_cell(cell: str) -> str:
+    """What `safe_cell` was given.
+
+    Examples
+    --------
+    >>> [bare_cell(cell) for cell in ("'=1+1", "-1.5", "''=a", "'tis")]
+    ['=1+1', '-1.5', "'=a", "'tis"]
+    """
+    return cell[1:] if cell.startswith("'") and _FORMULA.match(cell) else cell
+
+
+def cut(text: str, longest: int = _LONGEST) -> str:
+    """A text of at most so many characters, with how many more there were.
+
+    Examples
+    --------
+    >>> cut("x" * 2005)[-20:]
+    'xxxxxxxx... (5 more)'
+    """
+    if len(text) <= longest:
+        return text
+    return f"{text[:longest]}... ({len(text) - longest} more)"
+
+
+_SCHEME = r"[A-Za-z][A-Za-z0-9+.\-]*://"
+
+_IN_TEXT = re.compile(rf"{_SCHEME}[^\s'\"<>]*")
+
+_STOPS = ".,:;)"
+
+_PORT = re.compile(r":\d*")
+
+_SHORTEST = 4  # characters of a secret: a shorter one stands in every other word
+
+
+def is_address(text: str) -> bool:
+    """Whether a text names something on the net, rather than a file of this machine.
+
+    Parameters
+    ----------
+    text : str
+        As a person wrote it.
+
+    Returns
+    -------
+    is_address : bool
+        True of ``scheme://..``, also where one scheme is chained to another.
+
+    Examples
+    --------
+    >>> [is_address(text) for text in ("s3://bucket/T-1.csv", "raw/T-1.csv", "C:/raw/T-1.csv")]
+    [True, False, False]
+    """
+    return "://" in text
+
+
+def shown_address(address: str) -> str:
+    """An address without user, password, query and fragment.
+
+    Parameters
+    ----------
+    address : str
+        One address.
+
+    Returns
+    -------
+    shown : str
+        What may stand in a product and in a message.
+
+    Examples
+    --------
+    >>> shown_address("https://ann:secret@host:8080/raw/T-1.csv?signature=abc#row")
+    'https://host:8080/raw/T-1.csv'
+    """
+    scheme, _, rest = re.split(r"[?#]", address, maxsplit=1)[0].partition("://")
+    host, slash, path = rest.partition("/")
+    if "@" in host:
+        host = host.rpartition("@")[2]
+    elif _has_password(host):
+        # a key with a slash in it, unquoted: what comes before the last @ is no path
+        _, at, behind = path.rpartition("@")
+        host, slash, path = behind.partition("/") if at else ("...", slash, path)
+    return f"{scheme}://{host}{slash}{path}"
+
+
+def _has_password(host: str) -> bool:
+    """A colon, and neither a port nor the digits of IPv6 behind it."""
+    name, colon, _ = host.partition(":")
+    return bool(colon) and not host.startswith("[") and not _PORT.fullmatch(host[len(name) :])
+
+
+def without_secrets(text: str) -> str:
+    """A text in which every address is as `shown_address` gives it.
+
+    Parameters
+    ----------
+    text : str
+        A message.
+
+    Returns
+    -------
+    text : str
+        The same where it holds no address.
+
+    Examples
+    --------
+    >>> without_secrets("found 'https://ann:secret@host/T.csv?sig=abc', needed a file")
+    "found 'https://host/T.csv', needed a file"
+    """
+    if "://" not in text:
+        return text
+    return _IN_TEXT.sub(_shown, text)
+
+
+def _shown(found: re.Match[str]) -> str:
+    """What may be shown of an address; a stop behind it is of the sentence."""
+    address = found[0].rstrip(_STOPS)
+    return shown_address(address) + found[0][len(address) :]
+
+
+def secrets_of(address: str) -> tuple[str, ...]:
+    """What of an address is not to be shown, piece by piece.
+
+    Parameters
+    ----------
+    address : str
+        One address.
+
+    Returns
+    -------
+    secrets : tuple of str
+        User and password, and the values of the query; the longest first.
+
+    Examples
+    --------
+    >>> secrets_of("https://ann:secret@host/T.csv?signature=abcdef")
+    ('signature=abcdef', 'secret', 'abcdef')
+    """
+    path, _, behind = address.partition("?")
+    before = path.partition("://")[2].rpartition("@")[0]
+    pieces = [*before.split(":", 1), behind]
+    pieces += [part.partition("=")[2] for part in re.split(r"[&#;]", behind)]
+    found = dict.fromkeys(piece for piece in pieces if len(piece) >= _SHORTEST)
+    return tuple(sorted(found, key=len, reverse=True))

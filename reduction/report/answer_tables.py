@@ -1,0 +1,442 @@
+"""Tables of the answers: design moduli, budgets, conformity."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from reduction.archive.uncertainty_budget import (
+    all_budgets,
+    budget_from_archive,
+    cycles_averaged,
+    place_name,
+)
+from reduction.archive.write import Limit, ReportDetails
+from reduction.quantities.names import BRANCH_NAMES, quantity
+from reduction.quantities.units import UnitSystem, display_unit
+from reduction.record.errors import ReductionError
+from reduction.record.measurement import Floats
+from reduction.record.notes import severity_of
+from reduction.report.test_view import (
+    DRAWN,
+    TestView,
+    all_specimens,
+    any_synthetic,
+    drawn_interval,
+    expanded_of,
+    factor_words,
+    instrument_sentences,
+    plus_minus_of_tests,
+)
+from reduction.report.text_style import (
+    NOT_GIVEN,
+    Cell,
+    Kind,
+    Shown,
+    Table,
+    factors_of,
+    in_order,
+    make_table,
+    measured,
+    number,
+    number_text,
+    shown,
+    source_meanings,
+    source_words,
+    span,
+    superscript,
+    within,
+    words,
+)
+from reduction.stages.moduli.local_regression import curve_at
+from reduction.uncertainty.budget import Budget, DecisionRule, conformity
+
+_ANSWERS: tuple[tuple[str, str, Kind], ...] = (
+    ("segment_modulus", "", "stress"),
+    ("test_apparent_spring_constant", "K_ap", "tension"),
+    ("test_hysteresis_energy", "H", "energy"),
+    ("test_dissipation_spring_constant", "K_1", "tension"),
+    ("test_relaxation_time", "tau", "time"),
+    ("interval_modulus", "", "stress"),
+)
+
+_NAMES = " K_ap: apparent spring constant. H: hysteresis energy."
+
+_LINE_NAMES = " K_1, tau: dissipation spring constant and relaxation time of the line."
+
+_SMALL = 0.005
+
+
+@dataclass(frozen=True)
+class AnswerBudget:
+    """One answer of a test: what it is, of which specimen, in which unit, and its budget.
+
+    ``drawn`` is its interval where that was found by Monte Carlo; the shares are of first order.
+    """
+
+    words: str
+    specimen: str
+    unit: Shown
+    budget: Budget
+    drawn: tuple[float, float] | None = None
+
+    @staticmethod
+    def sources_of(answers: Sequence[AnswerBudget]) -> list[str]:
+        """Every source that has a part in any of the answers, in fixed order."""
+        return in_order({row.source for one in answers for row in one.budget.rows if row.share > 0})
+
+    @property
+    def cell(self) -> Cell:
+        """Value and expanded uncertainty, without the unit."""
+        one = self.budget
+        if self.drawn is not None:
+            return within(one.value, *self.drawn, self.unit)
+        return measured(one.value, one.expanded_uncertainty, self.unit, factor=one.coverage_factor)
+
+    @property
+    def text(self) -> str:
+        """Value, expanded uncertainty and unit; a plain number has none."""
+        unit = "" if self.unit.unit == "1" else f" {self.unit.unit}"
+        return f"{self.cell.text}{unit}"
+
+    def share(self, source: str) -> float:
+        """Share of a source in the variance; several errors of one source together. [1]."""
+        return float(sum(row.share for row in self.budget.rows if row.source == source))
+
+    def in_words(self) -> str:
+        """Sources with their shares, largest first; what is below half a percent is left out."""
+        shares = {name: self.share(name) for name in self.sources_of([self])}
+        ordered = sorted(shares, key=lambda name: -shares[name])
+        return ", ".join(
+            f"{source_words(name)} {100 * shares[name]:.0f} %"
+            for name in ordered
+            if shares[name] >= _SMALL
+        )
+
+
+def answer_budgets(view: TestView) -> list[AnswerBudget]:
+    """Return the budgets of the answers of a test: segments, K_ap, H, K_1, tau; of weights slopes.
+
+    Parameters
+    ----------
+    view : TestView
+        Of a reduced test; one that keeps no shared errors has no budget to show.
+
+    Returns
+    -------
+    answers : list of AnswerBudget
+        By quantity, in the order of the archive.
+    """
+    names = view.data["specimen"].values if "specimen" in view.data else ()
+    places = {str(name): place for place, name in enumerate(names)}
+    found = []
+    for name, text, kind in _ANSWERS:
+        for one in all_budgets(view.data, name):
+            if not (np.isfinite(one.standard_uncertainty) and one.standard_uncertainty > 0):
+                continue
+            # a test with weights has one specimen
+            place = places[one.place["specimen"]] if "specimen" in one.place else 0
+            found.append(
+                AnswerBudget(
+                    text or _words_of(view, one),
+                    view.specimens[place],
+                    shown(kind, view.units),
+                    one,
+                    drawn_interval(view, name, place),
+                )
+            )
+    return found
+
+
+def _words_of(view: TestView, one: Budget) -> str:
+    """Which segment it is, or between which readings."""
+    if "segment" in one.place:
+        return f"segment {one.place['segment']}, {one.place['branch_name']}"
+    after = int(one.place["interval"])
+    clock = view.texts("clock")
+    return f"{clock[after - 1]} to {clock[after]}" if all(clock) else f"interval {after}"
+
+
+def budget_table(view: TestView, answers: Sequence[AnswerBudget]) -> Table | None:
+    """Return the numbers of the bars: value, uncertainty, factor, and the share of each source."""
+    if not answers:
+        return None
+    sources = AnswerBudget.sources_of(answers)
+    rows = [
+        [
+            words(f"{one.words}, {one.specimen}"),
+            one.cell,
+            words(one.unit.unit),
+            number(float("nan") if one.drawn else one.budget.coverage_factor, digits=3),
+            *(_share(one.share(source)) for source in sources),
+        ]
+        for one in answers
+    ]
+    has_line = any(one.words == "tau" for one in answers)
+    names = _NAMES if any(one.words in ("K_ap", "H") for one in answers) else ""
+    factors = factor_words(k for one in answers for k in one.cell.factors)
+    return make_table(
+        "Share of each source in the variance of the answers.",
+        ("number", "value", "unit", "k [1]", *(f"{source_words(one)} [%]" for one in sources)),
+        rows, synthetic=view.is_synthetic, is_compact=True,
+        remarks=[
+            f"±: expanded uncertainty, 95 % ({factors}).{names}{_LINE_NAMES if has_line else ''}",
+            *([f"{DRAWN} Shares are of first order."] if any(one.drawn for one in answers) else []),
+            source_meanings(sources),
+        ],
+    )  # fmt: skip
+
+
+def _share(value: float) -> Cell:
+    return Cell(f"{100 * value:.1f}", repr(value), is_number=True)
+
+
+def budget_sentences(view: TestView, answers: Sequence[AnswerBudget]) -> list[str]:
+    """Say where nothing is stated of the instruments: a bar without them is not all there is."""
+    return instrument_sentences([view]) if answers else []
+
+
+_WHOLE, _OF_ROPE = "test_dynamic_modulus", "test_apparent_spring_constant"
+
+_TANGENT = "tangent_modulus"
+
+_MOST_ROWS = 24
+
+
+def design_modulus_table(tests: Sequence[TestView]) -> Table | None:
+    """Return the moduli to design with: of the whole cycle, and of each branch at its middle.
+
+    Parameters
+    ----------
+    tests : sequence of TestView
+        Of a campaign; those without cycles have no row.
+
+    Returns
+    -------
+    table : Table or None
+        None where no test has a modulus of its cycles.
+    """
+    order = all_specimens(tests)
+    is_of_ropes = bool(tests) and all(view.is_rope for view in tests)
+    whole = _OF_ROPE if is_of_ropes else _WHOLE
+    by_test = [(view, list(_rows(view, whole))) for view in tests]
+    found = [row for _, rows in by_test for row in rows]
+    found.sort(key=lambda row: order.index(row[0].text))
+    if not found:
+        return None
+    units = tests[0].units
+    stress, percent = shown("stress", units), shown("strain", units)
+    columns = (
+        "specimen", "test", percent.label("strain of the cycles"), "frequency [Hz]",
+        (shown("tension", units) if is_of_ropes else stress).label("whole cycle"),
+        stress.label("ascending"), stress.label("descending"),
+        "cycles used [1]", "k [1]", "warnings [1]",
+    )  # fmt: skip
+    return make_table(
+        f"{'Stiffness' if is_of_ropes else 'Modulus'} to design with: of the whole cycle, which is"
+        f" amplitude of {'tension' if is_of_ropes else 'stress'} over amplitude of strain, and of"
+        " each branch the tangent modulus at the middle of the strain of the cycles; means over the"
+        " cycles.",
+        columns, found, synthetic=any_synthetic(tests), is_compact=True,
+        is_tall=len(found) > _MOST_ROWS,
+        remarks=[
+            plus_minus_of_tests(
+                factors_of(found), [view for view, rows in by_test if rows], [whole, _TANGENT]
+            ),
+            "Cycles used: of the whole cycle, then of the tangents where those differ."
+            f" {NOT_GIVEN}: a branch has no trustworthy value there, and its section says why."
+            " A modulus holds for the strains of its own test: a greater amplitude or a higher"
+            " mean has another.",
+        ],
+    )  # fmt: skip
+
+
+def _rows(view: TestView, name: str) -> Iterator[list[Cell]]:
+    whole, middle = view.array(name), view.array("test_mean_strain")
+    half_range = view.array("test_strain_amplitude")
+    if whole is None or middle is None or half_range is None:
+        return
+    stress, percent = shown("stress", view.units), shown("strain", view.units)
+    unit = stress if name == _WHOLE else shown("tension", view.units)
+    spread = expanded_of(view, name, whole)
+    frequency = view.array_like("test_frequency", whole)
+    doubts = _doubts(view)
+    averaged = np.broadcast_to(cycles_averaged(view.data, name), whole.shape)
+    for place in np.flatnonzero(np.isfinite(whole)).tolist():
+        tangents, counts = _tangents(view, place, float(middle[place]))
+        cells = [
+            measured(whole[place], spread.half[place], unit, factor=spread.factor[place]),
+            *tangents,
+        ]
+        low, high = (float(middle[place] + side * half_range[place]) for side in (-1, 1))
+        yield [
+            words(view.specimens[place]),
+            words(f"{view.id} (earlier run)" if view.is_of_earlier_run else view.id),
+            span(low, high, percent, places=0),
+            number(float(frequency[place]), digits=2),
+            *cells,
+            Cell(_used(int(averaged[place]), counts), str(averaged[place]), is_number=True),
+            Cell(_factor_text(cells), is_number=True),
+            Cell(f"{doubts}" if doubts else "none", f"{doubts}", is_number=True),
+        ]
+
+
+def _tangents(view: TestView, specimen: int, strain: float) -> tuple[list[Cell], list[int]]:
+    """Return the tangent modulus of both branches at a strain, and how many cycles are in it."""
+    bins, modulus = view.array("strain_bin"), view.array(_TANGENT)
+    missing = Cell(NOT_GIVEN, is_number=True)
+    if bins is None or modulus is None or bins.size == 0:
+        return [missing] * len(BRANCH_NAMES), []
+    spacing = float(np.min(np.diff(bins))) if bins.size > 1 else 0.0
+    spread = expanded_of(view, _TANGENT, modulus)
+    counts = view.array_like(f"{_TANGENT}_count", modulus)
+    branches = view.texts("branch_name") or BRANCH_NAMES
+    nearest = int(np.argmin(np.abs(bins - strain)))
+    cells: list[Cell] = []
+    used: list[int] = []
+    for name in BRANCH_NAMES:
+        own = (specimen, branches.index(name))
+
+        def at_middle(curve: Floats, own: tuple[int, int] = own) -> float:
+            return float(curve_at([strain], bins, curve[own], spacing=spacing)[0])
+
+        value, half, factor = map(at_middle, (modulus, spread.half, spread.factor))
+        cells.append(measured(value, half, shown("stress", view.units), factor=factor))
+        if np.isfinite(value) and np.isfinite(counts[own][nearest]):
+            used.append(int(counts[own][nearest]))
+    return cells, used
+
+
+def _used(n_cycles: int, counts: Sequence[int]) -> str:
+    """Return how many cycles stand behind a row: one number where it is the same of all.
+
+    Examples
+    --------
+    >>> _used(3000, [20, 19]), _used(10, [10, 10]), _used(10, [])
+    ('3,000; 19 to 20', '10', '10')
+    """
+    ends = dict.fromkeys(f"{one:,}" for one in (min(counts), max(counts))) if counts else {}
+    of_curve = " to ".join(ends)
+    return "; ".join(dict.fromkeys(text for text in (f"{n_cycles:,}", of_curve) if text))
+
+
+def _factor_text(cells: Sequence[Cell]) -> str:
+    ends = [f"{one:.2f}" for one in sorted(factors_of([cells]))]
+    return " to ".join(dict.fromkeys([ends[0], ends[-1]])) if ends else NOT_GIVEN
+
+
+def _doubts(view: TestView) -> int:
+    notes = zip(view.texts("note_stage"), view.texts("note"), strict=True)
+    return sum(severity_of(*note) == "doubt" for note in notes)
+
+
+RULES: dict[DecisionRule, str] = {
+    "simple acceptance": (
+        "Decision rule: simple acceptance. A result conforms where the measured value lies inside"
+        " the limits or on one; its uncertainty is stated and not taken into account. Near a limit"
+        " the probability that a statement is wrong is up to 50 %."
+    ),
+    "guard band": (
+        "Decision rule: guard band as wide as the expanded uncertainty (95 %). A result conforms"
+        " where its whole coverage interval lies inside the limits, and does not conform where the"
+        " whole interval lies outside; where the interval reaches over a limit no statement is"
+        " made. The probability that a statement is wrong is at most 2.5 % at each limit."
+    ),
+}
+
+_IN_MEGA = 1e6
+
+_REACHES = "no statement: the interval reaches over a limit"
+
+
+def conformity_table(
+    details: ReportDetails, tests: Sequence[TestView], units: UnitSystem
+) -> Table | None:
+    """Return a row for each limit; None where none is given."""
+    if not details.limits or details.decision_rule is None:
+        return None
+    by_id = {view.id: view for view in tests}
+    rows = [_row(one, by_id.get(one.test), details.decision_rule, units) for one in details.limits]
+    factors = factor_words(factor for row in rows for cell in row for factor in cell.factors)
+    return make_table(
+        "Statements of conformity with the limits that were agreed.",
+        ("quantity", "test", "at", "result", "limits", "unit", "limit from", "statement"), rows,
+        synthetic=any_synthetic(tests),
+        remarks=[
+            f"±: expanded uncertainty, 95 %{f' ({factors})' if factors else ''}.",
+            RULES[details.decision_rule],
+        ],
+    )  # fmt: skip
+
+
+def _row(one: Limit, view: TestView | None, rule: DecisionRule, units: UnitSystem) -> list[Cell]:
+    head = [words(one.quantity.replace("_", " ")), words(one.test), words(_place(one))]
+    try:
+        if view is None:
+            raise ReductionError("there is no archive of the test")
+        if view.is_of_earlier_run:
+            raise ReductionError("the archive of the test is of an earlier run")
+        budget = budget_from_archive(view.data, one.quantity, one.at)
+    except (ReductionError, ValueError) as error:
+        unit = _unit(quantity(one.quantity).unit, units)
+        return [
+            *head, words(""), _limits(one, unit), words(superscript(unit.unit)), words(one.source),
+            Cell(f"no statement: {getattr(error, 'problem', error)}"),
+        ]  # fmt: skip
+    shown = _unit(budget.unit, units)
+    interval = _interval(view, budget)
+    verdict = conformity(budget.value, interval, lower=one.lower, upper=one.upper, rule=rule)
+    return [
+        *head,
+        measured(budget.value, budget.expanded_uncertainty, shown, factor=budget.coverage_factor),
+        _limits(one, shown),
+        words(superscript(shown.unit)),
+        words(one.source),
+        words(verdict if verdict != "no statement" else _REACHES),
+    ]
+
+
+def _interval(view: TestView, budget: Budget) -> tuple[float, float]:
+    names = [str(name) for name in view.data["specimen"].values] if "specimen" in view.data else []
+    place = names.index(budget.place["specimen"]) if budget.place.get("specimen") in names else 0
+    drawn = drawn_interval(view, budget.quantity, place)
+    half = budget.expanded_uncertainty
+    return drawn or (budget.value - half, budget.value + half)
+
+
+def _unit(unit: str, system: UnitSystem) -> Shown:
+    if unit == "Pa" and system == "si":
+        return Shown("MPa", 1 / _IN_MEGA)
+    return Shown(*display_unit(unit, system))
+
+
+def _place(one: Limit) -> str:
+    return ", ".join(f"{place_name(key)} {_label(key, value)}" for key, value in one.at.items())
+
+
+def _label(key: str, value: str) -> str:
+    """A strain in percent and a tension with its unit; any other label as it is."""
+    if key.endswith(("strain", "strain_bin")):
+        return f"{100 * float(value):g} %"
+    return f"{value} N" if key in ("tension", "tension_grid") else value
+
+
+def _limits(one: Limit, unit: Shown) -> Cell:
+    ends = [
+        (sign, _plain(value * unit.factor))
+        for sign, value in (("\N{GREATER-THAN OR EQUAL TO}", one.lower),
+                            ("\N{LESS-THAN OR EQUAL TO}", one.upper))
+        if value is not None
+    ]  # fmt: skip
+    if len(ends) == 2:
+        return Cell(f"{ends[0][1]} to {ends[1][1]}")
+    return Cell(" ".join(ends[0]))
+
+
+def _plain(value: float) -> str:
+    """A limit as it was written, without the zeros behind it."""
+    digits, mark, power = number_text(value, 6).partition("e")
+    plain = digits.rstrip("0").rstrip(".") if "." in digits else digits
+    return f"{plain}{mark}{power}"

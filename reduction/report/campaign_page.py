@@ -1,0 +1,404 @@
+"""The report of a campaign: one page, made from its archives alone, that opens from disk."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from reduction.archive.atomic_write import take_away
+from reduction.archive.open import Opener, archives_of_tests, reading
+from reduction.archive.write import read_details, write_whole
+from reduction.quantities.units import UnitSystem
+from reduction.record.errors import ArchiveError
+from reduction.record.plain_text import bare_cell
+from reduction.report.answer_tables import design_modulus_table
+from reduction.report.campaign_sections import WholeCampaign, is_there, read_whole
+from reduction.report.campaign_summary import find_faults, summary_sentence, test_table, tiles
+from reduction.report.client_report import CLIENT_PAGE_NAME, ClientContent, render_client_report
+from reduction.report.figures.campaign_figures import (
+    draw_all_moduli,
+    draw_parts,
+    draw_ratios,
+    draw_specimens_together,
+    draw_static_dynamic,
+)
+from reduction.report.figures.cycle_figures import draw_amplitude_pairs
+from reduction.report.page_template import (
+    Link,
+    Page,
+    RenderedSection,
+    about_page,
+    render_page,
+    render_section,
+)
+from reduction.report.test_section import Section, make_part, make_section
+from reduction.report.test_tables import (
+    design_tables,
+    interval_table,
+    segment_table,
+    specimen_notes,
+    specimen_table,
+)
+from reduction.report.test_view import (
+    OF_NO_TEST,
+    Status,
+    TestView,
+    any_synthetic,
+    instrument_sentences,
+    instrument_table,
+    natural_order,
+)
+
+MOST_BYTES = 9_000_000
+
+"""Of the sections on a page: with the program that draws (4.9 MB) it stays below 15 MB. [1]"""
+
+MOST_IN_ALL = 14_500_000
+
+"""Of a page with all that stands on it. [1]"""
+
+_NAME = "tests-{:02}.html"
+
+_OWN = re.compile(r"tests-\d{2,}\.html")
+
+"""Names that are given here: a page of somebody else beside them stays."""
+
+
+def is_page_of_tests(name: str) -> bool:
+    """Whether a file of this name holds sections for which the page of a campaign has no room."""
+    return _OWN.fullmatch(name) is not None
+
+
+def over_pages(
+    sections: Sequence[RenderedSection], most: int = MOST_BYTES
+) -> list[Sequence[RenderedSection]]:
+    """Part sections into pages, in their order.
+
+    Parameters
+    ----------
+    sections : sequence of RenderedSection
+        All of them.
+    most : int
+        Bytes on a page; one that is longer by itself has a page of its own. [1]
+
+    Returns
+    -------
+    pages : list of sequence of RenderedSection
+        One where all have room together.
+
+    Examples
+    --------
+    >>> sections = [RenderedSection(f"test-{n}", f"T-{n}", 40 * "x") for n in range(5)]
+    >>> [len(page) for page in over_pages(sections, most=100)]
+    [2, 2, 1]
+    """
+    pages: list[list[RenderedSection]] = [[]]
+    held = 0
+    for section in sections:
+        size = len(section.html.encode("utf-8"))
+        if pages[-1] and held + size > most:
+            pages.append([])
+            held = 0
+        pages[-1].append(section)
+        held += size
+    return list(pages)
+
+
+def write_pages(
+    content: Page,
+    sections: Sequence[RenderedSection],
+    out: Path,
+    most: int = MOST_BYTES,
+    most_in_all: int = MOST_IN_ALL,
+) -> Path:
+    """Write the page of a campaign, and those beside it where it has no room for all sections.
+
+    Parameters
+    ----------
+    content : Page
+        Without sections.
+    sections : sequence of RenderedSection
+        Of its tests, in order.
+    out : pathlib.Path
+        Folder of the pages.
+    most : int
+        Bytes of sections on a page. [1]
+    most_in_all : int
+        Bytes of the page of the campaign, from which its sections stand beside it. [1]
+
+    Returns
+    -------
+    page : pathlib.Path
+        ``index.html``, which is written last; pages of an earlier run that it does not name are
+        taken away.
+
+    Raises
+    ------
+    ArchiveError
+        If the disk refuses.
+    """
+    pages = over_pages(sections, most)
+    index = out / "index.html"
+    kept: set[Path] = set()
+    text = ""
+    if len(pages) == 1:
+        text = render_page(replace(content, sections=pages[0], links=_links(pages[0])))
+    # tables and figures over all tests take room, too
+    if len(pages) > 1 or (pages[0] and len(text.encode("utf-8")) > most_in_all):
+        names = [_NAME.format(number) for number in range(1, len(pages) + 1)]
+        beside = [Link(name, _words(page)) for name, page in zip(names, pages, strict=True)]
+        for name, page in zip(names, pages, strict=True):
+            write_whole(out / name, render_page(_part_of(content, page, beside)))
+            kept.add(out / name)
+        links = [
+            link for name, page in zip(names, pages, strict=True) for link in _links(page, name)
+        ]
+        text = render_page(replace(content, links=links, beside=beside))
+    write_whole(index, text)
+    for path in out.iterdir():
+        if is_page_of_tests(path.name) and path not in kept:
+            take_away(path)
+    return index
+
+
+def _links(page: Sequence[RenderedSection], name: str = "") -> list[Link]:
+    return [Link(f"{name}#{section.key}", section.title) for section in page]
+
+
+def _words(page: Sequence[RenderedSection]) -> str:
+    if len(page) == 1:
+        return page[0].title
+    return f"{page[0].title} to {page[-1].title} ({len(page)} tests)"
+
+
+def _part_of(content: Page, page: Sequence[RenderedSection], beside: Sequence[Link]) -> Page:
+    return Page(
+        title=f"{content.title}: {_words(page)}",
+        campaign=content.campaign,
+        summary="",
+        about=content.about,
+        tiles=(),
+        faults=(),
+        chapters=(),
+        synthetic=content.synthetic,
+        sections=page,
+        links=_links(page),
+        home="index.html",
+        values_page=content.values_page,
+        is_part=True,
+    )
+
+
+_LAST = 10**9
+
+_OF_TESTS = (
+    "Strain is nominal strain of the splice-free length; stress is tension over the area at zero"
+    " tension."
+)
+
+_OF_HOSES = (
+    "Strain of a predicted hose is nominal strain of its whole relaxed length, ends included."
+)
+
+Name = tuple[tuple[int, int, str], ...]
+
+Place = tuple[int, str, Name, bool, str, float, Name]
+
+
+def write_report(
+    processed: Path,
+    out: Path,
+    *,
+    units: UnitSystem = "si",
+    values_page: str = "",
+    stray: Collection[str] = (),
+    unreadable: Callable[[str, str], None] | None = None,
+    opener: Opener = reading,
+) -> Path:
+    """Write the page of a campaign.
+
+    Parameters
+    ----------
+    processed : pathlib.Path
+        Folder of the archives; status.csv beside them is read where it is there.
+    out : pathlib.Path
+        Folder of the page; made where it is not there.
+    units : UnitSystem
+        What a reader is shown; ``us`` is psi, lbf and ft.
+    values_page : str
+        Address of the design-value page from ``out``; empty where there is none to lead to.
+    stray : collection of str
+        Files that nothing in the campaign stands for now; what is shown of them says so.
+    unreadable : callable, optional
+        Told the name of each archive that cannot be read, and why, before the page is written,
+        which says it too.
+    opener : Opener
+        How archives are opened.
+
+    Returns
+    -------
+    page : pathlib.Path
+        ``out/index.html``; it appears whole or not at all. Beside it stand the pages of tests for
+        which it has no room, and the report to the client, where the folder holds what the
+        laboratory states for it.
+
+    Raises
+    ------
+    ArchiveError
+        If the folder holds neither an archive nor a status.csv, or the disk refuses.
+    """
+    paths = sorted(archives_of_tests(processed), key=lambda path: natural_order(path.stem))
+    statuses = _read_statuses(processed / "status.csv")
+    if not (paths or statuses or is_there(processed)):
+        raise ArchiveError(
+            "there is nothing to report on",
+            found=f"no archive and no status.csv in {processed}",
+            needed="the folder of a campaign, such as processed/CAMPAIGN",
+            hint="Run the campaign first.",
+        )
+    by_test = {row.test: row for row in statuses}
+    has_statuses = (processed / "status.csv").is_file()
+    details = read_details(processed)
+    tests: list[TestView] = []
+    rendered: dict[str, RenderedSection] = {}
+    sections: dict[str, Section] = {}
+    not_shown: dict[str, str] = {}
+    starts: dict[str, float] = {}
+    for index, path in enumerate(paths):
+        try:
+            with opener(path) as data:
+                name = data.attrs["test"]
+                known = by_test.get(name) or (Status(name, OF_NO_TEST) if has_statuses else None)
+                view = TestView(f"test-{index}", data, units, known)
+                section = make_section(view)
+                rendered[view.key] = render_section(section, is_folded=len(paths) > 1)
+                if details is not None:
+                    sections[view.key] = section
+                starts[view.key] = view.start_time
+                tests.append(view.without_samples())
+        except ArchiveError as error:
+            # the page is the same wherever the archives lie
+            not_shown[path.name] = str(error).replace(str(path), path.name)
+    by_id = {view.id: view for view in tests}
+    tests.sort(key=lambda view: _place(view, by_id, starts))
+    whole = read_whole(processed, by_id, units, not_shown, stray, opener)
+    if unreadable is not None:
+        for name, why in not_shown.items():
+            unreadable(name, why)
+    content = replace(
+        _page_of(tests, whole, statuses, not_shown, units, processed.name),
+        values_page=values_page,
+    )
+    outcomes = [
+        render_section(section, is_folded=len(paths) + len(whole.outcomes) > 1)
+        for _, section in whole.outcomes
+    ]
+    page = write_pages(content, [*outcomes, *(rendered[view.key] for view in tests)], out)
+    beside = out / CLIENT_PAGE_NAME
+    if details is None:
+        take_away(beside)  # of an earlier run: the campaign has no such report now
+    else:
+        of_client = ClientContent(
+            details, tests, whole, [sections[view.key] for view in tests], statuses,
+            content.faults, content.title, content.campaign, units,
+        )  # fmt: skip
+        write_whole(beside, render_client_report(of_client))
+    return page
+
+
+def _page_of(
+    tests: Sequence[TestView],
+    whole: WholeCampaign,
+    statuses: Sequence[Status],
+    unreadable: dict[str, str],
+    units: UnitSystem,
+    folder: str,
+) -> Page:
+    faults = find_faults(tests, statuses, unreadable, whole.findings)
+    comparisons = [
+        make_part(
+            "All tests in one figure", [*draw_specimens_together(tests), *draw_all_moduli(tests)]
+        ),
+        make_part("Ratios of moduli", draw_ratios(tests)),
+        make_part("Mean strain and amplitude", draw_amplitude_pairs(tests)),
+        make_part("Start against end", draw_parts(tests)),
+        make_part("Static against dynamic", draw_static_dynamic(tests)),
+        *whole.comparisons,
+    ]
+    intervals = [interval_table(view) for view in tests]
+    moduli = design_modulus_table(tests)
+    speakers = [*tests, *whole.views]
+    first = speakers[0] if speakers else None
+    of_tests = tiles(tests, statuses, faults)
+    if not (tests or statuses):
+        of_tests = [one for one in of_tests if one.target == "wrong"]
+    definitions = [_OF_TESTS] if tests or statuses or not whole.hoses else []
+    definitions += [_OF_HOSES] if whole.hoses else []
+    return Page(
+        title=(first.attribute("title") if first else "") or f"Campaign {folder}",
+        campaign=first.attribute("campaign") if first else folder,
+        summary=summary_sentence(tests) or whole.summary,
+        about=about_page(
+            units,
+            "the archives alone",
+            in_si="Notes, settings and history are as in the archives, in SI.",
+            institution=first.attribute("institution") if first else "",
+            references=first.attribute("references") if first else "",
+            definitions=definitions,
+        ),
+        tiles=whole.with_tiles(of_tests),
+        faults=faults,
+        chapters=whole.chapters,
+        synthetic=any_synthetic(tests) or whole.is_synthetic,
+        has_tests=bool(tests or statuses),
+        specimens=specimen_table(tests, units),
+        specimen_notes=specimen_notes(tests),
+        instruments=instrument_table(tests, units),
+        instrument_notes=instrument_sentences(tests),
+        tests=test_table(tests, statuses),
+        answers=[*whole.answers, *([moduli] if moduli else [])],
+        designs=design_tables(tests),
+        segments=segment_table(tests),
+        intervals=[table for table in intervals if table is not None],
+        comparisons=[part for part in comparisons if part.figures],
+        across="Across the tests" if tests else "Across the hoses",
+    )
+
+
+def _read_statuses(path: Path) -> list[Status]:
+    if not path.is_file():
+        return []
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise ArchiveError(f"{path} cannot be read", found=str(error)) from error
+    names = Status.__dataclass_fields__
+    return [Status(**{name: bare_cell(row.get(name) or "") for name in names}) for row in rows]
+
+
+def _place(view: TestView, by_id: Mapping[str, TestView], starts: Mapping[str, float]) -> Place:
+    """Return where a test stands: by its order, the parts of a test behind it as they began.
+
+    The steps of a log stand as they began, too.
+    """
+    name = view.attribute("part_of")
+    whole = by_id.get(name or view.id)
+    order = "" if whole is None else whole.attribute("test_order")
+    return (
+        int(order) if order.isdigit() else _LAST,
+        "" if whole is None else whole.attribute("date"),
+        natural_order(name or _log_of(view)),
+        bool(name),
+        view.attribute("date"),
+        starts[view.key],
+        natural_order(view.id),
+    )
+
+
+def _log_of(view: TestView) -> str:
+    """Return the test whose log this is: of a step, its name before the step's."""
+    return view.id.partition(".")[0] if view.attribute("step") else view.id

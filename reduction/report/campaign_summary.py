@@ -1,0 +1,304 @@
+"""The first screen of the report: status of each test, problems found."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from reduction.record.notes import SEVERITIES, full_note, severity_of
+from reduction.record.notes import Severity as NoteSeverity
+from reduction.report.test_view import OF_NO_TEST, Status, TestView, all_specimens, any_synthetic
+from reduction.report.text_style import (
+    NOT_GIVEN,
+    Cell,
+    Table,
+    count,
+    make_table,
+    shorten,
+    shown,
+    span,
+    words,
+)
+
+Severity = Literal["failure", "warning", "note", "refusal"]
+
+_ORDER: tuple[Severity, ...] = ("failure", "warning", "note", "refusal")
+
+_NOT_SHOWN = "no archive"
+
+_STATUS_WORDS = {OF_NO_TEST: "of an earlier run: no test of the campaign now"}
+
+_FINDING: dict[NoteSeverity, Severity] = {
+    "doubt": "warning", "refusal": "refusal", "note": "note", "method": "note",
+}  # fmt: skip
+
+_HEADINGS: dict[NoteSeverity, str] = {
+    "doubt": "Doubts of the data, or of a number",
+    "refusal": "Numbers that are not given, and why",
+    "note": "Also to know",
+    "method": "How numbers were made",
+}
+
+_NO_TEST = (
+    "The campaign has no such test now: what is shown is of an earlier run, whose archive was left."
+)
+
+_MOST_NAMES = 200
+
+"""Characters of the list of specimens under the title."""
+
+# an archive counts the holds of each specimen apart, the page goes by time
+_NUMBER = re.compile(r"[-+]?\d[\d.,]*(e[-+]?\d+)?")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that a reader must know, with the tests it concerns."""
+
+    severity: Severity
+    tests: tuple[str, ...]
+    text: str
+
+
+@dataclass(frozen=True)
+class Tile:
+    """One number at the top of the page, and where it leads."""
+
+    number: str
+    words: str
+    target: str
+    is_bad: bool = False
+
+
+def find_faults(
+    tests: Sequence[TestView],
+    statuses: Sequence[Status],
+    unreadable: Mapping[str, str],
+    others: Sequence[Finding] = (),
+) -> list[Finding]:
+    """Return failures, then warnings, notes and refusals; the same text of many tests once.
+
+    Parameters
+    ----------
+    tests : sequence of TestView
+        The archives that could be read.
+    statuses : sequence of Status
+        Rows of status.csv.
+    unreadable : mapping of str to str
+        File name to message, of the files that could not be read.
+    others : sequence of Finding
+        What is no test's, to stand behind those of tests that are as serious.
+    """
+    gathered: dict[tuple[Severity, str], list[tuple[str, str]]] = {}
+    for severity, test, pattern, text in _all_faults(tests, statuses, unreadable):
+        gathered.setdefault((severity, pattern), []).append((test, text))
+    found = []
+    for (severity, _), own in gathered.items():
+        texts = list(dict.fromkeys(text for _, text in own))
+        more = f" (and {len(texts) - 1} more like it)" if len(texts) > 1 else ""
+        names = tuple(dict.fromkeys(test for test, _ in own))
+        found.append(Finding(severity, names, texts[0] + more))
+    return sorted([*found, *others], key=lambda one: _ORDER.index(one.severity))
+
+
+def all_notes(view: TestView) -> list[str]:
+    """Return every note of a test, with the stage that gave it where the note does not say."""
+    return [
+        full_note(stage, text)
+        for stage, text in zip(view.texts("note_stage"), view.texts("note"), strict=True)
+    ]
+
+
+def grouped_notes(view: TestView) -> list[tuple[str, list[str]]]:
+    """Return the notes of a test under headings, most serious first; no empty heading."""
+    stages, texts = view.texts("note_stage"), view.texts("note")
+    kinds = [severity_of(*pair) for pair in zip(stages, texts, strict=True)]
+    said = list(zip(kinds, all_notes(view), strict=True))
+    groups = [(_HEADINGS[kind], [text for own, text in said if own == kind]) for kind in SEVERITIES]
+    return [(heading, notes) for heading, notes in groups if notes]
+
+
+def brief(view: TestView) -> str:
+    """Return what a line says of a test: its cycles, its strain, what is doubtful in it."""
+    n_cycles = view.n_cycles
+    rows = [f"{n_cycles:,} {'cycle' if n_cycles == 1 else 'cycles'}"] if n_cycles else []
+    reached = _reached(view).text
+    if reached != NOT_GIVEN:
+        rows.append(f"strain {reached} %")
+    notes = dict(grouped_notes(view))
+    doubts = len(notes.pop(_HEADINGS["doubt"], ()))
+    others = sum(len(own) for own in notes.values())
+    rows += [
+        f"{number} {noun if number == 1 else f'{noun}s'}"
+        for number, noun in ((doubts, "doubt"), (others, "note"))
+        if number
+    ]
+    return ", ".join(rows)
+
+
+def summary_sentence(tests: Sequence[TestView]) -> str:
+    """Return what the campaign says of itself; else how many tests of what it holds.
+
+    An archive of a campaign without a summary has one of its own test, which would
+    read as if the page held no other.
+    """
+    if not tests:
+        return ""
+    summaries = {view.attribute("summary") for view in tests}
+    own = f"Reduced {tests[0].kind} test {tests[0].id} of specimen "
+    if len(summaries) == 1 and not tests[0].attribute("summary").startswith(own):
+        return summaries.pop()
+    kinds = Counter(view.kind for view in tests)
+    of_kinds = ", ".join(f"{number} {kind}" for kind, number in kinds.items())
+    names = all_specimens(tests)
+    return (
+        f"{len(tests)} {'test' if len(tests) == 1 else 'tests'} ({of_kinds}) of"
+        f" {len(names)} {'specimen' if len(names) == 1 else 'specimens'}:"
+        f" {shorten(', '.join(names), _MOST_NAMES)}."
+    )
+
+
+def test_table(tests: Sequence[TestView], statuses: Sequence[Status]) -> Table:
+    """Return what was tested: target, cycles found, status; a test without archive too."""
+    is_by_load = _is_by_load(tests)
+    rows = [_test_row(view, is_by_load=is_by_load) for view in tests]
+    shown_ids = {view.id for view in tests}
+    for row in statuses:
+        if row.test not in shown_ids:
+            empty = [words("")] * 6
+            rows.append([words(row.test), *empty, words(f"{_words(row.status)}, {_NOT_SHOWN}")])
+    synthetic = any_synthetic(tests)
+    force = shown("tension", tests[0].units if tests else "si")
+    columns = (
+        "test", "kind", "specimens",
+        force.label("tension of the cycles") if is_by_load else "target strain [%]",
+        "strain reached [%]",
+        "cycles found [1]", "samples [1]", "status",
+    )  # fmt: skip
+    return make_table("Tests in the order they were made.", columns, rows, synthetic=synthetic)
+
+
+def tiles(
+    tests: Sequence[TestView], statuses: Sequence[Status], faults: Sequence[Finding]
+) -> list[Tile]:
+    """Return the numbers at the top: tests, specimens, failures, warnings."""
+    counts = {name: sum(one.severity == name for one in faults) for name in _ORDER}
+    n_tests = len({view.id for view in tests} | {row.test for row in statuses})
+    n_specimens = len({name for view in tests for name in view.specimens})
+    n_cycles = sum(view.n_cycles for view in tests)
+    return [
+        _tile(n_tests, "test", "tested"),
+        _tile(n_specimens, "specimen", "tested"),
+        _tile(n_cycles, "cycle", "answer"),
+        _tile(counts["failure"], "failure", "wrong", is_bad=counts["failure"] > 0),
+        _tile(counts["warning"], "warning", "wrong", is_bad=counts["warning"] > 0),
+        _tile(counts["note"] + counts["refusal"], "other note", "wrong"),
+    ]
+
+
+def _tile(number: int, noun: str, target: str, *, is_bad: bool = False) -> Tile:
+    return Tile(f"{number:,}", noun if number == 1 else f"{noun}s", target, is_bad)
+
+
+def _all_faults(
+    tests: Sequence[TestView], statuses: Sequence[Status], unreadable: Mapping[str, str]
+) -> Iterator[tuple[Severity, str, str, str]]:
+    """Give severity, test, what makes two of them alike, and the text."""
+    for name, message in unreadable.items():
+        text = f"This file is not shown: {message}"
+        yield "failure", name, text, text
+    archived = {view.id for view in tests}
+    for row in statuses:
+        if row.status == "failed":
+            text = row.message or "failed without a message"
+            yield "failure", row.test, text, text
+            if row.test in archived:
+                text = "What is shown below is an earlier run, kept."
+                yield "failure", row.test, text, text
+        elif row.test not in archived:
+            text = f"No archive; status is {_words(row.status)}. {row.message}"
+            yield "warning", row.test, text, text
+    for view in tests:
+        status = view.status
+        if status and status.status == OF_NO_TEST:
+            yield "warning", view.id, _NO_TEST, _NO_TEST
+        archived_hash = " ".join(view.attribute("raw_file_sha256").split())
+        if status and status.status != "failed" and status.raw_sha256 not in ("", archived_hash):
+            text = "The archive was made from other raw files than status.csv."
+            yield "warning", view.id, text, text
+        raw = zip(view.texts("note_stage"), view.texts("note"), strict=True)
+        for (stage, note), text in zip(raw, all_notes(view), strict=True):
+            yield _FINDING[severity_of(stage, note)], view.id, _pattern(view, note), text
+
+
+def _pattern(view: TestView, note: str) -> str:
+    """Return a note without its numbers and specimens: of those alike one is enough on top.
+
+    Each test has every note of its own in its section.
+    """
+    for specimen in view.specimens:
+        note = re.sub(rf"\b{re.escape(specimen)}\b", "#", note)
+    return _NUMBER.sub("#", note)
+
+
+def _is_by_load(tests: Sequence[TestView]) -> bool:
+    """Return whether the tests are of ropes, which are planned by tension and not by strain."""
+    return bool(tests) and all(view.is_rope and not _target(view) for view in tests)
+
+
+def _tension(view: TestView) -> Cell:
+    mean, amplitude = view.array("mean_tension"), view.array("tension_amplitude")
+    if mean is None or amplitude is None or not np.isfinite(mean).any():
+        return words("")
+    ends = float(np.nanmean(mean - amplitude)), float(np.nanmean(mean + amplitude))
+    return span(*ends, shown("tension", view.units), places=0)
+
+
+def _reached(view: TestView) -> Cell:
+    """Return the strain of the cycles, mean least to mean greatest; without one, of the record."""
+    strain = view.array("strain")
+    mean, amplitude = view.array("mean_strain"), view.array("strain_amplitude")
+    percent = shown("strain", view.units)
+    if mean is not None and amplitude is not None and np.isfinite(mean).any():
+        ends = float(np.nanmean(mean - amplitude)), float(np.nanmean(mean + amplitude))
+        return span(*ends, percent, places=1)
+    if strain is not None and np.isfinite(strain).any():
+        return span(float(np.nanmin(strain)), float(np.nanmax(strain)), percent, places=1)
+    return words("")
+
+
+def _test_row(view: TestView, *, is_by_load: bool) -> list[Cell]:
+    return [
+        words(view.id),
+        words(view.kind),
+        words(", ".join(view.specimens)),
+        _tension(view) if is_by_load else words(_target(view)),
+        _reached(view),
+        count(float(view.n_cycles)),
+        count(view.scalar("n_rows_kept")),
+        words(_status(view)),
+    ]
+
+
+def _target(view: TestView) -> str:
+    """Return the target strain of the plan in percent; the archive has "0.75 to 1.25"."""
+    ends = view.attribute("target_strain").split(" to ")
+    return " to ".join(f"{100 * float(end):g}" for end in ends) if ends != [""] else ""
+
+
+def _status(view: TestView) -> str:
+    """Return what became of a test, whichever run made its archive: the page is the same then."""
+    if view.status is None:
+        return "archived"
+    if view.status.status == "unchanged":
+        return "reduced with notes" if view.texts("note") else "reduced"
+    return _words(view.status.status)
+
+
+def _words(status: str) -> str:
+    return _STATUS_WORDS.get(status, status.replace("_", " "))

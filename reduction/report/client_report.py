@@ -1,0 +1,496 @@
+"""The report of a laboratory to its client: one page for paper, with what [1]_ asks of it.
+
+It opens from disk, needs no script, and prints to A4 or Letter with the number of the report and
+of the page on each sheet.  What was not stated is shown as not stated.
+
+References
+----------
+.. [1] ISO/IEC 17025:2017, 7.8.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from importlib.resources import files
+
+import numpy as np
+from jinja2 import Environment, StrictUndefined
+from markupsafe import Markup
+
+from reduction import __version__
+from reduction.archive.write import Client, Instrument, Item, Laboratory, ReportDetails
+from reduction.quantities.units import UnitSystem
+from reduction.report.answer_tables import AnswerBudget, answer_budgets, conformity_table
+from reduction.report.campaign_sections import WholeCampaign
+from reduction.report.campaign_summary import Finding, test_table
+from reduction.report.figure_data import Figure
+from reduction.report.figures.campaign_figures import draw_all_moduli
+from reduction.report.svg_figure import can_be_drawn, vector_of
+from reduction.report.test_section import Part, Section
+from reduction.report.test_tables import design_tables, specimen_notes, specimen_table
+from reduction.report.test_view import (
+    DRAWN,
+    Status,
+    TestView,
+    all_specimens,
+    any_synthetic,
+    factor_words,
+    instrument_sentences,
+    instrument_table,
+)
+from reduction.report.text_style import Cell, Table, factors_of, make_table, number, shorten, words
+
+NOT_STATED = "not stated"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One field; an empty text was not stated."""
+
+    label: str
+    given: str
+
+    @property
+    def is_missing(self) -> bool:
+        """Whether nothing was stated."""
+        return not self.given
+
+    @property
+    def text(self) -> str:
+        """What the report shows."""
+        return self.given or NOT_STATED
+
+
+def identification(details: ReportDetails, tests: Sequence[TestView]) -> list[Entry]:
+    """Return which report this is, who made it for whom, and when."""
+    found = [
+        Entry("Report number", details.number),
+        Entry("Revision", _revision(details)),
+        Entry("Date of issue", details.issued),
+        Entry("Laboratory", _lines(details.laboratory)),
+        Entry("Place of the tests", details.laboratory.location),
+    ]
+    if details.laboratory.accreditation:
+        found.append(Entry("Accreditation", details.laboratory.accreditation))
+    return [
+        *found,
+        Entry("Client", _lines(details.client)),
+        Entry("Order", details.client.order),
+        Entry("Items received", details.received or _received(details.items)),
+        Entry("Date of the tests", details.tested or _dates(tests)),
+    ]
+
+
+def _revision(details: ReportDetails) -> str:
+    if not (details.revision or details.amendment):
+        return "0 (first issue)"
+    said = details.amendment or f"what changed is {NOT_STATED}"
+    return f"{details.revision} \N{EM DASH} AMENDED REPORT: {said}"
+
+
+def _lines(party: Laboratory | Client) -> str:
+    return "\n".join(filter(None, (party.name, party.address, party.contact)))
+
+
+def _received(items: Mapping[str, Item]) -> str:
+    """Say when each item came in, where each has a date of its own."""
+    if not items or not all(one.received for one in items.values()):
+        return ""
+    return "; ".join(f"{specimen}: {one.received}" for specimen, one in items.items())
+
+
+def _dates(tests: Sequence[TestView]) -> str:
+    """Give the first and the last date that the archives know, where each test has one."""
+    dates = [view.attribute("date") for view in tests]
+    if not dates or not all(dates):
+        return ""
+    ends = list(dict.fromkeys((min(dates), max(dates))))
+    return " to ".join(ends)
+
+
+def method(details: ReportDetails, tests: Sequence[TestView]) -> list[Entry]:
+    """Return by which method, what was done otherwise, and how the items were chosen."""
+    return [
+        Entry("Method", details.method or _of_tests(tests, "procedure")),
+        Entry("Deviations from the method", details.deviations),
+        Entry("Sampling", details.sampling),
+        Entry(
+            "Published source",
+            next(filter(None, (one.attribute("references") for one in tests)), ""),
+        ),
+    ]
+
+
+def environment(details: ReportDetails, tests: Sequence[TestView]) -> list[Entry]:
+    """Return the conditions during the tests."""
+    found = [
+        Entry("Medium", _of_tests(tests, "medium")),
+        Entry("Temperature", _of_tests(tests, "temperature")),
+    ]
+    soak = _of_tests(tests, "soak")
+    if soak:
+        found.append(Entry("Soaking", soak))
+    if details.environment or all(one.is_missing for one in found):
+        found.append(Entry("Other conditions", details.environment))
+    return found
+
+
+def authorisation(details: ReportDetails) -> list[Entry]:
+    """Return who answers for the report."""
+    return [
+        Entry("Authorised by", details.authorised.by),
+        Entry("Function", details.authorised.function),
+        Entry("Date", details.authorised.on),
+    ]
+
+
+def missing_of(groups: Iterable[Sequence[Entry]]) -> list[str]:
+    """Return the labels of what is not stated, in the order of the report."""
+    return [one.label for group in groups for one in group if one.is_missing]
+
+
+def _of_tests(tests: Sequence[TestView], name: str) -> str:
+    """Give an attribute of the tests: once where they agree, by test where they do not."""
+    by_text: dict[str, list[str]] = {}
+    for view in tests:
+        by_text.setdefault(view.attribute(name), []).append(view.id)
+    if set(by_text) <= {""}:
+        return ""
+    if len(by_text) == 1:
+        return next(iter(by_text))
+    return "; ".join(f"{', '.join(ids)}: {text or NOT_STATED}" for text, ids in by_text.items())
+
+
+def item_table(details: ReportDetails, tests: Sequence[TestView]) -> Table:
+    """Return what came in: every specimen that was tested, stated or not."""
+    names = dict.fromkeys([*all_specimens(tests), *details.items])
+    given = {name: details.items.get(name, Item()) for name in names}
+    rows = [
+        [
+            words(name), _said(one.identification), _said(one.description), _said(one.condition),
+            _said(one.received or details.received),
+        ]
+        for name, one in given.items()
+    ]  # fmt: skip
+    return make_table(
+        "Items as they were received.",
+        ("item", "identification", "description", "condition on receipt", "received"), rows,
+        synthetic=any_synthetic(tests),
+    )  # fmt: skip
+
+
+def calibration_table(details: ReportDetails, tests: Sequence[TestView]) -> Table:
+    """Return the instruments with their calibration: as stated, then as the tests name them."""
+    stated = list(details.instruments)
+    known = {one.name for one in stated}
+    for view in tests:
+        due = view.attribute("calibration_due")
+        for name in ("machine", "load_cell"):
+            text = view.attribute(name)
+            if text and text not in known:
+                known.add(text)
+                stated.append(Instrument(name=text, due=due if name == "load_cell" else ""))
+    if not stated:
+        stated = [Instrument(name="")]
+    rows = [
+        [
+            _said(one.name), _said(one.identification), _said(one.certificate),
+            _said(one.traceable_to), _said(one.calibrated), _said(one.due),
+        ]
+        for one in stated
+    ]  # fmt: skip
+    return make_table(
+        "Instruments and their calibration.",
+        ("instrument", "identification", "certificate", "traceable to", "calibrated", "due"),
+        rows, synthetic=any_synthetic(tests),
+    )  # fmt: skip
+
+
+def _said(text: str) -> Cell:
+    return Cell(text or NOT_STATED)
+
+
+_TWO_PANELS = 1.25
+
+_BANDS = (
+    " Bands: ± expanded uncertainty, the inner of scatter alone, the outer of all that is known."
+)
+
+_HOLDS = "Holds"
+
+_OF_HOLDS = ("relaxation", "creep")
+
+_FIGURES = ("Modulus against strain", "Loops", "Slow pull", "Stepwise readings", _HOLDS)
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure with its caption; a wide one takes the whole width of the page."""
+
+    vector: Markup
+    caption: str
+    is_wide: bool = False
+
+
+def drawings(figures: Collection[tuple[Figure, bool]]) -> list[Drawing]:
+    """Return the figures that can be drawn; ``True`` beside one asks for the whole width."""
+    return [_drawing(one, is_wide=wide) for one, wide in figures if can_be_drawn(one)]
+
+
+def not_drawn(figures: Collection[tuple[Figure, bool]]) -> list[str]:
+    """Return the titles of the others."""
+    return [one.title for one, _ in figures if not can_be_drawn(one)]
+
+
+def chosen_figures(
+    tests: Sequence[TestView], sections: Sequence[Section]
+) -> Iterator[tuple[Figure, bool]]:
+    """Give what is to be drawn, and whether it takes the whole width."""
+    for one in draw_all_moduli(tests):
+        yield one, True
+    for _, part in chosen_parts(tests, sections, _FIGURES):
+        for one in part.figures:
+            yield one, False
+
+
+def _drawing(figure: Figure, *, is_wide: bool) -> Drawing:
+    width, height = (680.0, 360.0) if is_wide else (440.0, 225.0)
+    if "yaxis2" in figure.layout:
+        height *= _TWO_PANELS
+    caption, *about = figure.caption.split(" Inner band:")
+    caption += _BANDS if about else ""
+    # the drawing escapes what it is given
+    drawn = Markup(vector_of(figure, width=width, height=height))  # noqa: S704
+    return Drawing(drawn, caption, is_wide)
+
+
+def chosen_parts(
+    tests: Sequence[TestView], sections: Sequence[Section], headings: Collection[str]
+) -> Iterator[tuple[Section, Part]]:
+    """Give parts of the sections of the tests; of holds those that a test was made for."""
+    kinds = {view.key: view.kind for view in tests}
+    for section in sections:
+        for part in section.parts:
+            is_asked = part.heading in headings
+            if is_asked and (part.heading != _HOLDS or kinds.get(section.key) in _OF_HOLDS):
+                yield section, part
+
+
+CLIENT_PAGE_NAME = "client-report.html"
+
+_MOST_COLUMNS = 5
+
+_TABLES = ("Stepwise readings", "Slow pull", "Holds")
+
+_IN_FULL = {
+    "K_ap": "apparent spring constant K_ap", "H": "hysteresis energy H",
+    "K_1": "dissipation spring constant K_1", "tau": "relaxation time tau",
+}  # fmt: skip
+
+_STATEMENTS = (
+    "The results in this report relate only to the items that were tested, as they were received.",
+    "This report is not to be reproduced except in full without written approval of the"
+    " laboratory.",
+)
+
+
+@dataclass(frozen=True)
+class ClientContent:
+    """What a report to a client is made from: all of it out of the folder of the archives."""
+
+    details: ReportDetails
+    tests: Sequence[TestView]
+    whole: WholeCampaign
+    sections: Sequence[Section]
+    statuses: Sequence[Status]
+    faults: Sequence[Finding]
+    title: str
+    campaign: str
+    units: UnitSystem
+
+
+def _groups(details: ReportDetails, tests: Sequence[TestView]) -> dict[str, list[Entry]]:
+    return {
+        "identification": identification(details, tests),
+        "method": method(details, tests),
+        "environment": environment(details, tests),
+        "authorisation": authorisation(details),
+    }
+
+
+def render_client_report(content: ClientContent) -> str:
+    """Return the report as HTML that opens from disk."""
+    details, tests, units = content.details, content.tests, content.units
+    synthetic = any_synthetic(tests) or content.whole.is_synthetic
+    label = f"Report {details.number or NOT_STATED}, revision {details.revision}"
+    figures = list(chosen_figures(tests, content.sections))
+    environment_of = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    room = files("reduction.report")
+    template = environment_of.from_string((room / "templates" / "client.html").read_text("utf-8"))
+    groups = _groups(details, tests)
+    return template.render(
+        **groups,
+        missing=missing_of(groups.values()),
+        style=Markup(  # noqa: S704  # the style of the package; what stands on each sheet is quoted
+            _sheet_style(details, label, synthetic=synthetic)
+            + (room / "static" / "client.css").read_text("utf-8")
+        ),
+        details=details,
+        label=label,
+        title=content.title,
+        campaign=content.campaign,
+        synthetic=synthetic,
+        items=item_table(details, tests),
+        specimens=specimen_table(tests, units) if tests else None,
+        specimen_notes=specimen_notes(tests),
+        tests=_tests(content),
+        calibration=calibration_table(details, tests),
+        instruments=instrument_table(tests, units),
+        instrument_notes=instrument_sentences(tests),
+        results=_results(content),
+        drawings=drawings(figures),
+        not_drawn=not_drawn(figures),
+        conformity=conformity_table(details, tests, units),
+        doubts=[one for one in content.faults if one.severity in ("failure", "warning")],
+        statements=_STATEMENTS,
+        raw_files=_raw_file_table(tests, synthetic=synthetic),
+        version=__version__,
+        not_stated=NOT_STATED,
+    )
+
+
+def _results(content: ClientContent) -> list[Table]:
+    """Return the numbers: moduli at round strains, answers of each test, answers of the whole."""
+    found = [part for one in design_tables(content.tests) for part in _by_columns(one)]
+    found += [table for view in content.tests if (table := _answers(view)) is not None]
+    found += [
+        replace(table, caption=f"{section.title}: {table.caption}")
+        for section, part in chosen_parts(content.tests, content.sections, _TABLES)
+        for table in part.tables
+    ]
+    return [*found, *content.whole.answers]
+
+
+def _answers(view: TestView) -> Table | None:
+    answers = answer_budgets(view)
+    if not answers or view.is_stepwise:  # whose intervals stand in a table of their own
+        return None
+    rows = [
+        [
+            words(_in_full(view, one)), words(one.specimen), one.cell, words(one.unit.unit),
+            number(float("nan") if one.drawn else one.budget.coverage_factor, digits=3),
+        ]
+        for one in answers
+    ]  # fmt: skip
+    return make_table(
+        f"Test {view.id}.", ("quantity", "item", "result", "unit", "k [1]"), rows,
+        synthetic=view.is_synthetic,
+        remarks=[
+            f"±: expanded uncertainty, coverage 95 % ({factor_words(factors_of(rows))}).",
+            *([DRAWN] if any(one.drawn for one in answers) else []),
+        ],
+    )  # fmt: skip
+
+
+def _in_full(view: TestView, one: AnswerBudget) -> str:
+    """Return what an answer is, for a reader who has nothing but this report."""
+    place = one.budget.place
+    if "segment" not in place:
+        return _IN_FULL.get(one.words, one.words)
+    at = (
+        view.specimens.index(one.specimen),
+        view.texts("branch_name").index(place["branch_name"]),
+        int(place["segment"]) - 1,
+    )
+    ends = [view.array(f"segment_strain_{end}") for end in ("low", "high")]
+    low, high = (np.nan if rows is None else 100 * rows[at] for rows in ends)
+    return f"modulus, {place['branch_name']}, strain {low:.0f} to {high:.0f} %"
+
+
+def _by_columns(table: Table) -> list[Table]:
+    """Return a table in parts that fit the width of a page, the first column in each."""
+    rest = range(1, len(table.columns))
+    parts = [rest[start : start + _MOST_COLUMNS] for start in range(0, len(rest), _MOST_COLUMNS)]
+    if len(parts) < 2:
+        return [table]
+    found = []
+    for order, part in enumerate(parts):
+        places = [0, *part]
+        # a row of nothing but marks says nothing
+        rows = [
+            [row[place] for place in places]
+            for row in table.rows
+            if any(row[place].value for place in part)
+        ]
+        caption = table.caption if order == 0 else f"{table.caption} Continued."
+        remarks = table.remarks if order == len(parts) - 1 else ()
+        found.append(
+            make_table(
+                caption, [table.columns[place] for place in places], rows, synthetic=False,
+                remarks=remarks,
+            )
+        )  # fmt: skip
+    return found
+
+
+def _tests(content: ClientContent) -> Table | None:
+    """Return the tests; of what the software did with each only that it failed."""
+    if not (content.tests or content.statuses):
+        return None
+    table = test_table(content.tests, content.statuses)
+    is_amiss = any(row.status == "failed" for row in content.statuses) or any(
+        view.is_of_earlier_run for view in content.tests
+    )
+    if is_amiss or len(content.statuses) > len(content.tests):
+        return table
+    rows = tuple(row[:-1] for row in table.rows)
+    return replace(table, columns=table.columns[:-1], rows=rows)
+
+
+def _raw_file_table(tests: Sequence[TestView], *, synthetic: bool) -> Table | None:
+    rows = [
+        [words(view.id), words(name), words(sum_)]
+        for view in tests
+        for name, sum_ in zip(
+            view.attribute("raw_file").splitlines(),
+            view.attribute("raw_file_sha256").splitlines(),
+            strict=False,
+        )
+    ]
+    if not rows:
+        return None
+    return make_table(
+        "Logs that the results were made from.", ("test", "file", "SHA-256"), rows,
+        synthetic=synthetic,
+    )  # fmt: skip
+
+
+def _sheet_style(details: ReportDetails, label: str, *, synthetic: bool) -> str:
+    """Return what stands in the margins of each sheet."""
+    laboratory = shorten(details.laboratory.name, 60) or f"Laboratory {NOT_STATED}"
+    amended = " (amended)" if details.revision or details.amendment else ""
+    boxes = {
+        "top-left": _quoted(laboratory),
+        "top-right": _quoted("SYNTHETIC DATA: no specimen was tested" if synthetic else ""),
+        "bottom-left": _quoted(shorten(label, 70) + amended),
+        "bottom-right": '"Page " counter(page) " of " counter(pages)',
+    }
+    rules = " ".join(f"@{place} {{ content: {text}; }}" for place, text in boxes.items())
+    return f"@page {{ size: {details.paper}; {rules} }}\n"
+
+
+def _quoted(text: str) -> str:
+    r"""Return text as a string of CSS, from which nothing can break out.
+
+    Examples
+    --------
+    >>> print(_quoted('A"</style>'))
+    "A\22 \3c \2f style\3e "
+    """
+    return '"' + "".join(
+        one if one.isascii() and (one.isalnum() or one in " .,-") else f"\\{ord(one):x} "
+        for one in text
+    ) + '"'  # fmt: skip

@@ -1,0 +1,453 @@
+"""Tables of outcomes, snap loading and rope programmes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Self
+
+import numpy as np
+import xarray as xr
+
+from reduction.experiments.outcome_groups import (
+    Group,
+    Row,
+    exposure_rows,
+    fatigue_rows,
+    load_life_rows,
+    load_series,
+    strength_rows,
+)
+from reduction.experiments.outcomes import SnapLevels
+from reduction.experiments.strength_statistics import summarise_snap_loading
+from reduction.report.product_views import (
+    OutcomeView,
+    RopeView,
+    expanded_property,
+    group_names,
+    shared_by_properties,
+)
+from reduction.report.sheet import Calculated, Sheet, Unit
+from reduction.report.test_view import Expanded, expand, plus_minus
+from reduction.report.text_style import (
+    PERCENT,
+    Cell,
+    Shown,
+    Table,
+    count,
+    in_order,
+    measured,
+    number,
+    number_text,
+    shown,
+    source_words,
+    span,
+    words,
+)
+from reduction.stages.line.change_in_length import PROPERTY_NAMES
+
+_OF_STRENGTH = Shown("% of rated break strength", 100.0)
+
+_OF_NEW = Shown("% of new", 100.0)
+
+_SCATTER = "scatter between the tests of a group"
+
+_FIT = "scatter of the tests about the fit"
+
+_BOUNDS = "Intervals hold 95 %, two-sided."
+
+_SNAP = "Upper bound of the share that fails by then, where all survived; one-sided, 95 %."
+
+
+class _Groups(Sheet):
+    """A row a group, of the numbers of a table of outcomes."""
+
+    def __init__(self, view: OutcomeView, rows: Sequence[Row]) -> None:
+        columns = {name: ("row", [row[name] for row in rows]) for name in rows[0]} if rows else {}
+        super().__init__(
+            Calculated(view.units, view.is_synthetic, xr.Dataset(columns)), ("row",)
+        )  # fmt: skip
+        self.rows = rows
+        self.names = group_names([_group(row) for row in rows], view.units)
+        self.texts("group", self.names)
+
+    def known_from(self, name: str, counted: str, fitted: int = 1) -> Expanded:
+        """Uncertainty of a number that is known from so many tests less so many fitted."""
+        freedom = np.maximum(self.of(counted) - fitted, 1.0)
+        return expand(self.of(f"{name}_standard_uncertainty"), degrees_of_freedom=freedom)
+
+    def some(self, heading: str, name: str) -> Self:
+        """Add a count that is worth a column only where something was counted."""
+        return self.cells(heading, (count(one) if one else words("") for one in self.of(name)))
+
+    def grouped(self, caption: str, reason: str, held: str, *notes: str) -> Table | None:
+        """Return the table: what ± holds, what is missing, and why, stands below.
+
+        ``reason`` is the column of the words that say why.
+        """
+        told: dict[str, list[str]] = {}
+        for name, row in zip(self.names, self.rows, strict=True):
+            load = _real(row, "peak_load_ratio")
+            place = f" at {PERCENT.factor * load:.3g} %" if load == load else ""
+            if row[reason]:
+                told.setdefault(str(row[reason]), []).append(f"{name}{place}")
+        return self.table(
+            caption, optional=self.headings, tall=12,
+            remarks=[
+                plus_minus(self.factors, held, left_out="calibration of the machine"), *notes,
+                *(f"{'; '.join(groups)}: {text}." for text, groups in told.items()),
+            ],
+        )  # fmt: skip
+
+
+def _group(row: Row) -> Group:
+    diameter, exposure = _real(row, "diameter"), _real(row, "exposure")
+    return Group(
+        str(row["line"]), str(row["material"]), str(row["construction"]),
+        diameter if diameter == diameter else None,
+        str(row.get("condition", "")), exposure if exposure == exposure else None,
+    )  # fmt: skip
+
+
+def _real(row: Row, name: str) -> float:
+    return float(row.get(name, "nan"))
+
+
+def strength_table(view: OutcomeView, name: str) -> Table | None:
+    """Return a quantity of the table of strength by group: mean, scatter, change, bounds."""
+    is_force = name == "tensile_strength"
+    unit = shown("tension" if is_force else "strain", view.units)
+    what = "tensile strength" if is_force else "strain at failure"
+    sheet = _Groups(
+        view,
+        [
+            row
+            for row in strength_rows(view.outcomes)
+            if any(row[f"{name}_{use}count"] for use in ("", "lower_bound_", "excluded_"))
+        ],
+    )
+    change, bounds = f"{name}_change", f"{name}_with_lower_bounds"
+    half, spread = (
+        (sheet.of(f"{change}_high") - sheet.of(f"{change}_low")) / 2,
+        sheet.of(f"{change}_standard_uncertainty"),
+    )
+    factor = np.divide(half, spread, out=np.full(half.shape, np.nan), where=spread > 0)
+    (
+        sheet.counts("tests", f"{name}_count")
+        .measured(f"mean {what}", name, unit, sheet.known_from(name, f"{name}_count"))
+        .numbers("deviation", f"{name}_standard_deviation", unit, 3)
+        .numbers("deviation over mean", f"{name}_relative_variability", PERCENT, 3)
+        .intervals("least to greatest", f"{name}_minimum", f"{name}_maximum", unit, 4)
+        .measured("change against new", change, PERCENT, Expanded(half, factor))
+        .intervals("interval of the change", f"{change}_low", f"{change}_high", PERCENT)
+        .numbers("p of no change", f"{name}_p_value", "number", 2)
+        .some("lower bounds", f"{name}_lower_bound_count")
+        .numbers("mean with the bounds", bounds, unit)
+        .intervals("its interval", f"{bounds}_low", f"{bounds}_high", unit, 4)
+        .some("not used", f"{name}_excluded_count")
+    )
+    return sheet.grouped(
+        f"{what.capitalize()} by group: mean of the valid tests; a break in the termination is a"
+        " lower bound and stands apart. Change: against the group of the same line whose"
+        " condition is new.",
+        f"{name}_reason", _SCATTER, _BOUNDS,
+    )  # fmt: skip
+
+
+def exposure_table(view: OutcomeView) -> Table | None:
+    """Return the straight line of strength over years in the field, one row a line."""
+    unit = shown("tension", view.units)
+    a_year, lost = Shown(f"{unit.unit}/year", unit.factor), "share_lost_per_year"
+    sheet = _Groups(view, exposure_rows(view.outcomes))
+    new, slope = (
+        sheet.known_from(one, "degrees_of_freedom", 0)
+        for one in ("strength_when_new", "strength_slope")
+    )
+    (
+        sheet.counts("breaks", "break_count")
+        .intervals("years", sheet.of("exposure_low"), sheet.of("exposure_high"))
+        .measured("strength when new", "strength_when_new", unit, new)
+        .measured("change a year", "strength_slope", a_year, slope)
+        .numbers("lost a year", lost, _OF_NEW, 3)
+        .intervals("its interval", f"{lost}_low", f"{lost}_high", _OF_NEW)
+        .numbers("deviation of a break", "strength_scatter", unit, 3)
+        .numbers("p of a straight line", "lack_of_fit_p_value", "number", 2)
+        .some("lower bounds", "lower_bound_count")
+        .some("not used", "unused_count")
+    )
+    return sheet.grouped(
+        "Strength against time in the field: a straight line through the breaks of each line.",
+        "exposure_reason", _FIT, _BOUNDS,
+    )  # fmt: skip
+
+
+def fatigue_table(view: OutcomeView, quantity: str) -> Table | None:
+    """Return cycles to failure or of abrasion by group and peak load."""
+    force = shown("tension", view.units)
+    rows = [row for row in fatigue_rows(view.outcomes) if row["quantity"] == quantity]
+    sheet = _Groups(view, rows)
+    mean = sheet.known_from("mean_cycles", "failed_count")
+    (
+        sheet.numbers("peak load", "peak_load_ratio", _OF_STRENGTH, 3)
+        .numbers("peak load", "peak_load", force)
+        .numbers("least load", "minimum_load_ratio", _OF_STRENGTH, 3)
+        .counts("failed", "failed_count")
+        .some("stopped", "suspended_count")
+        .measured("mean of the failed", "mean_cycles", "number", mean)
+        .intervals("shortest to longest", "least_cycles", "most_cycles", "number", 4)
+        .numbers("median life", "median_life", "number", 3)
+        .intervals("its interval", "median_life_low", "median_life_high", "number")
+        .some("not used", "excluded_count")
+    )
+    what = "Cycles to failure" if quantity == "cycles_to_failure" else "Cycles of abrasion"
+    return sheet.grouped(
+        f"{what} by group and peak load. The mean is of the failed alone; the median life (Weibull)"
+        " takes tests that were stopped as lower bounds.",
+        "life_reason", _SCATTER, _BOUNDS,
+    )  # fmt: skip
+
+
+def load_life_table(view: OutcomeView) -> Table | None:
+    """Return the line of life against peak load, one row a group tested at several loads."""
+    sheet = _Groups(view, load_life_rows(view.outcomes))
+    exponent, life, scale = (
+        sheet.known_from(one, "failed_count", 2)
+        for one in ("life_exponent", "life_at_reference", "log_life_scale")
+    )
+    (
+        sheet.intervals("peak loads", "peak_load_ratio_low", "peak_load_ratio_high", PERCENT)
+        .counts("failed", "failed_count")
+        .some("stopped", "suspended_count")
+        .measured("exponent m", "life_exponent", "number", exponent)
+        .numbers("at a peak load of", "reference_load_ratio", PERCENT, 3)
+        .measured("median life there", "life_at_reference", "number", life)
+        .measured("scatter of ln cycles", "log_life_scale", "number", scale)
+        .numbers("p of a straight line", "lack_of_fit_p_value", "number", 2)
+        .some("not used", "unused_count")
+    )
+    return sheet.grouped(
+        "Life against peak load: ln N = a - m ln S, lives lognormal with one scatter, tests that"
+        " were stopped as lower bounds. Loads over the rated break strength.",
+        "life_reason", _FIT,
+    )  # fmt: skip
+
+
+def _snaps(view: OutcomeView) -> list[tuple[str, SnapLevels]]:
+    """Levels of each group whose line goes slack in its cycles, with its name."""
+    found = [one for one in load_series(view.outcomes) if (one.minimum_load_ratio <= 0).any()]
+    names = group_names([one.group for one in found], view.units)
+    return [
+        (
+            name,
+            summarise_snap_loading(
+                one.peak_load_ratio, one.minimum_load_ratio, one.cycles, one.is_suspended
+            ),
+        )
+        for name, one in zip(names, found, strict=True)
+    ]
+
+
+def snap_table(view: OutcomeView) -> Table | None:
+    """Return what each level of peak load did to lines that go slack."""
+    sheets = (
+        Sheet(view)
+        .texts("group", [name] * levels.peak_load_ratio.size)
+        .numbers("peak load", levels.peak_load_ratio, _OF_STRENGTH, 3)
+        .counts("failed", levels.n_failed)
+        .counts("stopped", levels.n_suspended)
+        .numbers("mean of the failed", levels.mean_cycles, "number")
+        .numbers("shortest", levels.least_cycles, "number")
+        .numbers("longest", levels.most_cycles, "number")
+        .numbers("share failing, at most", levels.failed_share_high, PERCENT, 2)
+        for name, levels in _snaps(view)
+    )
+    return Sheet.stack(sheets).table(
+        "Lines that go slack in each cycle, by level of peak load.", remarks=[_SNAP]
+    )
+
+
+def snap_sentences(view: OutcomeView) -> list[str]:
+    """Return between which loads failures begin, and what speaks against a sharp load."""
+    sentences = []
+    for name, levels in _snaps(view):
+        low, high = (PERCENT.factor * end for end in (levels.threshold_low, levels.threshold_high))
+        known = [f"no failure up to {low:.3g} %"] if low == low else []
+        known += [f"the first at {high:.3g} %"] if high == high else []
+        sentences.append(
+            f"{name}: {', '.join(known)} of the rated break strength, of lines that go slack in"
+            " each cycle. These are loads of the tests, and no safe load."
+        )
+        sentences += [f"{name}: {note}." for note in levels.notes]
+    return sentences
+
+
+_CYCLE_SCATTER = "scatter between cycles, noise, regression"
+
+_NOT_IN_ROPE_NUMBERS = (
+    "load-cell calibration, scale of position or strain, lag between the channels"
+)
+
+_COUNTED = ("bedding_cycles", "dynamic_cycles")
+
+
+def answer_of_ropes(views: Sequence[RopeView]) -> Table | None:
+    """Return the properties of each rope in a row; least to greatest where it has several."""
+    if not views:
+        return None
+    units = views[0].units
+    sheet = Sheet(Calculated(units, any(view.is_synthetic for view in views)))
+    sheet.texts("rope", [view.specimen for view in views])
+    for name in PROPERTY_NAMES:
+        unit = shown("tension" if name.endswith("stiffness") else "strain", units)
+        sheet.cells(unit.label(name), [_least_to_greatest(view, name, unit) for view in views])
+    return sheet.table(
+        "Change-in-length properties of the ropes, least to greatest where the programme gives"
+        " several; between which tensions, and why one is missing, is in the section of the rope.",
+        tall=16, remarks=[_about(sheet, views)],
+    )  # fmt: skip
+
+
+def _about(sheet: Sheet, views: Sequence[RopeView]) -> str:
+    """Say what ± holds: and of the instruments what is stated of them."""
+    shared = in_order({one for view in views for one in shared_by_properties(view)})
+    if not shared:
+        return plus_minus(sheet.factors, left_out=_NOT_IN_ROPE_NUMBERS)
+    told = ", ".join(source_words(one) for one in shared)
+    return plus_minus(
+        sheet.factors, f"{_CYCLE_SCATTER}; and what all samples share: {told}", left_out=""
+    )
+
+
+def _least_to_greatest(view: RopeView, name: str, unit: Shown) -> Cell:
+    kind = "property_stiffness" if name.endswith("stiffness") else "property_strain"
+    rows = view.rows_of(name)
+    values = view.array(kind)[rows]
+    if len(rows) > 1:
+        ends = [number_text(unit.factor * end) for end in (values.min(), values.max())]
+        return Cell(" to ".join(ends), is_number=True)
+    if not rows:
+        return number(float("nan"))
+    spread = expanded_property(view, kind)
+    return measured(values[0], spread.half[rows[0]], unit, factor=spread.factor[rows[0]])
+
+
+def told_of(view: RopeView, *, known: bool) -> list[str]:
+    """Return what there is to say of the properties with a number, or why the others have none."""
+    has_number = {row for name in PROPERTY_NAMES for row in view.rows_of(name)}
+    tests = view.texts("property_test")
+    return [
+        f"{', '.join(filter(None, (view.names[row], tests[row])))}: {text}"
+        for row, text in enumerate(view.texts("property_remark"))
+        if text and (row in has_number) is known
+    ]
+
+
+def property_table(view: RopeView) -> Table | None:
+    """Return the six properties; one without a number has its reason."""
+    force = shown("tension", view.units)
+    ends = zip(view.array("property_low_tension"), view.array("property_high_tension"), strict=True)
+    sheet = Sheet(view, ("property",)).texts("property", "property_name").cells(
+        force.label("tensions"),
+        [
+            number(low, force) if low == high else span(low, high, force, places=0)
+            for low, high in ends
+        ],
+    )  # fmt: skip
+    sheet.numbers("time after loading", "property_reference_time")
+    properties: tuple[tuple[str, str, Unit], ...] = (
+        ("stiffness", "property_stiffness", None),
+        ("stiffness over strength", "property_stiffness_over_strength", None),
+        ("strain", "property_strain", PERCENT),
+    )
+    for heading, name, unit in properties:
+        sheet.measured(heading, name, unit, expanded_property(view, name))
+    return sheet.texts("test or step", "property_test").table(
+        f"Change-in-length properties of {view.specimen}.", tall=16,
+        remarks=[
+            *told_of(view, known=True),
+            "Original stiffness: chord of the first rise of a new rope. Static: secant between two"
+            " held tensions. Dynamic: last cycles of a level. Construction strain: what bedding-in"
+            " left at equal tension. Polymer strain: creep from the reference time to the end of"
+            " the hold. Working strain: rise of tension over static stiffness, after bedding-in.",
+            _about(sheet, [view]),
+        ],
+    )  # fmt: skip
+
+
+def bedding_table(view: RopeView) -> Table | None:
+    """Return what bedding-in did."""
+    return _of_steps(
+        view, "specimen", "bedding_permanent_strain", "Bedding-in.",
+        ("cycles [1]", "bedding_cycles"),
+        ("stiffness of the first cycle", "bedding_first_stiffness"),
+        ("stiffness of the last cycle", "bedding_last_stiffness"),
+        ("last over first", "bedding_stiffening"),
+        ("permanent strain", "bedding_permanent_strain", PERCENT),
+    )  # fmt: skip
+
+
+def level_table(view: RopeView) -> Table | None:
+    """Return the levels of dynamic stiffness."""
+    return _of_steps(
+        view, "specimen", "dynamic_stiffness", "Levels of dynamic stiffness, last cycles of each.",
+        ("mean tension", "dynamic_mean_tension"),
+        ("tension amplitude", "dynamic_tension_amplitude"),
+        ("frequency", "dynamic_frequency"),
+        ("cycles [1]", "dynamic_cycles"),
+        ("dynamic stiffness", "dynamic_stiffness"),
+        ("over strength", "dynamic_stiffness_over_strength"),
+        ("change a cycle", "dynamic_stiffness_drift"),
+    )  # fmt: skip
+
+
+def pair_table(view: RopeView) -> Table | None:
+    """Return the pairs of holds, with the reason of one without a stiffness."""
+    return _of_steps(
+        view, "held_pair", "static_stiffness", "Pairs of held tensions.",
+        ("lower tension", "held_pair_low_tension"),
+        ("higher tension", "held_pair_high_tension"),
+        ("reference time", "static_reference_time"),
+        ("static stiffness", "static_stiffness"),
+        ("over strength", "static_stiffness_over_strength"),
+        ("change a decade of time", "static_stiffness_per_decade"),
+        reason="static_refusal",
+    )  # fmt: skip
+
+
+def creep_table(view: RopeView) -> Table | None:
+    """Return the holds at a kept tension, with the reason of one without a rate."""
+    return _of_steps(
+        view, "hold", "creep_tension_over_strength", "Creep at held tensions.",
+        ("tension", "hold_final_tension"),
+        ("over strength", "creep_tension_over_strength"),
+        ("lasts", "hold_duration"),
+        ("strain a decade of time", "creep_rate_per_decade", PERCENT),
+        ("strain a decade, over tension as a share of strength", "creep_compliance_per_decade",
+         PERCENT),
+        reason="hold_refusal",
+    )  # fmt: skip
+
+
+def _of_steps(
+    view: RopeView,
+    along: str,
+    needed: str,
+    caption: str,
+    *columns: tuple[str, str] | tuple[str, str, Unit],
+    reason: str = "",
+) -> Table | None:
+    """Return one row a step and place of this rope; a column that no row fills is left out."""
+    sheets = []
+    for test in view.tests:
+        sheet = Sheet(test, (along,))
+        owner = sheet.of(along if along == "specimen" else f"{along}_specimen", "")
+        sheet.keep(owner.astype(str) == view.specimen)
+        if not sheet.n_rows or needed not in test.data:
+            continue
+        sheet.texts("test or step", [test.id] * sheet.n_rows)
+        for one in columns:
+            sheet.counts(*one[:2]) if one[1] in _COUNTED else sheet.all_of(one)
+        sheets.append(sheet.texts("why there is no number", reason))
+    found = Sheet.stack(sheets, view)
+    if not found.is_known:
+        return None
+    return found.table(caption, optional=found.headings, tall=16, remarks=[found.about()])

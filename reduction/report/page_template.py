@@ -1,0 +1,186 @@
+"""The page made from its template.
+
+Nothing is fetched: plotly stands in the page once as text and is read when the page is there,
+figures are deflated JSON beside their captions and are drawn when a reader comes to them.
+Names out of files are escaped wherever they show, in the text by the template and in the
+figures by `reduction.report.figure_data`.
+"""
+
+from __future__ import annotations
+
+import zlib
+from base64 import b64encode
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
+
+from reduction import __version__
+from reduction.quantities.units import UnitSystem
+from reduction.report.campaign_summary import Finding, Tile
+from reduction.report.test_section import Part, Section
+from reduction.report.text_style import Table
+
+_SCRIPTS = ("inflate", "figures", "cycles", "downloads", "contents")
+
+
+@dataclass(frozen=True)
+class Link:
+    """An address in this page or beside it, and what a reader is shown of it."""
+
+    target: str
+    words: str
+
+
+@dataclass(frozen=True)
+class RenderedSection:
+    """The section of one test as HTML: its figures are no more in memory than on the page."""
+
+    key: str
+    title: str
+    html: str
+
+
+@dataclass(frozen=True)
+class Page:
+    """What stands on a page, from the top down; all texts are plain.
+
+    Parameters
+    ----------
+    title, campaign, summary : str
+        Of the whole; ``campaign`` heads the list of contents.
+    about : sequence of str
+        Sentences under the numbers at the top.
+    tiles : sequence of Tile
+        Those numbers.
+    faults : sequence of Finding
+        What a reader must know first, most serious first.
+    chapters : sequence of Section
+        What follows.
+    synthetic : bool
+        Whether the banner says that no specimen was ever pulled.
+    has_tests : bool
+        Whether it is a page of tests; the fields behind it are for those alone.
+    specimens, tests, segments : Table or None
+        What was tested, and straight-line segments.
+    specimen_notes : sequence of str
+        Under the specimens.
+    instruments : Table or None
+        What is stated of the instruments; ``instrument_notes`` where nothing is.
+    answers, designs, intervals : sequence of Table
+        The first screen.
+    comparisons : sequence of Part
+        Figures over several of a kind, headed by ``across``.
+    sections : sequence of RenderedSection
+        One a test.
+    links : sequence of Link
+        Behind the headings in the list of contents: to these, or to those of the pages beside.
+    beside : sequence of Link
+        Pages that hold the sections which this one has no room for.
+    home : str
+        Where the name at the head of the contents leads.
+    values_page : str
+        Address of the page of design values; empty where there is none.
+    is_part : bool
+        Whether it is such a page beside another, which says what is wrong.
+    """
+
+    title: str
+    campaign: str
+    summary: str
+    about: Sequence[str]
+    tiles: Sequence[Tile]
+    faults: Sequence[Finding]
+    chapters: Sequence[Section]
+    synthetic: bool = False
+    has_tests: bool = False
+    specimens: Table | None = None
+    specimen_notes: Sequence[str] = ()
+    tests: Table | None = None
+    instruments: Table | None = None
+    instrument_notes: Sequence[str] = ()
+    answers: Sequence[Table] = ()
+    designs: Sequence[Table] = ()
+    segments: Table | None = None
+    intervals: Sequence[Table] = ()
+    comparisons: Sequence[Part] = ()
+    across: str = ""
+    sections: Sequence[RenderedSection] = ()
+    links: Sequence[Link] = ()
+    beside: Sequence[Link] = ()
+    home: str = "#top"
+    values_page: str = ""
+    is_part: bool = False
+
+
+def about_page(
+    units: UnitSystem,
+    made_from: str,
+    *,
+    in_si: str = "",
+    institution: str = "",
+    references: str = "",
+    definitions: Sequence[str] = (),
+) -> list[str]:
+    """Return the sentences that say in which units a page is and what it was made from."""
+    is_us = units == "us"
+    found = [f"Units: {'US customary' if is_us else 'SI'}."]
+    if is_us and in_si:
+        found.append(in_si)
+    found += [
+        f"{name}: {text}."
+        for name, text in (("Laboratory", institution.rstrip(".")), ("Reference", references))
+        if text
+    ]
+    return [*found, f"Made by mooring-reduction {__version__} from {made_from}.", *definitions]
+
+
+def packed(text: str) -> tuple[str, int]:
+    """Return text deflated, in base64, and its length as UTF-8: a page has to stay small.
+
+    Examples
+    --------
+    >>> text, size = packed("nought " * 100)
+    >>> size, len(text) < 40
+    (700, True)
+    """
+    content = text.encode("utf-8")
+    packer = zlib.compressobj(6, zlib.DEFLATED, -zlib.MAX_WBITS)
+    return b64encode(packer.compress(content) + packer.flush()).decode("ascii"), len(content)
+
+
+def render_section(section: Section, *, is_folded: bool) -> RenderedSection:
+    """Return the section of one test as HTML; one that is folded opens by a click."""
+    macros = _environment().get_template("section.html").module
+    html = str(macros.chapter(section, is_folded))  # type: ignore[attr-defined]
+    return RenderedSection(section.key, section.title, html)
+
+
+def render_page(page: Page) -> str:
+    """Return a page as HTML that opens from disk."""
+    room = files("reduction.report")
+    return (
+        _environment()
+        .get_template("page.html")
+        .render(
+            **{name: getattr(page, name) for name in Page.__dataclass_fields__},
+            style=(room / "static" / "page.css").read_text("utf-8"),
+            script="\n".join(
+                (room / "static" / f"{name}.js").read_text("utf-8") for name in _SCRIPTS
+            ),
+            plotly=get_plotlyjs(),
+        )
+    )
+
+
+@cache
+def _environment() -> Environment:
+    environment = Environment(
+        loader=PackageLoader("reduction.report"), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True,
+    )  # fmt: skip
+    environment.globals["packed"] = packed
+    return environment

@@ -1,0 +1,412 @@
+"""Pages of one prediction, composite or assembly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from reduction.archive.write import write_whole
+from reduction.lines.assembly import DeployedLine
+from reduction.lines.composite import CompositeCurve, PieceSource
+from reduction.prediction.armour import PredictedArmour
+from reduction.prediction.wave_load import PredictedWaveLoad
+from reduction.quantities.units import UnitSystem
+from reduction.report.campaign_summary import Finding, Tile
+from reduction.report.figures.curve_figures import draw_assembly, draw_composite, draw_stiffness
+from reduction.report.figures.theory_figures import (
+    draw_errors,
+    draw_section,
+    draw_surface,
+    draw_wave_load,
+    draw_wire,
+    force_per_length,
+)
+from reduction.report.page_template import Page, about_page, render_page
+from reduction.report.prediction_tables import (
+    anchor_table,
+    armour_design_table,
+    cable_table,
+    extremes_table,
+    layers_table,
+    regime_table,
+    use_table,
+    wave_coefficient_table,
+    wave_table,
+    wires_table,
+)
+from reduction.report.test_section import Part, Section, make_part
+from reduction.report.test_view import NORMAL, factor_words
+from reduction.report.text_style import (
+    Shown,
+    Table,
+    make_table,
+    measured,
+    number,
+    number_text,
+    shown,
+    with_prefix,
+    words,
+)
+
+_OF_WAVE = (
+    "A regular wave on a hose that lies along its crest and follows the surface; the water moves as"
+    " if the hose were not there. S. Zhang et al., Open Petroleum Eng. J., vol. 8, 2015."
+)
+
+_OF_ARMOUR = (
+    "Round elastic wires on a rigid core, stretched with their cable. H. Wang et al., J. Mar. Sci."
+    " Eng., vol. 10, 642, 2022."
+)
+
+
+def write_wave_page(
+    found: PredictedWaveLoad, out: Path, *, name: str, units: UnitSystem = "si"
+) -> Path:
+    """Write the page of a wave load.
+
+    Parameters
+    ----------
+    found : PredictedWaveLoad
+        The prediction.
+    out : pathlib.Path
+        Folder of the page; made where it is not there.
+    name : str
+        Of the case.
+    units : UnitSystem
+        What a reader is shown.
+
+    Returns
+    -------
+    page : pathlib.Path
+        ``out/index.html``; it appears whole or not at all.
+
+    Raises
+    ------
+    ArchiveError
+        If the disk refuses.
+    """
+    unit, force = force_per_length(units), shown("tension", units)
+    tiles = [
+        Tile(_with_unit(float(one.greatest), unit), f"{words}, greatest", "load")
+        for words, one in (
+            ("horizontal", found.extremes.horizontal), ("vertical", found.extremes.vertical),
+        )
+    ]  # fmt: skip
+    anchor = _with_unit(abs(float(found.anchor.combined)), force)
+    tiles.append(Tile(anchor, "anchor force", "load"))
+    parts = [
+        make_part("Load over time", draw_wave_load(found, units)),
+        make_part("Anchor force", (), [anchor_table(found, units)]),
+        make_part(
+            "Surface and section", [*draw_surface(found, units), *draw_section(found, units)],
+            [wave_table(found, units), regime_table(found, units)],
+        ),
+        make_part("Coefficients", (), [wave_coefficient_table(found)]),
+    ]  # fmt: skip
+    return _write(
+        out, _title("Wave load", name), "load", parts, answer=extremes_table(found, units),
+        tiles=tiles, notes=found.notes, units=units, about=_OF_WAVE,
+    )  # fmt: skip
+
+
+def write_armour_page(
+    found: PredictedArmour, out: Path, *, name: str, units: UnitSystem = "si"
+) -> Path:
+    """Write the page of an armour.
+
+    Parameters
+    ----------
+    found : PredictedArmour
+        The prediction.
+    out : pathlib.Path
+        Folder of the page; made where it is not there.
+    name : str
+        Of the case.
+    units : UnitSystem
+        What a reader is shown.
+
+    Returns
+    -------
+    page : pathlib.Path
+        ``out/index.html``; it appears whole or not at all.
+
+    Raises
+    ------
+    ArchiveError
+        If the disk refuses.
+    """
+    force = shown("tension", units)
+    size = len(found.layer_names)
+    tension = _with_unit(float(found.together.tension[0]), force)
+    tiles = [
+        Tile(f"{size:,}", "layer" if size == 1 else "layers", "armour"),
+        Tile(tension, f"at {100 * float(found.strain[0]):g} % of strain", "armour"),
+    ]
+    if found.strength is not None:
+        load = _with_unit(found.strength.tension, force)
+        tiles.append(Tile(load, "at first yield", "armour"))
+    parts = [
+        make_part(
+            "The cable and its layers",
+            (),
+            [cable_table(found, units), armour_design_table(found, units)],
+        ),
+        make_part("One wire", draw_wire(found, units), [wires_table(found, units)]),
+        make_part("Where each theory holds", draw_errors(found), [use_table(found)]),
+    ]  # fmt: skip
+    return _write(
+        out, _title("Armour", name), "armour", parts, answer=layers_table(found, units),
+        tiles=tiles, notes=found.notes, units=units, about=_OF_ARMOUR,
+    )  # fmt: skip
+
+
+def _write(
+    out: Path,
+    title: str,
+    key: str,
+    parts: Sequence[Part],
+    *,
+    answer: Table | None,
+    tiles: Sequence[Tile],
+    notes: Sequence[str],
+    units: UnitSystem,
+    about: str,
+) -> Path:
+    section = Section(
+        key=key, title=title, subtitle="Predicted: nothing of it was measured.",
+        parts=tuple(parts), notes=(), provenance=(),
+    )  # fmt: skip
+    page = Page(
+        title=title,
+        campaign=title,
+        summary="",
+        about=about_page(
+            units, "the numbers of its SPEC.toml alone", in_si="Notes are in SI.",
+            definitions=[about],
+        ),
+        tiles=tiles,
+        faults=[Finding("warning", (title,), f"{note[:1].upper()}{note[1:]}.") for note in notes],
+        chapters=[section],
+        answers=[] if answer is None else [answer],
+    )  # fmt: skip
+    path = out / "index.html"
+    write_whole(path, render_page(page))
+    return path
+
+
+def _title(kind: str, name: str) -> str:
+    """Kind and name of a case; a name that says the kind again is left out."""
+    return kind if name.lower() in kind.lower() else f"{kind} {name}"
+
+
+def _with_unit(value: float, unit: Shown) -> str:
+    found = with_prefix(unit, value)
+    return f"{number_text(value * found.factor)} {found.unit}"
+
+
+_RULE = (
+    "The curve is the one that rises and is nearest to all pieces, each weighted by its "
+    "uncertainty and by what pieces of its kind differ by."
+)
+
+_RULED = "local EA by the rule"
+
+_DOUBTS = ("DOUBTFUL", "no pieces of one curve", "slipped", "not known", "extrapolated")
+
+
+def write_composite_page(
+    source: PieceSource, curve: CompositeCurve, path: Path, *, units: UnitSystem = "si"
+) -> None:
+    """Write the page of a composite curve.
+
+    Parameters
+    ----------
+    source : PieceSource
+        Of the pieces.
+    curve : CompositeCurve
+        Of them.
+    path : pathlib.Path
+        The page; it appears whole or not at all.
+    units : UnitSystem
+        What a reader is shown.
+
+    Raises
+    ------
+    ArchiveError
+        If the disk refuses.
+    """
+    force, percent = shown("tension", units), shown("strain", units)
+    tests = len(set(curve.piece_names))
+    tiles = [
+        Tile(f"{tests}", "test" if tests == 1 else "tests", "curve"),
+        Tile(_rounded_with_unit(float(curve.strain[-1]), percent), "greatest strain", "curve"),
+        Tile(_rounded_with_unit(float(curve.tension[-1]), force), "tension there", "curve"),
+    ]
+    part = make_part(
+        "Tension against strain", [draw_composite(source, curve, units)],
+        [_piece_table(source, curve, units)],
+    )  # fmt: skip
+    _write_curve_page(
+        path, f"Composite curve of {source.name}", [part], tiles=tiles, units=units,
+        notes=(*_doubt(curve), *curve.notes, *source.notes), sources=source.sources,
+        synthetic=source.is_synthetic, subtitle=f"Branch: {source.branch}.",
+    )  # fmt: skip
+
+
+def write_assembly_page(found: DeployedLine, path: Path, *, units: UnitSystem = "si") -> None:
+    """Write the page of a deployed assembly, with the curve of its tethers.
+
+    Parameters
+    ----------
+    found : DeployedLine
+        The assembly.
+    path : pathlib.Path
+        The page; it appears whole or not at all.
+    units : UnitSystem
+        What a reader is shown.
+
+    Raises
+    ------
+    ArchiveError
+        If the disk refuses.
+    """
+    length = shown("length", units)
+    assembly, source = found.deployed.assembly, found.source
+    tiles = [
+        Tile(f"{assembly.n_tethers}", "tethers" if assembly.n_tethers > 1 else "tether", "curve"),
+        Tile(_rounded_with_unit(float(assembly.total_length[0]), length), "slack below", "curve"),
+    ]
+    parts = [
+        make_part(
+            "Tension against length", [draw_assembly(found, units)], [_working_table(found, units)]
+        ),
+        make_part("Stiffness", [draw_stiffness(found, units)]),
+        make_part(
+            "Curve of a tether", [draw_composite(source, found.curve, units)],
+            [_piece_table(source, found.curve, units)],
+        ),
+    ]  # fmt: skip
+    _write_curve_page(
+        path, f"Assembly {found.name}", parts, tiles=tiles, units=units,
+        notes=(*_doubt(found.curve), *found.deployed.notes, *found.curve.notes, *source.notes),
+        sources=(found.splices, *source.sources), synthetic=source.is_synthetic,
+        subtitle=f"{found.words}.",
+    )  # fmt: skip
+
+
+def _doubt(curve: CompositeCurve) -> tuple[str, ...]:
+    """What makes a curve doubtful as a whole, to stand before its notes."""
+    return (f"DOUBTFUL: {curve.doubt}",) if curve.doubt else ()
+
+
+def _piece_table(source: PieceSource, curve: CompositeCurve, units: UnitSystem) -> Table:
+    percent, force = shown("strain", units), shown("tension", units)
+    used = set(curve.piece_names)
+    rows = [
+        [
+            words(one.name),
+            words(one.kind),
+            words(one.branch),
+            number(float(one.strain[0]), percent),
+            number(float(one.strain[-1]), percent),
+            number(float(one.tension[0]), force),
+            number(float(one.tension[-1]), force),
+        ]
+        for one in source.pieces
+        if one.name in used
+    ]
+    return make_table(
+        "Pieces of the curve.",
+        (
+            "test", "kind", "branch", percent.label("from strain"), percent.label("to strain"),
+            force.label("from tension"), force.label("to tension"),
+        ),
+        rows, synthetic=source.is_synthetic, is_tall=len(rows) > 12,
+    )  # fmt: skip
+
+
+def _working_table(found: DeployedLine, units: UnitSystem) -> Table | None:
+    """None where no working point was asked for."""
+    length, force, percent = shown("length", units), shown("tension", units), shown("strain", units)
+    rows = []
+    for place, state in enumerate(found.deployed.working, start=1):
+        point, sharing = state.point, state.sharing
+        has_cycle = bool(state.level.tension_amplitude)
+        doubts = (("not tested", not point.is_tested), (_RULED, state.is_moved and not has_cycle))
+        local = float("nan") if has_cycle else float(point.apparent_spring_constant)
+        rows.append(
+            [
+                words(", ".join([str(place), *(word for word, holds in doubts if holds)])),
+                measured(float(point.mean_tension), NORMAL * state.standard_uncertainty, force),
+                number(state.level.tension_amplitude, force),
+                number(float(point.total_length), length),
+                number(float(state.strain.max()), percent),
+                number(state.secant_spring_constant, force),
+                number(local, force),
+                number(float(point.peak_tether_tension.max()), force),
+                number(100 * float(point.peak_share.max())),
+                number(float("nan") if sharing is None else float(sharing.least_load), force),
+                number(float("nan") if sharing is None else float(sharing.greatest_load), force),
+            ]
+        )
+    if not rows:
+        return None
+    return make_table(
+        "Working points.",
+        (
+            "point", force.label("tension"), force.label("amplitude"), length.label("length"),
+            percent.label("strain of a tether"), force.label("EA"), force.label("local EA"),
+            force.label("greatest of a tether"), "of its strength [%]",
+            force.label("least by the tolerance"), force.label("greatest by the tolerance"),
+        ),
+        rows, synthetic=found.source.is_synthetic,
+        remarks=[
+            f"±: expanded uncertainty, 95 % ({factor_words([NORMAL])}), of the curve at that"
+            " length. EA is that of the cycle, peak to valley; where there is none it is over 5 %"
+            " of the length to each side, and the tangent stands beside it as local EA, which is"
+            " doubtful where it is that of the rule of rising. Loads by the tolerance of the"
+            " lengths are at the mean tension."
+        ],
+    )  # fmt: skip
+
+
+def _write_curve_page(
+    path: Path,
+    title: str,
+    parts: Sequence[Part],
+    *,
+    tiles: Sequence[Tile],
+    units: UnitSystem,
+    notes: Sequence[str],
+    sources: Sequence[str],
+    synthetic: bool,
+    subtitle: str,
+) -> None:
+    section = Section(
+        key="curve", title=title, subtitle=subtitle, parts=tuple(parts), notes=(),
+        provenance=tuple(("source", text) for text in sources), noun="curve",
+    )  # fmt: skip
+    page = Page(
+        title=title,
+        campaign=title,
+        summary="",
+        about=about_page(
+            units, "what its sources say", in_si="Notes are in SI.", definitions=[_RULE]
+        ),
+        tiles=tiles,
+        faults=[
+            Finding(
+                "warning" if any(word in note for word in _DOUBTS) else "note",
+                (title,),
+                f"{note[:1].upper()}{note[1:]}.",
+            )
+            for note in dict.fromkeys(notes)
+        ],
+        chapters=[section],
+        synthetic=synthetic,
+    )
+    write_whole(path, render_page(page))
+
+
+def _rounded_with_unit(value: float, unit: Shown) -> str:
+    return f"{number_text(value * unit.factor)} {unit.unit}"

@@ -1,0 +1,583 @@
+"""One reduced test as the page reads it, with expanded uncertainty.
+
+References
+----------
+.. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
+   in measurement," 6.2, 7.2.3 (an expanded uncertainty is given with its coverage factor), G.4.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from reduction.archive.shared_errors import stated_errors_of
+from reduction.archive.test_dataset import stored_cycles
+from reduction.archive.uncertainty_budget import effective_freedom
+from reduction.quantities.units import UnitSystem
+from reduction.record.contributions import (
+    LINE_METHODS,
+    StatedErrors,
+    coverage_factor,
+    effective_degrees_of_freedom,
+)
+from reduction.record.measurement import Floats, Integers
+from reduction.record.notes import Severity, severity_of
+from reduction.report.text_style import (
+    FROM_READINGS,
+    Shown,
+    Table,
+    in_order,
+    make_table,
+    number,
+    shown,
+    source_words,
+    words,
+)
+
+OF_NO_TEST = "of_no_test"
+
+"""Status of an archive that status.csv has no row for: the campaign has no such test now."""
+
+_REACHED = ("mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude")
+
+
+@dataclass(frozen=True)
+class Status:
+    """One row of status.csv."""
+
+    test: str
+    status: str
+    message: str = ""
+    exit_status: str = ""
+    raw_sha256: str = ""
+    seconds: str = ""
+
+
+@dataclass(frozen=True)
+class TestView:
+    """One test on the page; a variable that the archive lacks is None.
+
+    Parameters
+    ----------
+    key : str
+        Prefix of every anchor of the test; made by the page, not from a name.
+    data : xarray.Dataset
+        The archive, strings decoded.
+    units : UnitSystem
+        What a reader is shown.
+    status : Status or None
+        Row of status.csv, where there is one.
+    """
+
+    __test__ = False  # a test of a tether, not of this software
+
+    key: str
+    data: xr.Dataset
+    units: UnitSystem = "si"
+    status: Status | None = None
+
+    @property
+    def id(self) -> str:
+        """Name of the test."""
+        return self.attribute("test")
+
+    @property
+    def is_of_earlier_run(self) -> bool:
+        """True where the last run of the campaign did not make this archive or let it stand."""
+        return self.status is not None and self.status.status in ("failed", OF_NO_TEST)
+
+    @property
+    def kind(self) -> str:
+        """Kind of the test: cyclic, fatigue, relaxation, stepwise, ..."""
+        return self.attribute("test_kind")
+
+    @property
+    def is_synthetic(self) -> bool:
+        """True where no specimen was ever pulled."""
+        return self.attribute("synthetic").lower() == "yes"
+
+    @property
+    def is_stepwise(self) -> bool:
+        """True for weights hung one after another; there is no record then."""
+        return "step" in self.data.sizes
+
+    @property
+    def specimens(self) -> tuple[str, ...]:
+        """Names of the specimens."""
+        return self.texts("specimen")
+
+    @property
+    def is_rope(self) -> bool:
+        """True where every specimen is a rope or a wire."""
+        kinds = self.texts("specimen_kind")
+        return bool(kinds) and set(kinds) <= {"rope", "wire"}
+
+    @property
+    def is_rubber(self) -> bool:
+        """False where cords, fibres or wires carry in every specimen."""
+        kinds = self.texts("specimen_kind")
+        return not kinds or not set(kinds) <= {"rope", "wire", "stretch hose"}
+
+    @property
+    def n_cycles(self) -> int:
+        """Number of whole cycles."""
+        return int(self.data.sizes.get("cycle", 0))
+
+    @property
+    def start_time(self) -> float:
+        """First time of the record in seconds; infinite where there is none."""
+        time = self.array("time")
+        known = np.zeros(0) if time is None else time[np.isfinite(time)]
+        return float(known[0]) if known.size else float("inf")
+
+    @property
+    def is_whole(self) -> bool:
+        """False where samples of some cycles alone are stored."""
+        return "sample_index" not in self.data
+
+    @property
+    def pieces(self) -> Integers:
+        """Piece of the record that each stored sample is in: between two, cycles are left out."""
+        index, first = self.array("sample_index"), self.array("cycle_first_sample")
+        last = self.array("cycle_last_sample")
+        if index is None or first is None or last is None:
+            return np.zeros(int(self.data.sizes.get("sample", 0)), dtype=np.int64)
+        # cycles from one sample to the next: neighbours share the sample at which one turns
+        begun = np.searchsorted(first, index[:-1], side="left")
+        ended = np.searchsorted(last, index[1:], side="right")
+        return np.concatenate([[0], np.cumsum(ended > begun)])
+
+    def stored_near(self, cycles: Floats) -> Floats:
+        """Numbers of cycles, each once; where samples of some alone are stored, the nearest."""
+        stored = np.zeros(0) if self.is_whole else stored_cycles(self.data)
+        if not stored.size:
+            return np.unique(cycles)
+        return np.unique(stored[np.abs(stored[:, None] - cycles).argmin(axis=0)])
+
+    def attribute(self, name: str) -> str:
+        """Global attribute as text; empty where there is none."""
+        return str(self.data.attrs.get(name, ""))
+
+    def array(self, name: str) -> Floats | None:
+        """Values of a variable; missing flags and counts keep their numbers."""
+        if name not in self.data:
+            return None
+        return np.asarray(self.data.variables[name].values, dtype=np.float64)
+
+    def array_like(self, name: str, other: Floats) -> Floats:
+        """Values of a variable, or NaN in the shape of another."""
+        found = self.array(name)
+        return np.full(other.shape, np.nan) if found is None else found
+
+    def scalar(self, name: str) -> float:
+        """Value of a variable without dimensions; NaN where there is none."""
+        found = self.array(name)
+        return float("nan") if found is None else float(found)
+
+    def texts(self, name: str) -> tuple[str, ...]:
+        """Values of a text variable; empty where there is none."""
+        if name not in self.data:
+            return ()
+        return tuple(str(value) for value in np.ravel(self.data.variables[name].values))
+
+    @property
+    def hold_numbers(self) -> tuple[int, ...]:
+        """Number of each hold in time, from 1: specimens that stand still together share one."""
+        number = self.array("hold_number")
+        return () if number is None else tuple(int(value) for value in number)
+
+    def text(self, name: str) -> str:
+        """Value of a text variable without dimensions."""
+        return " ".join(self.texts(name))
+
+    def flag_meanings(self, name: str) -> dict[str, int]:
+        """Meaning to mask or value of a flag variable, as the archive declares them."""
+        attributes = self.data.variables[name].attrs
+        numbers = attributes.get("flag_masks", attributes.get("flag_values", ()))
+        words = str(attributes.get("flag_meanings", "")).split()
+        return {word: int(number) for word, number in zip(words, np.ravel(numbers), strict=True)}
+
+    def without_samples(self) -> TestView:
+        """Return the same test without its record, all in memory: what campaign figures use.
+
+        Of single cycles only what the cycles of a test reach together is found from is left.
+        """
+        data = self.data.drop_dims("sample", errors="ignore")
+        single = [
+            name
+            for name in data.data_vars
+            if "cycle" in data.variables[name].dims and name not in _REACHED
+        ]
+        return replace(self, data=data.drop_vars(single).load())
+
+    def at_cycles(self, places: Integers) -> TestView:
+        """Return the same test with some of its cycles, counted from 0 and in order."""
+        if len(places) == self.data.sizes["cycle"]:
+            return self
+        return replace(self, data=self.data.isel(cycle=places))
+
+
+def all_specimens(tests: Sequence[TestView]) -> list[str]:
+    """Return the specimens of several tests, each once, in the order they first appear."""
+    return list(dict.fromkeys(name for view in tests for name in view.specimens))
+
+
+def any_synthetic(tests: Sequence[TestView]) -> bool:
+    """Return whether a figure or table of these tests has to say that data are synthetic."""
+    return any(view.is_synthetic for view in tests)
+
+
+def natural_order(name: str) -> tuple[tuple[int, int, str], ...]:
+    """Sort key that puts T-10 after T-2.
+
+    Examples
+    --------
+    >>> sorted(["T-10", "T-2", "hold"], key=natural_order)
+    ['hold', 'T-2', 'T-10']
+    """
+    return tuple(
+        (0, int(part), "") if part.isdigit() else (1, 0, part.lower())
+        for part in re.split(r"(\d+)", name)
+        if part
+    )
+
+
+NOTHING_STATED = (
+    "No error of the instruments is stated: the uncertainty holds scatter and tape readings alone."
+)
+
+_PERCENT = Shown("%", 100.0)
+
+
+def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> Table | None:
+    """Return what is stated, a column for each statement; None where nothing is.
+
+    Tests of one campaign are usually reduced with one statement.
+    """
+    statements: dict[StatedErrors, list[TestView]] = {}
+    for view in tests:
+        if is_stated(view):
+            statements.setdefault(stated_errors_of(view.data), []).append(view)
+    if not statements:
+        return None
+    rows = [
+        [words(unit.label(text)),
+         *(number(getattr(one, key), unit, digits=3) for one in statements)]
+        for key, text, unit in _rows(units)
+        if any(getattr(one, key) for one in statements)
+    ]  # fmt: skip
+    is_one = len(statements) == 1 and len(next(iter(statements.values()))) == len(tests)
+    columns = (
+        ["standard uncertainty"]
+        if is_one
+        else [", ".join(view.id for view in views) for views in statements.values()]
+    )
+    without = [view.id for view in tests if not is_stated(view)]
+    has_one_cell = any(one.has_one_load_cell for one in statements)
+    remarks = [
+        "Standard uncertainties (k = 1), as computed from what campaign.toml states; what has no"
+        " row counts as known.",
+        *(["All tension channels share the errors of one load cell."] if has_one_cell else []),
+        *([f"Nothing is stated of {', '.join(without)}."] if without else []),
+    ]
+    return make_table(
+        "What is stated of the instruments.", ("error, with its unit", *columns), rows,
+        synthetic=any_synthetic(tests), remarks=remarks,
+    )  # fmt: skip
+
+
+def instrument_sentences(tests: Sequence[TestView]) -> list[str]:
+    """Return the sentence that nothing is stated, where that is so of all tests."""
+    return [NOTHING_STATED] if tests and not any(is_stated(view) for view in tests) else []
+
+
+def is_stated(view: TestView) -> bool:
+    """Return whether the archive states any error of the instruments."""
+    return stated_errors_of(view.data).has_any
+
+
+def _rows(units: UnitSystem) -> tuple[tuple[str, str, Shown], ...]:
+    force, length = shown("tension", units), shown("length", units)
+    small, time = shown("small length", units), Shown("ms", 1e3)
+    return (
+        ("tension_gain", "gain of tension", _PERCENT),
+        ("tension_offset", "zero of tension", force),
+        ("tension_reading", "one reading of tension", force),
+        ("position_gain", "gain of position", _PERCENT),
+        ("position_offset", "zero of position", length),
+        ("position_reading", "one reading of position", length),
+        ("lag", "lag between the channels", time),
+        ("diameter", "mean diameter", small),
+        ("strain_gain", "strain, by its method", _PERCENT),
+        ("rated_break_strength", "rated break strength", _PERCENT),
+        ("stiffness", "stiffness, for the temperature of the test", _PERCENT),
+    )
+
+
+DRAWN = (
+    "In brackets: the 95 % interval by Monte Carlo, of the same errors, where they are so large"
+    " that they do not propagate linearly."
+)
+
+MANY = np.inf
+
+"""Degrees of freedom of a regression on hundreds of samples, and of what is taken as known."""
+
+_CYCLES = "scatter between cycles, noise, regression"
+
+_INSTRUMENTS = "errors of the instruments"
+
+
+@dataclass(frozen=True)
+class Expanded:
+    """Expanded uncertainty of several numbers, and the factor of each; in one shape."""
+
+    half: Floats
+    factor: Floats
+
+    @property
+    def factors(self) -> tuple[float, ...]:
+        """Factors of the numbers that have an uncertainty."""
+        return tuple(np.unique(self.factor[np.isfinite(self.half)]).tolist())
+
+
+def expand(
+    standard_uncertainty: ArrayLike,
+    *,
+    random: ArrayLike | None = None,
+    degrees_of_freedom: ArrayLike = MANY,
+) -> Expanded:
+    """Return the expanded uncertainty for 95 %.
+
+    Parameters
+    ----------
+    standard_uncertainty : array_like
+        Combined. [any]
+    random : array_like, optional
+        Its random part; all of it where not given. [as standard_uncertainty]
+    degrees_of_freedom : array_like
+        Of the random part. [1]
+
+    Examples
+    --------
+    The same scatter of ten cycles alone, and beside a shared part of twice its size:
+
+    >>> found = expand([1.0, np.sqrt(5)], random=[1.0, 1.0], degrees_of_freedom=9.0)
+    >>> print(found.half.round(1), found.factor.round(2))
+    [2.3 4.4] [2.26 1.97]
+    """
+    spread = np.asarray(standard_uncertainty, dtype=np.float64)
+    part = spread if random is None else np.asarray(random, dtype=np.float64)
+    rest = np.sqrt(np.maximum(spread**2 - part**2, 0.0))
+    effective = effective_degrees_of_freedom(part, degrees_of_freedom, contribution=rest[None])
+    factor = np.asarray(coverage_factor(effective))
+    return Expanded(factor * spread, factor)
+
+
+NORMAL = float(expand(1.0).factor)
+
+"""Coverage factor of what is taken as known, or has hundreds of samples behind it. [1]"""
+
+
+def expanded_of(view: TestView, name: str, values: Floats) -> Expanded:
+    """Return the expanded uncertainty of a quantity of an archive, in the shape of its values.
+
+    The factor follows from what the archive says its parts were found from.
+
+    Parameters
+    ----------
+    view : TestView
+        The archive.
+    name : str
+        Of the quantity.
+    values : ndarray
+        Of it.
+    """
+    spread = view.array_like(f"{name}_standard_uncertainty", values)
+    if name not in view.data:
+        return expand(spread)
+    return expand(spread, degrees_of_freedom=effective_freedom(view.data, name))
+
+
+def drawn_interval(view: TestView, name: str, place: int) -> tuple[float, float] | None:
+    """Return the 95 % interval of a parameter of the line where it was found by Monte Carlo.
+
+    None where linear propagation holds, and of other quantities.
+    """
+    method = view.array("test_line_uncertainty_method")
+    low, high = view.array(f"{name}_low"), view.array(f"{name}_high")
+    if method is None or low is None or high is None:
+        return None
+    if method[place] != LINE_METHODS["monte_carlo"] or not np.isfinite(high[place] - low[place]):
+        return None
+    return float(low[place]), float(high[place])
+
+
+def shared_sources(views: Sequence[TestView], names: Sequence[str]) -> list[str]:
+    """Return the sources of shared errors that reach any of some quantities, in fixed order."""
+    found: set[str] = set()
+    for view in views:
+        sources = view.texts("uncertainty_source")
+        for name in names:
+            rows = view.array(f"{name}_uncertainty_contribution")
+            if rows is not None:
+                reached = (np.nan_to_num(rows) != 0).reshape(len(sources), -1).any(axis=1)
+                found |= {one for one, is_in in zip(sources, reached, strict=True) if is_in}
+    return in_order(found)
+
+
+def factor_words(factors: Iterable[float]) -> str:
+    """Return the coverage factors of several numbers as text.
+
+    Examples
+    --------
+    >>> factor_words([2.2622, 1.9745, np.nan]), factor_words([1.96])
+    ('k = 1.97 to 2.26', 'k = 1.96')
+    """
+    known = [f"{one:.2f}" for one in sorted(factors) if np.isfinite(one)]
+    ends = list(dict.fromkeys([known[0], known[-1]])) if known else []
+    return f"k = {' to '.join(ends)}" if ends else ""
+
+
+def plus_minus(
+    factors: Iterable[float],
+    found_from: str = _CYCLES,
+    *,
+    left_out: str = _INSTRUMENTS,
+    mark: str = "±",
+) -> str:
+    """Return the sentence: what an uncertainty holds, and what it leaves out.
+
+    Parameters
+    ----------
+    factors : iterable of float
+        Coverage factors of the numbers that it is said of.
+    found_from : str
+        What it holds.
+    left_out : str
+        What it does not hold; nothing is said where it is empty.
+    mark : str
+        What shows it.
+
+    Examples
+    --------
+    >>> plus_minus([2.26], "tape readings", left_out="position scale")
+    '±: expanded uncertainty, 95 % (k = 2.26): tape readings. Not in it: position scale.'
+    """
+    factor = factor_words(factors)
+    head = f"{mark}: expanded uncertainty, 95 %{f' ({factor})' if factor else ''}"
+    tail = f" Not in it: {left_out}." if left_out else ""
+    return f"{head}: {found_from}.{tail}"
+
+
+def plus_minus_of_tests(
+    factors: Iterable[float],
+    views: Sequence[TestView],
+    names: Sequence[str],
+    *,
+    found_from: str = _CYCLES,
+    mark: str = "±",
+) -> str:
+    """Return the sentence for quantities of tests: with what is shared.
+
+    Where nothing is stated of the instruments, it says that.
+    """
+    shared = shared_sources(views, names)
+    held = found_from
+    if shared:
+        held += f"; and what all samples share: {', '.join(source_words(one) for one in shared)}"
+    said = plus_minus(factors, held, left_out="", mark=mark)
+    if set(shared) - FROM_READINGS:
+        return said
+    if not any(is_stated(view) for view in views):
+        nothing = NOTHING_STATED if shared else NOTHING_STATED.replace(" and tape readings", "")
+        return f"{said} {nothing}"
+    if any(f"{name}_uncertainty_contribution" in view.data for view in views for name in names):
+        return f"{said} Nothing that is stated of the instruments reaches it."
+    return f"{said} Not in it: {_INSTRUMENTS}."
+
+
+@dataclass(frozen=True)
+class RowView:
+    """One thing on the page: a hose, a comparison, an experiment.
+
+    Parameters
+    ----------
+    key : str
+        Prefix of every anchor; made by the page, not from a name.
+    data : xarray.Dataset
+        The archive, in memory, strings decoded.
+    index : int
+        Which row of it.
+    units : UnitSystem
+        What a reader is shown.
+    """
+
+    ENDS_AT: ClassVar[Mapping[str, str]] = {}
+    """By dimension that the rows share, the variable whose last value is the end of a row."""
+
+    key: str
+    data: xr.Dataset
+    index: int
+    units: UnitSystem = "si"
+
+    @property
+    def is_synthetic(self) -> bool:
+        """True where the campaign says that its numbers are made up."""
+        return self.attribute("synthetic").lower() == "yes"
+
+    def attribute(self, name: str) -> str:
+        """Global attribute as text; empty where there is none."""
+        return str(self.data.attrs.get(name, ""))
+
+    @cached_property
+    def sizes(self) -> dict[str, int]:
+        """Own length of the dimensions that rows share."""
+        found = {}
+        for dim, name in self.ENDS_AT.items():
+            if name in self.data:
+                values = self.data.variables[name].values[self.index]
+                is_own = np.isfinite(values) if values.dtype.kind == "f" else values.astype(object)
+                found[dim] = int(np.count_nonzero(is_own.astype(bool)))
+        return found
+
+    def array(self, name: str) -> Floats:
+        """Values of a variable of this row; of no length where there is none."""
+        if name not in self.data:
+            return np.full(0, np.nan)
+        variable = self.data[name]
+        cut = tuple(slice(self.sizes.get(str(dim))) for dim in variable.dims[1:])
+        return np.asarray(variable.values[self.index], dtype=np.float64)[cut]
+
+    def array_like(self, name: str, other: Floats) -> Floats:
+        """Values of a variable, or NaN in the shape of another."""
+        found = self.array(name)
+        return found if found.shape == other.shape else np.full(other.shape, np.nan)
+
+    def scalar(self, name: str) -> float:
+        """A number of this row; NaN where there is none."""
+        found = self.array(name)
+        return float(found) if found.ndim == 0 else float("nan")
+
+    def text(self, name: str) -> str:
+        """Value of a text variable without further dimensions; "" where there is none."""
+        return str(self.data.variables[name].values[self.index]) if name in self.data else ""
+
+    def notes_of(self, owner: str, name: str, *, stage: str) -> dict[str, Severity]:
+        """Notes whose ``owner`` is the name, with how serious each is at the stage."""
+        if "note" not in self.data:
+            return {}
+        pairs = zip(
+            self.data[owner].values.astype(str),
+            self.data.variables["note"].values.astype(str),
+            strict=True,
+        )
+        return {str(note): severity_of(stage, note) for own, note in pairs if own == name}

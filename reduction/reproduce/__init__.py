@@ -1,1 +1,0 @@
-"""Printed numbers again, from other printed numbers or from theory."""

@@ -1,0 +1,283 @@
+r"""How much later than position tension was logged, from the turns of a triangular wave.
+
+One frequency cannot tell a lag from damping: it shows the phase :math:`\delta - \omega \ell` alone.
+A turn can.  Of any material with memory,
+
+.. math::
+
+    T(t) = G(0) \, p(t) + \int_0^\infty G'(s) \, p(t - s) \, ds
+
+the integral is smoother than position: where the speed of the crosshead jumps, its slope does not.
+So the slope of tension jumps with that of position, at that instant, whatever the loss; only what
+delays a channel moves one corner against the other.  Both sides of a turn are fitted by parabolas,
+apart, in either channel, and the lag is the time between the crossings.
+
+What is left of damping makes tension turn *early*, never late.  Creep that goes as a power of
+time, :math:`t^{-n}` with :math:`n = 2\delta / \pi`, bends the ramp next to its corner, and
+parabolas over a window W cross :math:`n W / 8` early; smaller windows show it.  A dashpot in
+parallel, friction, or a relaxation that is over within a few samples shifts the whole ramp, by the
+time eta / K, and no record at this rate tells that from a lead of the channel.  So a tension that
+turns late was logged late, by at least that; one that turns early may be damping, and is refused.
+
+References
+----------
+.. [1] J. D. Ferry, *Viscoelastic Properties of Polymers*, 3rd ed., Wiley, New York, 1980, ch. 1
+   (the integral), ch. 3.
+.. [2] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
+   in measurement," F.2.4.5 (a bias that is known and not corrected).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.record.errors import DataError
+from reduction.record.measurement import Floats, Integers, read_only_arrays
+from reduction.record.samples import BLOCK, sample_blocks, take_samples
+from reduction.stages.standstills import median_step
+
+LAG_REFUSALS = {
+    "given": 0,
+    "few_turns": 1,
+    "few_samples_a_ramp": 2,
+    "turns_not_sharp": 3,
+    "early_as_damping_makes_it": 4,
+}
+
+"""Why there is no lag, by its code in `LagEstimate`."""
+
+_SHARE = 0.45  # of a ramp, on either side of a turn
+
+_FEWEST_SAMPLES = 10  # in that share, for a parabola through half of them
+
+_FEWEST_TURNS = 6
+
+_MOST_TURNS = 400
+
+_SHARP = 0.7  # jump of the slope over twice the mean slope: 1 of ramps, 0.2 of a sine
+
+_MOST_LOST = 0.2
+
+_NEWTON_STEPS = 8
+
+_WINDOWS = (1.0, 0.7, 0.5)  # of the reach, the first for the estimate
+
+_EARLY = 2.0  # standard uncertainties
+
+_ROUNDING = 1e-9  # of a ramp
+
+_FLAT = 1e-12  # determinant of the normal equations of a parabola; 5e-4 of even samples
+
+_PASSES = 3
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class LagEstimate:
+    """Lag of the tension channels; arrays have shape (n_specimens,).
+
+    Parameters
+    ----------
+    lag : ndarray
+        By which tension is logged late against position, at the least; NaN where refused. [s]
+    standard_uncertainty : ndarray
+        Scatter over the turns, peaks against valleys, and what smaller windows change. [s]
+    n_turns : ndarray of int
+        Used. [1]
+    refusal : ndarray of int
+        Of `LAG_REFUSALS`. [1]
+    """
+
+    lag: Floats
+    standard_uncertainty: Floats
+    n_turns: Integers
+    refusal: Integers
+
+
+def lag_by_turns(
+    time: ArrayLike, position: ArrayLike, tension: ArrayLike, turn: ArrayLike
+) -> LagEstimate:
+    r"""Estimate by how much each tension channel is logged later than position.
+
+    .. math:: \ell = t_T - t_p, \qquad u^2 = u_{scatter}^2 + 4 \max_w (\ell_W - \ell_w)^2
+            + \frac{1}{12} (\ell_{peaks} - \ell_{valleys})^2
+
+    Parameters
+    ----------
+    time, position : array_like, shape (n_samples,)
+        NaN where a sample is not usable. [s], [m]
+    tension : array_like, shape (n_specimens, n_samples)
+        [N]
+    turn : array_like of int, shape (n_turns,)
+        Samples at which the wave turns, in order. [1]
+
+    Returns
+    -------
+    estimate : LagEstimate
+        With a refusal where turns do not tell.
+
+    Raises
+    ------
+    DataError
+        If the series differ in length.
+
+    Notes
+    -----
+    Turns weigh by the square of the jump of the slope of tension: the noise of a crossing is that
+    of a reading over it.  The bias of a power-law creep is twice the change from W to W/2; it is
+    not corrected, since that would take the law for granted, but kept in full in the uncertainty
+    ([2]_).  Half of what peaks and valleys differ by counts as a half width.  A wave that rounds
+    its corners (a sine) is refused: there phase is all there is, and phase is damping and lag
+    together ([1]_).
+
+    Examples
+    --------
+    Ramps of 5 s at 10 Hz, tension logged 30 ms late:
+
+    >>> time = np.arange(0, 60, 0.1)
+    >>> ramps = lambda t: 1 - 2 * np.abs(np.mod(t / 10, 1) - 0.5)
+    >>> found = lag_by_turns(time, ramps(time), [500 * ramps(time - 0.03)], np.arange(50, 600, 50))
+    >>> print(found.lag.round(4), found.n_turns)
+    [0.03] [11]
+    """
+    clock, place = (np.asarray(one, dtype=np.float64) for one in (time, position))
+    load = np.asarray(tension, dtype=np.float64)
+    if load.ndim != 2 or not (clock.shape == place.shape == load.shape[1:]):
+        raise DataError(
+            "time, position and tension do not pair up",
+            found=f"shapes {clock.shape}, {place.shape} and {load.shape}",
+            needed="(n_samples,), (n_samples,) and (n_specimens, n_samples)",
+        )
+    turns = np.unique(np.asarray(turn, dtype=np.int64))
+    n_specimens = load.shape[0]
+    if turns.size < _FEWEST_TURNS:
+        return _refused(n_specimens, "few_turns")
+    reach = int(_SHARE * np.median(np.diff(turns)))
+    if reach < _FEWEST_SAMPLES:
+        return _refused(n_specimens, "few_samples_a_ramp")
+    margin = 2 * reach
+    turns = turns[(turns >= margin) & (turns < clock.size - margin)]
+    # a pause between two groups of cycles has no ramp
+    ramp = np.diff(turns, prepend=turns[:1] - 2 * reach, append=turns[-1:] + 2 * reach)
+    turns = turns[(ramp[:-1] > reach) & (ramp[1:] > reach)]
+    turns = turns[:: max(1, -(-turns.size // _MOST_TURNS))]
+    found = [_of_specimen(clock, place, series, turns, reach) for series in load]
+    lag, spread, used, refusal = zip(*found, strict=True)
+    return LagEstimate(np.array(lag), np.array(spread), np.array(used), np.array(refusal))
+
+
+def _refused(n_specimens: int, reason: str) -> LagEstimate:
+    nothing = np.full(n_specimens, np.nan)
+    code = np.full(n_specimens, LAG_REFUSALS[reason])
+    return LagEstimate(nothing, nothing, np.zeros(n_specimens, dtype=np.int64), code)
+
+
+def _of_specimen(
+    time: Floats, position: Floats, tension: Floats, turns: Integers, reach: int
+) -> tuple[float, float, int, int]:
+    """Lag, its uncertainty, turns used, and code of the refusal."""
+    # window and lag may each move by half a reach
+    is_read = np.ones(turns.size, dtype=bool)
+    for some, window in _windows(turns, -2 * reach, 2 * reach + 1):
+        read = take_samples(position, window) + take_samples(tension, window)
+        is_read[some] &= np.isfinite(read).all(axis=1)
+    turns = turns[is_read]
+    if turns.size < _FEWEST_TURNS:
+        return np.nan, np.nan, turns.size, LAG_REFUSALS["few_turns"]
+    step, most = median_step(time[turns[0] : turns[-1]]), reach // 2
+
+    def samples(seconds: Floats) -> Integers:
+        return np.rint(np.clip(np.nan_to_num(seconds / step), -most, most)).astype(np.int64)
+
+    turns = turns + samples(_corners(time, position, turns, reach)[0] - take_samples(time, turns))
+    lags = []
+    sharp, jump = np.empty(0), np.empty(0)
+    later = 0
+    for share in _WINDOWS:
+        width = int(share * reach)
+        of_position, sharp_position, _ = _corners(time, position, turns, width)
+        if share == 1:
+            # one shift for all turns: a corner that the machine rounds is then cut alike
+            for _ in range(_PASSES):
+                of_tension = _corners(time, tension, turns + later, width)[0]
+                later = int(np.median(samples(of_tension - of_position)))
+        of_tension, sharp_tension, steepness = _corners(time, tension, turns + later, width)
+        lags.append(of_tension - of_position)
+        if share == 1:
+            sharp, jump = np.minimum(sharp_position, sharp_tension), steepness
+    usable = np.isfinite(lags).all(axis=0)
+    n_turns = int(usable.sum())
+    if n_turns < (1 - _MOST_LOST) * turns.size or not np.median(sharp[usable]) >= _SHARP:
+        return np.nan, np.nan, n_turns, LAG_REFUSALS["turns_not_sharp"]
+    lag, spread = _combined(np.array(lags)[:, usable], jump[usable])
+    rounding = _ROUNDING * float(time[turns[-1]] - time[turns[0]]) / turns.size
+    if lag < -_EARLY * spread - rounding:
+        return np.nan, np.nan, n_turns, LAG_REFUSALS["early_as_damping_makes_it"]
+    return lag, spread, n_turns, LAG_REFUSALS["given"]
+
+
+def _combined(lags: Floats, jump: Floats) -> tuple[float, float]:
+    """Weighted mean over the turns of the widest window, and its standard uncertainty."""
+    weight = jump**2 / np.sum(jump**2)
+    means = np.sum(weight * lags, axis=1)
+    off = lags[0] - means[0]
+    scatter = np.sum((weight * off) ** 2) * off.size / (off.size - 1)
+    form = np.max((means - means[0]) ** 2) * 4
+    kinds = [
+        np.average(lags[0, kind], weights=weight[kind])
+        for kind in (jump > 0, jump < 0)
+        if kind.any()
+    ]
+    return float(means[0]), float(np.sqrt(scatter + form + np.ptp(kinds) ** 2 / 12))
+
+
+def _corners(
+    time: Floats, series: Floats, turns: Integers, width: int
+) -> tuple[Floats, Floats, Floats]:
+    """Times of the corners of a series, their sharpness, and the jumps of its slope.
+
+    The sample of the turn itself is in no parabola: it lies on either side.
+    """
+    at_turn = take_samples(time, turns)
+    scale = np.zeros(turns.size)
+    for some, window in _windows(turns, -width, width + 1):
+        since = take_samples(time, window) - at_turn[some, None]
+        scale[some] = np.maximum(scale[some], np.abs(since).max(axis=1))
+    sides = []
+    for first, stop in ((-width, 0), (1, width + 1)):
+        gram, sums = np.zeros((turns.size, 3, 3)), np.zeros((turns.size, 3))
+        for some, window in _windows(turns, first, stop):
+            at = (take_samples(time, window) - at_turn[some, None]) / scale[some, None]
+            basis = np.stack([np.ones_like(at), at, at**2], axis=-1)
+            gram[some] += np.einsum("tsi,tsj->tij", basis, basis)
+            sums[some] += np.einsum("tsi,ts->ti", basis, take_samples(series, window))
+        # beside a gap all samples of a side may be one instant, which no parabola goes through
+        is_flat = np.linalg.det(gram) <= _FLAT * gram[:, 0, 0] ** 3
+        gram[is_flat], sums[is_flat] = np.eye(3), np.nan
+        sides.append(np.asarray(np.linalg.solve(gram, sums[..., None])[..., 0], np.float64))
+    root, sharp, jump = _crossing(*sides)
+    return at_turn + root * scale, sharp, jump / scale
+
+
+def _windows(turns: Integers, first: int, stop: int) -> Iterator[tuple[slice, Integers]]:
+    """Samples from ``first`` up to ``stop`` after each turn, some turns and samples at a time."""
+    for some in sample_blocks(turns.size, size=max(1, BLOCK // (stop - first))):
+        for part in sample_blocks(stop - first, size=BLOCK):
+            yield some, turns[some, None] + np.arange(first + part.start, first + part.stop)
+
+
+def _crossing(before: Floats, after: Floats) -> tuple[Floats, Floats, Floats]:
+    """Time at which parabolas of both sides cross, sharpness of the turn, jump of the slope."""
+    height, slope, bend = (after - before).T
+    # mean slope of each side, over the whole of it
+    mean = np.abs(before[:, 1] - before[:, 2]) + np.abs(after[:, 1] + after[:, 2])
+    root = np.zeros(height.shape)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        for _ in range(_NEWTON_STEPS):
+            root = root - (height + root * (slope + root * bend)) / (slope + 2 * root * bend)
+        root = np.where(np.abs(root) < 0.5, root, np.nan)
+        return root, np.abs(slope) / mean, slope

@@ -1,0 +1,1 @@
+"""Reversals, cycles, loops and their energy."""

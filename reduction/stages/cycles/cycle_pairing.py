@@ -1,0 +1,804 @@
+"""Half cycles between reversals, and which of them make whole cycles.
+
+Standstills that are parts of cycles: dwells at their peaks and valleys.
+
+Runs of extremes that follow each other, between standstills, gaps and moves to other levels.
+
+Ends of a run of half cycles: cut where they ran on, left out where they are no half cycle.
+
+Half cycles: which of the movements between reversals belong to cycling, and from where to where.
+
+Whole cycles from half cycles: which ascending and descending ones belong together.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from math import ceil
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.record.measurement import Bools, Floats, Integers
+from reduction.record.samples import BLOCK, sample_blocks, take_samples
+from reduction.stages.standstills import Standstills, median_step, noise_range
+
+_SAME_LEVEL = 0.3  # of the stroke
+
+_FEWEST_DWELLS = 3
+
+_DWELL_RATIO = 2.0
+
+Indices = NDArray[np.intp]
+
+
+def dwells_of_cycles(
+    values: Floats, reversals: Indices, standstills: Standstills, *, band: float
+) -> tuple[Indices, Bools]:
+    """Tell dwells at the peaks or valleys of cycles from standstills that end cycling.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        Control channel; NaN where missing. [m] or [N]
+    reversals : ndarray of int, shape (n_reversals,)
+        From `reduction.stages.cycles.reversals.find_reversals`. [1]
+    standstills : Standstills
+        Of the record. [SI]
+    band : float
+        With which the reversals were found. [m] or [N]
+
+    Returns
+    -------
+    at : ndarray of int, shape (n_standstills,)
+        Place among the reversals at which each standstill is, -1 where at none. [1]
+    is_dwell : ndarray of bool, shape (n_standstills,)
+        Whether it is a dwell of cycles. [1]
+
+    Raises
+    ------
+    IndexError
+        If a reversal is not a sample of the values.
+
+    Notes
+    -----
+    A standstill is at the nearest reversal whose level is within the band of its own.  It is
+    a dwell where three or more peaks in a row, or valleys, have one at the same level (within
+    30 % of the stroke), and their durations differ by at most a factor 2.
+
+    Examples
+    --------
+    Three peaks held for 4 s, and a rest at slack.
+
+    >>> from reduction.stages.standstills import find_standstills
+    >>> from reduction.record.settings import PhaseSettings
+    >>> knots = [0, 8, 10, 14, 16, 18, 22, 24, 26, 30, 33]
+    >>> levels = [0, 0, 3, 3, 1, 3, 3, 1, 3, 3, 1]
+    >>> time = np.arange(0, 33, 0.25)
+    >>> position = np.interp(time, knots, levels)
+    >>> stand = find_standstills(time, position, [100 * position], settings=PhaseSettings())
+    >>> reversals = np.searchsorted(time, [8, 12, 16, 20, 24, 28, 32.75])
+    >>> dwells_of_cycles(position, reversals, stand, band=0.5)
+    (array([0, 1, 3, 5]), array([False,  True,  True,  True]))
+    """
+    at = np.full(standstills.n_standstills, -1, dtype=np.intp)
+    if at.size == 0 or reversals.size == 0:
+        return at, np.zeros(at.size, dtype=bool)
+    centre = (standstills.first + standstills.last) // 2
+    level = take_samples(values, np.clip(centre, 0, values.size - 1))
+    of_reversals = take_samples(values, reversals)
+    after = np.searchsorted(reversals, centre)
+    near = np.clip(np.stack([after - 1, after]), 0, reversals.size - 1)
+    distance = np.abs(reversals[near] - centre)
+    nearest = np.where(distance[0] <= distance[1], near[0], near[1])
+    is_level = np.abs(of_reversals[nearest] - level) < band
+    at[is_level] = nearest[is_level]
+
+    holds = np.zeros(reversals.size, dtype=bool)
+    duration = np.zeros(reversals.size)
+    holds[at[is_level]] = True
+    duration[at[is_level]] = (standstills.end_time - standstills.start_time)[is_level]
+    stroke = np.abs(np.diff(of_reversals))
+    of_cycles = np.zeros(reversals.size, dtype=bool)
+    for kind in (0, 1):  # peaks among peaks, valleys among valleys
+        held, lasting = holds[kind::2], duration[kind::2]
+        levels = of_reversals[kind::2]
+        same = held[1:] & held[:-1]
+        same &= np.maximum(lasting[1:], lasting[:-1]) <= _DWELL_RATIO * np.minimum(
+            lasting[1:], lasting[:-1]
+        )
+        same &= np.abs(np.diff(levels)) <= _SAME_LEVEL * stroke[kind::2][: same.size]
+        in_a_row = _longest_row(same)
+        dwell = np.zeros(held.size, dtype=bool)
+        dwell[1:] |= in_a_row >= _FEWEST_DWELLS - 1
+        dwell[:-1] |= in_a_row >= _FEWEST_DWELLS - 1
+        of_cycles[kind::2] = dwell
+    return at, (at >= 0) & of_cycles[at]
+
+
+def _longest_row(true: Bools) -> Indices:
+    """Length of the row of true values that each belongs to; 0 where false."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], true, [False]]).astype(np.int8)))
+    length = edges[1::2] - edges[::2]
+    rows = np.zeros(true.size, dtype=np.intp)
+    rows[true] = np.repeat(length, length)
+    return rows
+
+
+DIFFERENT = 0.3
+
+"""Share by which ranges of neighbouring half cycles may differ. [1]."""
+
+_STANDING = 0.04  # of a half cycle: movement in its first tenth of one that begins standing
+
+_EDGE_SHARE = 0.1  # of a half cycle
+
+Edge = Literal["reversal", "standstill", "record"]  # a gap is an end of the record
+
+
+@dataclass(frozen=True)
+class Run:
+    """Extremes that follow each other, and whether the record or the movement ends at them."""
+
+    nodes: Indices
+    begins_at: Edge
+    ends_at: Edge
+
+
+def gaps_of_record(time: Floats, values: Floats, *, longest: float) -> tuple[Indices, Indices]:
+    """Samples before and after every step of time longer than allowed, missing samples left out.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n_samples,)
+        Elapsed time. [s]
+    values : ndarray, shape (n_samples,)
+        Control channel; NaN where missing. [m] or [N]
+    longest : float
+        Step that is no gap yet. [s]
+
+    Returns
+    -------
+    before, after : ndarray of int, shape (n_gaps,)
+        Samples that are there. [1]
+
+    Raises
+    ------
+    IndexError
+        If the values are longer than time.
+
+    Examples
+    --------
+    >>> gaps_of_record(np.arange(6.0), np.array([0.0, 1, np.nan, np.nan, 4, 5]), longest=2.0)
+    (array([1]), array([4]))
+    """
+    before, after = [], []
+    carried = np.empty(0, dtype=np.intp)
+    for part in sample_blocks(time.size, time, values):
+        rows = np.concatenate([carried, part.start + np.flatnonzero(np.isfinite(values[part]))])
+        long = np.flatnonzero(np.diff(time[rows]) > longest)
+        before.append(rows[long])
+        after.append(rows[long + 1])
+        carried = rows[-1:]
+    return np.concatenate(before), np.concatenate(after)
+
+
+def runs_that_cycle(
+    values: Floats,
+    reversals: Indices,
+    breaks: tuple[Indices, Indices],
+    *,
+    n_standstills: int,
+    band: float,
+) -> list[Run]:
+    """Runs in which two half cycles in a row have similar ranges, in order of time.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        Control channel; NaN where missing. [m] or [N]
+    reversals : ndarray of int, shape (n_reversals,)
+        From `reduction.stages.cycles.reversals.find_reversals`. [1]
+    breaks : tuple of two ndarray of int, shape (n_breaks,)
+        First and last sample of each standstill, then samples before and after each gap. [1]
+    n_standstills : int
+        How many of the breaks are standstills. [1]
+    band : float
+        With which the reversals were found. [m] or [N]
+
+    Returns
+    -------
+    runs : list of Run
+        The edge of a break is an extreme where a movement begins there; a stretch between
+        breaks is parted at moves from one level to another, and a move ends both parts.
+
+    Raises
+    ------
+    IndexError
+        If a reversal or a break is not a sample of the values.
+
+    Examples
+    --------
+    Two cycles, a gap, and a movement alone.
+
+    >>> values = np.array([0.0, 2, 0, 2, 0, 1, 3])
+    >>> gap = np.array([4]), np.array([5])
+    >>> for run in runs_that_cycle(values, np.arange(1, 4), gap, n_standstills=0, band=0.5):
+    ...     print(run.nodes, run.begins_at, run.ends_at)
+    [0 1 2 3 4] record record
+    """
+    return [
+        part
+        for stretch in _stretches(values, reversals, breaks, n_standstills, band)
+        for part in _parts(values, stretch)
+        if _is_cycling(np.abs(np.diff(take_samples(values, part.nodes))))
+    ]
+
+
+def _stretches(
+    values: Floats,
+    reversals: Indices,
+    breaks: tuple[Indices, Indices],
+    n_standstills: int,
+    band: float,
+) -> list[Run]:
+    """Extremes of each stretch between breaks, of which the standstills are first.
+
+    The edge of a break is one where a movement begins there.
+    """
+    order = np.argsort(breaks[0], kind="stable")
+    start, stop = _finite_ends(values)
+    begins = np.concatenate([[start], breaks[1][order]])
+    ends = np.concatenate([breaks[0][order], [stop]])
+    edges: list[Edge] = ["standstill" if at < n_standstills else "record" for at in order]
+    edges = ["record", *edges, "record"]
+    found = []
+    for place, (begin, end) in enumerate(zip(begins, ends, strict=True)):
+        nodes = reversals[slice(*np.searchsorted(reversals, [begin + 1, end]))]
+        # the edge is an extreme of its own where the nearest one is a band away
+        inner = nodes if nodes.size else np.array([end])
+        if abs(values[begin] - values[inner[0]]) >= band:
+            nodes = np.concatenate([[begin], nodes])
+        inner = nodes if nodes.size else np.array([begin])
+        if abs(values[end] - values[inner[-1]]) >= band:
+            nodes = np.concatenate([nodes, [end]])
+        if nodes.size > 1:
+            near = _EDGE_SHARE * (nodes[-1] - nodes[0]) / (nodes.size - 1)
+            edge = edges[place]
+            if _is_standing(values, nodes, begin, ceil(near)):
+                edge = "standstill"
+            found.append(
+                Run(
+                    nodes,
+                    edge if nodes[0] - begin <= near else "reversal",
+                    edges[place + 1] if end - nodes[-1] <= near else "reversal",
+                )
+            )
+    return found
+
+
+def _finite_ends(values: Floats) -> tuple[int, int]:
+    """First and last sample that is there; the ends of the record where none is."""
+    start, stop = 0, values.size - 1
+    for part in sample_blocks(values.size, values):
+        there = np.flatnonzero(np.isfinite(values[part]))
+        if there.size:
+            start = part.start + int(there[0])
+            break
+    for begin in reversed(range(0, values.size, BLOCK)):
+        there = np.flatnonzero(np.isfinite(values[begin : begin + BLOCK]))
+        if there.size:
+            stop = begin + int(there[-1])
+            break
+    return start, stop
+
+
+def _is_standing(values: Floats, nodes: Indices, begin: int, n_steps: int) -> bool:
+    """Whether the movement begins at a stand, if for too short a time to be a standstill."""
+    moved = values[min(begin + n_steps, values.size - 1)] - values[begin]
+    return bool(abs(moved) < _STANDING * abs(values[nodes[1]] - values[nodes[0]]))
+
+
+def _parts(values: Floats, run: Run) -> list[Run]:
+    """A stretch, parted at moves from one level to another; the move ends both parts."""
+    nodes = run.nodes
+    ranges = np.abs(np.diff(take_samples(values, nodes)))
+    moves = 1 + np.flatnonzero(ranges[1:-1] >= ranges[:-2] + ranges[2:])
+    begins = np.concatenate([[0], moves])
+    ends = np.concatenate([moves + 2, [nodes.size]])
+    return [
+        Run(
+            nodes[begin:end].copy(),
+            run.begins_at if begin == 0 else "reversal",
+            run.ends_at if end == nodes.size else "reversal",
+        )
+        for begin, end in zip(begins, ends, strict=True)
+    ]
+
+
+def _is_cycling(ranges: Floats) -> bool:
+    """Whether two half cycles in a row have similar ranges."""
+    smaller = np.minimum(ranges[1:], ranges[:-1])
+    return bool((smaller >= (1 - DIFFERENT) * np.maximum(ranges[1:], ranges[:-1])).any())
+
+
+_SHORT = 0.05  # share of its neighbour by which one at an edge may end short of the level
+
+_PACE = 0.25  # share by which a half cycle at the end of a run may last longer or shorter
+
+_TURNS_BESIDE = 8  # turns of the run that an end is held against
+
+_LINGERS = 1.5  # times as long as at the slowest of them
+
+_FEWEST_STILL = 2  # samples longer than at the slowest of them
+
+_STEPS_READ = 64  # looked at first, then twice as many
+
+
+@dataclass(frozen=True)
+class FittedRun:
+    """Extremes of a run with its ends fitted, and samples near which an end was changed.
+
+    ``cut`` ran on beyond its neighbour's level, ``short`` fell short of it, ``paced`` kept
+    another pace than the sine.
+    """
+
+    nodes: Indices
+    cut: tuple[int, ...] = ()
+    short: tuple[int, ...] = ()
+    paced: tuple[int, ...] = ()
+
+
+def without_stands(
+    values: Floats, nodes: Indices, *, first: int, last: int, tolerance: float
+) -> Indices:
+    """Extremes of a run, its first and last where the movement begins and where it ends.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        Control channel; NaN where missing. [m] or [N]
+    nodes : ndarray of int, shape (n_nodes,)
+        Extremes that follow each other, at samples that are there. [1]
+    first, last : int
+        Samples between which the signal is the run's. [1]
+    tolerance : float
+        Range in which the signal stands. [m] or [N]
+
+    Returns
+    -------
+    nodes : ndarray of int, shape (n_nodes,)
+        The first one no earlier, the last one no later. [1]
+
+    Raises
+    ------
+    IndexError
+        If an extreme is not a sample of the values.
+
+    Notes
+    -----
+    Where a machine waits before the first stroke, for too short a time to be a standstill,
+    any sample of the wait may be the extreme.  An end at which the signal stays within the
+    tolerance for more than 1.5 times as long as at the turns of the run is such a wait; it is
+    moved to where it lies as far from the end of the stand as those turns do, by their median.
+    Between two extremes alone nothing is moved.  A hold that each cycle has, and the flat turn
+    of a sine, stay as they are.
+
+    Examples
+    --------
+    Three samples of waiting at the valley before two strokes.
+
+    >>> values = np.array([2.0, 2, 2, 2, 4, 2, 4, 2])
+    >>> without_stands(values, np.array([0, 4, 5, 6, 7]), first=0, last=7, tolerance=0.1)
+    array([3, 4, 5, 6, 7])
+    """
+    moved = nodes.copy()
+    if nodes.size < 3:
+        return moved
+    for end, beyond, series in ((0, first, nodes), (-1, last, nodes[::-1])):
+        own, before = (
+            _steps_still(values, int(nodes[end]), int(far), tolerance)
+            for far in (series[1], beyond)
+        )
+        turns = range(2, nodes.size - 1, 2) or range(1, 2)  # valleys among valleys, if there are
+        after, width = np.array(
+            [
+                _both_sides(values, series[at - 1 : at + 2], tolerance)
+                for at in turns[:_TURNS_BESIDE]
+            ]
+        ).T
+        slowest = max(_LINGERS * width.max(), width.max() + _FEWEST_STILL)
+        if own + before > slowest and own > after.max() + 1:
+            step = 1 if end == 0 else -1
+            way = values[nodes[end] : nodes[end] + step * (own - int(np.median(after)) + 1) : step]
+            moved[end] += step * int(np.flatnonzero(np.isfinite(way))[-1])
+    return moved
+
+
+def _both_sides(values: Floats, nodes: Indices, tolerance: float) -> tuple[int, int]:
+    """Samples for which the signal stays at the second of three extremes: after it, and in all."""
+    before, at, after = (int(node) for node in nodes)
+    own = _steps_still(values, at, after, tolerance)
+    return own, own + _steps_still(values, at, before, tolerance)
+
+
+def _steps_still(values: Floats, turn: int, far: int, tolerance: float) -> int:
+    """Samples from a turn, towards another, up to the last before the signal goes away."""
+    step, reach = (1 if far > turn else -1), abs(far - turn)
+    begin, count, last = 0, _STEPS_READ, 0
+    while begin <= reach:
+        stop = min(begin + count, reach + 1)
+        level = values[turn + step * np.arange(begin, stop)]
+        away = np.abs(level - values[turn]) > tolerance  # a missing sample is no movement
+        seen = np.flatnonzero(np.isfinite(level[: int(np.argmax(away)) if away.any() else None]))
+        last = begin + int(seen[-1]) if seen.size else last
+        if away.any():
+            break
+        begin, count = stop, 2 * count
+    return last
+
+
+def fit_ends(
+    time: Floats,
+    values: Floats,
+    run: Run,
+    *,
+    is_sinusoidal: bool,
+    still: float,
+    tolerance: float,
+) -> FittedRun:
+    """Fit the ends of a run that cycles.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n_samples,)
+        Elapsed time. [s]
+    values : ndarray, shape (n_samples,)
+        Control channel; NaN where missing. [m] or [N]
+    run : Run
+        From `reduction.stages.cycles.cycle_pairing.runs_that_cycle`. [1]
+    is_sinusoidal : bool
+        Whether every half cycle takes the same time.
+    still : float
+        Tolerance of a standstill, by which an end at one may be short. [m] or [N]
+    tolerance : float
+        Range that noise alone may span in the control channel. [m] or [N]
+
+    Returns
+    -------
+    fitted : FittedRun
+        The extremes that are left. [1]
+
+    Raises
+    ------
+    IndexError
+        If an extreme is not a sample of the values.
+
+    Notes
+    -----
+    The rules are those of `reduction.stages.cycles.cycle_pairing.find_half_cycles`; where the
+    movement begins and ends, `without_stands` says.
+
+    Examples
+    --------
+    From slack at 0; the first half cycle is cut where it passes the valley.
+
+    >>> values = np.array([0.0, 1, 2, 3, 2, 3, 2])
+    >>> fit_ends(np.arange(7.0), values, Run(np.array([0, 3, 4, 5, 6]), "record", "record"),
+    ...     is_sinusoidal=False, still=0.1, tolerance=0.1)
+    FittedRun(nodes=array([2, 3, 4, 5, 6]), cut=(3,), short=(), paced=())
+    """
+    moving = partial(
+        without_stands,
+        values,
+        first=int(run.nodes[0]),
+        last=int(run.nodes[-1]),
+        tolerance=tolerance,
+    )
+    nodes = moving(run.nodes)
+    ranges = np.abs(np.diff(take_samples(values, nodes)))
+    cut: list[int] = []
+    short: list[int] = []
+    paced: list[int] = []
+    left_out = [0, 0]
+    for side, (end, turn, beside, edge) in enumerate(
+        ((0, 1, 2, run.begins_at), (-1, -2, -3, run.ends_at))
+    ):
+        at_edge = edge != "reversal"
+        own, neighbour = ranges[end], ranges[-2 if end else 1]
+        ran_on = own > (1 + DIFFERENT) * neighbour
+        # a machine that begins or ends a sine at its mean moves half a range, then away
+        is_fragment = ranges.size > 4 and neighbour < (1 - DIFFERENT) * ranges[beside]
+        if is_fragment and (ran_on or at_edge):
+            left_out[side] = 2
+            short.append(int(nodes[turn]))
+            continue
+        if is_sinusoidal and (ran_on or not _keeps_pace(time, nodes, end, turn, beside, at_edge)):
+            left_out[side] = 1
+            paced.append(int(nodes[turn]))
+        elif ran_on:
+            cut.append(int(nodes[turn]))
+            nodes[end] = _passing(values, nodes[turn], nodes[end], values[nodes[beside]])
+            ranges[end] = neighbour
+        # a short one between true reversals is whole: an amplitude that grows or decays
+        elif at_edge and neighbour - own > _allowed(
+            neighbour, abs(int(nodes[turn] - nodes[beside])), edge, begins=side == 0, still=still
+        ):
+            left_out[side] = 1
+            short.append(int(nodes[end]))
+    nodes = nodes[left_out[0] : nodes.size - left_out[1]]
+    # cycles run from valley to valley: a half cycle before the first valley is in none of them
+    valley = slice(*_valleys(values, nodes))
+    nodes[valley] = moving(nodes[valley])
+    return FittedRun(nodes, tuple(cut), tuple(short), tuple(paced))
+
+
+def _valleys(values: Floats, nodes: Indices) -> tuple[int, int]:
+    """Place of the first valley of a run, and the place after its last."""
+    if nodes.size < 2:
+        return 0, nodes.size
+    falls = np.diff(values[nodes[[0, 1, -2, -1]]]) < 0
+    return int(falls[0]), nodes.size - int(not falls[-1])
+
+
+def _passing(values: Floats, turn: int, end: int, level: float) -> int:
+    """Sample between a turn and a far end at which the signal passes a level."""
+    step = 1 if end > turn else -1
+    way = values[turn : end + step if end + step >= 0 else None : step]
+    beyond = way <= level if values[turn] > level else way >= level
+    return turn + step * int(np.argmax(beyond))
+
+
+def _keeps_pace(
+    time: Floats, nodes: Indices, end: int, turn: int, beside: int, at_edge: bool
+) -> bool:
+    """Whether an end half cycle takes the time of its neighbour, as every one of a sine does."""
+    lasts, usual = np.abs(time[nodes[[end, beside]]] - time[nodes[turn]])
+    return not at_edge or bool(abs(lasts - usual) <= _PACE * usual)
+
+
+def _allowed(neighbour: float, n_steps: int, edge: Edge, *, begins: bool, still: float) -> float:
+    """How far a half cycle at an edge may be short of the level of its neighbour."""
+    if begins and edge == "standstill":
+        return DIFFERENT * neighbour  # nothing was broken off: a machine settles as it starts
+    within = max(_SHORT * neighbour, neighbour / n_steps)
+    return max(within, still) if edge == "standstill" else within
+
+
+_GAP_SHARE = 0.3  # of a half cycle
+
+_GAP_STEPS = 3.5  # median time steps
+
+
+@dataclass(frozen=True)
+class HalfCycles:
+    """Half cycles in order of time, shape (n_half_cycles,) each.
+
+    ``first`` and ``last`` are samples, both inside, and ``run`` counts runs of half cycles
+    that follow each other; within a run they rise and fall in turn.
+    """
+
+    first: Indices
+    last: Indices
+    rises: Bools
+    run: Indices
+    notes: tuple[str, ...]
+
+
+def _replaced(samples: Indices, old: Indices, new: Integers) -> Indices:
+    """Samples with each of the old ones, in order of time, replaced by the new."""
+    if old.size == 0:
+        return samples
+    place = np.minimum(np.searchsorted(old, samples), old.size - 1)
+    return np.where(old[place] == samples, new[place], samples)
+
+
+def find_half_cycles(
+    time: Floats,
+    values: Floats,
+    reversals: Indices,
+    standstills: Standstills,
+    *,
+    band: float,
+    is_sinusoidal: bool = False,
+) -> HalfCycles:
+    """Keep the half cycles of runs that cycle, ends cut or left out.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n_samples,)
+        Elapsed time. [s]
+    values : ndarray, shape (n_samples,)
+        Control channel; NaN where missing. [m] or [N]
+    reversals : ndarray of int, shape (n_reversals,)
+        From `reduction.stages.cycles.reversals.find_reversals`, at least two. [1]
+    standstills : Standstills
+        They end a run, unless they are dwells. [SI]
+    band : float
+        With which the reversals were found. [m] or [N]
+    is_sinusoidal : bool
+        Whether every half cycle takes the same time.
+
+    Returns
+    -------
+    half_cycles : HalfCycles
+        In order of time; empty where nothing cycles.
+
+    Raises
+    ------
+    IndexError
+        If there are fewer than two reversals.
+
+    Notes
+    -----
+    A *run* is a stretch between standstills and between gaps of the record of more than
+    30 % of a half cycle.  It cycles where two half cycles in a row have ranges that
+    differ by at most 30 %: the moves between holds before a test do not.  A standstill
+    at a reversal is a *dwell* and ends no run where three or more peaks in a row, or
+    valleys, have one at the same level, and their durations differ by at most a factor 2.
+    A half cycle at least as long as its two neighbours together is a move from one level
+    to another: the run is parted there, and the move serves as an end of both parts.
+
+    *Ends.* A first or last half cycle with a range over 1.3 times its neighbour's is cut
+    where it passes the neighbour's level, cf. the return to slack after the tenth peak
+    in [1]_.  One that begins or ends with the record or at a gap, or ends at a standstill,
+    short of the neighbour's level by more than 5 % of its range, the travel of a sample and
+    the tolerance of the standstill, is incomplete and left out; so is one that begins at a
+    standstill, or at an edge where the signal stands, with less than 0.7 times its range.
+    Between two reversals it is whole, but for one beside a move away: a sine that begins or
+    ends at its mean has moved half a range there.
+    In a sinusoidal test an end that ran on, or takes 25 % more or less time, is left out.
+    A wait at an end, too short for a standstill, is no part of the half cycle there
+    (`reduction.stages.cycles.cycle_pairing.without_stands`).
+
+    Examples
+    --------
+    Slack, two cycles between 2 and 3, and back to slack.
+
+    >>> values = np.array([0.0, 1, 2, 3, 2.5, 2, 3, 2, 1, 0])
+    >>> none = np.empty(0)
+    >>> rests = Standstills(
+    ...     none.astype(int), none.astype(int), none, none, none, np.empty((1, 0)),
+    ...     none > 0, 0.1, 1.0)
+    >>> halves = find_half_cycles(
+    ...     np.arange(10.0), values, np.array([0, 3, 5, 6, 9]), rests, band=0.5)
+    >>> print(halves.first, halves.last, halves.rises)
+    [2 3 5 6] [3 5 6 7] [ True False  True False]
+    """
+    half_duration = float(np.median(np.diff(take_samples(time, reversals))))
+    at, is_dwell = dwells_of_cycles(values, reversals, standstills, band=band)
+    longest = max(_GAP_SHARE * half_duration, _GAP_STEPS * median_step(time))
+    gap_before, gap_after = gaps_of_record(time, values, longest=longest)
+    breaks = (
+        np.concatenate([standstills.first[~is_dwell], gap_before]),
+        np.concatenate([standstills.last[~is_dwell], gap_after]),
+    )
+    # of the channel that stands still: the tension where it is held, else the position
+    still = standstills.tension_tolerance
+    tolerance = standstills.position_tolerance if still is None else still
+    noise = noise_range(values)
+    runs = [
+        fit_ends(time, values, run, is_sinusoidal=is_sinusoidal, still=tolerance, tolerance=noise)
+        for run in runs_that_cycle(
+            values, reversals, breaks, n_standstills=int(np.sum(~is_dwell)), band=band
+        )
+    ]
+    cut = [at for run in runs for at in run.cut]
+    short = [at for run in runs for at in run.short]
+    paced = [at for run in runs for at in run.paced]
+    notes = []
+    for samples, what in (
+        (cut, "half cycles at the end of a run, cut where they pass their neighbours' level"),
+        (short, "half cycles at the end of a run, short of their neighbours' level, not counted"),
+        (paced, "half cycles at the end of a run that are no part of the sine, not counted"),
+        (gap_before, "gaps of the record longer than 30 % of a half cycle, each the end of a run"),
+    ):
+        if len(samples):
+            notes.append(f"{what}: {len(samples)}, first near {time[samples[0]]:g} s")
+    empty = np.empty(0, dtype=np.intp)
+    first = np.concatenate([empty, *(run.nodes[:-1] for run in runs)])
+    last = np.concatenate([empty, *(run.nodes[1:] for run in runs)])
+    rises = take_samples(values, last) > take_samples(values, first)
+    # at a dwell one half cycle ends where the crosshead arrives, the next begins where it leaves
+    dwell = reversals[at[is_dwell]]
+    first = _replaced(first, dwell, standstills.last[is_dwell])
+    last = _replaced(last, dwell, standstills.first[is_dwell])
+    return HalfCycles(
+        first=first,
+        last=last,
+        rises=rises,
+        run=np.repeat(np.arange(len(runs)), [run.nodes.size - 1 for run in runs]),
+        notes=tuple(notes),
+    )
+
+
+# an amplitude that is halved leaves a cycle open by a quarter of its range where that happens at
+# the peak, by a third at the valley
+_OPEN = 0.2
+
+_SETTLING = 0.3  # for the first of a run, in which a machine settles
+
+_STEADY = 0.5  # share of the step of a valley by which the one beside it goes on
+
+
+def whole_cycles(values: Floats, halves: HalfCycles) -> tuple[Indices, Indices, Indices]:
+    """Branches of the cycles, and the first samples of those that are no cycle.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        Control channel; NaN where missing. [m] or [N]
+    halves : HalfCycles
+        From `reduction.stages.cycles.cycle_pairing.find_half_cycles`. [1]
+
+    Returns
+    -------
+    branch_first, branch_last : ndarray of int, shape (n_cycles, 2)
+        Samples of the ascending and the descending branch, both inside. [1]
+    left_out : ndarray of int, shape (n_left_out,)
+        First sample of each pair that lies between two amplitudes. [1]
+
+    Raises
+    ------
+    IndexError
+        If a half cycle is not within the values.
+
+    Notes
+    -----
+    An ascending half cycle with the descending one after it, in the same run, is a cycle [1]_.
+    Where the two valleys lie apart by more than 20 % of its range (30 % in the first of a run,
+    since a machine settles), one branch is of one amplitude or level and the other of the
+    next: such a pair is left out. It stays where the amplitude grows or decays steadily, that
+    is where the valley before or after goes on in the same sense by at least half as much. Of
+    each valley and its neighbours the median is taken, so that a drop-out at one opens no
+    cycle.
+
+    Examples
+    --------
+    Two cycles of 2, two of 1: the rise between them has a range of 1.5.
+
+    >>> values = np.array([-1.0, 1, -1, 1, -1, 0.5, -0.5, 0.5, -0.5])
+    >>> place = np.arange(8)
+    >>> halves = HalfCycles(place, place + 1, place % 2 == 0, np.zeros(8, dtype=int), ())
+    >>> first, last, left_out = whole_cycles(values, halves)
+    >>> print(first[:, 0], last[:, 1], left_out)
+    [0 2 6] [2 4 8] [4]
+    """
+    rising = np.flatnonzero(
+        halves.rises[:-1] & ~halves.rises[1:] & (halves.run[:-1] == halves.run[1:])
+    )
+    both = np.stack([rising, rising + 1], axis=1)
+    begin = take_samples(values, halves.first[rising])
+    end = take_samples(values, halves.last[rising + 1])
+    peak = take_samples(values, halves.last[rising])
+    follows = (np.diff(rising) == 2) & (halves.run[rising[1:]] == halves.run[rising[:-1]])
+    step = _steps(begin, end, follows)
+    allowed = np.full(rising.size, _SETTLING)
+    allowed[1:][follows] = _OPEN
+    is_open = np.abs(step) > allowed * np.abs(peak - np.minimum(begin, end))
+    goes_on = follows & (step[1:] * step[:-1] > 0)
+    slower = _STEADY * np.abs(step)
+    steady = np.zeros(rising.size, dtype=bool)
+    steady[1:] |= goes_on & (np.abs(step[:-1]) >= slower[1:])
+    steady[:-1] |= goes_on & (np.abs(step[1:]) >= slower[:-1])
+    broken = is_open & ~steady
+    kept = both[~broken]
+    return halves.first[kept], halves.last[kept], halves.first[rising[broken]]
+
+
+def _steps(begin: Floats, end: Floats, follows: Bools) -> Floats:
+    """From the first to the last valley of each pair, each the median of it and its neighbours."""
+    before, after = begin.copy(), end.copy()
+    before[1:] = np.where(follows, begin[:-1], begin[1:])
+    after[:-1] = np.where(follows, end[1:], end[:-1])
+    first = np.median([before, begin, end], axis=0)
+    last = np.median([begin, end, after], axis=0)
+    return np.asarray(last - first)

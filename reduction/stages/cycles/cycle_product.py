@@ -1,0 +1,107 @@
+"""What the cycle stage returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
+from reduction.record.samples import give_back, let_go
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class Cycles:
+    """Cycles of one test, all specimens together, since they share the crosshead.
+
+    A cycle runs from one reversal to the next but one of the same kind; it has
+    one ascending and one descending branch.  Sample indices count the record.
+
+    Parameters
+    ----------
+    first, last : ndarray of int, shape (n_cycles,)
+        First and last sample of the cycle, both inside; ``last`` of a cycle is
+        ``first`` of the next one where they touch.
+    branch_first, branch_last : ndarray of int, shape (n_cycles, 2)
+        Samples of the ascending (column 0) and descending (column 1) branch.
+    plateau_rate : ndarray, shape (n_cycles, 2)
+        Rate of the control channel on the plateau, positive. [m s-1] or [N s-1]
+    cycle_number : ndarray of int32, shape (n_samples,)
+        1 for the first cycle; 0 outside cycles.
+    branch : ndarray of int8, shape (n_samples,)
+        0 none, 1 ascending, 2 descending.
+    is_constant_rate : ndarray of bool, shape (n_samples,)
+        True inside the trimmed part of a branch.
+    band : float
+        Smallest range of the control channel that makes a reversal. [m] or [N]
+    counted_by : str
+        ``reversals`` or ``machine counter``.
+    notes : tuple of str
+        Broken first or last cycles, a count that differs from the plan, ...
+    """
+
+    first: Integers
+    last: Integers
+    branch_first: Integers
+    branch_last: Integers
+    plateau_rate: Floats
+    cycle_number: NDArray[np.int32]
+    branch: NDArray[np.int8]
+    is_constant_rate: Bools
+    band: float
+    counted_by: str = "reversals"
+    notes: tuple[str, ...] = ()
+
+    @property
+    def n_cycles(self) -> int:
+        """Number of whole cycles."""
+        return int(self.first.shape[0])
+
+    @property
+    def longest(self) -> int:
+        """Samples of the longest cycle."""
+        return int((self.last - self.first).max(initial=0)) + 1
+
+    def blocks(self, n_samples: int) -> list[slice]:
+        """Runs of whole cycles of about so many samples together, one cycle at least."""
+        number = (self.first - self.first[:1]) // n_samples
+        starts = np.flatnonzero(np.diff(number, prepend=-1))
+        return [
+            slice(int(start), int(stop))
+            for start, stop in zip(starts, [*starts[1:], self.n_cycles], strict=True)
+        ]
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class Loops:
+    """One row a cycle and specimen; every array has shape (n_specimens, n_cycles).
+
+    The fields are the contract's per-cycle variables.  ``uncertainty`` holds the
+    standard uncertainty of each field that has one, by the field's name, same
+    shape and unit.
+    """
+
+    frequency: Floats
+    cycle_start_time: Floats
+    mean_tension: Floats
+    tension_amplitude: Floats
+    mean_strain: Floats
+    strain_amplitude: Floats
+    peak_tension: Floats
+    valley_tension: Floats
+    apparent_spring_constant: Floats
+    hysteresis_energy: Floats
+    storage_spring_constant: Floats
+    loss_spring_constant: Floats
+    loss_factor: Floats
+    fundamental_energy_share: Floats
+    uncertainty: dict[str, Floats]
+
+    def let_go(self) -> None:
+        """Take the tables of a long test, which lie on disk, off the memory of the process."""
+        own = (getattr(self, item.name) for item in fields(self))
+        let_go(*(one for one in own if isinstance(one, np.ndarray)), *self.uncertainty.values())
+        give_back(self.frequency)

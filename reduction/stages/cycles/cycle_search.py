@@ -1,0 +1,630 @@
+"""Finds the cycles of a record, trims their ends and labels the phases.
+
+The part of a branch with a constant rate: the ends, where the machine turns, trimmed.
+
+Phase of the test at each sample: rest, approach, hold or cycling.
+
+Cycles of a record: found, counted, cut at the ends, checked and labelled.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from math import ceil, hypot, sqrt
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reduction.quantities.names import BRANCH_NAMES, BRANCH_VALUES, PHASE_VALUES
+from reduction.record.arrays import as_same_shape
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Bools, Floats, Integers
+from reduction.record.samples import (
+    empty_like,
+    finite_extremes,
+    interval_labels,
+    mean_of_rows,
+    sample_blocks,
+    take_samples,
+)
+from reduction.record.settings import CycleSettings
+from reduction.stages.cycles.cycle_pairing import find_half_cycles, whole_cycles
+from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.cycles.reversals import (
+    changes_of_count,
+    counted_cycles,
+    drop_jumps,
+    find_reversals,
+    first_pass,
+)
+from reduction.stages.standstills import Standstills, estimate_noise, median_step
+
+_RATE_NOISE = 0.01
+
+_WIDEST = 4  # a window is at most this part of a branch
+
+_RATES_READ = 33
+
+_CELLS = 1 << 18  # samples looked at in one step, so that they stay in the cache
+
+_FIRST_STEPS = 8
+
+_FEWEST = 8
+
+_STROKE_END = 0.05
+
+Indices = NDArray[np.intp]
+
+
+def _rate(time: Floats, values: Floats, begin: Indices, end: Indices) -> Floats:
+    """Rate between two samples; NaN where time does not advance."""
+    elapsed = take_samples(time, end) - take_samples(time, begin)
+    travel = take_samples(values, end) - take_samples(values, begin)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(travel / np.where(elapsed == 0, np.nan, elapsed))
+
+
+def _steps_until(
+    start: Indices, direction: int, reach: Indices, passes: Callable[[Indices, Indices], Bools]
+) -> Indices:
+    """Samples from each start to the first that passes, -1 where none within reach does.
+
+    ``passes`` takes samples, shape (n_rows, n_steps), and the rows of ``start`` they are of.
+    Ends of branches are short, so all branches are searched at once, a few steps at a time.
+    """
+    found = np.full(start.size, -1, dtype=np.intp)
+    for row in range(0, start.size, _CELLS // _FIRST_STEPS):
+        rows = np.arange(row, min(row + _CELLS // _FIRST_STEPS, start.size))
+        rows = rows[reach[rows] >= 0]
+        begin, count = 0, _FIRST_STEPS
+        while rows.size:
+            steps = np.minimum(np.arange(begin, begin + count), reach[rows, None])
+            hits = passes(start[rows, None] + direction * steps, rows)
+            is_hit = hits.any(axis=1)
+            found[rows[is_hit]] = begin + hits[is_hit].argmax(axis=1)
+            begin += count
+            rows = rows[~is_hit & (reach[rows] >= begin)]
+            count = max(_FIRST_STEPS, min(2 * count, _CELLS // max(rows.size, 1)))
+    return found
+
+
+def constant_rate_span(
+    time: Floats,
+    values: Floats,
+    branch_first: Indices,
+    branch_last: Indices,
+    *,
+    noise: float,
+    trim_threshold: float,
+) -> tuple[Indices, Indices, Floats]:
+    r"""First and last sample of the trimmed part of each branch, and the plateau rate.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n_samples,)
+        Elapsed time. [s]
+    values : ndarray, shape (n_samples,)
+        Control channel; NaN where missing. [m] or [N]
+    branch_first : ndarray of int, shape (n_branches,)
+        First sample of each branch. [1]
+    branch_last : ndarray of int, shape (n_branches,)
+        Last sample of each branch, inside. [1]
+    noise : float
+        Standard deviation of the control channel. [m] or [N]
+    trim_threshold : float
+        Share of the plateau that a rate must have. [1]
+
+    Returns
+    -------
+    first, last : ndarray of int, shape (n_branches,)
+        Ends of the trimmed part, both inside; ``last`` is before ``first`` where no part
+        of a branch has the rate. [1]
+    plateau_rate : ndarray, shape (n_branches,)
+        Median of 33 rates spread over the branch, positive. [m s-1] or [N s-1]
+
+    Raises
+    ------
+    SettingsError
+        If the threshold is not above 0 and at most 1.
+
+    Notes
+    -----
+    The rate is that between two samples a window apart, both inside the branch.  The
+    window is as many samples as make the noise of the rate 1 % of it,
+    :math:`\sqrt 2 / 0.01` times the noise of a sample and of its time stamp over the
+    travel and the time of a step, at most a quarter of the branch.  The trimmed
+    part is all that lies from the begin of the first window to the end of the last
+    window whose rate is at least ``trim_threshold`` times the plateau: a window that
+    begins in the turn of the machine is slow as a whole.  A missing sample gives no rate.
+
+    Examples
+    --------
+    One slow sample at each end.
+
+    >>> values = np.array([0.0, 0.2, 1.2, 2.2, 3.2, 4.2, 5.2, 5.4])
+    >>> constant_rate_span(
+    ...     np.arange(8.0), values, np.array([0]), np.array([7]), noise=0.0, trim_threshold=0.97)
+    (array([1]), array([6]), array([1.]))
+    """
+    if not 0 < trim_threshold <= 1:
+        raise SettingsError(
+            "cycles.trim_threshold is not a share",
+            found=f"{trim_threshold:g}",
+            needed="above 0 and at most 1",
+        )
+    plateau, sign, width = _plateau(time, values, branch_first, branch_last, noise)
+    reach = branch_last - branch_first - width
+    least = trim_threshold * plateau
+
+    def passes(samples: Indices, rows: Indices, direction: int) -> Bools:
+        other = samples + direction * width[rows, None]
+        rate = sign[rows, None] * _rate(time, values, samples, other)
+        return np.asarray(rate >= least[rows, None])
+
+    searched = np.where(plateau > 0, reach, -1)
+    head = _steps_until(branch_first, 1, searched, partial(passes, direction=1))
+    tail = _steps_until(branch_last, -1, searched, partial(passes, direction=-1))
+    first = branch_first + np.maximum(head, 0)
+    last = np.where(head >= 0, branch_last - tail, branch_first - 1)
+    return first, last, plateau
+
+
+def plateau_rates(
+    time: Floats, values: Floats, branch_first: Indices, branch_last: Indices, *, noise: float
+) -> Floats:
+    """Plateau rate of each branch, without its ends: parameters as in `constant_rate_span`.
+
+    Parameters
+    ----------
+    time, values : ndarray, shape (n_samples,)
+        Elapsed time and control channel. [s], [m] or [N]
+    branch_first, branch_last : ndarray of int, shape (n_branches,)
+        Ends of each branch, both inside. [1]
+    noise : float
+        Standard deviation of the control channel. [m] or [N]
+
+    Returns
+    -------
+    plateau_rate : ndarray, shape (n_branches,)
+        Median of 33 rates spread over the branch, positive. [m s-1] or [N s-1]
+
+    Raises
+    ------
+    IndexError
+        If an end is not a sample of the values.
+
+    Examples
+    --------
+    >>> values = np.array([0.0, 0.2, 1.2, 2.2, 3.2, 4.2, 5.2, 5.4])
+    >>> plateau_rates(np.arange(8.0), values, np.array([0]), np.array([7]), noise=0.0)
+    array([1.])
+    """
+    return _plateau(time, values, branch_first, branch_last, noise)[0]
+
+
+def _plateau(
+    time: Floats, values: Floats, branch_first: Indices, branch_last: Indices, noise: float
+) -> tuple[Floats, Floats, Indices]:
+    """Plateau rate, direction and steps of a window of each branch."""
+    n_steps = branch_last - branch_first
+    travel = take_samples(values, branch_last) - take_samples(values, branch_first)
+    sign = np.sign(travel)
+    width = _window(time, travel, n_steps, noise)
+    reach = n_steps - width  # last begin of a window, from the first sample
+
+    plateau = np.full(n_steps.size, np.nan)
+    n_read = min(_RATES_READ, int(reach.max(initial=0)) + 1)
+    places = np.linspace(0, 1, n_read)
+    rows_read = max(_CELLS // n_read, 1)
+    for begin in range(0, n_steps.size, rows_read):
+        part = slice(begin, begin + rows_read)
+        steps = np.maximum(reach[part], 0)[:, None] * places
+        at = branch_first[part, None] + steps.astype(np.intp)
+        end = np.minimum(at + width[part, None], branch_last[part, None])
+        plateau[part] = _median(sign[part, None] * _rate(time, values, at, end))
+    return plateau, sign, width
+
+
+def _window(time: Floats, travel: Floats, n_steps: Indices, noise: float) -> Indices:
+    """Steps between the two samples of a rate."""
+    known = np.isfinite(travel) & (n_steps > 0)
+    step_travel = float(np.median(np.abs(travel[known]) / n_steps[known])) if known.any() else 0.0
+    step_time = median_step(time)
+    time_noise = estimate_noise(time)[0] if time.size >= _FEWEST else 0.0
+    share = 0.0
+    if step_travel > 0:
+        share = hypot(noise / step_travel, time_noise / step_time)
+    wanted = ceil(sqrt(2) * share / _RATE_NOISE - 1e-6)
+    return np.clip(np.minimum(wanted, n_steps // _WIDEST), 1, None)
+
+
+def _median(rates: Floats) -> Floats:
+    """Median of each row, what is missing left out; NaN where all is."""
+    missing = np.isnan(rates)
+    if not missing.any():
+        ordered, middle = np.sort(rates, axis=1), rates.shape[1] // 2  # faster than np.median
+        return np.asarray((ordered[:, middle] + ordered[:, ~middle]) / 2)
+    median = np.full(rates.shape[0], np.nan)
+    known = ~missing.all(axis=1)
+    median[known] = np.nanmedian(rates[known], axis=1)
+    return median
+
+
+def stroke_span(
+    values: Floats, branch_first: Indices, branch_last: Indices
+) -> tuple[Indices, Indices]:
+    """First and last sample of the middle 90 % of the stroke of each branch.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        Control channel; NaN where missing. [m] or [N]
+    branch_first : ndarray of int, shape (n_branches,)
+        First sample of each branch. [1]
+    branch_last : ndarray of int, shape (n_branches,)
+        Last sample of each branch, inside. [1]
+
+    Returns
+    -------
+    first, last : ndarray of int, shape (n_branches,)
+        Ends of the middle part, both inside; ``last`` before ``first`` where no sample
+        is in it. [1]
+
+    Raises
+    ------
+    IndexError
+        If an end is not a sample of the values.
+
+    Notes
+    -----
+    For waveforms without a plateau.  Five hundredths of the stroke are left out at each
+    end; a sine has 44 % of its greatest rate there.
+
+    Examples
+    --------
+    >>> values = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 21))
+    >>> stroke_span(values, np.array([0]), np.array([20]))
+    (array([3]), array([17]))
+    """
+    begin, end = take_samples(values, branch_first), take_samples(values, branch_last)
+    stroke = end - begin
+    low, high = begin + _STROKE_END * stroke, end - _STROKE_END * stroke
+    sign = np.sign(stroke)
+
+    def passes(samples: Indices, rows: Indices) -> Bools:
+        level, up = take_samples(values, samples), sign[rows, None]
+        is_in = (up * (level - low[rows, None]) >= 0) & (up * (high[rows, None] - level) >= 0)
+        return np.asarray(is_in)
+
+    reach = np.where(sign == 0, -1, branch_last - branch_first)
+    head = _steps_until(branch_first, 1, reach, passes)
+    tail = _steps_until(branch_last, -1, reach, passes)
+    first = branch_first + np.maximum(head, 0)
+    return first, np.where(head >= 0, branch_last - tail, branch_first - 1)
+
+
+def label_phases(
+    time: Floats, *, standstills: Standstills, cycles: Cycles | None
+) -> NDArray[np.int8]:
+    """Return the phase of each sample, by the values of `reduction.quantities.names.PHASE_VALUES`.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n_samples,)
+        Elapsed time of the record, beside which the labels lie. [s]
+    standstills : Standstills
+        Rests and holds. [SI]
+    cycles : Cycles or None
+        Cycles, where the test has them. [SI]
+
+    Returns
+    -------
+    phase : ndarray of int8, shape (n_samples,)
+        Cycling where a cycle is, dwells included; else rest or hold where the crosshead
+        stands; else approach: every other movement, to and from the test. [1]
+
+    Raises
+    ------
+    DataError
+        If a standstill or the cycles reach beyond the record.
+
+    Notes
+    -----
+    The order of a test in [1]_ is rest, approach and hold in turn, cycling, approach, rest.
+
+    Examples
+    --------
+    >>> stand = Standstills(
+    ...     np.array([0, 5]), np.array([2, 6]), np.zeros(2), np.zeros(2), np.zeros(2),
+    ...     np.zeros((1, 2)), np.array([True, False]), 0.1, 1.0)
+    >>> label_phases(np.arange(8.0), standstills=stand, cycles=None)
+    array([0, 0, 0, 1, 1, 2, 2, 1], dtype=int8)
+    """
+    n_samples = time.size
+    if standstills.n_standstills and int(standstills.last[-1]) >= n_samples:
+        raise DataError(
+            "a standstill reaches beyond the record",
+            found=f"sample {int(standstills.last[-1])}",
+            needed=f"less than {n_samples}",
+        )
+    phase = empty_like(time, dtype=np.int8)
+    for part in sample_blocks(n_samples, phase):
+        phase[part] = PHASE_VALUES["approach"]
+    for first, last, is_rest in zip(
+        standstills.first, standstills.last, standstills.is_rest, strict=True
+    ):
+        stand = phase[first : last + 1]
+        for part in sample_blocks(stand.size, stand):
+            stand[part] = PHASE_VALUES["rest" if is_rest else "hold"]
+    if cycles is not None:
+        if cycles.cycle_number.size != n_samples:
+            raise DataError(
+                "the cycles are of another record",
+                found=f"{cycles.cycle_number.size} samples",
+                needed=f"{n_samples}",
+            )
+        cycling = np.int8(PHASE_VALUES["cycling"])
+        for part in sample_blocks(n_samples, phase, cycles.cycle_number):
+            np.copyto(phase[part], cycling, where=cycles.cycle_number[part] > 0)
+    return phase
+
+
+_HINT = (
+    "Check cycles.control, cycles.band and the layout, or give the test the kind it is "
+    "(relaxation, creep, quasi-static)."
+)
+
+_BRANCHES = np.array([BRANCH_VALUES[name] for name in BRANCH_NAMES], dtype=np.int8)
+
+
+def _control_channel(position: Floats, tension: Floats, settings: CycleSettings) -> Floats:
+    if settings.control == "position":
+        return position
+    return mean_of_rows(tension)
+
+
+def _reversals(values: Floats, settings: CycleSettings) -> tuple[Indices, float]:
+    """Reversals and the band that they were found with."""
+    load = settings.control == "load"
+    channel, unit = ("tension", "N") if load else ("crosshead position", "m")
+    if settings.band is not None:
+        reversals, band = find_reversals(values, band=settings.band), settings.band
+    else:
+        reversals, band = first_pass(values)
+    if reversals.size < 3:
+        raise DataError(
+            f"no cycle: {channel} does not reverse",
+            found=f"a range of {_range(values):.4g} {unit}, "
+            f"{max(reversals.size - 1, 0)} movements of {band:.4g} {unit} or more",
+            needed="two half cycles or more",
+            hint=_HINT,
+        )
+    return reversals, band
+
+
+def _range(values: Floats) -> float:
+    """Range of the finite samples; 0 where there is none."""
+    low, high = finite_extremes(values)
+    return max(high - low, 0.0)
+
+
+def _labels(first: Indices, last: Indices, values: NDArray[Any], time: Floats) -> NDArray[Any]:
+    """Value of the interval of each sample, 0 outside; a shared sample is the later one's."""
+    end = last + 1
+    end[:-1] = np.minimum(end[:-1], first[1:])
+    return interval_labels(time, first, end, values)
+
+
+def _trimmed(
+    time: Floats,
+    values: Floats,
+    branch_first: Indices,
+    branch_last: Indices,
+    settings: CycleSettings,
+) -> tuple[Indices, Indices, Floats, list[str]]:
+    noise = estimate_noise(values)[0]
+    if settings.waveform != "triangular":
+        first, last = stroke_span(values, branch_first, branch_last)
+        return (
+            first,
+            last,
+            plateau_rates(time, values, branch_first, branch_last, noise=noise),
+            [
+                f"a {settings.waveform} waveform has no plateau of rate: the trimmed branches "
+                "leave out 5 % of the stroke at each end"
+            ],
+        )
+    first, last, rate = constant_rate_span(
+        time,
+        values,
+        branch_first,
+        branch_last,
+        noise=noise,
+        trim_threshold=settings.trim_threshold,
+    )
+    bare = int(np.sum(last < first))
+    return (
+        first,
+        last,
+        rate,
+        [
+            f"{bare} of {first.size} branches have no part at a constant rate, first near "
+            f"{time[branch_first[np.argmax(last < first)]]:g} s"
+        ]
+        if bare
+        else [],
+    )
+
+
+def find_cycles(
+    time: ArrayLike,
+    position: ArrayLike,
+    tension: ArrayLike,
+    standstills: Standstills,
+    *,
+    settings: CycleSettings,
+    cycle_counter: Integers | None = None,
+) -> Cycles:
+    """Find the whole cycles of a record, valley to peak to valley.
+
+    Parameters
+    ----------
+    time : array_like, shape (n_samples,)
+        Elapsed time. [s]
+    position : array_like, shape (n_samples,)
+        Crosshead position; NaN where missing. [m]
+    tension : array_like, shape (n_specimens, n_samples)
+        Tension; their mean is the control channel of a load-controlled test. [N]
+    standstills : Standstills
+        From `reduction.stages.standstills.find_standstills`. [SI]
+    settings : CycleSettings
+        Control channel, waveform, band, threshold, plan. [SI]
+    cycle_counter : ndarray of int, shape (n_samples,), optional
+        The machine's own count: it says where each cycle begins, and the reversals are
+        held against it. [1]
+
+    Returns
+    -------
+    cycles : Cycles
+        One or more, with notes on what was cut, left out, or differs. [SI]
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up, the control channel is missing or does not
+        reverse, or no whole cycle is left.
+
+    Notes
+    -----
+    Reversals by a hysteresis band (`first_pass` where none is stated), half cycles by the
+    rules of `find_half_cycles`. An ascending half cycle with the descending one after it is a
+    cycle; a run that begins at a peak loses its first half cycle. A pair of which one branch
+    is of one amplitude and the other of the next is left out (`whole_cycles`). At a dwell the
+    branches end where the crosshead arrives and begin where it leaves. A sample that two
+    branches or cycles share is labelled with the later cycle and the earlier branch of a
+    cycle. Constant rate: `constant_rate_span`; without a triangular waveform `stroke_span`.
+
+    Examples
+    --------
+    Slack, two cycles between 1 and 3 m, and back.
+
+    >>> from reduction.stages.standstills import find_standstills
+    >>> from reduction.record.settings import PhaseSettings
+    >>> time = np.arange(0, 90, 0.5)
+    >>> position = np.interp(time, [0, 20, 40, 50, 60, 70, 90], [0, 0, 3, 1, 3, 1, 0])
+    >>> tension = [100 * position]
+    >>> stand = find_standstills(time, position, tension, settings=PhaseSettings())
+    >>> cycles = find_cycles(time, position, tension, stand, settings=CycleSettings())
+    >>> print(time[cycles.first], time[cycles.last], cycles.plateau_rate[1].round(3))
+    [26.5 50. ] [50. 70.] [0.2 0.2]
+    """
+    tension = np.atleast_2d(np.asarray(tension, dtype=np.float64))
+    time, position, _ = as_same_shape(time=time, position=position, tension=tension[0])
+    values = _control_channel(position, tension, settings)
+    notes: list[str] = []
+    reversals, band = _reversals(values, settings)
+    reversals, jumps = drop_jumps(values, reversals)
+    if jumps.size:
+        notes.append(
+            f"{jumps.size} jumps of the control channel and back are no reversals, first at "
+            f"{time[jumps[0]]:g} s"
+        )
+    halves = find_half_cycles(
+        time, values, reversals, standstills, band=band,
+        is_sinusoidal=settings.waveform == "sinusoidal",
+    )  # fmt: skip
+    branch_first, branch_last, left_out = whole_cycles(values, halves)
+    first, last = branch_first[:, 0], branch_last[:, 1]
+    counted_by = "reversals"
+    if cycle_counter is not None and changes_of_count(cycle_counter).size:
+        n_reversals = first.size
+        first, last, branch_first, branch_last, number = counted_cycles(cycle_counter, values)
+        counted_by = "machine counter"
+        notes += _counter_notes(number, values, first, branch_first, branch_last, n_reversals, band)
+    else:
+        notes += halves.notes
+        if left_out.size:
+            notes.append(
+                f"cycles between two amplitudes, one branch of each, not counted: {left_out.size}, "
+                f"first at {time[left_out[0]]:g} s"
+            )
+        if cycle_counter is not None:
+            notes.append("the machine's cycle counter never changes: reversals are counted instead")
+    if first.size == 0:
+        raise DataError(
+            "no whole cycle",
+            found=f"{reversals.size - 1} movements of {band:.4g} or more, none followed by one "
+            "of similar range without a standstill or a gap between",
+            needed="an ascending and a descending half cycle of similar range",
+            hint=_HINT,
+        )
+    if first.size == 1:
+        notes.append("one cycle only: there is no scatter from cycle to cycle")
+    if settings.expected_cycles is not None and settings.expected_cycles != first.size:
+        notes.append(f"{first.size} whole cycles found, {settings.expected_cycles} planned")
+
+    start, stop, rate, trim_notes = _trimmed(
+        time, values, branch_first.ravel(), branch_last.ravel(), settings
+    )
+    notes += trim_notes
+    kept = stop >= start
+    # branches in turn: a shared peak is the end of the ascending one, a valley the begin of it
+    begin = branch_first.copy()
+    begin[:, 1] += branch_first[:, 1] == branch_last[:, 0]
+    return Cycles(
+        first=first,
+        last=last,
+        branch_first=branch_first,
+        branch_last=branch_last,
+        plateau_rate=rate.reshape(-1, 2),
+        cycle_number=_labels(first, last, np.arange(1, first.size + 1, dtype=np.int32), time),
+        branch=_labels(begin.ravel(), branch_last.ravel(), np.tile(_BRANCHES, first.size), time),
+        is_constant_rate=_labels(
+            start[kept], stop[kept], np.ones(int(kept.sum()), dtype=np.bool_), time
+        ),
+        band=float(band),
+        counted_by=counted_by,
+        notes=tuple(notes),
+    )
+
+
+def _counter_notes(
+    number: Integers,
+    values: Floats,
+    first: Indices,
+    branch_first: Indices,
+    branch_last: Indices,
+    n_reversals: int,
+    band: float,
+) -> list[str]:
+    """What the machine's counter says that the reversals do not."""
+    notes = []
+    travel = take_samples(values, branch_last) - take_samples(values, branch_first)
+    stroke = np.abs(travel).max(axis=1)
+    still = stroke < band
+    if still.any():
+        notes.append(
+            f"counted cycles without a stroke: {int(still.sum())}, first machine cycle "
+            f"{int(number[np.argmax(still)])}"
+        )
+    if number.size and (np.diff(number) != 1).any():
+        row = int(np.argmax(np.diff(number) != 1))
+        notes.append(
+            f"the log holds {number.size} of the machine's cycles {int(number[0])} to "
+            f"{int(number[-1])}: {int(number[row + 1])} follows {int(number[row])}"
+        )
+    moving = int((~still).sum())
+    if moving != n_reversals:
+        notes.append(
+            f"the machine counted {moving} cycles with a stroke, the reversals give {n_reversals} "
+            "whole ones"
+        )
+    return notes

@@ -1,0 +1,381 @@
+r"""Prony series of a relaxation: how many terms the record supports, and what they are.
+
+Prony series: the tension it gives, and what a finite ramp leaves of each term.
+
+.. math:: T(t) = T_\infty + \sum_i T_i e^{-t/\tau_i}
+
+.. math:: T(t) = T_\infty + \sum_i T_i e^{-t/\tau_i}
+
+References
+----------
+.. [1] W. G. Knauss and J. Zhao, "Improved relaxation time coverage in ramp-strain histories,"
+   Mech. Time-Depend. Mater. 11, 2007 (correction for the finite ramp).
+.. [2] G. H. Golub and V. Pereyra, "Separable nonlinear least squares: the variable projection
+   method and its applications," Inverse Problems 19(2), 2003.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.record.arrays import as_positive, as_same_shape
+from reduction.record.errors import DataError, FitError
+from reduction.record.measurement import Floats, read_only_arrays
+from reduction.stages.moduli.least_squares import SeparableFit, fit_separable, lag_one_inflation
+
+SMALLEST_RATIO = 1e-12
+
+
+def ramp_factor(relaxation_time: ArrayLike, *, ramp_duration: float) -> Floats:
+    r"""Share of a Prony term that is left at the end of a constant-rate ramp.
+
+    .. math:: \frac{1 - e^{-t_r/\tau}}{t_r/\tau}
+
+    Parameters
+    ----------
+    relaxation_time : array_like, shape (...)
+        :math:`\tau`. [s]
+    ramp_duration : float
+        :math:`t_r`; 0 for a step. [s]
+
+    Returns
+    -------
+    factor : ndarray, shape (...)
+        1 for a step or a slow term. [1]
+
+    Raises
+    ------
+    DataError
+        If the duration is negative, or a time is not positive.
+
+    Notes
+    -----
+    Time counts from the end of the ramp.  Counted from its start the factor reads
+    :math:`(e^{t_r/\tau} - 1)/(t_r/\tau)`, the usual form ([1]_); the two differ by
+    :math:`e^{t_r/\tau}`.
+
+    Examples
+    --------
+    >>> print(ramp_factor([1.0, 100.0], ramp_duration=2.0).round(4))
+    [0.4323 0.9901]
+    """
+    if ramp_duration < 0:
+        raise DataError("the ramp has a negative duration", found=f"{ramp_duration:g} s")
+    times = as_positive("relaxation_time", relaxation_time)
+    # The quotient tends to 1; below this it would be 0 over 0.
+    ratio = np.maximum(ramp_duration / times, SMALLEST_RATIO)
+    factor: Floats = -np.expm1(-ratio) / ratio
+    return factor
+
+
+def prony_tension(
+    elapsed: ArrayLike,
+    *,
+    tension: ArrayLike,
+    relaxation_time: ArrayLike,
+    long_time_tension: float,
+    ramp_duration: float = 0.0,
+) -> Floats:
+    """Tension of a Prony series at constant length after a constant-rate ramp.
+
+    Parameters
+    ----------
+    elapsed : array_like, shape (n_samples,)
+        Time from the end of the ramp. [s]
+    tension, relaxation_time : array_like, shape (n_terms,)
+        Terms. [N], [s]
+    long_time_tension : float
+        What the series tends to. [N]
+    ramp_duration : float, optional
+        Duration of the ramp. [s]
+
+    Returns
+    -------
+    tension : ndarray, shape (n_samples,)
+        Tension. [N]
+
+    Raises
+    ------
+    DataError
+        If a relaxation time is not positive.
+
+    Examples
+    --------
+    >>> print(prony_tension([0.0, 60.0], tension=[75.0], relaxation_time=[60.0],
+    ...                     long_time_tension=325.0).round(2))
+    [400.   352.59]
+    """
+    times = as_positive("relaxation_time", relaxation_time)
+    size = np.asarray(tension, dtype=np.float64) * ramp_factor(times, ramp_duration=ramp_duration)
+    decay = exponentials(np.asarray(elapsed, dtype=np.float64), times)
+    return long_time_tension + decay @ size
+
+
+def exponentials(elapsed: Floats, relaxation_time: Floats) -> Floats:
+    r"""Columns :math:`e^{-t/\tau_i}` of a Prony series.
+
+    Parameters
+    ----------
+    elapsed : ndarray, shape (n_samples,)
+        Time. [s]
+    relaxation_time : ndarray, shape (n_terms,) or (..., 1, n_terms)
+        Times of the terms, or several sets of them. [s]
+
+    Returns
+    -------
+    columns : ndarray, shape (..., n_samples, n_terms)
+        1 at time zero. [1]
+
+    Raises
+    ------
+    ValueError
+        If the times are not one-dimensional.
+
+    Examples
+    --------
+    >>> print(exponentials(np.array([0.0, 1.0]), np.array([1.0])).round(3).ravel())
+    [1.    0.368]
+    """
+    columns: Floats = np.exp(-elapsed[:, None] / relaxation_time)
+    return columns
+
+
+_DEGENERATE = "no positive terms that can be told apart"
+
+GRID_TIMES = 20
+
+STARTS = 3
+
+DECISIVE = 10.0
+
+LONGEST_TIME = 2.0
+
+BLOCK_ERROR = 2e-4
+
+LARGEST_LOG = 50.0
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class PronyFit:
+    """A Prony series with its standard uncertainties (type A).
+
+    Parameters
+    ----------
+    tension, time : ndarray, shape (n_terms,)
+        Terms after a step in length, shortest time first. [N], [s]
+    tension_standard_uncertainty, time_standard_uncertainty : ndarray, shape (n_terms,)
+        [N], [s]
+    long_time_tension, long_time_tension_standard_uncertainty : float
+        [N]
+    criterion : str
+        How the number of terms was chosen.
+    """
+
+    tension: Floats
+    tension_standard_uncertainty: Floats
+    time: Floats
+    time_standard_uncertainty: Floats
+    long_time_tension: float
+    long_time_tension_standard_uncertainty: float
+    criterion: str
+
+
+def _starts(
+    elapsed: Floats, tension: Floats, weights: Floats, grid: Floats, n_terms: int
+) -> Floats:
+    """Best sets of times of a coarse grid, terms positive; found from one Gram matrix."""
+    root = np.sqrt(weights)[:, None]
+    columns = np.column_stack([np.ones_like(elapsed), exponentials(elapsed, grid)]) * root
+    target = tension * root[:, 0]
+    gram, product = columns.T @ columns, columns.T @ target
+    sets = np.array(list(combinations(range(1, grid.size + 1), n_terms)))
+    index = np.column_stack([np.zeros(len(sets), dtype=np.intp), sets])
+    small = gram[index[:, :, None], index[:, None, :]]
+    # A ridge far below the noise keeps neighbours of the grid apart.
+    small = small + 1e-10 * np.trace(gram) / gram.shape[0] * np.eye(n_terms + 1)
+    right = product[index]
+    size = np.linalg.solve(small, right[..., None])[..., 0]
+    gain = np.where((size[:, 1:] > 0).all(axis=1), np.sum(size * right, axis=1), -np.inf)
+    order = np.argsort(-gain, kind="stable")[:STARTS]
+    starts: Floats = np.log(grid[sets[order[np.isfinite(gain[order])]] - 1])
+    return starts
+
+
+def _is_positive(fit: SeparableFit) -> bool:
+    return bool(np.all(fit.amplitude[1:] > 0) and fit.amplitude[0] >= 0)
+
+
+def _unsupported(
+    fit: SeparableFit, inflation: float, shortest: float, longest: float
+) -> str | None:
+    """Why a fit may not be reported, or None."""
+    if not _is_positive(fit):
+        return _DEGENERATE
+    times, size = np.exp(fit.shape), fit.amplitude[1:]
+    uncertainty = fit.standard_uncertainty * np.sqrt(inflation)
+    if times.max() > LONGEST_TIME * longest:
+        return f"a time of {times.max():.3g} s is too long for a hold of {longest:.3g} s"
+    if times.min() < shortest:
+        return f"a time of {times.min():.3g} s is shorter than the record resolves"
+    if np.any(uncertainty[1 : size.size + 1] > 0.5 * size):
+        return "a term is uncertain by more than half its size"
+    if np.any(uncertainty[size.size + 1 :] > 0.5):
+        return "a relaxation time is uncertain by more than half"
+    return None
+
+
+def fit_prony(
+    elapsed: ArrayLike,
+    tension: ArrayLike,
+    *,
+    ramp_duration: float = 0.0,
+    maximum_terms: int = 3,
+    weights: ArrayLike | None = None,
+) -> PronyFit:
+    r"""Prony series of a relaxation with as many terms as the record supports.
+
+    Parameters
+    ----------
+    elapsed : array_like, shape (n_samples,)
+        Time from the end of the ramp, increasing; a few hundred block means rather than
+        every sample of a long hold. [s]
+    tension : array_like, shape (n_samples,)
+        Tension at constant length. [N]
+    ramp_duration : float, optional
+        Duration of the constant-rate ramp before it. [s]
+    maximum_terms : int, optional
+        Largest number of terms tried. [1]
+    weights : array_like, shape (n_samples,), optional
+        Inverse relative variances. [1]
+
+    Returns
+    -------
+    fit : PronyFit
+        Terms as a step in length would have given them, shortest time first. [N], [s]
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up, or the number of terms is below one.
+    FitError
+        If no number of terms is supported; the message names the reason for each.
+
+    Notes
+    -----
+    Variable projection ([2]_) from the three best sets of a grid of 20 times.  The
+    number of terms has the lowest Bayesian information criterion
+    :math:`n' \ln(S/n) + p \ln n'`, where :math:`n' = n (1 - r_1)/(1 + r_1)` counts
+    independent samples, with :math:`r_1` the correlation of neighbouring residuals of
+    the fit in which it is least; :math:`S/n` counts as at least 2e-4 of the range of
+    tension, squared, which is what block means leave out.  A fit is out where a term is
+    negative, a time is more than twice the record or not resolved at its start, or a term
+    or its time is uncertain by more than half; and none is reported where one that is
+    out has a criterion lower by more than 10, for then the record itself says that the
+    shorter series is wrong.  Uncertainties are widened by the correlation.
+
+    The long-time tension is what the series tends to, not an equilibrium: a longer hold
+    would show slower terms.
+
+    Examples
+    --------
+    >>> t = np.geomspace(0.1, 600, 200)
+    >>> truth = 325 + 40 * np.exp(-t / 4) + 35 * np.exp(-t / 70)
+    >>> fit = fit_prony(t, truth + 0.1 * np.random.default_rng(0).standard_normal(200))
+    >>> print(fit.time.round(0), fit.tension.round(0), round(fit.long_time_tension))
+    [ 4. 70.] [40. 35.] 325
+    """
+    if maximum_terms < 1:
+        raise DataError("a series needs a term", found=str(maximum_terms), needed="1 or more")
+    time, load = as_same_shape(elapsed=elapsed, tension=tension)
+    weight = np.ones_like(time) if weights is None else np.asarray(weights, dtype=np.float64)
+    shortest = max(0.5 * float(np.median(np.diff(time[:8]))), 0.2 * ramp_duration)
+    longest = float(time[-1])
+    grid = np.geomspace(shortest, LONGEST_TIME * longest, GRID_TIMES)
+
+    def basis(log_times: Floats) -> tuple[Floats, Floats]:
+        # A search that strays stays finite.
+        times = np.exp(np.clip(log_times, -LARGEST_LOG, LARGEST_LOG))[:, None, :]
+        decay = exponentials(time, times)
+        level = np.ones((len(log_times), time.size, 1))
+        return np.concatenate([level, decay], axis=2), decay * (time[:, None] / times)
+
+    fits: dict[int, SeparableFit] = {}
+    refused: list[str] = []
+    for n_terms in range(1, maximum_terms + 1):
+        starts = _starts(time, load, weight, grid, n_terms)
+        if starts.size == 0 or time.size <= 2 * n_terms + 1:
+            refused.append(f"{n_terms} terms: {_DEGENERATE}")
+            continue
+        try:
+            fits[n_terms] = fit_separable(basis, load, starts=starts, weights=weight)
+        except FitError:
+            refused.append(f"{n_terms} terms: {_DEGENERATE}")
+    # terms that cancel each other are found, or not, by the last digits of the library that
+    # searches: they are no witness of how many values are independent
+    inflation = min(
+        (lag_one_inflation(fit.residual) for fit in fits.values() if _is_positive(fit)),
+        default=1.0,
+    )
+    independent = time.size / inflation
+    floor = max((BLOCK_ERROR * float(np.ptp(load))) ** 2, np.finfo(float).tiny)
+    scores: dict[int, float] = {}
+    supported: list[int] = []
+    for n_terms, fit in sorted(fits.items()):
+        mean_square = max(fit.residual_sum_of_squares / time.size, floor)
+        scores[n_terms] = independent * float(np.log(mean_square)) + (2 * n_terms + 2) * float(
+            np.log(independent)
+        )
+        reason = _unsupported(fit, lag_one_inflation(fit.residual), shortest, longest)
+        if reason is None:
+            supported.append(n_terms)
+        else:
+            refused.append(f"{n_terms} terms: {reason}")
+    if not supported:
+        raise FitError("no Prony series is supported", found="; ".join(sorted(refused)))
+    n_terms = min(supported, key=lambda key: scores[key])
+    if scores[n_terms] > min(scores.values()) + DECISIVE:
+        raise FitError(
+            f"{n_terms} terms are supported but do not fit", found="; ".join(sorted(refused))
+        )
+    criterion = (
+        f"{n_terms} of up to {maximum_terms} terms: lowest Bayesian information criterion "
+        f"with {independent:.0f} independent of {time.size} values"
+    )
+    if np.exp(fits[n_terms].shape.max()) > longest:
+        criterion += "; the slowest time is longer than the hold, so its term is extrapolated"
+    return _reported(fits[n_terms], ramp_duration, "; ".join([criterion, *sorted(refused)]))
+
+
+def _reported(fit: SeparableFit, ramp_duration: float, criterion: str) -> PronyFit:
+    """Amplitudes of a step, the ramp taken out, with uncertainties carried through."""
+    order = np.argsort(fit.shape)
+    n_terms = order.size
+    log_times = fit.shape[order]
+    times = np.exp(log_times)
+    index = np.concatenate([[0], 1 + order, 1 + n_terms + order])
+    covariance = fit.covariance[np.ix_(index, index)] * lag_one_inflation(fit.residual)
+    factor = ramp_factor(times, ramp_duration=ramp_duration)
+    size = fit.amplitude[1 + order] / factor
+    ratio = ramp_duration / times
+    # d(ln factor) / d(ln time): 0 for a step, 1 for terms much shorter than the ramp.
+    growth = 1 - np.exp(-ratio) / factor
+    slopes = np.zeros((2 * n_terms, 2 * n_terms + 1))
+    terms = np.arange(n_terms)
+    slopes[terms, 1 + terms] = 1 / factor
+    slopes[terms, 1 + n_terms + terms] = -size * growth
+    slopes[n_terms + terms, 1 + n_terms + terms] = times
+    variance = np.diag(slopes @ covariance @ slopes.T)
+    return PronyFit(
+        tension=size,
+        tension_standard_uncertainty=np.sqrt(variance[:n_terms]),
+        time=times,
+        time_standard_uncertainty=np.sqrt(variance[n_terms:]),
+        long_time_tension=float(fit.amplitude[0]),
+        long_time_tension_standard_uncertainty=float(np.sqrt(covariance[0, 0])),
+        criterion=criterion,
+    )

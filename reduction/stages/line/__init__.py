@@ -1,0 +1,1 @@
+"""The three-parameter line, slow pulls, rope programmes."""

@@ -1,0 +1,638 @@
+r"""The six change-in-length properties of rope practice.
+
+What the six change-in-length properties are made from, and what they are.
+
+A step is as an archive keeps it: one specimen, numbers without samples.
+
+Construction strain of a rope: what its bedding-in left, at equal tension.
+
+The six change-in-length properties of rope practice, from the steps of a programme.
+
+[1]_ names original, static and dynamic stiffness, and construction, polymer and working strain,
+from one programme of many steps.  It was read in its abstract alone, which gives no formula: the
+definitions are this package's reading of the names.
+
+================== =====================================================================
+original stiffness chord of the first rise of a new rope, end to end
+static stiffness   secant between two held tensions, at a time after the upper one was put on
+dynamic stiffness  apparent spring constant, mean over the last cycles of a level
+construction       strain that bedding-in left at equal tension, first rise and cycles
+polymer            :math:`c \log_{10}(t / t_{ref})` to the end of a hold, c its creep a decade
+working            :math:`(T_h - T_l) / K_s(t_{ref})` of a rope that has been bedded in
+================== =====================================================================
+
+References
+----------
+.. [1] J. F. Flory and V. Ahjem, "Measuring and Calculating the Six Change-in-Length Properties
+   of Fibre Rope," OIPEEC (abstract).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+
+from reduction.record.errors import SettingsError
+from reduction.record.measurement import Floats, read_only_arrays
+
+PropertyName = Literal[
+    "original stiffness",
+    "static stiffness",
+    "dynamic stiffness",
+    "construction strain",
+    "polymer strain",
+    "working strain",
+]
+
+PROPERTY_NAMES: tuple[PropertyName, ...] = (
+    "original stiffness",
+    "static stiffness",
+    "dynamic stiffness",
+    "construction strain",
+    "polymer strain",
+    "working strain",
+)
+
+"""In the order of the abstract."""
+
+_NAN = float("nan")
+
+MANY = float("inf")
+
+"""Degrees of freedom of a regression on many samples. [1]"""
+
+RISE_GAP = 1.5
+
+"""Strains of a rise further apart than this, over the grid's spacing, have a gap between them."""
+
+
+def _none_shared() -> Floats:
+    return np.empty(0)
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class StepNumber:
+    """A number of a step, and the two parts of its uncertainty.
+
+    Parameters
+    ----------
+    value, random_standard_uncertainty : float
+        The uncertainty is of what nothing else shares. [as the quantity]
+    contribution : ndarray, shape (n_components,)
+        Signed, of each error that the numbers of the step share. [as the quantity]
+    degrees_of_freedom : float
+        Of the random part. [1]
+    """
+
+    value: float
+    random_standard_uncertainty: float
+    contribution: Floats = field(default_factory=_none_shared)
+    degrees_of_freedom: float = MANY
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class FirstRise:
+    """Tension on the first rise of a test, at two strains or more, all of them known.
+
+    Parameters
+    ----------
+    strain : ndarray, shape (n_points,)
+        Rising; a gap is where the rise was held or has too few samples. [1]
+    tension, tension_random_standard_uncertainty : ndarray, shape (n_points,)
+        [N]
+    spacing : float
+        Of the grid that the strains are on. [1]
+    strain_contribution, tension_contribution : ndarray, shape (n_components, n_points)
+        By which each shared error moves the points. [1], [N]
+    """
+
+    strain: Floats
+    tension: Floats
+    tension_random_standard_uncertainty: Floats
+    spacing: float
+    strain_contribution: Floats
+    tension_contribution: Floats
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class BeddingCycles:
+    """Cycles that bed a rope in.
+
+    Parameters
+    ----------
+    first_stiffness : StepNumber
+        Secant of the first cycle. [N]
+    permanent_strain : StepNumber
+        By which the foot of the loop moved, at equal tension. [1]
+    foot_strain : float
+        At the foot of the first cycle. [1]
+    foot_strain_contribution : ndarray, shape (n_components,)
+        By which each shared error moves that strain. [1]
+    valley_tension, first_peak_tension, peak_tension : float
+        Of the first cycle, and the greatest of all. [N]
+    """
+
+    first_stiffness: StepNumber
+    permanent_strain: StepNumber
+    foot_strain: float
+    foot_strain_contribution: Floats
+    valley_tension: float
+    first_peak_tension: float
+    peak_tension: float
+
+
+@dataclass(frozen=True)
+class CyclicLevel:
+    """Dynamic stiffness of one level: mean over its last cycles. [N]."""
+
+    stiffness: StepNumber
+    mean_tension: float
+    tension_amplitude: float
+
+
+@dataclass(frozen=True)
+class PairOfHolds:
+    """Static stiffness [N] between two held tensions [N]; NaN with a reason where it has none.
+
+    ``reason`` may stand beside a number, too: that the line was read beyond the hold.
+    """
+
+    low_tension: StepNumber
+    high_tension: StepNumber
+    stiffness: StepNumber
+    reference_time: float
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class HeldTension:
+    """Creep a decade [1] of one hold at a tension [N]; NaN with a reason.
+
+    ``end_time`` [s] is that of the hold since the centre of the ramp to it.
+    """
+
+    tension: float
+    end_time: float
+    creep_per_decade: StepNumber
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class StepOfProgramme:
+    """One step of the programme of one specimen; parts that it does not give are None, or empty.
+
+    Parameters
+    ----------
+    name : str
+        Of the test or step.
+    reference_time : float
+        After loading, from which polymer strain counts. [s]
+    first_rise : FirstRise or None
+        Of the test.
+    bedding : BeddingCycles or None
+        Of a step that beds the rope in.
+    level : CyclicLevel or None
+        Of a step of cycles of a settled rope.
+    pairs : tuple of PairOfHolds
+        In time.
+    holds : tuple of HeldTension
+        In time.
+    strength_contribution : ndarray, shape (n_components,)
+        Relative, of each error that the numbers of the step share to the rated break strength. [1]
+    """
+
+    name: str
+    reference_time: float
+    first_rise: FirstRise | None = None
+    bedding: BeddingCycles | None = None
+    level: CyclicLevel | None = None
+    pairs: tuple[PairOfHolds, ...] = ()
+    holds: tuple[HeldTension, ...] = ()
+    strength_contribution: Floats = field(default_factory=_none_shared)
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class ChangeInLength:
+    """One property between two tensions; NaN with a reason where the record does not support it.
+
+    Parameters
+    ----------
+    name : str
+        One of the six.
+    value, random_standard_uncertainty : float
+        [N] of a stiffness, [1] of a strain
+    over_strength, over_strength_random_standard_uncertainty : float
+        A stiffness over the rated break strength; NaN of a strain. [1]
+    low_tension, high_tension : float
+        Between which it holds; one number twice for a hold. [N]
+    reference_time : float
+        Where a time belongs to it. [s]
+    step : str
+        Which step it is from.
+    reason : str
+        Why there is no number, or what is not in it.
+    contribution, over_strength_contribution : ndarray, shape (n_components,)
+        Signed, of each error that the numbers of that step share. [as the number]
+    degrees_of_freedom : float
+        Of the random part. [1]
+    """
+
+    name: PropertyName
+    value: float = _NAN
+    random_standard_uncertainty: float = _NAN
+    over_strength: float = _NAN
+    over_strength_random_standard_uncertainty: float = _NAN
+    low_tension: float = _NAN
+    high_tension: float = _NAN
+    reference_time: float = _NAN
+    step: str = ""
+    reason: str = ""
+    contribution: Floats = field(default_factory=_none_shared)
+    over_strength_contribution: Floats = field(default_factory=_none_shared)
+    degrees_of_freedom: float = MANY
+
+    @property
+    def is_stiffness(self) -> bool:
+        """True of a stiffness, in N; False of a strain."""
+        return self.name.endswith("stiffness")
+
+    def with_number(self, number: StepNumber) -> ChangeInLength:
+        """Return the property as a number of its step has it."""
+        return replace(
+            self,
+            value=number.value,
+            random_standard_uncertainty=number.random_standard_uncertainty,
+            contribution=number.contribution,
+            degrees_of_freedom=number.degrees_of_freedom,
+        )
+
+    @property
+    def standard_uncertainty(self) -> float:
+        """Shared and random parts together."""
+        return _together(self.contribution, self.random_standard_uncertainty)
+
+    @property
+    def over_strength_standard_uncertainty(self) -> float:
+        """Shared and random parts of that over the strength together."""
+        return _together(
+            self.over_strength_contribution, self.over_strength_random_standard_uncertainty
+        )
+
+
+def _together(contribution: Floats, random: float) -> float:
+    return float(np.sqrt(np.sum(contribution**2) + random**2))
+
+
+def construction_strain(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
+    """Strain that bedding-in left at equal tension, on the first rise and in the cycles.
+
+    Parameters
+    ----------
+    steps : sequence of StepOfProgramme
+        In the order in which they were done.
+    before : str
+        What was before the first of them, in words; empty of a new rope.
+
+    Returns
+    -------
+    strain : ChangeInLength
+        NaN with a reason where the steps do not support it. [1]
+
+    Raises
+    ------
+    ValueError
+        Never by itself.
+
+    Notes
+    -----
+    A name of [1]_.  The strain of the cycles' permanent change, and how far their first foot lies
+    from the first rise at the same tension.  That tension is read by one load cell in both places,
+    so that its errors move neither; what an error of the strain adds is its difference between
+    them.
+
+    Examples
+    --------
+    >>> print(construction_strain([], "").reason)
+    no step beds the rope in
+    """
+    absent = ChangeInLength("construction strain")
+    place = bedded_in(steps)
+    if place is None:
+        return replace(absent, reason="no step beds the rope in")
+    one = steps[place]
+    absent = replace(absent, step=one.name)
+    if before or place > 0:
+        why = before or f"it had been loaded in {steps[0].name}"
+        return replace(absent, reason=f"{why}: what was left before the bedding-in is not known")
+    cycles = one.bedding
+    if cycles is None or np.isnan(cycles.permanent_strain.value):
+        return replace(absent, reason="the cycles give no permanent strain")
+    found = absent.with_number(cycles.permanent_strain)
+    reason = "of the cycles alone: the first rise does not pass the tension of their valleys"
+    at_valley = _on_first_rise(one.first_rise, cycles)
+    if at_valley is not None and np.isnan(at_valley.value):
+        reason = "the first foot is taken to be on the first rise, which was held there"
+    elif at_valley is not None:
+        reason = ""
+        # what is random at the first foot is in the permanent strain with the other sign
+        found = replace(
+            found,
+            value=found.value + cycles.foot_strain - at_valley.value,
+            random_standard_uncertainty=float(
+                np.hypot(found.random_standard_uncertainty, at_valley.random_standard_uncertainty)
+            ),
+            contribution=(
+                found.contribution + cycles.foot_strain_contribution - at_valley.contribution
+            ),
+        )
+    return replace(
+        found, low_tension=cycles.valley_tension, high_tension=cycles.peak_tension, reason=reason
+    )
+
+
+def bedded_in(steps: Sequence[StepOfProgramme]) -> int | None:
+    """Place of the first step that beds the rope in.
+
+    Parameters
+    ----------
+    steps : sequence of StepOfProgramme
+        In the order in which they were done.
+
+    Returns
+    -------
+    place : int or None
+        None where none does. [1]
+
+    Raises
+    ------
+    ValueError
+        Never by itself.
+
+    Notes
+    -----
+    What was there before it is a rope as it was made ([1]_).
+
+    Examples
+    --------
+    >>> print(bedded_in([StepOfProgramme("Q", 600.0)]))
+    None
+    """
+    return next((place for place, one in enumerate(steps) if one.bedding is not None), None)
+
+
+def _on_first_rise(rise: FirstRise | None, cycles: BeddingCycles) -> StepNumber | None:
+    """Strain where the rise first has the tension of the valleys; None where it nowhere has.
+
+    NaN where the rise has a gap there: it was held, and the cycles begin from the hold.
+    """
+    tension = cycles.valley_tension
+    if rise is None or not rise.tension[0] <= tension <= rise.tension.max():
+        return None
+    place = max(int(np.argmax(rise.tension >= tension)), 1)
+    strain, load, doubt = (
+        part[place - 1 : place + 1]
+        for part in (rise.strain, rise.tension, rise.tension_random_standard_uncertainty)
+    )
+    rows = rise.strain_contribution[:, place - 1 : place + 1]
+    if strain[1] - strain[0] > RISE_GAP * rise.spacing:
+        return StepNumber(_NAN, _NAN)
+    slope = float(load[1] - load[0]) / float(strain[1] - strain[0])
+    share = float(load[1] - tension) / float(load[1] - load[0])
+    return StepNumber(
+        float(strain[1] - (load[1] - tension) / slope),
+        float(doubt[1]) / slope,
+        rows[:, 1] - share * (rows[:, 1] - rows[:, 0]),
+    )
+
+
+_HELD = "the rise was held on its way: what it gained meanwhile is in it"
+
+_NO_RISE = (
+    "the first step has no curve of its first rise, which a log that begins slack gives, of "
+    "another step than bedding-in with a diameter"
+)
+
+_NO_PAIR = "no step holds one tension after a lower one"
+
+_NO_ORDER = "the order of the tests is not stated"
+
+
+def change_in_length(
+    steps: Sequence[StepOfProgramme],
+    *,
+    loaded_before: str = "",
+    is_ordered: bool = True,
+    missing: str = "",
+    rated_break_strength: float = _NAN,
+) -> tuple[ChangeInLength, ...]:
+    """Six change-in-length properties of one rope, from the steps of its programme.
+
+    Parameters
+    ----------
+    steps : sequence of StepOfProgramme
+        In the order in which they were done.
+    loaded_before : str, optional
+        What the rope had carried before the first of them, in words; empty of a new rope.
+    is_ordered : bool, optional
+        Whether their order is known.
+    missing : str, optional
+        Which steps there are no numbers of, in words; it is told where a property is missing.
+    rated_break_strength : float, optional
+        NaN where not stated. [N]
+
+    Returns
+    -------
+    properties : tuple of ChangeInLength
+        At least one of each name, in the order of the abstract; one for each pair of holds, level
+        or hold where a step has several.
+
+    Raises
+    ------
+    SettingsError
+        If a reference time is not positive.
+
+    Notes
+    -----
+    Every number is that of a stage before, or one line of arithmetic with it.  An error that
+    samples share goes through that line with its sign, what is random by its square: a zero of
+    the load cell is in no chord, and its gain in no working strain.  The foot of the first cycle,
+    which is in both parts of a construction strain with opposite signs, adds nothing to it.
+    Construction strain holds what the polymer gained in the minutes of the bedding-in.
+
+    Examples
+    --------
+    >>> found = change_in_length([])
+    >>> print(len(found), found[1].name, "--", found[1].reason)
+    6 static stiffness -- no step holds one tension after a lower one
+    """
+    for one in steps:
+        if not one.reference_time > 0:
+            raise SettingsError(
+                f"{one.name}: the reference time is not positive",
+                found=f"{one.reference_time:g} s", needed="above 0 s",
+            )  # fmt: skip
+    before = loaded_before if is_ordered else _NO_ORDER
+    found = (
+        _original(steps, before),
+        *_static(steps),
+        *_dynamic(steps),
+        construction_strain(steps, before),
+        *_polymer(steps),
+        *_working(steps, is_ordered),
+    )
+    of_strength = {one.name: one.strength_contribution for one in steps}
+    return tuple(
+        _told(_over(one, rated_break_strength, of_strength.get(one.step)), missing) for one in found
+    )
+
+
+def _over(one: ChangeInLength, strength: float, of_strength: Floats | None) -> ChangeInLength:
+    if not one.is_stiffness:
+        return one
+    rows = one.contribution / strength
+    if rows.size and of_strength is not None and of_strength.size:
+        rows = rows - one.value / strength * of_strength
+    return replace(
+        one,
+        over_strength=one.value / strength,
+        over_strength_random_standard_uncertainty=one.random_standard_uncertainty / strength,
+        over_strength_contribution=rows,
+    )
+
+
+def _told(one: ChangeInLength, missing: str) -> ChangeInLength:
+    """Say which tests are missing, where the property may have been in one of them."""
+    if not missing or one.step or np.isfinite(one.value):
+        return one
+    return replace(one, reason=f"{one.reason}; {missing}")
+
+
+def _original(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
+    absent = ChangeInLength("original stiffness")
+    if before:
+        return replace(absent, reason=f"{before}: the first rise may not be in the logs")
+    if not steps:
+        return replace(absent, reason="there is no step")
+    first = steps[0]
+    absent = replace(absent, step=first.name)
+    rise = first.first_rise
+    if rise is not None:
+        gain = float(rise.strain[-1] - rise.strain[0])
+        stiffness = float(rise.tension[-1] - rise.tension[0]) / gain
+        of_tension, of_strain = (
+            rows[:, -1] - rows[:, 0]
+            for rows in (rise.tension_contribution, rise.strain_contribution)
+        )
+        spread = rise.tension_random_standard_uncertainty
+        return replace(
+            absent,
+            value=stiffness,
+            random_standard_uncertainty=float(np.hypot(spread[0], spread[-1])) / gain,
+            contribution=(of_tension - stiffness * of_strain) / gain,
+            low_tension=float(rise.tension[0]),
+            high_tension=float(rise.tension[-1]),
+            reason=_HELD if float(np.diff(rise.strain).max()) > RISE_GAP * rise.spacing else "",
+        )
+    if first.bedding is None:
+        return replace(absent, reason=_NO_RISE)
+    return replace(
+        absent.with_number(first.bedding.first_stiffness),
+        low_tension=first.bedding.valley_tension,
+        high_tension=first.bedding.first_peak_tension,
+        reason=(
+            "of the first cycle: there is no curve of the first rise, which a log that begins "
+            "slack gives"
+        ),
+    )
+
+
+def _static(steps: Sequence[StepOfProgramme]) -> tuple[ChangeInLength, ...]:
+    found = [_of_pair(one, pair) for one in steps for pair in one.pairs]
+    return tuple(found) or (ChangeInLength("static stiffness", reason=_NO_PAIR),)
+
+
+def _of_pair(step: StepOfProgramme, pair: PairOfHolds) -> ChangeInLength:
+    bare = ChangeInLength(
+        "static stiffness", low_tension=pair.low_tension.value,
+        high_tension=pair.high_tension.value, reference_time=pair.reference_time,
+        step=step.name, reason=pair.reason,
+    )  # fmt: skip
+    return bare.with_number(pair.stiffness)
+
+
+def _dynamic(steps: Sequence[StepOfProgramme]) -> tuple[ChangeInLength, ...]:
+    found = []
+    for one in steps:
+        level = one.level
+        if level is None:
+            continue
+        bare = ChangeInLength(
+            "dynamic stiffness", low_tension=level.mean_tension - level.tension_amplitude,
+            high_tension=level.mean_tension + level.tension_amplitude, step=one.name,
+            reason="" if np.isfinite(level.stiffness.value) else "no cycle of it has a stiffness",
+        )  # fmt: skip
+        found.append(bare.with_number(level.stiffness))
+    # the cycles of bedding-in are of a rope that is still settling
+    none = "no step is of cycles of a settled rope"
+    return tuple(found) or (ChangeInLength("dynamic stiffness", reason=none),)
+
+
+def _polymer(steps: Sequence[StepOfProgramme]) -> tuple[ChangeInLength, ...]:
+    found = []
+    for one in steps:
+        for hold in one.holds:
+            absent = ChangeInLength(
+                "polymer strain", low_tension=hold.tension, high_tension=hold.tension,
+                reference_time=one.reference_time, step=one.name, reason=hold.reason,
+            )  # fmt: skip
+            creep = hold.creep_per_decade
+            if hold.end_time <= one.reference_time and np.isfinite(creep.value):
+                why = f"the hold ends at {hold.end_time:.4g} s, before the reference time"
+                found.append(replace(absent, reason=why))
+                continue
+            decades = float(np.log10(hold.end_time / one.reference_time))
+            found.append(
+                replace(
+                    absent,
+                    value=decades * creep.value,
+                    random_standard_uncertainty=decades * creep.random_standard_uncertainty,
+                    contribution=decades * creep.contribution,
+                )
+            )
+    none = "no step holds a constant tension"
+    return tuple(found) or (ChangeInLength("polymer strain", reason=none),)
+
+
+def _working(steps: Sequence[StepOfProgramme], is_ordered: bool) -> tuple[ChangeInLength, ...]:
+    absent = ChangeInLength("working strain")
+    place = bedded_in(steps)
+    if place is None:
+        return (replace(absent, reason="no step beds the rope in: construction would be in it"),)
+    if not is_ordered:
+        return (replace(absent, reason=f"{_NO_ORDER}: a hold may be of a rope not bedded in"),)
+    pairs = [(one, pair) for one in steps[place + 1 :] for pair in one.pairs]
+    if not pairs:
+        return (replace(absent, reason=_NO_PAIR),)
+    return tuple(_working_of(_of_pair(one, pair), pair) for one, pair in pairs)
+
+
+def _working_of(one: ChangeInLength, pair: PairOfHolds) -> ChangeInLength:
+    """Rise over stiffness: a gain of the load cell is in both, and in the strain no more."""
+    rise = one.high_tension - one.low_tension
+    strain = rise / one.value
+    of_rise = pair.high_tension.contribution - pair.low_tension.contribution
+    return replace(
+        one,
+        name="working strain",
+        value=strain,
+        random_standard_uncertainty=strain * one.random_standard_uncertainty / one.value,
+        contribution=strain * (of_rise / rise - one.contribution / one.value),
+    )

@@ -1,0 +1,508 @@
+r"""Pairs of holds of a quasi-static programme.
+
+Stiffness between two held tensions against the logarithm of time, and creep of a hold.
+
+.. math:: K_s(t) = \frac{T_h(t) - T_l}{\varepsilon_h(t) - \varepsilon_l}
+          = K_{ref} + b \log_{10}(t / t_{ref})
+
+A rope that is held creeps, so the secant between two levels falls with the time for which
+the upper one has been held; a straight line in the logarithm of time is the usual summary.
+
+Pairs of holds of a quasi-static programme: from a lower tension to a higher one.
+
+References
+----------
+.. [1] J. F. Flory and V. Ahjem, "Measuring and Calculating the Six Change-in-Length Properties
+   of Fibre Rope," OIPEEC (abstract: static stiffness beside dynamic stiffness and polymer
+   strain).
+.. [2] J. D. Ferry, "Viscoelastic Properties of Polymers," 3rd ed., Wiley, 1980, ch. 1 (lines in
+   the logarithm of time).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import stdtrit
+
+from reduction.record.arrays import as_positive, as_same_shape
+from reduction.record.errors import DataError, FitError, SettingsError
+from reduction.record.measurement import Bools, Floats, read_only_arrays
+from reduction.record.samples import chosen, empty_like, finite_extremes, sample_blocks
+from reduction.stages.holds.reduce_holds import Hold, select_hold
+from reduction.stages.holds.relaxation import (
+    RAMP_TIMES_LEFT_OUT,
+    HoldResult,
+    end_mean,
+    logarithmic_blocks,
+)
+from reduction.stages.line.line_product import one_a_specimen
+from reduction.stages.moduli.least_squares import lag_one_inflation
+from reduction.stages.standstills import Standstills
+
+_FEWEST_POINTS = 4
+
+_SHORTEST_SPAN = 0.5
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class StaticStiffness:
+    """Secant between two held tensions against time.
+
+    Parameters
+    ----------
+    elapsed, stiffness : ndarray, shape (n_points,)
+        Time since the load was put on, and the secant then. [s], [N]
+    reference_time : float
+        Time at which ``stiffness_at_reference`` stands. [s]
+    stiffness_at_reference, stiffness_at_reference_standard_uncertainty : float
+        By the fit. [N]
+    slope_per_decade, slope_per_decade_standard_uncertainty : float
+        Change of the stiffness in a tenfold time. [N]
+    slope_low, slope_high : float
+        Interval of the slope. [N]
+    stiffness_over_strength, slope_per_decade_over_strength : float
+        Over the rated break strength. [1]
+    confidence : float
+        Of the interval. [1]
+    notes : tuple of str
+        A reference time that the hold does not reach.
+    """
+
+    elapsed: Floats
+    stiffness: Floats
+    reference_time: float
+    stiffness_at_reference: float
+    stiffness_at_reference_standard_uncertainty: float
+    slope_per_decade: float
+    slope_per_decade_standard_uncertainty: float
+    slope_low: float
+    slope_high: float
+    stiffness_over_strength: float
+    slope_per_decade_over_strength: float
+    confidence: float
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class CreepOfHold:
+    """Creep of one hold; NaN with a reason where the hold does not support it.
+
+    Parameters
+    ----------
+    specimen : str
+        Which specimen.
+    creep_per_decade, creep_per_decade_standard_uncertainty : float
+        Strain gained in a tenfold time. [1]
+    tension, tension_over_strength : float
+        Held tension, and over the rated break strength. [N], [1]
+    creep_compliance_per_decade : float
+        Strain a decade over tension as a share of the strength: what is alike in ropes of
+        one construction and many sizes. [1]
+    duration : float
+        Of the hold. [s]
+    reason : str
+        Why there is no number; empty where there is.
+    tension_standard_uncertainty : float
+        Of the means at both ends of the hold (type A). [N]
+    """
+
+    specimen: str
+    creep_per_decade: float
+    creep_per_decade_standard_uncertainty: float
+    tension: float
+    tension_over_strength: float
+    creep_compliance_per_decade: float
+    duration: float
+    reason: str = ""
+    tension_standard_uncertainty: float = float("nan")
+
+
+def static_stiffness(
+    elapsed: ArrayLike,
+    tension: ArrayLike,
+    strain: ArrayLike,
+    *,
+    low_tension: float,
+    low_strain: float,
+    reference_time: float,
+    ramp_duration: float = 0.0,
+    rated_break_strength: float = float("nan"),
+    confidence: float = 0.95,
+) -> StaticStiffness:
+    r"""Secant stiffness from the end of a lower hold into an upper hold, against log time.
+
+    .. math:: K_s(t) = K_{ref} + b \log_{10}(t / t_{ref})
+
+    Parameters
+    ----------
+    elapsed : array_like, shape (n_samples,)
+        Time since the centre of the ramp to the upper hold, rising and positive. [s]
+    tension, strain : array_like, shape (n_samples,)
+        Of the upper hold, as samples or as values at stated times; NaN is left out. [N], [1]
+    low_tension : float
+        At the end of the lower hold. [N]
+    low_strain : float
+        At the end of the lower hold. [1]
+    reference_time : float
+        Time at which the stiffness is wanted. [s]
+    ramp_duration : float, optional
+        Duration of the ramp; the first three of them are left out. [s]
+    rated_break_strength : float, optional
+        NaN where not stated. [N]
+    confidence : float, optional
+        Of the interval of the slope. [1]
+
+    Returns
+    -------
+    stiffness : StaticStiffness
+        Line in the logarithm of time with its uncertainty (type A).
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up, time does not rise from above zero, or the upper hold
+        is not above the lower one in tension and strain.
+    FitError
+        If fewer than four points, or less than half a decade of time, are left.
+    SettingsError
+        If the confidence is not between 0 and 1, or the reference time is not positive.
+
+    Notes
+    -----
+    Samples become means over equal steps of the logarithm of time first, so that the last
+    decade does not decide alone; their scatter about the line is widened by their likeness.
+    Levels and times are the laboratory's: [1]_ was read in its abstract only, and no standard.
+
+    Examples
+    --------
+    >>> t = np.arange(1.0, 1001.0)
+    >>> strain = 0.05 + 200 / (4000 - 100 * np.log10(t))
+    >>> found = static_stiffness(t, np.full(1000, 300.0), strain,
+    ...     low_tension=100.0, low_strain=0.05, reference_time=100.0)
+    >>> print(round(found.stiffness_at_reference), round(found.slope_per_decade))
+    3800 -100
+    """
+    if not 0 < confidence < 1:
+        raise SettingsError("a confidence is a share", found=f"{confidence:g}", needed="0 to 1")
+    if not reference_time > 0:
+        raise SettingsError(
+            "the reference time is not positive", found=f"{reference_time:g} s", needed="above 0 s"
+        )
+    clock, load, stretch = as_same_shape(elapsed=elapsed, tension=tension, strain=strain)
+    series, shortest = (clock, load, stretch), RAMP_TIMES_LEFT_OUT * ramp_duration
+
+    def is_kept(part: slice) -> Bools:
+        clock, load, stretch = (one[part] for one in series)
+        known = np.isfinite(clock) & np.isfinite(load) & np.isfinite(stretch)
+        return known & ~(clock < shortest)
+
+    clock, load, stretch = chosen(is_kept, *series)
+    if clock.size < _FEWEST_POINTS:
+        raise FitError(
+            "the upper hold is too short for a line in the logarithm of time",
+            found=f"{clock.size} readings after {RAMP_TIMES_LEFT_OUT:g} ramp times",
+            needed=f"{_FEWEST_POINTS} or more",
+        )
+    rise, gain = finite_extremes(load)[0] - low_tension, finite_extremes(stretch)[0] - low_strain
+    if not (rise > 0 and gain > 0):
+        raise DataError(
+            "the upper hold is not above the lower one",
+            found=f"least rise {rise:.4g} N of tension and {gain:.4g} of strain",
+            needed="both above zero",
+        )
+    stiffness = empty_like(load)
+    for part in sample_blocks(load.size, load, stretch, stiffness):
+        stiffness[part] = (load[part] - low_tension) / (stretch[part] - low_strain)
+    blocks = logarithmic_blocks(clock, stiffness)
+    x, y = np.log10(blocks.elapsed / reference_time), blocks.value
+    if x.size < _FEWEST_POINTS or x[-1] - x[0] < _SHORTEST_SPAN:
+        raise FitError(
+            "the upper hold is too short for a line in the logarithm of time",
+            found=f"{x.size} points over {x[-1] - x[0]:.2f} decades",
+            needed=f"{_FEWEST_POINTS} points over {_SHORTEST_SPAN:g} decades",
+        )
+    share = blocks.weight / blocks.weight.sum()
+    centre, level = float((share * x).sum()), float((share * y).sum())
+    power = float((share * (x - centre) ** 2).sum())
+    slope = float((share * (x - centre) * (y - level)).sum()) / power
+    residual = np.sqrt(share) * (y - level - slope * (x - centre))
+    variance = float((residual**2).sum()) / (x.size - 2) * lag_one_inflation(residual)
+    u_slope = float(np.sqrt(variance / power))
+    width = float(stdtrit(x.size - 2, (1 + confidence) / 2)) * u_slope
+    reaches = clock[0] <= reference_time <= clock[-1]
+    return StaticStiffness(
+        elapsed=blocks.elapsed,
+        stiffness=y,
+        reference_time=reference_time,
+        stiffness_at_reference=level - slope * centre,
+        stiffness_at_reference_standard_uncertainty=float(
+            np.sqrt(variance * (1 + centre**2 / power))
+        ),
+        slope_per_decade=slope,
+        slope_per_decade_standard_uncertainty=u_slope,
+        slope_low=slope - width,
+        slope_high=slope + width,
+        stiffness_over_strength=(level - slope * centre) / rated_break_strength,
+        slope_per_decade_over_strength=slope / rated_break_strength,
+        confidence=confidence,
+        notes=()
+        if reaches
+        else (
+            f"the stiffness at {reference_time:g} s is read off the line beyond the hold, which "
+            f"has readings from {clock[0]:.3g} to {clock[-1]:.3g} s",
+        ),
+    )
+
+
+def creep_of_hold(hold: HoldResult, *, rated_break_strength: float = float("nan")) -> CreepOfHold:
+    """Creep per decade of one hold at constant tension, with the tension as a share.
+
+    Parameters
+    ----------
+    hold : HoldResult
+        Of kind ``creep``, from `reduction.stages.holds.reduce_holds`.
+    rated_break_strength : float, optional
+        NaN where not stated. [N]
+
+    Returns
+    -------
+    creep : CreepOfHold
+        Rate, or NaN with the hold's own reason.
+
+    Raises
+    ------
+    DataError
+        If the hold is one of relaxation, or the strength is not positive.
+
+    Notes
+    -----
+    The rate is that of [2]_, a straight line in the logarithm of time.
+
+    Examples
+    --------
+    >>> nan, none = float("nan"), np.empty(0)
+    >>> hold = HoldResult("new", "creep", 0.0, 3600.0, 0.1, 3000.0, 3000.0, nan, nan, 0.002, 1e-5,
+    ...     none, none, none, none, none, none, none, nan, nan)
+    >>> print(round(creep_of_hold(hold, rated_break_strength=1e4).creep_compliance_per_decade, 5))
+    0.00667
+    """
+    if hold.kind != "creep":
+        raise DataError(
+            f"a hold of {hold.specimen} is no creep", found=hold.kind, needed="a constant tension"
+        )
+    if not np.isnan(rated_break_strength):
+        as_positive("rated break strength", rated_break_strength)
+    tension = (hold.hold_initial_tension + hold.hold_final_tension) / 2
+    share = tension / rated_break_strength
+    of_ends = (
+        hold.hold_initial_tension_standard_uncertainty,
+        hold.hold_final_tension_standard_uncertainty,
+    )
+    return CreepOfHold(
+        specimen=hold.specimen,
+        creep_per_decade=hold.rate_per_decade,
+        creep_per_decade_standard_uncertainty=hold.rate_per_decade_standard_uncertainty,
+        tension=tension,
+        tension_over_strength=share,
+        creep_compliance_per_decade=hold.rate_per_decade / share if share else float("nan"),
+        duration=hold.hold_duration,
+        tension_standard_uncertainty=float(np.hypot(*of_ends)) / 2,
+        reason="; ".join(hold.refusals) if np.isnan(hold.rate_per_decade) else "",
+    )
+
+
+# a hold is a step up where its tension is above the last one's by this share of it
+_LEAST_RISE = 0.05
+
+_FINAL_SHARE = 0.05
+
+
+@dataclass(frozen=True)
+class HeldPair:
+    """A lower hold and the higher one after it, of one specimen.
+
+    Parameters
+    ----------
+    specimen : str
+        Which specimen.
+    low_hold, high_hold : int
+        Numbers of the holds in the test, by time from 1.
+    low_tension, high_tension : float
+        At the end of each hold. [N]
+    stiffness : StaticStiffness or None
+        Secant between them against the time for which the higher one was held.
+    reason : str
+        Why there is no stiffness; empty where there is.
+    low_tension_standard_uncertainty, high_tension_standard_uncertainty : float
+        Of the means at the ends (type A). [N]
+    low_strain : float
+        At the end of the lower hold, from which the stiffness counts; NaN where none is known. [1]
+    """
+
+    specimen: str
+    low_hold: int
+    high_hold: int
+    low_tension: float
+    high_tension: float
+    stiffness: StaticStiffness | None
+    reason: str = ""
+    low_tension_standard_uncertainty: float = float("nan")
+    high_tension_standard_uncertainty: float = float("nan")
+    low_strain: float = float("nan")
+
+
+def _end_of(values: Floats) -> tuple[float, float]:
+    """Mean over the end of a hold, with its standard uncertainty."""
+    return end_mean(values, n_samples=max(3, int(_FINAL_SHARE * values.size)), at_end=True)
+
+
+def _stiffness(low: Hold, high: Hold, *, strength: float, reference_time: float) -> StaticStiffness:
+    """Line in the logarithm of time, with what is not known of the end of the lower hold."""
+    if high.ramp is None:
+        raise DataError(
+            "the record does not show the ramp to the upper hold, so the time since loading is "
+            "not known"
+        )
+    (known,) = chosen(lambda part: np.isfinite(low.strain[part]), low.strain)
+    if known.size < 3:
+        raise DataError("the lower hold has no strain", found=f"{known.size} readings")
+    (tension, u_tension), (strain, u_strain) = _end_of(low.tension), _end_of(known)
+    since = high.since_centre
+    later = int(np.searchsorted(since, 0.0, side="right"))
+    found = static_stiffness(
+        since[later:],
+        high.tension[later:],
+        high.strain[later:],
+        low_tension=tension,
+        low_strain=strain,
+        reference_time=reference_time,
+        ramp_duration=high.ramp_duration,
+        rated_break_strength=strength,
+    )
+    gain = (_end_of(high.tension)[0] - tension) / found.stiffness[-1]
+    level = found.stiffness_at_reference
+    spread = np.hypot(
+        found.stiffness_at_reference_standard_uncertainty,
+        np.hypot(u_tension, level * u_strain) / gain,
+    )
+    return replace(found, stiffness_at_reference_standard_uncertainty=float(spread))
+
+
+def held_pairs(
+    time: ArrayLike,
+    position: ArrayLike,
+    tension: ArrayLike,
+    strain: ArrayLike,
+    standstills: Standstills,
+    *,
+    specimens: Sequence[str],
+    rated_break_strength: ArrayLike,
+    reference_time: float,
+) -> tuple[HeldPair, ...]:
+    """Static stiffness from each hold to the next one, where that is at a higher tension.
+
+    Parameters
+    ----------
+    time, position : array_like, shape (n_samples,)
+        Elapsed time and crosshead position. [s], [m]
+    tension, strain : array_like, shape (n_specimens, n_samples)
+        NaN where missing. [N], [1]
+    standstills : Standstills
+        Holds of the crosshead, or of the tension.
+    specimens : sequence of str, length n_specimens
+        Names, in the order of the rows.
+    rated_break_strength : array_like, shape (n_specimens,)
+        NaN where not stated. [N]
+    reference_time : float
+        Time after the centre of the ramp at which the stiffness stands. [s]
+
+    Returns
+    -------
+    pairs : tuple of HeldPair
+        By upper hold, then by specimen; without a stiffness where the holds do not support
+        one, with the reason.
+
+    Raises
+    ------
+    DataError
+        If time and position do not pair up, or a strength is not positive.
+
+    Notes
+    -----
+    A hold counts as higher where its mean tension is above that of the hold before by 5 % of
+    it; a rest between the two parts them.  Tension and strain of the lower hold are means
+    over its last 5 %, and their type A uncertainty is in that of the stiffness; the time
+    counts from the centre of the ramp.  Levels and durations are the laboratory's: [1]_ was
+    read in its abstract only, and no standard.
+
+    Examples
+    --------
+    A hold at 100 N, and one at 300 N of which the secant falls by 100 N a decade.
+
+    >>> t = np.arange(0.0, 1200.0)
+    >>> load = np.interp(t, [0, 10, 100, 102, 1200], [0, 100, 100, 300, 300])
+    >>> since = np.clip(t - 101, 1, None)
+    >>> strain = 0.05 * load / 100
+    >>> strain[t > 101] = (0.05 + (load - 100) / (4000 - 100 * np.log10(since)))[t > 101]
+    >>> stand = Standstills(
+    ...     first=np.array([10, 102]), last=np.array([99, 1199]),
+    ...     start_time=np.array([10.0, 102.0]), end_time=np.array([99.0, 1199.0]),
+    ...     mean_position=np.array([1.0, 1.1]), mean_tension=np.array([[100.0, 300.0]]),
+    ...     is_rest=np.array([False, False]), position_tolerance=1e-3, slack_tension=5.0,
+    ...     tension_tolerance=1.0)
+    >>> pair, = held_pairs(t, 1 + strain, [load], [strain], stand, specimens=["rope"],
+    ...     rated_break_strength=1e4, reference_time=100.0)
+    >>> print(round(pair.stiffness.stiffness_at_reference, -1), pair.low_hold, pair.high_hold)
+    3800.0 1 2
+    """
+    seconds, place = as_same_shape(time=time, position=position)
+    loads = np.atleast_2d(np.asarray(tension, dtype=np.float64))
+    stretches = np.atleast_2d(np.asarray(strain, dtype=np.float64))
+    strengths = one_a_specimen(rated_break_strength, len(specimens))
+    number = np.cumsum(~standstills.is_rest)
+    pairs = []
+    for upper in range(1, standstills.n_standstills):
+        if standstills.is_rest[upper - 1 : upper + 1].any():
+            continue
+        for row, name in enumerate(specimens):
+            low_mean, high_mean = standstills.mean_tension[row, upper - 1 : upper + 1]
+            if not high_mean > (1 + _LEAST_RISE) * low_mean:
+                continue
+            low, high = (
+                select_hold(seconds, place, loads[row], stretches[row], standstills, index)
+                for index in (upper - 1, upper)
+            )
+            stiffness, reason = None, ""
+            try:
+                stiffness = _stiffness(
+                    low, high, strength=float(strengths[row]), reference_time=reference_time
+                )
+            except (DataError, FitError) as error:
+                reason = str(error)
+            ends = _level(low, low_mean), _level(high, high_mean)
+            known = low.strain[np.isfinite(low.strain)]
+            pairs.append(
+                HeldPair(
+                    specimen=name,
+                    low_hold=int(number[upper - 1]),
+                    high_hold=int(number[upper]),
+                    low_tension=ends[0][0],
+                    high_tension=ends[1][0],
+                    stiffness=stiffness,
+                    reason=reason,
+                    low_tension_standard_uncertainty=ends[0][1],
+                    high_tension_standard_uncertainty=ends[1][1],
+                    low_strain=_end_of(known)[0] if known.size > 2 else float("nan"),
+                )
+            )
+    return tuple(pairs)
+
+
+def _level(hold: Hold, mean: float) -> tuple[float, float]:
+    """Tension at the end of a hold; its mean where readings are too few for a scatter."""
+    return _end_of(hold.tension) if hold.tension.size > 2 else (float(mean), float("nan"))

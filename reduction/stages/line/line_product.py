@@ -1,0 +1,263 @@
+"""What the line stage returns.
+
+What the line stage hands on: parameters of loops, and a slow pull.
+
+What the programmes share: one break strength a specimen, and means that pass over gaps.
+
+References
+----------
+.. [1] CG-D-39-80, Table 2 (rated break strengths).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import comb
+
+import numpy as np
+from numpy import int8
+from numpy.typing import ArrayLike, NDArray
+
+from reduction.record.errors import DataError
+from reduction.record.measurement import Floats, read_only_arrays
+
+REASONS: dict[int, str] = {
+    0: "",
+    1: "the quasi-static spring constant at this mean tension is not known",
+    2: "the quasi-static spring constant is not positive",
+    3: "a measured quantity of the loop is missing",
+    4: "a measured quantity of the loop is not positive",
+    5: "the loop is too wide: the loss spring constant reaches the apparent one",
+    6: "the storage spring constant does not exceed the quasi-static one",
+}
+
+"""Why a line has no K_1 and tau; the first that holds, in the order 3, 4, 5, 1, 2, 6."""
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class LineParameters:
+    """Parameters of the line; every array has one shape, (n_specimens, n_cycles) for loops.
+
+    A number that the loop does not support is NaN and ``reason`` says why.  ``storage`` and
+    ``loss`` stand wherever the loop alone gives them, with K_0 or without.
+
+    Parameters
+    ----------
+    quasi_static_spring_constant : ndarray
+        As used. [N]
+    storage_spring_constant, loss_spring_constant : ndarray
+        As used: from K_ap and H, or of the fundamental (``reading``). [N]
+    loss_angle : ndarray
+        By which tension leads strain. [rad]
+    dissipation_spring_constant : ndarray
+        K_1. [N]
+    relaxation_time : ndarray
+        tau. [s]
+    dashpot_coefficient : ndarray
+        K_1 tau. [N s]
+    angular_frequency : ndarray
+        2 pi f. [rad s-1]
+    angular_frequency_relaxation_time : ndarray
+        omega tau; the loop is widest for a strain amplitude at 1. [1]
+    conditioning : ndarray
+        K_0 over (E' - K_0): how many times a relative error of K_0 enters E' - K_0. [1]
+    reason : ndarray of int8
+        0 where the parameters stand, else a key of `REASONS`.
+    random_uncertainty, shared_uncertainty, uncertainty : dict of str to ndarray
+        Standard uncertainties by the field's name, same shape and unit, of
+        storage_spring_constant, loss_spring_constant, dissipation_spring_constant,
+        relaxation_time and dashpot_coefficient: from the loop, which a mean over cycles makes
+        smaller; from K_0, which all cycles of a test share and no mean makes smaller; both.
+        NaN where an uncertainty that goes in is not stated.
+    reading : str
+        ``amplitude`` or ``fundamental``.
+    notes : tuple of str
+        What a reader of the numbers has to know.
+    """
+
+    quasi_static_spring_constant: Floats
+    storage_spring_constant: Floats
+    loss_spring_constant: Floats
+    loss_angle: Floats
+    dissipation_spring_constant: Floats
+    relaxation_time: Floats
+    dashpot_coefficient: Floats
+    angular_frequency: Floats
+    angular_frequency_relaxation_time: Floats
+    conditioning: Floats
+    reason: NDArray[int8]
+    random_uncertainty: dict[str, Floats]
+    shared_uncertainty: dict[str, Floats]
+    uncertainty: dict[str, Floats]
+    reading: str = "amplitude"
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class SlowPull:
+    """Load-strain curve of one specimen: strain as a cubic of tension, and its inverse slope.
+
+    Parameters
+    ----------
+    specimen : str
+        Which specimen.
+    tension_centre, tension_half_range : float
+        The fit is in u = (T - centre)/half range, which runs from -1 to 1. [N]
+    coefficient : ndarray, shape (4,)
+        Of 1, u, u^2, u^3. [1]
+    covariance : ndarray, shape (4, 4)
+        Of the coefficients, from the residuals and their likeness to their neighbours
+        (type A); no part of load cell or gauge length. [1]
+    strain_misfit, slope_misfit : float
+        Root mean square of what a cubic misses of the strain, and of its slope in u, by a
+        polynomial of sixth degree; 0 where noise explains it. [1]
+    tension_low, tension_high : float
+        Range of use: where there are readings and the slope is positive. [N]
+    residual_deviation : float
+        Standard deviation of the block means about the cubic. [1]
+    variance_inflation : float
+        By which the likeness of neighbouring residuals makes every variance larger. [1]
+    n_samples, n_blocks : int
+        Readings of the loading part, and means over equal steps of tension that were fitted.
+    first_sample, last_sample : int
+        Rows of the record between which the loading part lies.
+    strain_rate, strain_rate_slowest, strain_rate_fastest : float
+        Mean of the loading part, and of the slowest and fastest quarter of its tension
+        range; K_0 grows with it. [s-1]
+    tension_rate : float
+        Mean of the loading part. [N s-1]
+    waiting_time : float
+        Since the last dynamic test, on which K_0 depends; NaN where not given. [s]
+    waiting : str
+        The same in the laboratory's words.
+    reference_length : float
+        Length at which strain is zero; NaN where not stated. [m]
+    reference_tension : float
+        Tension at which it was read; NaN where not stated. [N]
+    polynomial_coefficient : ndarray, shape (4,)
+        K_0 as A + B T + C T^2 + D T^3, for those who need the printed form. [N N-k]
+    polynomial_deviation : float
+        Greatest distance of that form from the slope over the range of use, as a share. [1]
+    notes : tuple of str
+        What a reader of the numbers has to know.
+    """
+
+    specimen: str
+    tension_centre: float
+    tension_half_range: float
+    coefficient: Floats
+    covariance: Floats
+    strain_misfit: float
+    slope_misfit: float
+    tension_low: float
+    tension_high: float
+    residual_deviation: float
+    variance_inflation: float
+    n_samples: int
+    n_blocks: int
+    first_sample: int
+    last_sample: int
+    strain_rate: float
+    strain_rate_slowest: float
+    strain_rate_fastest: float
+    tension_rate: float
+    waiting_time: float
+    waiting: str
+    reference_length: float
+    reference_tension: float
+    polynomial_coefficient: Floats
+    polynomial_deviation: float
+    notes: tuple[str, ...] = ()
+
+    @property
+    def strain_coefficient(self) -> Floats:
+        """A, B, C, D of strain = A + B T + C T^2 + D T^3, shape (4,). [N-k]."""
+        printed: Floats = self._to_printed() @ self.coefficient
+        return printed
+
+    @property
+    def strain_coefficient_covariance(self) -> Floats:
+        """Covariance of A, B, C and D, shape (4, 4). [N-k]."""
+        turn = self._to_printed()
+        printed: Floats = turn @ self.covariance @ turn.T
+        return printed
+
+    @property
+    def misfit_share(self) -> float:
+        """``strain_misfit`` over the strain that the cubic gains along the pull. [1]."""
+        return self.strain_misfit / (2 * float(self.coefficient[1] + self.coefficient[3]))
+
+    def _to_printed(self) -> Floats:
+        """Matrix from coefficients of u to those of T."""
+        turn = np.zeros((4, 4))
+        for power in range(4):
+            for part in range(power + 1):
+                shift = (-self.tension_centre) ** (power - part)
+                turn[part, power] = comb(power, part) * shift / self.tension_half_range**power
+        return turn
+
+
+def one_a_specimen(rated_break_strength: ArrayLike, n_specimens: int) -> Floats:
+    """Rated break strength of each specimen.
+
+    Parameters
+    ----------
+    rated_break_strength : array_like, shape () or (n_specimens,)
+        NaN where not stated. [N]
+    n_specimens : int
+        Number of specimens. [1]
+
+    Returns
+    -------
+    strength : ndarray, shape (n_specimens,)
+        As given. [N]
+
+    Raises
+    ------
+    DataError
+        If a strength is not positive, or their number does not fit.
+
+    Examples
+    --------
+    >>> one_a_specimen(28470.0, 2)
+    array([28470., 28470.])
+    """
+    strength = np.asarray(rated_break_strength, dtype=np.float64)
+    if strength.shape not in ((), (n_specimens,)) or (strength <= 0).any():
+        raise DataError(
+            "the rated break strength does not fit the specimens",
+            found=f"{strength.tolist()}",
+            needed=f"{n_specimens} positive numbers, NaN where not stated",
+        )
+    return np.broadcast_to(strength, (n_specimens,))
+
+
+def mean_of_rows(values: Floats) -> Floats:
+    """Mean over the last axis of what is known.
+
+    Parameters
+    ----------
+    values : ndarray, shape (..., n)
+        NaN is left out. [any]
+
+    Returns
+    -------
+    mean : ndarray, shape (...)
+        NaN where nothing is known. [any]
+
+    Raises
+    ------
+    numpy.exceptions.AxisError
+        If the values have no axis.
+
+    Examples
+    --------
+    >>> print(mean_of_rows(np.array([[1.0, np.nan, 3.0], [np.nan, np.nan, np.nan]])))
+    [ 2. nan]
+    """
+    known = np.isfinite(values)
+    with np.errstate(invalid="ignore"):
+        mean: Floats = np.where(known, values, 0.0).sum(axis=-1) / known.sum(axis=-1)
+    return mean

@@ -1,0 +1,1054 @@
+r"""Slow pulls: load-strain cubic and quasi-static spring constant.
+
+Where a slow pull loads the line: from the rise out of slack to the peak.
+
+Tensions and shares of the break strength at which slow pulls are laid out.
+
+Means of a slow pull over equal steps of tension, and what a polynomial of them is worth.
+
+Cubic of strain against tension: its slope, where it rises, and the cubic of K_0.
+
+.. math:: \varepsilon = A + B T + C T^2 + D T^3, \qquad K_0 = 1 / (B + 2 C T + 3 D T^2)
+
+Slow pull of a line: load-strain cubic, and the quasi-static spring constant as its slope.
+
+.. math:: \varepsilon = A + B T + C T^2 + D T^3, \qquad
+          K_0(T) = \frac{d T}{d\varepsilon} = \frac{1}{B + 2 C T + 3 D T^2}
+
+As printed, and as computed.  [5]_ prints two forms that do not quite agree: cubics of strain
+(Tables 8 and 9) and cubics of K_0 (Tables 6 and 7).  Here the strain is fitted and K_0 is its
+slope; the cubic of K_0 is then fitted to that slope for those who need it, with its greatest
+distance from it.  Table 6 heads its form A + B T^2 + C T^3 + D T^4, times 1e-4; the form that
+gives its numbers is Table 7's A + B T + C T^2 + D T^3, times 1e4.  Signs and powers are lost
+in Tables 6, 7 and 9 (nylon double braid D 3.26 for 32.6, nylon plaited C, polyester C), and
+polyester plaited line has no K_0 row at all.
+
+What a slow pull gives: K_0 at a mean tension, strain at a tension, one pull against another.
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.2 ("a slow uni-directional
+   loading").
+.. [2] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.3.
+.. [3] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.2.
+.. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.2, 4.4.3, Tables 6-9.
+.. [5] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.2, 4.4.3, Tables 6-9, App. D.
+.. [6] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.2, 4.4.3 and App. D.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.record.arrays import as_positive, as_same_shape
+from reduction.record.errors import DataError, FitError
+from reduction.record.measurement import Bools, Floats, Integers
+from reduction.stages.cycles.cycle_product import Loops
+from reduction.stages.cycles.loop_energy import reading_noise
+from reduction.stages.line.line_product import SlowPull
+from reduction.stages.moduli.least_squares import lag_one_inflation
+
+# a rise out of slack shows above this many standard deviations of a reading
+_NOISE_FACTOR = 6.0
+
+# and above this share of the whole rise: the foot of the curve, where the line straightens
+_FOOT = 0.005
+
+_FEWEST_SAMPLES = 8
+
+
+def greatest_fall(tension: ArrayLike) -> float:
+    """Largest fall of a series below what it had reached before.
+
+    Parameters
+    ----------
+    tension : array_like, shape (n_samples,)
+        Without NaN. [N]
+
+    Returns
+    -------
+    fall : float
+        Zero for a series that never falls. [N]
+
+    Raises
+    ------
+    ValueError
+        If the series is empty.
+
+    Examples
+    --------
+    >>> greatest_fall([0.0, 3.0, 2.5, 4.0])
+    0.5
+    """
+    series = np.asarray(tension, dtype=np.float64)
+    return float((np.maximum.accumulate(series) - series).max())
+
+
+def find_loading(
+    tension: ArrayLike, strain: ArrayLike, *, reference_tension: float | None = None
+) -> Integers:
+    """Samples of the loading part of a slow pull.
+
+    Parameters
+    ----------
+    tension : array_like, shape (n_samples,)
+        NaN where missing. [N]
+    strain : array_like, shape (n_samples,)
+        NaN where missing. [1]
+    reference_tension : float, optional
+        Tension from which the pull counts; left out, the first rise out of the lowest
+        tension before the peak. [N]
+
+    Returns
+    -------
+    samples : ndarray of int, shape (n_loading,)
+        Rows with both readings, from the last one at or below the start to the peak. [1]
+
+    Raises
+    ------
+    DataError
+        If the series differ in shape, tension never rises above the start, or fewer than
+        eight readings lie between the start and the peak.
+
+    Notes
+    -----
+    The last crossing of the start before the peak is taken, so that bedding-in cycles that
+    return to it are left out.  The start without a reference tension is the lowest reading
+    before the peak plus six standard deviations of a reading, or plus half a percent of
+    the rise where that is more.  What follows the peak (unloading, failure) is left out;
+    [1]_ pulls to failure.
+
+    Examples
+    --------
+    >>> tension = np.concatenate([np.zeros(5), np.arange(1, 21.0), [3.0, 0.0]])
+    >>> print(find_loading(tension, tension / 100)[[0, -1]])
+    [ 4 24]
+    """
+    load, stretch = as_same_shape(tension=tension, strain=strain)
+    rows = np.flatnonzero(np.isfinite(load) & np.isfinite(stretch))
+    if load.ndim != 1 or rows.size < _FEWEST_SAMPLES:
+        raise DataError(
+            "a slow pull has too few readings of tension and strain",
+            found=str(rows.size),
+            needed=f"{_FEWEST_SAMPLES} or more",
+        )
+    load = load[rows]
+    peak = int(np.argmax(load))
+    lowest = float(load[: peak + 1].min())
+    rise = float(load[peak]) - lowest
+    start = reference_tension
+    if start is None:
+        start = lowest + max(_NOISE_FACTOR * reading_noise(load[: peak + 1]), _FOOT * rise)
+    if not load[peak] > start:
+        raise DataError(
+            "tension does not rise in the slow pull",
+            found=f"a peak of {load[peak]:.4g} N",
+            needed=f"more than the {start:.4g} N from which it counts",
+        )
+    below = np.flatnonzero(load[:peak] <= start)
+    first = int(below[-1]) if below.size else 0
+    if peak + 1 - first < _FEWEST_SAMPLES:
+        raise DataError(
+            "the loading part of the slow pull has too few readings",
+            found=f"{peak + 1 - first} from {load[first]:.4g} N to the peak of {load[peak]:.4g} N",
+            needed=f"{_FEWEST_SAMPLES} or more",
+        )
+    return rows[first : peak + 1]
+
+
+BREAK_SHARES = (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5)
+
+"""Shares of the rated break strength at which the strain of a pull is given. [1]"""
+
+_GRID_STEPS = 40
+
+
+def tension_grid(pulls: Sequence[SlowPull | None]) -> Floats:
+    """One grid of tension for the slow pulls of a test.
+
+    Parameters
+    ----------
+    pulls : sequence of SlowPull or None
+        None for a specimen without one. [SI]
+
+    Returns
+    -------
+    tension : ndarray, shape (41,)
+        From the lowest to the highest tension of use of any. [N]
+
+    Raises
+    ------
+    DataError
+        If there is no pull.
+
+    Notes
+    -----
+    [2]_ draws each pull over its own range; one grid makes pulls of a test comparable.
+
+    Examples
+    --------
+    >>> from reduction.stages.line.slow_pull import fit_pull
+    >>> load = np.linspace(0, 2000.0, 400)
+    >>> pull = fit_pull(np.arange(400.0), load / 4e4, load)
+    >>> grid = tension_grid([pull, None])
+    >>> print(grid.size, grid[0] == pull.tension_low, grid[-1] == pull.tension_high)
+    41 True True
+    """
+    given = [one for one in pulls if one is not None]
+    if not given:
+        raise DataError("there is no slow pull to lay out", found="none", needed="one or more")
+    low, high = min(one.tension_low for one in given), max(one.tension_high for one in given)
+    return np.linspace(low, high, _GRID_STEPS + 1)
+
+
+N_BLOCKS = 100
+
+"""Steps of tension between the ends of a pull. [1]."""
+
+# degree that a load-strain curve may ask for beyond the cubic, and blocks that it needs
+_DEGREE_BEYOND = 6
+
+_FEWEST_BLOCKS_BEYOND = 20
+
+# times the square that noise makes, which three more terms pass once in thirty
+_BEYOND_NOISE = 3.0
+
+
+@dataclass(frozen=True)
+class PullBlocks:
+    """Means over equal steps of tension, shape (n_blocks,) each.
+
+    ``powers`` (n_blocks, 7) are means of the powers of u, the tension scaled to -1 to 1.
+    """
+
+    time: Floats
+    strain: Floats
+    tension: Floats
+    powers: Floats
+
+
+def block_means(time: Floats, strain: Floats, tension: Floats) -> PullBlocks:
+    """Means over equal steps of the greatest tension so far.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n_samples,)
+        Elapsed time. [s]
+    strain : ndarray, shape (n_samples,)
+        [1]
+    tension : ndarray, shape (n_samples,)
+        Of the loading part; it rises as a whole. [N]
+
+    Returns
+    -------
+    blocks : PullBlocks
+        Steps without a reading are left out.
+
+    Raises
+    ------
+    IndexError
+        If there is no sample.
+
+    Notes
+    -----
+    A hold, or a slow stretch, falls into one block and counts once, however many readings
+    it has; and the cubic is fitted to means of powers, so that blocks cost it nothing.
+
+    Examples
+    --------
+    >>> load = np.linspace(0.0, 2000.0, 400)
+    >>> blocks = block_means(np.arange(400.0), 1e-4 * load, load)
+    >>> print(blocks.time.size, blocks.tension[[0, -1]].round(1))
+    100 [   7.5 1992.5]
+    """
+    reached = np.maximum.accumulate(tension)
+    low, high = float(tension[0]), float(reached[-1])
+    share = np.clip((reached - low) / (high - low), 0, 1)
+    number = np.minimum((share * N_BLOCKS).astype(np.intp), N_BLOCKS - 1)
+    first = np.flatnonzero(np.diff(number, prepend=-1))
+    count = np.diff(first, append=number.size)
+
+    def mean(values: Floats) -> Floats:
+        total: Floats = np.add.reduceat(values, first) / count
+        return total
+
+    scaled = 2 * (tension - low) / (high - low) - 1
+    powers = np.empty((first.size, _DEGREE_BEYOND + 1))
+    current = np.ones_like(scaled)
+    for power in range(_DEGREE_BEYOND + 1):
+        powers[:, power] = mean(current)
+        current *= scaled
+    return PullBlocks(mean(time), mean(strain), mean(tension), powers)
+
+
+def covariance_of_blocks(powers: Floats, residual: Floats) -> Floats:
+    """Covariance of least squares with unequal and correlated errors.
+
+    Parameters
+    ----------
+    powers : ndarray, shape (n_blocks, n_coefficients)
+        Columns of the fit. [1]
+    residual : ndarray, shape (n_blocks,)
+        What the fit leaves. [1]
+
+    Returns
+    -------
+    covariance : ndarray, shape (n_coefficients, n_coefficients)
+        Sandwich, leverage taken off, widened by the likeness of neighbours. [1]
+
+    Raises
+    ------
+    LinAlgError
+        If the columns are not independent.
+
+    Notes
+    -----
+    Noise of tension moves strain by itself over K_0, more at the soft end of the curve.
+
+    Examples
+    --------
+    The variance of a mean of 100 independent readings.
+
+    >>> residual = np.random.default_rng(0).normal(0, 1.0, 100)
+    >>> print(covariance_of_blocks(np.ones((100, 1)), residual).round(2))
+    [[0.01]]
+    """
+    inverse = np.linalg.inv(powers.T @ powers)
+    leverage = ((powers @ inverse) * powers).sum(axis=1)
+    own = powers * (residual / np.maximum(1 - leverage, 0.1))[:, None]
+    covariance: Floats = lag_one_inflation(residual) * inverse @ (own.T @ own) @ inverse
+    return covariance
+
+
+def misfit_of_cubic(blocks: PullBlocks, cubic: Floats, covariance: Floats) -> tuple[float, float]:
+    """Root mean square of what a cubic misses of strain and of its slope in u.
+
+    Parameters
+    ----------
+    blocks : PullBlocks
+        To which it was fitted.
+    cubic : ndarray, shape (4,)
+        Coefficients of 1, u, u^2, u^3. [1]
+    covariance : ndarray, shape (4, 4)
+        From `covariance_of_blocks`. [1]
+
+    Returns
+    -------
+    strain_misfit, slope_misfit : float
+        0 where noise explains it, or there are too few blocks to tell. [1]
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not fit together.
+
+    Notes
+    -----
+    Judged by a polynomial of sixth degree, less what noise alone makes the two differ by.
+
+    Examples
+    --------
+    A cubic through a cubic misses nothing.
+
+    >>> load = np.linspace(0.0, 2000.0, 400)
+    >>> blocks = block_means(np.arange(400.0), 1e-4 * load, load)
+    >>> cubic = np.linalg.lstsq(blocks.powers[:, :4], blocks.strain)[0]
+    >>> strain_misfit, _ = misfit_of_cubic(blocks, cubic, np.zeros((4, 4)))
+    >>> round(strain_misfit, 9)
+    0.0
+    """
+    if blocks.strain.size < _FEWEST_BLOCKS_BEYOND:
+        return 0.0, 0.0
+    beyond, *_ = np.linalg.lstsq(blocks.powers, blocks.strain, rcond=None)
+    spread = covariance_of_blocks(blocks.powers, blocks.strain - blocks.powers @ beyond)
+    degree = np.arange(_DEGREE_BEYOND + 1)
+    # a polynomial of high degree is loose at its ends
+    at = np.linspace(-0.9, 0.9, 61)[:, None]
+    missed = []
+    for rows in (at**degree, degree * at ** np.maximum(degree - 1, 0)):
+        apart = rows @ beyond - rows[:, :4] @ cubic
+        known = ((rows[:, :4] @ covariance) * rows[:, :4]).sum(axis=1)
+        noise = np.mean(np.maximum(((rows @ spread) * rows).sum(axis=1) - known, 0))
+        square = np.mean(apart**2)
+        missed.append(float(np.sqrt(square - noise)) if square > _BEYOND_NOISE * noise else 0.0)
+    return missed[0], missed[1]
+
+
+def rates_of_pull(blocks: PullBlocks) -> tuple[float, float, float, float]:
+    """Mean, slowest and fastest strain rate, and the mean rate of tension.
+
+    Parameters
+    ----------
+    blocks : PullBlocks
+        Of the loading part.
+
+    Returns
+    -------
+    mean, slowest, fastest : float
+        Of strain, over all and over quarters of the tension. [s-1]
+    tension_rate : float
+        Mean. [N s-1]
+
+    Raises
+    ------
+    DataError
+        If time does not rise.
+
+    Examples
+    --------
+    >>> load = np.linspace(0.0, 2000.0, 401)
+    >>> rates = rates_of_pull(block_means(np.arange(401.0), 1e-4 * load, load))
+    >>> print(np.round(rates, 5))
+    [5.e-04 5.e-04 5.e-04 5.e+00]
+    """
+    duration = float(blocks.time[-1] - blocks.time[0])
+    if not duration > 0:
+        raise DataError(
+            "time does not rise over the slow pull", found=f"{duration:g} s", needed="above 0"
+        )
+    stretch = float(blocks.strain[-1] - blocks.strain[0])
+    load = blocks.tension
+    at = np.clip(np.searchsorted(load, np.linspace(load[0], load[-1], 5)), 0, load.size - 1)
+    ends = np.unique(at)
+    with np.errstate(divide="ignore"):
+        local = np.diff(blocks.strain[ends]) / np.diff(blocks.time[ends])
+    return (
+        stretch / duration,
+        float(local.min()),
+        float(local.max()),
+        float(load[-1] - load[0]) / duration,
+    )
+
+
+def slope_of_cubic(tension: ArrayLike, coefficient: ArrayLike) -> Floats:
+    r"""Quasi-static spring constant of a load-strain cubic.
+
+    .. math:: K_0 = 1 / (B + 2 C T + 3 D T^2)
+
+    Parameters
+    ----------
+    tension : array_like, shape (...)
+        :math:`T`. [N]
+    coefficient : array_like, shape (4,)
+        A, B, C, D of strain = A + B T + C T^2 + D T^3. [N-k]
+
+    Returns
+    -------
+    quasi_static_spring_constant : ndarray, shape (...)
+        NaN where the slope of strain is not positive. [N]
+
+    Raises
+    ------
+    DataError
+        If there are not four coefficients.
+
+    Notes
+    -----
+    Source: [4]_, sec. 4.4.2, and Tables 8 and 9 for the cubic.
+
+    Examples
+    --------
+    Nylon double braid, 1/2 in, Table 8 of [4]_, at the mean loads of Table 1, in 1e4 lb:
+
+    >>> slope = slope_of_cubic([768.0, 1344.0, 1920.0], [-4.13e-4, 1.389e-4, -3.906e-8, 3.795e-12])
+    >>> print((slope / 1e4).round(3))
+    [1.168 1.836 3.238]
+    """
+    load, terms = np.asarray(tension, dtype=np.float64), np.asarray(coefficient, dtype=np.float64)
+    if terms.shape != (4,):
+        raise DataError("a cubic has four coefficients", found=str(terms.shape), needed="(4,)")
+    slope = terms[1] + load * (2 * terms[2] + load * 3 * terms[3])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse: Floats = np.where(slope > 0, 1 / slope, np.nan)
+    return inverse
+
+
+def positive_range(coefficient: Floats) -> tuple[float, float]:
+    """Longest part of -1 to 1 in which the slope of a cubic of u is positive.
+
+    Parameters
+    ----------
+    coefficient : ndarray, shape (4,)
+        Of 1, u, u^2, u^3. [1]
+
+    Returns
+    -------
+    low, high : float
+        Both 0 where the slope is positive nowhere. [1]
+
+    Raises
+    ------
+    IndexError
+        If there are fewer than four coefficients.
+
+    Notes
+    -----
+    A slope that is not positive has no quasi-static spring constant ([4]_, sec. 4.4.2).
+
+    Examples
+    --------
+    >>> positive_range(np.array([0.0, 0.5, -0.5, 0.0]))
+    (-1.0, 0.5)
+    """
+    roots = np.roots(coefficient[:0:-1] * np.array([3, 2, 1]))
+    inside = sorted(float(root.real) for root in roots if root.imag == 0 and -1 < root.real < 1)
+    edges = [-1.0, *inside, 1.0]
+    best = (0.0, 0.0)
+    for low, high in pairwise(edges):
+        middle = (low + high) / 2
+        slope = coefficient[1] + middle * (2 * coefficient[2] + middle * 3 * coefficient[3])
+        if slope > 0 and high - low > best[1] - best[0]:
+            best = (low, high)
+    return best
+
+
+def printed_form(
+    coefficient: Floats, *, low: float, high: float, centre: float, half: float
+) -> tuple[Floats, float]:
+    r"""K_0 as a cubic of tension, by least squares to the slope of a cubic of strain.
+
+    .. math:: K_0 \approx A + B T + C T^2 + D T^3
+
+    Parameters
+    ----------
+    coefficient : ndarray, shape (4,)
+        Of strain, in powers of u = (T - centre)/half. [1]
+    low, high : float
+        Range of tension to fit. [N]
+    centre, half : float
+        Scale of u. [N]
+
+    Returns
+    -------
+    polynomial : ndarray, shape (4,)
+        A, B, C, D. [N N-k]
+    deviation : float
+        Greatest distance from the slope, as a share of it. [1]
+
+    Raises
+    ------
+    ValueError
+        If the slope is positive nowhere in the range.
+
+    Notes
+    -----
+    The form of Table 7 of [4]_.  Shares of K_0 count alike, since it spans a factor of
+    several over the range.
+
+    Examples
+    --------
+    >>> fit, deviation = printed_form(
+    ...     np.array([0.0, 0.025, 0.0, 0.0]), low=0.0, high=2000.0, centre=1000.0, half=1000.0)
+    >>> print(fit.round(3) + 0.0, round(deviation, 9))
+    [40000. 0. 0. 0.] 0.0
+    """
+    load = np.linspace(low, high, 201)
+    scaled = (load - centre) / half
+    # an end of the range where the slope is just positive would rule the fit alone
+    slope = coefficient[1] + scaled * (2 * coefficient[2] + scaled * 3 * coefficient[3])
+    kept = slope > 0
+    exact = half / slope[kept]
+    powers = scaled[kept, None] ** np.arange(4)
+    fit, *_ = np.linalg.lstsq(powers / exact[:, None], np.ones(exact.size), rcond=None)
+    deviation = float(np.max(np.abs(powers @ fit / exact - 1)))
+    series = np.polynomial.Polynomial(fit, domain=[centre - half, centre + half])
+    printed = np.zeros(4)
+    converted = series.convert().coef
+    printed[: converted.size] = converted
+    return printed, deviation
+
+
+# rms of what a cubic misses, over the strain of the pull: above it the curve is none
+MISFIT_NOTED = 0.01
+
+_FEWEST_BLOCKS = 8
+
+_FALL_NOTED = 0.02
+
+_FALL_REFUSED = 0.25
+
+# a range of use below this share of the readings is no load-strain curve
+_SHORTEST_RANGE = 0.5
+
+_UNEVEN_RATE = 2.0
+
+# strain at the reference tension, as a share of that of the pull, that is no zero
+_OFF_ZERO = 0.05
+
+
+def _remarks(
+    *,
+    fall: float,
+    rates: tuple[float, ...],
+    reference_length: float,
+    reference_strain: float,
+    waiting: bool,
+    cut: bool,
+    misfit: float,
+) -> tuple[str, ...]:
+    remarks = []
+    if misfit > MISFIT_NOTED:
+        remarks.append(
+            f"a cubic misses the load-strain curve by {misfit:.1%} of its strain (rms): strain "
+            "and K_0 by it are no values to design by"
+        )
+    if fall > _FALL_NOTED:
+        remarks.append(f"tension falls by {fall:.1%} of the rise on the way to the peak")
+    if rates[2] > _UNEVEN_RATE * rates[1]:
+        remarks.append(
+            f"the strain rate is uneven: from {rates[1]:.2g} to {rates[2]:.2g} 1/s over quarters "
+            "of the range"
+        )
+    if not np.isfinite(reference_length):
+        remarks.append("the length at which strain is zero is not stated")
+    if not np.isnan(reference_strain):
+        remarks.append(
+            f"strain is {reference_strain:+.2%} at the reference tension, so the reference length "
+            "was read elsewhere, or the line has lengthened since"
+        )
+    if not waiting:
+        remarks.append("the time since the last dynamic test is not stated, and K_0 depends on it")
+    if cut:
+        remarks.append("the range of use ends where the slope of the cubic turns")
+    return tuple(remarks)
+
+
+def fit_pull(
+    time: ArrayLike,
+    strain: ArrayLike,
+    tension: ArrayLike,
+    *,
+    specimen: str = "",
+    reference_tension: float | None = None,
+    reference_length: float | None = None,
+    waiting_time: float | None = None,
+    waiting: str = "",
+) -> SlowPull:
+    r"""Load-strain cubic of the loading part of a slow pull.
+
+    .. math:: \varepsilon = A + B T + C T^2 + D T^3
+
+    Parameters
+    ----------
+    time : array_like, shape (n_samples,)
+        Elapsed time. [s]
+    strain : array_like, shape (n_samples,)
+        Nominal strain of the free length; NaN where missing. [1]
+    tension : array_like, shape (n_samples,)
+        Of one specimen; NaN where missing. [N]
+    specimen : str, optional
+        Name, kept with the result.
+    reference_tension : float, optional
+        Tension at which the reference length was read, from which the pull counts; left
+        out, the first rise out of slack. [N]
+    reference_length : float, optional
+        Length at which strain is zero. [m]
+    waiting_time : float, optional
+        Since the last dynamic test. [s]
+    waiting : str, optional
+        The same in the laboratory's words.
+
+    Returns
+    -------
+    pull : SlowPull
+        Cubic with covariance, range of use, rates and the conditions. [1], [N], [s-1]
+
+    Raises
+    ------
+    DataError
+        If series do not pair up, have too few readings, tension does not rise, or it falls
+        by more than a quarter of its rise on the way.
+    FitError
+        If fewer than eight steps of tension have a reading, or the slope of the cubic is
+        not positive over half of the range.
+
+    Notes
+    -----
+    Source: [5]_, sec. 4.4.2 and 4.4.3.  Readings are first averaged over a hundredth of the
+    tension range each, and the residuals of those means carry the uncertainty, widened by
+    their likeness to their neighbours: thousands of readings would hide in a root of their
+    number what a cubic leaves.  A curve that is no cubic has another slope than its cubic;
+    how much, a polynomial of sixth degree tells, and that is added.  The standard
+    uncertainty holds these and no calibration.
+
+    App. D of [5]_ finds 4.22, 6.33 and 7.71e4 lb for K_0 of one line: at 0.071 per minute
+    a day after the dynamic test, at 0.23 per minute a day after, and at 0.23 per minute at
+    once, that is a factor of 1.5 to 1.8.  The rate and the waiting time stay with the
+    number for that reason, and it enters K_1 and tau in full.
+
+    Examples
+    --------
+    >>> load = np.linspace(0, 2000.0, 400)
+    >>> stretch = 1.389e-4 * load - 3.906e-8 * load**2 + 3.795e-12 * load**3
+    >>> pull = fit_pull(np.arange(400.0), stretch, load, waiting_time=86400.0)
+    >>> print((pull.strain_coefficient[1:] * [1e4, 1e8, 1e12]).round(3))
+    [ 1.389 -3.906  3.795]
+    """
+    clock, stretch, load = as_same_shape(time=time, strain=strain, tension=tension)
+    rows: Integers = find_loading(load, stretch, reference_tension=reference_tension)
+    rows = rows[np.isfinite(clock[rows])]
+    clock, stretch, load = clock[rows], stretch[rows], load[rows]
+    low, high = float(load[0]), float(load.max())
+    blocks = block_means(clock, stretch, load)
+    # falls of single readings are noise
+    fall = max(greatest_fall(load) - _NOISE_FACTOR * reading_noise(load), 0.0) / (high - low)
+    if fall > _FALL_REFUSED:
+        raise DataError(
+            f"tension falls by {fall:.0%} of its rise on the way to the peak",
+            needed="a loading in one direction",
+            hint="Give the slow pull alone, by a step with its own from and to.",
+        )
+    n_blocks = blocks.strain.size
+    if n_blocks < _FEWEST_BLOCKS:
+        raise FitError(
+            "too few steps of tension for a cubic",
+            found=f"{n_blocks} of {N_BLOCKS} with a reading",
+            needed=f"{_FEWEST_BLOCKS} or more",
+        )
+    powers = blocks.powers[:, :4]
+    solution, *_ = np.linalg.lstsq(powers, blocks.strain, rcond=None)
+    coefficient = solution.astype(np.float64)
+    residual = blocks.strain - powers @ coefficient
+    covariance = covariance_of_blocks(powers, residual)
+    strain_misfit, slope_misfit = misfit_of_cubic(blocks, coefficient, covariance)
+    start, stop = positive_range(coefficient)
+    if stop - start < 2 * _SHORTEST_RANGE:
+        raise FitError(
+            "the load-strain cubic does not rise",
+            found=f"a positive slope over {(stop - start) / 2:.0%} of the range of tension",
+            needed=f"{_SHORTEST_RANGE:.0%} or more",
+            hint="Check the signs of strain and tension.",
+        )
+    centre, half = (low + high) / 2, (high - low) / 2
+    use = (centre + half * start, centre + half * stop)
+    polynomial, deviation = printed_form(
+        coefficient, low=use[0], high=use[1], centre=centre, half=half
+    )
+    rates = rates_of_pull(blocks)
+    length = np.nan if reference_length is None else reference_length
+    begins = np.nan
+    if reference_tension is not None:
+        at = (reference_tension - centre) / half
+        strain_there = float(at ** np.arange(4) @ coefficient)
+        if abs(strain_there) > _OFF_ZERO * float(blocks.strain[-1] - blocks.strain[0]):
+            begins = strain_there
+    pull = SlowPull(
+        specimen=specimen,
+        tension_centre=centre,
+        tension_half_range=half,
+        coefficient=coefficient,
+        covariance=covariance,
+        tension_low=use[0],
+        tension_high=use[1],
+        strain_misfit=strain_misfit,
+        slope_misfit=slope_misfit,
+        residual_deviation=float(np.sqrt((residual**2).sum() / (n_blocks - 4))),
+        variance_inflation=lag_one_inflation(residual),
+        n_samples=rows.size,
+        n_blocks=n_blocks,
+        first_sample=int(rows[0]),
+        last_sample=int(rows[-1]),
+        strain_rate=rates[0],
+        strain_rate_slowest=rates[1],
+        strain_rate_fastest=rates[2],
+        tension_rate=rates[3],
+        waiting_time=np.nan if waiting_time is None else waiting_time,
+        waiting=waiting,
+        reference_length=length,
+        reference_tension=np.nan if reference_tension is None else reference_tension,
+        polynomial_coefficient=polynomial,
+        polynomial_deviation=deviation,
+    )
+    return replace(
+        pull,
+        notes=_remarks(
+            misfit=pull.misfit_share,
+            fall=fall,
+            rates=rates,
+            reference_length=length,
+            reference_strain=begins,
+            waiting=waiting_time is not None or bool(waiting),
+            cut=stop - start < 2,
+        ),
+    )
+
+
+# a pull that ends at a level reads a hair above or below it
+_BEYOND = 0.01
+
+# a drift of the mean tension over a run that changes K_0 by more than this is said
+_DRIFT_NOTED = 0.05
+
+
+def _scaled(pull: SlowPull, tension: ArrayLike) -> tuple[Floats, Bools]:
+    """Tension as u of the fit, NaN outside the range of use."""
+    load = np.asarray(tension, dtype=np.float64)
+    margin = _BEYOND * 2 * pull.tension_half_range
+    inside = (load >= pull.tension_low - margin) & (load <= pull.tension_high + margin)
+    scaled: Floats = np.where(
+        inside, (load - pull.tension_centre) / pull.tension_half_range, np.nan
+    )
+    return scaled, inside
+
+
+def _spread(rows: Floats, covariance: Floats) -> Floats:
+    """Standard uncertainty of rows times coefficients; the rows' last axis has four."""
+    spread: Floats = np.sqrt(np.einsum("...i,ij,...j->...", rows, covariance, rows))
+    return spread
+
+
+def quasi_static_spring_constant(pull: SlowPull, tension: ArrayLike) -> tuple[Floats, Floats]:
+    r"""Slope of the load-strain curve at a tension.
+
+    .. math:: K_0 = 1 / (B + 2 C T + 3 D T^2), \qquad u(K_0) = K_0^2 \, u(B + 2 C T + 3 D T^2)
+
+    Parameters
+    ----------
+    pull : SlowPull
+        From `reduction.stages.line.slow_pull.fit_pull`.
+    tension : array_like, shape (...)
+        Mean tension of interest. [N]
+
+    Returns
+    -------
+    quasi_static_spring_constant, standard_uncertainty : ndarray, shape (...)
+        NaN outside the range of use, of which a hundredth of the range may be missing, and
+        where the slope is not positive. [N]
+
+    Raises
+    ------
+    ValueError
+        If the tension is not numeric.
+
+    Notes
+    -----
+    Source: [6]_, sec. 4.4.2: it "must be calculated at the mean load level of interest and
+    used for small perturbations around that mean load".  The uncertainty is of the fit, with
+    what the cubic misses of the curve.
+
+    Examples
+    --------
+    >>> from reduction.stages.line.slow_pull import fit_pull
+    >>> load = np.linspace(0, 2000.0, 400)
+    >>> stretch = 1.389e-4 * load - 3.906e-8 * load**2 + 3.795e-12 * load**3
+    >>> pull = fit_pull(np.arange(400.0), stretch, load)
+    >>> print(quasi_static_spring_constant(pull, [768.0, 2400.0])[0].round(-1))
+    [11680. nan]
+    """
+    scaled, _ = _scaled(pull, tension)
+    nothing = np.zeros_like(scaled)
+    rows = np.stack([nothing, nothing + 1, 2 * scaled, 3 * scaled**2], axis=-1)
+    rows = rows / pull.tension_half_range
+    slope = np.where(np.isnan(scaled), np.nan, rows @ pull.coefficient)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse = np.where(slope > 0, 1 / slope, np.nan)
+    spread = np.hypot(_spread(rows, pull.covariance), pull.slope_misfit / pull.tension_half_range)
+    return inverse, inverse**2 * spread
+
+
+def strain_at_tension(pull: SlowPull, tension: ArrayLike) -> tuple[Floats, Floats]:
+    """Strain of the slow pull at a tension.
+
+    Parameters
+    ----------
+    pull : SlowPull
+        From `reduction.stages.line.slow_pull.fit_pull`.
+    tension : array_like, shape (...)
+        Tension. [N]
+
+    Returns
+    -------
+    strain, standard_uncertainty : ndarray, shape (...)
+        By the cubic, from the reference length; NaN outside the range of use. [1]
+
+    Raises
+    ------
+    ValueError
+        If the tension is not numeric.
+
+    Notes
+    -----
+    Source: [6]_, sec. 4.4.3.
+
+    Examples
+    --------
+    >>> from reduction.stages.line.slow_pull import fit_pull
+    >>> load = np.linspace(0, 2000.0, 400)
+    >>> stretch = 1.389e-4 * load - 3.906e-8 * load**2 + 3.795e-12 * load**3
+    >>> print(strain_at_tension(fit_pull(np.arange(400.0), stretch, load), 1920.0)[0].round(4))
+    0.1496
+    """
+    scaled, _ = _scaled(pull, tension)
+    rows = np.stack([scaled**power for power in range(4)], axis=-1)
+    spread = np.hypot(_spread(rows, pull.covariance), pull.strain_misfit)
+    return rows @ pull.coefficient, spread
+
+
+def strain_at_break_share(
+    pull: SlowPull, share: ArrayLike, *, rated_break_strength: float
+) -> tuple[Floats, Floats]:
+    """Strain of the slow pull at a share of the rated break strength.
+
+    Parameters
+    ----------
+    pull : SlowPull
+        From `reduction.stages.line.slow_pull.fit_pull`.
+    share : array_like, shape (...)
+        0.3 for 30 %RBS. [1]
+    rated_break_strength : float
+        As stated for the specimen. [N]
+
+    Returns
+    -------
+    strain, standard_uncertainty : ndarray, shape (...)
+        NaN outside the range of use. [1]
+
+    Raises
+    ------
+    DataError
+        If the break strength is not positive.
+
+    Notes
+    -----
+    Source: [6]_, sec. 4.4.3 ("at 30% of rated breaking strength, nylon double-braided line
+    and plaited line stretches approximately 15% and 25%").
+
+    Examples
+    --------
+    >>> from reduction.stages.line.slow_pull import fit_pull
+    >>> load = np.linspace(0, 2000.0, 400)
+    >>> stretch = -4.13e-4 + 1.389e-4 * load - 3.906e-8 * load**2 + 3.795e-12 * load**3
+    >>> pull = fit_pull(np.arange(400.0), stretch, load)
+    >>> print((100 * strain_at_break_share(pull, 0.3, rated_break_strength=6400.0)[0]).round(1))
+    14.9
+    """
+    strength = as_positive("rated break strength", rated_break_strength)
+    return strain_at_tension(pull, np.asarray(share, dtype=np.float64) * strength)
+
+
+def spring_constant_ratio(
+    pull: SlowPull, other: SlowPull, tension: ArrayLike
+) -> tuple[Floats, Floats]:
+    """Quasi-static spring constant of one pull over that of another, at a tension.
+
+    Parameters
+    ----------
+    pull, other : SlowPull
+        For instance of one line at two rates, or after two waiting times.
+    tension : array_like, shape (...)
+        Tension. [N]
+
+    Returns
+    -------
+    ratio, standard_uncertainty : ndarray, shape (...)
+        NaN where either pull has no K_0. [1]
+
+    Raises
+    ------
+    ValueError
+        If the tension is not numeric.
+
+    Notes
+    -----
+    Source: [6]_, Table D-1, where it is 1.50 for the rate, 1.22 for the waiting time and
+    1.83 for both.
+
+    Examples
+    --------
+    >>> from reduction.stages.line.slow_pull import fit_pull
+    >>> load = np.linspace(0, 2000.0, 400)
+    >>> slow, fast = (fit_pull(np.arange(400.0), load / k, load) for k in (4.22e4, 6.33e4))
+    >>> print(spring_constant_ratio(fast, slow, 1000.0)[0].round(2))
+    1.5
+    """
+    one, u_one = quasi_static_spring_constant(pull, tension)
+    two, u_two = quasi_static_spring_constant(other, tension)
+    ratio = one / two
+    return ratio, ratio * np.hypot(u_one / one, u_two / two)
+
+
+def quasi_static_of_run(
+    loops: Loops, pulls: Sequence[SlowPull | None], *, break_in_cycles: int = 0
+) -> tuple[Floats, Floats, tuple[str, ...]]:
+    """K_0 of each specimen at the mean tension of a run.
+
+    Parameters
+    ----------
+    loops : Loops
+        Table of loops of the run.
+    pulls : sequence of SlowPull or None, length n_specimens
+        None where a specimen has no slow pull.
+    break_in_cycles : int, optional
+        Cycles left out of the mean at the start. [1]
+
+    Returns
+    -------
+    quasi_static_spring_constant, standard_uncertainty : ndarray, shape (n_specimens,)
+        NaN without a pull, or with a mean tension outside its range of use. [N]
+    notes : tuple of str
+        Why a specimen has none, and a drift of the mean tension that matters.
+
+    Raises
+    ------
+    DataError
+        If there is not one entry a specimen, or the break-in leaves no cycle.
+
+    Notes
+    -----
+    Source: [6]_, sec. 4.4.2.  One K_0 a run, so that all its cycles share its error.
+
+    Examples
+    --------
+    >>> from reduction.stages.line.slow_pull import fit_pull
+    >>> one = {name: np.full((1, 2), 1000.0) for name in Loops.__dataclass_fields__}
+    >>> load = np.linspace(0, 2000.0, 400)
+    >>> pull = fit_pull(np.arange(400.0), load / 4e4, load)
+    >>> constant, _, _ = quasi_static_of_run(Loops(**one), [pull])
+    >>> print(constant.round())
+    [40000.]
+    """
+    n_specimens, n_cycles = loops.mean_tension.shape
+    if len(pulls) != n_specimens or not 0 <= break_in_cycles < n_cycles:
+        raise DataError(
+            "slow pulls do not fit the run",
+            found=f"{len(pulls)} pulls and a break-in of {break_in_cycles} cycles",
+            needed=f"{n_specimens} pulls, None where there is none, and a break-in below "
+            f"{n_cycles} cycles",
+        )
+    constant, uncertainty = np.full((2, n_specimens), np.nan)
+    notes: list[str] = []
+    for row, pull in enumerate(pulls):
+        load = loops.mean_tension[row, break_in_cycles:]
+        load = load[np.isfinite(load)]
+        if pull is None or load.size == 0:
+            notes.append(
+                f"specimen {row + 1} has no " + ("slow pull" if pull is None else "mean tension")
+            )
+            continue
+        mean = float(load.mean())
+        constant[row], uncertainty[row] = quasi_static_spring_constant(pull, mean)
+        if np.isnan(constant[row]):
+            notes.append(
+                f"the mean tension of {mean:.4g} N lies outside the {pull.tension_low:.4g} to "
+                f"{pull.tension_high:.4g} N of the slow pull of {pull.specimen or row + 1}"
+            )
+            continue
+        ends, _ = quasi_static_spring_constant(pull, [float(load[0]), float(load[-1])])
+        change = float(ends[1] / ends[0]) - 1
+        if abs(change) > _DRIFT_NOTED:
+            notes.append(
+                f"the mean tension drifts from {load[0]:.4g} to {load[-1]:.4g} N over the run, "
+                f"which changes K_0 by {change:+.0%}; K_0 is that at {mean:.4g} N"
+            )
+    return constant, uncertainty, tuple(notes)

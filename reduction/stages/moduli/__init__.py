@@ -1,0 +1,1 @@
+"""Tangent, secant and chord moduli, segments, slips, elastomer laws."""

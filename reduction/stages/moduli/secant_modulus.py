@@ -1,0 +1,757 @@
+"""Secant, chord and dynamic moduli, ratios of curves, trends over cycles.
+
+Secant and chord modulus: slopes between two points, not of the curve.
+
+Moduli from the ends of the branches: secant at the peak and chord of each branch, by cycle.
+
+Dynamic modulus, loss factor and energy of a test as one number each, with its amplitude.
+
+Ratio of two modulus curves on one strain axis, with the interval it lies in.
+
+Peak tension and dynamic modulus against the logarithm of cycle number.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
+.. [2] A. R. Payne, "The dynamic properties of carbon black-loaded natural rubber vulcanizates,"
+   J. Appl. Polym. Sci., vol. 6, 1962.
+.. [3] JCGM 100, "Guide to the expression of uncertainty in measurement," 2008, G.4.
+.. [4] A. N. Gent, "Relaxation processes in vulcanized rubber. I," J. Appl. Polym. Sci. 6(22),
+   1962 (straight lines against the logarithm of time).
+.. [5] J. von Neumann, R. H. Kent, H. R. Bellinson and B. I. Hart, "The mean square successive
+   difference," Ann. Math. Stat. 12(2), 1941.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import stdtrit
+
+from reduction.record.arrays import as_positive
+from reduction.record.errors import DataError
+from reduction.record.measurement import Floats
+from reduction.record.samples import take_samples
+from reduction.stages.cycles.cycle_product import Cycles, Loops
+from reduction.stages.cycles.loop_energy import reading_noise
+from reduction.stages.cycles.loops import slope_readings
+from reduction.stages.moduli.least_squares import lag_one_inflation
+from reduction.stages.moduli.local_regression import curve_at
+from reduction.stages.moduli.modulus_product import (
+    AmplitudeSummary,
+    EndModuli,
+    ModulusCurves,
+    PeakTrend,
+    Ratio,
+)
+from reduction.stages.moduli.tangent_modulus import pair_specimens
+
+
+def secant_modulus(strain: ArrayLike, tension: ArrayLike, *, area: ArrayLike) -> Floats:
+    r"""Stress over strain, from the unstretched state.
+
+    .. math:: E = \frac{F}{A \varepsilon}
+
+    Parameters
+    ----------
+    strain : array_like, shape (...)
+        Nominal strain. [1]
+    tension : array_like, shape (...)
+        Tension at it. [N]
+    area : array_like, shape (...)
+        Cross-sectional area at zero tension. [m2]
+
+    Returns
+    -------
+    modulus : ndarray, shape (...)
+        Secant modulus. [Pa]
+
+    Raises
+    ------
+    DataError
+        If an area is not positive.
+
+    Notes
+    -----
+    Printed source: eq. 1 of [1]_. NaN where strain is zero or below, or an input is NaN.
+
+    Examples
+    --------
+    The design value of sec. 2.3 of [1]_, 85 lbf at 100 %, on a diameter of 1.04 in: 100 psi.
+
+    >>> print((secant_modulus(1.0, 378.1, area=5.4805e-4) / 6894.757).round(0))
+    100.0
+    """
+    areas = as_positive("area", area)
+    strain, tension = np.asarray(strain, dtype=np.float64), np.asarray(tension, dtype=np.float64)
+    return np.asarray(tension / (areas * np.where(strain > 0, strain, np.nan)))
+
+
+def chord_modulus(
+    strain_low: ArrayLike,
+    strain_high: ArrayLike,
+    tension_low: ArrayLike,
+    tension_high: ArrayLike,
+    *,
+    area: ArrayLike,
+) -> Floats:
+    r"""Slope of stress between two points of a branch.
+
+    .. math:: E = \frac{F_2 - F_1}{A (\varepsilon_2 - \varepsilon_1)}
+
+    Parameters
+    ----------
+    strain_low : array_like, shape (...)
+        Strain at one point. [1]
+    strain_high : array_like, shape (...)
+        Strain at the other. [1]
+    tension_low : array_like, shape (...)
+        Tension at the first point. [N]
+    tension_high : array_like, shape (...)
+        Tension at the other. [N]
+    area : array_like, shape (...)
+        Cross-sectional area at zero tension. [m2]
+
+    Returns
+    -------
+    modulus : ndarray, shape (...)
+        Chord modulus. [Pa]
+
+    Raises
+    ------
+    DataError
+        If an area is not positive, or a pair of points has the same strain.
+
+    Notes
+    -----
+    Printed source: Tables 5 and 6 of [1]_ are chords between the limits they print; 43 of
+    their 47 rows agree within 1 psi, on 1.04 in for the new tether (Table 2 prints 1.01)
+    and 0.94 in for the used one. End points carry the noise of two samples; use it on
+    means, not on raw samples.
+
+    Examples
+    --------
+    Table 6 of [1]_, T-5 new: 124 to 275 lbf over 1.72 to 2.19, printed 378 psi.
+
+    >>> pound_force, psi = 4.4482216, 6894.757
+    >>> modulus = chord_modulus(
+    ...     1.72, 2.19, 124 * pound_force, 275 * pound_force, area=np.pi / 4 * 0.026416**2
+    ... )
+    >>> print((modulus / psi).round(0))
+    378.0
+    """
+    areas = as_positive("area", area)
+    run = np.asarray(strain_high, dtype=np.float64) - np.asarray(strain_low, dtype=np.float64)
+    if (run == 0).any():
+        raise DataError(
+            "a chord needs two strains",
+            found=f"{np.count_nonzero(run == 0)} of {run.size} pairs with equal strain",
+            needed="two different strains",
+        )
+    rise = np.asarray(tension_high, dtype=np.float64) - np.asarray(tension_low, dtype=np.float64)
+    return np.asarray(rise / (areas * run))
+
+
+def end_moduli(
+    strain: ArrayLike, tension: ArrayLike, *, area: ArrayLike, cycles: Cycles
+) -> EndModuli:
+    r"""Secant modulus at the peak of each cycle, and chord modulus of each branch.
+
+    .. math::
+
+        E_{sec} = \frac{F_{peak}}{A \varepsilon_{peak}}, \qquad
+        E_{chord} = \frac{F_{end} - F_{begin}}{A (\varepsilon_{end} - \varepsilon_{begin})}
+
+    Parameters
+    ----------
+    strain : array_like, shape (n_specimens, n_samples)
+        Nominal strain of the free length; NaN where missing. [1]
+    tension : array_like, shape (n_specimens, n_samples)
+        Tension; NaN where missing. [N]
+    area : array_like, shape (n_specimens,)
+        Cross-sectional area at zero tension. [m2]
+    cycles : Cycles
+        Whole branches, ends included. [SI]
+
+    Returns
+    -------
+    moduli : EndModuli
+        By cycle, with standard uncertainties. [Pa]
+
+    Raises
+    ------
+    DataError
+        If strain, tension and area do not pair up, or an area is not positive.
+
+    Notes
+    -----
+    Printed source: eq. 1 of [1]_ for the secant. The peak is the reversal, the last sample
+    of the ascending branch; where the machine dwells there, the sample at which it arrives.
+    Each number rests on one or two readings: its uncertainty is their noise
+    (`reading_noise`), nothing else. NaN where a reading is missing, the secant also where
+    strain is zero or below, the chord where a branch has no stroke.
+
+    Examples
+    --------
+    From 100 % and 1000 N to 200 % and 2500 N and back to 1100 N, on 1 cm2.
+
+    >>> strain = np.array([[1.0, 1.5, 2.0, 1.5, 1.0]])
+    >>> tension = np.array([[1000.0, 1700.0, 2500.0, 1800.0, 1100.0]])
+    >>> ends = np.array([[0, 2]])
+    >>> cycles = Cycles(
+    ...     np.array([0]), np.array([4]), ends, ends + 2, np.ones((1, 2)),
+    ...     np.ones(5, np.int32), np.array([1, 1, 1, 2, 2], np.int8), np.ones(5, bool), 0.1,
+    ... )
+    >>> moduli = end_moduli(strain, tension, area=[1e-4], cycles=cycles)
+    >>> print(moduli.secant_modulus / 1e6, moduli.chord_modulus / 1e6)
+    [[12.5]] [[[15. 14.]]]
+    """
+    strains, tensions, areas = pair_specimens(strain, tension, area)
+    peak = cycles.branch_last[:, 0]
+    ends = [take_samples(series, cycles.branch_first) for series in (strains, tensions)]
+    ends += [take_samples(series, cycles.branch_last) for series in (strains, tensions)]
+    strain_begin, tension_begin, strain_end, tension_end = ends
+    strain_end = np.where(strain_end == strain_begin, np.nan, strain_end)
+    section = areas[:, None]
+    strain_at_peak = take_samples(strains, peak)
+    secant = secant_modulus(strain_at_peak, take_samples(tensions, peak), area=section)
+    chord = chord_modulus(
+        strain_begin, strain_end, tension_begin, tension_end, area=section[..., None]
+    )
+    noise = np.array([reading_noise(one) for one in tensions])[:, None]
+    strain_noise = np.array([reading_noise(one) for one in strains])[:, None]
+    at_peak = np.hypot(noise / section, secant * strain_noise) / np.abs(strain_at_peak)
+    of_branch = np.sqrt(2) * np.hypot(noise[..., None] / section[..., None],
+                                      chord * strain_noise[..., None])  # fmt: skip
+    return EndModuli(
+        secant_modulus=secant,
+        secant_modulus_standard_uncertainty=at_peak,
+        chord_modulus=chord,
+        chord_modulus_standard_uncertainty=of_branch / np.abs(strain_end - strain_begin),
+    )
+
+
+_QUANTITIES = (
+    "frequency", "mean_strain", "strain_amplitude", "mean_tension", "tension_amplitude",
+    "apparent_spring_constant", "hysteresis_energy", "storage_spring_constant",
+    "loss_spring_constant", "loss_factor",
+)  # fmt: skip
+
+
+def _mean_over_cycles(values: Floats, uncertainty: Floats | None) -> tuple[Floats, Floats]:
+    """Mean over the last axis without NaN, and its standard uncertainty of type A."""
+    known = np.isfinite(values)
+    n = known.sum(axis=-1)
+    mean = np.where(known, values, 0.0).sum(axis=-1) / np.where(n > 0, n, np.nan)
+    squares = np.where(known, (values - mean[:, None]) ** 2, 0.0).sum(axis=-1)
+    of_mean = np.sqrt(squares / np.where(n > 1, n * (n - 1.0), np.nan))
+    if uncertainty is not None:
+        own = np.where(known, uncertainty, 0.0).sum(axis=-1)
+        of_mean = np.where(n == 1, own, of_mean)
+    return mean, of_mean
+
+
+def summarise_amplitude(
+    loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0
+) -> AmplitudeSummary:
+    r"""Mean over the cycles of what depends on mean strain and amplitude.
+
+    .. math:: E_{dyn} = K_{ap} / A
+
+    Parameters
+    ----------
+    loops : Loops
+        One row a cycle and specimen. [SI]
+    area : array_like, shape (n_specimens,)
+        Cross-sectional area at zero tension; NaN for a rope that has none stated. [m2]
+    break_in_cycles : int
+        First cycles that are left out. [1]
+
+    Returns
+    -------
+    summary : AmplitudeSummary
+        Means, with their standard uncertainty by name. [SI]
+
+    Raises
+    ------
+    DataError
+        If an area is not positive, the areas do not pair up with the loops, or no cycle
+        is left.
+
+    Notes
+    -----
+    Filled rubber is the softer the larger the amplitude ([2]_), so a dynamic modulus
+    without its strain amplitude says little: T-1 and T-2, and T-3 and T-4, of [1]_ are
+    pairs of one mean and two amplitudes.
+
+    ``slope_reading_spread`` is how far the other two readings of "slope of the loop" lie
+    apart, over K_ap (`reduction.stages.cycles.loops`).
+
+    Uncertainty is type A: scatter over the cycles over the root of their number; of a
+    single cycle, its own. Trend over the cycles is in the scatter. Cycles with NaN are
+    left out.
+
+    Examples
+    --------
+    Two cycles of 100 N and 110 N per unit strain on 1 cm2.
+
+    >>> import numpy as np
+    >>> one = np.ones((1, 2))
+    >>> loops = Loops(
+    ...     **{name: one for name in Loops.__dataclass_fields__ if name not in (
+    ...         "apparent_spring_constant", "uncertainty")},
+    ...     apparent_spring_constant=np.array([[100.0, 110.0]]), uncertainty={},
+    ... )
+    >>> summary = summarise_amplitude(loops, area=[1e-4])
+    >>> print(summary.dynamic_modulus, summary.uncertainty["dynamic_modulus"])
+    [1050000.] [50000.]
+    """
+    areas = np.atleast_1d(np.asarray(area, dtype=np.float64))
+    as_positive("area", areas[~np.isnan(areas)])
+    n_specimens, n_cycles = loops.frequency.shape
+    if areas.shape != (n_specimens,):
+        raise DataError(
+            "the areas do not pair up with the loops",
+            found=f"shape {areas.shape}",
+            needed=f"({n_specimens},)",
+        )
+    if not 0 <= break_in_cycles < n_cycles:
+        raise DataError(
+            "no cycle is left after break-in",
+            found=f"{n_cycles} cycles, {break_in_cycles} of them break-in",
+            needed="at least one cycle more than cycles.break_in_cycles",
+        )
+    means: dict[str, Floats] = {}
+    uncertainty: dict[str, Floats] = {}
+    for name in _QUANTITIES:
+        own = loops.uncertainty.get(name)
+        means[name], uncertainty[name] = _mean_over_cycles(
+            getattr(loops, name)[:, break_in_cycles:],
+            None if own is None else own[:, break_in_cycles:],
+        )
+    # of a loss angle that noise turns negative there is no ellipse to read slopes from
+    tangent = np.where(means["loss_factor"] >= 0, means["loss_factor"], np.nan)
+    means["slope_reading_spread"] = slope_readings(
+        means["apparent_spring_constant"], tangent
+    ).relative_spread
+    per_tangent = tangent / np.sqrt(1 + tangent**2) * (1 + 1 / (1 + tangent**2))
+    uncertainty["slope_reading_spread"] = per_tangent * uncertainty["loss_factor"]
+    means["dynamic_modulus"] = means["apparent_spring_constant"] / areas
+    uncertainty["dynamic_modulus"] = uncertainty["apparent_spring_constant"] / areas
+    return AmplitudeSummary(**means, uncertainty=uncertainty)
+
+
+_CONFIDENCE = 0.95
+
+_MANY = 1e9
+
+"""Degrees of freedom of hundreds of samples."""
+
+_TYPE_A = (
+    "the interval holds what differs from cycle to cycle (type A); errors of area, calibration "
+    "and splice strain that the two do not share are not in it"
+)
+
+
+@dataclass(frozen=True)
+class _Side:
+    """Numerator or denominator on the common axis; arrays (2, n_bins)."""
+
+    name: str
+    modulus: Floats
+    uncertainty: Floats
+    freedom: Floats
+
+
+def _ratio(strain: Floats, above: _Side, below: _Side) -> Ratio:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = above.modulus / below.modulus
+        relative = [(side.uncertainty / side.modulus) ** 2 for side in (above, below)]
+        total = relative[0] + relative[1]
+        # Welch-Satterthwaite, [2]_ eq. G.2b
+        freedom = total**2 / (relative[0] ** 2 / above.freedom + relative[1] ** 2 / below.freedom)
+        uncertainty = np.abs(ratio) * np.sqrt(total)
+        reach = uncertainty * stdtrit(np.where(total > 0, freedom, 1), (1 + _CONFIDENCE) / 2)
+    notes = [_TYPE_A]
+    if not np.isfinite(ratio).any():
+        notes.append(f"{above.name} and {below.name} have no strain in common")
+    low, high = ratio - reach, ratio + reach
+    return Ratio(
+        numerator=above.name,
+        denominator=below.name,
+        strain_bin=strain,
+        ratio=ratio,
+        ratio_standard_uncertainty=uncertainty,
+        ratio_low=low,
+        ratio_high=high,
+        is_different=(low > 1) | (high < 1),
+        notes=tuple(notes),
+        degrees_of_freedom=freedom,
+    )
+
+
+def _spacing(curves: ModulusCurves) -> float:
+    return float(np.ptp(curves.strain_bin_bounds[0]))
+
+
+def _side(curves: ModulusCurves, specimen: int, name: str, strain: Floats) -> _Side:
+    """Mean curve of one specimen at the strains of the axis."""
+    cycles = curves.tangent_modulus_count[specimen]
+    # of one cycle the uncertainty is that of a regression on its samples
+    count = np.where(cycles > 1, cycles - 1.0, _MANY)
+    series = (
+        curves.tangent_modulus[specimen],
+        curves.tangent_modulus_standard_uncertainty[specimen],
+        np.where(np.isfinite(curves.tangent_modulus[specimen]), count, np.nan),
+    )
+    spacing = _spacing(curves)
+    at = [
+        np.stack([curve_at(strain, curves.strain_bin, row, spacing=spacing) for row in values])
+        for values in series
+    ]
+    return _Side(name, *at)
+
+
+def compare_curves(
+    numerator: ModulusCurves,
+    denominator: ModulusCurves,
+    *,
+    numerator_specimen: int,
+    denominator_specimen: int,
+    numerator_name: str,
+    denominator_name: str,
+) -> Ratio:
+    r"""Ratio of the mean tangent moduli of two specimens, or of two tests.
+
+    Parameters
+    ----------
+    numerator : ModulusCurves
+        Of one test. [SI]
+    denominator : ModulusCurves
+        Of another, or the same again where one test holds both specimens. [SI]
+    numerator_specimen : int
+        Place of the specimen in the numerator. [1]
+    denominator_specimen : int
+        Place of the specimen in the denominator. [1]
+    numerator_name : str
+        What the numerator is called.
+    denominator_name : str
+        What the denominator is called.
+
+    Returns
+    -------
+    ratio : Ratio
+        On the coarser of the two grids, both branches, with its 95 % interval. [1]
+
+    Raises
+    ------
+    DataError
+        If a curve does not have a value a bin.
+
+    Notes
+    -----
+    Printed source: sec. 4.6 of [1]_ compares new and used tethers at equal strain.
+
+    The interval is :math:`r \pm t_{95}(\nu)\,u(r)` with u from the type A uncertainty
+    of both, taken as independent, and :math:`\nu` after Welch and Satterthwaite ([3]_).
+    It is that of one strain: of a hundred bins of equal curves five stand out. Where one
+    of the two has no modulus the ratio is NaN and ``is_different`` False; a note says
+    where that is so at every strain.
+
+    Examples
+    --------
+    Ten cycles each; 11 and 10 MPa, both known to 1 %.
+
+    >>> import numpy as np
+    >>> modulus = np.array([11e6, 10e6])[:, None, None] * np.ones((2, 2, 3))
+    >>> x = np.array([1.0, 1.1, 1.2])
+    >>> blank = dict.fromkeys(ModulusCurves.__dataclass_fields__, np.zeros((2, 2, 3)))
+    >>> curves = ModulusCurves(**blank | {
+    ...     "strain_bin": x, "strain_bin_bounds": np.stack([x - 0.05, x + 0.05], axis=1),
+    ...     "tangent_modulus": modulus, "tangent_modulus_count": np.full((2, 2, 3), 10),
+    ...     "tangent_modulus_standard_uncertainty": 0.01 * modulus,
+    ... })
+    >>> ratio = compare_curves(
+    ...     curves, curves, numerator_specimen=0, denominator_specimen=1,
+    ...     numerator_name="new", denominator_name="used",
+    ... )
+    >>> print(ratio.ratio[0, 0].round(3), ratio.ratio_low[0, 0].round(3))
+    1.1 1.067
+    """
+    axis = max((numerator, denominator), key=_spacing).strain_bin
+    above = _side(numerator, numerator_specimen, numerator_name, axis)
+    below = _side(denominator, denominator_specimen, denominator_name, axis)
+    return _ratio(axis, above, below)
+
+
+def compare_cycles(
+    curves: ModulusCurves,
+    *,
+    specimen: int,
+    numerator_cycles: Sequence[int],
+    denominator_cycles: Sequence[int],
+) -> Ratio:
+    r"""Ratio of the mean curves of two sets of cycles, such as the last and the first.
+
+    Parameters
+    ----------
+    curves : ModulusCurves
+        With the curves of selected cycles. [SI]
+    specimen : int
+        Place of the specimen in the curves. [1]
+    numerator_cycles : sequence of int
+        Cycle numbers, all among ``selected_cycle``. [1]
+    denominator_cycles : sequence of int
+        The same for the denominator. [1]
+
+    Returns
+    -------
+    ratio : Ratio
+        On the grid of the curves, both branches, with its 95 % interval. [1]
+
+    Raises
+    ------
+    DataError
+        If a set is empty or names a cycle whose curve was not kept.
+
+    Notes
+    -----
+    Printed source: sec. 4.7 of [1]_ sets the last cycles of the extended test beside the
+    first. The uncertainty of each mean is that of the regressions of its cycles (type A).
+
+    Examples
+    --------
+    A modulus that halves from cycle 1 to cycle 3.
+
+    >>> import numpy as np
+    >>> by_cycle = np.array([2.0, 1.5, 1.0])[None, :, None, None] * np.ones((1, 3, 2, 1))
+    >>> blank = dict.fromkeys(ModulusCurves.__dataclass_fields__, np.zeros((1, 2, 1)))
+    >>> curves = ModulusCurves(**blank | {
+    ...     "selected_cycle": np.array([1, 2, 3]), "tangent_modulus_by_cycle": by_cycle,
+    ...     "tangent_modulus_by_cycle_standard_uncertainty": 0.01 * by_cycle,
+    ... })
+    >>> ratio = compare_cycles(
+    ...     curves, specimen=0, numerator_cycles=[3], denominator_cycles=[1]
+    ... )
+    >>> print(ratio.ratio[0], ratio.ratio_low[0].round(4), ratio.is_different[0])
+    [0.5] [0.4861] [ True]
+    """
+    sides = []
+    for chosen in (numerator_cycles, denominator_cycles):
+        kept = np.isin(curves.selected_cycle, chosen)
+        if len(chosen) == 0 or np.count_nonzero(kept) < len(set(chosen)):
+            raise DataError(
+                "a cycle to compare has no curve of its own",
+                found=", ".join(str(number) for number in chosen) or "no cycle",
+                needed="cycles among " + ", ".join(str(n) for n in curves.selected_cycle),
+            )
+        modulus = curves.tangent_modulus_by_cycle[specimen, kept].mean(axis=0)
+        variance = curves.tangent_modulus_by_cycle_standard_uncertainty[specimen, kept] ** 2
+        uncertainty = np.sqrt(variance.sum(axis=0)) / len(set(chosen))
+        name = "cycles " + ", ".join(str(number) for number in sorted(set(chosen)))
+        sides.append(_Side(name, modulus, uncertainty, np.full(modulus.shape, np.inf)))
+    above, below = sides
+    return _ratio(curves.strain_bin, above, below)
+
+
+FEWEST_CYCLES = 3
+
+
+def slope_per_decade(values: ArrayLike, *, first_cycle: int = 1) -> tuple[Floats, Floats]:
+    r"""Slope of per-cycle values against log10 of the cycle number.
+
+    Parameters
+    ----------
+    values : array_like, shape (n_series, n_cycles)
+        One value a cycle; NaN is left out. [any unit]
+    first_cycle : int, optional
+        Number of the first cycle. [1]
+
+    Returns
+    -------
+    slope : ndarray, shape (n_series,)
+        Change per tenfold cycle number; NaN where fewer than three cycles are known.
+        [unit of the series]
+    slope_standard_uncertainty : ndarray, shape (n_series,)
+        From the scatter about the line, widened by the correlation of neighbouring cycles,
+        so that curvature counts too (type A). [unit of the series]
+
+    Raises
+    ------
+    DataError
+        If the first cycle number is below 1.
+
+    Notes
+    -----
+    Every cycle counts alike in the logarithm: a cycle is weighted by the inverse of its
+    number, so that the last decade of a long test, which holds nine tenths of the cycles,
+    does not decide alone.
+
+    Examples
+    --------
+    >>> slope, _ = slope_per_decade([700 - 20 * np.log10(np.arange(1, 101))])
+    >>> print(slope.round(6))
+    [-20.]
+    """
+    if first_cycle < 1:
+        raise DataError("cycles count from 1", found=str(first_cycle))
+    series = np.atleast_2d(np.asarray(values, dtype=np.float64))
+    number = np.arange(first_cycle, first_cycle + series.shape[1], dtype=np.float64)
+    slope, uncertainty = np.full((2, series.shape[0]), np.nan)
+    for row, one in enumerate(series):
+        known = np.isfinite(one)
+        if known.sum() < FEWEST_CYCLES:
+            continue
+        x, y = np.log10(number[known]), one[known]
+        share = 1 / number[known]
+        share /= share.sum()
+        # sums, not dot products: those start threads of their own and depend on their number
+        x = x - (share * x).sum()
+        y = y - (share * y).sum()
+        power = (share * x * x).sum()
+        slope[row] = (share * x * y).sum() / power
+        residual = y - slope[row] * x
+        # Sandwich form: weights even out the decades, they do not claim different noise.
+        freedom = y.size - 2
+        variance = (residual**2).sum() / freedom * ((share * x) ** 2).sum() / power**2
+        uncertainty[row] = np.sqrt(variance * lag_one_inflation(residual))
+    return slope, uncertainty
+
+
+def cycles_at_an_end(n_cycles: int) -> int:
+    """Return how many cycles at each end of a test are compared: a tenth, from one to ten.
+
+    Parameters
+    ----------
+    n_cycles : int
+        Of the test. [1]
+
+    Returns
+    -------
+    n_ends : int
+        At each end. [1]
+
+    Raises
+    ------
+    DataError
+        Never by itself.
+
+    Examples
+    --------
+    >>> [cycles_at_an_end(number) for number in (5, 30, 3000)]
+    [1, 3, 10]
+    """
+    return min(max(n_cycles // 10, 1), 10)
+
+
+def change_of_ends(values: ArrayLike) -> tuple[Floats, Floats]:
+    r"""Mean of the last tenth of the cycles over that of the first, minus one.
+
+    Parameters
+    ----------
+    values : array_like, shape (n_series, n_cycles)
+        One value a cycle. [any unit]
+
+    Returns
+    -------
+    change : ndarray, shape (n_series,)
+        Of up to a tenth of the cycles at each end, at least one and at most ten; NaN where one
+        of them is missing. [1]
+    change_standard_uncertainty : ndarray, shape (n_series,)
+        From the scatter of neighbouring cycles (type A); NaN where fewer than two pairs of
+        neighbours are known. [1]
+
+    Raises
+    ------
+    ValueError
+        If the values are not numbers in rows of one length.
+
+    Notes
+    -----
+    .. math:: s^2 = \overline{(y_{i+1} - y_i)^2} / 2
+
+    is the variance of a cycle that a slow trend does not enter [5]_; a fast one at the start of a
+    test does, and the uncertainty is then too large rather than too small.
+
+    Examples
+    --------
+    Ten cycles that lose 5 %, and whose neighbours differ by 1 N:
+
+    >>> change, uncertainty = change_of_ends([[100, 98, 97, 96, 96, 95, 96, 95, 96, 95]])
+    >>> print(change.round(3), uncertainty.round(3))
+    [-0.05] [0.011]
+    """
+    series = np.atleast_2d(np.asarray(values, dtype=np.float64))
+    n_ends = cycles_at_an_end(series.shape[1])
+    steps = np.diff(series, axis=1)
+    pairs = np.isfinite(steps).sum(axis=1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        first, last = series[:, :n_ends].mean(axis=1), series[:, -n_ends:].mean(axis=1)
+        variance = np.nansum(steps**2, axis=1) / np.where(pairs < FEWEST_CYCLES - 1, np.nan, pairs)
+        scatter = np.sqrt(variance / 2 / n_ends)
+        return last / first - 1, scatter / np.abs(first) * np.hypot(1.0, last / first)
+
+
+def fit_peak_trend(loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0) -> PeakTrend:
+    """Decay of the peak and change of the dynamic modulus over the cycles of a test.
+
+    Parameters
+    ----------
+    loops : Loops
+        Table of loops.
+    area : array_like, shape (n_specimens,)
+        Cross-section at zero tension; NaN where no diameter is known. [m2]
+    break_in_cycles : int, optional
+        Cycles left out of the slopes at the start. [1]
+
+    Returns
+    -------
+    trend : PeakTrend
+        Slopes per decade of cycles with standard uncertainties (type A), and peak of the
+        last cycle over the first, minus one. [N], [Pa], [1]
+
+    Raises
+    ------
+    DataError
+        If an area is not positive, or their number does not fit the loops.
+
+    Notes
+    -----
+    Source: [1]_, sec. 4.1 ("the maximum peak can be seen to still decreasing with time");
+    the straight line in the logarithm is [4]_.  The dynamic modulus is the apparent spring
+    constant over the area.  The change from first to last cycle is that of `change_of_ends`,
+    and counts from the first cycle whatever the break-in.
+
+    Examples
+    --------
+    >>> peak = 700 - 20 * np.log10(np.arange(1.0, 11.0))[None]
+    >>> loops = Loops(*[peak] * 14, uncertainty={})
+    >>> trend = fit_peak_trend(loops, area=[5e-4])
+    >>> print(trend.peak_tension_per_decade.round(3), trend.peak_tension_change.round(4))
+    [-20.] [-0.0286]
+    """
+    peaks = np.atleast_2d(loops.peak_tension)
+    areas = np.atleast_1d(np.asarray(area, dtype=np.float64))
+    if areas.shape != peaks.shape[:1]:
+        raise DataError(
+            "areas do not fit the loops", found=f"{areas.size} areas", needed=f"{peaks.shape[0]}"
+        )
+    as_positive("area", areas[np.isfinite(areas)])
+    start = min(break_in_cycles, max(0, peaks.shape[1] - FEWEST_CYCLES))
+    peak_slope, peak_uncertainty = slope_per_decade(peaks[:, start:], first_cycle=start + 1)
+    modulus = np.atleast_2d(loops.apparent_spring_constant) / areas[:, None]
+    modulus_slope, modulus_uncertainty = slope_per_decade(modulus[:, start:], first_cycle=start + 1)
+    change, change_uncertainty = change_of_ends(peaks)
+    return PeakTrend(
+        peak_tension_per_decade=peak_slope,
+        peak_tension_per_decade_standard_uncertainty=peak_uncertainty,
+        dynamic_modulus_per_decade=modulus_slope,
+        dynamic_modulus_per_decade_standard_uncertainty=modulus_uncertainty,
+        peak_tension_change=change,
+        peak_tension_change_standard_uncertainty=change_uncertainty,
+    )

@@ -1,0 +1,520 @@
+"""Stepwise tests: dead weights hung one after another, lengths read with a tape.
+
+What readings under hung weights say: gauge length, odd rows, branches, slopes.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.record.arrays import as_finite, as_positive, as_same_shape
+from reduction.record.errors import DataError
+from reduction.record.measurement import Bools, Floats, Integers, StepReadings, read_only_arrays
+
+STRAIN_DIGIT = 0.01
+
+"""A recorded elongation is a whole per cent; readings that differ by less agree. [1]"""
+
+_ASCENDING, _DESCENDING = 1, 2
+
+# robust standard deviations beyond which a row disagrees with the others
+_INCONSISTENT = 5.0
+
+_MAD_TO_DEVIATION = 1.4826
+
+_MEDIAN_TO_MEAN = sqrt(pi / 2)
+
+
+def recover_gauge_length(length: ArrayLike, printed_strain: ArrayLike) -> tuple[float, float]:
+    r"""Gauge length that readings of length and elongation imply.
+
+    .. math:: g = \operatorname{median}\; \ell_i / (1 + \varepsilon_i)
+
+    Parameters
+    ----------
+    length : array_like, shape (n_steps,)
+        Between the gauge marks. [m]
+    printed_strain : array_like, shape (n_steps,)
+        Elongation as recorded; NaN where not recorded. [1]
+
+    Returns
+    -------
+    gauge_length : float
+        Median over the rows, which a single misread row does not move. [m]
+    standard_uncertainty : float
+        Of the median, from the scatter of the rows (type A). [m]
+
+    Raises
+    ------
+    DataError
+        If no row has both readings, or one is impossible.
+
+    Notes
+    -----
+    Table 4 of [1]_ gives 6.125 in, with 14 of 15 rows within 0.6 points of strain;
+    section 4.8 states a free length of 18 in, which would make every strain
+    negative or nearly so.
+
+    Examples
+    --------
+    Three rows of Table 4 of [1]_, in inches:
+
+    >>> gauge, _ = recover_gauge_length([9.31, 12.95, 18.00], [0.52, 1.11, 1.94])
+    >>> print(round(gauge, 3))
+    6.125
+    """
+    rows = as_same_shape(length=length, printed_strain=printed_strain)
+    known = np.isfinite(rows[1])
+    if not known.any():
+        raise DataError(
+            "no reading has a recorded elongation",
+            needed="at least one, or a stated gauge length",
+            hint="Give gauge_length of the specimen.",
+        )
+    stretch = as_positive("1 + printed_strain", 1 + rows[1][known])
+    gauge = as_positive("length", rows[0][known]) / stretch
+    median = float(np.median(gauge))
+    deviation = _MAD_TO_DEVIATION * float(np.median(np.abs(gauge - median)))
+    return median, _MEDIAN_TO_MEAN * deviation / sqrt(gauge.size)
+
+
+def find_inconsistent_readings(
+    length: ArrayLike, printed_strain: ArrayLike, *, gauge_length: float
+) -> Bools:
+    """Rows whose length and recorded elongation disagree.
+
+    Parameters
+    ----------
+    length : array_like, shape (n_steps,)
+        Between the gauge marks. [m]
+    printed_strain : array_like, shape (n_steps,)
+        Elongation as recorded; NaN where not recorded. [1]
+    gauge_length : float
+        At zero tension. [m]
+
+    Returns
+    -------
+    is_inconsistent : ndarray of bool, shape (n_steps,)
+        True beyond five robust standard deviations of all rows and one per cent of
+        elongation, the last digit recorded; False where nothing was recorded. [1]
+
+    Raises
+    ------
+    DataError
+        If ``gauge_length`` is not positive.
+
+    Examples
+    --------
+    1325 in Table 4 of [1]_: 16.38 in is 167 %, recorded is 151 %.
+
+    >>> print(find_inconsistent_readings(
+    ...     [17.38, 16.38, 11.68], [1.84, 1.51, 0.91], gauge_length=6.125))
+    [False  True False]
+    """
+    as_positive("gauge_length", gauge_length)
+    lengths, printed = as_same_shape(length=length, printed_strain=printed_strain)
+    difference = np.abs(lengths / gauge_length - 1 - printed)
+    known = difference[np.isfinite(difference)]
+    usual = _MAD_TO_DEVIATION * float(np.median(known)) if known.size else 0.0
+    return np.nan_to_num(difference) > max(_INCONSISTENT * usual, STRAIN_DIGIT)
+
+
+def step_branches(tension: ArrayLike) -> Integers:
+    """Branch of each step of a stepwise test.
+
+    Parameters
+    ----------
+    tension : array_like, shape (n_steps,)
+        Weights in the order they were hung. [N]
+
+    Returns
+    -------
+    branch : ndarray of int, shape (n_steps,)
+        1 where the weight had been raised, 2 where it had been lowered; a repeated
+        weight keeps its branch, and the first step has that of the second. [1]
+
+    Raises
+    ------
+    DataError
+        If the weights never change.
+
+    Examples
+    --------
+    >>> print(step_branches([51.0, 74.0, 97.0, 97.0, 74.0]))
+    [1 1 1 1 2]
+    """
+    change = np.sign(np.diff(as_finite("tension", tension)))
+    moved = np.flatnonzero(change)
+    if moved.size == 0:
+        raise DataError(
+            "the weights of a stepwise test never change",
+            found=f"{np.size(tension)} equal weights",
+            needed="at least two different weights",
+        )
+    # last change at or before each interval; before the first one, the first one
+    last = np.maximum.accumulate(np.where(change != 0, np.arange(change.size), -1))
+    direction = change[np.where(last < 0, moved[0], last)]
+    rising = np.concatenate([direction[:1], direction]) > 0
+    return np.where(rising, _ASCENDING, _DESCENDING)
+
+
+def interval_slopes(
+    tension: ArrayLike,
+    strain: ArrayLike,
+    *,
+    area: float,
+    tension_uncertainty: float = 0.0,
+    strain_uncertainty: float = 0.0,
+) -> tuple[Floats, Floats, Floats]:
+    r"""Modulus between each reading and the next.
+
+    .. math:: E = \frac{\Delta F}{A\,\Delta\varepsilon}
+
+    Parameters
+    ----------
+    tension : array_like, shape (n_steps,)
+        Weight hung. [N]
+    strain : array_like, shape (n_steps,)
+        Of the gauge length. [1]
+    area : float
+        At zero tension. [m2]
+    tension_uncertainty : float
+        Standard uncertainty of one weight. [N]
+    strain_uncertainty : float
+        Standard uncertainty of one strain, from reading the length. [1]
+
+    Returns
+    -------
+    interval_strain : ndarray, shape (n_steps - 1,)
+        Middle of the interval. [1]
+    modulus : ndarray, shape (n_steps - 1,)
+        NaN where strain does not change. [Pa]
+    standard_uncertainty : ndarray, shape (n_steps - 1,)
+        From the readings; not of area or gauge length, which all share. [Pa]
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up or ``area`` is not positive.
+
+    Notes
+    -----
+    A difference over 15 to 35 points of strain: tape reading is 1 to 3 % of it, so
+    that no smoothing is called for, but neighbours share a reading and their
+    errors are opposed.  The modulus is that of slow steps with creep in them, 10
+    to 45 minutes each in [1]_.  NaN in, NaN out.
+
+    Examples
+    --------
+    0945 to 0955 in Table 4 of [1]_, on a diameter of 1 in: 87 psi.
+
+    >>> _, modulus, _ = interval_slopes(
+    ...     np.array([51, 74]) * 4.4482216, [0.52, 0.858], area=np.pi * 0.0127**2)
+    >>> print((modulus / 6894.757).round(0))
+    [87.]
+    """
+    as_positive("area", area)
+    force, elongation = as_same_shape(tension=tension, strain=strain)
+    stress_step, strain_step = np.diff(force) / area, np.diff(elongation)
+    strain_step = np.where(strain_step == 0, np.nan, strain_step)
+    modulus = stress_step / strain_step
+    uncertainty = sqrt(2) * np.hypot(
+        tension_uncertainty / area / strain_step, strain_uncertainty * modulus / strain_step
+    )
+    return (elongation[:-1] + elongation[1:]) / 2, modulus, uncertainty
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class StepwiseResult:
+    """A stepwise test reduced; per-step arrays have shape (n_steps,).
+
+    Parameters
+    ----------
+    clock : tuple of str
+        The clock text of each reading, as printed.
+    time : ndarray
+        Elapsed time from the first reading. [s]
+    tension : ndarray
+        Weight hung. [N]
+    length, eye_to_eye_length : ndarray
+        Length between the gauge marks; eye to eye. [m]
+    printed_strain : ndarray
+        Elongation as recorded; NaN where not recorded. [1]
+    strain : ndarray
+        Length over the recovered gauge length, minus one, flagged rows too. [1]
+    branch : ndarray of int
+        1 ascending, 2 descending.
+    gauge_length, gauge_length_standard_uncertainty : float
+        Recovered from length and recorded elongation (median); its uncertainty is
+        one all strains and moduli share. [m]
+    is_inconsistent : ndarray of bool
+        Recorded elongation and length disagree by more than reading error.
+    is_creep : ndarray of bool
+        Length grew while tension fell, shrank while it rose, or changed at one weight.
+    interval_strain, interval_modulus, interval_modulus_standard_uncertainty : ndarray, (n_steps-1,)
+        Middle of each interval between readings [1] and its slope [Pa]; NaN where
+        an end is inconsistent, the length creeps against the weight, or the
+        weights turn. Uncertainty of the readings alone; neighbours share one.
+    interval_branch : ndarray of int, shape (n_steps-1,)
+        1 ascending, 2 descending, 0 where the weights turn.
+    secant_modulus, secant_modulus_standard_uncertainty : ndarray
+        Stress over strain; NaN where the reading is inconsistent. Uncertainty of the
+        reading and of the weight alone, as that of the intervals. [Pa]
+    notes : tuple of str
+    length_standard_uncertainty, tension_standard_uncertainty : float
+        Of one reading of length, stated or from its scatter, and of one weight as stated; NaN
+        where neither is known. [m], [N]
+    """
+
+    clock: tuple[str, ...]
+    time: Floats
+    tension: Floats
+    length: Floats
+    eye_to_eye_length: Floats
+    printed_strain: Floats
+    strain: Floats
+    branch: Integers
+    gauge_length: float
+    gauge_length_standard_uncertainty: float
+    is_inconsistent: Bools
+    is_creep: Bools
+    interval_strain: Floats
+    interval_modulus: Floats
+    interval_modulus_standard_uncertainty: Floats
+    interval_branch: Integers
+    secant_modulus: Floats
+    secant_modulus_standard_uncertainty: Floats
+    notes: tuple[str, ...] = ()
+    length_standard_uncertainty: float = float("nan")
+    tension_standard_uncertainty: float = float("nan")
+
+
+def _gauge_notes(
+    gauge: float, readings: StepReadings, is_inconsistent: Bools, stated: float | None
+) -> list[str]:
+    known = np.isfinite(readings.printed_strain)
+    notes = []
+    if known.any():
+        difference = readings.length / gauge - 1 - readings.printed_strain
+        agreeing = known & ~is_inconsistent
+        notes.append(
+            f"gauge length {1e3 * gauge:.1f} mm from length and recorded elongation; "
+            f"{int(agreeing.sum())} of {int(known.sum())} rows agree within "
+            f"{100 * float(np.abs(difference[agreeing]).max(initial=0.0)):.1f} points of strain"
+        )
+        if stated is not None and abs(stated / gauge - 1) > STRAIN_DIGIT:
+            low, high = (100 * (end / stated - 1) for end in _ends(readings.length))
+            notes.append(
+                f"the stated gauge length {1e3 * stated:.1f} mm is not used: it would give strains "
+                f"of {low:.0f} to {high:.0f} %, which the recorded elongations contradict"
+            )
+    return notes
+
+
+def _ends(values: Floats) -> tuple[float, float]:
+    return float(values.min()), float(values.max())
+
+
+def _inconsistency_note(
+    row: int, readings: StepReadings, gauge: float, area: float, is_inconsistent: Bools
+) -> str:
+    """What a row would be if its elongation is right and its length is not."""
+    length, printed = readings.length, readings.printed_strain
+    corrected = gauge * (1 + printed[row])
+    text = (
+        f"{readings.clock[row]}: length {1e3 * length[row]:.1f} mm is "
+        f"{100 * (length[row] / gauge - 1):.0f} %, recorded is {100 * printed[row]:.0f} %; the row "
+        f"gives no modulus. A length of {1e3 * corrected:.1f} mm would agree"
+    )
+    eye, sound = readings.eye_to_eye_length, ~is_inconsistent
+    sound &= np.isfinite(eye)
+    if np.isfinite(eye[row]) and sound.sum() > 2:
+        line = np.polynomial.Polynomial.fit(length[sound], eye[sound], 1)
+        closer = abs(line(corrected) - eye[row]) < abs(line(length[row]) - eye[row])
+        text += f" (the eye-to-eye length speaks for the {'elongation' if closer else 'length'})"
+    strain = np.where(np.arange(length.size) == row, printed[row], length / gauge - 1)
+    modulus = interval_slopes(readings.tension, strain, area=area)[1]
+    beside = [f"{modulus[i] / 1e6:.2f}" for i in (row - 1, row) if 0 <= i < modulus.size]
+    return f"{text}, and the intervals beside it would be {' and '.join(beside)} MPa"
+
+
+def _gauge(readings: StepReadings, stated: float | None) -> tuple[float, float, Bools]:
+    """Gauge length, its uncertainty, and the readings that contradict it."""
+    if np.isfinite(readings.printed_strain).any() or stated is None:
+        gauge, uncertainty = recover_gauge_length(readings.length, readings.printed_strain)
+    else:
+        gauge, uncertainty = stated, float("nan")
+    is_inconsistent = find_inconsistent_readings(
+        readings.length, readings.printed_strain, gauge_length=gauge
+    )
+    return gauge, uncertainty, is_inconsistent
+
+
+def greatest_step_strain(
+    readings: StepReadings, *, stated_gauge_length: float | None = None
+) -> float:
+    """Greatest strain that a stepwise test reached.
+
+    Parameters
+    ----------
+    readings : StepReadings
+        In SI, in the order they were taken.
+    stated_gauge_length : float, optional
+        Used where no elongation was recorded. [m]
+
+    Returns
+    -------
+    strain : float
+        Over the readings that do not contradict the gauge length; NaN where all do. [1]
+
+    Raises
+    ------
+    DataError
+        If a length is impossible, or neither elongation nor gauge length is known.
+
+    Examples
+    --------
+    Table 4 of [1]_ at 208 lb, and after 45 min of creep: 212 % of 6.125 in are printed.
+
+    >>> inch, none = 0.0254, np.full(2, np.nan)
+    >>> round(greatest_step_strain(
+    ...     StepReadings(("1120", "1205"), np.array([0.0, 2700.0]), np.array([925.0, 823.0]),
+    ...         inch * np.array([19.00, 19.13]), none, none),
+    ...     stated_gauge_length=6.125 * inch), 2)
+    2.12
+    """
+    gauge, _, is_inconsistent = _gauge(readings, stated_gauge_length)
+    sound = readings.length[~is_inconsistent]
+    return float(sound.max() / gauge - 1) if sound.size else float("nan")
+
+
+def reduce_stepwise(
+    readings: StepReadings, *, area: float, stated_gauge_length: float | None = None
+) -> StepwiseResult:
+    """Reduce a test with weights hung one after another.
+
+    Parameters
+    ----------
+    readings : StepReadings
+        In SI, in the order they were taken.
+    area : float
+        At zero tension. [m2]
+    stated_gauge_length : float, optional
+        Used where no elongation was recorded; otherwise only compared. [m]
+
+    Returns
+    -------
+    result : StepwiseResult
+        Strain, branches, flags, interval and secant moduli, notes. [SI]
+
+    Raises
+    ------
+    DataError
+        If there are fewer than two steps, a length is impossible, the weights never
+        change, or neither elongation nor gauge length is known.
+
+    Notes
+    -----
+    A flagged row is kept as it was read, with its flag.  An inconsistent row gives
+    no modulus, and a note says what it would give if the recorded elongation is
+    right.  Where the length moved against the weight the interval is creep and
+    gives none; its later end is a sound reading, and the next interval stands.
+
+    Examples
+    --------
+    The last three rows of Table 4 of [1]_, where 1325 is 16.38 in and 151 %:
+
+    >>> inch, none = 0.0254, np.full(3, np.nan)
+    >>> result = reduce_stepwise(
+    ...     StepReadings(("1310", "1325", "1330"), np.array([0.0, 900.0, 1200.0]),
+    ...         4.4482216 * np.array([97.0, 74.0, 51.0]), inch * np.array([17.38, 16.38, 11.68]),
+    ...         none, np.array([1.84, 1.51, 0.91])), area=np.pi * (inch / 2) ** 2)
+    >>> print(result.is_inconsistent, result.branch)
+    [False True False] [2 2 2]
+    """
+    length = as_positive("length", readings.length)
+    if length.size < 2:
+        raise DataError(
+            "a stepwise test needs two steps", found=f"{length.size}", needed="two or more"
+        )
+    as_positive("area", area)
+    branch = step_branches(readings.tension)
+    gauge, gauge_uncertainty, is_inconsistent = _gauge(readings, stated_gauge_length)
+    strain = length / gauge - 1
+    growth, weight_change = np.diff(length), np.diff(readings.tension)
+    against = (growth * weight_change < 0) | ((weight_change == 0) & (growth != 0))
+    is_creep = np.concatenate([[False], against & ~(is_inconsistent[:-1] | is_inconsistent[1:])])
+    notes = _gauge_notes(gauge, readings, is_inconsistent, stated_gauge_length)
+
+    reading = readings.length_standard_uncertainty
+    if not np.isfinite(reading):
+        difference = (length - gauge * (1 + readings.printed_strain))[~is_inconsistent]
+        difference = difference[np.isfinite(difference)]
+        reading = float(np.sqrt(np.mean(difference**2))) if difference.size else float("nan")
+        notes.append(
+            "the uncertainty of a length is not stated; the scatter between length and recorded "
+            f"elongation, {1e3 * reading:.2f} mm, is taken for it"
+        )
+    weight = readings.tension_standard_uncertainty
+    interval_strain, modulus, uncertainty = interval_slopes(
+        readings.tension,
+        strain,
+        area=area,
+        tension_uncertainty=weight if np.isfinite(weight) else 0.0,
+        strain_uncertainty=reading / gauge,
+    )
+    turns = branch[:-1] != branch[1:]
+    unusable = turns | against | (weight_change == 0) | is_inconsistent[:-1] | is_inconsistent[1:]
+    for row in np.flatnonzero(is_inconsistent):
+        notes.append(_inconsistency_note(int(row), readings, gauge, area, is_inconsistent))
+    for row in np.flatnonzero(is_creep):
+        elapsed = (readings.time[row] - readings.time[row - 1]) / 60
+        notes.append(
+            f"{readings.clock[row]}: in {elapsed:.0f} min the weight changed by "
+            f"{weight_change[row - 1]:+.1f} N and the length by {1e3 * growth[row - 1]:+.1f} mm: "
+            "creep, not elasticity"
+        )
+    notes.append(
+        f"moduli take an area of {1e6 * area:.1f} mm2 (a round section of "
+        f"{1e3 * sqrt(4 * area / pi):.2f} mm) and go as its inverse"
+    )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        secant = np.where(is_inconsistent | (strain <= 0), np.nan, readings.tension / area / strain)
+        of_weight = (weight if np.isfinite(weight) else 0.0) / (area * strain)
+        secant_uncertainty = np.where(
+            np.isfinite(secant), np.hypot(of_weight, secant * reading / gauge / strain), np.nan
+        )
+    return StepwiseResult(
+        clock=readings.clock,
+        time=readings.time,
+        tension=readings.tension,
+        length=length,
+        eye_to_eye_length=readings.eye_to_eye_length,
+        printed_strain=readings.printed_strain,
+        strain=strain,
+        branch=branch,
+        gauge_length=gauge,
+        gauge_length_standard_uncertainty=gauge_uncertainty,
+        is_inconsistent=is_inconsistent,
+        is_creep=is_creep,
+        interval_strain=interval_strain,
+        interval_modulus=np.where(unusable, np.nan, modulus),
+        interval_modulus_standard_uncertainty=np.where(unusable, np.nan, uncertainty),
+        interval_branch=np.where(turns, 0, branch[1:]),
+        secant_modulus=secant,
+        secant_modulus_standard_uncertainty=secant_uncertainty,
+        notes=(*readings.notes, *notes),
+        length_standard_uncertainty=reading,
+        tension_standard_uncertainty=weight,
+    )

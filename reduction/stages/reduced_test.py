@@ -1,0 +1,185 @@
+"""A reduced test: all that one log gave, ready for the archive.
+
+`reduction.pipeline` makes it, `reduction.archive` stores it; neither knows the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from reduction.record.contributions import Contributions, LineSpread
+from reduction.record.measurement import Floats, Integers, Record, Source, Specimen, Step
+from reduction.record.notes import by_severity
+from reduction.stages.channel_lag import LagEstimate
+from reduction.stages.cycles.cycle_product import Cycles, Loops
+from reduction.stages.holds.relaxation import HoldResult, hold_numbers
+from reduction.stages.line.line_product import LineParameters, SlowPull
+from reduction.stages.line.rope_programme import RopeStep
+from reduction.stages.moduli.modulus_product import (
+    AmplitudeSummary,
+    CycleIdentity,
+    ElastomerFit,
+    EndModuli,
+    ModulusCurves,
+    PeakTrend,
+    Ratio,
+    Segments,
+    Slips,
+)
+from reduction.stages.moduli.slack_length import SlackStrain
+from reduction.stages.moduli.stepwise_test import StepwiseResult
+from reduction.stages.standstills import Standstills
+from reduction.stages.strain.strain_model import StrainModel
+
+
+@dataclass(frozen=True)
+class TestDescription:
+    """What the laboratory kept about a test; text as given, empty where not given.
+
+    ``attributes`` holds campaign-level attributes (title, institution, source,
+    references, license, and ``synthetic = "yes"`` where the data are synthetic) and
+    test-level ones (machine, load_cell, calibration_due, medium, temperature, ...).
+    ``failed`` is whether the specimens broke, in its word; None where it says nothing.
+    """
+
+    __test__ = False  # a test of a tether, not of this software
+
+    campaign_id: str
+    test_id: str
+    kind: str
+    control: str
+    waveform: str
+    order: int | None
+    attributes: dict[str, str]
+    failed: bool | None = None
+
+
+@dataclass(frozen=True)
+class History:
+    """What each specimen had seen before this test, shape (n_specimens,) each.
+
+    ``permanent_set`` is how much longer it is when it first becomes taut than it was at the
+    start of its first test, over the free length: what is left of the earlier tests after
+    rest. NaN where one of the two records does not begin slack. [1]
+    ``permanent_set_by_tension`` is by how much it changes with the tension that counts as
+    slack. [N-1]
+    ``earlier_flex_cycles`` is None where nothing is known of flexing.
+    """
+
+    earlier_tests: tuple[tuple[str, ...], ...]
+    earlier_maximum_strain: Floats
+    earlier_maximum_tension: Floats
+    earlier_cycles: Floats
+    permanent_set: Floats
+    permanent_set_standard_uncertainty: Floats
+    permanent_set_by_tension: Floats
+    earlier_flex_cycles: Floats | None = None
+
+
+@dataclass(frozen=True)
+class ReducedTest:
+    """One reduced test with all its specimens.
+
+    ``record`` is None for a stepwise test, which has readings (`stepwise`) and no log.
+    ``strain`` [1] has shape (n_specimens, n_samples), its standard uncertainty and that of
+    nominal stress [Pa] one value a specimen; it is NaN where a sample is not usable,
+    while ``record`` keeps what was logged.  Nominal stress is tension over an area, and is
+    made where it is stored.  Parts that the kind of test does not give are
+    None (or empty); `notes` are the quality notes a reader must see,
+    `stage_lines` the lines of the history, `settings_json` every setting that was in force.
+    ``line`` has one entry a cycle and ``line_of_test`` one a specimen, from the means over the
+    cycles, with ``quasi_static_standard_uncertainty`` [N] of the K_0 that both used and, in
+    ``line_spread``, what random and shared errors together make of it; ``pulls``
+    is what a slow pull gave, None for a specimen of which it gave nothing; ``rope_step`` is
+    what the test gave as a step of a rope laboratory's programme.  Uncertainties of loops, curves,
+    segments, holds and trends are random (type A); those of strain, of stress and in
+    ``line_spread`` hold the shared part too.  ``contributions`` holds what errors that samples
+    share add to curves, segments and means of the test, by name of the archive, and
+    ``shared_uncertainty_of_cycles`` [unit of each] the same of each cycle, all sources together;
+    ``channel_lag`` is what the turns of the wave say of one of them, and corrects nothing.
+    """
+
+    description: TestDescription
+    specimens: tuple[Specimen, ...]
+    record: Record | None
+    sources: tuple[Source, ...]
+    stage_lines: tuple[Step, ...]
+    settings_json: str
+    notes: tuple[str, ...]
+    history: History | None = None
+    standstills: Standstills | None = None
+    phase: Integers | None = None
+    strain: Floats | None = None
+    strain_standard_uncertainty: Floats | None = None
+    nominal_stress_standard_uncertainty: Floats | None = None
+    strain_models: tuple[StrainModel, ...] = ()
+    cycles: Cycles | None = None
+    loops: Loops | None = None
+    curves: ModulusCurves | None = None
+    first_loading: ModulusCurves | None = None
+    segments: Segments | None = None
+    end_moduli: EndModuli | None = None
+    identity: CycleIdentity | None = None
+    amplitude: AmplitudeSummary | None = None
+    trend: PeakTrend | None = None
+    slips: Slips | None = None
+    ratios: tuple[Ratio, ...] = ()
+    elastomers: tuple[ElastomerFit, ...] = ()
+    holds: tuple[HoldResult, ...] = ()
+    stress_at_strain: Floats | None = None
+    stress_at_strain_standard_uncertainty: Floats | None = None
+    stress_at_strain_levels: tuple[float, ...] = ()
+    slack_strain: SlackStrain | None = None
+    stepwise: StepwiseResult | None = None
+    line: LineParameters | None = None
+    line_of_test: LineParameters | None = None
+    quasi_static_standard_uncertainty: Floats | None = None
+    line_notes: tuple[str, ...] = ()
+    line_spread: LineSpread | None = None
+    pulls: tuple[SlowPull | None, ...] = ()
+    rope_step: RopeStep | None = None
+    contributions: Contributions | None = None
+    shared_uncertainty_of_cycles: dict[str, Floats] = field(default_factory=dict)
+    channel_lag: LagEstimate | None = None
+
+    def all_notes(self) -> tuple[tuple[str, str], ...]:
+        """Every note as (stage, text), most serious first, none twice.
+
+        Notes that are alike in that stand in the order of the stages.
+        A note of the test that a stage gave too stands under the stage alone.
+        """
+        pairs = list(dict.fromkeys(self._stage_notes()))
+        said = {text for _, text in pairs}
+        pairs += [("test", text) for text in dict.fromkeys(self.notes) if text not in said]
+        return by_severity(pairs)
+
+    def _stage_notes(self) -> Iterator[tuple[str, str]]:
+        if self.record is not None:
+            yield from (("ingest", text) for text in self.record.notes)
+        for specimen in self.specimens:
+            yield from ((f"specimen {specimen.name}", text) for text in specimen.notes)
+        for model in self.strain_models:
+            yield from ((f"strain {model.specimen}", text) for text in model.notes)
+        stages = (
+            ("cycles", self.cycles),
+            ("moduli", self.curves),
+            ("identity", self.identity),
+            ("first loading", self.first_loading),
+            ("slips", self.slips),
+            ("stepwise", self.stepwise),
+        )
+        for stage, product in stages:
+            if product is not None:
+                yield from ((stage, text) for text in product.notes)
+        yield from (("line", text) for text in self.line_notes)
+        if self.rope_step is not None:
+            yield from ((self.rope_step.name, text) for text in self.rope_step.notes)
+        for ratio in self.ratios:
+            yield from (("comparison", text) for text in ratio.notes)
+        for fit in self.elastomers:
+            yield from ((f"{fit.law} {fit.specimen}", text) for text in fit.notes)
+        for number, hold in zip(hold_numbers(self.holds), self.holds, strict=True):
+            stage = f"hold {number} {hold.specimen}"
+            yield from ((stage, text) for text in hold.notes)
+            yield from ((stage, f"refused: {text}") for text in hold.refusals)

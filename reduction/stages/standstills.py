@@ -1,0 +1,828 @@
+"""Where a test stands still: holds, rests, constant tension.
+
+Noise and quantum of a channel, from its own samples, whether it moves or stands.
+
+Blocks of samples, and the runs of blocks in which the crosshead stands still.
+
+Intervals in which a channel stands still, whatever the channel.
+
+Where the crosshead stands still: holds under tension and rests at slack.
+
+Where a test is held at constant tension: the crosshead creeps, the machine keeps the load.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, comb, sqrt
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.record.arrays import as_same_shape
+from reduction.record.errors import DataError
+from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
+from reduction.record.samples import (
+    BLOCK,
+    empty_like,
+    mean_of_rows,
+    over_intervals,
+    sample_blocks,
+    take_samples,
+)
+from reduction.record.settings import PhaseSettings
+
+_STRETCHES, _STRETCH_SAMPLES = 64, 1024
+
+_ORDERS = (2, 4, 6)
+
+_TINY = 1e-12  # a channel that is zero throughout has a range to stay within, too
+
+_NORMAL_MEDIAN = 0.67449  # median of |z| of a normal variable
+
+_NOISE_WIDTHS = 12.0  # range that 10**7 normal samples hardly leave, in standard deviations
+
+_QUANTA = 3.0  # range of a level between two steps, with noise below one step
+
+_FLICKER_SHARE = 0.2  # steps undone by the next step; 0.1 at 10 samples a triangle's branch
+
+
+def _stretches(values: Floats) -> Floats:
+    """Finite samples in at most 64 rows of consecutive ones, spread over the record."""
+    length = min(_STRETCH_SAMPLES, values.size)
+    n_rows = min(_STRETCHES, values.size // length)
+    first = np.linspace(0, values.size - length, n_rows).astype(np.intp)
+    rows: Floats = take_samples(values, first[:, None] + np.arange(length))
+    if np.isfinite(rows).all():
+        return rows
+    finite = _finite(values)
+    return _stretches(finite) if finite.size else finite[None, :]
+
+
+def _finite(values: Floats) -> Floats:
+    """The finite samples of a series."""
+    counts = [
+        int(np.count_nonzero(np.isfinite(values[part])))
+        for part in sample_blocks(values.size, values)
+    ]
+    finite = empty_like(values, shape=sum(counts))
+    ends = np.cumsum(counts)
+    for part, count, end in zip(
+        sample_blocks(values.size, values, finite), counts, ends, strict=True
+    ):
+        block = values[part]
+        finite[end - count : end] = block[np.isfinite(block)]
+    return finite
+
+
+def estimate_noise(values: ArrayLike) -> tuple[float, float]:
+    r"""Standard deviation of the noise and size of the quantisation step of a channel.
+
+    .. math:: s = \min_k \; \mathrm{median}|\Delta^k x| / (0.674 \sqrt{\tbinom{2k}{k}})
+
+    Parameters
+    ----------
+    values : array_like, shape (n_samples,)
+        Channel as logged; NaN is left out. [any unit]
+
+    Returns
+    -------
+    noise : float
+        Standard deviation. [unit of the channel]
+    quantum : float
+        Size of one step of the converter, 0 where the channel is not seen to be
+        quantised. [unit of the channel]
+
+    Raises
+    ------
+    DataError
+        If fewer than 8 samples are finite.
+
+    Notes
+    -----
+    Differences of order k = 2, 4 and 6 take the movement away: order 2 leaves nothing
+    of a triangular wave but its corners, order 6 next to nothing of a sine with 19
+    samples a cycle.  All see white noise alike, so the least is taken.  At most 65,536
+    samples are read, in 64 stretches spread over the record.
+
+    A channel counts as quantised where more than a fifth of its steps are undone by the
+    next step: the flicker of a level between two codes.  The quantum is the median such
+    step.  With noise far below the quantum the differences are mostly zero, and ``noise``
+    may be 0 while ``quantum`` is not.
+
+    Examples
+    --------
+    A ramp with noise of 0.5.
+
+    >>> generator = np.random.default_rng(0)
+    >>> noise, quantum = estimate_noise(np.arange(5000) + generator.normal(0, 0.5, 5000))
+    >>> print(round(noise, 2), quantum)
+    0.50 0.0
+    """
+    rows = _stretches(np.asarray(values, dtype=np.float64))
+    if rows.size < 8:
+        raise DataError(
+            "too few samples to tell noise from movement",
+            found=f"{rows.size} finite samples",
+            needed="8 or more",
+        )
+    noise = min(
+        float(np.median(np.abs(np.diff(rows, n=order, axis=1))))
+        / (_NORMAL_MEDIAN * sqrt(comb(2 * order, order)))
+        for order in _ORDERS
+        if order < rows.shape[1]
+    )
+    steps = np.diff(rows, axis=1).ravel()
+    steps = steps[steps != 0]
+    undone = np.abs(steps[1:] + steps[:-1]) < 0.05 * np.abs(steps[1:])
+    is_quantised = steps.size > 1 and undone.mean() > _FLICKER_SHARE
+    return noise, float(np.median(np.abs(steps[1:][undone]))) if is_quantised else 0.0
+
+
+def noise_range(values: ArrayLike) -> float:
+    """Range that noise alone may span in a channel: twelve deviations or three quanta.
+
+    Parameters
+    ----------
+    values : array_like, shape (n_samples,)
+        Channel as logged; NaN is left out. [any unit]
+
+    Returns
+    -------
+    noise_range : float
+        The greater of twelve standard deviations of the noise and three quanta; at least
+        1e-9 of the greatest magnitude, so that rounding alone is no movement, and 1e-12.
+        [unit of the channel]
+
+    Raises
+    ------
+    DataError
+        If fewer than 8 samples are finite.
+
+    Notes
+    -----
+    Ten million normal samples span eleven deviations; a level between two codes with noise
+    below one of them flickers over two or three, cf. the 12-bit position of [1]_.
+
+    Examples
+    --------
+    >>> print(round(noise_range(np.random.default_rng(0).normal(0, 0.5, 5000)), 1))
+    6.1
+    """
+    values = np.asarray(values, dtype=np.float64)
+    noise, quantum = estimate_noise(values)
+    floor = max(1e-9 * float(np.nanmax(np.abs(_stretches(values)))), _TINY)
+    return max(_NOISE_WIDTHS * noise, _QUANTA * quantum, floor)
+
+
+_AWAY = 4.0  # tolerances
+
+
+def block_extremes(position: Floats, length: int) -> tuple[Floats, Floats]:
+    """Return the least and greatest position of each block of samples.
+
+    Parameters
+    ----------
+    position : ndarray, shape (n_samples,)
+        Crosshead position; NaN where missing. [m]
+    length : int
+        Samples of a block; the last one has what is left. [1]
+
+    Returns
+    -------
+    least : ndarray, shape (n_blocks,)
+        +inf where all samples are missing. [m]
+    greatest : ndarray, shape (n_blocks,)
+        -inf where all samples are missing. [m]
+
+    Raises
+    ------
+    ZeroDivisionError
+        If the length is zero.
+
+    Notes
+    -----
+    Blocks are counted from the first sample of the record, so that a record read in
+    pieces of whole blocks gives the same.
+
+    Examples
+    --------
+    >>> block_extremes(np.array([1.0, 2, 3, 5, np.nan]), 2)
+    (array([ 1., 3., inf]), array([ 2., 5., -inf]))
+    """
+    n_blocks = -(-position.size // length)
+    least = empty_like(position, shape=n_blocks)
+    greatest = empty_like(position, shape=n_blocks)
+    step = length * max(BLOCK // length, 1)
+    for part in sample_blocks(position.size, position, least, greatest, size=step):
+        samples = position[part]
+        start, whole = part.start // length, samples.size // length
+        rows = samples[: whole * length].reshape(-1, length)
+        low, high = least[start : start + whole + 1], greatest[start : start + whole + 1]
+        np.min(rows, axis=1, out=low[:whole])
+        np.max(rows, axis=1, out=high[:whole])
+        if samples.size > whole * length:  # the last block has what is left
+            low[whole], high[whole] = (
+                samples[whole * length :].min(),
+                samples[whole * length :].max(),
+            )
+        for block in np.flatnonzero(np.isnan(low)):
+            finite = samples[block * length : (block + 1) * length]
+            finite = finite[np.isfinite(finite)]
+            low[block] = finite.min(initial=np.inf)
+            high[block] = finite.max(initial=-np.inf)
+    return least, greatest
+
+
+def _still_runs(
+    least: Floats, greatest: Floats, window: int, tolerance: float
+) -> tuple[Integers, Integers]:
+    """First and last block of each run in which every window of blocks stays in tolerance."""
+    n_windows = least.size - window + 1
+    is_still = np.zeros(n_windows + 2, dtype=bool)
+    for part in sample_blocks(n_windows, least, greatest):
+        low, high = (one[part.start : part.stop + window - 1] for one in (least, greatest))
+        covered = 1
+        while covered < window:  # windows of twice the width from two of the width before
+            step = min(covered, window - covered)
+            low = np.minimum(low[: low.size - step], low[step:])
+            high = np.maximum(high[: high.size - step], high[step:])
+            covered += step
+        is_still[1 + part.start : 1 + part.stop] = high - low <= tolerance
+    edges = np.flatnonzero(is_still[1:] != is_still[:-1])
+    first, last = edges[::2], edges[1::2] - 1 + window - 1
+    last[:-1] = np.minimum(last[:-1], first[1:] - 1)
+    return first, last
+
+
+def _extremes_between(
+    least: Floats, greatest: Floats, first: Integers, last: Integers
+) -> tuple[Floats, Floats]:
+    """Least and greatest position of each run of blocks, both ends inside."""
+    low = over_intervals(np.minimum, least, first, last + 1)
+    high = over_intervals(np.maximum, greatest, first, last + 1)
+    return low, high
+
+
+def _range(least: Floats, greatest: Floats) -> float:
+    every = np.array([0]), np.array([least.size])
+    low, high = (
+        over_intervals(np.minimum, least, *every),
+        over_intervals(np.maximum, greatest, *every),
+    )
+    return float(high[0] - low[0])
+
+
+def _outlasts_its_approach(
+    least: Floats, greatest: Floats, first: Integers, last: Integers, tolerance: float
+) -> Bools:
+    """Whether the crosshead comes or goes faster than it stays."""
+    if first.size == 0 or _range(least, greatest) <= 2 * _AWAY * tolerance:
+        return np.ones(first.size, dtype=bool)  # there is nowhere to go
+    length = last - first + 1
+    low, high = _extremes_between(least, greatest, first, last)
+    middle = (low + high) / 2
+    low, high = _extremes_between(
+        least,
+        greatest,
+        np.maximum(first - length, 0),
+        np.minimum(last + length, least.size - 1),
+    )
+    return np.asarray(np.maximum(high - middle, middle - low) > _AWAY * tolerance)
+
+
+def still_blocks(
+    least: Floats, greatest: Floats, *, window: int, tolerance: float
+) -> tuple[Integers, Integers]:
+    """First and last block of each standstill.
+
+    Parameters
+    ----------
+    least : ndarray, shape (n_blocks,)
+        Least position of each block. [m]
+    greatest : ndarray, shape (n_blocks,)
+        Greatest position of each block. [m]
+    window : int
+        Blocks that the shortest standstill holds. [1]
+    tolerance : float
+        Range of position that any so many blocks in a row keep. [m]
+
+    Returns
+    -------
+    first : ndarray of int, shape (n_standstills,)
+        First block, up to one window before the true edge. [1]
+    last : ndarray of int, shape (n_standstills,)
+        Last block, inside. [1]
+
+    Raises
+    ------
+    ValueError
+        If there is no block.
+
+    Notes
+    -----
+    A run of windows within the tolerance is a standstill where it keeps within twice the
+    tolerance as a whole: at each end a window may hold the begin of a move.  A run that
+    goes further is a slow movement, with or without holds in it, and is looked through
+    again with windows of twice the width, and so on.
+
+    The turn of a slow cycle keeps within the tolerance for a while, too, but takes as
+    long again to get away from there: a standstill is kept where the position is four
+    tolerances away within as many blocks as it lasted, before it or after it, or where
+    the record never goes that far.
+
+    Examples
+    --------
+    Rising, standing for four blocks, rising.
+
+    >>> least = np.array([0.0, 1, 2, 2, 2, 2, 3, 4, 5])
+    >>> still_blocks(least, least + 0.1, window=3, tolerance=0.5)
+    (array([2]), array([5]))
+    """
+    found = []
+    work = [(0, least.size, window)]
+    while work:
+        begin, end, width = work.pop()
+        if end - begin < width:
+            continue
+        firsts, lasts = _still_runs(least[begin:end], greatest[begin:end], width, tolerance)
+        if firsts.size == 0:
+            continue
+        firsts, lasts = begin + firsts, begin + lasts
+        low, high = _extremes_between(least, greatest, firsts, lasts)
+        # a window at each end may hold the begin of a move, one up and one down
+        within = high - low <= 2 * tolerance
+        # blocks without a sample keep within anything, and say nothing
+        found.append(np.column_stack([firsts, lasts])[within & (low <= high)])
+        work += [
+            (int(first), int(last) + 1, 2 * width)
+            for first, last in zip(firsts[~within], lasts[~within], strict=True)
+        ]
+    both = np.concatenate([np.empty((0, 2), dtype=np.intp), *found])
+    first, last = both[np.argsort(both[:, 0])].T.copy()
+    stays = _outlasts_its_approach(least, greatest, first, last, tolerance)
+    return first[stays], last[stays]
+
+
+FEWEST_SAMPLES = 4  # two equal samples may be the two sides of a peak
+
+_STEPS_READ = 100_001
+
+
+def median_step(time: Floats) -> float:
+    """Return the median time step, of at most 100,001 steps that advance.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n_samples,)
+        Elapsed time. [s]
+
+    Returns
+    -------
+    median_step : float
+        Greater than zero. [s]
+
+    Raises
+    ------
+    DataError
+        If time does not advance.
+
+    Examples
+    --------
+    >>> median_step(np.array([0.0, 0.1, 0.2, 0.2, 0.3, 60.0]))
+    0.1
+    """
+    first = np.arange(0, time.size - 1, max(1, time.size // _STEPS_READ))
+    steps = take_samples(time, first + 1) - take_samples(time, first)
+    steps = steps[steps > 0]
+    if steps.size == 0:
+        raise DataError("time does not advance", needed="at least one later sample")
+    return float(np.median(steps))
+
+
+def _reach(values: Floats, edge: Integers, centre: Floats, half: float, step: int) -> Integers:
+    """Samples beyond each edge, at most ``abs(step)``, that stay near the centre."""
+    offsets = np.sign(step) * np.arange(1, abs(step) + 1)
+    index = edge[:, None] + offsets
+    inside = (index >= 0) & (index < values.size)
+    value = take_samples(values, np.clip(index, 0, values.size - 1))
+    near = inside & ~(np.abs(value - centre[:, None]) > half)  # a missing sample is no movement
+    return np.where(near.all(axis=1), abs(step), np.argmin(near, axis=1))
+
+
+def interval_means(values: Floats, first: Integers, last: Integers) -> Floats:
+    """Mean of the finite values of each interval.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        Channel; NaN where missing. [any unit]
+    first : ndarray of int, shape (n_intervals,)
+        First sample of each interval, in order of time. [1]
+    last : ndarray of int, shape (n_intervals,)
+        Last sample, inside. [1]
+
+    Returns
+    -------
+    mean : ndarray, shape (n_intervals,)
+        NaN where no value is finite. [unit of the channel]
+
+    Raises
+    ------
+    IndexError
+        If an interval begins beyond the record.
+
+    Examples
+    --------
+    >>> print(interval_means(np.array([1.0, 3.0, np.nan, 5.0]), np.array([0, 2]), np.array([1, 3])))
+    [2. 5.]
+    """
+    if first.size == 0:
+        return np.empty(0)
+    mean = np.asarray(over_intervals(np.add, values, first, last + 1) / (last - first + 1))
+    for i in np.flatnonzero(np.isnan(mean)):
+        mean[i] = _mean_of_finite(values[first[i] : last[i] + 1])
+    return mean
+
+
+def _mean_of_finite(values: Floats) -> float:
+    total, count = 0.0, 0
+    for part in sample_blocks(values.size, values):
+        finite = values[part][np.isfinite(values[part])]
+        total, count = total + float(finite.sum()), count + finite.size
+    return total / count if count else float("nan")
+
+
+def still_intervals(
+    time: Floats, values: Floats, *, tolerance: float, minimum_duration: float
+) -> tuple[Integers, Integers]:
+    """First and last sample of every interval in which a channel stands still.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n_samples,)
+        Elapsed time. [s]
+    values : ndarray, shape (n_samples,)
+        Channel; NaN where missing. [any unit]
+    tolerance : float
+        Range that the channel keeps over every stretch of the shortest duration; twice that
+        over the whole interval. [unit of the channel]
+    minimum_duration : float
+        Shortest interval; four samples at least. [s]
+
+    Returns
+    -------
+    first : ndarray of int, shape (n_intervals,)
+        First sample, in order of time. [1]
+    last : ndarray of int, shape (n_intervals,)
+        Last sample, inside. [1]
+
+    Raises
+    ------
+    DataError
+        If time does not advance.
+
+    Notes
+    -----
+    The record is read in blocks of a quarter of the shortest interval (`still_blocks`);
+    edges, found to the sample, are where the channel comes and goes nearer to the mean than
+    half the tolerance.  Missing samples do not end an interval and are no edge of one.
+
+    Examples
+    --------
+    >>> time = np.arange(0, 130.0)
+    >>> values = np.interp(time, [0, 60, 70, 130], [0, 0, 1, 1])
+    >>> first, last = still_intervals(time, values, tolerance=0.01, minimum_duration=3.0)
+    >>> print(first, last)
+    [ 0 70] [ 60 129]
+    """
+    fewest = max(ceil(minimum_duration / median_step(time) - 1e-6) + 1, FEWEST_SAMPLES)
+    length = max(fewest // 4, 1)
+    # a standstill of the fewest samples holds this many whole blocks, wherever it begins
+    window = max((fewest - length + 1) // length, 1)
+    least, greatest = block_extremes(values, length)
+    first_block, last_block = still_blocks(least, greatest, window=window, tolerance=tolerance)
+
+    first = first_block * length
+    last = np.minimum((last_block + 1) * length, values.size) - 1
+    centre = interval_means(values, first, last)
+    for block, step in ((first_block, 1), (last_block, -1)):  # a block that moves is no edge
+        outside = np.ones(centre.size, dtype=bool)
+        while outside.any():
+            outside = (greatest[block] - centre > tolerance / 2) | (
+                centre - least[block] > tolerance / 2
+            )
+            outside &= first_block < last_block
+            block[outside] += step
+    first = first_block * length
+    last = np.minimum((last_block + 1) * length, values.size) - 1
+    first -= _reach(values, first, centre, tolerance / 2, -length)
+    last += _reach(values, last, centre, tolerance / 2, length)
+    last[:-1] = np.minimum(last[:-1], first[1:] - 1)
+
+    for edge, step in ((first, 1), (last, -1)):  # an edge is a sample that is there
+        for i in np.flatnonzero(np.isnan(take_samples(values, edge))):
+            edge[i] += step * np.argmax(np.isfinite(values[first[i] : last[i] + 1][::step]))
+
+    duration = take_samples(time, last) - take_samples(time, first)
+    long_enough = (duration >= minimum_duration * (1 - 1e-6)) & (last - first + 1 >= FEWEST_SAMPLES)
+    return first[long_enough], last[long_enough]
+
+
+_SLACK_SHARE = 0.02
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class Standstills:
+    """Every interval in which the crosshead stands still, in order of time.
+
+    Parameters
+    ----------
+    first, last : ndarray of int, shape (n_standstills,)
+        First and last sample, both inside.
+    start_time, end_time : ndarray, shape (n_standstills,)
+        Elapsed time at them. [s]
+    mean_position : ndarray, shape (n_standstills,)
+        Mean crosshead position. [m]
+    mean_tension : ndarray, shape (n_specimens, n_standstills)
+        Mean tension over the interval. [N]
+    is_rest : ndarray of bool, shape (n_standstills,)
+        True where every specimen is slack.
+    position_tolerance : float
+        Range of position that was allowed inside a standstill of the crosshead. [m]
+    slack_tension : float
+        Tension at or below which a standstill is a rest. [N]
+    tension_tolerance : float or None
+        Range of tension that was allowed inside a hold, where holds are intervals of
+        constant tension; None where the crosshead stands still in them. [N]
+    """
+
+    first: Integers
+    last: Integers
+    start_time: Floats
+    end_time: Floats
+    mean_position: Floats
+    mean_tension: Floats
+    is_rest: Bools
+    position_tolerance: float
+    slack_tension: float
+    tension_tolerance: float | None = None
+
+    @property
+    def n_standstills(self) -> int:
+        """Number of intervals."""
+        return int(self.first.shape[0])
+
+    def covers(self, part: slice) -> Bools:
+        """Which samples of a part of the record lie inside a standstill."""
+        is_still = np.zeros(part.stop - part.start, dtype=bool)
+        here = slice(np.searchsorted(self.last, part.start), np.searchsorted(self.first, part.stop))
+        for first, last in zip(self.first[here], self.last[here], strict=True):
+            is_still[max(first - part.start, 0) : last + 1 - part.start] = True
+        return is_still
+
+
+def _slack_tension(tension: Floats) -> float:
+    """Two hundredths of the greatest tension, or the noise about zero, of any specimen."""
+    levels = [0.0]
+    for one in tension:
+        sampled = take_samples(one, np.arange(0, one.size, max(1, one.size // _STEPS_READ)))
+        sampled = sampled[np.isfinite(sampled)]
+        if sampled.size >= 8:
+            levels += [_SLACK_SHARE * float(sampled.max()), noise_range(one) / 2]
+    return max(levels)
+
+
+def describe_standstills(
+    time: Floats,
+    position: Floats,
+    tension: Floats,
+    first: Integers,
+    last: Integers,
+    *,
+    position_tolerance: float,
+    slack_tension: float,
+    tension_tolerance: float | None = None,
+) -> Standstills:
+    """Means over given intervals, and which of them are rests.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n_samples,)
+        Elapsed time. [s]
+    position : ndarray, shape (n_samples,)
+        Crosshead position; NaN where missing. [m]
+    tension : ndarray, shape (n_specimens, n_samples)
+        Tension; NaN where missing. [N]
+    first : ndarray of int, shape (n_standstills,)
+        First sample of each interval, in order of time. [1]
+    last : ndarray of int, shape (n_standstills,)
+        Last sample, inside. [1]
+    position_tolerance : float
+        As `Standstills` has it. [m]
+    slack_tension : float
+        As `Standstills` has it. [N]
+    tension_tolerance : float, optional
+        As `Standstills` has it. [N]
+
+    Returns
+    -------
+    standstills : Standstills
+        Of these intervals. [SI]
+
+    Raises
+    ------
+    IndexError
+        If an interval reaches beyond the record.
+
+    Examples
+    --------
+    >>> time, load = np.arange(4.0), np.array([[0.0, 0.0, 9.0, 11.0]])
+    >>> found = describe_standstills(
+    ...     time, time, load, np.array([0, 2]), np.array([1, 3]),
+    ...     position_tolerance=1.0, slack_tension=1.0)
+    >>> print(found.mean_tension, found.is_rest)
+    [[ 0. 10.]] [ True False]
+    """
+    mean_tension = np.array([interval_means(one, first, last) for one in tension])
+    return Standstills(
+        first=first,
+        last=last,
+        start_time=take_samples(time, first),
+        end_time=take_samples(time, last),
+        mean_position=interval_means(position, first, last),
+        mean_tension=mean_tension.reshape(tension.shape[0], first.size),
+        is_rest=(mean_tension <= slack_tension).all(axis=0).reshape(first.size),
+        position_tolerance=float(position_tolerance),
+        slack_tension=float(slack_tension),
+        tension_tolerance=tension_tolerance,
+    )
+
+
+def find_standstills(
+    time: ArrayLike, position: ArrayLike, tension: ArrayLike, *, settings: PhaseSettings
+) -> Standstills:
+    """Find every interval in which the crosshead stands still, and say which are rests.
+
+    Parameters
+    ----------
+    time : array_like, shape (n_samples,)
+        Elapsed time. [s]
+    position : array_like, shape (n_samples,)
+        Crosshead position; NaN where missing. [m]
+    tension : array_like, shape (n_specimens, n_samples)
+        Tension; NaN where missing. [N]
+    settings : PhaseSettings
+        What is None there is found here and written into the result. [SI]
+
+    Returns
+    -------
+    standstills : Standstills
+        In order of time; none where the crosshead never stands. [SI]
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up, have fewer than four samples or no finite
+        position, or time does not advance.
+
+    Notes
+    -----
+    *Tolerance.* None: `noise_range` of position.  The crosshead stands where the range
+    of position stays within it over every stretch of the shortest duration, and within
+    twice that over the whole interval; the edges are where it comes and goes nearer to
+    the mean than half the tolerance.
+
+    *Duration.* At least ``minimum_duration`` and at least four samples, so that the two
+    samples beside a peak of a slow log are no hold.  A movement too slow to leave the
+    tolerance within that time is told from a hold by wider windows, and the turn of a
+    slow cycle by its neighbourhood: from a standstill the crosshead gets four tolerances
+    away within as long as it stood, before it or after it.
+
+    *Rests.* A standstill whose mean tension is at or below the slack tension for every
+    specimen.  None: the greater of 2 % of the greatest tension of the record and half
+    the `noise_range` of tension, by the specimen where it is larger; a record that
+    never goes slack has no rests.
+
+    Missing samples inside a standstill do not end it.  The record is read in blocks of
+    a quarter of the shortest standstill; edges are found to the sample.
+
+    Examples
+    --------
+    One minute slack, a pull of 10 s, one minute at 1 m.
+
+    >>> time = np.arange(0, 130.0)
+    >>> position = np.interp(time, [0, 60, 70, 130], [0, 0, 1, 1])
+    >>> found = find_standstills(time, position, [100 * position], settings=PhaseSettings())
+    >>> print(found.start_time, found.end_time, found.is_rest)
+    [ 0. 70.] [ 60. 129.] [ True False]
+    """
+    tension = np.atleast_2d(np.asarray(tension, dtype=np.float64))
+    time, position, _ = as_same_shape(time=time, position=position, tension=tension[0])
+    if time.size < FEWEST_SAMPLES:
+        raise DataError(
+            "the record is too short to stand still",
+            found=f"{time.size} rows",
+            needed=f"{FEWEST_SAMPLES} rows or more",
+        )
+    parts = sample_blocks(position.size, position)
+    if not any(np.isfinite(position[part]).any() for part in parts):
+        raise DataError(
+            "no position of the record may be used: each is missing, stuck or a spike",
+            found=f"0 positions in {time.size} rows",
+            needed="a position channel that follows the crosshead",
+        )
+    tolerance = settings.position_tolerance
+    if tolerance is None:
+        tolerance = noise_range(position)
+    slack = settings.slack_tension
+    if slack is None:
+        slack = _slack_tension(tension)
+
+    first, last = still_intervals(
+        time, position, tolerance=tolerance, minimum_duration=settings.minimum_duration
+    )
+    return describe_standstills(
+        time, position, tension, first, last, position_tolerance=tolerance, slack_tension=slack
+    )
+
+
+def find_tension_stands(
+    time: ArrayLike, position: ArrayLike, tension: ArrayLike, *, settings: PhaseSettings
+) -> Standstills:
+    """Find every hold at constant tension, and every rest.
+
+    Parameters
+    ----------
+    time : array_like, shape (n_samples,)
+        Elapsed time. [s]
+    position : array_like, shape (n_samples,)
+        Crosshead position; NaN where missing. [m]
+    tension : array_like, shape (n_specimens, n_samples)
+        Tension; NaN where missing. [N]
+    settings : PhaseSettings
+        What is None there is found here and written into the result. [SI]
+
+    Returns
+    -------
+    standstills : Standstills
+        In order of time, with ``tension_tolerance``. [SI]
+
+    Raises
+    ------
+    DataError
+        If the series do not pair up, are too short, or time does not advance.
+
+    Notes
+    -----
+    *Holds* are intervals above the slack tension in which the tension stands still
+    (`still_intervals`), that of the machine: the mean over the specimens, which pull at one
+    crosshead.  Tolerance, where not stated: `noise_range` of it.  *Rests* are those of
+    `find_standstills`, since a slack specimen has the same tension wherever the crosshead
+    goes.  Where both meet the rest is shortened.
+
+    Examples
+    --------
+    A minute slack, a pull of 10 s, a minute at 100 N in which the crosshead creeps.
+
+    >>> time = np.arange(0, 130.0)
+    >>> load = np.interp(time, [0, 60, 70, 130], [0, 0, 100, 100])
+    >>> position = load / 100 + 0.1 * np.clip(time - 70, 0, None)
+    >>> found = find_tension_stands(time, position, [load], settings=PhaseSettings())
+    >>> print(found.start_time, found.end_time, found.is_rest)
+    [ 0. 70.] [ 60. 129.] [ True False]
+    """
+    loads = np.atleast_2d(np.asarray(tension, dtype=np.float64))
+    seconds, place, _ = as_same_shape(time=time, position=position, tension=loads[0])
+    crosshead = find_standstills(seconds, place, loads, settings=settings)
+    mean = mean_of_rows(loads)
+    tolerance = settings.tension_tolerance
+    if tolerance is None:
+        tolerance = noise_range(mean)
+    first, last = still_intervals(
+        seconds, mean, tolerance=tolerance, minimum_duration=settings.minimum_duration
+    )
+    limits = {
+        "position_tolerance": crosshead.position_tolerance,
+        "slack_tension": crosshead.slack_tension,
+        "tension_tolerance": float(tolerance),
+    }
+    stands = describe_standstills(seconds, place, loads, first, last, **limits)
+    held, rest = ~stands.is_rest, crosshead.is_rest
+    first = np.concatenate([stands.first[held], crosshead.first[rest]])
+    last = np.concatenate([stands.last[held], crosshead.last[rest]])
+    is_rest = np.repeat([False, True], [held.sum(), rest.sum()])
+    order = np.argsort(first, kind="stable")
+    first, last, is_rest = first[order], last[order], is_rest[order]
+    before = is_rest[:-1]
+    last[:-1][before] = np.minimum(last[:-1], first[1:] - 1)[before]
+    first[1:][is_rest[1:]] = np.maximum(first[1:], last[:-1] + 1)[is_rest[1:]]
+    left = first <= last
+    return describe_standstills(seconds, place, loads, first[left], last[left], **limits)

@@ -1,0 +1,1 @@
+"""Position to strain of the splice-free length; load to stress."""

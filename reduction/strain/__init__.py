@@ -1,1 +1,0 @@
-"""Stage: crosshead position to strain of the splice-free length; tension to stress."""

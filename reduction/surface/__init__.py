@@ -1,1 +1,0 @@
-"""Stage: designs of experiments, response surfaces over their runs, screening."""

@@ -1,1 +1,0 @@
-"""Edge: the CSV tables of a campaign, made from its archives alone."""

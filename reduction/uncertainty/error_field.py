@@ -1,0 +1,556 @@
+r"""Errors of tension and strain at a point of the loop, by source.
+
+One error at points of the plane: what it does to tension and strain, and the slopes of that.
+
+What the zero and the gain of load cells do at points of the plane: in tension, and by splices.
+
+A splice law gives strain by the tension that is logged, and was itself fitted to tensions that a
+load cell read at the marks.  The same cell or another: each cell moves the tension of the samples
+that it logged and the law by the marks that it read.
+
+What strain by position alone misses of splices that stretch by the tension they carry.
+
+A line through the marks gives one strain to one position.  On a loop the same position is passed
+at two tensions, and the splices are longer at the greater one.  How much that is the same marks
+say, by a law of tension fitted to them:
+
+.. math:: D(\varepsilon, T) = \varepsilon
+          - \left(\frac{p(\varepsilon) - \ell_s (1 + c T^n)}{\ell_0} - 1\right)
+
+What the crosshead's scale and the readings of the tape do to strain at points of the plane.
+
+Errors of tension and strain at a point of the loop, and how they change from point to point.
+
+Whatever is wrong with a test moves each point of its tension-strain plane by a small vector
+:math:`(\delta\varepsilon, \delta T)` that depends on where the point is.  From that field and its
+slopes follow the errors of everything that is read off the plane: of a modulus, a spring
+constant, an area.
+
+References
+----------
+.. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
+   in measurement," 5.1.3 (sensitivity coefficients).
+.. [2] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
+   in measurement," 5.1.3 (sensitivity coefficients) and F.1.2.3 (common influence quantities).
+.. [3] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, Table 3.
+.. [4] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
+   in measurement," 4.3.7 and F.2.4.5 (limits, and an error that is known and not corrected).
+.. [5] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
+   in measurement," 5.1.3 (sensitivity coefficients) and 5.2 (correlated inputs).
+.. [6] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
+   in measurement," 5.1.3 (sensitivity coefficients) and 5.2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.record.arrays import as_same_shape
+from reduction.record.contributions import Component, InstrumentErrors
+from reduction.record.measurement import Bools, Floats, read_only_arrays
+from reduction.stages.strain.splice_marks import HELD_EXPONENT
+from reduction.stages.strain.strain_model import (
+    StrainModel,
+    position_by_model,
+    splice_strain,
+    strain_by_model,
+    strain_sensitivity_of,
+)
+
+ROWS = (
+    "tension", "strain", "tension_slope", "strain_slope", "strain_slope_over_tension",
+)  # fmt: skip
+
+"""Arrays of one error, in the order of the first axis of `field_rows`."""
+
+FieldPart = tuple[Component, Floats]
+
+"""An error and its rows."""
+
+_STEP = 1e-4  # of the strain 1, and of the tension: for the slopes of the field
+
+
+def field_rows(
+    like: Floats,
+    *,
+    tension: Floats | float = 0.0,
+    strain: Floats | float = 0.0,
+    tension_slope: Floats | float = 0.0,
+    strain_slope: Floats | float = 0.0,
+    strain_slope_over_tension: Floats | float = 0.0,
+) -> Floats:
+    """The arrays of one error, shape (5, ...) in the order of `ROWS`; ``like`` has the shape."""
+    given = (tension, strain, tension_slope, strain_slope, strain_slope_over_tension)
+    return np.stack([np.broadcast_to(one, like.shape) for one in given])
+
+
+def steps_of(load: Floats) -> Floats:
+    """Steps of tension for a slope over it. [N]."""
+    return np.asarray(_STEP * np.maximum(np.abs(load), 1.0))
+
+
+def load_parts(errors: InstrumentErrors, model: StrainModel, load: Floats) -> list[FieldPart]:
+    """Gain and zero of each load cell: that of the samples, and those of the marks.
+
+    Parameters
+    ----------
+    errors : InstrumentErrors
+        Standard uncertainties, which hold for every cell of the campaign.
+    model : StrainModel
+        Its ``mark_load_cell`` says under which cell each mark was read; where it says nothing
+        the cell is that of the samples.
+    load : ndarray, shape (...)
+        Tension at the points. [N]
+
+    Returns
+    -------
+    parts : list of (Component, ndarray)
+        Two a cell, less what is zero.
+
+    Notes
+    -----
+    First order ([2]_).  A wrong gain of the one cell that read samples and marks leaves strain as
+    it is, and a wrong zero nearly so: a splice strains at its marks what the tape says, whatever
+    the cell reads.  Under another cell 1 % of gain is 0.14 % of strain on the tethers of [3]_,
+    and the error of the marks' cell is as much, the other way.
+
+    Examples
+    --------
+    >>> model = StrainModel("new", "tension-driven", {"relaxed_free_length": 2.5,
+    ...     "relaxed_splice_length": 1.2, "splice_compliance": 5e-4, "splice_exponent": 1.0},
+    ...     mark_hold=("min", "max"), mark_tension=np.array([300.0, 500.0]),
+    ...     mark_load_cell=("A", "A"))
+    >>> for cell in ("A", "B"):
+    ...     of = InstrumentErrors("new", tension_gain=0.01, tension_instrument=cell)
+    ...     print([(one.of, float(rows[1].round(6))) for one, rows in
+    ...            load_parts(of, model, np.array(400.0))])
+    [('A', 0.0)]
+    [('B', -0.00096), ('A', 0.00096)]
+    """
+    found: list[FieldPart] = []
+    step = steps_of(load)
+    read = _used(model)
+    told = model.mark_load_cell or ("",) * len(model.mark_tension)
+    cells = tuple(cell or errors.tension_instrument for cell in told)
+    others = (cell for cell, is_used in zip(cells, read, strict=True) if is_used)
+    for cell in dict.fromkeys((errors.tension_instrument, *others)):
+        is_own = cell == errors.tension_instrument
+        is_read = read & np.array([one == cell for one in cells], dtype=bool)
+        for source, gain, offset in (
+            ("tension_gain", errors.tension_gain, 0.0),
+            ("tension_offset", 0.0, errors.tension_offset),
+        ):
+            if not (gain or offset) or not (is_own or model.method == "tension-driven"):
+                continue
+            law = _refitted(model, gain, offset, is_read)
+            strain, above, below = (
+                _splice_error(model, force, gain * is_own, offset * is_own, law)
+                for force in (load, load + step, load - step)
+            )
+            rows = field_rows(
+                load,
+                tension=is_own * (gain * load + offset),
+                strain=strain,
+                tension_slope=is_own * gain,
+                strain_slope_over_tension=(above - below) / (2 * step),
+            )
+            found.append((Component(source, cell), rows))
+    return found
+
+
+def strain_by_tension(model: StrainModel, at: Floats, load: Floats) -> Floats:
+    """Slope of strain over the logged tension at one position; zero for an extensometer. [N-1]."""
+    if model.method == "extensometer":
+        return np.zeros(load.shape)
+    position = position_by_model(model, strain=at, tension=load)
+    step = steps_of(load)
+    above, below = strain_by_model(
+        model, position=np.stack([position, position]), tension=np.stack([load + step, load - step])
+    )
+    return np.asarray((above - below) / (2 * step))
+
+
+def _used(model: StrainModel) -> Bools:
+    """Marks that a law of tension is fitted to: stretched, with a tension."""
+    stretched = np.array([hold != "slack" for hold in model.mark_hold], dtype=bool)
+    is_known = np.nan_to_num(model.mark_tension) > 0
+    return is_known & stretched if stretched.size else is_known
+
+
+def _splice_error(
+    model: StrainModel, load: Floats, gain: float, offset: float, law: tuple[float, float]
+) -> Floats:
+    """Error of the strain by that of the tension and by those of ln c and n of the law."""
+    if model.method != "tension-driven":
+        return np.zeros(load.shape)
+    known = model.coefficients
+    compliance, exponent = known["splice_compliance"], known["splice_exponent"]
+    share = known["relaxed_splice_length"] / known["relaxed_free_length"]
+    force = np.maximum(load, 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        logarithm = np.where(force > 0, np.log(force), 0.0)
+        relative = np.where(force > 0, gain + offset / force, 0.0)
+    of_factor, of_exponent = law
+    splice = compliance * force**exponent
+    change = splice * (exponent * relative + of_factor + logarithm * of_exponent)
+    return np.where(np.isnan(load), np.nan, -share * change)
+
+
+def _refitted(
+    model: StrainModel, gain: float, offset: float, is_read: Bools
+) -> tuple[float, float]:
+    """Change of ln c and n of the splice law by the marks that a wrong cell read."""
+    used = _used(model)
+    if model.method != "tension-driven" or not is_read.any():
+        return 0.0, 0.0
+    force = model.mark_tension[used]
+    exponent = model.coefficients["splice_exponent"]
+    # marks weigh by the strain of the splices there, as in their fit
+    weight = force**exponent
+    wanted = -exponent * (gain + offset / force) * weight * is_read[used]
+    basis = np.stack([weight, np.log(force) * weight], axis=1)
+    if exponent == HELD_EXPONENT:
+        basis = basis[:, :1]
+    solved = np.linalg.lstsq(basis, wanted, rcond=None)[0]
+    return float(solved[0]), float(solved[1]) if solved.size > 1 else 0.0
+
+
+def splice_method_error(
+    model: StrainModel, *, strain: ArrayLike, tension: ArrayLike
+) -> tuple[Floats, Floats, Floats] | None:
+    r"""Error of strain by position alone, and its slopes: what counts as one standard uncertainty.
+
+    Parameters
+    ----------
+    model : StrainModel
+        By ``marks``, ``strain-ratio`` or ``constant-fraction``, with its ``splice_law``.
+    strain, tension : array_like, shape (...)
+        Points of the plane. [1], [N]
+
+    Returns
+    -------
+    error : tuple of ndarray, shape (...), or None
+        Signed: strain [1], its slope over strain at one tension [1], and over tension at one
+        strain [N-1]; None where the model has no such law.
+
+    Raises
+    ------
+    DataError
+        If strain and tension differ in shape.
+
+    Notes
+    -----
+    The splices may follow tension wholly or not at all, so that the error lies between 0 and D and
+    has one sign.  It is not corrected: its standard uncertainty is the root of its mean square
+    about zero ([4]_, F.2.4.5).  Were all of the range equally likely, that would be
+    :math:`D / \sqrt 3`.  It is not: the law of tension is the better one wherever marks can tell
+    ([3]_), and the error is D then.  On synthetic tethers whose splices follow tension, with marks
+    over 360-600 N, 95 % intervals held the truth of the loop energy in 70 % of cases by
+    :math:`D / \sqrt 3`, and those of a segment in 87 %; by D in 100 and 94 %.  D it is.
+
+    Examples
+    --------
+    Splices that strain 22 % at 450 N, a line through the marks: by how much the strain of a
+    branch 60 N above the marks is wrong, and the energy of a loop, relative.
+
+    >>> law = {"relaxed_free_length": 2.55, "relaxed_splice_length": 1.19,
+    ...     "splice_compliance": 0.22 / 450, "splice_exponent": 1.0}
+    >>> line = StrainModel("new", "marks", {"free_length_intercept": -0.835,
+    ...     "free_length_slope": 0.905, "relaxed_free_length": 2.55}, splice_law=law)
+    >>> strain, over_strain, _ = splice_method_error(line, strain=[1.0, 1.0],
+    ...     tension=[450.0, 510.0])
+    >>> print(np.diff(strain).round(4), over_strain[:1].round(3))
+    [0.0137] [-0.105]
+    """
+    law = model.splice_law
+    if not law:
+        return None
+    at, load = as_same_shape(strain=strain, tension=tension)
+    share = law["relaxed_splice_length"] / law["relaxed_free_length"]
+    compliance, exponent = law["splice_compliance"], law["splice_exponent"]
+    by_law = StrainModel(model.specimen, "tension-driven", law)
+    position = position_by_model(model, strain=at, tension=load)
+    longer = position_by_model(model, strain=at + 1, tension=load) - position
+    error = at - strain_by_model(by_law, position=position, tension=load)
+    of_strain = 1 - longer / law["relaxed_free_length"]
+    splice = splice_strain(load, splice_compliance=compliance, splice_exponent=exponent)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        of_tension = np.where(load > 0, share * exponent * splice / load, 0.0)
+    return error, of_strain, of_tension
+
+
+_REACH = 1e-4  # of the strain 1, for the slopes
+
+
+def position_parts(
+    errors: InstrumentErrors, model: StrainModel, at: Floats, load: Floats
+) -> list[FieldPart]:
+    """Gain and zero of the crosshead's scale; none for an extensometer.
+
+    Where zero strain is a position of the log itself, a wrong zero is in both and leaves strain as
+    it is, and a wrong scale is one of what lies between.
+    """
+    gain, offset = errors.position_gain, errors.position_offset
+    begin = 0.0
+    if model.is_zero_logged:
+        begin, offset = model.coefficients["reference_position"], 0.0
+    if model.method == "extensometer" or not (gain or offset):
+        return []
+    step = steps_of(load)
+    # all points at once: what a model costs is its call
+    position, further, longer, shorter = position_by_model(
+        model,
+        strain=np.stack([at, at + 1, at, at]),
+        tension=np.stack([load, load, load + step, load - step]),
+    )
+    slope = 1 / (further - position)
+    found: list[FieldPart] = []
+    if gain:
+        rows = field_rows(
+            load,
+            strain=gain * slope * (position - begin),
+            strain_slope=gain,
+            strain_slope_over_tension=gain * slope * (longer - shorter) / (2 * step),
+        )
+        found.append((Component("position_gain", errors.position_instrument), rows))
+    if offset:
+        rows = field_rows(load, strain=offset * slope)
+        found.append((Component("position_offset", errors.position_instrument), rows))
+    return found
+
+
+def coefficient_errors(model: StrainModel) -> Floats:
+    """Independent errors whose sum is the covariance of the coefficients.
+
+    Parameters
+    ----------
+    model : StrainModel
+        With the covariance of its coefficients.
+
+    Returns
+    -------
+    errors : ndarray, shape (n_coefficients, n_errors)
+        Signed change of each coefficient, in the order of the model, by each error: entry n is
+        that of the component ``strain_calibration`` with number n. [SI]
+
+    Raises
+    ------
+    DataError
+        Never.
+
+    Notes
+    -----
+    Whatever rests on one of the coefficients moves with them together ([5]_, 5.2): the relaxed
+    length is in the strain at slack, in a permanent set, and in every strain of the test.
+
+    Examples
+    --------
+    >>> model = StrainModel("rope", "gauge-length",
+    ...     {"reference_position": 0.0, "gauge_length": 1.0}, np.diag([0.0, 0.002**2]))
+    >>> print(coefficient_errors(model).ravel())
+    [0.    0.002]
+    """
+    size = len(model.coefficients)
+    if model.covariance.shape != (size, size) or not model.covariance.any():
+        return np.empty((size, 0))
+    # of correlations: the coefficients have units many powers of ten apart
+    deviation = np.sqrt(np.diag(model.covariance))
+    scale = np.where(deviation > 0, deviation, 1.0)
+    variance, direction = np.linalg.eigh(model.covariance / np.outer(scale, scale))
+    kept = variance > 1e-12 * variance.max()
+    root = scale[:, None] * direction * np.sqrt(np.maximum(variance, 0))
+    return np.asarray(root[:, kept])
+
+
+def coefficient_parts(
+    errors: InstrumentErrors, model: StrainModel, at: Floats, load: Floats
+) -> list[FieldPart]:
+    """Coefficients of the strain model, their covariance taken apart into independent errors."""
+    root = coefficient_errors(model)
+    if not root.size:
+        return []
+    position, further = position_by_model(
+        model, strain=np.stack([at, at + 1]), tension=np.stack([load, load])
+    )
+    reach = _REACH * (further - position)
+    push = steps_of(load)
+    # the point itself, then one step of position and one of tension to either side
+    place = np.stack([position, position + reach, position - reach, position, position])
+    force = np.stack([load, load, load, load + push, load - push])
+    _, slope = strain_sensitivity_of(model, position=place, tension=force)
+    # a product of matrices this small and long only waits for processors to share it
+    centre, farther, nearer, above, below = np.einsum("ce,cp...->pe...", root, slope)
+    strain = strain_by_model(model, position=place, tension=force)
+    by_position = (farther - nearer) / (2 * reach)
+    by_tension = (above - below) / (2 * push)
+    of_position = (strain[1] - strain[2]) / (2 * reach)
+    of_tension = (strain[3] - strain[4]) / (2 * push)
+    along = by_position / of_position
+    across = by_tension - along * of_tension
+    of = errors.strain_model or errors.specimen
+    return [
+        (
+            Component("strain_calibration", of, number),
+            field_rows(
+                load,
+                strain=centre[number],
+                strain_slope=along[number],
+                strain_slope_over_tension=across[number],
+            ),
+        )
+        for number in range(root.shape[1])
+    ]
+
+
+_PIECE = 4096  # points
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class ErrorField:
+    """Errors at points of the plane; arrays have shape (n_components, ...).
+
+    Parameters
+    ----------
+    component : tuple of Component, length n_components
+        Lag is not among them: it depends on rates.
+    tension, strain : ndarray
+        Logged less true. [N], [1]
+    tension_slope : ndarray
+        Of the tension's error, over tension. [1]
+    strain_slope : ndarray
+        Of the strain's error, over strain at one tension. [1]
+    strain_slope_over_tension : ndarray
+        Of the strain's error, over tension at one strain. [N-1]
+    strain_by_tension : ndarray, shape (...)
+        Change of strain with the tension that is logged at one position: negative where the
+        splices are taken to stretch by it, else zero. [N-1]
+    """
+
+    component: tuple[Component, ...]
+    tension: Floats
+    strain: Floats
+    tension_slope: Floats
+    strain_slope: Floats
+    strain_slope_over_tension: Floats
+    strain_by_tension: Floats
+
+    @property
+    def divergence(self) -> Floats:
+        """Relative growth of a small area of the plane: of the energy of a loop about it. [1]."""
+        return self.tension_slope + self.strain_slope
+
+
+def error_field(
+    errors: InstrumentErrors,
+    model: StrainModel,
+    *,
+    strain: ArrayLike,
+    tension: ArrayLike,
+    held: Literal["position", "tension"] = "position",
+) -> ErrorField:
+    r"""What each shared error does to tension and strain at points of the plane.
+
+    .. math::
+
+        \delta T &= g_T T + o_T \\
+        \delta\varepsilon &= \frac{\partial\varepsilon}{\partial p} (g_p p + o_p)
+            + \frac{\partial\varepsilon}{\partial F} \delta T
+            + \sum_i \frac{\partial\varepsilon}{\partial\theta_i} \delta\theta_i
+            + g_\varepsilon \varepsilon
+
+    Parameters
+    ----------
+    errors : InstrumentErrors
+        Standard uncertainties.
+    model : StrainModel
+        How position became strain, with the covariance of its coefficients.
+    strain, tension : array_like, shape (...)
+        Points, NaN where there is none. [1], [N]
+    held : {"position", "tension"}, optional
+        Which of both the temperature of the specimen leaves alone: what the machine (or a weight)
+        keeps to its set value, or at which a number is read.
+
+    Returns
+    -------
+    field : ErrorField
+        One component an error that is not zero.
+
+    Raises
+    ------
+    DataError
+        If strain and tension differ in shape.
+
+    Notes
+    -----
+    First order ([6]_, 5.1.3).  Where the marks were read under tensions from the same load cell,
+    the splice law is fitted to them: an error of that cell is in the law too, and strain stays
+    what the tape says; a law made under another cell has the errors of that one
+    (`reduction.uncertainty.error_field.load_parts`, [3]_).  An extensometer knows neither; what
+    position alone misses is `splice_method_error`.
+
+    Examples
+    --------
+    A gauge length of 1 m known to 2 mm, 1 % of load cell gain, at 50 % and 900 N:
+
+    >>> model = StrainModel("rope", "gauge-length",
+    ...     {"reference_position": 0.0, "gauge_length": 1.0}, np.diag([0.0, 0.002**2]))
+    >>> field = error_field(InstrumentErrors("rope", tension_gain=0.01), model,
+    ...     strain=0.5, tension=900.0)
+    >>> print([one.source for one in field.component], field.tension, field.strain.round(6))
+    ['tension_gain', 'strain_calibration'] [9. 0.] [ 0.    -0.001]
+    """
+    at, load = as_same_shape(strain=strain, tension=tension)
+    # point by point, in pieces that stay in the cache of a processor
+    pieces = [
+        _table_at(errors, model, at.ravel()[begin : begin + _PIECE],
+                  load.ravel()[begin : begin + _PIECE], held)
+        for begin in range(0, max(load.size, 1), _PIECE)
+    ]  # fmt: skip
+    components, tables, by_tension = zip(*pieces, strict=True)
+    table = np.concatenate(tables, axis=-1).reshape(len(components[0]), len(ROWS), *load.shape)
+    return ErrorField(
+        components[0],
+        **dict(zip(ROWS, np.moveaxis(table, 1, 0), strict=True)),
+        strain_by_tension=np.concatenate(by_tension).reshape(load.shape),
+    )
+
+
+def _table_at(
+    errors: InstrumentErrors,
+    model: StrainModel,
+    at: Floats,
+    load: Floats,
+    held: Literal["position", "tension"],
+) -> tuple[tuple[Component, ...], Floats, Floats]:
+    """Errors at points in a row, what each does there, and the strain by tension."""
+    parts = [
+        *load_parts(errors, model, load),
+        *position_parts(errors, model, at, load),
+        *coefficient_parts(errors, model, at, load),
+    ]
+    missed = splice_method_error(model, strain=at, tension=load)
+    if missed is not None:
+        rows = field_rows(load, strain=missed[0], strain_slope=missed[1],
+                     strain_slope_over_tension=missed[2])  # fmt: skip
+        parts.append((Component("splice_method", errors.specimen), rows))
+    if errors.stiffness:
+        # the rubber is warmer or colder than the test says: the cell reads what there is, or the
+        # specimen stretches less under what is hung on it
+        rows = (
+            field_rows(load, strain=-errors.stiffness * at, strain_slope=-errors.stiffness)
+            if held == "tension"
+            else field_rows(load, tension=errors.stiffness * load, tension_slope=errors.stiffness)
+        )
+        parts.append((Component("temperature", errors.test), rows))
+    if errors.strain_gain:
+        rows = field_rows(load, strain=errors.strain_gain * at, strain_slope=errors.strain_gain)
+        parts.append((Component("strain_gain", errors.strain_model or errors.specimen), rows))
+    table = np.stack([rows for _, rows in parts]) if parts else np.empty((0, len(ROWS), load.size))
+    return tuple(one for one, _ in parts), table, strain_by_tension(model, at, load)

@@ -1,0 +1,381 @@
+r"""Monte Carlo of the three-parameter line.
+
+The three parameters of a line by Monte Carlo, where linear propagation bends.
+
+.. math:: A = E' - K_0, \qquad K_1 = A + E''^2 / A, \qquad \tau = A / (2 \pi f E'')
+
+K_1 has its least value 2 E'' at A = E'' and no bound as A goes to zero; normal errors of any size
+reach A = 0, so that K_1 has no variance in the strict sense.  Draws with A below zero are no line
+at all.  Both are counted here and not hidden: the share of the draws without a solution stands
+beside an interval of those that have one.
+
+Uncertainty of the line of a test: linear where Monte Carlo agrees, else Monte Carlo.
+
+References
+----------
+.. [1] JCGM 101:2008, "Supplement 1 to the Guide - Propagation of distributions using a Monte
+   Carlo method," 5.3 (coverage interval), 6.4.7 (normal), 6.4.9 (t of repeated readings), 7, 8
+   (validation of the law of propagation).
+.. [2] JCGM 102:2011, "Supplement 2 - Extension to any number of output quantities," 5.3.2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import gammaincinv
+
+from reduction.record.arrays import as_same_shape
+from reduction.record.contributions import (
+    LINE_METHODS,
+    LineSpread,
+    combined_standard_uncertainty,
+    coverage_factor,
+    effective_degrees_of_freedom,
+)
+from reduction.record.errors import DataError
+from reduction.record.measurement import Bools, Floats, read_only_arrays
+from reduction.record.settings import CycleSettings
+from reduction.stages.cycles.cycle_product import Loops
+from reduction.stages.line.line_model import (
+    AMPLITUDE_INPUTS,
+    FUNDAMENTAL_INPUTS,
+    OUTPUTS,
+    amplitude_sensitivities,
+    identify_by_amplitude,
+    identify_by_fundamental,
+    line_sensitivities,
+)
+from reduction.stages.line.line_of_loops import covariance_of_means, relative_deviations
+from reduction.stages.line.line_product import LineParameters
+from reduction.stages.reduced_test import ReducedTest
+
+PARAMETERS = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
+
+"""K_1, tau and N = K_1 tau, in the order of the arrays of `LineDraws`."""
+
+N_DRAWS = 20_000
+
+"""Draws: a standard deviation is then known to 0.5 %."""
+
+_SEED = 20080
+
+_AGREE = 0.05
+
+_INTERVAL = (0.025, 0.975)
+
+_ONE_SIGMA = (0.158655, 0.841345)
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class LineDraws:
+    """What drawing gives of the line of each specimen; rows are `PARAMETERS`.
+
+    Parameters
+    ----------
+    linear_standard_uncertainty : ndarray, shape (3, n_specimens)
+        By first order from the same inputs. [N], [s], [N s]
+    standard_uncertainty : ndarray, shape (3, n_specimens)
+        Standard deviation of the draws; half of their 68.3 % interval where some have no solution,
+        since a standard deviation need not exist there. [N], [s], [N s]
+    low, high : ndarray, shape (3, n_specimens)
+        Ends of the 95 % interval, of equal shares on both sides, of draws with a solution.
+        [N], [s], [N s]
+    without_solution_share : ndarray, shape (n_specimens,)
+        Draws without K_1 and tau, of all. [1]
+    """
+
+    linear_standard_uncertainty: Floats
+    standard_uncertainty: Floats
+    low: Floats
+    high: Floats
+    without_solution_share: Floats
+
+    @property
+    def is_linear(self) -> Bools:
+        """Whether both standard uncertainties of all three agree within 5 %, by specimen."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            ratio = self.standard_uncertainty / self.linear_standard_uncertainty
+            near = (np.abs(ratio - 1) <= _AGREE).all(axis=0)
+        near &= self.without_solution_share == 0
+        return np.asarray(near)
+
+
+def draw_line(
+    values: Mapping[str, ArrayLike],
+    *,
+    reading: Literal["amplitude", "fundamental"],
+    covariance: ArrayLike,
+    degrees_of_freedom: ArrayLike,
+    contribution: ArrayLike,
+    n_draws: int = N_DRAWS,
+) -> LineDraws:
+    """Propagate the distributions of what a line is found from.
+
+    Parameters
+    ----------
+    values : mapping of str to array_like, each of shape (n_specimens,)
+        Inputs of the reading, `reduction.stages.line.line_model.AMPLITUDE_INPUTS` or
+        `FUNDAMENTAL_INPUTS`. [N], [J m-1], [Hz]
+    reading : {"amplitude", "fundamental"}
+        From which quantities of the loop the line is found.
+    covariance : array_like, shape (n_specimens, n_inputs, n_inputs)
+        Relative, of the random errors of the inputs. [1]
+    degrees_of_freedom : array_like, shape (n_specimens,)
+        Of the random errors. [1]
+    contribution : array_like, shape (n_components, n_specimens, n_inputs)
+        Relative and signed, of errors that loops and pull share. [1]
+    n_draws : int
+        [1]
+
+    Returns
+    -------
+    draws : LineDraws
+        NaN for a specimen with an input or an uncertainty that is not known, or without a
+        solution itself.
+
+    Raises
+    ------
+    KeyError
+        If an input is not given.
+    DataError
+        If the arrays do not fit together.
+
+    Notes
+    -----
+    [1]_: shared errors are normal; random ones are normal for the standard uncertainty, so that
+    it compares with the linear one, and for the interval follow the t distribution of their
+    degrees of freedom (6.4.9, several quantities at once as in [2]_).  The line is identified
+    by the same functions as that of a test.  One seed: equal inputs give equal answers.  Valid as
+    far as the inputs themselves are linear in the errors, which amplitudes and areas of a loop are.
+
+    Examples
+    --------
+    E' = 3, E'' = 1 and K_0 = 2, which is known to 1 %, and to 20 %:
+
+    >>> values = {"storage_spring_constant": [3.0, 3.0], "loss_spring_constant": [1.0, 1.0],
+    ...     "frequency": [0.3, 0.3], "quasi_static_spring_constant": [2.0, 2.0]}
+    >>> shared = np.zeros((1, 2, 4))
+    >>> shared[0, :, 3] = 0.01, 0.2
+    >>> found = draw_line(values, reading="fundamental", covariance=np.zeros((2, 4, 4)),
+    ...     degrees_of_freedom=[9.0, 9.0], contribution=shared)
+    >>> print(found.is_linear, found.without_solution_share.round(3))
+    [False False] [0.    0.006]
+
+    K_1 stands at its least there, where first order has nothing to say:
+
+    >>> print(found.linear_standard_uncertainty[0].round(6), found.low[0].round(3))
+    [0. 0.] [2. 2.]
+    """
+    names = AMPLITUDE_INPUTS if reading == "amplitude" else FUNDAMENTAL_INPUTS
+    centre = np.stack(list(as_same_shape(**{name: values[name] for name in names})), axis=-1)
+    random, shared = (np.asarray(one, dtype=np.float64) for one in (covariance, contribution))
+    freedom = np.asarray(degrees_of_freedom, dtype=np.float64)
+    n_specimens, n_inputs = centre.shape
+    if (
+        random.shape != (n_specimens, n_inputs, n_inputs)
+        or shared.shape[1:] != (n_specimens, n_inputs)
+        or freedom.shape != (n_specimens,)
+    ):
+        raise DataError(
+            "uncertainties do not fit the inputs of the line",
+            found=f"shapes {random.shape}, {shared.shape} and {freedom.shape}",
+            needed=f"({n_specimens}, {n_inputs}, {n_inputs}), (n_components, {n_specimens}, "
+            f"{n_inputs}) and ({n_specimens},)",
+        )
+    known = np.isfinite(centre).all(axis=1) & np.isfinite(random).all(axis=(1, 2))
+    known &= np.isfinite(shared).all(axis=(0, 2)) & (freedom > 0)
+    generator = np.random.default_rng(_SEED)
+    own = generator.standard_normal((n_draws, n_inputs))
+    common = generator.standard_normal((n_draws, shared.shape[0]))
+    uniform = generator.random(n_draws)
+    result = {
+        name: np.full((len(PARAMETERS), n_specimens), np.nan)
+        for name in ("linear_standard_uncertainty", "standard_uncertainty", "low", "high")
+    }
+    without = np.full(n_specimens, np.nan)
+    for place in np.flatnonzero(known):
+        at = centre[place]
+        linear = _linear(at, reading, random[place], shared[:, place])
+        if not np.isfinite(linear).all():
+            continue
+        result["linear_standard_uncertainty"][:, place] = linear
+        # einsum, not a matrix product, whose last digits depend on the number of threads
+        scattered = np.einsum("dj,ij->di", own, _root(random[place]))
+        moved = np.einsum("dc,ci->di", common, shared[:, place])
+        normal = _identified(at * (1 + scattered + moved), reading)
+        wide = np.sqrt(freedom[place] / (2 * gammaincinv(freedom[place] / 2, uniform)))[:, None]
+        heavy = _identified(at * (1 + scattered * wide + moved), reading)
+        solved = np.isfinite(normal).all(axis=0)
+        without[place] = 1 - solved.mean()
+        if not (solved.any() and np.isfinite(heavy).all(axis=0).any()):
+            continue
+        result["standard_uncertainty"][:, place] = (
+            normal.std(axis=1, ddof=1)
+            if solved.all()
+            else np.diff(np.quantile(normal[:, solved], _ONE_SIGMA, axis=1), axis=0)[0] / 2
+        )
+        ends = np.quantile(heavy[:, np.isfinite(heavy).all(axis=0)], _INTERVAL, axis=1)
+        result["low"][:, place], result["high"][:, place] = ends
+    return LineDraws(**result, without_solution_share=without)
+
+
+def _root(covariance: Floats) -> Floats:
+    """A matrix whose product with its own transpose is the covariance."""
+    variance, direction = np.linalg.eigh(covariance)
+    return np.asarray(direction * np.sqrt(np.maximum(variance, 0)))
+
+
+def _linear(
+    at: Floats,
+    reading: Literal["amplitude", "fundamental"],
+    random: Floats,
+    shared: Floats,
+) -> Floats:
+    """First-order standard uncertainty of the parameters from the same inputs."""
+    line = _parameters(at, reading)
+    table = (amplitude_sensitivities if reading == "amplitude" else line_sensitivities)(
+        line["storage_spring_constant"],
+        line["loss_spring_constant"],
+        line["quasi_static_spring_constant"],
+    )
+    slopes = table[[OUTPUTS.index(name) for name in PARAMETERS]]
+    variance = np.einsum("oi,ij,oj->o", slopes, random + shared.T @ shared, slopes)
+    size = np.array([line[name] for name in PARAMETERS])
+    return np.asarray(size * np.sqrt(np.maximum(variance, 0)))
+
+
+def _parameters(inputs: Floats, reading: Literal["amplitude", "fundamental"]) -> dict[str, Floats]:
+    """Fields of the line by name; inputs along the last axis."""
+    if reading == "amplitude":
+        line = identify_by_amplitude(
+            **dict(zip(AMPLITUDE_INPUTS, np.moveaxis(inputs, -1, 0), strict=True))
+        )
+    else:
+        line = identify_by_fundamental(
+            **dict(zip(FUNDAMENTAL_INPUTS, np.moveaxis(inputs, -1, 0), strict=True))
+        )
+    names = (*OUTPUTS, "quasi_static_spring_constant")
+    return {name: getattr(line, name) for name in names}
+
+
+def _identified(inputs: Floats, reading: Literal["amplitude", "fundamental"]) -> Floats:
+    """The parameters of each draw, shape (3, n_draws)."""
+    line = _parameters(inputs, reading)
+    return np.stack([line[name] for name in PARAMETERS])
+
+
+def with_line_spread(test: ReducedTest, cycles: CycleSettings) -> ReducedTest:
+    """Put the uncertainty of its line, by the propagation that holds, to a test.
+
+    Parameters
+    ----------
+    test : ReducedTest
+        With the contributions of shared errors, where any are stated.
+    cycles : CycleSettings
+        Break-in.
+
+    Returns
+    -------
+    test : ReducedTest
+        With ``line_spread`` and notes; as it was where it has no line.
+    """
+    line, loops = test.line_of_test, test.loops
+    if line is None or loops is None or not (line.reason == 0).any():
+        return test
+    draws, freedom = _drawn(test, line, loops, cycles.break_in_cycles)
+    is_given = np.isfinite(draws.standard_uncertainty).all(axis=0)
+    method = np.where(draws.is_linear, LINE_METHODS["linear"], LINE_METHODS["monte_carlo"])
+    method = np.where(is_given, method, LINE_METHODS["not_given"])
+    spreads: dict[str, Floats] = {}
+    low: dict[str, Floats] = {}
+    high: dict[str, Floats] = {}
+    for row, name in enumerate(PARAMETERS):
+        random = line.random_uncertainty[name]
+        shared = _shared(test, line, name)
+        linear = combined_standard_uncertainty(shared, random)
+        half = linear * coverage_factor(
+            effective_degrees_of_freedom(random, freedom, contribution=shared)
+        )
+        value = getattr(line, name)
+        chosen = [method == LINE_METHODS[one] for one in ("linear", "monte_carlo")]
+        for found, pair in (
+            (spreads, (linear, draws.standard_uncertainty[row])),
+            (low, (value - half, draws.low[row])),
+            (high, (value + half, draws.high[row])),
+        ):
+            found[name] = np.select(chosen, pair, np.nan)
+    spread = LineSpread(method, draws.without_solution_share, spreads, low, high)
+    notes = [
+        _note(test.specimens[place].name, draws, int(place))
+        for place in np.flatnonzero(method == LINE_METHODS["monte_carlo"])
+    ]
+    return replace(test, line_spread=spread, line_notes=(*test.line_notes, *notes))
+
+
+def _drawn(
+    test: ReducedTest, line: LineParameters, loops: Loops, break_in_cycles: int
+) -> tuple[LineDraws, Floats]:
+    """Draws of each specimen, and the degrees of freedom of what is random in it."""
+    reading: Literal["amplitude", "fundamental"] = (
+        "fundamental" if line.reading == "fundamental" else "amplitude"
+    )
+    names = FUNDAMENTAL_INPUTS if reading == "fundamental" else AMPLITUDE_INPUTS
+    means, deviations = relative_deviations(loops, names[:-1], break_in_cycles=break_in_cycles)
+    of_means, freedom = covariance_of_means(deviations)
+    rest = line.quasi_static_spring_constant
+    values = dict(zip(names, (*means, rest), strict=True))
+    # K_0 is the pull's: nothing of it scatters from cycle to cycle
+    covariance = np.pad(of_means, ((0, 0), (0, 1), (0, 1)))
+    shared = [
+        _shared(test, line, name) / value
+        for name, value in values.items()
+    ]  # fmt: skip
+    n_components = max(len(rows) for rows in shared)
+    contribution = np.stack(
+        [np.broadcast_to(rows, (n_components, rest.size)) for rows in shared], axis=-1
+    )
+    draws = draw_line(
+        values, reading=reading, covariance=covariance, degrees_of_freedom=freedom,
+        contribution=contribution,
+    )  # fmt: skip
+    return draws, freedom
+
+
+def _shared(test: ReducedTest, line: LineParameters, name: str) -> Floats:
+    """Contributions of shared errors to a quantity of the test, shape (n_components, ...)."""
+    stated = test.contributions
+    if stated is not None and f"test_{name}" in stated.values:
+        return stated.values[f"test_{name}"]
+    if stated is None and name in line.shared_uncertainty:
+        return line.shared_uncertainty[name][None]
+    if stated is None and name == "quasi_static_spring_constant":
+        spread = test.quasi_static_standard_uncertainty
+        if spread is not None:
+            return spread[None]
+    return np.zeros((1, line.reason.size))
+
+
+def _note(specimen: str, draws: LineDraws, place: int) -> str:
+    share = draws.without_solution_share[place]
+    if share > 0:
+        reason = (
+            f"{share:.2g} of the draws of loop and slow pull have no K_1 and tau, and the interval "
+            "is that of the others"
+        )
+    else:
+        first = draws.linear_standard_uncertainty[:, place]
+        with np.errstate(divide="ignore"):
+            ratio = draws.standard_uncertainty[:, place] / first
+        worst = int(np.argmax(np.abs(np.log(np.maximum(ratio, 1e-300)))))
+        words = ("K_1", "tau", "K_1 tau")
+        reason = f"the linear one of {words[worst]} is {1 / ratio[worst]:.2f} of it"
+    return (
+        f"{specimen}: K_1 and tau: uncertainty and 95 % interval are by Monte Carlo, where linear "
+        f"propagation does not hold: {reason}"
+    )

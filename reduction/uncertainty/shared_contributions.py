@@ -1,0 +1,815 @@
+"""Errors that a test shares with others, carried to its cycles, holds, pulls and steps.
+
+What shared errors add to what is made from the table of cycles: trends, slips, rope steps.
+
+A mean over cycles, or a slope against their number, is linear in the cycles: the errors of the
+cycles go through the same mean or slope.
+
+What shared errors add to holds, and to the pairs of holds of a quasi-static programme.
+
+What shared errors add to a slow pull itself: its curve on the grid of tension.
+
+What shared errors add to a stepwise test.
+
+What the turns of a test's wave say of the clocks of its channels; nothing is corrected by it.
+
+Errors that a test shares with others, carried to what it gave.
+
+Names of the contributions are those of the variables of the archive; the axis of the specimens
+stands behind that of the components.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from reduction.record.contributions import (
+    Component,
+    Contributions,
+    InstrumentErrors,
+    added,
+    merged,
+    renamed,
+    stacked,
+)
+from reduction.record.measurement import Floats, Record, areas_of
+from reduction.record.samples import empty_like, full_like, let_go
+from reduction.record.settings import CycleSettings
+from reduction.stages.channel_lag import LagEstimate, lag_by_turns
+from reduction.stages.cycles.cycle_product import Cycles, Loops
+from reduction.stages.holds.relaxation import HoldResult, hold_numbers
+from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair
+from reduction.stages.line.line_product import SlowPull
+from reduction.stages.line.rope_programme import BeddingIn, DynamicStiffness, TensilePull
+from reduction.stages.line.slow_pull import (
+    BREAK_SHARES,
+    quasi_static_spring_constant,
+    strain_at_tension,
+    tension_grid,
+)
+from reduction.stages.moduli.modulus_product import PeakTrend
+from reduction.stages.moduli.secant_modulus import FEWEST_CYCLES, cycles_at_an_end, slope_per_decade
+from reduction.stages.reduced_test import ReducedTest
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.error_field import ErrorField, error_field
+from reduction.uncertainty.propagation import (
+    chord_contributions,
+    fit_contributions,
+    hold_contributions,
+    over_strength,
+    pull_contributions,
+    secant_contributions,
+    section_contributions,
+    stepwise_contributions,
+    with_diameter,
+)
+from reduction.uncertainty.shared_curves import (
+    blocks_of_cycles,
+    cycles_of_test,
+    of_curves,
+    of_dynamic_modulus,
+    of_elastomers,
+    of_line,
+    of_loops,
+    of_material,
+    of_ratios,
+    of_segments,
+    rise_rates,
+    strain_rates,
+)
+
+_DYNAMIC = {
+    "dynamic_stiffness": "apparent_spring_constant",
+    "dynamic_mean_tension": "mean_tension",
+    "dynamic_tension_amplitude": "tension_amplitude",
+}
+
+"""Means over the last cycles of a step, and the quantity of a cycle that they are of."""
+
+_OF_TREND = ("peak_tension", "apparent_spring_constant")
+
+_OF_STEP = (
+    "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude", "valley_tension",
+)  # fmt: skip
+
+
+def of_cycles(
+    test: ReducedTest,
+    index: int,
+    errors: InstrumentErrors,
+    model: StrainModel,
+    cycles: CycleSettings,
+    area: float,
+) -> Iterator[Contributions]:
+    """Trends and steps of a programme of one specimen."""
+    step = test.rope_step
+    if test.loops is not None and test.cycles is not None:
+        of_each = _of_each(test, index, errors, model, cycles)
+        if test.trend is not None:
+            yield _of_trend(
+                test.loops, test.trend, index, of_each, errors, cycles.break_in_cycles, area
+            )
+        if step is not None and step.dynamic is not None and step.dynamic.n_cycles[index, 0] > 0:
+            yield _of_dynamic(test.loops, step.dynamic, index, of_each, errors)
+        if step is not None and step.bedding_in is not None:
+            yield _of_bedding(test.loops, step.bedding_in, index, of_each, errors)
+    if step is not None and step.tensile is not None:
+        yield _of_tensile(step.tensile, index, errors, model, cycles)
+
+
+def of_ends(
+    test: ReducedTest, index: int, errors: InstrumentErrors, area: float
+) -> Iterator[Contributions]:
+    """Secant and chord moduli of each cycle, at the two ends of its loop."""
+    loops, ends, model = test.loops, test.end_moduli, test.strain_models[index]
+    if loops is None or ends is None:
+        return
+    mean, half = loops.mean_strain[index], loops.strain_amplitude[index]
+    high = error_field(errors, model, strain=mean + half, tension=loops.peak_tension[index])
+    low = error_field(errors, model, strain=mean - half, tension=loops.valley_tension[index])
+    secant, chord = ends.secant_modulus[index], ends.chord_modulus[index]
+    yield secant_contributions(high, errors, strain=mean + half, secant_modulus=secant, area=area)
+    rows = [
+        chord_contributions(low, high, stroke=2 * half, chord=chord[:, branch] * area)
+        for branch in range(2)
+    ]
+    both = np.stack([one.values["chord"] / area for one in rows], axis=-1)
+    found = Contributions(low.component, {"chord_modulus": both})
+    yield with_diameter(found, errors, {"chord_modulus": chord}, area=area)
+
+
+def of_slips(test: ReducedTest, errors: Sequence[InstrumentErrors]) -> list[Contributions]:
+    """Every step of a splice, along one axis; an empty list where there is none.
+
+    The length is a step of tension over a slope of it: gain and warmth are in both, a scale of
+    position in the slope alone.
+    """
+    slips = test.slips
+    if slips is None or not slips.specimen:
+        return []
+    names = [one.name for one in test.specimens]
+    own = []
+    for number, name in enumerate(slips.specimen):
+        one = errors[names.index(name)]
+        model = test.strain_models[names.index(name)]
+        field = error_field(one, model, strain=0.0, tension=0.0)
+        step = slips.slip_tension_step[number] * field.tension_slope
+        length = np.atleast_1d(slips.slip_length[number] * one.position_gain)
+        scale = Component("position_gain", one.position_instrument)
+        own.append(
+            merged(
+                [
+                    Contributions(field.component, {"slip_tension_step": step}),
+                    Contributions((scale,), {"slip_length": length}),
+                ]
+            )
+        )
+    return [stacked(own)]
+
+
+def _of_each(
+    test: ReducedTest,
+    index: int,
+    errors: InstrumentErrors,
+    model: StrainModel,
+    settings: CycleSettings,
+) -> Contributions:
+    """Contributions to what trends and steps read of each cycle."""
+    names = _OF_TREND if test.rope_step is None else (*_OF_TREND, *_OF_STEP)
+    component: tuple[Component, ...] = ()
+    rows: dict[str, Floats] = {}
+    if test.loops is None or test.cycles is None:
+        return Contributions(component)
+    for block in blocks_of_cycles(test.cycles.n_cycles):
+        part = cycles_of_test(test, block)
+        if part.loops is None or part.cycles is None:
+            continue
+        of_block = of_loops(part.loops, index, errors, model, part.cycles, settings)
+        component = of_block.component
+        for name in names:
+            if name not in rows:
+                shape = (len(component), test.cycles.n_cycles)
+                rows[name] = empty_like(test.loops.frequency, shape=shape)
+            rows[name][:, block] = of_block.values[name]
+    return Contributions(component, rows)
+
+
+def _of_series(loops: Loops, index: int, of_each: Contributions, name: str) -> Floats:
+    """Contributions to a quantity of each cycle, NaN where the cycle has none."""
+    known = np.isfinite(getattr(loops, name)[index])
+    return np.where(known, of_each.values[name], np.nan)
+
+
+def _of_trend(
+    loops: Loops,
+    trend: PeakTrend,
+    index: int,
+    of_each: Contributions,
+    errors: InstrumentErrors,
+    break_in: int,
+    area: float,
+) -> Contributions:
+    """The slopes of `fit_peak_trend`, over the cycles that it takes."""
+    peak = _of_series(loops, index, of_each, "peak_tension")
+    modulus = _of_series(loops, index, of_each, "apparent_spring_constant") / area
+    start = min(break_in, max(0, peak.shape[1] - FEWEST_CYCLES))
+    found = Contributions(
+        of_each.component,
+        {
+            "peak_tension_per_decade": slope_per_decade(peak[:, start:], first_cycle=start + 1)[0],
+            "dynamic_modulus_per_decade": slope_per_decade(
+                modulus[:, start:], first_cycle=start + 1
+            )[0],
+            "peak_tension_change": _of_change(loops.peak_tension[index], peak),
+        },
+    )
+    value = np.asarray(trend.dynamic_modulus_per_decade[index])
+    return with_diameter(found, errors, {"dynamic_modulus_per_decade": value}, area=area)
+
+
+def _of_change(peak: Floats, of_peak: Floats) -> Floats:
+    """What errors of the peaks, one row a component, make of the last ones over the first."""
+    n_ends = cycles_at_an_end(peak.size)
+    first, last = peak[:n_ends].mean(), peak[-n_ends:].mean()
+    of_first, of_last = of_peak[:, :n_ends].mean(axis=1), of_peak[:, -n_ends:].mean(axis=1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray((of_last - last / first * of_first) / first)
+
+
+def _of_dynamic(
+    loops: Loops,
+    dynamic: DynamicStiffness,
+    index: int,
+    of_each: Contributions,
+    errors: InstrumentErrors,
+) -> Contributions:
+    """Means over the last cycles, and their drift."""
+    series = _of_series(loops, index, of_each, "apparent_spring_constant")
+    used = np.flatnonzero(np.isfinite(loops.apparent_spring_constant[index]))[
+        -int(dynamic.n_cycles[index, 0]) :
+    ]
+    values = {
+        name: _of_series(loops, index, of_each, source)[:, used].mean(axis=1)
+        for name, source in _DYNAMIC.items()
+    }
+    away = used - used.mean()
+    power = float(np.sum(away**2))
+    values["dynamic_stiffness_drift"] = (
+        series[:, used] @ away / power if power else np.full(len(series), np.nan)
+    )
+    powers = {}
+    for name in _DYNAMIC:
+        source = name if name == "dynamic_stiffness" else name.removeprefix("dynamic_")
+        share = getattr(dynamic, f"{source}_over_strength")[index, 0]
+        strength = getattr(dynamic, source)[index, 0] / share
+        values[f"{name}_over_strength"] = values[name] / strength
+        powers[f"{name}_over_strength"] = (np.array(share), -1.0)
+    return over_strength(Contributions(of_each.component, values), errors, powers)
+
+
+def _of_bedding(
+    loops: Loops,
+    bedding: BeddingIn,
+    index: int,
+    of_each: Contributions,
+    errors: InstrumentErrors,
+) -> Contributions:
+    """Secants of the first and the last cycle, their ratio, and what the foot moved by."""
+    rows = {
+        name: _of_series(loops, index, of_each, name)[:, [0, -1]]
+        for name in ("apparent_spring_constant", "mean_strain", "strain_amplitude",
+                     "valley_tension")
+    }  # fmt: skip
+    first, last = rows["apparent_spring_constant"].T
+    secant = np.array([bedding.first_stiffness[index], bedding.last_stiffness[index]])
+    share = np.array(
+        [bedding.first_stiffness_over_strength[index], bedding.last_stiffness_over_strength[index]]
+    )
+    foot = np.diff(rows["mean_strain"] - rows["strain_amplitude"], axis=1)[:, 0]
+    of_valley = np.diff(rows["valley_tension"], axis=1)[:, 0]
+    valley = loops.valley_tension[index, -1] - loops.valley_tension[index, 0]
+    values = {
+        "bedding_first_stiffness": first,
+        "bedding_last_stiffness": last,
+        "bedding_first_stiffness_over_strength": first * share[0] / secant[0],
+        "bedding_last_stiffness_over_strength": last * share[1] / secant[1],
+        "bedding_stiffening": bedding.stiffening[index] * (last / secant[1] - first / secant[0]),
+        "bedding_permanent_strain": foot - of_valley / secant[1] + valley * last / secant[1] ** 2,
+    }
+    powers = {
+        "bedding_first_stiffness_over_strength": (share[0], -1.0),
+        "bedding_last_stiffness_over_strength": (share[1], -1.0),
+    }
+    return over_strength(Contributions(of_each.component, values), errors, powers)
+
+
+def _of_tensile(
+    pull: TensilePull,
+    index: int,
+    errors: InstrumentErrors,
+    model: StrainModel,
+    cycles: CycleSettings,
+) -> Contributions:
+    """Greatest tension of a pull, and the strain there; of a break both have another name too."""
+    peak, strain = pull.peak_tension[index], pull.strain_at_peak[index]
+    held: Literal["position", "tension"] = "tension" if cycles.control == "load" else "position"
+    field = error_field(errors, model, strain=strain, tension=peak, held=held)
+    share = np.asarray(pull.peak_tension_over_strength[index])
+    values = {
+        "pull_peak_tension": field.tension,
+        "pull_peak_tension_over_strength": field.tension * share / peak,
+        "pull_peak_strain": field.strain,
+        "tensile_strength": field.tension,
+        "strain_at_failure": field.strain,
+    }
+    powers = {"pull_peak_tension_over_strength": (share, -1.0)}
+    return over_strength(Contributions(field.component, values), errors, powers)
+
+
+def of_holds(test: ReducedTest, errors: Sequence[InstrumentErrors]) -> list[Contributions]:
+    """Every hold of a test, along one axis; an empty list where there is none."""
+    if not test.holds:
+        return []
+    places = [_place(test, hold.specimen) for hold in test.holds]
+    terms = max(hold.prony_tension.size for hold in test.holds)
+    creep = () if test.rope_step is None else test.rope_step.creep
+    own = []
+    for number, (hold, place) in enumerate(zip(test.holds, places, strict=True)):
+        found = _of_hold(_padded(hold, terms), errors[place], test.strain_models[place])
+        parts = [found]
+        if len(creep) == len(test.holds):
+            parts.append(_of_creep(found, creep[number], hold, errors[place]))
+        own.append(merged(parts))
+    return [stacked(own)]
+
+
+def of_pairs(test: ReducedTest, errors: Sequence[InstrumentErrors]) -> list[Contributions]:
+    """Every pair of holds of a test, along one axis; an empty list where there is none."""
+    if test.rope_step is None or not test.rope_step.held:
+        return []
+    numbers = hold_numbers(test.holds).tolist()
+    upper = {
+        (hold.specimen, number): hold for number, hold in zip(numbers, test.holds, strict=True)
+    }
+    own = []
+    for pair in test.rope_step.held:
+        place = _place(test, pair.specimen)
+        high = upper[pair.specimen, pair.high_hold]
+        own.append(_of_pair(pair, high, errors[place], test.strain_models[place]))
+    return [stacked(own)]
+
+
+def _place(test: ReducedTest, specimen: str) -> int:
+    return [one.name for one in test.specimens].index(specimen)
+
+
+def _held(hold: HoldResult) -> Literal["position", "tension"]:
+    """What the machine keeps to its set value while it holds."""
+    return "tension" if hold.kind == "creep" else "position"
+
+
+def _padded(hold: HoldResult, n_terms: int) -> HoldResult:
+    missing = n_terms - hold.prony_tension.size
+    return replace(hold, prony_tension=np.pad(hold.prony_tension, (0, missing),
+                                              constant_values=np.nan))  # fmt: skip
+
+
+def _of_hold(hold: HoldResult, errors: InstrumentErrors, model: StrainModel) -> Contributions:
+    def field_at(strain: Floats, tension: Floats) -> ErrorField:
+        return error_field(errors, model, strain=strain, tension=tension, held=_held(hold))
+
+    return hold_contributions(field_at, hold)
+
+
+def _of_creep(
+    of_hold: Contributions, creep: CreepOfHold, hold: HoldResult, errors: InstrumentErrors
+) -> Contributions:
+    """Tension of a hold over the break strength, and its creep over that share."""
+    ends = of_hold.values["hold_initial_tension"] + of_hold.values["hold_final_tension"]
+    relative = ends / (hold.hold_initial_tension + hold.hold_final_tension)
+    value = creep.creep_compliance_per_decade
+    rate = of_hold.values["creep_rate_per_decade"] / hold.rate_per_decade
+    share = np.array(creep.tension_over_strength)
+    found = Contributions(
+        of_hold.component,
+        {
+            "creep_tension_over_strength": share * relative,
+            "creep_compliance_per_decade": value * (rate - relative),
+        },
+    )
+    powers = {
+        "creep_tension_over_strength": (share, -1.0),
+        "creep_compliance_per_decade": (np.array(value), 1.0),
+    }
+    return over_strength(found, errors, powers)
+
+
+def _of_pair(
+    pair: HeldPair, high: HoldResult, errors: InstrumentErrors, model: StrainModel
+) -> Contributions:
+    """Tensions of a pair, and the secant between them at the reference time."""
+    found = pair.stiffness
+    secant, slope, over = (
+        (np.nan,) * 3
+        if found is None
+        else (found.stiffness_at_reference, found.slope_per_decade, found.stiffness_over_strength)
+    )
+    # of both at the upper hold the machine keeps one, and the secant says the other at that time
+    is_creep = high.kind == "creep"
+    rise = pair.high_tension - pair.low_tension
+    stroke = rise / secant if is_creep else high.hold_strain - pair.low_strain
+    rise_then = stroke * secant
+    field = error_field(
+        errors, model,
+        strain=pair.low_strain + np.array([0.0, 0.0, stroke]),
+        tension=pair.low_tension + np.array([0.0, rise, rise_then]),
+        held=_held(high),
+    )  # fmt: skip
+    begin, level, then = range(3)
+    low_tension, high_tension = field.tension[:, begin], field.tension[:, level]
+    of_rise = (field.tension[:, then] - low_tension) / rise_then
+    of_stroke = (field.strain[:, then] - field.strain[:, begin]) / stroke
+    chord = secant * (of_rise - of_stroke)
+    # the secant is rise over stroke, of which one goes on with time: what that gains scales by the
+    # slope of its error, and of a stroke that grows the secant changes by its square
+    of_slope = slope * (
+        of_rise + field.strain_slope[:, then] - 2 * of_stroke
+        if is_creep
+        else field.tension_slope[:, then] - of_stroke
+    )
+    per_strength = over / secant
+    values = {
+        "held_pair_low_tension": low_tension,
+        "held_pair_high_tension": high_tension,
+        "static_stiffness": chord,
+        "static_stiffness_per_decade": of_slope,
+        "static_stiffness_over_strength": chord * per_strength,
+        "static_stiffness_per_decade_over_strength": of_slope * per_strength,
+    }
+    powers = {
+        "static_stiffness_over_strength": (np.array(over), -1.0),
+        "static_stiffness_per_decade_over_strength": (np.array(slope * per_strength), -1.0),
+    }
+    return over_strength(Contributions(field.component, values), errors, powers)
+
+
+_STEP = 1e-3  # of the range of a pull, for the slope of its compliance
+
+_K_0 = "quasi_static_spring_constant"
+
+
+@dataclass(frozen=True)
+class PullOrigin:
+    """With what a slow pull was read: its instruments, and how its position became strain."""
+
+    errors: InstrumentErrors
+    model: StrainModel
+
+
+def compliance_slope(pull: SlowPull, tension: Floats) -> Floats:
+    """Second derivative of strain over tension; zero at the very ends of the pull. [N-2]."""
+    step = _STEP * pull.tension_half_range
+    beside = [1 / quasi_static_spring_constant(pull, tension + way * step)[0] for way in (1, -1)]
+    bend = (beside[0] - beside[1]) / (2 * step)
+    return np.asarray(np.where(np.isfinite(bend), bend, 0.0))
+
+
+def of_rest(
+    pull: SlowPull, origin: PullOrigin, tension: Floats, of_mean_tension: Contributions
+) -> Contributions:
+    """K_0 at the mean tension of a run, which has its own errors, on a pull that has others."""
+    field, constant = _at(pull, origin.errors, origin.model, tension)
+    bend = compliance_slope(pull, tension)
+    at_tension = pull_contributions(
+        field, quasi_static_spring_constant=constant, compliance_slope=bend
+    )
+    # K_0 is read where the load cell of the run says that the mean tension is
+    along = Contributions(
+        of_mean_tension.component,
+        {_K_0: -(constant**2) * bend * of_mean_tension.values["mean_tension"]},
+    )
+    errors = origin.errors
+    name = f"{errors.specimen}, {errors.test}" if errors.test else errors.specimen
+    return added([at_tension, along, fit_contributions(pull, tension, of=name)])
+
+
+def of_pull(
+    pull: SlowPull,
+    errors: InstrumentErrors,
+    model: StrainModel,
+    *,
+    tension: Floats,
+    share: Floats,
+    rated_break_strength: float | None,
+) -> Iterator[Contributions]:
+    """K_0 and strain on a grid of tension, and strain at shares of the break strength."""
+    field, constant = _at(pull, errors, model, tension)
+    found = pull_contributions(
+        field,
+        quasi_static_spring_constant=constant,
+        compliance_slope=compliance_slope(pull, tension),
+    )
+    yield found
+    of_strain = _at_tension(field, constant)
+    yield Contributions(
+        field.component,
+        {
+            "quasi_static_strain": of_strain,
+            "pull_strain_coefficient": _of_cubic(pull, tension, of_strain),
+        },
+    )
+    if rated_break_strength is None:
+        return
+    load = share * rated_break_strength
+    field, constant = _at(pull, errors, model, load)
+    at_share = Contributions(
+        field.component, {"strain_at_break_share": _at_tension(field, constant)}
+    )
+    # more strength is more tension at the share, by the compliance there
+    yield over_strength(at_share, errors, {"strain_at_break_share": (load / constant, 1.0)})
+
+
+def _at(
+    pull: SlowPull, errors: InstrumentErrors, model: StrainModel, tension: Floats
+) -> tuple[ErrorField, Floats]:
+    strain = strain_at_tension(pull, tension)[0]
+    # a pull is read at a tension: one that is stiffer has stretched less there
+    field = error_field(errors, model, strain=strain, tension=tension, held="tension")
+    return field, quasi_static_spring_constant(pull, tension)[0]
+
+
+def _of_cubic(pull: SlowPull, tension: Floats, of_strain: Floats) -> Floats:
+    """Contributions to A, B, C and D: a cubic through those to the strain, where there is one."""
+    known = np.isfinite(of_strain).all(axis=0)
+    scaled = (tension[known] - pull.tension_centre) / pull.tension_half_range
+    basis = np.stack([scaled**power for power in range(4)], axis=1)
+    solved = of_strain[:, known] @ np.linalg.pinv(basis).T
+    rows = [replace(pull, coefficient=row).strain_coefficient for row in solved]
+    return np.reshape(rows, (len(rows), 4))
+
+
+def _at_tension(field: ErrorField, constant: Floats) -> Floats:
+    """Error of strain at one tension of the cell."""
+    return np.asarray(field.strain - field.tension / constant)
+
+
+_OF_READINGS = ("tension", "strain")
+
+_MODULI = ("interval_modulus", "secant_modulus")
+
+
+def with_shared_steps(test: ReducedTest, instruments: Sequence[InstrumentErrors]) -> ReducedTest:
+    """Readings with what they share, and the moduli between them with each contribution."""
+    result, (specimen,) = test.stepwise, test.specimens
+    if result is None or not instruments:
+        return test
+    errors = instruments[0]
+    found = stepwise_contributions(result, errors, area=specimen.area)
+    if not found.component:
+        return test
+    moduli = Contributions(found.component, {name: found.values[name] for name in _MODULI})
+    section = section_contributions(errors, area=specimen.area)
+    if np.isnan(result.tension_standard_uncertainty) and np.any(found.values["tension"]):
+        # of a reading of a weight nothing is stated: beside what is, that counts as zero
+        result = replace(result, tension_standard_uncertainty=0.0)
+    whole = merged([moduli, stacked([section])] if section.component else [moduli])
+    return replace(
+        test,
+        stepwise=result,
+        contributions=whole,
+        shared_uncertainty_of_cycles={
+            name: found.shared_standard_uncertainty(name) for name in _OF_READINGS
+        },
+    )
+
+
+_NOTED = 2.0  # standard uncertainties
+
+
+def lag_of_test(
+    record: Record,
+    position: Floats,
+    tension: Floats,
+    cycles: Cycles,
+    *,
+    stated: Sequence[float] = (),
+) -> tuple[LagEstimate, list[str]]:
+    """Estimate the lag of each tension channel, and say where it is more than what is stated.
+
+    Parameters
+    ----------
+    record : Record
+        With its clock.
+    position : ndarray, shape (n_samples,)
+        NaN where not usable. [m]
+    tension : ndarray, shape (n_specimens, n_samples)
+        NaN where not usable. [N]
+    cycles : Cycles
+        Where the wave turns.
+    stated : sequence of float, length n_specimens, optional
+        Standard uncertainty of the lag that is stated; empty where nothing is. [s]
+
+    Returns
+    -------
+    estimate : LagEstimate
+        By specimen.
+    notes : list of str
+        One a specimen whose tension is late by more than twice what is known.
+    """
+    turns = np.concatenate([cycles.branch_first.ravel(), cycles.branch_last.ravel()])
+    estimate = lag_by_turns(record.time, position, tension, turns)
+    known = np.asarray(stated) if len(stated) else np.zeros(len(record.specimens))
+    total = np.hypot(estimate.standard_uncertainty, known)
+    notes = []
+    for place, name in enumerate(record.specimens):
+        lag, spread, own = estimate.lag[place], estimate.standard_uncertainty[place], known[place]
+        if not lag > _NOTED * total[place]:
+            continue
+        told = f"a lag of 0 +- {1e3 * own:g} ms is stated" if own else "no lag is stated"
+        notes.append(
+            f"{name}: tension turns {1e3 * lag:.0f} +- {1e3 * spread:.0f} ms (k=1) later than "
+            f"position, and {told}: it was logged late, by at least that, since damping makes it "
+            "turn early; nothing is corrected, and loops are too narrow by it"
+        )
+    return estimate, notes
+
+
+# an archive has them for each cycle, not for the means of a test
+_OF_CYCLES_ALONE = ("peak_tension", "valley_tension")
+
+
+def contributions_of_test(
+    test: ReducedTest,
+    errors: Sequence[InstrumentErrors],
+    *,
+    cycles: CycleSettings,
+    pulls: Sequence[SlowPull | None] | None = None,
+    pull_origins: Sequence[PullOrigin | None] = (),
+) -> Contributions | None:
+    """What each shared error adds to the curves, segments and means of a test.
+
+    Parameters
+    ----------
+    test : ReducedTest
+        As reduced; its uncertainties are of type A.
+    errors : sequence of InstrumentErrors, length n_specimens
+        What is stated of the instruments.
+    cycles : CycleSettings
+        Control and waveform.
+    pulls : sequence of SlowPull or None, length n_specimens, optional
+        From which the test has its K_0.
+    pull_origins : sequence of PullOrigin or None, length n_specimens, optional
+        With what each pull was read; the instruments of the test itself where it is not said.
+
+    Returns
+    -------
+    contributions : Contributions or None
+        Shape (n_components, n_specimens, ...); None where no error is shared.
+    """
+    own = []
+    for index, one in enumerate(errors):
+        pull = None if pulls is None else pulls[index]
+        origin = pull_origins[index] if pull_origins else None
+        own.append(merged(list(_of_specimen(test, index, one, cycles, pull, origin))))
+    found = stacked(own)
+    parts = [
+        found,
+        *of_holds(test, errors),
+        *of_pairs(test, errors),
+        *of_slips(test, errors),
+        *of_elastomers(test, errors, found),
+        *of_ratios(test, found),
+    ]
+    whole = merged(parts)
+    return whole if whole.component else None
+
+
+def shared_uncertainty_of_cycles(
+    test: ReducedTest,
+    errors: Sequence[InstrumentErrors],
+    *,
+    cycles: CycleSettings,
+    pulls: Sequence[SlowPull | None] | None = None,
+    pull_origins: Sequence[PullOrigin | None] = (),
+) -> dict[str, Floats]:
+    """Shared standard uncertainty of the quantities of each cycle, shape (n_specimens, n_cycles).
+
+    Parameters
+    ----------
+    test : ReducedTest
+        With loops.
+    errors : sequence of InstrumentErrors, length n_specimens
+        What is stated of the instruments.
+    cycles : CycleSettings
+        Control and waveform.
+    pulls : sequence of SlowPull or None, length n_specimens, optional
+        From which the test has its K_0.
+    pull_origins : sequence of PullOrigin or None, length n_specimens, optional
+        As in `contributions_of_test`.
+
+    Returns
+    -------
+    shared : dict of str to ndarray
+        By name of the quantity; empty where no error is shared.
+    """
+    if test.loops is None:
+        return {}
+    n_specimens, n_cycles = test.loops.mean_tension.shape
+    shared: dict[str, Floats] = {}
+    for block in blocks_of_cycles(n_cycles):
+        part = cycles_of_test(test, block)
+        for index, one in enumerate(errors):
+            pull = None if pulls is None else pulls[index]
+            origin = pull_origins[index] if pull_origins else None
+            found = _of_cycles(test, part, index, one, cycles, pull, origin)
+            for name in found.values if found.component else ():
+                spread = found.shared_standard_uncertainty(name)
+                if name not in shared:
+                    # a specimen without a slow pull has no line: nothing is known of it
+                    shared[name] = full_like(
+                        test.loops.mean_tension, np.nan,
+                        shape=(n_specimens, n_cycles, *spread.shape[1:]),
+                    )  # fmt: skip
+                shared[name][index, block] = spread
+        let_go(*shared.values())
+        test.loops.let_go()
+    return shared
+
+
+def _of_specimen(
+    test: ReducedTest,
+    index: int,
+    errors: InstrumentErrors,
+    cycles: CycleSettings,
+    pull: SlowPull | None,
+    origin: PullOrigin | None,
+) -> Iterator[Contributions]:
+    model = test.strain_models[index]
+    area = float(areas_of(test.specimens)[index])
+    summary = test.amplitude
+    yield from of_material(test, index, errors, model, area)
+    yield from of_cycles(test, index, errors, model, cycles, area)
+    own = test.pulls[index] if test.pulls else None
+    if own is not None:
+        strength = test.specimens[index].rated_break_strength
+        yield from of_pull(
+            own, errors, model, tension=tension_grid(test.pulls), share=np.array(BREAK_SHARES),
+            rated_break_strength=strength,
+        )  # fmt: skip
+    if test.curves is not None:
+        rate = strain_rates(test, index, model, cycles)
+        yield of_curves(test.curves, "", index, errors, model, area, rate)
+        if test.segments is not None:
+            yield of_segments(test.curves, test.segments, index, errors, model, area, rate)
+    # without an area the curve is one of tension, of which the slope is not kept
+    if test.first_loading is not None and np.isfinite(area):
+        rate = rise_rates(test, index) if errors.lag else np.zeros((2, 2, 1))
+        yield of_curves(test.first_loading, "_first_loading", index, errors, model, area, rate)
+    if summary is not None and test.cycles is not None:
+        of_loop = of_loops(summary, index, errors, model, test.cycles, cycles)
+        yield _named(of_loop, "test_", left_out=_OF_CYCLES_ALONE)
+        if np.isfinite(area):
+            yield _named(of_dynamic_modulus(of_loop, summary, index, errors, area), "test_")
+        if test.line_of_test is not None and pull is not None:
+            rest = of_rest(
+                pull, origin or PullOrigin(errors, model),
+                np.asarray(summary.mean_tension[index]), of_loop,
+            )  # fmt: skip
+            yield _named(rest, "test_")
+            yield _named(of_line(test.line_of_test, summary, index, of_loop, rest), "test_")
+
+
+def _of_cycles(
+    test: ReducedTest,
+    part: ReducedTest,
+    index: int,
+    errors: InstrumentErrors,
+    cycles: CycleSettings,
+    pull: SlowPull | None,
+    origin: PullOrigin | None,
+) -> Contributions:
+    """Quantities of each cycle of a part of a test; of its line where it has one."""
+    if part.loops is None or part.cycles is None or test.cycles is None:
+        return Contributions(())
+    model = test.strain_models[index]
+    of_loop = of_loops(part.loops, index, errors, model, part.cycles, cycles)
+    parts = [of_loop]
+    if part.end_moduli is not None:
+        parts += of_ends(part, index, errors, float(areas_of(test.specimens)[index]))
+    if part.line is not None and test.amplitude is not None and pull is not None:
+        rest = of_rest(
+            pull, origin or PullOrigin(errors, model),
+            np.asarray(test.amplitude.mean_tension[index]),
+            of_loops(test.amplitude, index, errors, model, test.cycles, cycles),
+        )  # fmt: skip
+        parts.append(of_line(part.line, part.loops, index, of_loop, rest))
+    return merged(parts)
+
+
+def _named(found: Contributions, prefix: str, *, left_out: Sequence[str] = ()) -> Contributions:
+    names = [name for name in found.values if name not in left_out]
+    return renamed(found, {name: f"{prefix}{name}" for name in names})
