@@ -24,7 +24,7 @@ from coverage_tethers import Found, table
 
 from reduction.archive.surfaces_dataset import surfaces_to_dataset
 from reduction.archive.test_dataset import to_dataset
-from reduction.batch.experiment_product import fit_rows, row_of_archive
+from reduction.batch.experiment_product import _fit_rows, _row_of_archive
 from reduction.campaign.plan import ExperimentPlan
 from reduction.experiments.designs import (
     FactorLevels,
@@ -33,7 +33,7 @@ from reduction.experiments.designs import (
     quadratic_exponents,
 )
 from reduction.experiments.experiment import ExperimentResult
-from reduction.lines.archive_source import line_source_of_experiment
+from reduction.lines.archive_source import _line_source_of_experiment
 from reduction.lines.line_lookup import look_up
 from reduction.pipeline.located_test import locate
 from reduction.pipeline.reduce_test import reduce_test
@@ -204,7 +204,7 @@ def campaign(seed: int) -> list[Found]:
             record(f"R{number}", time, strain, late, late, rng, errors), "cyclic", model, pulls
         )
         dataset = to_dataset(test, version="0", command="coverage")
-        row = row_of_archive(plan, dataset, 0, "line")
+        row = _row_of_archive(plan, dataset, 0, "line")
         rows.append(row | {"run": f"R{number}", "coded": tuple(PLAN[number]), "order": number})
         own = responses(modulus, frequency, mean, amplitude)
         exact_of.append(responses(stiffness(pair, PLAN[number]), frequency, mean, amplitude))
@@ -220,7 +220,7 @@ def campaign(seed: int) -> list[Found]:
                     N_CYCLES - 1,
                 )
             )
-    result = fit_rows(plan, rows)
+    result = _fit_rows(plan, rows)
     if result.surfaces is None or result.shared is None:
         raise RuntimeError("; ".join(result.notes))
     terms = model_matrix(PLAN, EXPONENTS)
@@ -246,7 +246,7 @@ def campaign(seed: int) -> list[Found]:
 
 def looked_up(result: ExperimentResult, pair: int, rng: np.random.Generator) -> list[Found]:
     """Design values of the surface at three points of the box, with the parts of their interval."""
-    line = line_source_of_experiment(surfaces_to_dataset([result], origin=ORIGIN), "rope")
+    line = _line_source_of_experiment(surfaces_to_dataset([result], origin=ORIGIN), "rope")
     found: list[Found] = []
     for coded in rng.uniform(-0.8, 0.8, (3, 3)):
         level = (HIGH + LOW) / 2 + coded * (HIGH - LOW) / 2

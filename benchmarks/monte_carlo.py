@@ -23,9 +23,9 @@ from pathlib import Path
 import numpy as np
 from coverage_tethers import numbers_of, one_test
 
-from reduction.batch.reduce_tests import reduce_survey
+from reduction.batch.reduce_tests import _reduce_survey
 from reduction.batch.reuse import basis_of
-from reduction.batch.survey import Survey, read_test
+from reduction.batch.survey import Survey, _read_test
 from reduction.batch.test_history import fit_strain_models, past_of
 from reduction.campaign.load import load_campaign
 from reduction.record.contributions import combined_standard_uncertainty
@@ -84,7 +84,7 @@ def t_1(draw: int) -> Numbers:
             for name, one in campaign.specimens.items()
         }
         campaign = replace(campaign, specimens=specimens, marks=marks)
-        (survey,) = read_test(campaign, campaign.tests["T-1"])
+        (survey,) = _read_test(campaign, campaign.tests["T-1"])
         # the marks of the other tests were read under the same load cell
         others = [
             replace(one, mark_tension={
@@ -95,14 +95,14 @@ def t_1(draw: int) -> Numbers:
         surveys = [survey, *others]
         models, _ = fit_strain_models(campaign, surveys)
         basis = basis_of(campaign, survey, past_of(surveys, models), pulls={})
-        return dict(_numbers(reduce_survey(campaign, survey, basis.models, None, "{}")))
+        return dict(_numbers(_reduce_survey(campaign, survey, basis.models, None, "{}")))
 
 
 @cache
 def _surveys() -> list[Survey]:
     """Every test of the campaign, as it was logged."""
     campaign = load_campaign(ROOT / "campaign.toml")
-    return [one for plan in campaign.tests.values() for one in read_test(campaign, plan)]
+    return [one for plan in campaign.tests.values() for one in _read_test(campaign, plan)]
 
 
 def _rewrite(path: Path, change: Callable[..., list[np.ndarray]]) -> None:

@@ -18,7 +18,7 @@ from figures import Figure, hand_on
 from programs import sizes, synthetic_log
 
 from reduction.batch.reuse import basis_of, describe
-from reduction.batch.survey import located_again, read_test
+from reduction.batch.survey import _read_test, located_again
 from reduction.batch.test_history import fit_strain_models, instruments_of, past_of
 from reduction.campaign.load import load_campaign
 from reduction.pipeline.reduce_test import reduce_test
@@ -34,7 +34,7 @@ def seconds(path: Path, *, propagated: bool) -> tuple[float, int]:
     """Time from the file to the reduced test, and its cycles."""
     campaign = replace(load_campaign(path), uncertainty=STATED)
     start = time.perf_counter()
-    surveys = [one for plan in campaign.tests.values() for one in read_test(campaign, plan)]
+    surveys = [one for plan in campaign.tests.values() for one in _read_test(campaign, plan)]
     models, _ = fit_strain_models(campaign, surveys)
     (survey,) = surveys
     basis = basis_of(campaign, survey, past_of(surveys, models), pulls={})

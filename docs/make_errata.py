@@ -8,7 +8,7 @@ from pathlib import Path
 from reduction.published.printed_cells import ReportId
 from reduction.published.reproduce_page import (
     TITLES,
-    TouchedErratum,
+    _TouchedErratum,
     number_beside,
     reproduce,
     touched_errata,
@@ -61,7 +61,7 @@ def _row(item: Item) -> str:
     return f"| {' | '.join(map(_plain, shown))} |"
 
 
-def _entry(one: TouchedErratum) -> list[str]:
+def _entry(one: _TouchedErratum) -> list[str]:
     fault = one.erratum
     lines = [f"### {fault.id}", "", f"{_plain(fault.place)}.", ""]
     lines += [f"- Printed: {_plain(fault.printed)}", f"- Right: {_plain(fault.corrected)}"]

@@ -12,7 +12,7 @@ from reduction.quantities.names import (
     RESPONSE_PATTERNS,
     RESPONSES,
     SINGLE_QUANTITIES,
-    Quantity,
+    _Quantity,
 )
 from reduction.record.measurement import Quality
 
@@ -62,7 +62,7 @@ def _row(*cells: str) -> str:
     return "|" + "|".join(f" {cell} " if cell else " " for cell in cells) + "|"
 
 
-def _quantity(one: Quantity) -> str:
+def _quantity(one: _Quantity) -> str:
     unit = f"`{one.unit}`" if "<" in one.unit else one.unit or "text"
     return _row(f"`{one.name}`", unit, one.long_name, _symbol(one.symbol))
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.archive.dataset_builder import CONVENTIONS, SCHEMA_VERSION
-from reduction.archive.open import schema_of_file
+from reduction.archive.open import _schema_of_file
 from reduction.archive.variables import Variable
 
 _BLOCK = 1 << 20  # values of a long variable that are read at a time
@@ -57,7 +57,7 @@ def _global_findings(file: netCDF4.Dataset) -> Iterator[str]:
 
 
 def _variable_findings(file: netCDF4.Dataset) -> Iterator[str]:
-    schema = schema_of_file(file.dimensions)
+    schema = _schema_of_file(file.dimensions)
     for name, variable in file.variables.items():
         if name not in schema:
             yield f"{name} is not in the schema"

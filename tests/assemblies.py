@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from reduction.lines.assembly import Tether
-from reduction.lines.composite import composite_curve
+from reduction.lines.assembly import _Tether
+from reduction.lines.composite import _composite_curve
 from reduction.lines.curve_pieces import CurvePiece
 from reduction.stages.strain.strain_model import StrainModel
 
 
 def curve_of(law, low=0.1, high=2.5, spread=0.0, n=200):
     at = np.linspace(low, high, n)
-    return composite_curve(
+    return _composite_curve(
         [CurvePiece("T", "static", "ascending", at, law(at), np.full(n, spread))]
     )
 
@@ -18,7 +18,7 @@ def curve_of(law, low=0.1, high=2.5, spread=0.0, n=200):
 def spring(length=1.0, constant=100.0, **curve):
     """A tether without splices, force constant * strain."""
     model = StrainModel("T", "gauge-length", {"reference_position": length, "gauge_length": length})
-    return Tether(curve_of(lambda at: constant * at, **curve), model)
+    return _Tether(curve_of(lambda at: constant * at, **curve), model)
 
 
 DRIVEN = StrainModel(
@@ -31,4 +31,4 @@ DRIVEN = StrainModel(
         "splice_exponent": 0.86,
     },
 )
-RUBBER = Tether(curve_of(lambda at: 400 * at + 80 * at**3), DRIVEN)
+RUBBER = _Tether(curve_of(lambda at: 400 * at + 80 * at**3), DRIVEN)

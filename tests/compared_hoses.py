@@ -7,7 +7,7 @@ import numpy as np
 from measured_hoses import Truth
 
 from reduction.archive.campaign_products import NamedComparison, comparisons_to_dataset
-from reduction.prediction.hose_comparison import compare_hose
+from reduction.prediction.hose_comparison import _compare_hose
 from reduction.prediction.measured_curve import constant_errors, measured_curve
 from reduction.record.measurement import Origin, Source, Step
 
@@ -44,7 +44,7 @@ def pulled(truth, *, reach):
 def agreeing():
     """Modulus 5 % above what was thought, known to 10 %, and found again by a fit."""
     stiffer = TRUTH.but(rubber_modulus=210 * PSI)
-    found = compare_hose(
+    found = _compare_hose(
         TRUTH.design(), cycled(stiffer, reach=0.9),
         standard_uncertainty={"rubber_modulus": 20 * PSI, "wrap_angle": np.radians(0.5)},
         calibrate=("wrap_angle", "rubber_modulus"),
@@ -56,7 +56,7 @@ def agreeing():
 def differing():
     """A pull to the break of a hose with cords half as strong again; nothing is to be fitted."""
     strong = TRUTH.but(cord_load_scale=1.5)
-    found = compare_hose(
+    found = _compare_hose(
         TRUTH.design(), pulled(strong, reach=1.2),
         standard_uncertainty={"rubber_modulus": 10 * PSI},
     )  # fmt: skip
@@ -66,7 +66,7 @@ def differing():
 @cache
 def trading():
     """Two scales of the cords from a stretch in which they hardly carry: one makes the other."""
-    found = compare_hose(
+    found = _compare_hose(
         TRUTH.design(), cycled(TRUTH, reach=0.75, n_cycles=10, loading="dynamic", softer=0.02),
         standard_uncertainty={"wrap_angle": np.radians(0.5)}, calibrate=NOT_APART,
     )  # fmt: skip

@@ -41,7 +41,7 @@ def level_text(number, unit):
 
 def shown_by_command(question, lines, monkeypatch):
     """Row of the table, sentences, or the refusal, of `reduction lookup` for a question."""
-    monkeypatch.setattr(command, "lines_of", lambda source: lines)
+    monkeypatch.setattr(command, "_lines_of", lambda source: lines)
     output = Told(question["system"])
     wanted = Wanted(
         quantity=question["quantity"],

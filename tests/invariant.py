@@ -24,7 +24,7 @@ from secondreduction import numbers_that_differ, readings_that_differ
 
 from reduction.batch.reduce_tests import dataset_of
 from reduction.batch.reuse import basis_of
-from reduction.batch.survey import read_test
+from reduction.batch.survey import _read_test
 from reduction.batch.test_history import fit_strain_models, past_of
 from reduction.campaign.load import load_campaign
 from reduction.record.errors import ReductionError
@@ -69,7 +69,7 @@ def _refused(error):
 def _product(campaign):
     """The stages of a run, one test after another, up to what would be written."""
     name = next(iter(campaign.tests))
-    survey = read_test(campaign, campaign.tests[name])[0]
+    survey = _read_test(campaign, campaign.tests[name])[0]
     if survey.error is not None:
         return _refused(survey.error)
     models, errors = fit_strain_models(campaign, [survey])

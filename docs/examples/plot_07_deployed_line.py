@@ -10,7 +10,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 
-from reduction.lines.assembly import Tether, assemble, equal_tethers
+from reduction.lines.assembly import _assemble, _equal_tethers, _Tether
 from reduction.lines.composite import compose, used_of
 from reduction.lines.curve_pieces import CompositeRule
 from reduction.lines.deck_formats import export_line
@@ -34,7 +34,7 @@ axes.legend()
 # %%
 # Four of them side by side, as long as the tested one, splices included.
 
-four = assemble(equal_tethers(Tether(curve=curve, model=source.model), 4))
+four = _assemble(_equal_tethers(_Tether(curve=curve, model=source.model), 4))
 figure, axes = plt.subplots()
 axes.plot(four.total_length, four.tension / 1e3)
 axes.set(

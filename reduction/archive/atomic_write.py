@@ -20,28 +20,7 @@ _NO_SUCH_CALL = (errno.EINVAL, errno.ENOTSUP, errno.ENOSYS)
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """Give a temporary name beside ``path``; when the block ends well it becomes ``path``.
-
-    If the block or the disk fails, ``path`` is what it was before, and nothing else is left that
-    the disk lets be removed.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Name that the file is to have; its folder is made where it is not there.
-
-    Yields
-    ------
-    part : pathlib.Path
-        Where to write.
-
-    Raises
-    ------
-    ArchiveError
-        If the file is there and it is not known whether the disk has it.
-    OSError
-        If the disk refuses.
-    """
+    """Give a temporary name beside ``path``; when the block ends well it becomes ``path``."""
     path.parent.mkdir(parents=True, exist_ok=True)
     # workers on two machines may have one number
     part = path.with_name(f".{path.name}.{_machine()}-{os.getpid()}-{uuid.uuid4().hex[:8]}.part")
@@ -60,16 +39,7 @@ def whole_file(path: Path) -> Iterator[Path]:
 
 
 def remove_abandoned(path: Path) -> None:
-    """Remove what processes of this machine that are no more began of a file.
-
-    In the folder of a run its lock says that nobody else is at work, and all that was begun is
-    removed; elsewhere several commands may be.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Name that the file was to have.
-    """
+    """Remove what processes of this machine that are no more began of a file."""
     begun = re.compile(rf"\.{re.escape(path.name)}\.{_machine()}-(\d+)-[0-9a-f]+\.part")
     with suppress(OSError):  # what cannot be removed is in nobody's way
         for name in os.listdir(path.parent):
@@ -98,18 +68,7 @@ def _is_alive(process: int) -> bool:
 
 
 def take_away(path: Path) -> None:
-    """Remove a file that an earlier run made, where it is there.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Of a product that is not of the campaign any more.
-
-    Raises
-    ------
-    ArchiveError
-        If the disk refuses.
-    """
+    """Remove a file that an earlier run made, where it is there."""
     try:
         path.unlink(missing_ok=True)
     except OSError as error:

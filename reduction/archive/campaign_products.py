@@ -118,26 +118,7 @@ class NamedComparison:
 
 
 def comparisons_to_dataset(named: Sequence[NamedComparison], *, origin: Origin) -> xr.Dataset:
-    """Bring comparisons into the form of the archive; no file is touched.
-
-    Parameters
-    ----------
-    named : sequence of NamedComparison
-        One or more, each with a name of its own.
-    origin : Origin
-        The campaign, the archives of the tests, and the file that says how the hoses are made.
-
-    Returns
-    -------
-    dataset : xarray.Dataset
-        Names, dimensions and attributes of `COMPARISON_SCHEMA`, encoding included. Equal
-        inputs give equal datasets.
-
-    Raises
-    ------
-    ArchiveError
-        If there is no comparison, or two have one name.
-    """
+    """Bring comparisons into the form of the archive; no file is touched."""
     names = [one.name for one in named]
     if not named or len(set(names)) < len(names):
         raise ArchiveError(
@@ -331,26 +312,7 @@ _OF_LAYER = ("least_strain", "greatest_strain", "break_strain", "least_angle", "
 
 
 def predictions_to_dataset(hoses: Sequence[PredictedHose], *, origin: Origin) -> xr.Dataset:
-    """Bring predictions into the form of the archive; no file is touched.
-
-    Parameters
-    ----------
-    hoses : sequence of PredictedHose
-        One or more, each with a name of its own.
-    origin : Origin
-        The campaign, and the file that says how the hoses are made.
-
-    Returns
-    -------
-    dataset : xarray.Dataset
-        Names, dimensions and attributes of `PREDICTION_SCHEMA`, encoding included. Equal
-        inputs give equal datasets.
-
-    Raises
-    ------
-    ArchiveError
-        If there is no hose, or two have one name.
-    """
+    """Bring predictions into the form of the archive; no file is touched."""
     names = [hose.plan.name for hose in hoses]
     if not hoses or len(set(names)) < len(names):
         raise ArchiveError(
@@ -516,26 +478,7 @@ OUTCOME_SCHEMA: dict[str, Variable] = {
 
 
 def outcomes_to_dataset(outcomes: Sequence[Outcome], *, origin: Origin) -> xr.Dataset:
-    """Bring outcomes into the form of the archive; no file is touched.
-
-    Parameters
-    ----------
-    outcomes : sequence of Outcome
-        One or more, in the order of the table of results.
-    origin : Origin
-        The campaign, and the table of results as the only source.
-
-    Returns
-    -------
-    dataset : xarray.Dataset
-        Names, dimensions and attributes of `OUTCOME_SCHEMA`, encoding included. Equal inputs
-        give equal datasets.
-
-    Raises
-    ------
-    ArchiveError
-        If there is no outcome, or an attribute has a name that the archive keeps.
-    """
+    """Bring outcomes into the form of the archive; no file is touched."""
     if not outcomes:
         raise ArchiveError("there are no outcomes to keep", needed="one or more")
     values: Values = {
@@ -567,23 +510,7 @@ def _says_something(array: np.ndarray[Any, np.dtype[Any]]) -> bool:
 
 
 def outcomes_of_dataset(dataset: xr.Dataset) -> tuple[Outcome, ...]:
-    """Return the outcomes that an archive holds, as they were.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        From `reduction.archive.open.open_archive`.
-
-    Returns
-    -------
-    outcomes : tuple of Outcome
-        In the order of the table of results.
-
-    Raises
-    ------
-    ArchiveError
-        If it is no archive of outcomes.
-    """
+    """Return the outcomes that an archive holds, as they were."""
     if "outcome" not in dataset.sizes:
         raise ArchiveError(
             "the archive holds no outcomes", found=", ".join(map(str, dataset.sizes))

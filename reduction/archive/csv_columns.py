@@ -50,27 +50,12 @@ _LOW, _HIGH = 1e-4, 1e9
 """Between these Arrow, which is three times as fast, and Python write a number alike."""
 
 
-def number_texts(values: Floats) -> list[str]:
+def _number_texts(values: Floats) -> list[str]:
     """Return numbers as Python writes them, NaN as an empty text.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n,)
-        Any numbers. [any]
-
-    Returns
-    -------
-    texts : list of str
-        One a number.
-
-    Notes
-    -----
-    The shortest digits that give a number back are the same, whoever finds them; Python and Arrow
-    differ in where they begin to write a power of ten, in how, and in the point of a whole number.
 
     Examples
     --------
-    >>> number_texts(np.array([0.1, 2.0, 1e-7, np.nan]))
+    >>> _number_texts(np.array([0.1, 2.0, 1e-7, np.nan]))
     ['0.1', '2.0', '1e-07', '']
     """
     numbers = np.asarray(values, dtype=np.float64)
@@ -118,59 +103,35 @@ def uncertainty_of(column: Column) -> Column:
     )
 
 
-def texts_of_columns(columns: Sequence[tuple[NDArray[Any], Variable]]) -> list[list[str]]:
-    """Return columns of one length as fields, those of real numbers written in one go.
-
-    Parameters
-    ----------
-    columns : sequence of ndarray, shape (n_rows,), and Variable
-        Values, and what they are. [unit of each]
-
-    Returns
-    -------
-    texts : list of list of str
-        A field a row of each, as `texts_of` has it.
-    """
+def _texts_of_columns(columns: Sequence[tuple[NDArray[Any], Variable]]) -> list[list[str]]:
+    """Return columns of one length as fields, those of real numbers written in one go."""
     is_real = [
         values.dtype.kind == "f" and not variable.flags and variable.dtype != TEXT
         for values, variable in columns
     ]
     real = [values for (values, _), one in zip(columns, is_real, strict=True) if one]
-    written = number_texts(np.concatenate(real)) if real else []
+    written = _number_texts(np.concatenate(real)) if real else []
     numbers = (written[len(part) * at : len(part) * (at + 1)] for at, part in enumerate(real))
     return [
-        next(numbers) if one else texts_of(values, variable)
+        next(numbers) if one else _texts_of(values, variable)
         for (values, variable), one in zip(columns, is_real, strict=True)
     ]
 
 
-def texts_of(values: NDArray[Any], variable: Variable) -> list[str]:
-    """Return the values of a column as fields of a CSV file; flags as their meanings.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_rows,)
-        Of the variable. [its unit]
-    variable : Variable
-        What they are.
-
-    Returns
-    -------
-    texts : list of str
-        A field a row, quoted where it has to be.
-    """
+def _texts_of(values: NDArray[Any], variable: Variable) -> list[str]:
+    """Return the values of a column as fields of a CSV file; flags as their meanings."""
     if variable.flags:
         return _labels([int(value) for value in values], partial(_flag_text, variable=variable))
     if variable.dtype == TEXT:
         return _labels([str(value) for value in values], str)
     if values.dtype.kind == "f":
-        return number_texts(values)
+        return _number_texts(values)
     return [repr(value) for value in values.tolist()]
 
 
 def _labels(labels: Sequence[_Label], worded: Callable[[_Label], str]) -> list[str]:
     """Put labels, most of which repeat, in fields."""
-    field = {label: csv_field(worded(label)) for label in set(labels)}
+    field = {label: _csv_field(worded(label)) for label in set(labels)}
     return [field[label] for label in labels]
 
 
@@ -180,12 +141,12 @@ def _flag_text(value: int, variable: Variable) -> str:
     return next((name for name, number in variable.flags.items() if number == value), str(value))
 
 
-def csv_field(cell: Cell) -> str:
+def _csv_field(cell: Cell) -> str:
     """Return a cell as a field of a CSV file, quoted where it has to be.
 
     Examples
     --------
-    >>> print(csv_field(0.1), csv_field("=a, b"))
+    >>> print(_csv_field(0.1), _csv_field("=a, b"))
     0.1 "'=a, b"
     """
     line = io.StringIO()
@@ -194,14 +155,8 @@ def csv_field(cell: Cell) -> str:
     return line.getvalue().removesuffix(",\r\n")
 
 
-def csv_lines(columns: Iterable[Sequence[str]]) -> str:
-    """Return columns of fields, two at least, as lines of a CSV file.
-
-    Raises
-    ------
-    ValueError
-        If the columns differ in length.
-    """
+def _csv_lines(columns: Iterable[Sequence[str]]) -> str:
+    """Return columns of fields, two at least, as lines of a CSV file."""
     return "".join(f"{line}\r\n" for line in map(",".join, zip(*columns, strict=True)))
 
 
@@ -325,24 +280,7 @@ BLOCK_ROWS = 1 << 12
 def table_blocks(
     archive: xr.Dataset, table: Table, *, block_rows: int = BLOCK_ROWS
 ) -> Iterator[list[list[str]]]:
-    """Give the rows that an archive gives to a table; none where it lacks the subject.
-
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        From `reduction.archive.open.open_archive`; of what is as long as the table no more than a
-        block is read at a time.
-    table : Table
-        What to lay out.
-    block_rows : int
-        Most rows of a block. [1]
-
-    Yields
-    ------
-    fields : list of list of str
-        Rows of a block by column, each field as it stands in a CSV file; rows in the order of
-        ``table.dims``, last dimension fastest.
-    """
+    """Give the rows that an archive gives to a table; none where it lacks the subject."""
     needed = [name for name in table.needs if name in archive]
     if not needed or not set(table.dims) <= set(archive.sizes):
         return
@@ -350,8 +288,8 @@ def table_blocks(
     variables |= table.derive(archive)
     sizes = {dim: archive.sizes[dim] for dim in table.dims}
     global_fields = {
-        TEST.name: csv_field(archive.attrs.get("test", "")),
-        SYNTHETIC.name: csv_field(archive.attrs.get("synthetic", "no")),
+        TEST.name: _csv_field(archive.attrs.get("test", "")),
+        SYNTHETIC.name: _csv_field(archive.attrs.get("synthetic", "no")),
     }
     columns = table.columns
     for block in _blocks(sizes, block_rows):
@@ -365,7 +303,7 @@ def table_blocks(
             for place, column in enumerate(columns)
             if column.name not in global_fields and column.variable.name in variables
         }
-        texts = dict(zip(values, texts_of_columns(list(values.values())), strict=True))
+        texts = dict(zip(values, _texts_of_columns(list(values.values())), strict=True))
         yield [
             texts[place] if place in texts else [global_fields.get(column.name, "")] * n_rows
             for place, column in enumerate(columns)
@@ -440,18 +378,7 @@ OUTCOME_TABLES: dict[str, tuple[GroupColumn | Column, ...]] = {
 
 
 def outcome_table_rows(archive: xr.Dataset) -> dict[str, list[list[Cell]]]:
-    """Return the rows of every table of outcomes; none where the outcomes do not give it.
-
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        Of outcomes, from `reduction.archive.open.open_archive`.
-
-    Returns
-    -------
-    rows : dict of str to list of list
-        By table, in the order of `OUTCOME_TABLES`.
-    """
+    """Return the rows of every table of outcomes; none where the outcomes do not give it."""
     outcomes = outcomes_of_dataset(archive)
     synthetic = archive.attrs.get("synthetic", "no")
     rows: dict[str, list[Row]] = {
@@ -495,23 +422,10 @@ _WHY = {
 _UNKNOWN = "nothing is known of its scatter"
 
 
-def lonely_numbers(
+def _lonely_numbers(
     columns: Sequence[Column | GroupColumn], fields: Sequence[Sequence[str]]
 ) -> set[int]:
-    """Find the uncertainties that are empty where a number stands beside.
-
-    Parameters
-    ----------
-    columns : sequence of Column or GroupColumn
-        Of a table.
-    fields : sequence of sequence of str
-        Rows of it, by column.
-
-    Returns
-    -------
-    lonely : set of int
-        Places of such columns. [1]
-    """
+    """Find the uncertainties that are empty where a number stands beside."""
     return {
         place
         for place, _ in _uncertainties(columns)
@@ -525,20 +439,7 @@ def lonely_numbers(
 def column_descriptions(
     columns: Sequence[Column | GroupColumn], lonely: Collection[int] = ()
 ) -> Iterator[list[Cell]]:
-    """Return the rows of columns.csv of one table.
-
-    Parameters
-    ----------
-    columns : sequence of Column or GroupColumn
-        Of the table.
-    lonely : collection of int
-        From `lonely_numbers`, of all its rows. [1]
-
-    Yields
-    ------
-    description : list
-        Of each column; that of an uncertainty says why it is empty where a number stands beside.
-    """
+    """Return the rows of columns.csv of one table."""
     quantities = dict(_uncertainties(columns))
     for place, column in enumerate(columns):
         *about, reason = column.description
@@ -584,27 +485,15 @@ class TableFile:
         return self._append is not None
 
     def add(self, fields: Sequence[Sequence[str]]) -> None:
-        """Add rows, given as columns of fields of `reduction.archive.csv_columns.texts_of`.
-
-        Raises
-        ------
-        ArchiveError
-            If the disk refuses.
-        """
+        """Add rows, given as columns of fields of `reduction.archive.csv_columns._texts_of`."""
         if not fields or not fields[0]:
             return
         if self._append is None:
             self._append = self._whole.enter_context(appended_whole(self.path))
             self._append(csv_text([column.header for column in self.columns], ()))
-        self._append(csv_lines(fields))
-        self.lonely |= lonely_numbers(self.columns, fields)
+        self._append(_csv_lines(fields))
+        self.lonely |= _lonely_numbers(self.columns, fields)
 
     def add_rows(self, rows: Sequence[Sequence[Cell]]) -> None:
-        """Add rows of cells.
-
-        Raises
-        ------
-        ArchiveError
-            If the disk refuses.
-        """
-        self.add([[csv_field(cell) for cell in column] for column in zip(*rows, strict=True)])
+        """Add rows of cells."""
+        self.add([[_csv_field(cell) for cell in column] for column in zip(*rows, strict=True)])

@@ -67,18 +67,18 @@ def _shared_table(name: str, dims: tuple[str, ...]) -> Table:
 SHARED_TABLES = tuple(_shared_table(name, dims) for dims, name in _FILES.items())
 
 
-def edges_of_bins(archive: xr.Dataset) -> Variables:
+def _edges_of_bins(archive: xr.Dataset) -> Variables:
     """Give each bin of strain its edges as columns."""
     edges = archive.variables["strain_bin_bounds"]
     return {"strain_bin_low": edges[:, 0], "strain_bin_high": edges[:, 1]}
 
 
-def cycle_count(archive: xr.Dataset) -> Variables:
+def _cycle_count(archive: xr.Dataset) -> Variables:
     """Count the cycles."""
     return {"n_cycles": xr.Variable((), archive.sizes.get("cycle", 0))}
 
 
-def chords_of_branches(archive: xr.Dataset) -> Variables:
+def _chords_of_branches(archive: xr.Dataset) -> Variables:
     """Give each branch a column of its own, so that a cycle stays one row."""
     if "chord_modulus" not in archive:
         return {}
@@ -89,7 +89,7 @@ def chords_of_branches(archive: xr.Dataset) -> Variables:
     }
 
 
-def fit_of_parameters(archive: xr.Dataset) -> Variables:
+def _fit_of_parameters(archive: xr.Dataset) -> Variables:
     """Repeat what is said of a fit beside each of its parameters."""
     fit = archive.variables["elastomer_parameter_fit"].values - 1
     return {
@@ -99,7 +99,7 @@ def fit_of_parameters(archive: xr.Dataset) -> Variables:
     }
 
 
-def one_specimen(archive: xr.Dataset) -> Variables:
+def _one_specimen(archive: xr.Dataset) -> Variables:
     """Leave out the axis of a specimen that is alone."""
     return {
         str(name): variable.isel(specimen=0)
@@ -138,7 +138,7 @@ CHANGE_TABLES = (
         ("specimen",),
         ("mean_identity_residual", "n_cycles"),
         ("mean_identity_residual",),
-        cycle_count,
+        _cycle_count,
     ),
     Table(
         "history",
@@ -307,14 +307,14 @@ CURVE_TABLES = (
             "segment_criterion",
         ),
         ("segment_modulus",),
-        cycle_count,
+        _cycle_count,
     ),
     Table(
         "cycles",
         ("specimen", "cycle"),
         (*_PER_CYCLE, *(f"chord_modulus_{branch}" for branch in BRANCH_NAMES)),
         _PER_CYCLE,
-        chords_of_branches,
+        _chords_of_branches,
     ),
     Table(
         "tangent_modulus",
@@ -332,7 +332,7 @@ CURVE_TABLES = (
             "branch_tension_count",
         ),
         ("tangent_modulus", "tangent_modulus_untrimmed"),
-        edges_of_bins,
+        _edges_of_bins,
     ),
     Table(
         "first_loading",
@@ -384,7 +384,7 @@ RUN = ("run_name", "run_specimen")
 """Columns that say which run a row is of."""
 
 
-def table_of_experiments(
+def _table_of_experiments(
     name: str, dims: tuple[str, ...], variables: tuple[str, ...], needs: tuple[str, ...]
 ) -> Table:
     """Return a table of a product of experiments."""
@@ -807,7 +807,7 @@ RUBBER_TABLES = (
             "elastomer_aicc",
         ),
         ("elastomer_parameter_name",),
-        fit_of_parameters,
+        _fit_of_parameters,
     ),
     Table(
         "stress_at_strain",
@@ -858,7 +858,7 @@ STEPWISE_TABLES = (
             "relaxed_gauge_length",
         ),
         ("clock",),
-        one_specimen,
+        _one_specimen,
         product="stepwise test",
     ),
     Table(
@@ -866,7 +866,7 @@ STEPWISE_TABLES = (
         ("interval",),
         ("specimen", "interval_branch", "interval_strain", "interval_modulus"),
         ("interval_modulus",),
-        one_specimen,
+        _one_specimen,
         product="stepwise test",
     ),
 )
@@ -874,7 +874,7 @@ STEPWISE_TABLES = (
 """Of tests with weights that were hung by hand."""
 
 STIFFNESS_TABLES = (
-    table_of_experiments(
+    _table_of_experiments(
         "stiffness_forms",
         ("experiment", "stiffness_form"),
         (
@@ -894,7 +894,7 @@ STIFFNESS_TABLES = (
         ),
         ("stiffness_n_coefficients",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "stiffness_coefficients",
         ("experiment", "stiffness_form", "stiffness_term"),
         (
@@ -907,13 +907,13 @@ STIFFNESS_TABLES = (
         ),
         ("stiffness_coefficient",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "stiffness_runs",
         ("experiment", "stiffness_form", "run"),
         (*RUN, "stiffness_fitted", "stiffness_residual"),
         ("stiffness_fitted",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "single_time",
         ("experiment",),
         (
@@ -946,7 +946,7 @@ _ERRORS = (
 )
 
 SURFACE_TABLES = (
-    table_of_experiments(
+    _table_of_experiments(
         "surfaces",
         ("experiment", "response", "term"),
         (
@@ -966,7 +966,7 @@ SURFACE_TABLES = (
         ),
         ("response_coefficient",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "shared_errors_surfaces",
         ("experiment", "response", "uncertainty_component", "term"),
         (
@@ -980,7 +980,7 @@ SURFACE_TABLES = (
         ("response_coefficient_uncertainty_contribution",),
     ),
     *(
-        table_of_experiments(
+        _table_of_experiments(
             f"shared_errors_{table}",
             ("experiment", "response", "uncertainty_component", dim),
             (*_ERRORS, *about, f"response_{name}_uncertainty_contribution"),
@@ -992,7 +992,7 @@ SURFACE_TABLES = (
             ("eigenvalues", "direction", "eigenvalue", ("unit",)),
         )
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "surface_quality",
         ("experiment", "response"),
         (
@@ -1027,7 +1027,7 @@ SURFACE_TABLES = (
         ),
         ("response_n_runs",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "anova",
         ("experiment", "response", "anova_row"),
         (
@@ -1042,7 +1042,7 @@ SURFACE_TABLES = (
         ),
         ("response_anova_degrees_of_freedom",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "stationary_points",
         ("experiment", "response", "factor"),
         (
@@ -1054,7 +1054,7 @@ SURFACE_TABLES = (
         ),
         ("response_stationary_point",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "eigenvalues",
         ("experiment", "response", "direction", "factor"),
         (
@@ -1066,7 +1066,7 @@ SURFACE_TABLES = (
         ),
         ("response_eigenvector",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "surface_points",
         ("experiment", "response", "point"),
         (
@@ -1087,13 +1087,13 @@ SURFACE_TABLES = (
         ),
         ("response_point_value",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "point_levels",
         ("experiment", "point", "factor"),
         ("point_name", "factor_name", "point_coded_level", "point_level", "factor_unit"),
         ("point_coded_level",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "ridge",
         ("experiment", "response", "ridge_direction", "ridge_radius", "factor"),
         (
@@ -1109,13 +1109,13 @@ SURFACE_TABLES = (
         ),
         ("response_ridge_coded_level",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "blocks",
         ("experiment", "response", "block"),
         ("block_name", "unit", "response_block_effect"),
         ("response_block_effect",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "screening",
         ("experiment", "response", "plan_column"),
         (
@@ -1134,7 +1134,7 @@ SURFACE_TABLES = (
         ),
         ("effect_is_there",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "aliases",
         ("experiment", "interaction", "plan_column"),
         ("interaction_factor", "interaction_other_factor", "plan_column_name", "effect_alias"),
@@ -1143,7 +1143,7 @@ SURFACE_TABLES = (
 )
 
 EXPERIMENT_TABLES = (
-    table_of_experiments(
+    _table_of_experiments(
         "experiments",
         ("experiment",),
         (
@@ -1157,13 +1157,13 @@ EXPERIMENT_TABLES = (
         ),
         ("experiment_kind",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "factors",
         ("experiment", "factor"),
         ("factor_name", "factor_low", "factor_high", "factor_unit"),
         ("factor_low",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "runs",
         ("experiment", "run"),
         (
@@ -1183,13 +1183,13 @@ EXPERIMENT_TABLES = (
         ),
         ("run_is_there",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "run_levels",
         ("experiment", "run", "factor"),
         (*RUN, "factor_name", "run_plan", "run_coded_level", "run_level", "factor_unit"),
         ("run_plan",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "run_responses",
         ("experiment", "response", "run"),
         (
@@ -1208,13 +1208,13 @@ EXPERIMENT_TABLES = (
     ),
     *SURFACE_TABLES,
     *STIFFNESS_TABLES,
-    table_of_experiments(
+    _table_of_experiments(
         "cautions",
         ("caution",),
         ("experiment=caution_experiment", "caution_kind", "caution_hint", "caution_runs"),
         ("caution",),
     ),
-    table_of_experiments(
+    _table_of_experiments(
         "experiment_notes",
         ("note",),
         ("experiment=note_experiment", "note_stage"),

@@ -63,12 +63,8 @@ ENVELOPE_COLUMNS = (
 
 
 @dataclass(frozen=True)
-class Curve:
-    """Mean tangent modulus of one test, specimen and branch; arrays (n_bins,).
-
-    ``uncertainty`` holds both parts; ``shared`` what each error that samples share adds to
-    ``tangent_modulus``, (n_components, n_bins).
-    """
+class _Curve:
+    """Mean tangent modulus of one test, specimen and branch; arrays (n_bins,)."""
 
     test: str
     specimen: str
@@ -81,7 +77,7 @@ class Curve:
     shared: Contributions = field(default_factory=lambda: Contributions(()))
 
 
-def curves_of(archive: xr.Dataset) -> Iterator[Curve]:
+def _curves_of(archive: xr.Dataset) -> Iterator[_Curve]:
     """Give the curves of an archive; none where the test has no cycles."""
     if "tangent_modulus" not in archive:
         return
@@ -90,7 +86,7 @@ def curves_of(archive: xr.Dataset) -> Iterator[Curve]:
     component = () if rows is None else tuple(components_of(archive))
     for row, specimen in enumerate(archive.variables["specimen"].values):
         for column, branch in enumerate(archive.variables["branch_name"].values):
-            yield Curve(
+            yield _Curve(
                 test=archive.attrs["test"],
                 specimen=str(specimen),
                 branch=str(branch),
@@ -107,27 +103,14 @@ def curves_of(archive: xr.Dataset) -> Iterator[Curve]:
             )
 
 
-def on_grid(curve: Curve, grid: Floats) -> tuple[Floats, Floats]:
-    """Bring a curve onto a strain grid by straight lines between neighbouring bins.
-
-    Parameters
-    ----------
-    curve : Curve
-        One test, specimen and branch.
-    grid : ndarray, shape (n_grid,)
-        Strain. [1]
-
-    Returns
-    -------
-    modulus, uncertainty : ndarray, shape (n_grid,)
-        NaN outside the curve and across a gap in it: nothing is extrapolated. [Pa]
-    """
-    modulus, uncertainty = read_curve(curve, grid, np.stack([curve.modulus, curve.uncertainty]))
+def _on_grid(curve: _Curve, grid: Floats) -> tuple[Floats, Floats]:
+    """Bring a curve onto a strain grid by straight lines between neighbouring bins."""
+    modulus, uncertainty = _read_curve(curve, grid, np.stack([curve.modulus, curve.uncertainty]))
     return modulus, uncertainty
 
 
-def read_curve(curve: Curve, grid: Floats, values: Floats) -> Floats:
-    """Values at the bins of a curve, (n, n_bins), on a strain grid, (n, n_grid); as `on_grid`."""
+def _read_curve(curve: _Curve, grid: Floats, values: Floats) -> Floats:
+    """Values at the bins of a curve, (n, n_bins), on a strain grid, (n, n_grid); as `_on_grid`."""
     known = np.isfinite(curve.modulus)
     strain = curve.strain[known]
     if strain.size == 0:
@@ -136,23 +119,8 @@ def read_curve(curve: Curve, grid: Floats, values: Floats) -> Floats:
     return np.array(found).reshape(len(values), grid.size)
 
 
-def envelope_rows(curves: Sequence[Curve]) -> list[list[Cell]]:
-    """Return the envelope of each specimen and branch on one strain grid.
-
-    The grid is that of the test with the widest bins, carried on to both sides, so that
-    no curve is shown finer than it is.
-
-    Parameters
-    ----------
-    curves : sequence of Curve
-        Of all tests of a campaign.
-
-    Returns
-    -------
-    rows : list of list
-        In the order of `ENVELOPE_COLUMNS`; strains at which no test has a modulus are
-        left out.
-    """
+def _envelope_rows(curves: Sequence[_Curve]) -> list[list[Cell]]:
+    """Return the envelope of each specimen and branch on one strain grid."""
     if not curves:
         return []
     widest = max(curves, key=lambda curve: curve.width)
@@ -165,7 +133,7 @@ def envelope_rows(curves: Sequence[Curve]) -> list[list[Cell]]:
     )
     # sixteenth digits that differ from test to test say nothing
     grid = np.round(origin + widest.width * steps, 12)
-    groups: dict[tuple[str, str], list[Curve]] = defaultdict(list)
+    groups: dict[tuple[str, str], list[_Curve]] = defaultdict(list)
     for curve in curves:
         groups[curve.specimen, curve.branch].append(curve)
     return [
@@ -176,9 +144,9 @@ def envelope_rows(curves: Sequence[Curve]) -> list[list[Cell]]:
 
 
 def _group_rows(
-    specimen: str, branch: str, group: Sequence[Curve], grid: Floats
+    specimen: str, branch: str, group: Sequence[_Curve], grid: Floats
 ) -> Iterator[list[Cell]]:
-    pairs = [on_grid(curve, grid) for curve in group]
+    pairs = [_on_grid(curve, grid) for curve in group]
     modulus = np.array([pair[0] for pair in pairs])
     uncertainty = np.array([pair[1] for pair in pairs])
     synthetic = "yes" if any(curve.synthetic == "yes" for curve in group) else "no"
@@ -195,22 +163,8 @@ def _group_rows(
         yield [*cells, int(np.isfinite(at).sum()), synthetic]
 
 
-def by_response(archive: xr.Dataset) -> xr.Dataset:
-    """Set the responses side by side along a dimension ``response``.
-
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        Of experiments.
-
-    Returns
-    -------
-    dataset : xarray.Dataset
-        What the archive has, and ``response_<what>`` of every response; numbers are NaN
-        where an experiment lacks it.  ``run_is_there`` and ``effect_is_there`` are 1 where a
-        row of a table belongs, NaN where an experiment is shorter than another, and the plan
-        of the runs has its factors alone.
-    """
+def _by_response(archive: xr.Dataset) -> xr.Dataset:
+    """Set the responses side by side along a dimension ``response``."""
     names = [
         name
         for name in SURFACE_NAMES
@@ -294,11 +248,8 @@ STATIC_DYNAMIC_COLUMNS = (
 
 
 @dataclass(frozen=True)
-class Slope:
-    """Slope between two readings of a stepwise test, at the strain in their middle.
-
-    ``uncertainty`` holds both parts; ``shared`` what each error that samples share adds.
-    """
+class _Slope:
+    """Slope between two readings of a stepwise test, at the strain in their middle."""
 
     test: str
     specimen: str
@@ -310,7 +261,7 @@ class Slope:
     shared: Mapping[Component, float] = field(default_factory=dict)
 
 
-def slopes_of(archive: xr.Dataset) -> Iterator[Slope]:
+def _slopes_of(archive: xr.Dataset) -> Iterator[_Slope]:
     """Give the slopes of an archive that have a number; none where the test is not stepwise."""
     if "interval_modulus" not in archive:
         return
@@ -318,7 +269,7 @@ def slopes_of(archive: xr.Dataset) -> Iterator[Slope]:
     for index in map(
         int, np.flatnonzero(np.isfinite(archive.variables["interval_modulus"].values))
     ):
-        yield Slope(
+        yield _Slope(
             test=archive.attrs["test"],
             specimen=str(archive.variables["specimen"].values[0]),
             branch=branches[int(archive.variables["interval_branch"].values[index])],
@@ -332,24 +283,8 @@ def slopes_of(archive: xr.Dataset) -> Iterator[Slope]:
         )
 
 
-def static_dynamic_rows(slopes: Sequence[Slope], curves: Sequence[Curve]) -> list[list[Cell]]:
-    """Set every static slope beside the dynamic curves of its branch, and give their ratio.
-
-    Parameters
-    ----------
-    slopes : sequence of Slope
-        Of all stepwise tests of a campaign.
-    curves : sequence of Curve
-        Of all cyclic tests of it.
-
-    Returns
-    -------
-    rows : list of list
-        In the order of `STATIC_DYNAMIC_COLUMNS`, by curve and then by rising strain;
-        strains at which the curve has no modulus are left out.  What both moduli share (a
-        load cell, a diameter) is in the ratio as far as it is not the same share of both; of
-        archives that say nothing of it they count as independent.
-    """
+def _static_dynamic_rows(slopes: Sequence[_Slope], curves: Sequence[_Curve]) -> list[list[Cell]]:
+    """Set every static slope beside the dynamic curves of its branch, and give their ratio."""
     rows: list[list[Cell]] = []
     for curve in curves:
         beside = sorted(
@@ -358,7 +293,7 @@ def static_dynamic_rows(slopes: Sequence[Slope], curves: Sequence[Curve]) -> lis
         )
         at = np.array([slope.strain for slope in beside])
         of_errors = curve.shared.values.get("tangent_modulus", np.empty((0, curve.strain.size)))
-        dynamic = np.column_stack([*on_grid(curve, at), *read_curve(curve, at, of_errors)])
+        dynamic = np.column_stack([*_on_grid(curve, at), *_read_curve(curve, at, of_errors)])
         rows += [
             _row(slope, curve, float(modulus), float(spread), shared)
             for slope, (modulus, spread, *shared) in zip(beside, dynamic, strict=True)
@@ -368,7 +303,7 @@ def static_dynamic_rows(slopes: Sequence[Slope], curves: Sequence[Curve]) -> lis
 
 
 def _row(
-    slope: Slope, curve: Curve, modulus: float, spread: float, shared: Sequence[float]
+    slope: _Slope, curve: _Curve, modulus: float, spread: float, shared: Sequence[float]
 ) -> list[Cell]:
     ratio = slope.modulus / modulus
     of_curve = dict(zip(curve.shared.component, np.nan_to_num(shared), strict=True))
@@ -425,39 +360,7 @@ def write_tables(
     change_in_length: Path | None = None,
     opener: Opener = reading,
 ) -> list[Path]:
-    """Write every table that the archives fill, and columns.csv, which explains them.
-
-    Parameters
-    ----------
-    archives : sequence of pathlib.Path
-        Archives of one campaign; the rows stand in the order of the tests' places in
-        the specimens' history, then of their names.
-    folder : pathlib.Path
-        Where the tables go.
-    surfaces : pathlib.Path, optional
-        Archive of the campaign's experiments, where it has any.
-    outcomes : pathlib.Path, optional
-        Archive of the campaign's outcomes without a log, where it has any.
-    predictions : pathlib.Path, optional
-        Archive of the campaign's predicted hoses, where it has any.
-    comparisons : pathlib.Path, optional
-        Archive of the campaign's comparisons, where it has any.
-    change_in_length : pathlib.Path, optional
-        Archive of the properties of the campaign's ropes, where it has any.
-    opener : Opener
-        How archives are opened.
-
-    Returns
-    -------
-    paths : list of pathlib.Path
-        The files, in a fixed order. A table without rows is not written; one that an
-        earlier run wrote and this one does not fill is removed once all is written.
-
-    Raises
-    ------
-    ArchiveError
-        If an archive cannot be opened or a table cannot be written.
-    """
+    """Write every table that the archives fill, and columns.csv, which explains them."""
     columns: dict[str, Sequence[Column | GroupColumn]] = {
         table.name: table.columns for table in _ALL
     }
@@ -500,23 +403,23 @@ def _add_tests(files: Mapping[str, TableFile], archives: Sequence[Path], opener:
     for path in archives:
         with opener(path) as archive:
             places[path] = _place(archive.attrs)
-    curves: list[Curve] = []
-    slopes: list[Slope] = []
+    curves: list[_Curve] = []
+    slopes: list[_Slope] = []
     for path in sorted(archives, key=places.__getitem__):
         with opener(path) as archive:
             for table in TABLES:
                 _add(files[table.name], archive, table)
-            curves += curves_of(archive)
-            slopes += slopes_of(archive)
-    files["envelope"].add_rows(envelope_rows(curves))
-    files["static_dynamic"].add_rows(static_dynamic_rows(slopes, curves))
+            curves += _curves_of(archive)
+            slopes += _slopes_of(archive)
+    files["envelope"].add_rows(_envelope_rows(curves))
+    files["static_dynamic"].add_rows(_static_dynamic_rows(slopes, curves))
 
 
 def _add_experiments(files: Mapping[str, TableFile], surfaces: Path | None, opener: Opener) -> None:
     if surfaces is None:
         return
     with opener(surfaces) as archive:
-        dataset = by_response(archive)
+        dataset = _by_response(archive)
         for table in EXPERIMENT_TABLES:
             _add(files[table.name], dataset, table)
 

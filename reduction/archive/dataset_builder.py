@@ -37,27 +37,7 @@ _CHUNK = 65536  # values; half a megabyte, which a cycle of a long record costs 
 def build_dataset(
     values: Values, schema: Mapping[str, Variable], *, attributes: Mapping[str, str]
 ) -> xr.Dataset:
-    """Bring arrays into the form of the archive, in the order of the schema.
-
-    Parameters
-    ----------
-    values : dict of str to ndarray
-        By name; one without an entry is left out.
-    schema : mapping of str to Variable
-        Every name there may be.
-    attributes : mapping of str to str
-        Global attributes.
-
-    Returns
-    -------
-    dataset : xarray.Dataset
-        Encoding included.
-
-    Raises
-    ------
-    ArchiveError
-        If an array does not have the dimensions of its name, or a name is unknown.
-    """
+    """Bring arrays into the form of the archive, in the order of the schema."""
     unknown = sorted(set(values) - set(schema))
     if unknown:
         raise ArchiveError("values without a place in the schema", found=", ".join(unknown))
@@ -148,11 +128,7 @@ def _encoding(array: NDArray[Any], row: Variable, auxiliary: str) -> dict[str, A
 
 
 def _is_smaller_shuffled(array: NDArray[Any]) -> bool:
-    """Whether like bytes of its numbers together compress to less than the numbers as they are.
-
-    They do where every number is another.  What a converter of 12 or 16 bits gave is made of few
-    numbers that come again as a whole, which takes half the room and half the time.
-    """
+    """Whether like bytes of its numbers together compress to less than the numbers as they are."""
     if array.size < _CHUNK:
         return True
     quarter = array.size // 4  # within the first of two specimens
@@ -163,11 +139,7 @@ def _is_smaller_shuffled(array: NDArray[Any]) -> bool:
 
 
 def _chunk_sizes(shape: tuple[int, ...]) -> tuple[int, ...]:
-    """Chunk of `_CHUNK` values at most: the last dimension first, then as much of those before.
-
-    By the last dimension alone a table of many cycles and two branches would be of chunks of
-    two values.
-    """
+    """Chunk of `_CHUNK` values at most: the last dimension first, then as much of those before."""
     sizes: list[int] = []
     left = _CHUNK
     for length in reversed(shape):
@@ -218,10 +190,7 @@ _LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 def global_attributes(
     test: ReducedTest, *, version: str, command: str, samples: str = "all"
 ) -> dict[str, str]:
-    """Return the global attributes in a fixed order; empty ones are left out.
-
-    ``samples`` says which samples of the record are stored.
-    """
+    """Return the global attributes in a fixed order; empty ones are left out."""
     about = test.description
     names = " and ".join(one.name for one in test.specimens)
     return _complete(
@@ -251,27 +220,7 @@ def global_attributes(
 
 
 def part_attributes(part: PartName, names: Sequence[str] = (), *, origin: Origin) -> dict[str, str]:
-    """Return the global attributes of an archive of a part of a campaign, in the same order.
-
-    Parameters
-    ----------
-    part : {"surfaces", "outcomes", "predictions", "comparisons", "change_in_length"}
-        Which archive, as its file is called.
-    names : sequence of str
-        What it holds; not said of outcomes.
-    origin : Origin
-        Where it came from.
-
-    Returns
-    -------
-    attributes : dict
-        Texts; empty ones are left out.
-
-    Raises
-    ------
-    ArchiveError
-        If the laboratory gave an attribute a name that the archive keeps, or that CF refuses.
-    """
+    """Return the global attributes of an archive of a part of a campaign, in the same order."""
     summary, keywords = _OF_PART[part]
     return _complete(
         origin.attributes,

@@ -280,7 +280,7 @@ def _fault_of_form(dataset: xr.Dataset) -> str | None:
         values = index.to_numpy()
         if values.dtype.kind == "f" and not np.all(np.isfinite(values)):
             return f"coordinate {label} that is not finite"
-    schema = schema_of_file(dataset.dims)
+    schema = _schema_of_file(dataset.dims)
     for name, variable in dataset.variables.items():
         row = schema.get(str(name))
         if row is None:  # of another program, which may add to a file
@@ -301,7 +301,7 @@ def _is_json_object(text: str) -> bool:
         return False
 
 
-def schema_of_file(dimensions: Container[Hashable]) -> Mapping[str, Variable]:
+def _schema_of_file(dimensions: Container[Hashable]) -> Mapping[str, Variable]:
     """What a file may hold, by the dimension that its kind alone has."""
     for dimension, schema in _OF_CAMPAIGN.items():
         if dimension in dimensions:

@@ -88,30 +88,30 @@ class Change:
     relative: float | None = None
 
 
-def uncertainty_name(name: str) -> str:
+def _uncertainty_name(name: str) -> str:
     """Name under which the standard uncertainty of a quantity stands; its own, where it is one.
 
     Examples
     --------
-    >>> uncertainty_name("frequency"), uncertainty_name("frequency_standard_uncertainty")
+    >>> _uncertainty_name("frequency"), _uncertainty_name("frequency_standard_uncertainty")
     ('frequency_standard_uncertainty', 'frequency_standard_uncertainty')
     """
-    return name if is_uncertainty(name) else name + _UNCERTAINTY
+    return name if _is_uncertainty(name) else name + _UNCERTAINTY
 
 
-def is_uncertainty(name: str) -> bool:
+def _is_uncertainty(name: str) -> bool:
     """Whether a name is that of a whole standard uncertainty, and not of a part of one."""
     return name.endswith(_UNCERTAINTY) and not name.endswith(_RANDOM)
 
 
-def kind_of(name: str, *, has_uncertainty: bool) -> Kind:
+def _kind_of(name: str, *, has_uncertainty: bool) -> Kind:
     """What numbers of a name are."""
-    if is_uncertainty(name):
+    if _is_uncertainty(name):
         return "uncertainty"
     return "answer" if has_uncertainty and not name.endswith(_PARTS) else "number"
 
 
-def shifts_between(
+def _shifts_between(
     before: NDArray[Any],
     after: NDArray[Any],
     uncertainty: NDArray[np.float64] | None,
@@ -120,27 +120,9 @@ def shifts_between(
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.float64]]:
     """Which numbers changed, which moved, and how far.
 
-    Parameters
-    ----------
-    before, after : ndarray
-        Numbers of one shape; NaN where there is none. [any]
-    uncertainty : ndarray or None
-        Standard uncertainty, of a shape that broadcasts; zero or NaN where it is not known, and
-        None where a number has none. [as before]
-    is_exact : bool
-        Whether the last bit counts.
-
-    Returns
-    -------
-    changed, moved : ndarray of bool
-        A number has changed by more than 1e-9 of itself, and moved by more than half its
-        uncertainty; where that is not known any change is a move. What came or went did both.
-    shift : ndarray
-        Change over uncertainty; NaN where there is none. [1]
-
     Examples
     --------
-    >>> shifts_between(np.array([1.0, 2.0]), np.array([1.1, 2.4]), np.array([0.5, 0.5]))
+    >>> _shifts_between(np.array([1.0, 2.0]), np.array([1.1, 2.4]), np.array([0.5, 0.5]))
     (array([ True,  True]), array([False,  True]), array([0.2, 0.8]))
     """
     left, right = before.astype(float), after.astype(float)
@@ -160,7 +142,7 @@ def shifts_between(
     return changed, changed & ~(np.abs(shift) <= MOVED), shift
 
 
-def worst_change(
+def _worst_change(
     unchanged: Change,
     before: NDArray[Any],
     after: NDArray[Any],
@@ -170,23 +152,7 @@ def worst_change(
     is_exact: bool,
     is_read: bool,
 ) -> Change:
-    """Count what changed of a variable, and keep the worst.
-
-    Parameters
-    ----------
-    unchanged : Change
-        File, variable, kind and unit.
-    before, after : ndarray
-        Of one shape: numbers, or texts where the kind is "text".
-    uncertainty : ndarray or None
-        As `shifts_between` takes it; along a dimension that it does not have it has the length 1.
-    where : callable
-        Labels of a place.
-    is_exact : bool
-        Whether the last bit counts.
-    is_read : bool
-        Whether a person reads these numbers, so that one without uncertainty is an answer too.
-    """
+    """Count what changed of a variable, and keep the worst."""
     shared: tuple[int, ...] = ()
     if unchanged.kind == "text":
         changed = np.asarray(before.astype(str) != after.astype(str))
@@ -194,7 +160,7 @@ def worst_change(
         came = went = moved
         shift = relative = np.full(changed.shape, np.nan)
     else:
-        changed, moved, shift = shifts_between(before, after, uncertainty, is_exact=is_exact)
+        changed, moved, shift = _shifts_between(before, after, uncertainty, is_exact=is_exact)
         if unchanged.kind == "number" and not is_exact:
             moved = changed & (is_read and not unchanged.variable.endswith(_PARTS))
         left, right = before.astype(float), after.astype(float)
@@ -226,28 +192,26 @@ def worst_change(
         n_came=n_came,
         n_went=n_went,
         where=where(at),
-        before=finite_or_none(before[at]),
-        after=finite_or_none(after[at]),
-        standard_uncertainty=finite_or_none(own),
-        shift=finite_or_none(shift[at]),
-        relative=finite_or_none(relative[at]),
+        before=_finite_or_none(before[at]),
+        after=_finite_or_none(after[at]),
+        standard_uncertainty=_finite_or_none(own),
+        shift=_finite_or_none(shift[at]),
+        relative=_finite_or_none(relative[at]),
     )
 
 
-def finite_or_none(value: Any) -> Any:
+def _finite_or_none(value: Any) -> Any:
     """A value as JSON has it: None where there is no finite number."""
     one = value.item() if hasattr(value, "item") else value
     return None if isinstance(one, float) and not np.isfinite(one) else one
 
 
-def pair_by_name(before: Iterable[str], after: Iterable[str]) -> dict[str, str]:
+def _pair_by_name(before: Iterable[str], after: Iterable[str]) -> dict[str, str]:
     """Pair paths of variables by their last part, in whatever group they stand.
-
-    Where a name stands in several groups, those paths go together that agree most from their ends.
 
     Examples
     --------
-    >>> pair_by_name(["/frequency", "/a/x", "/b/x"], ["/b/x", "/cycles/frequency", "/new/a/x"])
+    >>> _pair_by_name(["/frequency", "/a/x", "/b/x"], ["/b/x", "/cycles/frequency", "/new/a/x"])
     {'/frequency': '/cycles/frequency', '/a/x': '/new/a/x', '/b/x': '/b/x'}
     """
     before = list(before)
@@ -277,18 +241,8 @@ def _common_end(left: str, right: str) -> int:
 
 
 @dataclass(frozen=True)
-class Rows:
-    """How the rows of one side go with those of the other.
-
-    Parameters
-    ----------
-    places : tuple of ndarray or None
-        Of the rows that go together, on each side; None for all of them in their order.
-    labels : list of ndarray
-        Of the rows before, which are their last dimension; empty where there is none.
-    removed, added : list of str
-        Labels of the other rows.
-    """
+class _Rows:
+    """How the rows of one side go with those of the other."""
 
     places: tuple[Index | None, Index | None]
     labels: list[NDArray[Any]]
@@ -301,12 +255,12 @@ class Rows:
         return [_words([one], place) for one in self.labels] or [str(place + 1)]
 
 
-def rows_by_labels(before: list[NDArray[Any]], after: list[NDArray[Any]]) -> Rows:
+def _rows_by_labels(before: list[NDArray[Any]], after: list[NDArray[Any]]) -> _Rows:
     """Match rows by labels; of one that occurs again the first goes with the first.
 
     Examples
     --------
-    >>> rows = rows_by_labels([np.array(["new", "used"])], [np.array(["old", "new"])])
+    >>> rows = _rows_by_labels([np.array(["new", "used"])], [np.array(["old", "new"])])
     >>> rows.places, rows.removed, rows.added
     ((array([0]), array([1])), ['used'], ['old'])
     """
@@ -314,14 +268,14 @@ def rows_by_labels(before: list[NDArray[Any]], after: list[NDArray[Any]]) -> Row
         one.shape == other.shape and np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
         for one, other in zip(before, after, strict=True)
     ):
-        return Rows((None, None), before)
+        return _Rows((None, None), before)
     left, right = (
         [_words(side, place) for place in range(side[0].shape[-1])] for side in (before, after)
     )
     places = {one: place for place, one in enumerate(_counted(right))}
     pairs = [(n, places[one]) for n, one in enumerate(_counted(left)) if one in places]
     both = np.array(pairs, dtype=np.intp).reshape(-1, 2)
-    return Rows(
+    return _Rows(
         (both[:, 0], both[:, 1]),
         before,
         [left[n] for n in sorted(set(range(len(left))) - set(both[:, 0].tolist()))],
@@ -329,7 +283,7 @@ def rows_by_labels(before: list[NDArray[Any]], after: list[NDArray[Any]]) -> Row
     )
 
 
-def have_own_labels(sides: Iterable[Sequence[NDArray[Any]]]) -> bool:
+def _have_own_labels(sides: Iterable[Sequence[NDArray[Any]]]) -> bool:
     """Whether no two rows of a side have one label."""
     return all(
         len({_words(side, place) for place in range(side[0].shape[-1])}) == side[0].shape[-1]
@@ -433,7 +387,7 @@ class Differences:
         common = set(sides[1])
         return [name for name in sides[0] if name in common]
 
-    def tell_rows(self, file: str, name: str, rows: Rows | None) -> None:
+    def tell_rows(self, file: str, name: str, rows: _Rows | None) -> None:
         """Rows of a dimension or table that one side alone has; ten of them by their labels."""
         if rows is not None:
             for told, labels in ((self.removed, rows.removed), (self.added, rows.added)):
@@ -443,31 +397,7 @@ class Differences:
 
 
 def differences_between(before: Path, after: Path, *, is_exact: bool = False) -> Differences:
-    """Compare two archives, two tables, or two folders of products.
-
-    Parameters
-    ----------
-    before, after : pathlib.Path
-        Two ``.nc``, two ``.csv``, two ``processed/CAMPAIGN``, or two ``processed``.
-    is_exact : bool
-        Whether a number moves with its last bit, rather than by half its standard uncertainty.
-
-    Returns
-    -------
-    differences : Differences
-        Shifts are in standard uncertainties of the product before, and where it has none of the
-        one after: both are made of the same data, so that their errors are the same errors and
-        do not add up.
-
-    Raises
-    ------
-    ArchiveError
-        If one is missing or cannot be read, or a folder has no archive.
-    SettingsError
-        If they are not of one kind.
-    DataError
-        If they have nothing in common.
-    """
+    """Compare two archives, two tables, or two folders of products."""
     for path in (before, after):
         if not path.exists():
             raise ArchiveError(f"there is no product {path}", needed="an archive or a folder")
@@ -608,7 +538,7 @@ class _Archive:
         """Path of the standard uncertainty of a variable; in its own group first."""
         place, _, name = key.rpartition("/")
         stated = str(getattr(self.variables[key], "ancillary_variables", "")).split()
-        for one in (uncertainty_name(name), *filter(is_uncertainty, stated)):
+        for one in (_uncertainty_name(name), *filter(_is_uncertainty, stated)):
             paths = self._of_name.get(one, [])
             if paths:
                 return f"{place}/{one}" if f"{place}/{one}" in paths else paths[0]
@@ -679,7 +609,7 @@ def _name(path: str) -> str:
 def _compare_archives(found: Differences, file: str, before: Path, after: Path) -> None:
     """Compare variables and attributes of two files."""
     with _opened(before) as left, _opened(after) as right:
-        pairs = pair_by_name(left.variables, right.variables)
+        pairs = _pair_by_name(left.variables, right.variables)
         others = {other: key for key, other in pairs.items()}
         found.tell_names(
             "variable", file, (key.lstrip("/") for key in left.variables if key not in pairs), ()
@@ -692,7 +622,7 @@ def _compare_archives(found: Differences, file: str, before: Path, after: Path) 
             for key, other in pairs.items()
             if key != other
         ]
-        rows: dict[tuple[str, str], Rows | None] = {}
+        rows: dict[tuple[str, str], _Rows | None] = {}
         for key, other in pairs.items():
             dims = list(zip(left.dims[key], right.dims[other], strict=False))
             for pair in dims:
@@ -707,7 +637,7 @@ def _compare_archives(found: Differences, file: str, before: Path, after: Path) 
         _compare_attributes(found, file, left, right, pairs)
 
 
-def _match_dimensions(before: _Archive, after: _Archive, pair: tuple[str, str]) -> Rows | None:
+def _match_dimensions(before: _Archive, after: _Archive, pair: tuple[str, str]) -> _Rows | None:
     """Rows of a dimension by their labels, else by their places; None where neither will do."""
     ranks = before.labels.get(pair[0], {}), after.labels.get(pair[1], {})
     words: list[NDArray[Any]] = []
@@ -719,27 +649,27 @@ def _match_dimensions(before: _Archive, after: _Archive, pair: tuple[str, str]) 
             continue
         sides = [before.read(here[one]) for one in names], [after.read(there[one]) for one in names]
         words = words or sides[0]
-        rows = rows_by_labels(*sides)
+        rows = _rows_by_labels(*sides)
         if rows.places[0] is None:
             return rows
-        if rows.places[0].size and ((rank == "coordinate" and is_text) or have_own_labels(sides)):
+        if rows.places[0].size and ((rank == "coordinate" and is_text) or _have_own_labels(sides)):
             return rows
     is_as_long = before.size(pair[0]) == after.size(pair[1])
-    return Rows((None, None), words) if is_as_long else None
+    return _Rows((None, None), words) if is_as_long else None
 
 
 def _compare_variables(
     file: str,
     before: tuple[_Archive, str],
     after: tuple[_Archive, str],
-    rows: Sequence[Rows | None],
+    rows: Sequence[_Rows | None],
     is_exact: bool,
 ) -> Change:
     """Compare two variables along their matched rows."""
     sides, name = (before, after), _name(before[1])
     stated = [archive.uncertainty_of(key) for archive, key in sides]
     one = Change(
-        file, name, kind_of(name, has_uncertainty=any(stated)),
+        file, name, _kind_of(name, has_uncertainty=any(stated)),
         unit=str(getattr(before[0].variables[before[1]], "units", "")),
     )  # fmt: skip
     if not all(archive.is_of(key, "fiub") for archive, key in sides):
@@ -764,7 +694,7 @@ def _compare_variables(
                 shape = [size if is_in else 1 for size, is_in in lengths]
                 read = _taken(archive.read(own), places).astype(float).reshape(shape)
                 uncertainty = np.where(uncertainty > 0, uncertainty, read)
-    return worst_change(
+    return _worst_change(
         one, values[0], values[1], uncertainty,
         lambda at: {
             _name(dim): ", ".join(row.words(place))
@@ -874,8 +804,8 @@ def _compare_tables(found: Differences, file: str, before: Path, after: Path) ->
     labels = [key.partition(" [")[0] for key in keys] if rows.labels else ["row"]
     for name, column in names.items():
         values = [side[column] for side in sides]
-        own = names.get(uncertainty_name(name))
-        kind = kind_of(name, has_uncertainty=own is not None)
+        own = names.get(_uncertainty_name(name))
+        kind = _kind_of(name, has_uncertainty=own is not None)
         if any(cells.dtype.kind == "U" for cells in values):
             kind = "text"
         uncertainty = None
@@ -884,7 +814,7 @@ def _compare_tables(found: Differences, file: str, before: Path, after: Path) ->
             if stated:
                 uncertainty = np.where(stated[0] > 0, stated[0], stated[-1])
         found.tabled.append(
-            worst_change(
+            _worst_change(
                 Change(file, name, kind, unit=column.partition(" [")[2].rstrip("]")),
                 values[0], values[1], uncertainty,
                 lambda at: dict(zip(labels, rows.words(at[0]), strict=True)),
@@ -930,14 +860,14 @@ def _is_measured(cells: NDArray[Any]) -> bool:
 
 def _match_tables(
     keys: Sequence[str], lengths: Sequence[int], sides: Sequence[Mapping[str, NDArray[Any]]]
-) -> Rows | None:
+) -> _Rows | None:
     """Rows by their keys, else by their places; None where neither will do."""
     is_as_long = lengths[0] == lengths[1]
-    by_place = Rows((None, None), []) if is_as_long else None
+    by_place = _Rows((None, None), []) if is_as_long else None
     if not keys:
         return by_place
     labels = [[side[key] for key in keys] for side in sides]
-    rows = rows_by_labels(*labels)
+    rows = _rows_by_labels(*labels)
     if rows.places[0] is None:
         return rows
     # whole numbers alone may be answers themselves, and would be taken for other rows

@@ -93,28 +93,7 @@ def properties_to_dataset(
     *,
     origin: Origin,
 ) -> xr.Dataset:
-    """Bring properties into the form of the archive; no file is touched.
-
-    Parameters
-    ----------
-    found : mapping of str to sequence of ChangeInLength
-        By specimen; one or more.
-    component : mapping of (specimen, step) to sequence of Component
-        Shared errors that the contributions of the properties of a step are of.
-    origin : Origin
-        The campaign, and the archives of the tests that they are from.
-
-    Returns
-    -------
-    dataset : xarray.Dataset
-        Names, dimensions and attributes of `PROPERTY_SCHEMA`, encoding included. Equal inputs
-        give equal datasets.
-
-    Raises
-    ------
-    ArchiveError
-        If there is no property, or an attribute has a name that the archive keeps.
-    """
+    """Bring properties into the form of the archive; no file is touched."""
     listed = [(specimen, one) for specimen, own in found.items() for one in own]
     if not listed:
         raise ArchiveError("there are no properties to keep", needed="one or more")
@@ -190,7 +169,7 @@ _RANDOM = "_random_standard_uncertainty"
 
 
 @dataclass(frozen=True)
-class ArchivedStep:
+class _ArchivedStep:
     """A step of a programme, and the shared errors that its contributions are of, in order."""
 
     step: StepOfProgramme
@@ -202,32 +181,8 @@ def step_of_archive(
     specimen: str,
     instruments: InstrumentErrors | None = None,
     model: StrainModel | None = None,
-) -> ArchivedStep:
-    """What an archive keeps of one specimen of a step.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        From `reduction.archive.open.open_archive`.
-    specimen : str
-        Which.
-    instruments : InstrumentErrors, optional
-        What is stated of them: for points of the first rise and of the first cycle, of which an
-        archive keeps no contributions. Without them these points count as free of shared errors.
-    model : StrainModel, optional
-        How position became strain in that test.
-
-    Returns
-    -------
-    step : ArchivedStep
-        Its parts are those of the archive; a test that is no step has its first rise alone. Of an
-        archive without contributions the combined uncertainty stands as the random one.
-
-    Raises
-    ------
-    ArchiveError
-        If the archive has no such specimen.
-    """
+) -> _ArchivedStep:
+    """What an archive keeps of one specimen of a step."""
     names = dataset.variables["specimen"].values.astype(str).tolist()
     if specimen not in names:
         raise ArchiveError(f"the archive has no specimen '{specimen}'", found=", ".join(names))
@@ -245,7 +200,7 @@ def step_of_archive(
         holds=_holds(read, specimen),
         strength_contribution=read.of_strength,
     )
-    return ArchivedStep(step, read.component)
+    return _ArchivedStep(step, read.component)
 
 
 @dataclass(frozen=True)

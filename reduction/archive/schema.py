@@ -578,19 +578,7 @@ _U = ("experiment", COMPONENT)
 
 
 def rows_of_response(name: str, *, is_transformed: bool) -> Iterator[Variable]:
-    """Give the variables of one response; what is measured is not transformed.
-
-    Parameters
-    ----------
-    name : str
-        One of `reduction.quantities.names.SURFACE_NAMES`, or ``response``.
-    is_transformed : bool
-        True for a surface of a transform: runs and effects are of the response itself.
-
-    Yields
-    ------
-    row : Variable
-    """
+    """Give the variables of one response; what is measured is not transformed."""
     yield from chain(
         *(
             _of_both_parts(of, _OF_TERM)

@@ -150,29 +150,7 @@ def with_shared(
     of_cycles: dict[str, Floats],
     random: Values | None = None,
 ) -> Values:
-    """Put the shared part of every uncertainty beside its random part, and both together.
-
-    Parameters
-    ----------
-    values : dict of str to ndarray
-        Of the archive; uncertainties are random.
-    contributions : Contributions or None
-        By name of the archive.
-    of_cycles : dict of str to ndarray
-        Shared standard uncertainty of the quantities of each cycle.
-    random : dict of str to ndarray, optional
-        Random part by quantity, where the uncertainty of ``values`` holds more.
-
-    Returns
-    -------
-    values : dict of str to ndarray
-        New; equal where nothing is shared.
-
-    Raises
-    ------
-    ArchiveError
-        If there are contributions to a quantity that has no variable for them.
-    """
+    """Put the shared part of every uncertainty beside its random part, and both together."""
     known = SHARED | SHARED_OF_CHANNELS | SHARED_OF_STEPS
     homeless = sorted(set(contributions.values) - set(known)) if contributions else []
     if homeless:
@@ -219,22 +197,7 @@ def component_values(component: Sequence[Component]) -> Values:
 
 
 def shared_contributions(archive: xr.Dataset, name: str, *place: int) -> dict[Component, float]:
-    """What each shared error adds to one number of an archive; empty where nothing is known.
-
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        Of a reduced test.
-    name : str
-        Of the quantity.
-    *place : int
-        Along its dimensions.
-
-    Returns
-    -------
-    contributions : dict of Component to float
-        [unit of the quantity]
-    """
+    """What each shared error adds to one number of an archive; empty where nothing is known."""
     rows = stored(archive, f"{name}_uncertainty_contribution")
     if rows is None:
         return {}
@@ -290,27 +253,7 @@ _ONE_CELL = "has_one_load_cell"
 
 
 def stated_errors_of(archive: xr.Dataset) -> StatedErrors:
-    """Standard uncertainties with which a test was reduced.
-
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        Of a reduced test.
-
-    Returns
-    -------
-    errors : StatedErrors
-        Zero where nothing was stated.
-
-    Raises
-    ------
-    ArchiveError
-        If what stands there is no statement.
-
-    Notes
-    -----
-    A key that this version does not know is of a later one, and none of its errors.
-    """
+    """Standard uncertainties with which a test was reduced."""
     settings = json.loads(str(archive.attrs.get("settings") or "{}"))
     kept = settings.get("uncertainty") or {}
     one_cell = kept.get(_ONE_CELL, False)
@@ -359,29 +302,7 @@ _NO_CURVE = (
 
 
 def curve_errors_of(archive: xr.Dataset, place: int) -> tuple[SharedErrors, tuple[str, ...]]:
-    """Errors that all samples share, at the bins of the curve of one specimen.
-
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        Of a reduced test.
-    place : int
-        Row of the specimen.
-
-    Returns
-    -------
-    errors : SharedErrors
-        Of its cycles, or else of its first rise.
-    notes : tuple of str
-        What a reader has to know where they are not all of them.
-
-    Notes
-    -----
-    The archive keeps what an error adds to the tension at one strain.  Of an error of strain that
-    is minus the slope of the curve times it, and is taken back by the same slope: it can move the
-    curve along its axis then.  What a layout declares of a channel is the noise of one reading,
-    which no other sample shares; it is in the scatter.
-    """
+    """Errors that all samples share, at the bins of the curve of one specimen."""
     for curve, modulus, axis in _CURVES:
         rows = stored(archive, f"{curve}_uncertainty_contribution")
         if rows is None or modulus not in archive:

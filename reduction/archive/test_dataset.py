@@ -57,20 +57,7 @@ from reduction.stages.strain.stress import nominal_stress
 
 
 def strain_model_of(dataset: xr.Dataset, place: int) -> StrainModel | None:
-    """Method and coefficients of one specimen's strain; marks and covariance stay in the file.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        An archive of a reduced test.
-    place : int
-        Row of the specimen.
-
-    Returns
-    -------
-    model : StrainModel or None
-        None where the test has none, such as weights that were hung.
-    """
+    """Method and coefficients of one specimen's strain; marks and covariance stay in the file."""
     if "strain_method" not in dataset:
         return None
 
@@ -90,7 +77,7 @@ def strain_model_of(dataset: xr.Dataset, place: int) -> StrainModel | None:
     )
 
 
-def specimen_values(specimens: Sequence[Specimen]) -> Values:
+def _specimen_values(specimens: Sequence[Specimen]) -> Values:
     """Return what is known of each specimen before the test."""
     known = [one.mean_diameter if one.diameter else None for one in specimens]
     area = numbers([one.area if one.diameter else None for one in specimens])
@@ -121,17 +108,13 @@ def specimen_values(specimens: Sequence[Specimen]) -> Values:
     }
 
 
-def random_of_section(specimens: Sequence[Specimen], contributions: Contributions) -> Values:
-    """Random part of diameters and areas: none where the error of the mean diameter is shared.
-
-    What is stated is of the mean of the readings, and their scatter is in it; where nothing is
-    stated the scatter itself is the error that all numbers over the area share.
-    """
+def _random_of_section(specimens: Sequence[Specimen], contributions: Contributions) -> Values:
+    """Random part of diameters and areas: none where the error of the mean diameter is shared."""
     rows = contributions.values.get("diameter")
     if rows is None:
         return {}
     stated = np.any(rows != 0, axis=0)
-    own = specimen_values(specimens)
+    own = _specimen_values(specimens)
     names = ("diameter", "area")
     return {name: np.where(stated, 0.0, own[f"{name}_standard_uncertainty"]) for name in names}
 
@@ -145,7 +128,7 @@ def _linear_densities(specimens: Sequence[Specimen]) -> Values:
     return {name: found for name, found in values.items() if np.isfinite(found).any()}
 
 
-def history_values(history: History) -> Values:
+def _history_values(history: History) -> Values:
     """Return what each specimen had seen before the test."""
     flex = history.earlier_flex_cycles
     return {
@@ -159,7 +142,7 @@ def history_values(history: History) -> Values:
     }
 
 
-def strain_model_values(models: Sequence[StrainModel]) -> Values:
+def _strain_model_values(models: Sequence[StrainModel]) -> Values:
     """Return method, coefficients, ranges and marks of each specimen's strain."""
     values: Values = {
         "strain_method": texts([one.method for one in models]),
@@ -229,7 +212,7 @@ def _mark_values(models: Sequence[StrainModel]) -> Values:
     }
 
 
-def note_values(test: ReducedTest) -> Values:
+def _note_values(test: ReducedTest) -> Values:
     """Return the notes in the order of the stages, by stage and text."""
     pairs = test.all_notes()
     return {
@@ -245,18 +228,8 @@ _SHARE = 8
 
 @dataclass(frozen=True)
 @read_only_arrays
-class KeptSamples:
-    """What is stored of a record that is not stored whole.
-
-    Parameters
-    ----------
-    index : ndarray of int, shape (n_stored,)
-        Places in the record, from 0, rising. [1]
-    words : str
-        What they are, for the archive.
-    note : str
-        The same for a reader of the notes.
-    """
+class _KeptSamples:
+    """What is stored of a record that is not stored whole."""
 
     index: Integers
     words: str
@@ -267,27 +240,8 @@ class KeptSamples:
         return take_samples(values, self.index)
 
 
-def kept_samples(test: ReducedTest, settings: ReductionSettings) -> KeptSamples | None:
-    """Choose the samples of a test that its archive holds.
-
-    Parameters
-    ----------
-    test : ReducedTest
-        All that one log gave.
-    settings : ReductionSettings
-        In force: ``archive``, and how many cycles' curves are kept.
-
-    Returns
-    -------
-    kept : KeptSamples or None
-        None where every sample is stored: on request, of a log of ``longest_record`` samples or
-        fewer, and of a test without a log.
-
-    Notes
-    -----
-    Stored are the selected cycles and what is in no cycle, each of them whole unless it is more
-    than an eighth of ``longest_record``: then evenly spaced samples of it, with the ends.
-    """
+def kept_samples(test: ReducedTest, settings: ReductionSettings) -> _KeptSamples | None:
+    """Choose the samples of a test that its archive holds."""
     record, wanted = test.record, settings.archive
     if record is None or wanted.samples == "all":
         return None
@@ -313,7 +267,7 @@ def kept_samples(test: ReducedTest, settings: ReductionSettings) -> KeptSamples 
         listed = ", ".join(map(str, numbers))
         words += f"; {numbers.size} of {first.size} cycles ({listed}){_every(step)}"
     words += f"; what is in no cycle{_every(step_outside)}"
-    return KeptSamples(
+    return _KeptSamples(
         index=index,
         words=words,
         note=f"samples are stored in part: {words}; every number was made from the whole record, "
@@ -343,21 +297,7 @@ def _every(step: int) -> str:
 
 
 def stored_cycles(dataset: xr.Dataset) -> Integers:
-    """Return the numbers of the cycles whose samples an archive holds.
-
-    One that is not among them can have both its ends there, since two cycles share the sample at
-    which one turns to the other; that sample goes by the number of the later one.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        The archive.
-
-    Returns
-    -------
-    numbers : ndarray of int, shape (n_stored,)
-        From 1; none where the test has no cycles. [1]
-    """
+    """Return the numbers of the cycles whose samples an archive holds."""
     if "cycle" not in dataset:
         return np.empty(0, dtype=np.int64)
     numbers: Integers = dataset.variables["cycle"].values
@@ -369,14 +309,8 @@ def stored_cycles(dataset: xr.Dataset) -> Integers:
     return numbers[end - begin > 2]
 
 
-def sample_values(test: ReducedTest, record: Record, kept: KeptSamples | None = None) -> Values:
-    """Return everything that stands along ``sample``, with the declared uncertainties.
-
-    Position and tension stand there as they were logged, in SI, with sign and zero
-    applied: a flagged sample keeps its number.  Strain and nominal stress are made from
-    usable samples and are NaN elsewhere.  Of a record that is not stored whole,
-    ``sample_index`` says which sample each is.
-    """
+def _sample_values(test: ReducedTest, record: Record, kept: _KeptSamples | None = None) -> Values:
+    """Return everything that stands along ``sample``, with the declared uncertainties."""
 
     def stored(values: NDArray[Any]) -> NDArray[Any]:
         return values if kept is None else kept.of(values)
@@ -434,11 +368,8 @@ def _stress(tension: Floats, flags: Integers, specimens: tuple[Specimen, ...]) -
     return stress
 
 
-def row_account(record: Record, kept: KeptSamples | None = None) -> Values:
-    """Count rows read, kept, stored and flagged, by channel and mask.
-
-    Flags are counted over the whole record, whatever is stored of it.
-    """
+def _row_account(record: Record, kept: _KeptSamples | None = None) -> Values:
+    """Count rows read, kept, stored and flagged, by channel and mask."""
     flags = [record.crosshead_position_quality_flag, *record.quality_flag]
     return {
         "n_rows_read": np.array(record.n_rows_read),
@@ -465,32 +396,9 @@ def _counts(flags: Integers) -> list[int]:
 
 
 def to_dataset(
-    test: ReducedTest, *, version: str, command: str, kept: KeptSamples | None = None
+    test: ReducedTest, *, version: str, command: str, kept: _KeptSamples | None = None
 ) -> xr.Dataset:
-    """Bring a reduced test into the form of the archive; no file is touched.
-
-    Parameters
-    ----------
-    test : ReducedTest
-        All that one log gave.
-    version : str
-        Version of this software.
-    command : str
-        What the user asked for, without paths, jobs and scheduler.
-    kept : KeptSamples, optional
-        Which samples are stored; every one where it is left out.
-
-    Returns
-    -------
-    dataset : xarray.Dataset
-        Names, dimensions and attributes of `reduction.archive.schema`, encoding
-        included. Equal inputs give equal datasets.
-
-    Raises
-    ------
-    ArchiveError
-        If an array does not have the dimensions of its name, or a name is unknown.
-    """
+    """Bring a reduced test into the form of the archive; no file is touched."""
     return build_dataset(
         _all_values(test, kept),
         schema_of(is_stepwise=test.stepwise is not None),
@@ -500,17 +408,17 @@ def to_dataset(
     )
 
 
-def _all_values(test: ReducedTest, kept: KeptSamples | None) -> Values:
+def _all_values(test: ReducedTest, kept: _KeptSamples | None) -> Values:
     names = tuple(one.name for one in test.specimens)
-    values = specimen_values(test.specimens) | note_values(test)
+    values = _specimen_values(test.specimens) | _note_values(test)
     if test.stepwise is not None:
         values |= stepwise_values(test.stepwise)
     elif test.record is not None:
-        values |= row_account(test.record, kept) | sample_values(test, test.record, kept)
+        values |= _row_account(test.record, kept) | _sample_values(test, test.record, kept)
     if test.history is not None:
-        values |= history_values(test.history)
+        values |= _history_values(test.history)
     if test.strain_models:
-        values |= strain_model_values(test.strain_models)
+        values |= _strain_model_values(test.strain_models)
     if test.standstills is not None:
         values |= standstill_values(test.standstills)
     if test.cycles is not None:
@@ -564,7 +472,7 @@ def _all_values(test: ReducedTest, kept: KeptSamples | None) -> Values:
         | (
             {}
             if test.contributions is None
-            else random_of_section(test.specimens, test.contributions)
+            else _random_of_section(test.specimens, test.contributions)
         ),
     )
     if test.channel_lag is not None:

@@ -301,7 +301,7 @@ def parse_place(name: str, text: str) -> str:
     return str(parse_quantity(label, "force")) if key in ("tension", "tension_grid") else label
 
 
-def label_of(archive: xr.Dataset, dim: str, index: int) -> Any:
+def _label_of(archive: xr.Dataset, dim: str, index: int) -> Any:
     """Label of an entry of a dimension, or its number where it has none."""
     return archive.variables[dim].values[index] if dim in archive.variables else index + 1
 
@@ -402,7 +402,7 @@ def find_place(
         If it is not said, or there is no such entry.
     """
     size, known = archive.sizes[dim], dict(others or {})
-    labels = [str(label_of(archive, dim, index)) for index in range(size)]
+    labels = [str(_label_of(archive, dim, index)) for index in range(size)]
     told = [words_of(archive, dim, index, known) for index in range(size)]
     shown = (
         f"{told[0]} to {told[-1]}"
@@ -485,7 +485,7 @@ def read_at(
     return np.array(flat).reshape(curves.shape[:-1])
 
 
-def where_known(archive: xr.Dataset, variable: xr.Variable, place: Mapping[str, int]) -> str:
+def _where_known(archive: xr.Dataset, variable: xr.Variable, place: Mapping[str, int]) -> str:
     """Places along the last dimension that have a number, the others as asked for."""
     dim = str(variable.dims[-1])
     row = variable.isel({one: at for one, at in place.items() if one != dim})
@@ -495,7 +495,7 @@ def where_known(archive: xr.Dataset, variable: xr.Variable, place: Mapping[str, 
     if dim in ON_AN_AXIS:
         middle = archive[dim].values[known]
         return f"{place_name(dim)} {middle[0]:.4g} to {middle[-1]:.4g}"
-    labels = [str(label_of(archive, dim, int(index))) for index in known]
+    labels = [str(_label_of(archive, dim, int(index))) for index in known]
     return f"{place_name(dim)} {_listed(labels)}"
 
 
@@ -566,7 +566,7 @@ def budget_from_archive(archive: xr.Dataset, quantity: str, at: Mapping[str, str
         raise ArchiveError(
             f"there is no {name} there",
             found=", ".join(f"{place_name(dim)}={text}" for dim, text in shown.items()),
-            needed=where_known(archive, variable, place),
+            needed=_where_known(archive, variable, place),
             hint=_why_there_is_none(archive, place),
         )
     budget = _budget_at(archive, name, place, strain)
@@ -640,7 +640,7 @@ def _labels(archive: xr.Dataset, place: Mapping[str, int], on_axis: float | None
     """Label of each place; a strain or a tension as it was asked for."""
     found = {}
     for dim, index in place.items():
-        label = label_of(archive, dim, index)
+        label = _label_of(archive, dim, index)
         if on_axis is not None and dim in ON_AN_AXIS:
             label = float(on_axis)
         found[dim] = f"{label:.6g}" if isinstance(label, float) else str(label)

@@ -70,12 +70,7 @@ def numbers(items: Sequence[float | None]) -> Floats:
 
 
 def pad(rows: Sequence[ArrayLike]) -> Floats:
-    """Put ragged rows under each other, NaN where a row is shorter.
-
-    >>> pad([[1.0], [2.0, 3.0]])
-    array([[ 1., nan],
-           [ 2.,  3.]])
-    """
+    """Put ragged rows under each other, NaN where a row is shorter."""
     arrays = [np.atleast_1d(np.asarray(row, dtype=np.float64)) for row in rows]
     table = np.full((len(arrays), max((row.size for row in arrays), default=0)), np.nan)
     for line, row in zip(table, arrays, strict=True):
@@ -84,11 +79,7 @@ def pad(rows: Sequence[ArrayLike]) -> Floats:
 
 
 def pad_texts(rows: Sequence[Sequence[str]]) -> NDArray[np.str_]:
-    """Put ragged rows of labels under each other, "" where a row is shorter.
-
-    >>> pad_texts([["a"], ["b", "c"]]).tolist()
-    [['a', ''], ['b', 'c']]
-    """
+    """Put ragged rows of labels under each other, "" where a row is shorter."""
     length = max((len(row) for row in rows), default=0)
     return np.array([[*row, *[""] * (length - len(row))] for row in rows], dtype=np.str_)
 
@@ -262,24 +253,6 @@ def mask(name: str, dims: tuple[str, ...], masks: dict[str, int]) -> list[Variab
 
 def stored(dataset: xr.Dataset, name: str) -> xr.Variable | None:
     """Give a variable of an archive, or nothing.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        An open archive.
-    name : str
-        Of the variable.
-
-    Returns
-    -------
-    variable : xarray.Variable or None
-        As it lies there, without coordinates; not read yet.
-
-    Notes
-    -----
-    ``Dataset.get`` gathers the coordinates of what it gives, and compares a name that is missing
-    with all others for an error message that nobody sees; where an archive has hundreds of either,
-    that took a third of a report's time.
 
     Examples
     --------

@@ -42,21 +42,8 @@ _BLOCK = 1 << 20  # values of the last dimension at a time: whole chunks
 _CACHE = 1 << 19  # bytes of the largest chunk: each is written once
 
 
-def write_netcdf(dataset: xr.Dataset, path: Path) -> None:
-    """Write a dataset of `reduction.archive.dataset_builder.build_dataset`.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        With encoding.
-    path : pathlib.Path
-        The file; one that is there is replaced.
-
-    Raises
-    ------
-    OSError, RuntimeError
-        If the disk refuses; the library says it in one of these ways.
-    """
+def _write_netcdf(dataset: xr.Dataset, path: Path) -> None:
+    """Write a dataset of `reduction.archive.dataset_builder.build_dataset`."""
     with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
         file.setncatts(dataset.attrs)
         for name, size in dataset.sizes.items():
@@ -121,23 +108,10 @@ def _parts(values: NDArray[Any]) -> Iterator[tuple[Any, ...]]:
 
 
 def write_archive(dataset: xr.Dataset, path: Path) -> None:
-    """Write a dataset of `reduction.archive.test_dataset.to_dataset` as one netCDF file.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        With encoding.
-    path : pathlib.Path
-        The file; one that is there is replaced at the very end, or kept.
-
-    Raises
-    ------
-    ArchiveError
-        If the disk refuses.
-    """
+    """Write a dataset of `reduction.archive.test_dataset.to_dataset` as one netCDF file."""
     try:
         with whole_file(path) as part:
-            write_netcdf(dataset, part)
+            _write_netcdf(dataset, part)
     except ArchiveError:
         raise
     except (OSError, RuntimeError) as error:
@@ -145,44 +119,14 @@ def write_archive(dataset: xr.Dataset, path: Path) -> None:
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a text file in UTF-8, line ends as they are in ``text``, whole or not at all.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file; one that is there is replaced at the very end, or kept.
-    text : str
-        All of it.
-
-    Raises
-    ------
-    ArchiveError
-        If the disk refuses.
-    """
+    """Write a text file in UTF-8, line ends as they are in ``text``, whole or not at all."""
     with appended_whole(path) as append:
         append(text)
 
 
 @contextmanager
 def appended_whole(path: Path) -> Iterator[Callable[[str], None]]:
-    """Give what adds text to a file that appears whole when the block ends well, or not at all.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file, in UTF-8, line ends as they are in the text; one that is there is replaced at
-        the very end, or kept.
-
-    Yields
-    ------
-    append : callable
-        Of one text, which is written behind the ones before.
-
-    Raises
-    ------
-    ArchiveError
-        If the disk refuses.
-    """
+    """Give what adds text to a file that appears whole when the block ends well, or not at all."""
     is_in_block = False
     remove_abandoned(path)
     try:
@@ -272,7 +216,7 @@ class Item(Section):
     received: Date = ""
 
 
-class Authorised(Section):
+class _Authorised(Section):
     """``[report.authorised]``."""
 
     by: ReportText = ""
@@ -342,7 +286,7 @@ class Statement(Section, Generic[AnyLimit]):
     paper: Paper = "A4"
     laboratory: Laboratory = Laboratory()
     client: Client = Client()
-    authorised: Authorised = Authorised()
+    authorised: _Authorised = _Authorised()
     items: dict[str, Item] = Field(default_factory=dict)
     instruments: tuple[Instrument, ...] = ()
     limits: tuple[AnyLimit, ...] = ()
@@ -353,20 +297,7 @@ class ReportDetails(Statement[Limit]):
 
 
 def keep_details(folder: Path, details: ReportDetails | None) -> None:
-    """Write what the laboratory states, or take away what an earlier run kept.
-
-    Parameters
-    ----------
-    folder : pathlib.Path
-        Of the archives of a campaign.
-    details : ReportDetails or None
-        None where the campaign has no ``[report]``.
-
-    Raises
-    ------
-    ArchiveError
-        If the disk refuses.
-    """
+    """Write what the laboratory states, or take away what an earlier run kept."""
     path = folder / FILE_NAME
     if details is None:
         take_away(path)
@@ -375,23 +306,7 @@ def keep_details(folder: Path, details: ReportDetails | None) -> None:
 
 
 def read_details(folder: Path) -> ReportDetails | None:
-    """Read what the laboratory states.
-
-    Parameters
-    ----------
-    folder : pathlib.Path
-        Of the archives of a campaign.
-
-    Returns
-    -------
-    details : ReportDetails or None
-        None where nothing was kept.
-
-    Raises
-    ------
-    ArchiveError
-        If the file cannot be read.
-    """
+    """Read what the laboratory states."""
     path = folder / FILE_NAME
     if not path.is_file():
         return None

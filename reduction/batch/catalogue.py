@@ -59,7 +59,7 @@ LEFT_OUT: Final = frozenset(
 """Dimensions that stay in the archives: samples, curves by cycle, parts of uncertainties."""
 
 
-def column_type(name: str) -> Any:
+def _column_type(name: str) -> Any:
     """Arrow type of a column by its row in the vocabulary: text where it has no unit."""
     if name == "quantity":
         return pyarrow.string()
@@ -67,12 +67,12 @@ def column_type(name: str) -> Any:
     return pyarrow.float64() if row is None or row.unit else pyarrow.string()
 
 
-def standing_for(name: str) -> str:
+def _standing_for(name: str) -> str:
     """Name of the mean over a test, where a quantity of the cycles has one.
 
     Examples
     --------
-    >>> [standing_for(name) for name in ("frequency", "peak_tension", "mean_tension")]
+    >>> [_standing_for(name) for name in ("frequency", "peak_tension", "mean_tension")]
     ['test_frequency', 'peak_tension', 'test_mean_tension']
     """
     return f"test_{name}" if f"test_{name}" in QUANTITIES else name
@@ -88,11 +88,11 @@ _AGAIN = "Run the campaign again, or use --rebuild."
 
 _NO_TESTS = pyarrow.schema(
     [("row", pyarrow.int32()), ("is_whole", pyarrow.bool_())]
-    + [(name, column_type(name)) for name in CONDITIONS]
+    + [(name, _column_type(name)) for name in CONDITIONS]
 ).empty_table()
 
 _NO_VALUES = pyarrow.schema(
-    [("row", pyarrow.int32())] + [(name, column_type(name)) for name in NUMBER]
+    [("row", pyarrow.int32())] + [(name, _column_type(name)) for name in NUMBER]
 ).empty_table()
 
 
@@ -117,7 +117,7 @@ class Catalogue:
     unreadable: dict[str, str]
 
 
-def mark() -> bytes:
+def _mark() -> bytes:
     """What a catalogue of this version says of itself."""
     return f"{_FORMAT} {__version__}".encode()
 
@@ -145,9 +145,9 @@ def load_catalogue(folder: Path, quantities: Sequence[str] | None = None) -> Cat
     tests, values, unreadable = [_NO_TESTS], [_NO_VALUES], {}
     n_rows = 0
     for campaign in campaigns_below(folder):
-        shown = shown_path(campaign.name)
+        shown = _shown_path(campaign.name)
         try:
-            there = {shown_path(path.name) for path in archives_of(campaign)}
+            there = {_shown_path(path.name) for path in _archives_of(campaign)}
             if not there:
                 continue
             about, found = _tables_of(campaign / FILE_NAME, quantities)
@@ -175,7 +175,7 @@ def _tables_of(path: Path, quantities: Sequence[str] | None) -> tuple[Any, Any]:
     # opened here: a path may be no text; in one thread: of many small files each is quickest so
     with path.open("rb") as opened, pyarrow.parquet.ParquetFile(opened) as file:
         names = file.schema_arrow.names
-        if (file.schema_arrow.metadata or {}).get(MARK) != mark():
+        if (file.schema_arrow.metadata or {}).get(MARK) != _mark():
             raise OSError("one of another version, or of another program")
         about = file.read_row_group(0, columns=_NO_TESTS.column_names, use_threads=False)
         numbers = file.read_row_groups(
@@ -194,18 +194,18 @@ def _counted_from(first: int, table: Any) -> Any:
     return table.set_column(table.schema.get_field_index("row"), "row", row)
 
 
-def shown_path(path: str) -> str:
+def _shown_path(path: str) -> str:
     r"""A path as text that any file takes: bytes that are no text stand as ``\\xff``.
 
     Examples
     --------
-    >>> shown_path("campaign\udcff/T-1.nc")
+    >>> _shown_path("campaign\udcff/T-1.nc")
     'campaign\\xff/T-1.nc'
     """
     return path.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
 
 
-def archives_of(campaign: Path) -> list[Path]:
+def _archives_of(campaign: Path) -> list[Path]:
     """Archives of a campaign, by name; what begins with a dot is none."""
     return [path for path in archives_in(campaign) if not path.name.startswith(".")]
 
@@ -230,7 +230,7 @@ def campaigns_below(folder: Path) -> list[Path]:
     """
     if not folder.is_dir():
         raise SettingsError(
-            f"there is no folder {shown_path(str(folder))}",
+            f"there is no folder {_shown_path(str(folder))}",
             needed="a folder of processed campaigns",
             hint="Run a campaign first, or name the folder of its products.",
         )
@@ -239,15 +239,15 @@ def campaigns_below(folder: Path) -> list[Path]:
             inside = sorted((Path(one.path) for one in entries), key=lambda path: path.name)
     except OSError as error:
         raise SettingsError(
-            f"the folder {shown_path(str(folder))} cannot be read",
+            f"the folder {_shown_path(str(folder))} cannot be read",
             found=error.strerror or str(error),
             needed="a folder of processed campaigns",
         ) from error
     for path in inside:
         if path.suffix == ".nc" and path.is_file():
             raise SettingsError(
-                f"{shown_path(str(folder))} is the folder of one campaign",
-                found=f"the archive {shown_path(path.name)}",
+                f"{_shown_path(str(folder))} is the folder of one campaign",
+                found=f"the archive {_shown_path(path.name)}",
                 needed="the folder above it, which holds the campaigns",
                 hint="To see one of them, use --campaign.",
             )
@@ -374,7 +374,7 @@ _WHOLE = -1
 
 _TESTS = pyarrow.schema(
     [("row", pyarrow.int32()), ("is_whole", pyarrow.bool_())]
-    + [(name, column_type(name)) for name in (*CONDITIONS, *NUMBER)]
+    + [(name, _column_type(name)) for name in (*CONDITIONS, *NUMBER)]
 )
 
 
@@ -411,7 +411,7 @@ def write_catalogue(archives: Sequence[Path], path: Path, *, opener: Opener = re
     ArchiveError
         If an archive cannot be read, or the disk refuses.
     """
-    _write([entry_of(one, opener=opener) for one in sorted(archives)], path)
+    _write([_entry_of(one, opener=opener) for one in sorted(archives)], path)
 
 
 def rebuild(folder: Path) -> dict[str, str]:
@@ -429,20 +429,20 @@ def rebuild(folder: Path) -> dict[str, str]:
     """
     left_out = {}
     for campaign in campaigns_below(folder):
-        shown = shown_path(campaign.name)
+        shown = _shown_path(campaign.name)
         entries = []
         try:
-            for path in archives_of(campaign):
+            for path in _archives_of(campaign):
                 try:
-                    entries.append(entry_of(path))
+                    entries.append(_entry_of(path))
                 except (ArchiveError, OSError, RuntimeError, ValueError, LookupError) as error:
                     # one that opens may have parts that are damaged, or not those of an archive
                     words = (str(error) or type(error).__name__).splitlines()[0]
-                    left_out[f"{shown}/{shown_path(path.name)}"] = shown_path(words)
+                    left_out[f"{shown}/{_shown_path(path.name)}"] = _shown_path(words)
             if entries:
                 _write(entries, campaign / FILE_NAME)
         except OSError as error:
-            left_out[shown] = shown_path(str(error))
+            left_out[shown] = _shown_path(str(error))
     return left_out
 
 
@@ -463,7 +463,7 @@ def _write(entries: Sequence[Entry], path: Path) -> None:
         place = table.schema.get_field_index(name)
         table = table.set_column(place, name, tests[name].take(table["row"]))
     table = table.sort_by("quantity")
-    schema = table.schema.with_metadata({MARK: mark()})
+    schema = table.schema.with_metadata({MARK: _mark()})
     tests = pyarrow.concat_tables([schema.empty_table(), tests], promote_options="default")
     try:
         remove_abandoned(path)
@@ -485,19 +485,19 @@ def _write(entries: Sequence[Entry], path: Path) -> None:
         ) from error
 
 
-def kept_cycles(n_cycles: int) -> NDArray[np.intp]:
+def _kept_cycles(n_cycles: int) -> NDArray[np.intp]:
     """Index of the cycles whose numbers a catalogue keeps: 1, 2, 5, 10, 20, 50, ... and the last.
 
     Examples
     --------
-    >>> [int(index) + 1 for index in kept_cycles(3000)]
+    >>> [int(index) + 1 for index in _kept_cycles(3000)]
     [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 3000]
     """
     numbers = [one * 10**power for power in range(len(str(n_cycles))) for one in (1, 2, 5)]
     return np.array(sorted({n for n in numbers if n < n_cycles} | {n_cycles}), dtype=np.intp) - 1
 
 
-def entry_of(path: Path, *, opener: Opener = reading) -> Entry:
+def _entry_of(path: Path, *, opener: Opener = reading) -> Entry:
     """Read what a catalogue keeps of an archive; `ArchiveError` where it cannot be read."""
     with opener(path) as archive:
         attributes = archive.attrs
@@ -521,7 +521,7 @@ def entry_of(path: Path, *, opener: Opener = reading) -> Entry:
             for place, name in enumerate(names)
         ]
         rows = [
-            {name: shown_path(one) if isinstance(one, str) else one for name, one in row.items()}
+            {name: _shown_path(one) if isinstance(one, str) else one for name, one in row.items()}
             for row in (whole, *of_specimens)
         ]
         return Entry(rows, list(_blocks(archive, names)))
@@ -595,7 +595,7 @@ def _block(
     axes = [np.arange(archive.sizes[dim]) for dim in dims]
     cycles: dict[str, NDArray[np.intp]] = {}
     if "cycle" in dims and archive.sizes["cycle"]:
-        cycles["cycle"] = kept_cycles(archive.sizes["cycle"])
+        cycles["cycle"] = _kept_cycles(archive.sizes["cycle"])
         axes[dims.index("cycle")] = cycles["cycle"]
     shape = tuple(len(axis) for axis in axes)
     # of many cycles the others are not read
@@ -647,7 +647,7 @@ def _block(
     types = {"row": pyarrow.int32()}
     return pyarrow.table(
         {
-            name: pyarrow.array(column, types.get(name) or column_type(name), from_pandas=True)
+            name: pyarrow.array(column, types.get(name) or _column_type(name), from_pandas=True)
             for name, column in columns.items()
         }
     )
@@ -655,7 +655,7 @@ def _block(
 
 def _labels(archive: xr.Dataset, dim: str) -> NDArray[Any]:
     """Text or number of each place along a dimension; from 1 where the archive names none."""
-    is_text = column_type(dim) == "string"
+    is_text = _column_type(dim) == "string"
     if dim == "comparison" and {"ratio_numerator", "ratio_denominator"} <= set(archive.variables):
         pairs = zip(
             archive.variables["ratio_numerator"].to_numpy(),
@@ -720,14 +720,8 @@ def rows_with(catalogue: Catalogue, tests: pd.DataFrame, asked: Sequence[str]) -
     return pd.concat([about, rows], axis=1)
 
 
-def with_quantity(table: pd.DataFrame, catalogue: Catalogue, name: str) -> pd.DataFrame:
-    """The same rows with a quantity of their tests.
-
-    Raises
-    ------
-    SettingsError
-        If the quantity stands in several places of a test.
-    """
+def _with_quantity(table: pd.DataFrame, catalogue: Catalogue, name: str) -> pd.DataFrame:
+    """The same rows with a quantity of their tests."""
     part = _numbers_of(catalogue.numbers, name)
     places = _places(part, name)
     if places:
@@ -830,12 +824,12 @@ class Query:
     @property
     def asked(self) -> tuple[str, ...]:
         """Quantities by the names of the catalogue."""
-        names = self.quantity if self.by_cycle else map(standing_for, self.quantity)
+        names = self.quantity if self.by_cycle else map(_standing_for, self.quantity)
         return tuple(dict.fromkeys(names))
 
     def column(self, name: str) -> str:
         """Name of the column that a condition or an order means."""
-        return name if name in self.asked else standing_for(name)
+        return name if name in self.asked else _standing_for(name)
 
 
 def needed_quantities(query: Query) -> tuple[str, ...]:
@@ -885,7 +879,7 @@ def answer(catalogue: Catalogue, query: Query) -> Any:
     table = rows_with(catalogue, catalogue.tests[_fits(catalogue.tests, query)], query.asked)
     for name in others:
         if name not in table:
-            table = with_quantity(table, catalogue, name)
+            table = _with_quantity(table, catalogue, name)
     for condition in query.where:
         table = table[_holds(table, query.column(condition.name), condition)]
     if query.sort:  # stable: rows that are alike stay in the order of their tests
@@ -893,7 +887,7 @@ def answer(catalogue: Catalogue, query: Query) -> Any:
         table = _sorted(table, names, descending=query.descending)
     table = table.drop(columns="row").iloc[: query.limit]
     columns = {
-        str(name): pyarrow.array(table[name], column_type(str(name)), from_pandas=True)
+        str(name): pyarrow.array(table[name], _column_type(str(name)), from_pandas=True)
         for name in table
     }
     return pyarrow.table(columns)

@@ -36,20 +36,7 @@ from reduction.uncertainty.surface_errors import with_shared_surfaces
 
 
 def experiments_found(campaign: Campaign, tests: Sequence[TestStatus]) -> list[dict[str, Any]]:
-    """What a check says of every experiment.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded.
-    tests : sequence of TestStatus
-        Of the tests that were checked.
-
-    Returns
-    -------
-    found : list of dict
-        One an experiment, as the JSON answer has it.
-    """
+    """What a check says of every experiment."""
     is_read = {test.test: test.status != "failed" for test in tests}
     sums = {test.test: test.raw_sha256 for test in tests if is_read[test.test]}
     return [
@@ -65,7 +52,7 @@ def experiments_found(campaign: Campaign, tests: Sequence[TestStatus]) -> list[d
                 for specimen, test in plan.quasi_static.items()
             ],
             "slack_runs": _slack_runs(campaign, plan),
-            "notes": [*_without_pull(campaign, plan), *same_logs(plan, sums)],
+            "notes": [*_without_pull(campaign, plan), *_same_logs(plan, sums)],
         }
         for plan in campaign.experiments.values()
     ]
@@ -117,21 +104,8 @@ def _without_pull(campaign: Campaign, plan: ExperimentPlan) -> list[str]:
     return [f"no slow pull of {', '.join(bare)}: K_0, and so K_1 and tau, are refused"]
 
 
-def same_logs(plan: ExperimentPlan, raw_sha256: Mapping[str, str]) -> list[str]:
-    """Runs of different tests whose logs are byte for byte the same.
-
-    Parameters
-    ----------
-    plan : ExperimentPlan
-        The experiment.
-    raw_sha256 : mapping of str to str
-        Hashes of the raw files by run.
-
-    Returns
-    -------
-    notes : list of str
-        One a log; steps of one test share its log and are not told of.
-    """
+def _same_logs(plan: ExperimentPlan, raw_sha256: Mapping[str, str]) -> list[str]:
+    """Runs of different tests whose logs are byte for byte the same."""
     tests_of: dict[str, dict[str, None]] = {}
     for run in plan.runs:
         if raw_sha256.get(run):
@@ -157,7 +131,7 @@ _NO_REST = 1
 Row = dict[str, Any]
 
 
-def rows_of_run(
+def _rows_of_run(
     campaign: Campaign,
     plan: ExperimentPlan,
     run: str,
@@ -165,13 +139,7 @@ def rows_of_run(
     path: Path | None,
     opener: Opener = reading,
 ) -> list[Row]:
-    """One row a specimen of a run; a run without an archive has one that says so.
-
-    Raises
-    ------
-    ArchiveError
-        If an archive that is there cannot be read.
-    """
+    """One row a specimen of a run; a run without an archive has one that says so."""
     log = run.partition(".")[0]
     specimens = campaign.tests[log].specimens
     about = {"run": run, "coded": coded, "order": _order(campaign, plan, run)}
@@ -182,7 +150,7 @@ def rows_of_run(
     with opener(path) as archive:
         given = [str(name) for name in archive.variables["specimen"].values]
         return [
-            about | row_of_archive(plan, archive, given.index(name), name) for name in specimens
+            about | _row_of_archive(plan, archive, given.index(name), name) for name in specimens
         ]
 
 
@@ -197,7 +165,7 @@ def _order(campaign: Campaign, plan: ExperimentPlan, run: str) -> float:
     return float(start + (steps.index(run) / len(steps) if run in steps else 0.0))
 
 
-def row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: str) -> Row:
+def _row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: str) -> Row:
     """What the archive of a run holds of one specimen."""
 
     def of_test(name: str) -> float:
@@ -266,35 +234,7 @@ def write_experiments(
     command: str,
     opener: Opener = reading,
 ) -> list[PartStatus]:
-    """Fit the experiments of a campaign of which no run waits, and write them as one archive.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        With its experiments; nothing is written where it has none.
-    folder : pathlib.Path
-        Of the campaign's archives, of which one is made.
-    failed : collection of str
-        Tests whose archive, where there is one, is of an earlier run and not used.
-    waiting : collection of str
-        Runs that were not asked for and have to be reduced first.
-    raw_sha256 : mapping of str to str
-        Hashes of the raw files by run.
-    command : str
-        For the product's ``command`` attribute.
-    opener : Opener
-        How archives are opened.
-
-    Returns
-    -------
-    statuses : list of PartStatus
-        One an experiment.
-
-    Raises
-    ------
-    ArchiveError
-        If the archive cannot be written, or that of a run cannot be read.
-    """
+    """Fit the experiments of a campaign of which no run waits, and write them as one archive."""
     if not campaign.experiments:
         return []
     held = {
@@ -324,7 +264,7 @@ def write_experiments(
     }
     if not ready:
         return list(statuses.values())
-    results, sources = fit_experiments(
+    results, sources = _fit_experiments(
         replace(campaign, experiments=ready), archive_of, raw_sha256=raw_sha256, opener=opener
     )
     dataset = surfaces_to_dataset(
@@ -379,46 +319,27 @@ def _status(result: ExperimentResult) -> PartStatus:
     return PartStatus(result.name, status, result.refusal_status, message)
 
 
-def fit_experiments(
+def _fit_experiments(
     campaign: Campaign,
     archive_of: Callable[[str], Path | None],
     *,
     raw_sha256: Mapping[str, str],
     opener: Opener = reading,
 ) -> tuple[list[ExperimentResult], tuple[Source, ...]]:
-    """Fit every experiment of a campaign.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        With its experiments.
-    archive_of : callable
-        Path of a run's archive by the run's id, which need not exist; None for a run that failed.
-    raw_sha256 : mapping of str to str
-        Hashes of the raw files by run.
-    opener : Opener
-        How archives are opened.
-
-    Returns
-    -------
-    results : list of ExperimentResult
-        In the order of the campaign.
-    sources : tuple of Source
-        The archives that were read, by name, with their hashes.
-    """
+    """Fit every experiment of a campaign."""
     results, sources = [], {}
     for plan in campaign.experiments.values():
         rows = [
             row
             for run, coded in plan.runs.items()
-            for row in rows_of_run(campaign, plan, run, coded, archive_of(run), opener)
+            for row in _rows_of_run(campaign, plan, run, coded, archive_of(run), opener)
         ]
         for run in plan.runs:
             path = archive_of(run)
             if path is not None and path.exists():
                 sources[path.name] = hash_source(path, path.name)
-        result = fit_rows(plan, rows)
-        results.append(replace(result, notes=(*result.notes, *same_logs(plan, raw_sha256))))
+        result = _fit_rows(plan, rows)
+        results.append(replace(result, notes=(*result.notes, *_same_logs(plan, raw_sha256))))
     return results, tuple(sources.values())
 
 
@@ -452,7 +373,7 @@ def _levels(
     return tuple(factors), tuple(units), np.stack(columns, axis=1)
 
 
-def fit_rows(plan: ExperimentPlan, rows: list[Row]) -> ExperimentResult:
+def _fit_rows(plan: ExperimentPlan, rows: list[Row]) -> ExperimentResult:
     """Fit one experiment to what its runs gave, one row a run and specimen."""
     factors, units, level = _levels(plan, rows)
     runs = RunTable(

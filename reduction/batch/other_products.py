@@ -31,10 +31,7 @@ _Models = Callable[[Survey], Sequence[StrainModel]]
 
 @dataclass(frozen=True)
 class _Found:
-    """What the archives of the tests of one rope give.
-
-    ``is_programme`` where one is a step; ``component`` are the shared errors of each step.
-    """
+    """What the archives of the tests of one rope give."""
 
     steps: tuple[StepOfProgramme, ...]
     sources: tuple[Source, ...]
@@ -44,20 +41,7 @@ class _Found:
 
 
 def tests_of_ropes(campaign: Campaign, surveys: Sequence[Survey]) -> set[str]:
-    """Tests that may be steps of the programme of a rope.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded.
-    surveys : sequence of Survey
-        All its tests.
-
-    Returns
-    -------
-    tests : set of str
-        Those with a rope; a part of another test is that test once more.
-    """
+    """Tests that may be steps of the programme of a rope."""
     return {
         entry.plan.id
         for entry in surveys
@@ -77,37 +61,7 @@ def write_change_in_length(
     command: str,
     opener: Opener = reading,
 ) -> Path | None:
-    """Write the change-in-length properties of the ropes of a campaign.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded.
-    folder : pathlib.Path
-        Of its products, the archives of the tests among them.
-    surveys : sequence of Survey
-        All its tests.
-    models : callable
-        How position becomes strain in a test, specimen by specimen.
-    failed : collection of str
-        Tests that failed; their older archives do not count.
-    waiting : collection of str
-        Tests whose archives are not what they would be now.
-    command : str
-        For the product's ``command`` attribute, without paths.
-    opener : Opener
-        How archives are opened.
-
-    Returns
-    -------
-    path : pathlib.Path or None
-        ``change_in_length.nc``; None where no rope has a step that a property can come from.
-
-    Raises
-    ------
-    ArchiveError
-        If it cannot be written, or the archive of a test cannot be opened.
-    """
+    """Write the change-in-length properties of the ropes of a campaign."""
     found: dict[str, tuple[ChangeInLength, ...]] = {}
     sources: dict[str, Source] = {}
     used: dict[str, list[str]] = {}
@@ -232,18 +186,7 @@ def _properties_in_one_line(name: str, own: Sequence[ChangeInLength]) -> str:
 
 
 def results_found(campaign: Campaign) -> dict[str, Any] | None:
-    """What the table of results holds, as `check` prints it.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded.
-
-    Returns
-    -------
-    found : dict or None
-        File, hash, and by quantity how many rows there are of each use; None without results.
-    """
+    """What the table of results holds, as `check` prints it."""
     if campaign.results is None:
         return None
     uses: dict[str, Counter[str]] = {}
@@ -261,27 +204,7 @@ def results_found(campaign: Campaign) -> dict[str, Any] | None:
 
 
 def write_outcomes(campaign: Campaign, folder: Path, *, command: str) -> Path | None:
-    """Write the outcomes of a campaign.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded.
-    folder : pathlib.Path
-        Of its products.
-    command : str
-        For the product's ``command`` attribute, without paths.
-
-    Returns
-    -------
-    path : pathlib.Path or None
-        ``outcomes.nc``; None where the campaign has no results.
-
-    Raises
-    ------
-    ArchiveError
-        If it cannot be written.
-    """
+    """Write the outcomes of a campaign."""
     if campaign.results is None:
         return None
     path = folder / "outcomes.nc"

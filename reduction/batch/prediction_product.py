@@ -33,27 +33,7 @@ from reduction.record.measurement import Integers, Origin, Source, Step
 
 
 def write_predictions(campaign: Campaign, folder: Path, *, command: str) -> list[PartStatus]:
-    """Predict the hoses of a campaign, and write them as one archive.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded; nothing is written where it has no hoses.
-    folder : pathlib.Path
-        Of its products.
-    command : str
-        For the product's ``command`` attribute, without paths.
-
-    Returns
-    -------
-    statuses : list of PartStatus
-        One a hose, in the order of the campaign.
-
-    Raises
-    ------
-    ArchiveError
-        If the archive cannot be written.
-    """
+    """Predict the hoses of a campaign, and write them as one archive."""
     hoses, statuses = [], []
     for plan in campaign.hoses.values():
         try:
@@ -87,29 +67,8 @@ def write_hoses(
     source: Source,
     command: str,
 ) -> None:
-    """Write predicted hoses as one archive.
-
-    Parameters
-    ----------
-    hoses : sequence of PredictedHose
-        One or more.
-    path : pathlib.Path
-        The archive.
-    campaign_id : str
-        For its ``id``.
-    attributes : mapping of str to str
-        What there is to say of them together.
-    source : Source
-        The file that says how they are made.
-    command : str
-        For the product's ``command`` attribute, without paths.
-
-    Raises
-    ------
-    ArchiveError
-        If the archive cannot be written.
-    """
-    settings = {hose.plan.name: settings_of_hose(hose.plan) for hose in hoses}
+    """Write predicted hoses as one archive."""
+    settings = {hose.plan.name: _settings_of_hose(hose.plan) for hose in hoses}
     dataset = predictions_to_dataset(
         hoses,
         origin=Origin(
@@ -125,19 +84,8 @@ def write_hoses(
     write_archive(dataset, path)
 
 
-def settings_of_hose(plan: HosePlan) -> dict[str, Any]:
-    """Every number of a plan, in SI, for JSON.
-
-    Parameters
-    ----------
-    plan : HosePlan
-        As read.
-
-    Returns
-    -------
-    settings : dict
-        None where a number is not stated.
-    """
+def _settings_of_hose(plan: HosePlan) -> dict[str, Any]:
+    """Every number of a plan, in SI, for JSON."""
     found: dict[str, Any] = _plain(asdict(plan))
     return found
 
@@ -170,34 +118,7 @@ def write_comparisons(
     command: str,
     opener: Opener = reading,
 ) -> list[PartStatus]:
-    """Compare what a campaign asks for, from the archives of its tests, and write one archive.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded; nothing is written where it has no comparisons.
-    folder : pathlib.Path
-        Of its products.
-    failed : collection of str
-        Tests whose archive, where there is one, is of an earlier run and not used.
-    waiting : collection of str
-        Tests that were not asked for and have to be reduced first.
-    command : str
-        For the product's ``command`` attribute, without paths.
-    opener : Opener
-        How archives are opened.
-
-    Returns
-    -------
-    statuses : list of PartStatus
-        One a comparison, in the order of the campaign. Where all failed, an archive of an
-        earlier run is taken away: nothing would say that its verdicts are old.
-
-    Raises
-    ------
-    ArchiveError
-        If the archive cannot be written.
-    """
+    """Compare what a campaign asks for, from the archives of its tests, and write one archive."""
     held = all(plan.measured in waiting for plan in campaign.comparisons.values())
     stands = held and (folder / "comparisons.nc").exists()
     kept = "; comparisons.nc is of an earlier run" if stands else ""
@@ -245,33 +166,7 @@ def write_comparisons(
 def compare_archive(
     path: Path, hose: HosePlan, plan: ComparisonPlan, opener: Opener = reading
 ) -> NamedComparison:
-    """Hold the archive of a test against a hose.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Of the test.
-    hose : HosePlan
-        The prediction.
-    plan : ComparisonPlan
-        Which specimen, how it was pulled, what to fit; an empty specimen stands for the only one.
-    opener : Opener
-        How archives are opened.
-
-    Returns
-    -------
-    named : NamedComparison
-        With its verdict.
-
-    Raises
-    ------
-    ArchiveError
-        If the archive cannot be read.
-    DataError
-        If it has no curve of tension against strain, or none in common with the prediction.
-    FitError
-        If the calibration does not come to an end.
-    """
+    """Hold the archive of a test against a hose."""
     with opener(path) as archive:
         missing = [name for name in ("strain", "tension", "specimen") if name not in archive]
         if missing:
@@ -358,32 +253,9 @@ def write_named(
     sources: Sequence[Source],
     command: str,
 ) -> None:
-    """Write comparisons as one archive.
-
-    Parameters
-    ----------
-    done : sequence of NamedComparison
-        One or more.
-    path : pathlib.Path
-        The archive.
-    hoses : mapping of str to HosePlan
-        By name.
-    campaign_id : str
-        For its ``id``.
-    attributes : mapping of str to str
-        What there is to say of them together.
-    sources : sequence of Source
-        Archives of the tests, and the file that says how the hoses are made.
-    command : str
-        For the product's ``command`` attribute, without paths.
-
-    Raises
-    ------
-    ArchiveError
-        If the archive cannot be written.
-    """
+    """Write comparisons as one archive."""
     settings: dict[str, Any] = {
-        "hoses": {name: settings_of_hose(plan) for name, plan in hoses.items()},
+        "hoses": {name: _settings_of_hose(plan) for name, plan in hoses.items()},
         "comparisons": {
             one.name: {
                 "test": one.test,

@@ -39,7 +39,7 @@ from reduction.stages.strain.strain_model import StrainModel
 from reduction.uncertainty.shared_contributions import PullOrigin
 
 
-def reduce_survey(
+def _reduce_survey(
     campaign: Campaign,
     survey: Survey,
     models: Sequence[StrainModel],
@@ -48,37 +48,7 @@ def reduce_survey(
     pulls: Sequence[SlowPull | None] | None = None,
     pull_origins: Sequence[PullOrigin | None] = (),
 ) -> ReducedTest:
-    """Reduce one surveyed test.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        Where its files, layouts and specimens are.
-    survey : Survey
-        The test after the first pass.
-    models : sequence of StrainModel
-        One a specimen, in the order of the test; none for a stepwise test.
-    history : History or None
-        What the specimens had seen before.
-    settings : str
-        Every setting in force, as JSON, for the product.
-    pulls : sequence of SlowPull or None, optional
-        Slow pull of each specimen, where the test is a run of an experiment.
-    pull_origins : sequence of PullOrigin or None, optional
-        With what each pull was read.
-
-    Returns
-    -------
-    test : ReducedTest
-        Ready for the archive.
-
-    Raises
-    ------
-    SettingsError
-        If what is stated of the instruments cannot be meant of this log.
-    ReductionError
-        If the record cannot support a stage that its kind needs.
-    """
+    """Reduce one surveyed test."""
     description = describe(campaign, survey)
     specimens = tuple(campaign.specimens[name] for name in survey.plan.specimens)
     if survey.step_readings is not None:
@@ -118,32 +88,8 @@ def dataset_of(
     *,
     command: str,
 ) -> tuple[xr.Dataset, tuple[tuple[str, str], ...]]:
-    """Reduce one surveyed test to all that its archive is to hold.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        Where its files, layouts and specimens are.
-    survey : Survey
-        The test after the first pass.
-    basis : Basis
-        What its product rests on beside its own log.
-    command : str
-        For the product's ``command`` attribute, without paths.
-
-    Returns
-    -------
-    dataset : xarray.Dataset
-        The archive, not written.
-    notes : tuple of (stage, text)
-        That it holds.
-
-    Raises
-    ------
-    ReductionError
-        If the record cannot support a stage that its kind needs.
-    """
-    product = reduce_survey(
+    """Reduce one surveyed test to all that its archive is to hold."""
+    product = _reduce_survey(
         campaign, survey, basis.models, basis.history, basis.settings, basis.pulls,
         basis.pull_origins,
     )  # fmt: skip
@@ -154,7 +100,7 @@ def dataset_of(
     return dataset, product.all_notes()
 
 
-def bring_up_to_date(
+def _bring_up_to_date(
     campaign: Campaign,
     survey: Survey,
     basis: Basis,
@@ -164,38 +110,7 @@ def bring_up_to_date(
     command: str,
     before_writing: Callable[[], None],
 ) -> tuple[Status, str]:
-    """Write the archive of one test, unless one stands that is of the same logs and settings.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        Where its files, layouts and specimens are.
-    survey : Survey
-        The test after the first pass.
-    basis : Basis
-        What its product rests on beside its own log.
-    path : pathlib.Path
-        Of the archive.
-    force : bool
-        Write it in any case.
-    command : str
-        For the product's ``command`` attribute, without paths.
-    before_writing : callable
-        Raises an error where nothing may be written any more.
-
-    Returns
-    -------
-    status : Status
-        ``unchanged``, ``reduced`` or ``reduced_with_notes``.
-    message : str
-        What a reader of the table of tests has to know.
-
-    Raises
-    ------
-    ReductionError
-        If the record cannot support a stage that its kind needs, a raw file is not what it was
-        when it was read, or the archive cannot be written.
-    """
+    """Write the archive of one test, unless one stands that is of the same logs and settings."""
     if not force:
         notes = standing_product(path, survey, basis.settings, remarks=basis.remarks)
         if notes is not None:
@@ -208,10 +123,7 @@ def bring_up_to_date(
 
 
 def _check_raw_files(campaign: Campaign, survey: Survey) -> None:
-    """Refuse an archive of a raw file that is another now, or gone, since it was read.
-
-    Times and sizes are not enough: a copy may keep both.
-    """
+    """Refuse an archive of a raw file that is another now, or gone, since it was read."""
     for (name, _), read in zip(survey.plan.files, survey.sources, strict=True):
         path = campaign.file(name)
         now = hash_source(path, read.name)
@@ -250,40 +162,7 @@ def reduce_campaign(
     force: bool,
     command: str,
 ) -> list[TestStatus]:
-    """Bring the archives of tests up to date.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded.
-    first : FirstPass
-        From `survey_campaign`; the records that it keeps are let go.
-    chosen : sequence of Survey
-        The tests that are asked for.
-    errors : mapping of test to ReductionError
-        Tests that cannot be reduced, beside those whose survey says so.
-    basis : callable
-        What the product of a test rests on.
-    folder : pathlib.Path
-        Of the archives.
-    workers : Workers or None
-        Where it is done; None: in this process.
-    lock : RunLock
-        That the run holds.
-    progress : Progress
-        Told of each test.
-    clock : callable
-        Seconds, for the status alone.
-    force : bool
-        Redo tests that stand.
-    command : str
-        For the attribute ``command``.
-
-    Returns
-    -------
-    statuses : list of TestStatus
-        In the order of the tests that were asked for.
-    """
+    """Bring the archives of tests up to date."""
     progress.stage("reduce", len(chosen))
     known = {survey.plan.id: survey for survey in chosen}
     of_log = Counter(survey.plan.log for survey in chosen)
@@ -341,7 +220,7 @@ def _make(
     start = clock()
     status: Status
     try:
-        status, message = bring_up_to_date(
+        status, message = _bring_up_to_date(
             campaign, with_record(survey, kept), basis, path, force=force, command=command,
             before_writing=lock.confirm,
         )  # fmt: skip

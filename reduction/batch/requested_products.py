@@ -32,22 +32,7 @@ def parts_asked(campaign: Campaign) -> set[str]:
 
 
 def products_asked(campaign: Campaign, folder: Path, *, has_lengths: bool) -> dict[str, Path]:
-    """Archives of the whole campaign that it asks for and that are there.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded.
-    folder : pathlib.Path
-        Of its products.
-    has_lengths : bool
-        Whether it has ropes of which change in length is told.
-
-    Returns
-    -------
-    products : dict of str to pathlib.Path
-        By the names of `reduction.archive.open.OF_CAMPAIGN`.
-    """
+    """Archives of the whole campaign that it asks for and that are there."""
     asked = parts_asked(campaign) | ({"change_in_length"} if has_lengths else set())
     paths = {name: folder / f"{name}.nc" for name in OF_CAMPAIGN if name in asked}
     return {name: path for name, path in paths.items() if path.exists()}
@@ -74,24 +59,7 @@ def find_wanted(
     lock: RunLock | None = None,
     progress: Progress,
 ) -> Wanted:
-    """Read every log of a campaign, and fit what its tests share.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded.
-    workers : Workers, optional
-        Where it is done; in this process where left out.
-    lock : RunLock, optional
-        That the run holds.
-    progress : Progress
-        Told of each log.
-
-    Returns
-    -------
-    wanted : Wanted
-        A test that fails carries its error; the others are looked at all the same.
-    """
+    """Read every log of a campaign, and fit what its tests share."""
     first = survey_campaign(campaign, workers=workers, lock=lock, progress=progress)
     return wanted_of(campaign, first, workers=workers, progress=progress)
 
@@ -139,24 +107,7 @@ def selected_surveys(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Su
 def check_campaign(
     campaign: Campaign, *, tests: Sequence[str] = (), progress: Progress | None = None
 ) -> tuple[list[TestStatus], dict[tuple[str, str], StrainModel]]:
-    """Read and validate everything, write nothing.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded.
-    tests : sequence of str
-        Only these; all where empty.
-    progress : Progress, optional
-        Told of each log.
-
-    Returns
-    -------
-    statuses : list of TestStatus
-        ``no_work`` (nothing was reduced) or ``failed``.
-    models : dict of (test, specimen) to StrainModel
-        How position would become strain.
-    """
+    """Read and validate everything, write nothing."""
     refuse_unknown_tests(campaign, tests)
     surveys = survey_campaign(campaign, progress=progress).surveys
     models, errors = fit_strain_models(campaign, surveys)

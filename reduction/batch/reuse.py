@@ -81,7 +81,7 @@ def _strain_document(campaign: Campaign, model: StrainModel) -> dict[str, Any]:
     return document
 
 
-def settings_json(
+def _settings_json(
     campaign: Campaign,
     survey: Survey,
     models: Sequence[StrainModel],
@@ -165,24 +165,7 @@ def basis_of(
     *,
     pulls: Mapping[tuple[str, str], SlowPull],
 ) -> Basis:
-    """Gather what one test rests on.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded.
-    survey : Survey
-        The test.
-    past : Past
-        All tests of the campaign, with their models.
-    pulls : mapping of (test, specimen) to SlowPull
-        Every slow pull that an experiment names.
-
-    Returns
-    -------
-    basis : Basis
-        As it stands in this run.
-    """
+    """Gather what one test rests on."""
     history = history_of(survey, past, campaign)
     of_run = pulls_of(campaign, survey, pulls)
     origins = () if of_run is None else origins_of(campaign, survey, past.surveys, past.models)
@@ -193,7 +176,7 @@ def basis_of(
         models=of_test,
         pulls=of_run,
         pull_origins=origins,
-        settings=settings_json(campaign, survey, of_test, history, of_run, origins),
+        settings=_settings_json(campaign, survey, of_test, history, of_run, origins),
         remarks=history_remarks(survey, past, campaign),
     )
 
@@ -206,24 +189,7 @@ _MANY = 4  # runs that are named one by one
 def standing_product(
     path: Path, survey: Survey, settings: str, *, remarks: Sequence[str] = ()
 ) -> tuple[tuple[str, str], ...] | None:
-    """Notes of the product of an earlier run that stands; None where it has to be made.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Where it would be.
-    survey : Survey
-        The test.
-    settings : str
-        Every setting in force now, as JSON.
-    remarks : sequence of str
-        What the campaign leaves open about the test now; a product that stands says it too.
-
-    Returns
-    -------
-    notes : tuple of (stage, text) or None
-        It stands where raw hash, settings and version are the same.
-    """
+    """Notes of the product of an earlier run that stands; None where it has to be made."""
     try:
         if not path.exists():
             return None
@@ -254,22 +220,7 @@ def standing_product(
 def waiting_runs(
     folder: Path, surveys: Sequence[Survey], basis_of: Callable[[Survey], Basis]
 ) -> set[str]:
-    """Runs that have to be reduced before their experiment is fitted.
-
-    Parameters
-    ----------
-    folder : pathlib.Path
-        Of the campaign's archives.
-    surveys : sequence of Survey
-        Tests that were not asked for, without an error.
-    basis_of : callable
-        What a test rests on now.
-
-    Returns
-    -------
-    waiting : set of str
-        Those whose archive is not there, or not what it would be made again.
-    """
+    """Runs that have to be reduced before their experiment is fitted."""
     waiting = set()
     for survey in surveys:
         now = basis_of(survey)

@@ -41,7 +41,7 @@ from reduction.report.campaign_page import write_report
 
 
 @dataclass(frozen=True)
-class CampaignResult:
+class _CampaignResult:
     """What a run did: one status a test and a part, and what it wrote."""
 
     tests: tuple[TestStatus, ...]
@@ -79,7 +79,7 @@ def run_campaign(
     workers: Workers | None = None,
     progress: Progress | None = None,
     opener: Opener | None = None,
-) -> CampaignResult:
+) -> _CampaignResult:
     """Reduce a campaign: archives, tables, catalogue, status, report.
 
     No other run may be at work on the same products.  Tests whose archives stand are left as
@@ -156,7 +156,7 @@ def _run(
     workers: Workers | None,
     progress: Progress,
     opener: Opener,
-) -> CampaignResult:
+) -> _CampaignResult:
     wanted = find_wanted(campaign, workers=workers, lock=lock, progress=progress)
     first, basis = wanted.first, wanted.basis
     surveys = first.surveys
@@ -204,7 +204,7 @@ def _run(
             folder, reports / campaign.id, units=units, values_page=values_page, stray=stray,
             unreadable=partial(_keep_pages, [*ours, *products.values()]), opener=opener,
         )  # fmt: skip
-    return CampaignResult(
+    return _CampaignResult(
         tests=tuple(statuses),
         experiments=parts.experiments,
         hoses=parts.hoses,

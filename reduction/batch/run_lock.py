@@ -50,13 +50,7 @@ class RunLock:
     holder: str
 
     def confirm(self) -> None:
-        """Refuse to go on where the lock is not this run's, or is not seen.
-
-        Raises
-        ------
-        ArchiveError
-            So that what is left of a run that was ended writes nothing into those of the next.
-        """
+        """Refuse to go on where the lock is not this run's, or is not seen."""
         try:
             text = self.path.read_text(encoding="utf-8", errors="replace")
         except FileNotFoundError:
@@ -74,23 +68,7 @@ class RunLock:
 
 @contextmanager
 def run_lock(folder: Path) -> Iterator[RunLock]:
-    """Hold the folder of a campaign's products for one run.
-
-    Parameters
-    ----------
-    folder : pathlib.Path
-        Made where it is not there.
-
-    Yields
-    ------
-    lock : RunLock
-        Given back at the end, however it comes about.
-
-    Raises
-    ------
-    ArchiveError
-        If another run holds it, or the folder cannot be written to.
-    """
+    """Hold the folder of a campaign's products for one run."""
     lock = RunLock(folder / LOCK_NAME, _own())
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -104,7 +82,7 @@ def run_lock(folder: Path) -> Iterator[RunLock]:
             yield lock
         finally:
             # where a person has removed the file the folder may be another run's
-            if run_named(folder) == lock.holder:
+            if _run_named(folder) == lock.holder:
                 _remove_begun(folder)  # by a worker that was killed
                 with suppress(OSError):  # a disk that is gone
                     file.truncate(0)
@@ -117,7 +95,7 @@ def _hold(file: BinaryIO, lock: RunLock) -> None:
         folder = lock.path.parent
         raise ArchiveError(
             f"another run holds {folder}",
-            found=f"{lock.path}: {run_named(folder)}",
+            found=f"{lock.path}: {_run_named(folder)}",
             needed="one run at a time on a folder of products",
             hint="Wait for it or end it; products that it finished are kept.",
         ) from None
@@ -141,7 +119,7 @@ def _refused(path: Path, error: OSError) -> ArchiveError:
     )
 
 
-def run_named(folder: Path) -> str:
+def _run_named(folder: Path) -> str:
     """The run that is at work in a folder of products, or was killed there; empty without one."""
     try:
         return (folder / LOCK_NAME).read_text(encoding="utf-8", errors="replace")

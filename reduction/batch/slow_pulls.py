@@ -30,10 +30,7 @@ _Found = tuple[list[SlowPull | None], ReductionError | None]
 
 
 def pull_conditions(campaign: Campaign, survey: Survey) -> PullConditions:
-    """What the campaign says about a slow pull.
-
-    A rest in words that is no time is kept as words alone.
-    """
+    """What the campaign says about a slow pull."""
     waiting = survey.plan.attributes.get("rest", "")
     try:
         waiting_time = parse_quantity(waiting, "time") if waiting else None
@@ -65,28 +62,7 @@ def fit_pulls(
     workers: Workers | None = None,
     progress: Progress,
 ) -> tuple[dict[tuple[str, str], SlowPull], dict[str, ReductionError]]:
-    """Fit every slow pull that an experiment names.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        With its experiments.
-    first : FirstPass
-        All tests of the campaign, and the records that are kept.
-    models : mapping of (test, specimen) to StrainModel
-        How position becomes strain.
-    workers : Workers, optional
-        Where it is done; in this process where left out.
-    progress : Progress
-        Told of each pull.
-
-    Returns
-    -------
-    pulls : dict of (test, specimen) to SlowPull
-        A pull that could not be read or fitted is left out; its own test says why.
-    errors : dict of test to ReductionError
-        Pulls that could not be looked at.
-    """
+    """Fit every slow pull that an experiment names."""
     named = {test for plan in campaign.experiments.values() for test in plan.quasi_static.values()}
     specimens_of: dict[str, tuple[str, ...]] = {}
     tasks: list[Task] = []
@@ -138,10 +114,7 @@ def _fit(
 
 
 def pull_tests(campaign: Campaign, run: str) -> dict[str, str]:
-    """Test of the slow pull by specimen, as the experiments say that the run is in.
-
-    A campaign is loaded only where they agree.
-    """
+    """Test of the slow pull by specimen, as the experiments say that the run is in."""
     return {
         specimen: test
         for plan in campaign.experiments.values()

@@ -33,19 +33,8 @@ from reduction.stages.standstills import median_step
 from reduction.stages.strain.strain_fit import zero_strain_position
 
 
-def found_in(located: Located) -> dict[str, Any]:
-    """Rate, gaps, standstills, flags and notes of a record, beside its rows and cycles.
-
-    Parameters
-    ----------
-    located : Located
-        The record.
-
-    Returns
-    -------
-    found : dict
-        As the JSON answer has it.
-    """
+def _found_in(located: Located) -> dict[str, Any]:
+    """Rate, gaps, standstills, flags and notes of a record, beside its rows and cycles."""
     record = located.record
     n_flagged = account_rows(record).n_flagged
     return {
@@ -76,7 +65,7 @@ def _slice(record: Record, first: int, stop: int) -> Record:
     )
 
 
-def step_record(record: Record, step: StepPlan, plan: TestPlan) -> Record:
+def _step_record(record: Record, step: StepPlan, plan: TestPlan) -> Record:
     """The rows of one step of a log."""
     if step.time_range is not None:
         low, high = step.time_range
@@ -99,7 +88,7 @@ def step_record(record: Record, step: StepPlan, plan: TestPlan) -> Record:
     return _slice(record, int(whole.cycles.first[first - 1]), int(whole.cycles.last[last - 1]) + 1)
 
 
-def step_plan(plan: TestPlan, step: StepPlan, place: int) -> TestPlan:
+def _step_plan(plan: TestPlan, step: StepPlan, place: int) -> TestPlan:
     """The plan of one step as that of a test."""
     cycles = replace(plan.settings.cycles, expected_cycles=step.expected_cycles)
     note = {"step": step.name} | ({"step_note": step.note} if step.note else {})
@@ -145,28 +134,8 @@ class Survey:
     error: ReductionError | None = None
 
 
-def read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_record) -> list[Survey]:
-    """Read one log and locate what it holds: one survey a test, or one a step.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        Where the files, layouts and specimens are.
-    plan : TestPlan
-        The test.
-    reader : callable
-        What reads its record; one that keeps records reads a log once.
-
-    Returns
-    -------
-    surveys : list of Survey
-        With the records in memory.
-
-    Raises
-    ------
-    ReductionError
-        Whatever is wrong with the log or its data, with file, row and channel.
-    """
+def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_record) -> list[Survey]:
+    """Read one log and locate what it holds: one survey a test, or one a step."""
     files = [(campaign.file(name), campaign.layouts[layout], name) for name, layout in plan.files]
     if plan.kind == "stepwise":
         readings, sources = read_step_readings(files, test_id=plan.id, limits=campaign.limits)
@@ -201,9 +170,9 @@ def read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_recor
     whole = locate(record, kind="relaxation", settings=plan.settings)
     surveys = []
     for place, step in enumerate(plan.steps, start=1):
-        part = step_plan(plan, step, place)
+        part = _step_plan(plan, step, place)
         try:
-            record_of_step = replace(step_record(record, step, plan), test_id=part.id)
+            record_of_step = replace(_step_record(record, step, plan), test_id=part.id)
             survey = _located(part, record_of_step, sources)
         except ReductionError as error:
             survey = Survey(part, sources, n_rows=record.n_samples, error=error)
@@ -241,7 +210,7 @@ def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Sur
         n_rows=record.n_samples,
         n_cycles=0 if located.cycles is None else located.cycles.n_cycles,
         extremes=extremes_of_test(located),
-        found=found_in(located),
+        found=_found_in(located),
     )
 
 
@@ -256,7 +225,7 @@ def survey_log(campaign: Campaign, name: str, *, reader: Reader = read_record) -
     """Read and locate one log; a log that cannot be read has one survey, with its error."""
     plan = campaign.tests[name]
     try:
-        return read_test(campaign, plan, reader=reader)
+        return _read_test(campaign, plan, reader=reader)
     except Exception as error:
         if isinstance(error, OSError) and error.errno is not None:
             error = unreadable(error.filename or plan.files[0][0], error)
@@ -267,7 +236,7 @@ def located_again(campaign: Campaign, survey: Survey) -> Located:
     """The record of a survey, read again where it was not kept."""
     if survey.located is not None:
         return survey.located
-    for again in read_test(campaign, campaign.tests[survey.plan.log]):
+    for again in _read_test(campaign, campaign.tests[survey.plan.log]):
         if again.plan.id == survey.plan.id and again.located is not None:
             if again.sources != survey.sources:
                 raise LogError(
@@ -317,24 +286,7 @@ def survey_campaign(
     lock: RunLock | None = None,
     progress: Progress | None = None,
 ) -> FirstPass:
-    """Read and locate every test of a campaign.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded.
-    workers : Workers, optional
-        Where it is done; one log after another in this process where left out.
-    lock : RunLock, optional
-        That the run holds.
-    progress : Progress, optional
-        Told of each log.
-
-    Returns
-    -------
-    first : FirstPass
-        The surveys, and the records as far as they are kept.
-    """
+    """Read and locate every test of a campaign."""
     progress = progress or Silent()
     progress.stage("survey", len(campaign.tests))
     is_elsewhere = workers is not None

@@ -42,20 +42,7 @@ class Past:
 
 
 def past_of(surveys: Sequence[Survey], models: Models) -> Past:
-    """Put the tests of a campaign in order.
-
-    Parameters
-    ----------
-    surveys : sequence of Survey
-        All tests of the campaign.
-    models : mapping of (test, specimen) to StrainModel
-        How position becomes strain.
-
-    Returns
-    -------
-    past : Past
-        What `history_of` and `history_remarks` ask.
-    """
+    """Put the tests of a campaign in order."""
     placed: dict[str, list[tuple[Place, Survey]]] = {}
     strain: dict[tuple[str, str], float] = {}
     of_log: dict[str, Survey] = {}
@@ -120,11 +107,7 @@ def _unlogged_cycles(earlier: Sequence[Survey], own: Survey, before: int | None)
 def _earlier_flex_cycles(
     earlier: Sequence[Survey], survey: Survey, before: int | None, surveys: Sequence[Survey]
 ) -> float:
-    """Cycles of flexing before a test.
-
-    NaN where the campaign says nothing of flexing of the specimen, or the test is a later step
-    of a log in which it was flexed: how much of it came before is not known.
-    """
+    """Cycles of flexing before a test."""
     is_counted = any(entry.plan.n_flex_cycles is not None for entry in surveys)
     flexed = {entry.plan.log: entry.plan.n_flex_cycles or 0 for entry in earlier}
     if (before is None and not is_counted) or flexed.get(survey.plan.log):
@@ -133,23 +116,7 @@ def _earlier_flex_cycles(
 
 
 def history_of(survey: Survey, past: Past, campaign: Campaign) -> History | None:
-    """Earlier maximum strain and tension and cumulative cycles of each specimen.
-
-    Parameters
-    ----------
-    survey : Survey
-        The test; one that is a part of another has the history of that one.
-    past : Past
-        All tests of the campaign.
-    campaign : Campaign
-        What its specimens had seen before.
-
-    Returns
-    -------
-    history : History or None
-        None where the test has no place in the order.  A number is NaN where an earlier test
-        failed or has none of it: a part of a sum, or of a maximum, would pass for the whole.
-    """
+    """Earlier maximum strain and tension and cumulative cycles of each specimen."""
     if _place(survey, past) is None:
         return None
     nothing = float("nan")
@@ -188,22 +155,7 @@ def _greatest(values: Sequence[float]) -> float:
 
 
 def history_remarks(survey: Survey, past: Past, campaign: Campaign) -> tuple[str, ...]:
-    """What the campaign leaves open about the place of a test in its specimens' history.
-
-    Parameters
-    ----------
-    survey : Survey
-        The test.
-    past : Past
-        All tests of the campaign.
-    campaign : Campaign
-        What its specimens had seen before.
-
-    Returns
-    -------
-    remarks : tuple of str
-        Sentences for a reader of the product; empty where nothing is open.
-    """
+    """What the campaign leaves open about the place of a test in its specimens' history."""
     plan = survey.plan
     remarks = (*_unknown(survey, past), *_unlogged(survey, past, campaign))
     if plan.part_of is not None:
@@ -300,22 +252,7 @@ def _load_cells(campaign: Campaign, surveys: Sequence[Survey], specimen: str) ->
 def fit_strain_models(
     campaign: Campaign, surveys: Sequence[Survey]
 ) -> tuple[dict[tuple[str, str], StrainModel], dict[str, ReductionError]]:
-    """Fit the strain model of each specimen in each test.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        With the pooled marks.
-    surveys : sequence of Survey
-        With the tension at the marks.
-
-    Returns
-    -------
-    models : dict of (test, specimen) to StrainModel
-        Tests whose log could not be read are left out.
-    errors : dict of test to ReductionError
-        Tests that have no way from position to strain.
-    """
+    """Fit the strain model of each specimen in each test."""
     at_end = {
         name: _pooled(marks, surveys, lambda survey: survey.mark_tension)
         for name, marks in campaign.marks.items()
@@ -359,13 +296,7 @@ def fit_strain_models(
 def instruments_of(
     campaign: Campaign, survey: Survey, models: Sequence[StrainModel]
 ) -> tuple[InstrumentErrors, ...]:
-    """Stated errors of each specimen, with the names by which tests share them.
-
-    Tests share the load cell and the machine that they name in the same words, and the strain
-    model of a specimen where it is of one method and of marks pooled over the campaign; what
-    rests on marks of one test is its own.  A diameter of which nothing is stated has the scatter
-    of its readings.
-    """
+    """Stated errors of each specimen, with the names by which tests share them."""
     plan = survey.plan
     return tuple(
         _with_readings(

@@ -36,7 +36,7 @@ Kind = Literal["damaged", "missing", "raw_file", "settings", "table"]
 
 
 @dataclass(frozen=True)
-class Finding:
+class _Finding:
     """One thing that is wrong with one file; ``product`` is its name below the folder."""
 
     product: str
@@ -55,47 +55,22 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Verification:
-    """What was looked at in the folder of one campaign, and what is wrong there.
-
-    ``remarks`` are what a reader should know and what is no fault.
-    """
+class _Verification:
+    """What was looked at in the folder of one campaign, and what is wrong there."""
 
     campaign: str
     n_archives: int
     n_sources: int
     n_tables: int
-    findings: tuple[Finding, ...]
+    findings: tuple[_Finding, ...]
     remarks: tuple[str, ...] = ()
 
 
-def verify_campaign(campaign: Campaign, folder: Path, *, progress: Progress) -> Verification:
-    """Look whether the products of a campaign are what it would make now of its raw files.
-
-    Nothing is written but in a folder for temporary files.
-
-    Parameters
-    ----------
-    campaign : Campaign
-        As loaded.
-    folder : pathlib.Path
-        Of its products, ``processed/CAMPAIGN``.
-    progress : Progress
-        Told how far it is.
-
-    Returns
-    -------
-    verification : Verification
-        Without a finding where everything belongs together.
-
-    Raises
-    ------
-    OSError
-        If the folder cannot be looked into.
-    """
+def verify_campaign(campaign: Campaign, folder: Path, *, progress: Progress) -> _Verification:
+    """Look whether the products of a campaign are what it would make now of its raw files."""
     paths = archives_in(folder)
     progress.stage("verify archives", len(paths))
-    findings: list[Finding] = []
+    findings: list[_Finding] = []
     attributes: dict[str, dict[str, Any]] = {}
     for path in paths:
         try:
@@ -104,7 +79,7 @@ def verify_campaign(campaign: Campaign, folder: Path, *, progress: Progress) -> 
                 _read_to_the_end(archive)
         except ArchiveError as error:
             attributes.pop(path.stem, None)
-            findings.append(Finding(path.name, "damaged", "it cannot be read", str(error)))
+            findings.append(_Finding(path.name, "damaged", "it cannot be read", str(error)))
         progress.ended(path.stem)
     sources = _Sources(campaign, folder)
     of_sources = [
@@ -116,7 +91,7 @@ def verify_campaign(campaign: Campaign, folder: Path, *, progress: Progress) -> 
     findings += _of_settings(campaign, folder, as_they_were, progress)
     tests = _tests_of(campaign)
     findings += [
-        Finding(f"{name}.nc", "missing", "it is not there, and the campaign asks for it")
+        _Finding(f"{name}.nc", "missing", "it is not there, and the campaign asks for it")
         for name in (*tests, *sorted(parts_asked(campaign)))
         if not (folder / f"{name}.nc").exists()
     ]
@@ -131,7 +106,7 @@ def verify_campaign(campaign: Campaign, folder: Path, *, progress: Progress) -> 
         f"{one} lies on the net and was not compared (--allow-remote fetches it)"
         for one in sources.not_fetched
     )
-    return Verification(
+    return _Verification(
         campaign.id, len(paths), sources.n_read, n_tables, tuple(findings), tuple(remarks)
     )
 
@@ -167,7 +142,7 @@ class _Sources:
         """Files that were read."""
         return sum(isinstance(one, Source) for one in self._seen.values())
 
-    def faults(self, archive: str, attributes: Mapping[str, Any]) -> Iterator[Finding]:
+    def faults(self, archive: str, attributes: Mapping[str, Any]) -> Iterator[_Finding]:
         """Sources of an archive that are not as they were."""
         product = f"{archive}.nc"
         names, sums, sizes = (
@@ -175,14 +150,14 @@ class _Sources:
             for key in ("raw_file", "raw_file_sha256", "raw_file_bytes")
         )
         if not names or not len(names) == len(sums) == len(sizes):
-            yield Finding(product, "damaged", "it does not say what it was made from")
+            yield _Finding(product, "damaged", "it does not say what it was made from")
             return
         for name, *stated in zip(names, sums, sizes, strict=True):
             if not is_address(name) and (
                 PurePath(name).is_absolute() or ".." in PurePath(name).parts
             ):
                 problem = "it names a source outside of the folder of its campaign"
-                yield Finding(product, "damaged", problem, f"'{name}'")
+                yield _Finding(product, "damaged", problem, f"'{name}'")
                 continue
             path = self._place(archive, name)
             if path is None:
@@ -191,9 +166,9 @@ class _Sources:
             found = self._read(path, name)
             if isinstance(found, LogError):
                 problem = f"{name}, from which it was made, cannot be read"
-                yield Finding(product, "raw_file", problem, found.found or found.problem, needed)
+                yield _Finding(product, "raw_file", problem, found.found or found.problem, needed)
             elif [found.sha256, str(found.size)] != stated:
-                yield Finding(
+                yield _Finding(
                     product, "raw_file", f"{name} is not the file from which it was made",
                     f"sha256 {found.sha256:.16}... of {found.size} bytes", needed,
                     f"If {name} should not have changed, take a copy of it that is as it was; if "
@@ -223,7 +198,7 @@ class _Sources:
 
 def _of_settings(
     campaign: Campaign, folder: Path, archives: Mapping[str, Mapping[str, Any]], progress: Progress
-) -> Iterator[Finding]:
+) -> Iterator[_Finding]:
     """Archives that a run would make again from the same files: logs are read as a run does."""
     wanted = find_wanted(campaign, progress=progress)
     for survey in wanted.first.surveys:
@@ -238,7 +213,7 @@ def _of_settings(
 
 def _of_test(
     survey: Survey, wanted: Wanted, folder: Path, attributes: Mapping[str, Any]
-) -> Iterator[Finding]:
+) -> Iterator[_Finding]:
     product = f"{survey.plan.id}.nc"
     try:
         error = survey.error or wanted.errors.get(survey.plan.id)
@@ -246,26 +221,26 @@ def _of_test(
             raise error
         basis = wanted.basis(survey)
     except ReductionError as failure:
-        yield Finding(product, "settings", "the test cannot be reduced now", str(failure))
+        yield _Finding(product, "settings", "the test cannot be reduced now", str(failure))
         return
     stands = standing_product(folder / product, survey, basis.settings, remarks=basis.remarks)
     if stands is None:
         told = list(_made_otherwise(product, attributes, basis.settings))
-        yield from told or [Finding(product, "settings", "a run would make it again")]
+        yield from told or [_Finding(product, "settings", "a run would make it again")]
 
 
 def _made_otherwise(
     product: str, attributes: Mapping[str, Any], settings: str | None
-) -> Iterator[Finding]:
+) -> Iterator[_Finding]:
     version = str(attributes.get("software_version", ""))
     before = str(attributes.get("settings", ""))
     if version != __version__:
         problem = "another version of the software made it"
-        yield Finding(product, "settings", problem, version, __version__)
+        yield _Finding(product, "settings", problem, version, __version__)
     elif settings is not None and before != settings:
         problem = "it was made with other settings, marks or earlier tests than stand now"
         pair = json.loads(before or "{}"), json.loads(settings)
-        yield Finding(product, "settings", problem, "; ".join(_differing(*pair)))
+        yield _Finding(product, "settings", problem, "; ".join(_differing(*pair)))
 
 
 def _differing(before: Any, now: Any, place: str = "") -> Iterator[str]:
@@ -279,17 +254,17 @@ def _differing(before: Any, now: Any, place: str = "") -> Iterator[str]:
 
 def _of_tables(
     folder: Path, archives: list[Path], products: Mapping[str, Path]
-) -> tuple[int, list[Finding]]:
+) -> tuple[int, list[_Finding]]:
     """Make the tables again in another place, and compare them byte for byte."""
     with TemporaryDirectory(prefix="reduction-verify-") as place:
         made = write_tables(archives, Path(place), opener=read_once(), **products)
         names = [path.name for path in made]
         _, other, missing = filecmp.cmpfiles(place, folder / "tables", names, shallow=False)
     findings = [
-        Finding(f"tables/{name}", "table", "it is not what the archives give") for name in other
+        _Finding(f"tables/{name}", "table", "it is not what the archives give") for name in other
     ]
     findings += [
-        Finding(f"tables/{name}", "missing", "it is not there, and the archives fill it")
+        _Finding(f"tables/{name}", "missing", "it is not there, and the archives fill it")
         for name in missing
     ]
     return len(made), findings

@@ -48,11 +48,8 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Ended(Generic[Result]):
-    """Work that ended: what it gave, or the error where no worker lived to tell.
-
-    ``worker`` names the process that did it where there are several.
-    """
+class _Ended(Generic[Result]):
+    """Work that ended: what it gave, or the error where no worker lived to tell."""
 
     test: str
     value: Result | None
@@ -91,36 +88,12 @@ def work_on(
     *,
     workers: Workers | None,
     begun: Callable[[str], None] = lambda test: None,
-) -> Iterator[Ended[Result]]:
-    """Call a function for each task.
-
-    Parameters
-    ----------
-    function : callable
-        Of the arguments of a task; a function of a module, where there are workers.
-    tasks : iterable of Task
-        Without workers they are taken one after another, each when the one before has ended.
-    workers : Workers or None
-        None: this process.
-    begun : callable
-        Told of each test that is begun in this process.
-
-    Yields
-    ------
-    ended : Ended
-        As the tasks end.
-
-    Raises
-    ------
-    ReductionError
-        What the function raises.
-    WorkerError
-        If workers die, the scheduler is lost, or the function raises another error on a worker.
-    """
+) -> Iterator[_Ended[Result]]:
+    """Call a function for each task."""
     if workers is None:
         for task in tasks:
             begun(task.test)
-            yield Ended(task.test, function(*task.arguments))
+            yield _Ended(task.test, function(*task.arguments))
         return
     done: SimpleQueue[Future[tuple[Result, str]]] = SimpleQueue()
     open_tasks: dict[Future[tuple[Result, str]], str] = {}  # in the order in which they are begun
@@ -144,13 +117,13 @@ def _ended(
     future: Future[tuple[Result, str]],
     open_tasks: dict[Future[tuple[Result, str]], str],
     workers: Workers,
-) -> Ended[Result]:
+) -> _Ended[Result]:
     """What a task gave; it is no longer among those that are open."""
     began = list(islice(open_tasks.values(), workers.number))
     test = open_tasks.pop(future)
     try:
         value, worker = future.result()
-        return Ended(test, value, worker=worker)
+        return _Ended(test, value, worker=worker)
     except workers.deadly:
         died = WorkerError(
             "every worker that began this test died at it",
@@ -158,11 +131,11 @@ def _ended(
             needed="workers that live as long as a test takes",
             hint=_MEMORY,
         )
-        return Ended(test, None, died)
+        return _Ended(test, None, died)
     except BrokenExecutor:
         raise _died(began, workers) from None
     except CancelledError:
-        raise scheduler_lost() from None
+        raise _scheduler_lost() from None
     except ReductionError:
         raise
     except Exception as error:
@@ -182,7 +155,7 @@ def _died(open_tasks: list[str], workers: Workers) -> WorkerError:
     )
 
 
-def scheduler_lost() -> WorkerError:
+def _scheduler_lost() -> WorkerError:
     """The error of a run whose scheduler answers no more."""
     return WorkerError("the scheduler was lost", hint=_AGAIN)
 
@@ -208,23 +181,7 @@ def _alone() -> AbstractContextManager[object]:
 
 @contextmanager
 def local_workers(number: int) -> Iterator[Workers]:
-    """Start worker processes on this machine, and end them.
-
-    Parameters
-    ----------
-    number : int
-        How many; they share the processors.
-
-    Yields
-    ------
-    workers : Workers
-        They end with this process, however that comes about.
-
-    Raises
-    ------
-    WorkerError
-        If they do not start.
-    """
+    """Start worker processes on this machine, and end them."""
     available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     threads = max(1, (available or 1) // number)
     pool = ProcessPoolExecutor(
@@ -279,10 +236,7 @@ def _end_children() -> None:
 
 @contextmanager
 def _interrupts_later() -> Iterator[None]:
-    """Start processes that a Ctrl-C on the terminal passes by: this process ends them itself.
-
-    What is blocked here stays so in every thread and process that is started meanwhile.
-    """
+    """Start processes that a Ctrl-C on the terminal passes by: this process ends them itself."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -301,25 +255,7 @@ _PORTS = 65_536
 
 @contextmanager
 def users_cluster(address: str) -> Iterator[Workers]:
-    """Use the workers of a scheduler that runs already.
-
-    Parameters
-    ----------
-    address : str
-        ``tcp://HOST:PORT``.
-
-    Yields
-    ------
-    workers : Workers
-        Left as they are at the end.
-
-    Raises
-    ------
-    SettingsError
-        If no scheduler answers there, or that is no address.
-    WorkerError
-        If it has no worker, or is lost while one is waited for.
-    """
+    """Use the workers of a scheduler that runs already."""
     with _silence(), _client(address) as client:
         try:
             client.wait_for_workers(1, timeout=PATIENCE)
@@ -330,7 +266,7 @@ def users_cluster(address: str) -> Iterator[Workers]:
                 needed=f"one started with `dask worker {address}`",
             ) from error
         except OSError as error:
-            raise scheduler_lost() from error
+            raise _scheduler_lost() from error
         executor = client.get_executor(pure=False)
         yield Workers(
             executor,
@@ -344,11 +280,11 @@ def _look(client: Client) -> None:
     """Refuse to wait for workers that do not come."""
     try:
         if client.status != "running":
-            raise scheduler_lost()
+            raise _scheduler_lost()
         if client.nthreads():
             return
     except OSError as gone:  # the client does not know it yet
-        raise scheduler_lost() from gone
+        raise _scheduler_lost() from gone
     raise WorkerError(
         "no worker is left",
         found=f"none, and no test ended for {PATIENCE:.0f} s",

@@ -19,7 +19,7 @@ class _Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class ArmourLayerKeys(_Section):
+class _ArmourLayerKeys(_Section):
     """``[[armour.layers]]``."""
 
     name: str = ""
@@ -38,24 +38,24 @@ class ArmourLayerKeys(_Section):
     yield_stress: str | None = None
 
 
-class ArmourKeys(_Section):
+class _ArmourKeys(_Section):
     """``[armour]``."""
 
     axial_strain: Number
     """Of the cable along its axis."""
     tolerance: Number = "1 %"
     """Error at which a theory still counts as right."""
-    layers: tuple[ArmourLayerKeys, ...] = Field(min_length=1)
+    layers: tuple[_ArmourLayerKeys, ...] = Field(min_length=1)
 
 
-class ArmourFile(_Section):
+class _ArmourFile(_Section):
     """The whole of SPEC.toml."""
 
-    armour: ArmourKeys
+    armour: _ArmourKeys
 
 
 @dataclass(frozen=True)
-class ArmourCase:
+class _ArmourCase:
     """An armour in SI; ``strain`` has the shape (1,)."""
 
     name: str
@@ -65,7 +65,7 @@ class ArmourCase:
     tolerance: float
 
 
-def _length(read: TableReader, layer: ArmourLayerKeys, what: str) -> float:
+def _length(read: TableReader, layer: _ArmourLayerKeys, what: str) -> float:
     """A radius, given as such or as a diameter."""
     radius, diameter = getattr(layer, f"{what}_radius"), getattr(layer, f"{what}_diameter")
     if (radius is None) == (diameter is None):
@@ -78,28 +78,11 @@ def _length(read: TableReader, layer: ArmourLayerKeys, what: str) -> float:
     return read.value(f"{what}_diameter", str(diameter), "length") / 2
 
 
-def load_armour_case(path: Path) -> ArmourCase:
-    """Read SPEC.toml of an armour.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-
-    Returns
-    -------
-    case : ArmourCase
-        In SI.
-
-    Raises
-    ------
-    SettingsError
-        If a value is still ``?``, or a key, a value or a unit cannot be used, or wires do not
-        fit beside each other.
-    """
+def load_armour_case(path: Path) -> _ArmourCase:
+    """Read SPEC.toml of an armour."""
     file = read_toml(
         path,
-        ArmourFile,
+        _ArmourFile,
         what="the armour",
         needed="a SPEC.toml with [armour] and [[armour.layers]]",
         keys="docs/predictions.md lists every key",
@@ -136,7 +119,7 @@ def load_armour_case(path: Path) -> ArmourCase:
             path, f"armour: {error.problem}", found=error.found, needed=error.needed,
             hint=error.hint,
         ) from error  # fmt: skip
-    return ArmourCase(
+    return _ArmourCase(
         name=path.stem,
         layer_names=tuple(
             layer.name or f"layer {number}" for number, layer in enumerate(keys.layers, start=1)

@@ -21,7 +21,7 @@ class _Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class CurveKeys(_Section):
+class _CurveKeys(_Section):
     """``[assembly.curve]``: what `reduction composite` is told."""
 
     source: str | tuple[str, ...]
@@ -31,7 +31,7 @@ class CurveKeys(_Section):
     precedence: tuple[PieceKind, ...] | None = None
 
 
-class SpliceKeys(_Section):
+class _SpliceKeys(_Section):
     """``[assembly.splices]``; without it those of the tested tether."""
 
     length: str
@@ -45,7 +45,7 @@ class SpliceKeys(_Section):
     """Of the tension, with ``strain``."""
 
 
-class PartKeys(_Section):
+class _PartKeys(_Section):
     """``[[assembly.parts]]``: in line with the tethers."""
 
     name: str = ""
@@ -54,7 +54,7 @@ class PartKeys(_Section):
     """Force per unit strain; rigid if nothing."""
 
 
-class WorkingKeys(_Section):
+class _WorkingKeys(_Section):
     """``[[assembly.working]]``: one of tension, total length and strain."""
 
     tension: str | None = None
@@ -64,7 +64,7 @@ class WorkingKeys(_Section):
     tension_amplitude: str = "0 N"
 
 
-class AssemblyKeys(_Section):
+class _AssemblyKeys(_Section):
     """``[assembly]``."""
 
     n_tethers: int | None = Field(default=None, ge=1, le=_MOST_TETHERS)
@@ -78,16 +78,16 @@ class AssemblyKeys(_Section):
     """Of the free lengths: the greatest and the least load of a tether follow."""
     rated_break_strength: str | None = None
     """Of one tether; that of the source if nothing."""
-    curve: CurveKeys
-    splices: SpliceKeys | None = None
-    parts: tuple[PartKeys, ...] = ()
-    working: tuple[WorkingKeys, ...] = ()
+    curve: _CurveKeys
+    splices: _SpliceKeys | None = None
+    parts: tuple[_PartKeys, ...] = ()
+    working: tuple[_WorkingKeys, ...] = ()
 
 
-class AssemblyFile(_Section):
+class _AssemblyFile(_Section):
     """The whole of SPEC.toml."""
 
-    assembly: AssemblyKeys
+    assembly: _AssemblyKeys
 
 
 @dataclass(frozen=True)
@@ -114,26 +114,10 @@ class AssemblyCase:
 
 
 def load_assembly_case(path: Path) -> AssemblyCase:
-    """Read SPEC.toml of an assembly.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file; what it names as a source is left as it stands there.
-
-    Returns
-    -------
-    case : AssemblyCase
-        In SI.
-
-    Raises
-    ------
-    SettingsError
-        If a value is still ``?``, or a key, a value or a unit cannot be used.
-    """
+    """Read SPEC.toml of an assembly."""
     keys = read_toml(
         path,
-        AssemblyFile,
+        _AssemblyFile,
         what="the assembly",
         needed="a SPEC.toml with [assembly] and [assembly.curve]",
         keys="docs/deployed.md lists every key",
@@ -185,7 +169,7 @@ def _negative(path: Path, place: str, value: float, unit: str) -> SettingsError:
     return in_toml(path, f"{place} is not positive", found=f"{value:g} {unit}", needed="above zero")
 
 
-def _tethers(read: TableReader, keys: AssemblyKeys) -> tuple[int, tuple[float, ...]]:
+def _tethers(read: TableReader, keys: _AssemblyKeys) -> tuple[int, tuple[float, ...]]:
     """How many, and the free length of each; none where it is that of the tested tether."""
     if (keys.n_tethers is None) == (keys.free_lengths is None):
         raise in_toml(
@@ -215,7 +199,7 @@ def _tethers(read: TableReader, keys: AssemblyKeys) -> tuple[int, tuple[float, .
     return n_tethers, (length,) * n_tethers
 
 
-def _check_tolerance(path: Path, keys: AssemblyKeys, n_tethers: int, tolerance: float) -> None:
+def _check_tolerance(path: Path, keys: _AssemblyKeys, n_tethers: int, tolerance: float) -> None:
     if not 0 < tolerance < 1:
         raise in_toml(
             path, "assembly.tolerance is no share of a length", found=f"{tolerance:g}",
@@ -234,7 +218,7 @@ def _check_tolerance(path: Path, keys: AssemblyKeys, n_tethers: int, tolerance: 
         )  # fmt: skip
 
 
-def _splices(path: Path, keys: SpliceKeys) -> StatedSplices:
+def _splices(path: Path, keys: _SpliceKeys) -> StatedSplices:
     read = TableReader(path, "assembly.splices")
     if keys.strain_ratio is not None and keys.strain is not None:
         raise in_toml(
@@ -265,7 +249,7 @@ def _splices(path: Path, keys: SpliceKeys) -> StatedSplices:
         raise read.fault(error.problem, error) from error
 
 
-def _part(path: Path, number: int, keys: PartKeys) -> SeriesPart:
+def _part(path: Path, number: int, keys: _PartKeys) -> SeriesPart:
     read = TableReader(path, f"assembly.parts.{keys.name or number}")
     length = read.value("length", keys.length, "length")
     spring = read.optional("spring_constant", keys.spring_constant, "force")
@@ -279,7 +263,7 @@ def _part(path: Path, number: int, keys: PartKeys) -> SeriesPart:
         ) from error
 
 
-def _working(path: Path, number: int, keys: WorkingKeys, *, equal: bool) -> WorkingLevel:
+def _working(path: Path, number: int, keys: _WorkingKeys, *, equal: bool) -> WorkingLevel:
     read = TableReader(path, f"assembly.working.{number}")
     given: dict[Literal["tension", "total_length", "strain"], float | None] = {
         "tension": read.optional("tension", keys.tension, "force"),

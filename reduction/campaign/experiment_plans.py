@@ -54,29 +54,12 @@ _DYNAMIC = ("cyclic", "fatigue", "snap")
 _PULLS = ("quasi-static", "tensile")
 
 
-def parse_factor(name: str, levels: tuple[str, str]) -> FactorLevels:
+def _parse_factor(name: str, levels: tuple[str, str]) -> FactorLevels:
     """Levels of a factor from text with units.
-
-    Parameters
-    ----------
-    name : str
-        Of the factor; one that is not known takes plain numbers.
-    levels : tuple of str
-        Low and high: ``"0.1 Hz"``, ``"12 %RBS"``, ``"40 % of mean"``.
-
-    Returns
-    -------
-    levels : FactorLevels
-        In SI, or as a share with its basis.
-
-    Raises
-    ------
-    SettingsError
-        If a unit is missing or wrong, the two levels have different bases, or do not rise.
 
     Examples
     --------
-    >>> parse_factor("mean_tension", ("12 %RBS", "30 %RBS"))
+    >>> _parse_factor("mean_tension", ("12 %RBS", "30 %RBS"))
     FactorLevels(name='mean_tension', low=0.12, high=0.3, basis='rated_break_strength')
     """
     shares = [_SHARE.match(text) for text in levels]
@@ -103,39 +86,13 @@ def plan_experiment(
     tests: Mapping[str, TestPlan],
     specimens: Mapping[str, Specimen],
 ) -> ExperimentPlan:
-    """An experiment with every name in it resolved.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        campaign.toml, for the messages.
-    name : str
-        Of the experiment.
-    section : ExperimentSection
-        As written.
-    tests : mapping of str to TestPlan
-        Of the campaign.
-    specimens : mapping of str to Specimen
-        Of the campaign.
-
-    Returns
-    -------
-    plan : ExperimentPlan
-        Runs and pulls named as their products are.
-
-    Raises
-    ------
-    SettingsError
-        If a run, a pull or a specimen is not in the campaign or of the wrong kind, the
-        levels do not pair up with the factors or lie beyond -1 and 1, a response stands
-        twice or only under ``transform``, or a share has no break strength.
-    """
+    """An experiment with every name in it resolved."""
 
     def refuse(problem: str, *, found: str | None = None, needed: str | None = None) -> NoReturn:
         raise SettingsError(f"{path}: experiment '{name}': {problem}", found=found, needed=needed)
 
     try:
-        factors = tuple(parse_factor(key, levels) for key, levels in section.factors.items())
+        factors = tuple(_parse_factor(key, levels) for key, levels in section.factors.items())
     except SettingsError as error:
         raise SettingsError(f"{path}: experiment '{name}': {error}") from error
     _check_responses(section, refuse)
@@ -211,23 +168,7 @@ def _check_responses(section: ExperimentSection, refuse: Callable[..., NoReturn]
 def agree_on_pulls(
     path: Path, experiments: Mapping[str, ExperimentPlan], tests: Mapping[str, TestPlan]
 ) -> None:
-    """Refuse a run of two experiments that name two slow pulls for one specimen.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        campaign.toml, for the messages.
-    experiments : mapping of str to ExperimentPlan
-        Of the campaign.
-    tests : mapping of str to TestPlan
-        Of the campaign.
-
-    Raises
-    ------
-    SettingsError
-        If a run would have two quasi-static spring constants.  An experiment that names no
-        pull is another answer too, where it asks for a response that rests on one.
-    """
+    """Refuse a run of two experiments that name two slow pulls for one specimen."""
     first: dict[tuple[str, str], tuple[str, str]] = {}
     for name, plan in experiments.items():
         asks = not set(NEED_PULL).isdisjoint(plan.responses)
@@ -258,7 +199,7 @@ class _Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class ExperimentKeys(_Section):
+class _ExperimentKeys(_Section):
     """``[experiment]``."""
 
     kind: DesignKind | None = None
@@ -275,27 +216,24 @@ class ExperimentKeys(_Section):
     specimens_as: Literal["blocks", "random"] = "blocks"
 
 
-class ResponseKeys(_Section):
+class _ResponseKeys(_Section):
     """``[responses.NAME]``."""
 
     unit: str = ""
     transform: Transform = "none"
 
 
-class SpecFile(_Section):
+class _SpecFile(_Section):
     """The whole of SPEC.toml."""
 
-    experiment: ExperimentKeys = ExperimentKeys()
+    experiment: _ExperimentKeys = _ExperimentKeys()
     factors: dict[ColumnName, tuple[str | float, str | float]] = Field(default_factory=dict)
-    responses: dict[ColumnName, ResponseKeys] = Field(default_factory=dict)
+    responses: dict[ColumnName, _ResponseKeys] = Field(default_factory=dict)
 
 
 @dataclass(frozen=True)
-class FactorSpec:
-    """A factor with the unit its levels are written in and the SI unit behind it.
-
-    ``levels`` is None of a factor that a table of runs gives coded and nobody has declared.
-    """
+class _FactorSpec:
+    """A factor with the unit its levels are written in and the SI unit behind it."""
 
     name: str
     levels: FactorLevels | None = None
@@ -303,10 +241,7 @@ class FactorSpec:
     si_unit: str = "1"
 
     def axis(self, strength: float | None) -> tuple[str, float, float]:
-        """Unit, low and high level on the scale that a surface is fitted on.
-
-        A share of a break strength that is known becomes a force.
-        """
+        """Unit, low and high level on the scale that a surface is fitted on."""
         if self.levels is None:
             return self.si_unit, -1.0, 1.0
         if self.levels.basis == "rated_break_strength" and strength is not None:
@@ -315,7 +250,7 @@ class FactorSpec:
 
 
 @dataclass(frozen=True)
-class ResponseSpec:
+class _ResponseSpec:
     """A response as written: unit is empty where none is stated."""
 
     name: str
@@ -341,8 +276,8 @@ class ExperimentSpec:
     sigma: float | None
     sigma_unit: str
     specimens_as: Literal["blocks", "random"]
-    factors: tuple[FactorSpec, ...]
-    responses: tuple[ResponseSpec, ...]
+    factors: tuple[_FactorSpec, ...]
+    responses: tuple[_ResponseSpec, ...]
 
 
 def _written_unit(text: str) -> str:
@@ -350,7 +285,7 @@ def _written_unit(text: str) -> str:
     return match[1] if match else ""
 
 
-def _factor(name: str, written: tuple[str | float, str | float]) -> FactorSpec:
+def _factor(name: str, written: tuple[str | float, str | float]) -> _FactorSpec:
     low, high = (str(level).strip() for level in written)
     units = {_written_unit(level) for level in (low, high)}
     if len(units) > 1:
@@ -361,41 +296,22 @@ def _factor(name: str, written: tuple[str | float, str | float]) -> FactorSpec:
         )
     (unit,) = units
     if "%" in unit and unit != "%":
-        return FactorSpec(name, parse_factor(name, (low, high)), unit)
+        return _FactorSpec(name, _parse_factor(name, (low, high)), unit)
     if name in ("frequency", "mean_tension", "tension_amplitude"):
-        return FactorSpec(name, parse_factor(name, (low, high)), unit, quantity(name).unit)
+        return _FactorSpec(name, _parse_factor(name, (low, high)), unit, quantity(name).unit)
     # any other factor has whatever dimension its unit has
     si_unit, factor, offset = scale_of_unit(unit)
     numbers = [parse_quantity(level.removesuffix(unit), "number") for level in (low, high)]
     bottom, top = (factor * number + offset for number in numbers)
-    return FactorSpec(name, FactorLevels(name, bottom, top), unit, si_unit)
+    return _FactorSpec(name, FactorLevels(name, bottom, top), unit, si_unit)
 
 
-def response_unit(name: str, unit: str) -> tuple[str, float, float]:
+def _response_unit(name: str, unit: str) -> tuple[str, float, float]:
     """SI unit of a response, with factor and offset to it.
-
-    Parameters
-    ----------
-    name : str
-        Of the response; the unit of a quantity that the vocabulary has is spelt as there.
-    unit : str
-        As written; empty where none is stated.
-
-    Returns
-    -------
-    si_unit : str
-        Empty where no unit is stated: the numbers stay as they are.
-    factor, offset : float
-        ``factor * value + offset`` is in SI.
-
-    Raises
-    ------
-    SettingsError
-        If the unit is unknown, or not one of the quantity.
 
     Examples
     --------
-    >>> response_unit("hysteresis_energy", "lbf")
+    >>> _response_unit("hysteresis_energy", "lbf")
     ('J m-1', 4.4482216152605, 0.0)
     """
     if not unit:
@@ -428,26 +344,10 @@ def _sigma(text: str) -> tuple[float, str]:
 
 
 def load_spec(path: Path) -> ExperimentSpec:
-    """Read SPEC.toml.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-
-    Returns
-    -------
-    spec : ExperimentSpec
-        In SI, or as shares with their basis.
-
-    Raises
-    ------
-    SettingsError
-        If a value is still ``?``, or a key, a value or a unit cannot be used.
-    """
+    """Read SPEC.toml."""
     file = read_toml(
         path,
-        SpecFile,
+        _SpecFile,
         what="the experiment",
         needed="a SPEC.toml with [experiment], [factors] and [responses]",
         keys="docs/experiments.md lists every key",
@@ -473,7 +373,7 @@ def load_spec(path: Path) -> ExperimentSpec:
             factors.append(_factor(name, levels))
         for name, response in file.responses.items():
             place = f"responses.{name}"
-            response_unit(name, response.unit)
+            _response_unit(name, response.unit)
     except SettingsError as error:
         raise in_toml(
             path, f"{place}: {error.problem}", found=error.found, needed=error.needed,
@@ -496,7 +396,7 @@ def load_spec(path: Path) -> ExperimentSpec:
         specimens_as=keys.specimens_as,
         factors=tuple(factors),
         responses=tuple(
-            ResponseSpec(name, response.unit, response.transform)
+            _ResponseSpec(name, response.unit, response.transform)
             for name, response in file.responses.items()
         ),
     )
@@ -510,8 +410,8 @@ _OFF_PLAN = 1.0
 levels are in another unit than the plan."""
 
 
-def levels_of_factor(
-    sheet: CellSheet, factor: FactorSpec, spec: ExperimentSpec | None, mean: Floats | None
+def _levels_of_factor(
+    sheet: CellSheet, factor: _FactorSpec, spec: ExperimentSpec | None, mean: Floats | None
 ) -> tuple[CellColumn, Floats]:
     """Column and coded levels of a factor."""
     column = sheet.one(factor.name, "factor")
@@ -552,12 +452,12 @@ def levels_of_factor(
     return column, coded
 
 
-def is_of_mean(factor: FactorSpec) -> bool:
+def _is_of_mean(factor: _FactorSpec) -> bool:
     """Return whether the levels of a factor are shares of the mean tension."""
     return factor.levels is not None and factor.levels.basis == "mean_tension"
 
 
-def check_levels(
+def _check_levels(
     sheet: CellSheet, column: CellColumn, name: str, coded: Floats, *, stated: bool
 ) -> None:
     """Refuse levels that lie beside the plan: those of another unit."""
@@ -627,7 +527,7 @@ class RunSeries:
 
 def _declared(
     sheet: CellSheet, spec: ExperimentSpec | None
-) -> tuple[tuple[FactorSpec, ...], tuple[ResponseSpec, ...]]:
+) -> tuple[tuple[_FactorSpec, ...], tuple[_ResponseSpec, ...]]:
     """Factors and responses: as declared, else the last column and the others."""
     factors, responses = ((), ()) if spec is None else (spec.factors, spec.responses)
     named = {factor.name for factor in factors} | {entry.name for entry in responses}
@@ -639,9 +539,9 @@ def _declared(
     if not responses:
         if not free or sheet.columns[-1] is not free[-1]:
             raise sheet.fault("the last column is not a response", needed="the response last")
-        responses = (ResponseSpec(free.pop().name),)
+        responses = (_ResponseSpec(free.pop().name),)
     if not factors:
-        factors = tuple(FactorSpec(column.name) for column in free)
+        factors = tuple(_FactorSpec(column.name) for column in free)
         if not factors:
             raise sheet.fault("the table has no factor", needed="a column a factor")
     return factors, responses
@@ -665,30 +565,7 @@ def _same_run(sheet: CellSheet, header: str, keys: Iterable[tuple[str, ...]]) ->
 
 
 def read_runs(path: Path, spec: ExperimentSpec | None = None) -> RunSeries:
-    """Read a table of runs.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        CSV with a header; parted by commas, semicolons or tabs.
-    spec : ExperimentSpec, optional
-        What the columns are; without it the last one is the response and the others are
-        coded factors.
-
-    Returns
-    -------
-    runs : RunSeries
-        Every row a run, in order; nothing is left out.
-
-    Raises
-    ------
-    LogError
-        With row and column, if the table cannot be read or a value is not a number.
-    SettingsError
-        If a value is still ``?``, or a unit is unknown or does not fit.
-    DataError
-        If a run stands twice, has a value and no levels, or the levels lie beside the plan.
-    """
+    """Read a table of runs."""
     sheet = read_cells(path)
     factors, responses = _declared(sheet, spec)
     strength = None if spec is None else spec.rated_break_strength
@@ -697,10 +574,10 @@ def read_runs(path: Path, spec: ExperimentSpec | None = None) -> RunSeries:
     axes = [factor.axis(strength) for factor in factors]
     mean: Floats | None = None
     # an amplitude that is a share of the mean comes after the mean
-    for place in sorted(range(len(factors)), key=lambda index: is_of_mean(factors[index])):
+    for place in sorted(range(len(factors)), key=lambda index: _is_of_mean(factors[index])):
         factor = factors[place]
-        column, coded[:, place] = levels_of_factor(sheet, factor, spec, mean)
-        check_levels(sheet, column, factor.name, coded[:, place], stated=factor.levels is not None)
+        column, coded[:, place] = _levels_of_factor(sheet, factor, spec, mean)
+        _check_levels(sheet, column, factor.name, coded[:, place], stated=factor.levels is not None)
         used.add(column.header)
         unit, low, high = axes[place]
         if factor.name == "mean_tension" and unit == "N":
@@ -710,7 +587,7 @@ def read_runs(path: Path, spec: ExperimentSpec | None = None) -> RunSeries:
         column = sheet.one(response.name, "response")
         used.add(column.header)
         try:
-            unit, by, offset = response_unit(response.name, column.unit or response.unit)
+            unit, by, offset = _response_unit(response.name, column.unit or response.unit)
         except SettingsError as error:
             raise SettingsError(
                 f"{path}:{sheet.first} [{column.header}]: {error.problem}", found=error.found,

@@ -49,36 +49,7 @@ _PARAMETERS = {
 
 
 def hose_of(path: Path, name: str, place: str, keys: HoseKeys, cord: CordSection) -> HosePlan:
-    """A hose in SI.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file, for the messages.
-    name : str
-        Of the hose.
-    place : str
-        Of the table in the file: ``hose`` or ``hoses.NAME``.
-    keys : HoseKeys
-        The hose as written.
-    cord : CordSection
-        The cord as written.
-
-    Returns
-    -------
-    plan : HosePlan
-        In SI.
-
-    Raises
-    ------
-    SettingsError
-        If a unit is missing or wrong, a number is no hose, or two keys contradict each other.
-
-    Notes
-    -----
-    A curve that measured points at a few strains give is drawn through them: it needs the
-    points at which the load bends.
-    """
+    """A hose in SI."""
     read = TableReader(path, place)
     given = keys.layer_diameters if keys.wrap_diameter is None else (keys.wrap_diameter,) * 2
     if given is None or None not in (keys.wrap_diameter, keys.layer_diameters):
@@ -231,25 +202,7 @@ def _uncertainties(
 
 
 def load_hose(path: Path) -> tuple[HosePlan, HoseSpecFile]:
-    """Read SPEC.toml of a hose.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-
-    Returns
-    -------
-    plan : HosePlan
-        In SI, named as the file is.
-    file : HoseSpecFile
-        As written, for what stands beside the hose.
-
-    Raises
-    ------
-    SettingsError
-        If a value is still ``?``, or a key, a value or a unit cannot be used.
-    """
+    """Read SPEC.toml of a hose."""
     file = read_toml(
         path,
         HoseSpecFile,
@@ -261,25 +214,7 @@ def load_hose(path: Path) -> tuple[HosePlan, HoseSpecFile]:
 
 
 def target_of(path: Path, file: HoseSpecFile) -> HoseTarget | None:
-    """What SPEC.toml asks of a hose, in SI; None where it asks nothing.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file, for the messages.
-    file : HoseSpecFile
-        As written.
-
-    Returns
-    -------
-    target : HoseTarget or None
-        In SI.
-
-    Raises
-    ------
-    SettingsError
-        If a unit is missing or wrong.
-    """
+    """What SPEC.toml asks of a hose, in SI; None where it asks nothing."""
     if file.target is None:
         return None
     read = TableReader(path, "target")
@@ -301,34 +236,7 @@ def plan_comparison(
     hoses: Collection[str],
     specimens: Mapping[str, Specimen],
 ) -> ComparisonPlan:
-    """A comparison with every name in it resolved.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        campaign.toml, for the messages.
-    name : str
-        Of the comparison.
-    section : ComparisonSection
-        As written.
-    tests : mapping of str to TestPlan
-        Of the campaign.
-    hoses : collection of str
-        Names of the hoses of the campaign.
-    specimens : mapping of str to Specimen
-        Of the campaign.
-
-    Returns
-    -------
-    plan : ComparisonPlan
-        Its test named as the product is.
-
-    Raises
-    ------
-    SettingsError
-        If the test, the specimen or the hose is not in the campaign, or the test has no curve
-        of tension against strain.
-    """
+    """A comparison with every name in it resolved."""
     place = f"comparison '{name}'"
     found = product_of(section.measured, tests)
     if found is None:

@@ -231,16 +231,8 @@ def staged_campaign(
         yield replace(campaign, addresses={}, copies=copies, unread=unread, names=dict(names))
 
 
-def id_of_products(processed: Path) -> str:
-    """Id of the campaign whose archives lie in a folder.
-
-    Raises
-    ------
-    ArchiveError
-        If there is none, or the first cannot be read.
-    SettingsError
-        If it is a folder of several campaigns.
-    """
+def _id_of_products(processed: Path) -> str:
+    """Id of the campaign whose archives lie in a folder."""
     archives = archives_of_tests(processed) if processed.is_dir() else []
     if archives:
         with reading(archives[0]) as archive:
@@ -286,7 +278,7 @@ def find_campaign(processed: Path, stated: Path | None = None, *, name: str = ""
     ArchiveError
         If there are no archives.
     """
-    name = name or id_of_products(processed)
+    name = name or _id_of_products(processed)
     if stated is not None:
         found = _id_of(stated)
         if found != name:

@@ -31,23 +31,7 @@ from reduction.record.settings import Limits, ReductionSettings, StoredSamples, 
 
 
 def check_names(path: Path, campaign: str, tests: Mapping[str, TestPlan]) -> None:
-    """Refuse names under which two products would be one file somewhere.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        campaign.toml, for messages.
-    campaign : str
-        Its id, the name of a folder.
-    tests : mapping of str to TestPlan
-        By id; what letters an id has is checked before.
-
-    Raises
-    ------
-    SettingsError
-        If a name is a device of Windows, a product of every campaign, or that of another test or
-        step where small and capital letters count as equal.
-    """
+    """Refuse names under which two products would be one file somewhere."""
     for name in (campaign, *tests):
         if DEVICE.fullmatch(name):
             raise in_toml(
@@ -90,7 +74,7 @@ _MOST_COLUMNS = 1_000_000
 _TIMES = (1.0, 7 * 86400.0)
 
 
-class LimitsSection(BaseModel):
+class _LimitsSection(BaseModel):
     """``[limits]``: beyond them a log is refused; no number depends on them."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -107,26 +91,8 @@ class LimitsSection(BaseModel):
     """To read one log: ``"1 h"``."""
 
 
-def stated_limits(path: Path, section: LimitsSection) -> Limits:
-    """Limits in bytes and seconds, with the defaults of what is not written.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        campaign.toml, for messages.
-    section : LimitsSection
-        As written.
-
-    Returns
-    -------
-    limits : Limits
-        Of every log of the campaign.
-
-    Raises
-    ------
-    SettingsError
-        If a value has another unit, or is none that anybody can mean.
-    """
+def stated_limits(path: Path, section: _LimitsSection) -> Limits:
+    """Limits in bytes and seconds, with the defaults of what is not written."""
     reader = TableReader(path, "limits")
     found: dict[str, int | float] = {}
     for key, (least, most, shown) in _SIZES.items():
@@ -177,26 +143,26 @@ class _UncertaintySection(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class Expanded(_UncertaintySection):
+class _Expanded(_UncertaintySection):
     """As a certificate of calibration prints it: ``{ expanded = "0.2 %", k = 2 }``."""
 
     expanded: Number
     k: float
 
 
-class StatedLimits(_UncertaintySection):
+class _StatedLimits(_UncertaintySection):
     """As a data sheet prints it: ``{ half_width = "0.25 %", shape = "rectangular" }``."""
 
     half_width: Number
     shape: Literal["rectangular", "triangular", "arcsine"] = "rectangular"
 
 
-Stated = Number | Expanded | StatedLimits
+Stated = Number | _Expanded | _StatedLimits
 
 """A plain value is a standard uncertainty."""
 
 
-class TensionSection(_UncertaintySection):
+class _TensionSection(_UncertaintySection):
     """``[uncertainty.tension]``."""
 
     gain: Stated | None = None
@@ -211,7 +177,7 @@ class TensionSection(_UncertaintySection):
     """All tension channels are of one cell, or calibrated against one."""
 
 
-class PositionSection(_UncertaintySection):
+class _PositionSection(_UncertaintySection):
     """``[uncertainty.crosshead_position]``."""
 
     gain: Stated | None = None
@@ -220,7 +186,7 @@ class PositionSection(_UncertaintySection):
     resolution: Number | None = None
 
 
-class TemperatureSection(_UncertaintySection):
+class _TemperatureSection(_UncertaintySection):
     """``[uncertainty.temperature]``: both keys, or nothing can be said of it."""
 
     value: Stated
@@ -232,8 +198,8 @@ class TemperatureSection(_UncertaintySection):
 class UncertaintySection(_UncertaintySection):
     """``[uncertainty]``: standard uncertainties of what the tests of the campaign share."""
 
-    tension: TensionSection = TensionSection()
-    crosshead_position: PositionSection = PositionSection()
+    tension: _TensionSection = _TensionSection()
+    crosshead_position: _PositionSection = _PositionSection()
     lag: Stated | None = None
     """Between the two channels."""
     diameter: Stated | None = None
@@ -242,49 +208,24 @@ class UncertaintySection(_UncertaintySection):
     """Relative: what the strain method itself may miss."""
     rated_break_strength: Stated | None = None
     """Relative."""
-    temperature: TemperatureSection | None = None
+    temperature: _TemperatureSection | None = None
 
 
 def stated_errors(
     path: Path, section: UncertaintySection, specimens: Iterable[Specimen] = ()
 ) -> StatedErrors:
-    """Standard uncertainties in SI; an error names campaign.toml and the key.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        campaign.toml.
-    section : UncertaintySection
-        As written.
-    specimens : iterable of Specimen
-        Of the campaign, whose diameters bound what may be stated of them.
-
-    Returns
-    -------
-    errors : StatedErrors
-        Zero where nothing is written.
-
-    Raises
-    ------
-    SettingsError
-        If a value has the wrong unit, is negative, or is beyond what can be meant.
-
-    Notes
-    -----
-    What only a log can bound (zeros, readings and lag) is looked at when the test is reduced, by
-    `reduction.pipeline.plausibility.check_stated_errors`.
-    """
+    """Standard uncertainties in SI; an error names campaign.toml and the key."""
     reader = TableReader(path, "uncertainty")
 
     def standard(key: str, text: Stated | None, dimension: Dimension) -> float:
         if text is None:
             return 0.0
         try:
-            if isinstance(text, Expanded):
+            if isinstance(text, _Expanded):
                 found = of_expanded(
                     reader.value(f"{key}.expanded", text.expanded, dimension), text.k
                 )
-            elif isinstance(text, StatedLimits):
+            elif isinstance(text, _StatedLimits):
                 found = of_half_width(
                     reader.value(f"{key}.half_width", text.half_width, dimension), text.shape
                 )
@@ -304,7 +245,7 @@ def stated_errors(
             raise reader.fault(f"{key}: {fault.problem}", fault)
         return found
 
-    def reading(name: str, of: TensionSection | PositionSection, dimension: Dimension) -> float:
+    def reading(name: str, of: _TensionSection | _PositionSection, dimension: Dimension) -> float:
         noise = standard(f"{name}.noise", of.noise, dimension)
         step = standard(f"{name}.resolution", of.resolution, dimension)
         return float((noise**2 + of_resolution(step) ** 2) ** 0.5)
@@ -354,7 +295,7 @@ def stated_errors(
     )
 
 
-class LimitSection(Section):
+class _LimitSection(Section):
     """``[[report.limits]]``: a number that is held against a limit."""
 
     quantity: ReportText
@@ -368,41 +309,18 @@ class LimitSection(Section):
     source: ReportText = ""
 
 
-class ReportSection(Statement[LimitSection]):
+class _ReportSection(Statement[_LimitSection]):
     """``[report]``: every key may be left out; the report then says that it is not stated."""
 
 
 def report_details(
     path: Path,
-    section: ReportSection | None,
+    section: _ReportSection | None,
     *,
     specimens: Collection[str],
     tests: Mapping[str, TestPlan],
 ) -> ReportDetails | None:
-    """Return what the laboratory states, limits in SI.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        campaign.toml.
-    section : ReportSection or None
-        As written.
-    specimens : collection of str
-        Of the campaign.
-    tests : mapping of str to TestPlan
-        Of the campaign.
-
-    Returns
-    -------
-    details : ReportDetails or None
-        None where the campaign has no ``[report]``.
-
-    Raises
-    ------
-    SettingsError
-        If an item is no specimen, a limit has no ends, a wrong unit or no such test, or limits
-        are given without a decision rule.
-    """
+    """Return what the laboratory states, limits in SI."""
     if section is None:
         return None
     unknown = sorted(set(section.items) - set(specimens))
@@ -425,7 +343,7 @@ def report_details(
     )
 
 
-def _limit(path: Path, place: str, one: LimitSection, tests: Mapping[str, TestPlan]) -> Limit:
+def _limit(path: Path, place: str, one: _LimitSection, tests: Mapping[str, TestPlan]) -> Limit:
     if one.quantity not in QUANTITIES:
         raise in_toml(
             path, f"{place}.quantity is not known", found=repr(one.quantity),
@@ -531,14 +449,14 @@ class HoseSection(HoseKeys):
     cord: CordSection
 
 
-class TargetSection(_HoseSection):
+class _TargetSection(_HoseSection):
     """``[target]``: what a hose like this one is to do at its safe working load."""
 
     strain: Number
     tension: str | None = None
 
 
-class ComparisonKeys(_HoseSection):
+class _ComparisonKeys(_HoseSection):
     """``[comparison]``: how a measured curve meets the prediction."""
 
     specimen: str | None = None
@@ -554,11 +472,11 @@ class HoseSpecFile(_HoseSection):
 
     hose: HoseKeys
     cord: CordSection
-    target: TargetSection | None = None
-    comparison: ComparisonKeys = ComparisonKeys()
+    target: _TargetSection | None = None
+    comparison: _ComparisonKeys = _ComparisonKeys()
 
 
-class ComparisonSection(ComparisonKeys):
+class ComparisonSection(_ComparisonKeys):
     """``[comparisons.NAME]``."""
 
     measured: str
@@ -678,27 +596,7 @@ def _value(group: str, name: str, value: object, default: object, control: str) 
 def apply_numbers(
     settings: ReductionSettings, table: Mapping[str, Mapping[str, Any]], *, control: str
 ) -> ReductionSettings:
-    """Settings with the numbers of one ``reduction`` table put in.
-
-    Parameters
-    ----------
-    settings : ReductionSettings
-        What holds so far.
-    table : mapping
-        Group to name to value, as TOML gave it.
-    control : str
-        ``position`` or ``load``: the dimension of a band.
-
-    Returns
-    -------
-    settings : ReductionSettings
-        New settings.
-
-    Raises
-    ------
-    SettingsError
-        If a group, a name or a value cannot be used.
-    """
+    """Settings with the numbers of one ``reduction`` table put in."""
     for group, numbers in table.items():
         known = {item.name for item in fields(settings)}
         if group not in known:
@@ -770,7 +668,7 @@ class _Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
-class CampaignSection(_Section):
+class _CampaignSection(_Section):
     """``[campaign]``: who, what and under which terms."""
 
     id: Identifier
@@ -815,14 +713,14 @@ class SpecimenSection(_Section):
     note: Text = ""
 
 
-class StrainSection(_Section):
+class _StrainSection(_Section):
     """``strain = { method = "...", marks = "marks.csv" }``."""
 
     method: StrainMethod | None = None
     marks: Text = ""
 
 
-class FilePiece(_Section):
+class _FilePiece(_Section):
     """One file of a record in pieces."""
 
     file: Text
@@ -847,7 +745,7 @@ class _Kept(_Section):
     operator: Text = ""
     procedure: Text = ""
     note: Text = ""
-    strain: StrainSection = StrainSection()
+    strain: _StrainSection = _StrainSection()
     reduction: dict[str, dict[str, Any]] = Field(default_factory=dict)
     """Numbers of `reduction.record.settings`, by group: ``reduction.cycles.trim_threshold =
     0.95``."""
@@ -884,7 +782,7 @@ class TestSection(_Kept):
     __test__ = False  # a test of a tether, not of this software
 
     kind: TestKind | None = None
-    file: Text | tuple[FilePiece, ...] = ""
+    file: Text | tuple[_FilePiece, ...] = ""
     """Required, here or in the table of tests."""
     order: int | None = Field(default=None, ge=-_MOST, le=_MOST)
     """Place in the specimens' history."""
@@ -939,7 +837,7 @@ class ExperimentSection(_Section):
 class CampaignFile(_Section):
     """The whole of campaign.toml."""
 
-    campaign: CampaignSection
+    campaign: _CampaignSection
     results: Text = ""
     """As in ``[campaign]``."""
     specimens: dict[Identifier, SpecimenSection] = Field(default_factory=dict)
@@ -950,5 +848,5 @@ class CampaignFile(_Section):
     hoses: dict[Identifier, HoseSection] = Field(default_factory=dict)
     comparisons: dict[Identifier, ComparisonSection] = Field(default_factory=dict)
     uncertainty: UncertaintySection = UncertaintySection()
-    report: ReportSection | None = None
-    limits: LimitsSection = LimitsSection()
+    report: _ReportSection | None = None
+    limits: _LimitsSection = _LimitsSection()

@@ -265,24 +265,8 @@ def _outcome(row: _ResultRow, measured: dict[str, list[_Column]], others: list[s
     )
 
 
-def read_results(path: Path) -> tuple[Outcome, ...]:
-    """Read a table of results.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        CSV with ``quantity``, a value with its unit, and what docs/campaign.md lists.
-
-    Returns
-    -------
-    outcomes : tuple of Outcome
-        One a row, in order; nothing is left out.
-
-    Raises
-    ------
-    LogError
-        With the row and the column, if the header or a row cannot be used.
-    """
+def _read_results(path: Path) -> tuple[Outcome, ...]:
+    """Read a table of results."""
     header, rows = read_csv_rows(path, "the table of results")
     _header(path, header)
     measured, others = _columns(path, header)
@@ -308,35 +292,13 @@ def read_results(path: Path) -> tuple[Outcome, ...]:
 def outcomes_of(
     path: Path, name: str, specimens: Mapping[str, Specimen]
 ) -> tuple[Source | None, tuple[Outcome, ...]]:
-    """Read the table of results of a campaign.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The campaign.toml.
-    name : str
-        The table, in its folder; empty where there is none.
-    specimens : mapping of str to Specimen
-        Sheets, for what a row leaves open.
-
-    Returns
-    -------
-    source : Source or None
-        The table with the hash of what was read.
-    outcomes : tuple of Outcome
-        Its rows, made complete.
-
-    Raises
-    ------
-    LogError
-        If the table cannot be used, or a row names an unknown specimen.
-    """
+    """Read the table of results of a campaign."""
     if not name:
         return None, ()
     table = path.parent / name
     with unchanged(table):
         source = hash_source(table, name)
-        rows = read_results(table)
+        rows = _read_results(table)
     for row in rows:
         if row.specimen and row.specimen not in specimens:
             raise LogError(

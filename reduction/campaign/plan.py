@@ -163,20 +163,7 @@ class Campaign:
 
 
 def product_of(name: str, tests: Mapping[str, TestPlan]) -> tuple[str, str] | None:
-    """Id of the product and kind of a test or test/step.
-
-    Parameters
-    ----------
-    name : str
-        As written in campaign.toml.
-    tests : mapping of str to TestPlan
-        Of the campaign.
-
-    Returns
-    -------
-    product, kind : str
-        None where there is no such test or step, or the test has steps of which none is named.
-    """
+    """Id of the product and kind of a test or test/step."""
     test, _, step = name.partition("/")
     plan = tests.get(test)
     if plan is None:

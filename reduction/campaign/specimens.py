@@ -156,28 +156,8 @@ def _check_hold(path: Path, row: int, hold: str) -> None:
         )  # fmt: skip
 
 
-def read_marks(path: Path) -> dict[str, SpliceMarks]:
-    """Read a marks file.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        CSV with test, specimen, hold and the three lengths, whose suffix is the unit.
-
-    Returns
-    -------
-    marks : dict of str to SpliceMarks
-        By specimen.  The reading uncertainty is that of the last digit written:
-        a hundredth of a foot is 0.01 ft / sqrt(12), twice for the two ends of the
-        tape, as a rectangular distribution. [m]
-
-    Raises
-    ------
-    LogError
-        With the row, if a column is missing or a reading is not a number.
-    DataError
-        If a row contradicts itself.
-    """
+def _read_marks(path: Path) -> dict[str, SpliceMarks]:
+    """Read a marks file."""
     header, filled = read_csv_rows(path, "the marks file")
     columns = _columns(path, header)
     where = {name: header.index(name) for name in ("test", "specimen", "hold")}
@@ -220,7 +200,7 @@ def pooled_marks(
     """Return all marks of each specimen over the campaign, from every marks file it names."""
     pooled: dict[str, SpliceMarks] = {}
     for name in dict.fromkeys(names):
-        for specimen, marks in read_marks(path.parent / file_inside(path, name)).items():
+        for specimen, marks in _read_marks(path.parent / file_inside(path, name)).items():
             if specimen not in specimens:
                 raise LogError(
                     path.parent / name, "a mark names an unknown specimen", channel="specimen",

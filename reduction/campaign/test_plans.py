@@ -77,24 +77,7 @@ def _cells(path: Path, row: int, cells: dict[str, str]) -> dict[str, Any]:
 
 
 def read_test_table(path: Path) -> dict[str, TestSection]:
-    """Read a table of tests.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        CSV with at least ``id`` and ``file``; other columns are keys of ``[tests.ID]``
-        (lists parted by ``;``), and ``method`` and ``marks`` are those of ``strain``.
-
-    Returns
-    -------
-    tests : dict of str to TestSection
-        By id, in the order of the table; an empty cell means: as in ``[defaults]``.
-
-    Raises
-    ------
-    SettingsError
-        With row and column, if the table or a row cannot be used.
-    """
+    """Read a table of tests."""
     header, rows = read_csv_rows(path, "the table of tests", fault=_in_table)
     if "id" not in header or "file" not in header or len(set(header)) != len(header):
         raise _in_table(
@@ -135,28 +118,7 @@ def read_test_table(path: Path) -> dict[str, TestSection]:
 def merge_tests(
     path: Path, table: str, rows: dict[str, TestSection], sections: dict[str, TestSection]
 ) -> dict[str, TestSection]:
-    """Tests of the table and of campaign.toml; a test may stand in both, a key of it in one.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The campaign.toml.
-    table : str
-        Name of the table of tests; empty where there is none.
-    rows, sections : dict of str to TestSection
-        Of the table, and of ``[tests.ID]``: there stands what no cell can hold, the steps
-        of a log and numbers of the reduction.
-
-    Returns
-    -------
-    tests : dict of str to TestSection
-        Those of the table first, in its order.
-
-    Raises
-    ------
-    SettingsError
-        If a key of a test stands in both, or a test has no file.
-    """
+    """Tests of the table and of campaign.toml; a test may stand in both, a key of it in one."""
     twice = [
         f"tests.{name}.{key}"
         for name in rows.keys() & sections.keys()

@@ -23,25 +23,7 @@ _LARGEST = 16_000_000  # bytes; a campaign of 10^5 tests has a third of it
 
 
 def read_small_text(path: Path) -> str:
-    """Text of a small file, in UTF-8 with or without a byte-order mark.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-
-    Returns
-    -------
-    text : str
-        With its line ends.
-
-    Raises
-    ------
-    LogError
-        If it is no regular file (a pipe may never end), or too large to be kept by a person.
-    OSError, UnicodeDecodeError
-        If it cannot be read, or is no such text.
-    """
+    """Text of a small file, in UTF-8 with or without a byte-order mark."""
     status = path.stat()
     check_regular(path, status.st_mode)
     if status.st_size > _LARGEST:
@@ -57,30 +39,7 @@ def read_small_text(path: Path) -> str:
 def read_csv_rows(
     path: Path, what: str, *, fault: Callable[..., ReductionError] = LogError
 ) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
-    """Read a table that is small.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        UTF-8, with or without a byte-order mark.
-    what : str
-        For the messages: ``the table of results``.
-    fault : callable
-        Error of a file and a problem, with ``row``, ``found`` and ``needed``.
-
-    Returns
-    -------
-    header : list of str
-        Without blanks around the names; empty where the file is.
-    rows : iterator of (int, list of str)
-        Number of the line, the header being 1, and as many cells as the header; lines
-        without a filled cell are left out. A row is looked at when it is asked for.
-
-    Raises
-    ------
-    ReductionError
-        From ``fault``, if the file is not text or a row has another number of cells.
-    """
+    """Read a table that is small."""
     try:
         text = read_small_text(path)
     except LogError as error:
@@ -126,19 +85,6 @@ def split_rows(text: str) -> list[str]:
 def split_row(line: str, delimiter: str = ",") -> list[str] | None:
     """Cells of one line; None where a quote is not closed in it, or a cell is too long.
 
-    Parameters
-    ----------
-    line : str
-        Without its line end.
-    delimiter : str
-        What parts the cells.
-
-    Returns
-    -------
-    cells : list of str or None
-        A quote that goes on into the next line would swallow the rows below without a word.  An
-        apostrophe that keeps a spreadsheet program from a formula is taken off.
-
     Examples
     --------
     >>> split_row('T-1,"a, b",2')
@@ -168,7 +114,7 @@ _WORDS = {"missing": "is required", "extra_forbidden": "is not a known key"}
 
 
 @dataclass(frozen=True)
-class Fault:
+class _Fault:
     """A value that cannot be used; ``found`` is empty where nothing is to be shown."""
 
     place: str
@@ -234,21 +180,8 @@ def _place(location: Sequence[str | int], table: object, *, is_missing: bool) ->
     return tuple(place)
 
 
-def faults_of(error: ValidationError, table: object) -> list[Fault]:
-    """Every fault once.
-
-    Parameters
-    ----------
-    error : pydantic.ValidationError
-        As raised for the table.
-    table : object
-        What was validated, as TOML gives it.
-
-    Returns
-    -------
-    faults : list of Fault
-        In order; a value that fits none of several forms has one fault.
-    """
+def faults_of(error: ValidationError, table: object) -> list[_Fault]:
+    """Every fault once."""
     found: dict[tuple[str, ...], list[tuple[str, str]]] = {}
     for entry in error.errors():
         place = _place(entry["loc"], table, is_missing=entry["type"] == "missing")
@@ -269,7 +202,7 @@ def faults_of(error: ValidationError, table: object) -> list[Fault]:
             text if number == 0 else text.removeprefix("Input should be ")
             for number, text in enumerate(dict.fromkeys(text for text, _ in told))
         )
-        faults.append(Fault(".".join(place), needed, told[0][1]))
+        faults.append(_Fault(".".join(place), needed, told[0][1]))
     return faults
 
 
@@ -321,22 +254,8 @@ def _tables_in(table: dict[str, Any]) -> list[str]:
     ]
 
 
-def named_tables(folder: Path, table: dict[str, Any]) -> Iterator[str]:
-    """Tables of a campaign by their names: of tests, results and marks, each once.
-
-    Parameters
-    ----------
-    folder : pathlib.Path
-        Of the campaign. Each table is looked into after its name was taken, since a table of
-        tests names marks.
-    table : dict
-        campaign.toml, not validated yet.
-
-    Yields
-    ------
-    name : str
-        As written.
-    """
+def _named_tables(folder: Path, table: dict[str, Any]) -> Iterator[str]:
+    """Tables of a campaign by their names: of tests, results and marks, each once."""
     names = _tables_in(table)
     seen: set[str] = set()
     for name in names:  # grows
@@ -351,21 +270,8 @@ def named_tables(folder: Path, table: dict[str, Any]) -> Iterator[str]:
         )
 
 
-def open_questions(folder: Path, table: dict[str, Any]) -> list[str]:
-    """Places that still hold ``?``, in campaign.toml, its tables and its marks.
-
-    Parameters
-    ----------
-    folder : pathlib.Path
-        Of the campaign.
-    table : dict
-        campaign.toml, not validated yet.
-
-    Returns
-    -------
-    places : list of str
-        Dotted keys of campaign.toml, then ``FILE:ROW [COLUMN]``.
-    """
+def _open_questions(folder: Path, table: dict[str, Any]) -> list[str]:
+    """Places that still hold ``?``, in campaign.toml, its tables and its marks."""
     places = [
         ".".join(keys)
         for keys, value in _leaves(table)
@@ -373,7 +279,7 @@ def open_questions(folder: Path, table: dict[str, Any]) -> list[str]:
     ]
     places += [
         f"{name}:{row} [{column}]"
-        for name in named_tables(folder, table)
+        for name in _named_tables(folder, table)
         for row, column, cell in _cells(folder, name)
         if any(map(_is_open, cell.split(";")))
     ]
@@ -388,29 +294,7 @@ DEVICE = re.compile(
 
 
 def file_inside(path: Path, name: str, *, is_needed: bool = True) -> str:
-    """A file name that stays inside the campaign folder.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        campaign.toml.
-    name : str
-        As written there or in one of its tables; the same names are refused on every system.
-    is_needed : bool
-        Whether it has to be there.
-
-    Returns
-    -------
-    name : str
-        As written.
-
-    Raises
-    ------
-    SettingsError
-        If it is an address, or leads out of the folder, by itself or through links.
-    LogError
-        If it is needed and is not there, or is no regular file.
-    """
+    """A file name that stays inside the campaign folder."""
     shown = repr(cut(name, 200))
     if is_address(name):
         raise in_toml(
@@ -474,33 +358,7 @@ def read_toml(
     text: str | None = None,
     hint: Callable[[Path], str | None] = lambda path: None,
 ) -> _Model:
-    """Read and validate.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-    model : type of BaseModel
-        What it has to be.
-    what, needed, keys : str
-        For the messages: ``the campaign``; what would do where there is no file; where the
-        keys are listed.
-    text : str, optional
-        What the file is to hold; it is read where left out.
-    hint : callable
-        What to do about a file that is not TOML.
-
-    Returns
-    -------
-    file : BaseModel
-        An instance of the model.
-
-    Raises
-    ------
-    SettingsError
-        If the file cannot be read, a value is still ``?``, or a key or value cannot be used:
-        up to ten places, one a line.
-    """
+    """Read and validate."""
     try:
         table = _tables(read_small_text(path) if text is None else text)
     except LogError as error:
@@ -511,7 +369,7 @@ def read_toml(
         ) from error
     except (ValueError, RecursionError) as error:  # a number of too many digits is no TOML error
         raise in_toml(path, f"{what} is not TOML", found=str(error), hint=hint(path)) from error
-    places = open_questions(path.parent, table)
+    places = _open_questions(path.parent, table)
     if places:
         count = f"{len(places)} values are" if len(places) > 1 else "1 value is"
         raise in_toml(path, listed(f"{count} still '?', first {places[0]}", places))

@@ -22,7 +22,7 @@ _MOST_TIMES = 1_000_000
 _STEPS_A_PERIOD = 200
 
 
-class WaveLoadKeys(BaseModel):
+class _WaveLoadKeys(BaseModel):
     """``[wave_load]``."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -55,16 +55,16 @@ class WaveLoadKeys(BaseModel):
     time_step: str | None = None
 
 
-class WaveLoadFile(BaseModel):
+class _WaveLoadFile(BaseModel):
     """The whole of SPEC.toml."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    wave_load: WaveLoadKeys
+    wave_load: _WaveLoadKeys
 
 
 @dataclass(frozen=True)
-class WaveLoadCase:
+class _WaveLoadCase:
     """A wave load in SI; ``wave_length`` and ``elevation`` are None where they follow."""
 
     name: str
@@ -90,27 +90,11 @@ class WaveLoadCase:
     time: Floats
 
 
-def load_wave_case(path: Path) -> WaveLoadCase:
-    """Read SPEC.toml of a wave load.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-
-    Returns
-    -------
-    case : WaveLoadCase
-        In SI.
-
-    Raises
-    ------
-    SettingsError
-        If a value is still ``?``, or a key, a value or a unit cannot be used.
-    """
+def load_wave_case(path: Path) -> _WaveLoadCase:
+    """Read SPEC.toml of a wave load."""
     file = read_toml(
         path,
-        WaveLoadFile,
+        _WaveLoadFile,
         what="the wave load",
         needed="a SPEC.toml with [wave_load]",
         keys="docs/predictions.md lists every key",
@@ -136,7 +120,7 @@ def load_wave_case(path: Path) -> WaveLoadCase:
                 raise _fault(path, f"{name} is negative", value, "zero or more")
         elif not (np.isfinite(value) and value > 0):
             raise _fault(path, f"{name} is not positive", value, "above zero")
-    return WaveLoadCase(
+    return _WaveLoadCase(
         name=path.stem,
         **values,
         wave_length=given["wave_length"],
@@ -152,7 +136,7 @@ def _fault(path: Path, problem: str, value: float, needed: str) -> SettingsError
     return in_toml(path, f"wave_load.{problem}", found=f"{value:g} in SI", needed=needed)
 
 
-def _times(path: Path, read: TableReader, keys: WaveLoadKeys, period: float) -> Floats:
+def _times(path: Path, read: TableReader, keys: _WaveLoadKeys, period: float) -> Floats:
     duration = read.optional("duration", keys.duration, "time")
     step = read.optional("time_step", keys.time_step, "time")
     duration = 2 * period if duration is None else duration

@@ -98,14 +98,8 @@ _LONGEST = 180.0
 _BY_HAND = "Open the page in any browser and print it to PDF, without headers and footers."
 
 
-def find_browser() -> str:
-    """Return the program that prints: ``BROWSER_PROGRAM``, or the first browser that is there.
-
-    Raises
-    ------
-    SettingsError
-        If there is none.
-    """
+def _find_browser() -> str:
+    """Return the program that prints: ``BROWSER_PROGRAM``, or the first browser that is there."""
     asked = os.environ.get("BROWSER_PROGRAM")
     if asked:
         found = shutil.which(asked)
@@ -127,23 +121,8 @@ def find_browser() -> str:
     return program
 
 
-def print_page(page: Path, pdf: Path, *, browser: str) -> None:
-    """Print a page to PDF; the file appears whole or not at all.
-
-    Parameters
-    ----------
-    page : pathlib.Path
-        HTML with its paper and its margins in it.
-    pdf : pathlib.Path
-        The file.
-    browser : str
-        Program, as `find_browser` found it.
-
-    Raises
-    ------
-    ArchiveError
-        If the browser fails, or takes longer than three minutes.
-    """
+def _print_page(page: Path, pdf: Path, *, browser: str) -> None:
+    """Print a page to PDF; the file appears whole or not at all."""
     with tempfile.TemporaryDirectory(prefix="reduction-print-") as profile, whole_file(pdf) as part:
         # a browser that is run by root refuses its own sandbox
         is_root = sys.platform != "win32" and os.geteuid() == 0
@@ -182,12 +161,12 @@ def _run(command: list[str], browser: str) -> str:
     return lines[-1] if lines else ""
 
 
-def address_of_design_page(processed: Path, reports: Path, output: CommandOutput) -> str:
+def _address_of_design_page(processed: Path, reports: Path, output: CommandOutput) -> str:
     """Address of the design-value page from the folder of a report; empty where none is written."""
     return "" if _is_copy(processed, reports, output) else f"../{PAGE_NAME}"
 
 
-def refresh_design_page(
+def _refresh_design_page(
     processed: Path,
     reports: Path,
     output: CommandOutput,
@@ -195,33 +174,7 @@ def refresh_design_page(
     made: str = "",
     opener: Opener = reading,
 ) -> str | None:
-    """Write the design-value page of a folder of products again, and say where it is.
-
-    Parameters
-    ----------
-    processed : pathlib.Path
-        Folder in which campaigns have theirs.
-    reports : pathlib.Path
-        Folder of the page.
-    output : CommandOutput
-        Knows which folders are copies of what is on the net.
-    made : str
-        Campaign that was just reduced: where an archive of it cannot be read the page is left as
-        it was. One of others is left out, which is said here and on the page.
-    opener : Opener
-        How archives are opened.
-
-    Returns
-    -------
-    path : str or None
-        None where one of the folders is a copy: it holds one campaign, and its page would take
-        the place of one of many.
-
-    Raises
-    ------
-    ArchiveError
-        If the page cannot be written, or would lack what was just made.
-    """
+    """Write the design-value page of a folder of products again, and say where it is."""
     if _is_copy(processed, reports, output):
         return None
     left_out: dict[Path, str] = {}
@@ -424,7 +377,7 @@ def run_campaign(
             # paths, jobs and choices of tests are left out, so that equal inputs give equal bytes
             command="reduction run campaign.toml",
             units=cast("UnitSystem", output.units),
-            values_page=address_of_design_page(processed, reports, output),
+            values_page=_address_of_design_page(processed, reports, output),
             workers=workers,
             progress=progress,
             opener=opener,
@@ -462,7 +415,7 @@ def run_campaign(
     else:
         output.say(f"report:   {result.report}")
     _say_client_report(client, output)
-    document["design_values"] = refresh_design_page(
+    document["design_values"] = _refresh_design_page(
         processed, reports, output, made=campaign.id, opener=opener
     )
     output.answer(document)
@@ -478,7 +431,7 @@ def report_again(
     for folder in folders:
         page = write_report(
             folder, reports / folder.resolve().name, units=cast("UnitSystem", output.units),
-            values_page=address_of_design_page(processed, reports, output),
+            values_page=_address_of_design_page(processed, reports, output),
             unreadable=partial(_say_unreadable, output, folder),
         )  # fmt: skip
         output.say(f"report: {page}")
@@ -496,7 +449,7 @@ def report_again(
             hint="Add it and run the campaign again: what did not change is not reduced again.",
         )  # fmt: skip
     root = processed.resolve().parent if folders == [processed] else processed
-    output.answer(written | {"design_values": refresh_design_page(root, reports, output)})
+    output.answer(written | {"design_values": _refresh_design_page(root, reports, output)})
 
 
 def _say_unreadable(output: CommandOutput, folder: Path, name: str, why: str) -> None:
@@ -518,6 +471,6 @@ def _say_client_report(client: Path | None, output: CommandOutput) -> None:
 def _printed(client: Path, output: CommandOutput) -> Path:
 
     pdf = client.with_suffix(".pdf")
-    print_page(client, pdf, browser=find_browser())
+    _print_page(client, pdf, browser=_find_browser())
     output.say(f"printed: {pdf}")
     return pdf

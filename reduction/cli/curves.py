@@ -39,13 +39,7 @@ def is_of_pieces(sources: Sequence[str]) -> bool:
 
 
 def rule_of(precedence: str | None) -> CompositeRule:
-    """The rule, from kinds parted by commas.
-
-    Raises
-    ------
-    SettingsError
-        If one of them is no kind.
-    """
+    """The rule, from kinds parted by commas."""
     if precedence is None:
         return CompositeRule()
     kinds = tuple(cast("PieceKind", part.strip()) for part in precedence.split(","))
@@ -60,32 +54,7 @@ def rule_of(precedence: str | None) -> CompositeRule:
 def piece_source(
     sources: Sequence[str], *, specimen: str | None = None, branch: PieceBranch | None = None
 ) -> PieceSource:
-    """Pieces of what SOURCE names.
-
-    Parameters
-    ----------
-    sources : sequence of str
-        A published tether by its name without the test, or archives and folders of processed
-        campaigns.
-    specimen : str, optional
-        Which one; needed where the archives hold several.
-    branch : {"mean", "ascending", "descending"}, optional
-        "mean" of archives where it is not said; a published tether has its ascending one.
-
-    Returns
-    -------
-    source : PieceSource
-        With pieces, splices and notes.
-
-    Raises
-    ------
-    SettingsError
-        If nothing has that name, or the specimen is not there or not said.
-    ArchiveError
-        If an archive cannot be read.
-    DataError
-        If no test gives a piece.
-    """
+    """Pieces of what SOURCE names."""
     published = published_piece_sources()
     if any(one in published for one in sources):
         return _published(sources, specimen, branch)
@@ -180,14 +149,8 @@ _FORMATS = {
 }  # fmt: skip
 
 
-def table_format(path: Path) -> str:
-    """Format of a table, or `PAGE`, by the name of its file.
-
-    Raises
-    ------
-    SettingsError
-        If the name ends otherwise.
-    """
+def _table_format(path: Path) -> str:
+    """Format of a table, or `PAGE`, by the name of its file."""
     if path.suffix.lower() not in _FORMATS:
         raise SettingsError(
             "the name of the file says its format", found=path.name,
@@ -206,7 +169,7 @@ def compose_tests(
     output: CommandOutput,
 ) -> None:
     """Print the composite curve of SOURCE; with ``out``, write every node of it."""
-    form = None if out is None else table_format(out)
+    form = None if out is None else _table_format(out)
     rule = rule_of(precedence)
     source = piece_source(sources, specimen=specimen, branch=branch)
     curve = compose(source, rule)
@@ -266,7 +229,7 @@ def _show(
         output.say(f"source: {text}")
 
 
-def contributions(component: Sequence[Component], rows: Floats) -> list[dict[str, Any]]:
+def _contributions(component: Sequence[Component], rows: Floats) -> list[dict[str, Any]]:
     """What each shared error adds to a curve, signed, as ``--json`` says it."""
     return [
         {"source": one.source, "of": one.of, "number": one.number, "contribution": plain(row)}
@@ -289,7 +252,7 @@ def _document(source: PieceSource, curve: CompositeCurve, rule: CompositeRule) -
         "tension_standard_uncertainty": plain(curve.standard_uncertainty),
         "tension_random_standard_uncertainty": plain(curve.random_standard_uncertainty),
         "tension_shared_standard_uncertainty": plain(curve.shared_standard_uncertainty),
-        "tension_uncertainty_contributions": contributions(curve.component, curve.contribution),
+        "tension_uncertainty_contributions": _contributions(curve.component, curve.contribution),
         "piece": [curve.piece_words[one] if one >= 0 else None for one in curve.piece],
         "units": {
             "strain": "1", "tension": "N", "tension_standard_uncertainty": "N",
@@ -320,7 +283,7 @@ def _document(source: PieceSource, curve: CompositeCurve, rule: CompositeRule) -
     }  # fmt: skip
 
 
-def assembly_document(line: DeployedLine) -> dict[str, Any]:
+def _assembly_document(line: DeployedLine) -> dict[str, Any]:
     """What ``--json`` says, in SI."""
     deployed, assembly = line.deployed, line.deployed.assembly
     return {
@@ -333,7 +296,7 @@ def assembly_document(line: DeployedLine) -> dict[str, Any]:
         "tension_standard_uncertainty": plain(assembly.standard_uncertainty),
         "tension_random_standard_uncertainty": plain(assembly.random_standard_uncertainty),
         "tension_shared_standard_uncertainty": plain(assembly.shared_standard_uncertainty),
-        "tension_uncertainty_contributions": contributions(
+        "tension_uncertainty_contributions": _contributions(
             assembly.component, assembly.contribution
         ),
         "strain": plain(deployed.strain),
@@ -404,7 +367,7 @@ _KNOWN = float(coverage_factor(np.inf))
 
 def assemble_spec(path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Print curve and work of the assembly of SPEC.toml; with ``out``, write every node."""
-    form = None if out is None else table_format(out)
+    form = None if out is None else _table_format(out)
     line = deployed_line(path)
     units = cast("UnitSystem", output.units)
     _show_assembly(line, output, units)
@@ -414,21 +377,11 @@ def assemble_spec(path: Path, *, out: Path | None, output: CommandOutput) -> Non
         else:
             export_table(assembly_table(line), form, out, units=units)
         output.say(f"written: {out}")
-    output.answer(assembly_document(line) | {"out": None if out is None else str(out)})
+    output.answer(_assembly_document(line) | {"out": None if out is None else str(out)})
 
 
 def deployed_line(path: Path) -> DeployedLine:
-    """Read SPEC.toml, find its curve and its splices, and deploy it.
-
-    Raises
-    ------
-    SettingsError
-        If a key, a value or a source cannot be used.
-    DataError
-        If the assembly cannot be, or a level of its work is none.
-    ArchiveError
-        If an archive cannot be read.
-    """
+    """Read SPEC.toml, find its curve and its splices, and deploy it."""
     case = load_assembly_case(path)
     source = _source(path, case)
     try:

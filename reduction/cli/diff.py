@@ -26,37 +26,14 @@ from reduction.readers.remote_files import scratch_folder
 from reduction.record.errors import DataError, SettingsError
 
 
-def run_revision(revision: str, campaign: Path, scratch: Path, output: CommandOutput) -> Path:
-    """Reduce a campaign with a revision of the checkout that this package is installed from.
-
-    Parameters
-    ----------
-    revision : str
-        A commit, tag or branch, as git takes it.
-    campaign : pathlib.Path
-        The campaign.toml.
-    scratch : pathlib.Path
-        Folder for the source, the environment and the products.
-    output : CommandOutput
-        Shows what takes long.
-
-    Returns
-    -------
-    products : pathlib.Path
-        Folder of the campaign.
-
-    Raises
-    ------
-    SettingsError
-        If the package is in no checkout, the revision is unknown, it cannot be installed, or
-        makes nothing of this campaign.
-    """
-    checkout = find_checkout(Path(reduction.__file__).parents[1])
-    source = export_revision(checkout, revision, scratch)
+def _run_revision(revision: str, campaign: Path, scratch: Path, output: CommandOutput) -> Path:
+    """Reduce a campaign with a revision of the checkout that this package is installed from."""
+    checkout = _find_checkout(Path(reduction.__file__).parents[1])
+    source = _export_revision(checkout, revision, scratch)
     processed = scratch / "processed"
     with in_order(), campaign_progress(output) as bar:
         bar.stage(f"building {revision}", 0)
-        python = install(source, scratch, revision)
+        python = _install(source, scratch, revision)
         bar.stage(f"reducing with {revision}", 0)
         # isolated, so that neither this folder nor PYTHONPATH puts another version in its place
         done = _run(
@@ -73,7 +50,7 @@ def run_revision(revision: str, campaign: Path, scratch: Path, output: CommandOu
     return made[0]
 
 
-def find_checkout(folder: Path) -> Path:
+def _find_checkout(folder: Path) -> Path:
     """Folder of the git checkout that a package was installed from in place."""
     done = _git(folder, "ls-files", "--error-unmatch", "reduction/__init__.py")
     if done.returncode:
@@ -85,7 +62,7 @@ def find_checkout(folder: Path) -> Path:
     return folder
 
 
-def export_revision(checkout: Path, revision: str, scratch: Path) -> Path:
+def _export_revision(checkout: Path, revision: str, scratch: Path) -> Path:
     """Unpack the source of a revision; the checkout is left as it is."""
     known = _git(checkout, "rev-parse", "--verify", "--end-of-options", f"{revision}^{{commit}}")
     if known.returncode:
@@ -105,7 +82,7 @@ def export_revision(checkout: Path, revision: str, scratch: Path) -> Path:
     return source
 
 
-def install(source: Path, scratch: Path, revision: str) -> Path:
+def _install(source: Path, scratch: Path, revision: str) -> Path:
     """Install a source with the versions of other packages that are installed here."""
     environment = scratch / "environment"
     versions = scratch / "versions.txt"
@@ -172,7 +149,7 @@ def show_differences(
         scratch = opened.enter_context(scratch_folder())
         # what was asked for is named, and not its copy
         if against is not None:
-            one = run_revision(against, before.absolute(), scratch / "before", output)
+            one = _run_revision(against, before.absolute(), scratch / "before", output)
             output.names[str(one)] = f"{before} by {against}"
         else:
             one = _products(before, scratch / "before", output)

@@ -64,7 +64,7 @@ def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, output: Command
         )
         precision = _precision(design, sheet, spec)
     except ReductionError as error:
-        raise in_file(path, error) from error
+        raise _in_file(path, error) from error
     if out is not None:
         write_whole(out, _csv(design, sheet, spec))
     units = cast("UnitSystem", output.units)
@@ -78,7 +78,7 @@ def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, output: Command
     output.answer(_document(kind, design, sheet, spec, cautions, precision, out))
 
 
-def in_file(path: Path, error: ReductionError) -> ReductionError:
+def _in_file(path: Path, error: ReductionError) -> ReductionError:
     """The same error with the file in front."""
     return type(error)(
         f"{path}: {error.problem}", found=error.found, needed=error.needed, hint=error.hint
@@ -296,7 +296,7 @@ def _document(
     }
 
 
-def frame(runs: RunSeries, notes: tuple[str, ...]) -> dict[str, Any]:
+def _frame(runs: RunSeries, notes: tuple[str, ...]) -> dict[str, Any]:
     """What answers for surfaces and for effects have in common."""
     return {
         "n_runs": len(runs.row),
@@ -311,7 +311,7 @@ def frame(runs: RunSeries, notes: tuple[str, ...]) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def surface_document(
+def _surface_document(
     surfaces: ResponseSurfaces, index: int, runs: RunSeries, drift: Drift
 ) -> dict[str, Any]:
     """One response: every number of its surface."""
@@ -407,7 +407,7 @@ def surface_document(
     }  # fmt: skip
 
 
-def effects_document(effects: ScreeningEffects, runs: RunSeries) -> dict[str, Any]:
+def _effects_document(effects: ScreeningEffects, runs: RunSeries) -> dict[str, Any]:
     """Effects of every response, and what they are mixed of."""
     pairs, alias = alias_matrix(np.where(runs.coded < 0, -1.0, 1.0))
     names = effects.names
@@ -447,7 +447,7 @@ def effects_document(effects: ScreeningEffects, runs: RunSeries) -> dict[str, An
     }
 
 
-def show_surfaces(
+def _show_surfaces(
     surfaces: ResponseSurfaces,
     runs: RunSeries,
     notes: tuple[str, ...],
@@ -569,7 +569,7 @@ def _show_stationary(
     output.show(table)
 
 
-def show_effects(
+def _show_effects(
     effects: ScreeningEffects,
     runs: RunSeries,
     notes: tuple[str, ...],
@@ -619,8 +619,8 @@ def fit_runs(path: Path, spec_path: Path | None, *, output: CommandOutput) -> No
     try:
         if spec is not None and spec.kind == "plackett-burman":
             effects, notes = _screen(runs)
-            show_effects(effects, runs, notes, output, units)
-            output.answer(frame(runs, notes) | effects_document(effects, runs))
+            _show_effects(effects, runs, notes, output, units)
+            output.answer(_frame(runs, notes) | _effects_document(effects, runs))
             return
         surfaces = _fit(runs, spec)
         drift = drift_over_order(surfaces, runs.run_order)
@@ -635,12 +635,12 @@ def fit_runs(path: Path, spec_path: Path | None, *, output: CommandOutput) -> No
         *negative_surfaces(surfaces),
         *drifting_responses(surfaces, drift),
     )
-    show_surfaces(surfaces, runs, notes, output, units)
+    _show_surfaces(surfaces, runs, notes, output, units)
     documents = {
-        name: surface_document(surfaces, index, runs, drift)
+        name: _surface_document(surfaces, index, runs, drift)
         for index, name in enumerate(surfaces.response_names)
     }
-    output.answer(frame(runs, notes) | {"fit": "quadratic", "responses": documents})
+    output.answer(_frame(runs, notes) | {"fit": "quadratic", "responses": documents})
 
 
 def _fit(runs: RunSeries, spec: ExperimentSpec | None) -> ResponseSurfaces:

@@ -36,31 +36,14 @@ from reduction.record.errors import SettingsError
 _HYDRODYNAMICS_NEEDED = 'two numbers, "1.6, 0.02": across the line, along it'
 
 
-def stated_hydrodynamics(
+def _stated_hydrodynamics(
     drag: str | None, added_mass: str | None, source: str | None
 ) -> dict[str, Hydrodynamics]:
     """Coefficients that stand in place of the assumed cylinder.
 
-    Parameters
-    ----------
-    drag, added_mass : str or None
-        Two numbers, across the line and along it; what is not stated stays assumed. [1]
-    source : str or None
-        Where they are from; it stands in the header.
-
-    Returns
-    -------
-    stated : dict of str to Hydrodynamics
-        As a field of `ExportLine`; empty where nothing is stated.
-
-    Raises
-    ------
-    SettingsError
-        If there are not two numbers, one is negative, or a source has nothing to speak of.
-
     Examples
     --------
-    >>> stated_hydrodynamics("1.6, 0.02", None, "a towing tank")["hydrodynamics"].axial_drag
+    >>> _stated_hydrodynamics("1.6, 0.02", None, "a towing tank")["hydrodynamics"].axial_drag
     0.02
     """
     if drag is None and added_mass is None:
@@ -109,7 +92,7 @@ _ROUNDING = 1e-9
 _NEEDED = 'a form and its numbers: "LINEAR, 0.2", "QUADRATIC, 0.2, 0.5" or "EXP, 0.2, 1.5"'
 
 
-def with_syrope(
+def _with_syrope(
     line: ExportLine,
     working_curve: str | None,
     greatest_mean_tension: str | None,
@@ -117,36 +100,7 @@ def with_syrope(
     form: str | None,
     rated_break_strength: float | None = None,
 ) -> ExportLine:
-    """Give a line with dynamics the working curves of a Syrope model.
-
-    Parameters
-    ----------
-    line : ExportLine
-        Its curve is the original working curve, its dynamics hold at the mean it starts from.
-    working_curve : str or None
-        Form, k1 and k2; nobody has measured them for the published lines.
-    greatest_mean_tension : str or None
-        That the line has had before.
-    form : str or None
-        Of the export: these say nothing to another one than ``syrope``.
-    rated_break_strength : float, optional
-        That %RBS is a share of, as at the other levels. [N]
-
-    Returns
-    -------
-    line : ExportLine
-        As it was where neither is stated.
-
-    Raises
-    ------
-    SettingsError
-        If one is stated without the other, or the line has no dynamics, or they do not fit.
-
-    Notes
-    -----
-    alpha and beta are EA_d and its growth, the slow dashpot that of the three parameters in series
-    with EA_d; the fast one is numerical.
-    """
+    """Give a line with dynamics the working curves of a Syrope model."""
     if working_curve is None and greatest_mean_tension is None:
         return line
     if form != "syrope":
@@ -260,17 +214,17 @@ def export_source(
         for name, text in stated.items()
         if text is not None
     }
-    line = line_of(
+    line = _line_of(
         sources,
         cast("CurveName | None", curve),
         precedence=precedence,
         specimen=specimen,
-        stated=values | stated_hydrodynamics(*water),
+        stated=values | _stated_hydrodynamics(*water),
         levels={name: text for name, text in levels.items() if text is not None},
         extrapolate=cast('Literal["refuse", "flag"]', extrapolate),
     )
     strength = _strength_of_shares(sources, values)
-    line = with_syrope(line, *syrope, form=form, rated_break_strength=strength)
+    line = _with_syrope(line, *syrope, form=form, rated_break_strength=strength)
     units = cast("UnitSystem", output.units)
     there = set(out.parent.iterdir()) if out.parent.is_dir() else set()
     paths = export_line(line, to, out, form=form, units=units)
@@ -304,7 +258,7 @@ def export_source(
     )
 
 
-def line_of(
+def _line_of(
     sources: Sequence[str],
     curve: CurveName | None,
     *,

@@ -42,27 +42,8 @@ _OF_CURVES = {"tension": "branch_tension"}
 _ENDINGS = (".nc", ".toml", ".csv")
 
 
-def lines_of(source: str) -> list[LineSource]:
-    """Every line that SOURCE names.
-
-    Parameters
-    ----------
-    source : str
-        Name of a published line, or all of ``published``; path of an archive; folder of a
-        processed campaign.
-
-    Returns
-    -------
-    lines : list of LineSource
-        One or more.
-
-    Raises
-    ------
-    SettingsError
-        If nothing has that name.
-    ArchiveError
-        If an archive cannot be read, or has nothing to look up.
-    """
+def _lines_of(source: str) -> list[LineSource]:
+    """Every line that SOURCE names."""
     published = published_sources()
     if source == "published":
         return list(published.values())
@@ -96,17 +77,6 @@ def lines_of(source: str) -> list[LineSource]:
 def name_of_quantity(text: str) -> str:
     """Name of a quantity that is asked for by the symbol of its source, or as ``tension``.
 
-    Parameters
-    ----------
-    text : str
-        A name, or a symbol; K_0 or K0; ``tension`` is that of a branch over strain.
-
-    Returns
-    -------
-    name : str
-        The text itself where it is neither ``tension`` nor a symbol of a number of the
-        three-parameter line.
-
     Examples
     --------
     >>> [name_of_quantity(text) for text in ("K_ap", "tension", "loss_factor")]
@@ -138,28 +108,8 @@ def _no_products(path: Path) -> SettingsError:
     )
 
 
-def one_of(lines: Sequence[LineSource], quantity: str, name: str | None) -> LineSource:
-    """The line that was meant: by its name, else the only one that has the quantity.
-
-    Parameters
-    ----------
-    lines : sequence of LineSource
-        What SOURCE names.
-    quantity : str
-        That is wanted.
-    name : str or None
-        Of the line, where it was said.
-
-    Returns
-    -------
-    line : LineSource
-        One that is alone may not have the quantity; the look-up says why.
-
-    Raises
-    ------
-    SettingsError
-        If no line has the name, several have the quantity, or none of several has it.
-    """
+def _one_of(lines: Sequence[LineSource], quantity: str, name: str | None) -> LineSource:
+    """The line that was meant: by its name, else the only one that has the quantity."""
     named = [line for line in lines if name in (None, line.name)]
     if not named:
         # of "T-1 new" the test or the specimen alone, as far as it leaves one
@@ -242,33 +192,10 @@ def parsed_search(
     return search
 
 
-def points_of(
+def _points_of(
     wanted: Wanted, line: LineSource, *others: LineSource
 ) -> tuple[list[dict[str, Floats]], bool]:
-    """Points at which lines are looked up, by level, and whether slack ones were left out.
-
-    Parameters
-    ----------
-    wanted : Wanted
-        Levels as texts; %RBS is of the break strength of each line.
-    line, *others : LineSource
-        A grid is filled over what their boxes have in common.
-
-    Returns
-    -------
-    points : list of dict of str to ndarray, shape (n_points,)
-        One a line, by level. [SI]
-    left_out : bool
-        A grid has combinations whose amplitude is above the mean; they are not among the points.
-
-    Raises
-    ------
-    SettingsError
-        If a level has no or a wrong unit, or several values without a grid; or a grid has too
-        many points.
-    DataError
-        If the boxes have nothing in common, or a line would be pushed at every point of a grid.
-    """
+    """Points at which lines are looked up, by level, and whether slack ones were left out."""
     lines = (line, *others)
     filled = _filled(wanted, lines) if wanted.grid else {}
     # in the order of the factors, whatever was said first
@@ -362,14 +289,14 @@ def _numbers(name: str, text: str, line: LineSource) -> Floats:
 
 def list_sources(source: str, search: Mapping[str, Any], *, output: CommandOutput) -> None:
     """Print what SOURCE holds: each line, its quantities, and over which range."""
-    lines = find_lines(lines_of(source), **search)
+    lines = find_lines(_lines_of(source), **search)
     unit, factor = ("in", 1 / 0.0254) if output.units == "us" else ("mm", 1e3)
     force, scale = display_unit("N", cast("UnitSystem", output.units))
     table = table_of(
         "line", "source", "material", "construction", "condition", f"diameter\n[{unit}]",
         f"%RBS are of\n[{force}]", "quantities", texts=5,
     )  # fmt: skip
-    fold_last(table)
+    _fold_last(table)
     # what is copied into the next command is never broken
     table.columns[0].no_wrap = True
     table.columns[-1].min_width = 1 + max(len(name) for line in lines for name in line.quantities)
@@ -437,19 +364,19 @@ def _described(line: LineSource) -> dict[str, Any]:
 def look_up_values(source: str, wanted: Wanted, *, output: CommandOutput) -> None:
     """Print design values; several values of a level, parted by commas, make a grid."""
     form = None if wanted.out is None else format_of_file(wanted.out)
-    line = one_of(find_lines(lines_of(source), **wanted.search), wanted.quantity, wanted.name)
-    (points,), left_out = points_of(wanted, line)
+    line = _one_of(find_lines(_lines_of(source), **wanted.search), wanted.quantity, wanted.name)
+    (points,), left_out = _points_of(wanted, line)
     if left_out:
         output.say("combinations whose amplitude is above the mean tension are left out")
     found = look_up(
         line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **points
     )
     _show(line, found, points, output)
-    files = write_table(table_of_values(line, found, points), wanted.out, form, output)
+    files = _write_table(table_of_values(line, found, points), wanted.out, form, output)
     output.answer(_document(line, found, points, grid=wanted.grid) | {"files": files})
 
 
-def write_table(
+def _write_table(
     table: ValueTable, out: Path | None, form: str | None, output: CommandOutput
 ) -> list[str]:
     """Write the table where a file was named, and say so."""
@@ -470,7 +397,7 @@ def _show(
     output.say(f"{found.quantity} of {line.name}{branch}; {found.source}")
     if output.is_text:
         output.show(_table(line, found, points, unit, factor, system))
-    said_of_lines(output, (line, found))
+    _said_of_lines(output, (line, found))
 
 
 def _table(
@@ -482,7 +409,7 @@ def _table(
     system: UnitSystem,
 ) -> Table:
     """One row a point; of the intervals those that are known."""
-    heads, levels = shown_levels(points, line.rated_break_strength, found.value.size, system)
+    heads, levels = _shown_levels(points, line.rated_break_strength, found.value.size, system)
     intervals = [
         (head, low.ravel(), high.ravel())
         for head, low, high in (
@@ -502,7 +429,7 @@ def _table(
         "peak\n[%RBS]", "minimum\n[%RBS]",
         *(("peak [% of what\nit still has]",) if is_weaker else ()), "remark", texts=0,
     )  # fmt: skip
-    fold_last(table)
+    _fold_last(table)
     shares = [found.peak_share, found.minimum_share, *([found.own_peak_share] if is_weaker else [])]
     for place, numbers in enumerate(levels):
         table.add_row(
@@ -511,7 +438,7 @@ def _table(
                 factor * float(found.value.ravel()[place]),
                 *(factor * float(high[place] - low[place]) / 2 for _, low, high in intervals),
             ),
-            *(span(factor, low[place], high[place]) for _, low, high in intervals),
+            *(_span(factor, low[place], high[place]) for _, low, high in intervals),
             *(short(100 * float(share.ravel()[place]), 4) for share in shares),
             "; ".join(_remarks(found, place)),
         )
@@ -540,7 +467,7 @@ def _remarks(found: DesignValues, place: int) -> list[str]:
     ]
 
 
-def said_of_lines(output: CommandOutput, *pairs: tuple[LineSource, DesignValues]) -> None:
+def _said_of_lines(output: CommandOutput, *pairs: tuple[LineSource, DesignValues]) -> None:
     """What is stated of each line, its rule, its errata and notes; each sentence once."""
     told = []
     for line, found in pairs:
@@ -556,7 +483,7 @@ def said_of_lines(output: CommandOutput, *pairs: tuple[LineSource, DesignValues]
         output.say(text)
 
 
-def shown_levels(
+def _shown_levels(
     points: Mapping[str, Floats], strength: float, size: int, system: UnitSystem
 ) -> tuple[list[str], list[list[str]]]:
     """Headings and cells of the levels, tensions in %RBS as well where that is known."""
@@ -573,13 +500,13 @@ def shown_levels(
     return heads, [[column[place] for column in columns] for place in range(size)]
 
 
-def fold_last(table: Table) -> None:
+def _fold_last(table: Table) -> None:
     """Let the last column, of words, take the room that numbers leave."""
     last = table.columns[-1]
     last.justify, last.no_wrap, last.overflow = "left", False, "fold"
 
 
-def span(factor: float, low: float, high: float) -> str:
+def _span(factor: float, low: float, high: float) -> str:
     """An interval for a table; a dash where there is none."""
     if not (np.isfinite(low) and np.isfinite(high)):
         return "-"
@@ -648,10 +575,10 @@ def _document(
 def look_up_against(source: str, other: str, wanted: Wanted, *, output: CommandOutput) -> None:
     """Print values of two lines, their difference and ratio, and whether the intervals allow it."""
     form = None if wanted.out is None else format_of_file(wanted.out)
-    lines = lines_of(source)
-    first = one_of(find_lines(lines, **wanted.search), wanted.quantity, wanted.name)
+    lines = _lines_of(source)
+    first = _one_of(find_lines(lines, **wanted.search), wanted.quantity, wanted.name)
     second = _other(lines, other, wanted.quantity, first)
-    (points, others), left_out = points_of(wanted, first, second)
+    (points, others), left_out = _points_of(wanted, first, second)
     if left_out:
         output.say("combinations whose amplitude is above the mean tension are left out")
     values = [
@@ -661,21 +588,18 @@ def look_up_against(source: str, other: str, wanted: Wanted, *, output: CommandO
     found = compare_values(*values)
     _show_difference(first, second, found, points, others, output)
     table = table_of_difference(first, second, found, points, others)
-    files = write_table(table, wanted.out, form, output)
+    files = _write_table(table, wanted.out, form, output)
     document = _difference_document(first, second, found, points, others, grid=wanted.grid)
     output.answer(document | {"files": files})
 
 
 def _other(lines: list[LineSource], name: str, quantity: str, first: LineSource) -> LineSource:
-    """The second line: one of SOURCE by its name, else what the name means by itself.
-
-    Of several that it means the one that is called as the first: the same specimen in two tests.
-    """
+    """The second line: one of SOURCE by its name, else what the name means by itself."""
     of_source = [line for line in lines if line.name == name]
-    found = of_source or lines_of(name)
+    found = of_source or _lines_of(name)
     having = [line for line in found if quantity in line.quantities]
     if len(having) < 2:
-        return one_of(found, quantity, None)
+        return _one_of(found, quantity, None)
     alike = [line for line in having if line.name == first.name]
     if len(alike) != 1:
         raise SettingsError(
@@ -727,7 +651,7 @@ def _show_difference(
     )
     for note in found.notes:
         output.say(note)
-    said_of_lines(output, (first, found.first), (second, found.second))
+    _said_of_lines(output, (first, found.first), (second, found.second))
 
 
 def _difference_table(
@@ -738,13 +662,13 @@ def _difference_table(
     factor: float,
     system: UnitSystem,
 ) -> Table:
-    heads, levels = shown_levels(points, first.rated_break_strength, found.difference.size, system)
+    heads, levels = _shown_levels(points, first.rated_break_strength, found.difference.size, system)
     table = table_of(
         *heads, f"first\n[{unit}]", f"second\n[{unit}]", f"difference\n[{unit}]", "ratio",
         "95 % of the\ndifference of\nthese lines", "these\nlines", "the kinds",
         "another line\nof each", "remark", texts=0,
     )  # fmt: skip
-    fold_last(table)
+    _fold_last(table)
     numbers = ("difference", "ratio", "surface_low", "surface_high")
     for place, cells in enumerate(levels):
         at = {name: float(getattr(found, name).ravel()[place]) for name in numbers}
@@ -755,7 +679,7 @@ def _difference_table(
                 factor * at["difference"], factor * (at["surface_high"] - at["surface_low"]) / 2
             ),
             short(at["ratio"], 4),
-            span(factor, at["surface_low"], at["surface_high"]),
+            _span(factor, at["surface_low"], at["surface_high"]),
             _verdict(found.is_known, found.is_different, place),
             _verdict(found.is_kind_known, found.is_kind_different, place),
             _verdict(found.is_line_known, found.is_line_different, place),

@@ -42,15 +42,6 @@ def plain_table(
 ) -> str:
     """Return a heading and rows, two spaces or more between the columns.
 
-    Parameters
-    ----------
-    heads : sequence of str
-        One a column; a line end in it counts as a space, as in every cell.
-    columns : sequence of sequence of str
-        Cells, column by column.
-    is_number : sequence of bool
-        Which columns stand flush right.
-
     Examples
     --------
     >>> print(plain_table(["test", "cycles"], [["T-1", "T-10"], ["10", ""]],
@@ -93,10 +84,7 @@ class CommandOutput:
     """Addresses on the net by the paths of their copies, which nothing that is said names."""
 
     def say(self, text: str, *, is_verbatim: bool = False) -> None:
-        """One line of text on standard output, unless JSON or nothing was asked for.
-
-        At a terminal it is broken between words, but for what is there to be copied as it is.
-        """
+        """One line of text on standard output, unless JSON or nothing was asked for."""
         if self.json or self.quiet:
             return
         said = visible(in_words(text, self.names))
@@ -108,10 +96,7 @@ class CommandOutput:
         return not (self.json or self.quiet)
 
     def show(self, table: Table) -> None:
-        """A table on standard output, where text is said, with every digit of its numbers.
-
-        Where no terminal is, one line a row; where a terminal has too few columns, row by row.
-        """
+        """A table on standard output, where text is said, with every digit of its numbers."""
         if not self.is_text:
             return
         table = _changed(table, lambda cell, _: visible(in_words(cell, self.names)))
@@ -156,10 +141,7 @@ def _changed(table: Table, change: Callable[[str, bool], str]) -> Table:
 
 
 def _between_words(text: str, stream: TextIO) -> str:
-    """Lines that a terminal would break within a word, broken between words; else as it is.
-
-    A word that is longer than a line, such as an address, stays whole.
-    """
+    """Lines that a terminal would break within a word, broken between words; else as it is."""
     if not stream.isatty():
         return text
     width = Console(file=stream).width
@@ -312,8 +294,6 @@ def as_given(value: float) -> str:
 def within(value: float, *halves: float) -> str:
     """A number that is known within half widths of intervals, to two digits of the narrowest.
 
-    Without any it has five digits.
-
     Examples
     --------
     >>> within(280991.3, 2100.0), within(280991.3, float("nan"))
@@ -336,25 +316,7 @@ def table_of(*headings: str, texts: int = 1, title: str | None = None) -> Table:
 
 
 def processed_folders(processed: Path) -> list[Path]:
-    """Folders with archives: the one that is given, or those in it.
-
-    Parameters
-    ----------
-    processed : pathlib.Path
-        ``processed/CAMPAIGN``, or ``processed``.
-
-    Returns
-    -------
-    folders : list of pathlib.Path
-        By name.
-
-    Raises
-    ------
-    ArchiveError
-        If there is no archive.
-    OSError
-        If a folder cannot be looked into.
-    """
+    """Folders with archives: the one that is given, or those in it."""
     inside = sorted(processed.iterdir()) if processed.is_dir() else []
     folders = [processed] if archives_in(processed) else [one for one in inside if one.is_dir()]
     folders = [folder for folder in folders if archives_in(folder)]

@@ -34,7 +34,7 @@ from reduction.report.single_pages import write_armour_page, write_wave_page
 from reduction.report.text_style import shown
 
 
-def show_designs(
+def _show_designs(
     designs: Sequence[DesignedHose], target: HoseTarget, output: CommandOutput, system: UnitSystem
 ) -> None:
     """Print each way to reach a target, and why there is none."""
@@ -74,7 +74,7 @@ def show_designs(
             output.say(f"no hose by {one.varied}: {one.refusal}")
 
 
-def designed(one: DesignedHose) -> dict[str, Any]:
+def _designed(one: DesignedHose) -> dict[str, Any]:
     """What ``--json`` says of one way to reach a target, in SI."""
     answer: dict[str, Any] = {"varied": one.varied, "refusal": one.refusal or None}
     if one.design is None or one.events is None:
@@ -122,7 +122,7 @@ def predict_hose(path: Path, *, out: Path | None, output: CommandOutput) -> None
     units = cast("UnitSystem", output.units)
     _show_hose(hose, output, units)
     if target is not None:
-        show_designs(designs, target, output, units)
+        _show_designs(designs, target, output, units)
         if all(one.refusal for one in designs):
             output.error(f"{path}: target: no hose like this one does that")
             output.raise_status(SettingsError.exit_status)
@@ -141,8 +141,8 @@ def predict_hose(path: Path, *, out: Path | None, output: CommandOutput) -> None
         output.say(f"tables: {len(tables)} in {out / 'tables'}")
         output.say(f"figures: {page}")
     output.answer(
-        hose_document(hose)
-        | {"designs": [designed(one) for one in designs]}
+        _hose_document(hose)
+        | {"designs": [_designed(one) for one in designs]}
         | {"out": None if out is None else str(out)}
     )
 
@@ -218,7 +218,7 @@ def _spread(hose: PredictedHose, event: str) -> dict[str, float]:
     }
 
 
-def hose_document(hose: PredictedHose) -> dict[str, Any]:
+def _hose_document(hose: PredictedHose) -> dict[str, Any]:
     """What ``--json`` says of a hose, in SI."""
     prediction, uncertainty = hose.prediction, hose.uncertainty
     known = bool(uncertainty.source)
@@ -317,7 +317,7 @@ def predict_cable(path: Path, *, out: Path | None, output: CommandOutput) -> Non
         output.say(f"tables: {wires}, {layers}")
         output.say(f"figures: {page}")
     output.answer(
-        armour_document(found) | {"name": case.name, "out": None if out is None else str(out)}
+        _armour_document(found) | {"name": case.name, "out": None if out is None else str(out)}
     )
 
 
@@ -406,7 +406,7 @@ def _show_armour(found: PredictedArmour, output: CommandOutput, system: UnitSyst
         output.say(f"note: {note}")
 
 
-def armour_document(found: PredictedArmour) -> dict[str, Any]:
+def _armour_document(found: PredictedArmour) -> dict[str, Any]:
     """What ``--json`` says of an armour, in SI: by theory, one number a layer."""
     quantities = _OF_WIRE | _MORE
     theories: dict[str, Any] = {
@@ -479,7 +479,7 @@ def predict_wave(path: Path, *, out: Path | None, output: CommandOutput) -> None
         output.say(f"table: {table}")
         output.say(f"figures: {page}")
     output.answer(
-        wave_load_document(found) | {"name": name, "out": None if out is None else str(out)}
+        _wave_load_document(found) | {"name": name, "out": None if out is None else str(out)}
     )
 
 
@@ -540,7 +540,7 @@ def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput, system: Uni
         output.say(f"note: {note}")
 
 
-def wave_load_document(found: PredictedWaveLoad) -> dict[str, Any]:
+def _wave_load_document(found: PredictedWaveLoad) -> dict[str, Any]:
     """What ``--json`` says of a wave load, in SI."""
     load, theory = found.load, found.theory
     return {
@@ -605,7 +605,7 @@ def compare_test(measured: Path, spec: Path, *, out: Path | None, output: Comman
         output.say(f"archive: {path}")
         output.say(f"tables: {len(tables)} in {out / 'tables'}")
         output.say(f"figures: {page}")
-    output.answer(comparison_document(named) | {"out": None if out is None else str(out)})
+    output.answer(_comparison_document(named) | {"out": None if out is None else str(out)})
 
 
 def _show_comparison(named: NamedComparison, output: CommandOutput, system: UnitSystem) -> None:
@@ -678,7 +678,7 @@ def _shown_unit(name: str, system: UnitSystem) -> tuple[str, float]:
     return ("deg", float(np.degrees(1.0))) if unit == "rad" else display_unit(unit, system)
 
 
-def comparison_document(named: NamedComparison) -> dict[str, Any]:
+def _comparison_document(named: NamedComparison) -> dict[str, Any]:
     """What ``--json`` says of a comparison, in SI; every difference is predicted less measured."""
     found = named.comparison
     judged, validation = found.differences[found.judged], found.validation

@@ -40,16 +40,8 @@ class _Count(MofNCompleteColumn):
         return Text() if task.total is None else super().render(task)
 
 
-class CampaignProgress:
-    """Tells a person how far a campaign is.
-
-    Parameters
-    ----------
-    bar : rich.progress.Progress, optional
-        On a terminal.
-    is_quiet : bool
-        Nothing is said.
-    """
+class _CampaignProgress:
+    """Tells a person how far a campaign is."""
 
     def __init__(self, bar: Progress | None = None, *, is_quiet: bool = False) -> None:
         self._bar = bar
@@ -109,39 +101,21 @@ class CampaignProgress:
 
 
 @contextmanager
-def campaign_progress(output: CommandOutput) -> Iterator[CampaignProgress]:
+def campaign_progress(output: CommandOutput) -> Iterator[_CampaignProgress]:
     """Lines on standard error, and a bar below them on a terminal; nothing where none is wanted."""
     if not output.is_text or not sys.stderr.isatty():
-        yield CampaignProgress(is_quiet=not output.is_text)
+        yield _CampaignProgress(is_quiet=not output.is_text)
         return
     columns = (
         TextColumn("{task.description}"), BarColumn(), _Count(), TimeElapsedColumn(),
     )  # fmt: skip
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        yield CampaignProgress(bar)
+        yield _CampaignProgress(bar)
 
 
 @contextmanager
 def chosen_workers(jobs: int | None, scheduler: str | None) -> Iterator[Workers | None]:
-    """Give what ``--jobs`` or ``--scheduler`` asks for, and end it afterwards.
-
-    Parameters
-    ----------
-    jobs : int or None
-        Worker processes on this machine; one, or None, is this process itself.
-    scheduler : str or None
-        Address of a scheduler of Dask.
-
-    Yields
-    ------
-    workers : Workers or None
-        Ready to work; None where this process does it itself.
-
-    Raises
-    ------
-    SettingsError
-        If both are given, or Dask is not there for a scheduler.
-    """
+    """Give what ``--jobs`` or ``--scheduler`` asks for, and end it afterwards."""
     if jobs is not None and scheduler is not None:
         raise SettingsError(
             "--jobs and --scheduler exclude each other",

@@ -32,22 +32,7 @@ _REQUESTS = [one for one in Signals if one.name in ("SIGTERM", "SIGHUP")]
 
 @contextmanager
 def campaign_at(path: Path, *, allow_remote: bool, output: CommandOutput) -> Iterator[Campaign]:
-    """Load a campaign with its logs at hand.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The campaign.toml.
-    allow_remote : bool
-        Whether logs are fetched from the net.
-    output : CommandOutput
-        Learns what copies are called.
-
-    Yields
-    ------
-    campaign : Campaign
-        Copies of its files are gone when the block ends.
-    """
+    """Load a campaign with its logs at hand."""
     with ExitStack() as opened:
         opened.enter_context(in_order())
         with campaign_progress(output) as bar:
@@ -64,10 +49,7 @@ def campaign_at(path: Path, *, allow_remote: bool, output: CommandOutput) -> Ite
 
 @contextmanager
 def in_order() -> Iterator[None]:
-    """Take a request to end as an interruption: lock, workers and copies are put away first.
-
-    One that the caller ignores, as ``nohup`` does, stays ignored.
-    """
+    """Take a request to end as an interruption: lock, workers and copies are put away first."""
     before = {}
     if current_thread() is main_thread():
         asked = [number for number in _REQUESTS if getsignal(number) == SIG_DFL]
@@ -83,29 +65,7 @@ def in_order() -> Iterator[None]:
 def local_sources(
     sources: Sequence[str], *, allow_remote: bool, output: CommandOutput
 ) -> Iterator[list[str]]:
-    """Copy each source that is the address of an archive.
-
-    Parameters
-    ----------
-    sources : sequence of str
-        Names, paths or addresses.
-    allow_remote : bool
-        Whether they may be addresses.
-    output : CommandOutput
-        Learns what copies are called.
-
-    Yields
-    ------
-    sources : list of str
-        The path of the copy in place of an address; the others as they were given.
-
-    Raises
-    ------
-    SettingsError
-        If one is an address and addresses are not allowed, or not of an archive.
-    ArchiveError
-        If it cannot be copied.
-    """
+    """Copy each source that is the address of an archive."""
     with ExitStack() as opened:
         opened.enter_context(in_order())
         opened.enter_context(renamed(output.names))

@@ -51,7 +51,7 @@ def reproduce_reports(report: str | None, *, out: Path | None, output: CommandOu
         write_whole(table, csv_of(item for items in reports.values() for item in items))
         output.say(f"page: {page}")
         output.say(f"table: {table}")
-    output.answer(document(reports) | {"out": None if out is None else str(out)})
+    output.answer(_document(reports) | {"out": None if out is None else str(out)})
     for items in reports.values():
         for item in items:
             if item.verdict == "unexplained":
@@ -143,7 +143,7 @@ def _unexplained(item: Item) -> str:
     )
 
 
-def document(reports: Mapping[ReportId, Sequence[Item]]) -> dict[str, Any]:
+def _document(reports: Mapping[ReportId, Sequence[Item]]) -> dict[str, Any]:
     """What ``--json`` says; numbers are in the unit of the page, which is beside them."""
     return {
         "reports": {report: counts_of(items) for report, items in reports.items()},

@@ -22,8 +22,6 @@ _MANY = re.compile(r"(?<![\d.])\d{6,}")
 def grouped(text: str) -> str:
     """A number, or the ends of an interval, with a blank between thousands from 100000 on.
 
-    Any other text stays as it is.
-
     Examples
     --------
     >>> grouped("98000 to 283100"), grouped("-123456.5"), grouped("0.0001234567")

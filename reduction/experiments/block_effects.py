@@ -47,26 +47,8 @@ _SINGULAR = 1e-9
 
 @dataclass(frozen=True)
 @read_only_arrays
-class RandomIntercept:
-    """Surfaces with one random level a block.
-
-    Parameters
-    ----------
-    coefficient : ndarray, shape (n_responses, n_columns)
-        Generalized least squares. [unit of the response]
-    covariance_factor : ndarray, shape (n_responses, n_columns, n_columns)
-        Of the coefficients, over sigma squared. [1]
-    sigma, standard_deviation : ndarray, shape (n_responses,)
-        Within and between blocks. [unit of the response]
-    effect : ndarray, shape (n_responses, n_blocks)
-        Predicted, shrunk to the mean. [unit of the response]
-    degrees_of_freedom : ndarray, shape (n_responses, n_columns)
-        Containment: between blocks for columns that are constant in each, else within. [1]
-    is_between : ndarray of bool, shape (n_columns,)
-        Columns that are constant in each block.
-    at_boundary : ndarray of bool, shape (n_responses,)
-        The variance between blocks is estimated as nil.
-    """
+class _RandomIntercept:
+    """Surfaces with one random level a block."""
 
     coefficient: Floats
     covariance_factor: Floats
@@ -122,9 +104,9 @@ def block_columns(labels: Sequence[str]) -> tuple[tuple[str, ...], Integers, Flo
     return names, index, block_contrasts(index)
 
 
-def fit_random_intercept(
+def _fit_random_intercept(
     matrix: ArrayLike, responses: ArrayLike, *, block: Integers
-) -> RandomIntercept:
+) -> _RandomIntercept:
     r"""Restricted maximum likelihood of surfaces with one random level a block.
 
     .. math::
@@ -133,25 +115,6 @@ def fit_random_intercept(
             + (n - p) \ln \sum_i \frac{u_i^2}{1 + \gamma d_i}
 
     with d and u from the eigenvectors of :math:`Z Z^T` among the residuals.
-
-    Parameters
-    ----------
-    matrix : array_like, shape (n_runs, n_columns)
-        Model matrix with the mean, without blocks. [1]
-    responses : array_like, shape (n_responses, n_runs)
-        NaN where a run is missing. [unit of the response]
-    block : ndarray of int, shape (n_runs,)
-        Block of each run, from 0. [1]
-
-    Returns
-    -------
-    fit : RandomIntercept
-        NaN where the runs do not carry the columns and one more.
-
-    Raises
-    ------
-    DataError
-        If the blocks do not pair up with the runs.
 
     Notes
     -----
@@ -164,7 +127,7 @@ def fit_random_intercept(
     Two blocks of two runs, balanced: the variance between is that of the analysis of
     variance, (MS_between - MS_within) / 2 = (16 - 1) / 2.
 
-    >>> fit = fit_random_intercept(np.ones((4, 1)), [[1.0, 1.0 + 2**0.5, 5.0, 5.0 + 2**0.5]],
+    >>> fit = _fit_random_intercept(np.ones((4, 1)), [[1.0, 1.0 + 2**0.5, 5.0, 5.0 + 2**0.5]],
     ...     block=np.array([0, 0, 1, 1]))
     >>> print(fit.standard_deviation**2, fit.sigma**2)
     [7.5] [1.]
@@ -209,7 +172,7 @@ def fit_random_intercept(
         within = part.shape[0] - np.linalg.matrix_rank(np.hstack([part, of_block]))
         between = int((count > 0).sum()) - int(is_between.sum())
         freedom[rows] = np.where(is_between, between, within)
-    return RandomIntercept(
+    return _RandomIntercept(
         coefficient, factor, sigma, np.sqrt(ratio) * sigma, effect,
         np.where(freedom > 0, freedom, np.nan), is_between, ratio == 0,
     )  # fmt: skip
@@ -250,7 +213,7 @@ def _restricted(contrast: Floats, projected: Floats) -> tuple[Floats, Floats]:
 
 
 @dataclass(frozen=True)
-class Estimates:
+class _Estimates:
     """Coefficients in printed order and what they are judged by."""
 
     coefficient: Floats
@@ -261,10 +224,10 @@ class Estimates:
     error_term: tuple[str, ...]
 
 
-def fixed_estimates(fit: LeastSquares, column: Integers) -> Estimates:
+def fixed_estimates(fit: LeastSquares, column: Integers) -> _Estimates:
     """Least squares in printed order."""
     freedom = np.where(fit.degrees_of_freedom > 0, fit.degrees_of_freedom, np.nan)
-    return Estimates(
+    return _Estimates(
         fit.coefficient[:, column],
         fit.covariance_factor[:, column[:, None], column],
         fit.pattern,
@@ -275,14 +238,14 @@ def fixed_estimates(fit: LeastSquares, column: Integers) -> Estimates:
 
 
 def with_blocks(
-    fixed: Estimates,
+    fixed: _Estimates,
     fit: LeastSquares,
     surface: Floats,
     values: Floats,
     names: tuple[str, ...],
     index: Integers,
     treatment: Literal["fixed", "random"],
-) -> tuple[Estimates, BlockEffects]:
+) -> tuple[_Estimates, BlockEffects]:
     """Estimates as the treatment of the blocks wants them, and the blocks' own levels."""
     n_responses = len(values)
     if treatment == "fixed":
@@ -294,9 +257,9 @@ def with_blocks(
         effect = np.divide(level, count, out=np.full(level.shape, np.nan), where=count > 0)
         none, inside = np.full(n_responses, np.nan), np.zeros(n_responses, dtype=bool)
         return fixed, BlockEffects(names, index, treatment, effect, none, inside)
-    mixed = fit_random_intercept(surface, values, block=index)
+    mixed = _fit_random_intercept(surface, values, block=index)
     terms = tuple("blocks" if between else "residuals" for between in mixed.is_between)
-    estimates = Estimates(
+    estimates = _Estimates(
         mixed.coefficient,
         mixed.covariance_factor,
         np.arange(n_responses),
@@ -316,7 +279,7 @@ def with_blocks(
 
 
 def deviations(
-    found: Estimates, exponents: Integers, low: ArrayLike, high: ArrayLike
+    found: _Estimates, exponents: Integers, low: ArrayLike, high: ArrayLike
 ) -> tuple[Floats, Floats, Floats]:
     """Standard uncertainties of coded and of engineering coefficients, and the way between."""
     factor = found.covariance_factor

@@ -270,21 +270,6 @@ def quadratic_exponents(n_factors: int) -> Integers:
 def term_kinds(exponents: Integers) -> tuple[str, ...]:
     """Kind of each term: mean, square, linear or interaction.
 
-    Parameters
-    ----------
-    exponents : ndarray of int, shape (n_terms, n_factors)
-        As `quadratic_exponents` gives them. [1]
-
-    Returns
-    -------
-    kinds : tuple of str, length n_terms
-        ``mean``, ``square``, ``linear`` or ``interaction``.
-
-    Raises
-    ------
-    SettingsError
-        If a term is of third or higher order.
-
     Examples
     --------
     >>> term_kinds(quadratic_exponents(2))
@@ -383,23 +368,6 @@ def gradient_matrix(coded: ArrayLike, exponents: Integers) -> Floats:
     r"""Derivative of each term by each factor at each point.
 
     .. math:: d_{ijt} = \partial x_{it} / \partial X_{ij}
-
-    Parameters
-    ----------
-    coded : array_like, shape (..., n_factors)
-        Points, in the units the coefficients belong to. [1]
-    exponents : ndarray of int, shape (n_terms, n_factors)
-        Powers. [1]
-
-    Returns
-    -------
-    matrix : ndarray, shape (..., n_factors, n_terms)
-        Times the coefficients it is the slope of the surface. [1]
-
-    Raises
-    ------
-    DataError
-        If a point is not finite, or has another number of factors.
 
     Examples
     --------

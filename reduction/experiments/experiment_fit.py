@@ -63,22 +63,22 @@ _OF_ORDER = ("pure-error-excludes-drift", "order-confounded")
 _NO_SURFACE = (1, 2, 6)
 
 
-def listed(words: Sequence[str], *, most: int = 5, between: str = ", ") -> str:
+def _listed(words: Sequence[str], *, most: int = 5, between: str = ", ") -> str:
     """The first of several, and how many more."""
     more = f" and {len(words) - most} more" if len(words) > most else ""
     return between.join(words[:most]) + more
 
 
-def remarks_of_runs(runs: RunTable) -> list[str]:
+def _remarks_of_runs(runs: RunTable) -> list[str]:
     """One note a remark, with the runs that have it."""
     of_remark: dict[str, list[str]] = {}
     for run, remark in zip(runs.names, runs.remark, strict=True):
         for part in remark.split("; ") if remark else ():
             of_remark.setdefault(part, []).append(run)
-    return [f"{listed(names)}: {remark}" for remark, names in of_remark.items()]
+    return [f"{_listed(names)}: {remark}" for remark, names in of_remark.items()]
 
 
-def surface_levels_off_plan(runs: RunTable, coded: Floats, names: Sequence[str]) -> list[str]:
+def _surface_levels_off_plan(runs: RunTable, coded: Floats, names: Sequence[str]) -> list[str]:
     """A note where runs of a surface were not run where the plan has them."""
     words = levels_off_plan(
         coded, runs.coded_plan[:, : len(names)], beyond=ON_PLAN,
@@ -88,11 +88,11 @@ def surface_levels_off_plan(runs: RunTable, coded: Floats, names: Sequence[str])
         return []
     return [
         f"levels reached disagree with the plan by more than {ON_PLAN:g} coded: "
-        f"{listed(words, between='; ')}; the surfaces are of the levels reached"
+        f"{_listed(words, between='; ')}; the surfaces are of the levels reached"
     ]
 
 
-def require_screening_levels(runs: RunTable, coded: Floats, names: Sequence[str]) -> list[str]:
+def _require_screening_levels(runs: RunTable, coded: Floats, names: Sequence[str]) -> list[str]:
     """A note where runs of a screening strayed; `DataError` where they left their half."""
     given = {"run_names": runs.names, "factor_names": names}
     plan = runs.coded_plan[:, : len(names)]
@@ -100,7 +100,7 @@ def require_screening_levels(runs: RunTable, coded: Floats, names: Sequence[str]
     if wrong:
         raise DataError(
             "levels reached are not those of the plan, on which the effects rest",
-            found=listed(wrong, between="; "),
+            found=_listed(wrong, between="; "),
             needed=f"levels within {_WRONG_HALF:g} coded of the plan",
             hint="Look whether runs or logs are swapped; correct runs of the experiment.",
         )
@@ -109,11 +109,11 @@ def require_screening_levels(runs: RunTable, coded: Floats, names: Sequence[str]
         return []
     return [
         f"levels reached disagree with the plan by more than {_OFF_SCREENING:g} coded: "
-        f"{listed(words, between='; ')}; they count as those of the plan"
+        f"{_listed(words, between='; ')}; they count as those of the plan"
     ]
 
 
-def missing_surfaces(
+def _missing_surfaces(
     runs: RunTable, surfaces: ResponseSurfaces, response_names: Sequence[str]
 ) -> list[str]:
     """What has no surface, with what the runs say of it; one note where runs miss alike."""
@@ -142,7 +142,7 @@ def _causes(runs: RunTable, chosen: Bools) -> str:
     return f": {'; '.join(said)}" if said else ""
 
 
-def places_in_order(runs: RunTable, run_order: ArrayLike | None) -> Floats:
+def _places_in_order(runs: RunTable, run_order: ArrayLike | None) -> Floats:
     """Place of each run among those of its specimen, from 1; NaN where no order is stated."""
     order = np.full(len(runs.run), np.nan)
     stated = order if run_order is None else np.asarray(run_order, dtype=np.float64)
@@ -153,7 +153,7 @@ def places_in_order(runs: RunTable, run_order: ArrayLike | None) -> Floats:
     return order
 
 
-def cautions_of_runs(
+def _cautions_of_runs(
     runs: RunTable, factors: tuple[FactorLevels, ...], run_order: ArrayLike | None
 ) -> tuple[Caution, ...]:
     """What a run sheet of the runs as they were reached would warn of, specimen by specimen.
@@ -226,12 +226,12 @@ class LineOfRuns:
     quasi_static_spring_constant: Floats
 
 
-def specimen_blocks(runs: RunTable) -> tuple[str, ...] | None:
+def _specimen_blocks(runs: RunTable) -> tuple[str, ...] | None:
     """Specimen of each run, where there are several."""
     return runs.specimen if len(set(runs.specimen)) > 1 else None
 
 
-def stiffness_of_runs(
+def _stiffness_of_runs(
     runs: RunTable, surfaces: ResponseSurfaces, response_names: Sequence[str]
 ) -> tuple[tuple[StiffnessForm, ...], FormQuality | None, list[str]]:
     """Forms that mooring codes ask for, fitted to the apparent spring constant."""
@@ -265,7 +265,7 @@ def stiffness_of_runs(
         )  # fmt: skip
     except REFUSALS as error:
         return (), None, [f"refused: stiffness forms of mooring codes: {error}"]
-    if specimen_blocks(runs) is None:
+    if _specimen_blocks(runs) is None:
         return forms, quality, []
     return forms, quality, [
         "stiffness forms of mooring codes pool the specimens: what sets one apart from another "
@@ -273,7 +273,7 @@ def stiffness_of_runs(
     ]  # fmt: skip
 
 
-def derived_line(
+def _derived_line(
     runs: RunTable, line: LineOfRuns, names: tuple[str, ...], low: Floats, high: Floats
 ) -> tuple[tuple[Floats, Floats], list[str]]:
     """K_1 and tau at the levels of each run from surfaces of E' and of the logarithm of E''."""
@@ -283,7 +283,7 @@ def derived_line(
         smooth = fit_surfaces(
             runs.level, parts, factor_names=names, low=low, high=high, run_names=runs.names,
             response_names=("storage_spring_constant", "loss_spring_constant"),
-            transforms=("none", "log"), blocks=specimen_blocks(runs),
+            transforms=("none", "log"), blocks=_specimen_blocks(runs),
         )  # fmt: skip
     except REFUSALS as error:
         return (missing, missing), [f"refused: K_1 and tau from surfaces of E' and E'': {error}"]
@@ -303,7 +303,7 @@ def derived_line(
     return (constant, time), []
 
 
-def single_time_of_runs(
+def _single_time_of_runs(
     runs: RunTable, coded: Floats, frequency: int, response_names: Sequence[str], line: LineOfRuns
 ) -> tuple[SingleTimeCheck | None, list[str]]:
     """Whether one relaxation time holds: runs at equal loads, as reached, are compared."""
@@ -350,38 +350,9 @@ def fit_experiment(
     term_reduction: Literal["none", "aicc"] = "none",
     run_order: ArrayLike | None = None,
 ) -> ExperimentResult:
-    """Everything that the runs of one experiment say together.
-
-    Parameters
-    ----------
-    runs : RunTable
-        As measured.
-    line : LineOfRuns
-        Of the same runs.
-    name, kind : str
-        Of the experiment.
-    factors : tuple of FactorLevels
-        In the unit of ``runs.level``.
-    factor_units : tuple of str
-        SI units of the levels.
-    response_names : tuple of str
-        Of the rows of ``runs.response``.
-    transform : mapping of str to str
-        ``log`` or ``box-cox`` by response.
-    specimens_as : {"blocks", "random"}
-        How several specimens enter.
-    term_reduction : {"none", "aicc"}
-        Whether terms are left out too, beside the full surfaces.
-    run_order : array_like, shape (n_runs,), optional
-        When each run was done, in any rising numbers; NaN where it is not stated. [1]
-
-    Returns
-    -------
-    result : ExperimentResult
-        A part that the runs do not carry is None, and a note says why.
-    """
+    """Everything that the runs of one experiment say together."""
     low, high = (np.array([getattr(one, end) for one in factors]) for end in ("low", "high"))
-    notes = remarks_of_runs(runs)
+    notes = _remarks_of_runs(runs)
     coded = coded_from_engineering(runs.level, low=low, high=high)
     surfaces: ResponseSurfaces | None = None
     screening: ScreeningEffects | None = None
@@ -399,29 +370,29 @@ def fit_experiment(
             if not np.isfinite(screening.effect).any():
                 refusal_status = FitError.exit_status
         else:
-            notes += surface_levels_off_plan(runs, coded, names)
+            notes += _surface_levels_off_plan(runs, coded, names)
             surfaces = _surfaces(runs, names, low, high, response_names, transform, specimens_as)
     except REFUSALS as error:
         what = "effects" if kind == "plackett-burman" else "response surfaces"
         notes.append(f"refused: {what}: {error}")
         refusal_status = error.exit_status
     if surfaces is not None:
-        notes += missing_surfaces(runs, surfaces, response_names)
+        notes += _missing_surfaces(runs, surfaces, response_names)
         notes += surfaces.notes
         notes += negative_surfaces(surfaces)
-        drift = drift_over_order(surfaces, places_in_order(runs, run_order))
+        drift = drift_over_order(surfaces, _places_in_order(runs, run_order))
         notes += drifting_responses(surfaces, drift)
         if _FROM_SLOW_PULL & set(response_names):
             notes.append(_SHARED)
         if term_reduction == "aicc":
             reduced, remarks = _reduced(surfaces)
             notes += remarks
-        forms, quality, remarks = stiffness_of_runs(runs, surfaces, response_names)
+        forms, quality, remarks = _stiffness_of_runs(runs, surfaces, response_names)
         notes += remarks
-        derived, remarks = derived_line(runs, line, names, low, high)
+        derived, remarks = _derived_line(runs, line, names, low, high)
         notes += remarks
     if "frequency" in names and "relaxation_time" in response_names:
-        single, remarks = single_time_of_runs(
+        single, remarks = _single_time_of_runs(
             runs, coded, names.index("frequency"), response_names, line
         )
         notes += remarks
@@ -442,7 +413,7 @@ def fit_experiment(
         derived_dissipation_spring_constant=derived[0],
         derived_relaxation_time=derived[1],
         reduced=reduced,
-        cautions=cautions_of_runs(runs, factors, run_order),
+        cautions=_cautions_of_runs(runs, factors, run_order),
         notes=tuple(dict.fromkeys(notes)),
         refusal_status=refusal_status,
     )
@@ -452,7 +423,7 @@ def _screening(
     runs: RunTable, coded: Floats, names: tuple[str, ...], response_names: tuple[str, ...]
 ) -> tuple[ScreeningEffects, list[str]]:
     """Effects by the plan, where the runs kept to it."""
-    notes = require_screening_levels(runs, coded, names)
+    notes = _require_screening_levels(runs, coded, names)
     n_factors = len(names)
     design = Design(
         "plackett-burman", runs.coded_plan[:, :n_factors], runs.coded_plan[:, n_factors:]
@@ -465,11 +436,11 @@ def _screening(
             without = [run for run, gone in zip(runs.names, missing, strict=True) if gone]
             responses = [one for one, taken in zip(response_names, of, strict=True) if taken]
             notes.append(
-                f"refused: effects on {listed(responses)}: {reason}"
-                + (f"; no value of {listed(without)}" if without else "")
+                f"refused: effects on {_listed(responses)}: {reason}"
+                + (f"; no value of {_listed(without)}" if without else "")
             )
     return effects, notes + screening_remarks(
-        design.dummy.shape[1], specimen_blocks(runs) is not None
+        design.dummy.shape[1], _specimen_blocks(runs) is not None
     )
 
 
@@ -500,7 +471,7 @@ def _surfaces(
         low=low,
         high=high,
         run_names=runs.names,
-        blocks=specimen_blocks(runs),
+        blocks=_specimen_blocks(runs),
         block_treatment="fixed" if specimens_as == "blocks" else "random",
         transforms=scales,
     )

@@ -287,21 +287,6 @@ def diagnose(fit: LeastSquares) -> Diagnostics:
         t_i = r_i \sqrt{\frac{n - p - 1}{n - p - r_i^2}}, \qquad
         D_i = \frac{r_i^2}{p} \frac{h_i}{1 - h_i}
 
-    Parameters
-    ----------
-    fit : LeastSquares
-        The surfaces.
-
-    Returns
-    -------
-    diagnostics : Diagnostics
-        NaN where a run is missing or fixes a term alone, and where the scatter is rounding.
-
-    Raises
-    ------
-    AttributeError
-        If it is not a fit.
-
     Notes
     -----
     Source: [3]_; the correlation of [4]_ is with the scores of Blom.  Fifteen residuals of a
@@ -352,7 +337,7 @@ def _straightness(studentized: Floats, used: Bools) -> Floats:
     return np.asarray(np.divide(product, size, where=size > 0, out=np.full(size.shape, np.nan)))
 
 
-class OverallF(NamedTuple):
+class _OverallF(NamedTuple):
     """Statistics of one r2: the right test, and the one the report printed.
 
     ``critical`` and ``printed_critical`` are on the scale of their own statistic.
@@ -367,7 +352,7 @@ class OverallF(NamedTuple):
 
 def statistics_from_r2(
     r2: ArrayLike, *, n_runs: ArrayLike, n_terms: int, level: float = 0.05
-) -> OverallF:
+) -> _OverallF:
     r"""Overall F of a surface from its r2, and the statistic CG-D-39-80 prints.
 
     .. math::
@@ -434,7 +419,7 @@ def statistics_from_r2(
     none_left = np.where(share >= 1, np.inf, np.nan)
     odds = np.divide(share, 1 - share, out=none_left, where=share < 1)
     f = odds * below / above
-    return OverallF(
+    return _OverallF(
         f,
         np.asarray(fdtrc(above, below, f), dtype=np.float64),
         np.asarray(right[which.reshape(runs.shape)]),
@@ -515,27 +500,6 @@ def lack_of_fit(
         SS_{lack} = \sum_i e_i^2 - SS_{pure}, \qquad
         F = \frac{SS_{lack} / (m - p)}{SS_{pure} / (n - m)}
 
-    Parameters
-    ----------
-    fit : LeastSquares
-        The surfaces.
-    cell : ndarray of int, shape (n_runs,)
-        As `replicate_cells` gives them. [1]
-    baseline : array_like, shape (n_runs, n_baseline)
-        Columns of the mean and of the blocks, which repeats do not have to share. [1]
-    tolerance : float
-        With which the cells were made, for the record. [1]
-
-    Returns
-    -------
-    lack_of_fit : LackOfFit
-        NaN and a reason where a test cannot be made.
-
-    Raises
-    ------
-    DataError
-        If the cells do not pair up with the runs.
-
     Notes
     -----
     Repeats whose levels differ are compared by their residuals, that is, after the surface has
@@ -589,27 +553,6 @@ def anova_table(
     fit: LeastSquares, groups: Mapping[str, slice], lack: LackOfFit, *, n_baseline: int = 1
 ) -> Anova:
     """Sums of squares by source, with F and p.
-
-    Parameters
-    ----------
-    fit : LeastSquares
-        The surfaces; its columns stand in the order of the sources.
-    groups : mapping of str to slice
-        Columns of each source, in order.
-    lack : LackOfFit
-        Of the same surfaces.
-    n_baseline : int
-        Columns that are not in total: one, the mean.
-
-    Returns
-    -------
-    anova : Anova
-        The groups, residuals, lack of fit, pure error, total about the mean.
-
-    Raises
-    ------
-    SettingsError
-        If the groups do not cover the columns in order.
 
     Notes
     -----

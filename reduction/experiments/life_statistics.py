@@ -63,25 +63,6 @@ _MOST_DOUBLINGS = 60
 def cutoff(confidence: float, *, n_failed: int, n_coefficients: int) -> float:
     r"""Drop of twice the log likelihood at the ends of an interval.
 
-    Parameters
-    ----------
-    confidence : float
-        Of the interval, two-sided. [1]
-    n_failed : int
-        Values that are not lower bounds. [1]
-    n_coefficients : int
-        Coefficients beside the scatter. [1]
-
-    Returns
-    -------
-    drop : float
-        NaN unless there are more failures than coefficients. [1]
-
-    Raises
-    ------
-    DataError
-        If the confidence is not between 0 and 1.
-
     Notes
     -----
     .. math:: d = r \ln\bigl(1 + t^2_{r - p}/(r - p)\bigr)
@@ -119,29 +100,6 @@ def profile_bounds(
     drop: float,
 ) -> tuple[float, float]:
     """Where twice the profile log likelihood has dropped by ``drop``, on both sides.
-
-    Parameters
-    ----------
-    log_likelihood : callable
-        Greatest log likelihood with the quantity held at a value.
-    estimate : float
-        Where it is greatest of all. [1]
-    maximum : float
-        Log likelihood there. [1]
-    step : float
-        A first step outwards, such as the standard uncertainty. [1]
-    drop : float
-        As `cutoff` gives it. [1]
-
-    Returns
-    -------
-    low, high : float
-        Infinite where the drop is never reached, NaN where ``drop`` is. [1]
-
-    Raises
-    ------
-    DataError
-        If the step is not above zero.
 
     Examples
     --------
@@ -183,7 +141,7 @@ _HALF_LOG_2_PI = log(2 * pi) / 2
 
 
 @dataclass(frozen=True)
-class CensoredFit:
+class _CensoredFit:
     """A maximum: coefficients b, scatter, and the covariance of (b, scatter)."""
 
     coefficient: Floats
@@ -192,29 +150,12 @@ class CensoredFit:
     log_likelihood: float
 
 
-def scatter_quantile(share: float, *, scatter: Scatter) -> float:
+def _scatter_quantile(share: float, *, scatter: Scatter) -> float:
     """Standard scatter below which a share of the specimens lies.
-
-    Parameters
-    ----------
-    share : float
-        Between 0 and 1. [1]
-    scatter : str
-        ``normal`` or ``smallest_extreme_value``.
-
-    Returns
-    -------
-    quantile : float
-        In units of the scale. [1]
-
-    Raises
-    ------
-    DataError
-        If the share is not between 0 and 1.
 
     Examples
     --------
-    >>> print(round(scatter_quantile(0.5, scatter="smallest_extreme_value"), 4))
+    >>> print(round(_scatter_quantile(0.5, scatter="smallest_extreme_value"), 4))
     -0.3665
     """
     if not 0 < share < 1:
@@ -267,31 +208,8 @@ def fit_censored(
     *,
     scatter: Scatter,
     offset: float = 0.0,
-) -> CensoredFit:
+) -> _CensoredFit:
     """Fit response = design b + scale x (scatter - offset).
-
-    Parameters
-    ----------
-    response : ndarray, shape (n,)
-        Values, or their lower bounds; best near 0. [1]
-    design : ndarray, shape (n, n_coefficients)
-        Columns that the values follow; none is allowed. [1]
-    is_bound : ndarray of bool, shape (n,)
-        True for a lower bound. [1]
-    scatter : str
-        ``normal`` or ``smallest_extreme_value``.
-    offset : float
-        Added to every standard deviate: what a fixed quantile puts there. [1]
-
-    Returns
-    -------
-    fit : CensoredFit
-        At the maximum; the covariance is the inverse of the observed information. [1]
-
-    Raises
-    ------
-    FitError
-        If there is no maximum: the failures have no scatter, or leave a coefficient open.
 
     Examples
     --------
@@ -346,7 +264,7 @@ def fit_censored(
     change[last, last] = -1 / precision**2
     units = np.ones(last + 1) * size
     covariance = change @ np.linalg.inv(-hessian) @ change.T * np.outer(units, units)
-    return CensoredFit(
+    return _CensoredFit(
         coefficient=parameters[:last] / precision * size,
         scale=size / precision,
         covariance=covariance,
@@ -362,31 +280,12 @@ SCATTER_OF: dict[LifeDistribution, Scatter] = {
 """Scatter of ln N."""
 
 
-def as_log_lives(cycles: ArrayLike, is_suspended: ArrayLike) -> tuple[Floats, Bools]:
+def _as_log_lives(cycles: ArrayLike, is_suspended: ArrayLike) -> tuple[Floats, Bools]:
     """Logarithm of lives, and which of them are lower bounds.
-
-    Parameters
-    ----------
-    cycles : array_like, shape (n,)
-        To failure, or to the end of a test that was stopped. [1]
-    is_suspended : array_like of bool, shape (n,)
-        True for a run-out or a suspended test. [1]
-
-    Returns
-    -------
-    log_cycles : ndarray, shape (n,)
-        Natural logarithm. [1]
-    suspended : ndarray of bool, shape (n,)
-        As given. [1]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up or a number of cycles is not above zero.
 
     Examples
     --------
-    >>> print(as_log_lives([1.0], [True]))
+    >>> print(_as_log_lives([1.0], [True]))
     (array([0.]), array([ True]))
     """
     lives = as_positive("cycles", cycles)
@@ -400,29 +299,10 @@ def as_log_lives(cycles: ArrayLike, is_suspended: ArrayLike) -> tuple[Floats, Bo
     return np.log(lives), suspended
 
 
-def runout_bound(
+def _runout_bound(
     cycles: ArrayLike, *, failed_share: float = 0.5, confidence: float = 0.95
 ) -> float:
     """Life that the specimens reach where none has failed: a lower bound without any law.
-
-    Parameters
-    ----------
-    cycles : array_like, shape (n,)
-        At which each test was stopped. [1]
-    failed_share : float
-        The life is that by which this share has failed. [1]
-    confidence : float
-        Of an interval with two ends, of which this is the lower. [1]
-
-    Returns
-    -------
-    low : float
-        NaN where there are too few tests to say anything. [1]
-
-    Raises
-    ------
-    DataError
-        If a number of cycles or a share cannot be.
 
     Notes
     -----
@@ -432,11 +312,11 @@ def runout_bound(
 
     Examples
     --------
-    >>> print(runout_bound([200_000] * 3), runout_bound([200_000] * 6))
+    >>> print(_runout_bound([200_000] * 3), _runout_bound([200_000] * 6))
     nan 200000.0
     """
     lives = np.sort(as_positive("cycles", cycles))[::-1]
-    scatter_quantile(failed_share, scatter="normal")  # refuses what is no share
+    _scatter_quantile(failed_share, scatter="normal")  # refuses what is no share
     enough = int(np.ceil(np.log((1 - confidence) / 2) / np.log1p(-failed_share) - 1e-12))
     return float(lives[enough - 1]) if lives.size >= enough else float("nan")
 
@@ -450,30 +330,6 @@ def fit_life(
     confidence: float = 0.95,
 ) -> LifeFit:
     """Life of specimens that were tested alike, by maximum likelihood.
-
-    Parameters
-    ----------
-    cycles : array_like, shape (n,)
-        To failure, or to the end of a test that was stopped. [1]
-    is_suspended : array_like of bool, shape (n,)
-        True for a run-out or a suspended test. [1]
-    distribution : str
-        ``weibull`` or ``lognormal``, each with two parameters.
-    failed_share : float
-        The life is that by which this share has failed: 0.5 for the median. [1]
-    confidence : float
-        Of the bounds, two-sided. [1]
-
-    Returns
-    -------
-    fit : LifeFit
-        Where there are fewer than two failures, or these do not scatter, NaN with a reason;
-        without any failure the lower bound is that of `runout_bound`.
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up or a number of cycles is not above zero.
 
     Notes
     -----
@@ -492,13 +348,13 @@ def fit_life(
     >>> print(round(fit.log_likelihood, 3), round(fit.life))
     -75.135 490
     """
-    logs, suspended = as_log_lives(cycles, is_suspended)
+    logs, suspended = _as_log_lives(cycles, is_suspended)
     scatter = SCATTER_OF[distribution]
-    quantile = scatter_quantile(failed_share, scatter=scatter)
+    quantile = _scatter_quantile(failed_share, scatter=scatter)
     failed = logs[~suspended]
     unknown = LifeFit(distribution, failed_share, confidence, failed.size, int(suspended.sum()))
     if failed.size == 0:
-        low = runout_bound(cycles, failed_share=failed_share, confidence=confidence)
+        low = _runout_bound(cycles, failed_share=failed_share, confidence=confidence)
         return replace(unknown, low=low, high=inf, reason=5)
     if failed.size == 1:
         return replace(unknown, reason=6)
@@ -549,31 +405,6 @@ def ratio_of_lives(
 ) -> tuple[float, float, float]:
     """How many times longer one group lives than a reference group, run-outs included.
 
-    Parameters
-    ----------
-    cycles : array_like, shape (n,)
-        To failure, or to the end of a test that was stopped. [1]
-    is_suspended : array_like of bool, shape (n,)
-        True for a run-out or a suspended test. [1]
-    is_reference : array_like of bool, shape (n,)
-        True for the reference group, such as line without a jacket. [1]
-    distribution : str
-        ``weibull`` or ``lognormal``; both groups have one scatter of ln N.
-    confidence : float
-        Of the bounds, two-sided, by profile likelihood. [1]
-
-    Returns
-    -------
-    ratio, low, high : float
-        Of the medians, which is that of every quantile. [1]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up, or a group has no failure.
-    FitError
-        If the failures do not scatter.
-
     Examples
     --------
     Lives twice as long, one specimen for one:
@@ -583,7 +414,7 @@ def ratio_of_lives(
     >>> print(round(ratio, 6))
     2.0
     """
-    logs, suspended = as_log_lives(cycles, is_suspended)
+    logs, suspended = _as_log_lives(cycles, is_suspended)
     reference = np.asarray(is_reference, dtype=np.bool_)
     if reference.shape != logs.shape:
         raise DataError(
@@ -674,29 +505,6 @@ def fit_load_life(
 
     .. math:: \ln N = \ln N_0 - m \ln(S / S_0) + \sigma\,\varepsilon
 
-    Parameters
-    ----------
-    peak_load_ratio : array_like, shape (n,)
-        Peak load S over the rated break strength. [1]
-    cycles : array_like, shape (n,)
-        To failure, or to the end of a test that was stopped. [1]
-    is_suspended : array_like of bool, shape (n,)
-        True for a run-out or a suspended test. [1]
-    distribution : str
-        ``lognormal`` or ``weibull``, with one scatter of ln N at all loads.
-
-    Returns
-    -------
-    fit : LoadLife
-        S_0 is the geometric mean of the loads of the failures.
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up or a number is not above zero.
-    FitError
-        If there are failures at fewer than two loads, or these do not scatter.
-
     Notes
     -----
     The mean of the failures alone, which Figure 19 of [7]_ joins, is too short wherever
@@ -713,7 +521,7 @@ def fit_load_life(
     >>> print(round(fit.exponent, 6), round(fit.log_scale, 4))
     6.0 0.1054
     """
-    logs, suspended = as_log_lives(cycles, is_suspended)
+    logs, suspended = _as_log_lives(cycles, is_suspended)
     load = as_positive("peak_load_ratio", peak_load_ratio)
     if load.shape != logs.shape:
         raise DataError(
@@ -735,7 +543,7 @@ def fit_load_life(
     about = logs - centre
     design = np.column_stack([np.ones(load.size), -np.log(load / reference)])
     fit = fit_censored(about, design, suspended, scatter=scatter)
-    median = scatter_quantile(0.5, scatter=scatter)
+    median = _scatter_quantile(0.5, scatter=scatter)
     # of (location, exponent, scale) to (median, exponent, scale)
     to_median = np.array([[1.0, 0.0, median], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     chi_square = p_value = float("nan")
@@ -772,29 +580,6 @@ def life_at_load(
 ) -> tuple[Floats, Floats, Floats, Bools]:
     """Life at a peak load, with its bounds.
 
-    Parameters
-    ----------
-    fit : LoadLife
-        As fitted.
-    peak_load_ratio : array_like
-        Over the rated break strength. [1]
-    failed_share : float
-        The life is that by which this share has failed. [1]
-    confidence : float
-        Of the bounds, two-sided. [1]
-
-    Returns
-    -------
-    life, low, high : ndarray
-        The shape of ``peak_load_ratio``. [1]
-    is_inside : ndarray of bool
-        False outside the loads tested. [1]
-
-    Raises
-    ------
-    DataError
-        If a load or a share cannot be.
-
     Notes
     -----
     Bounds from the observed information in ln N, with Student's t of the failures less two.
@@ -808,7 +593,7 @@ def life_at_load(
     """
     load = as_positive("peak_load_ratio", peak_load_ratio)
     scatter = SCATTER_OF[fit.distribution]
-    beyond = scatter_quantile(failed_share, scatter=scatter) - scatter_quantile(
+    beyond = _scatter_quantile(failed_share, scatter=scatter) - _scatter_quantile(
         0.5, scatter=scatter
     )
     slope = -np.log(load / fit.reference_load_ratio)
@@ -833,29 +618,6 @@ def ratio_to_published_life(
     confidence: float = 0.95,
 ) -> tuple[float, float, float]:
     r"""Median life over that of a group of which only mean, deviation and number are printed.
-
-    Parameters
-    ----------
-    cycles : array_like, shape (n,)
-        To failure, or to the end of a test that was stopped. [1]
-    is_suspended : array_like of bool, shape (n,)
-        True for a suspended test. [1]
-    reference_mean, reference_standard_deviation : float
-        Cycles of the reference group. [1]
-    reference_n : int
-        Its specimens. [1]
-    confidence : float
-        Of the bounds, two-sided. [1]
-
-    Returns
-    -------
-    ratio, low, high : float
-        Of the medians, both lives lognormal; NaN with fewer than two failures. [1]
-
-    Raises
-    ------
-    DataError
-        If a number of the reference is not above zero, or it is of one specimen.
 
     Notes
     -----

@@ -75,7 +75,7 @@ class Group:
 
 
 @dataclass(frozen=True)
-class Grouped:
+class _Grouped:
     """Rows of one quantity: its groups in order of appearance, and the group of each row."""
 
     groups: tuple[Group, ...]
@@ -85,31 +85,14 @@ class Grouped:
     use: Integers
 
 
-def group_outcomes(outcomes: Iterable[Outcome], quantity: OutcomeQuantity) -> Grouped:
+def _group_outcomes(outcomes: Iterable[Outcome], quantity: OutcomeQuantity) -> _Grouped:
     """Rows of one quantity by group.
-
-    Parameters
-    ----------
-    outcomes : iterable of Outcome
-        Rows of every quantity.
-    quantity : str
-        Which to take.
-
-    Returns
-    -------
-    grouped : Grouped
-        Every row of the quantity; an invalid test without a value has 1 for it, and is not used.
-
-    Raises
-    ------
-    DataError
-        If a value that is to be used is not above zero.
 
     Examples
     --------
     >>> words = ("new", "worn", "new")
     >>> rows = [Outcome("tensile_strength", 29e3, condition=word) for word in words]
-    >>> grouped = group_outcomes(rows, "tensile_strength")
+    >>> grouped = _group_outcomes(rows, "tensile_strength")
     >>> print([group.condition for group in grouped.groups], grouped.group)
     ['new', 'worn'] [0 1 0]
     """
@@ -130,7 +113,7 @@ def group_outcomes(outcomes: Iterable[Outcome], quantity: OutcomeQuantity) -> Gr
         for row in rows
     ]  # fmt: skip
     place = {key: number for number, key in enumerate(dict.fromkeys(keys))}
-    return Grouped(
+    return _Grouped(
         groups=tuple(place),
         outcomes=rows,
         group=np.array([place[key] for key in keys], dtype=np.intp),
@@ -139,31 +122,13 @@ def group_outcomes(outcomes: Iterable[Outcome], quantity: OutcomeQuantity) -> Gr
     )
 
 
-def reference_of(groups: Sequence[Group], *, reference_condition: str = "new") -> Integers:
+def _reference_of(groups: Sequence[Group], *, reference_condition: str = "new") -> Integers:
     """Against which group each one is held.
-
-    Parameters
-    ----------
-    groups : sequence of Group
-        Of one quantity.
-    reference_condition : str
-        Word in ``condition`` that names a reference.
-
-    Returns
-    -------
-    reference : ndarray of int, shape (n_groups,)
-        Place of the group of the same line with that condition; -1 where there is none,
-        where there are several, and for the reference itself. [1]
-
-    Raises
-    ------
-    DataError
-        If no condition is named.
 
     Examples
     --------
     >>> line = ("", "nylon", "plaited", None)
-    >>> print(reference_of([Group(*line, "new", None), Group(*line, "5 years", 5.0)]))
+    >>> print(_reference_of([Group(*line, "new", None), Group(*line, "5 years", 5.0)]))
     [-1  0]
     """
     if not reference_condition:
@@ -196,24 +161,6 @@ def complete_from_specimens(
     outcomes: Iterable[Outcome], specimens: Mapping[str, Specimen]
 ) -> tuple[Outcome, ...]:
     """Rows with what the sheets of their specimens say: what the row says itself stands.
-
-    Parameters
-    ----------
-    outcomes : iterable of Outcome
-        Rows as read.
-    specimens : mapping of str to Specimen
-        Of the campaign; a row of another specimen is left as it is.
-
-    Returns
-    -------
-    outcomes : tuple of Outcome
-        With material, construction, condition, diameter, and each load both in newton
-        and over the rated break strength.
-
-    Raises
-    ------
-    DataError
-        Never for rows as read.
 
     Examples
     --------
@@ -319,21 +266,6 @@ class LoadSeries:
 def exposure_series(outcomes: Iterable[Outcome]) -> tuple[ExposureSeries, ...]:
     """Strength of each line that was broken after some time in the field.
 
-    Parameters
-    ----------
-    outcomes : iterable of Outcome
-        Rows of every quantity.
-
-    Returns
-    -------
-    series : tuple of ExposureSeries
-        In order of appearance; lines of one exposure alone are left out.
-
-    Raises
-    ------
-    DataError
-        If a value cannot be.
-
     Examples
     --------
     >>> breaks = {0.0: [6400, 6600], 2.0: [5200, 5400], 4.0: [4000, 4200]}
@@ -345,7 +277,7 @@ def exposure_series(outcomes: Iterable[Outcome]) -> tuple[ExposureSeries, ...]:
     lines: dict[Group, list[Outcome]] = {}
     for row in outcomes:
         if row.quantity == "tensile_strength":
-            grouped = group_outcomes([row], "tensile_strength")
+            grouped = _group_outcomes([row], "tensile_strength")
             line = replace(grouped.groups[0], condition="", exposure=None)
             lines.setdefault(line, []).append(row)
     found = []
@@ -396,7 +328,7 @@ def load_series(
     >>> print(round(series.fit.exponent, 1), series.n_unused)
     6.0 0
     """
-    grouped = group_outcomes(outcomes, "cycles_to_failure")
+    grouped = _group_outcomes(outcomes, "cycles_to_failure")
     peak = np.array([row.peak_load_ratio for row in grouped.outcomes])
     least = np.array([row.minimum_load_ratio for row in grouped.outcomes])
     usable = ~np.isnan(peak) & (grouped.use != EXCLUDED)
@@ -581,27 +513,12 @@ LOAD_LIFE_COLUMNS: tuple[OutcomeColumn, ...] = (
 Row = dict[str, float | int | str]
 
 
-def empty_row(columns: Iterable[OutcomeColumn]) -> Row:
+def _empty_row(columns: Iterable[OutcomeColumn]) -> Row:
     """A row in which nothing is known yet.
-
-    Parameters
-    ----------
-    columns : iterable of OutcomeColumn
-        Of the table.
-
-    Returns
-    -------
-    row : dict
-        Empty text, 0 of what is counted, NaN of any other number.
-
-    Raises
-    ------
-    TypeError
-        Never for columns.
 
     Examples
     --------
-    >>> empty_row([OutcomeColumn("line", "", "line"), OutcomeColumn("load", "N", "load")])
+    >>> _empty_row([OutcomeColumn("line", "", "line"), OutcomeColumn("load", "N", "load")])
     {'line': '', 'load': nan}
     """
     return {
@@ -610,27 +527,12 @@ def empty_row(columns: Iterable[OutcomeColumn]) -> Row:
     }
 
 
-def labels_of(group: Group) -> Row:
+def _labels_of(group: Group) -> Row:
     """What a group is, by column.
-
-    Parameters
-    ----------
-    group : Group
-        One line in one condition.
-
-    Returns
-    -------
-    labels : dict
-        Diameter [m] and exposure [year] NaN where not given.
-
-    Raises
-    ------
-    TypeError
-        Never for a group.
 
     Examples
     --------
-    >>> labels_of(Group("PD", "polyester", "double braid", None, "new", 0.0))["exposure"]
+    >>> _labels_of(Group("PD", "polyester", "double braid", None, "new", 0.0))["exposure"]
     0.0
     """
     return {
@@ -646,11 +548,11 @@ def labels_of(group: Group) -> Row:
 _OF_LINE = ("line", "material", "construction", "diameter")
 
 
-def _strength_of(grouped: Grouped, reference_condition: str) -> dict[Group, Row]:
+def _strength_of(grouped: _Grouped, reference_condition: str) -> dict[Group, Row]:
     """Numbers of one quantity by group, without the name of the quantity."""
     n_groups = len(grouped.groups)
     statistics = group_statistics(grouped.value, grouped.group, grouped.use, n_groups=n_groups)
-    reference = reference_of(grouped.groups, reference_condition=reference_condition)
+    reference = _reference_of(grouped.groups, reference_condition=reference_condition)
     rows: dict[Group, Row] = {}
     for place, group in enumerate(grouped.groups):
         mean, deviation = statistics.mean[place], statistics.standard_deviation[place]
@@ -725,9 +627,9 @@ def strength_rows(outcomes: Iterable[Outcome], *, reference_condition: str = "ne
     quantities: tuple[OutcomeQuantity, ...] = ("tensile_strength", "strain_at_failure")
     rows: dict[Group, Row] = {}
     for quantity in quantities:
-        grouped = group_outcomes(listed, quantity)
+        grouped = _group_outcomes(listed, quantity)
         for group, numbers in _strength_of(grouped, reference_condition).items():
-            row = rows.setdefault(group, empty_row(STRENGTH_COLUMNS) | labels_of(group))
+            row = rows.setdefault(group, _empty_row(STRENGTH_COLUMNS) | _labels_of(group))
             row["reference_condition"] = reference_condition
             row.update({quantity + name: number for name, number in numbers.items()})
     return list(rows.values())
@@ -761,8 +663,8 @@ def exposure_rows(outcomes: Iterable[Outcome]) -> list[Row]:
     """
     table: list[Row] = []
     for series in exposure_series(outcomes):
-        row = empty_row(EXPOSURE_COLUMNS) | {
-            name: label for name, label in labels_of(series.group).items() if name in _OF_LINE
+        row = _empty_row(EXPOSURE_COLUMNS) | {
+            name: label for name, label in _labels_of(series.group).items() if name in _OF_LINE
         }
         row |= {
             "break_count": int((~series.is_lower_bound).sum()),
@@ -796,7 +698,7 @@ def exposure_rows(outcomes: Iterable[Outcome]) -> list[Row]:
     return table
 
 
-def _levels_of(grouped: Grouped, place: int) -> list[Integers]:
+def _levels_of(grouped: _Grouped, place: int) -> list[Integers]:
     """Rows of a group by level of peak load, rising; those without a load last."""
     rows = np.flatnonzero(grouped.group == place)
     ratio = np.array([grouped.outcomes[row].peak_load_ratio for row in rows])
@@ -844,17 +746,17 @@ def fatigue_rows(
     quantities: tuple[OutcomeQuantity, ...] = ("cycles_to_failure", "abrasion_cycles")
     table: list[Row] = []
     for quantity in quantities:
-        grouped = group_outcomes(listed, quantity)
+        grouped = _group_outcomes(listed, quantity)
         for place, group in enumerate(grouped.groups):
             for part in _levels_of(grouped, place):
-                row = empty_row(FATIGUE_COLUMNS) | labels_of(group)
+                row = _empty_row(FATIGUE_COLUMNS) | _labels_of(group)
                 row |= _fatigue_of(grouped, part, distribution)
                 row["quantity"] = quantity
                 table.append(row)
     return table
 
 
-def _fatigue_of(grouped: Grouped, part: Integers, distribution: LifeDistribution) -> Row:
+def _fatigue_of(grouped: _Grouped, part: Integers, distribution: LifeDistribution) -> Row:
     loads = [grouped.outcomes[row] for row in part]
     statistics = group_statistics(
         grouped.value[part], np.zeros(part.size, dtype=np.intp), grouped.use[part], n_groups=1
@@ -926,7 +828,7 @@ def load_life_rows(
         load = series.peak_load_ratio
         if not load_levels(load).any():
             continue  # one load: its row of the table of fatigue says all
-        row = empty_row(LOAD_LIFE_COLUMNS) | labels_of(series.group)
+        row = _empty_row(LOAD_LIFE_COLUMNS) | _labels_of(series.group)
         row |= {
             "failed_count": int((~series.is_suspended).sum()),
             "suspended_count": int(series.is_suspended.sum()),

@@ -250,23 +250,6 @@ class ExposureTrend:
 def reason_codes(shape: tuple[int, ...], cases: Sequence[tuple[ArrayLike, int]]) -> NDArray[int8]:
     """Code of the first case that holds, 0 where none does.
 
-    Parameters
-    ----------
-    shape : tuple of int
-        Of the result.
-    cases : sequence of (bools, int)
-        Where a case holds, and its key of `REASONS`.
-
-    Returns
-    -------
-    codes : ndarray of int8
-        Keys of `REASONS`. [1]
-
-    Raises
-    ------
-    ValueError
-        If a case does not broadcast to the shape.
-
     Examples
     --------
     >>> print(reason_codes((3,), [([True, True, False], 4), (True, 1)]))

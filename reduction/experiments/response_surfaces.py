@@ -66,7 +66,7 @@ _STILL = 1e-6
 """Coded range below which a factor does not move."""
 
 
-def coded_levels(
+def _coded_levels(
     levels: ArrayLike,
     *,
     low: ArrayLike,
@@ -92,7 +92,7 @@ def coded_levels(
     return found if units == "coded" else in_coded
 
 
-def require_names(names: tuple[str, ...], count: int, what: str) -> None:
+def _require_names(names: tuple[str, ...], count: int, what: str) -> None:
     """Refuse names that do not pair up, or a name that stands twice."""
     if len(set(names)) < len(names):
         twice = sorted(name for name, count_of in Counter(names).items() if count_of > 1)
@@ -110,7 +110,7 @@ def require_names(names: tuple[str, ...], count: int, what: str) -> None:
         )
 
 
-def require_motion(coded: Floats, factor_names: Sequence[str]) -> None:
+def _require_motion(coded: Floats, factor_names: Sequence[str]) -> None:
     """Refuse runs in which a factor keeps its level."""
     if len(coded) == 0:
         raise DataError("no run has a value", needed="runs with levels and responses")
@@ -138,7 +138,7 @@ _ILL = 30.0
 """Condition number of columns of the model matrix above which terms lean on each other."""
 
 
-def remarks(
+def _remarks(
     *,
     coded: Floats,
     responses: Floats,
@@ -345,19 +345,19 @@ def fit_surfaces(
     >>> print(found.coefficient, found.sigma.round(4))
     [[ 4.5 -2.   1. ]] [0.7071]
     """
-    coded = coded_levels(levels, low=low, high=high, units=units, factor_names=factor_names)
+    coded = _coded_levels(levels, low=low, high=high, units=units, factor_names=factor_names)
     measured = np.array(responses, dtype=np.float64)
     n_runs, n_factors = coded.shape
     runs = tuple(run_names or (str(number + 1) for number in range(n_runs)))
-    require_names(runs, n_runs, "run")
-    require_names(tuple(response_names), measured.shape[0] if measured.ndim else 0, "response")
+    _require_names(runs, n_runs, "run")
+    _require_names(tuple(response_names), measured.shape[0] if measured.ndim else 0, "response")
     exponents = quadratic_exponents(n_factors)
     terms, kinds = term_names(exponents, factor_names), term_kinds(exponents)
 
     baseline = np.ones((n_runs, 1))
     grouping = None
     if blocks is not None:
-        require_names(tuple(str(row) for row in range(len(blocks))), n_runs, "block")
+        _require_names(tuple(str(row) for row in range(len(blocks))), n_runs, "block")
         grouping = block_columns(blocks)
         baseline = np.hstack([baseline, grouping[2]])
     known = np.isfinite(coded).all(axis=1)
@@ -366,7 +366,7 @@ def fit_surfaces(
     column, groups = _columns(kinds, n_baseline=baseline.shape[1])
     matrix = np.hstack([baseline, surface[:, np.argsort(column)[1:]]])
     used = known & np.isfinite(measured).any(axis=0)
-    require_motion(coded[used], factor_names)
+    _require_motion(coded[used], factor_names)
     own = [f"block {number + 1}" for number in range(baseline.shape[1] - 1)]
     ordered = [terms[0], *own, *(terms[index] for index in np.argsort(column)[1:])]
     covariance_factor(matrix[used], names=ordered)  # refuses runs that do not carry the terms
@@ -450,7 +450,7 @@ def fit_surfaces(
         blocks=effects,
         condition_number=condition,
         reason=fit.reason,
-        notes=remarks(
+        notes=_remarks(
             coded=coded,
             responses=measured,
             fit=fit,

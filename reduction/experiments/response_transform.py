@@ -42,23 +42,6 @@ def transform(values: ArrayLike, exponent: ArrayLike) -> Floats:
 
     .. math:: z = (y^\lambda - 1) / \lambda, \qquad z = \ln y \text{ at } \lambda = 0
 
-    Parameters
-    ----------
-    values : array_like, shape (...)
-        Above zero, or NaN. [unit of the response]
-    exponent : array_like, shape broadcast against values
-        :math:`\lambda`; 0 is the logarithm. [1]
-
-    Returns
-    -------
-    transformed : ndarray, shape (...)
-        NaN in, NaN out. [unit of the response to the power of the exponent]
-
-    Raises
-    ------
-    DataError
-        If a value is not above zero.
-
     Notes
     -----
     Source: [2]_, eq. 1.
@@ -176,25 +159,6 @@ def retransformed_mean(values: ArrayLike, exponent: ArrayLike, *, sigma: ArrayLi
         E y \approx y_m \left[1 + \frac{\sigma^2 (1 - \lambda)}{2 (1 + \lambda z)^2}\right],
         \qquad E y = y_m e^{\sigma^2 / 2} \text{ at } \lambda = 0
 
-    Parameters
-    ----------
-    values : array_like, shape (...)
-        Transformed. [unit of the response to the power of the exponent]
-    exponent : array_like, shape broadcast against values
-        :math:`\lambda`. [1]
-    sigma : array_like, shape broadcast against values
-        Of a run, transformed. [unit of the response to the power of the exponent]
-
-    Returns
-    -------
-    mean : ndarray, shape (...)
-        [unit of the response]
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not pair up.
-
     Notes
     -----
     Source: [3]_; exact at 0, second order in sigma elsewhere.  The exponent and sigma count
@@ -226,7 +190,7 @@ _GRID = 81
 _STEPS = 60
 
 
-class BoxCoxExponent(NamedTuple):
+class _BoxCoxExponent(NamedTuple):
     """Best exponent of each response and its interval; infinite where the search ends first."""
 
     exponent: Floats
@@ -236,35 +200,13 @@ class BoxCoxExponent(NamedTuple):
 
 def box_cox_exponent(
     matrix: ArrayLike, responses: ArrayLike, *, confidence: float = 0.95
-) -> BoxCoxExponent:
+) -> _BoxCoxExponent:
     r"""Exponent of each response that makes its residuals smallest, by profile likelihood.
 
     .. math::
 
         \ell(\lambda) = -\frac{n}{2} \ln \lVert (I - H) z_\lambda(y / \bar y_g) \rVert^2, \qquad
         \ell(\lambda) > \ell_{max} - \tfrac{1}{2} \chi^2_1
-
-    Parameters
-    ----------
-    matrix : array_like, shape (n_runs, n_columns)
-        Model matrix. [1]
-    responses : array_like, shape (n_responses, n_runs)
-        Above zero; NaN where a run is missing. [unit of the response]
-    confidence : float
-        Of the interval. [1]
-
-    Returns
-    -------
-    found : BoxCoxExponent
-        exponent, low and high, (n_responses,); NaN where the runs do not outnumber the
-        columns.
-
-    Raises
-    ------
-    DataError
-        If a value is not above zero.
-    SettingsError
-        If the confidence is not between 0 and 1.
 
     Notes
     -----
@@ -301,7 +243,7 @@ def box_cox_exponent(
         scaled = np.exp(part - part.mean(axis=1, keepdims=True))
         drop = float(chdtri(1, 1 - confidence)) / 2
         found[:, rows] = _profile(_likelihood(scaled, basis), rows.size, drop)
-    return BoxCoxExponent(*found)
+    return _BoxCoxExponent(*found)
 
 
 def _likelihood(scaled: Floats, basis: Floats) -> Callable[[Floats], Floats]:

@@ -143,33 +143,6 @@ def make_run_sheet(
 ) -> RunSheet:
     """Run sheet of a design, ordered by rising peak tension.
 
-    Parameters
-    ----------
-    design : Design
-        From `box_behnken` or `plackett_burman`.
-    factors : tuple of FactorLevels, length n_factors
-        In the order of the columns of the design.
-    rated_break_strength : array_like, shape () or (n_runs,), optional
-        In the standard order of the design where there is one a run. [N]
-    repeats : str
-        ``together``: repeated runs follow each other in their load block, as in [1]_;
-        ``spread``: the first stands there, the others later at even distances, the last
-        at the end, so that their scatter holds what the line has gone through.
-
-    Returns
-    -------
-    sheet : RunSheet
-        Without both ``mean_tension`` and ``tension_amplitude`` among the factors the
-        standard order is kept and the loads are NaN.
-
-    Raises
-    ------
-    SettingsError
-        If the factors do not fit the design, a fraction has nothing to refer to, or the
-        placing of repeats has another name.
-    DataError
-        If the break strength is not positive or does not fit the runs.
-
     Notes
     -----
     Peak is mean plus amplitude, minimum mean less amplitude.  [1]_ gives the order by
@@ -502,29 +475,6 @@ def levels_off_plan(
 ) -> tuple[str, ...]:
     """Runs whose levels are not those of the plan, in words, farthest first.
 
-    Parameters
-    ----------
-    coded : array_like, shape (n_runs, n_factors)
-        As reached; NaN where a run was not done. [1]
-    plan : array_like, shape (n_runs, n_factors)
-        As planned. [1]
-    beyond : float
-        Coded distance up to which a level is that of the plan; the range of a factor is 2. [1]
-    run_names : sequence of str, length n_runs
-        In the order of the rows.
-    factor_names : sequence of str, length n_factors
-        In the order of the columns.
-
-    Returns
-    -------
-    words : tuple of str
-        One entry a run and factor.
-
-    Raises
-    ------
-    DataError
-        If reached and planned levels do not pair up.
-
     Notes
     -----
     Two runs swapped in a plan differ by 1 or 2; machines that feed back the stroke may miss
@@ -552,29 +502,6 @@ def smallest_effect(design: Design, *, sigma: ArrayLike, significance: float = 0
     r"""Smallest effect that the screening is expected to call significant.
 
     .. math:: E_{min} = t_{1 - \alpha/2;\, m}\, \frac{2 \sigma}{\sqrt{n}}
-
-    Parameters
-    ----------
-    design : Design
-        Two levels; m is its number of dummy columns, or a third of its columns where there is
-        none (Lenth), n its number of runs.
-    sigma : array_like, shape (...)
-        Standard deviation of one run; relative to the response where that is what is known.
-        [unit of the response, or 1]
-    significance : float
-        Two-sided level; 0.10 is the 90 % of [4]_. [1]
-
-    Returns
-    -------
-    smallest : ndarray, shape (...)
-        [unit of sigma]
-
-    Raises
-    ------
-    SettingsError
-        If the level is not a share.
-    DataError
-        If sigma is not above zero.
 
     Notes
     -----
@@ -605,32 +532,15 @@ _SINGULAR = 1e-9
 """Smallest over largest singular value, columns of equal length, below which terms are one."""
 
 
-def find_confounded(matrix: ArrayLike, names: Sequence[str]) -> tuple[str, ...]:
+def _find_confounded(matrix: ArrayLike, names: Sequence[str]) -> tuple[str, ...]:
     """Say which columns are sums of the columns before them.
-
-    Parameters
-    ----------
-    matrix : array_like, shape (n_runs, n_columns)
-        Model matrix. [1]
-    names : sequence of str, length n_columns
-        Of the columns.
-
-    Returns
-    -------
-    confounded : tuple of str
-        One text for each column without information of its own; empty for a sound matrix.
-
-    Raises
-    ------
-    DataError
-        If the names do not pair up with the columns.
 
     Examples
     --------
     Two levels do not tell a square from the mean.
 
     >>> levels = np.array([-1.0, 1.0, -1.0, 1.0])
-    >>> find_confounded(np.stack([np.ones(4), levels**2, levels], axis=1), ["mean", "f^2", "f"])
+    >>> _find_confounded(np.stack([np.ones(4), levels**2, levels], axis=1), ["mean", "f^2", "f"])
     ('f^2 with mean',)
     """
     columns = np.asarray(matrix, dtype=np.float64)
@@ -703,7 +613,7 @@ def covariance_factor(matrix: ArrayLike, *, names: Sequence[str]) -> Floats:
             n_terms=n_columns,
         )
     if is_singular(columns):
-        found = find_confounded(columns, names)
+        found = _find_confounded(columns, names)
         raise FitError(
             "the runs cannot tell all terms apart",
             found="; ".join(found),
@@ -758,21 +668,6 @@ def variance_factor(
 
 def is_singular(columns: Floats) -> bool:
     """Whether the runs leave columns of a matrix without information of their own.
-
-    Parameters
-    ----------
-    columns : ndarray, shape (n_runs, n_columns)
-        Model matrix, with no fewer runs than columns. [1]
-
-    Returns
-    -------
-    is_singular : bool
-        By the singular values of the columns at equal length.
-
-    Raises
-    ------
-    LinAlgError
-        From numpy, where a number is not finite.
 
     Examples
     --------
@@ -854,32 +749,6 @@ def expected_precision(
     factor_names: Sequence[str] | None = None,
 ) -> ExpectedPrecision:
     """Half width of the interval of each term and of the response, for a stated scatter.
-
-    Parameters
-    ----------
-    coded : array_like, shape (n_runs, n_factors)
-        Runs as planned, or as far as they got. [1]
-    sigma : array_like, shape (...)
-        Standard deviation of one run; relative to the response where that is what is
-        known, and the half widths then are relative too. [unit of the response, or 1]
-    confidence : float
-        Of each interval alone. [1]
-    factor_names : sequence of str, optional
-        None: X1, X2, ..
-
-    Returns
-    -------
-    precision : ExpectedPrecision
-        One set of half widths a value of ``sigma``.
-
-    Raises
-    ------
-    DataError
-        If the runs are no table of finite numbers, or sigma is not above zero.
-    SettingsError
-        If the confidence is not between 0 and 1, or the names do not fit.
-    FitError
-        If the runs cannot carry the surface: too few, or two terms not told apart.
 
     Notes
     -----

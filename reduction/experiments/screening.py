@@ -42,47 +42,20 @@ from reduction.record.measurement import Bools, Floats, Integers, read_only_arra
 
 @dataclass(frozen=True)
 @read_only_arrays
-class HalfNormal:
-    """Points of a half-normal plot, smallest first.
-
-    Parameters
-    ----------
-    order : ndarray of int, shape (..., n_effects)
-        Which effect each point is, from 0.
-    quantile : ndarray, shape (n_effects,)
-        Half-normal quantile. [1]
-    size : ndarray, shape (..., n_effects)
-        Absolute effect; NaN last. [unit of the response]
-    """
+class _HalfNormal:
+    """Points of a half-normal plot, smallest first."""
 
     order: Integers
     quantile: Floats
     size: Floats
 
 
-def two_level_columns(name: str, columns: ArrayLike) -> Floats:
+def _two_level_columns(name: str, columns: ArrayLike) -> Floats:
     """Columns of a two-level design as numbers, or a refusal that names them.
-
-    Parameters
-    ----------
-    name : str
-        For the message.
-    columns : array_like, shape (n_runs, n_columns)
-        Coded levels. [1]
-
-    Returns
-    -------
-    levels : ndarray, shape (n_runs, n_columns)
-        -1 and +1. [1]
-
-    Raises
-    ------
-    DataError
-        If a level is neither -1 nor +1, or the columns are no table.
 
     Examples
     --------
-    >>> print(two_level_columns("the design", [[-1], [1]]).ravel())
+    >>> print(_two_level_columns("the design", [[-1], [1]]).ravel())
     [-1.  1.]
     """
     levels = as_finite(name, columns)
@@ -95,7 +68,7 @@ def two_level_columns(name: str, columns: ArrayLike) -> Floats:
     return levels
 
 
-def half_normal_coordinates(effects: ArrayLike) -> HalfNormal:
+def half_normal_coordinates(effects: ArrayLike) -> _HalfNormal:
     r"""Coordinates of a half-normal plot: effects of noise alone lie on a line from zero.
 
     .. math:: q_i = \Phi^{-1}\!\left(\tfrac12 + \tfrac12 \frac{i - \tfrac12}{m}\right)
@@ -131,7 +104,7 @@ def half_normal_coordinates(effects: ArrayLike) -> HalfNormal:
     order = np.argsort(size, axis=-1, kind="stable")
     m = size.shape[-1]
     quantile = ndtri(0.5 + 0.5 * (np.arange(m) + 0.5) / m)
-    return HalfNormal(order, quantile, np.take_along_axis(size, order, axis=-1))
+    return _HalfNormal(order, quantile, np.take_along_axis(size, order, axis=-1))
 
 
 def alias_matrix(coded: ArrayLike) -> tuple[tuple[tuple[int, int], ...], Floats]:
@@ -169,7 +142,7 @@ def alias_matrix(coded: ArrayLike) -> tuple[tuple[tuple[int, int], ...], Floats]
     >>> pairs[2], float(abs(alias[1, 2]))  # the second and third factor in the first
     ((1, 2), 0.333)
     """
-    levels = two_level_columns("the design", coded)
+    levels = _two_level_columns("the design", coded)
     pairs = tuple(combinations(range(levels.shape[1]), 2))
     first = np.column_stack([np.ones(levels.shape[0]), levels])
     second = np.empty((levels.shape[0], len(pairs)))
@@ -335,7 +308,7 @@ def screening_effects(
     >>> print(screening_effects(design, life, names="ABCDEFG").effect.round(5))
     [ 0.32583  0.29383 -0.24583 -0.51617  0.14983  0.91517  0.18317]
     """
-    columns = two_level_columns("the design", np.hstack([design.coded, design.dummy]))
+    columns = _two_level_columns("the design", np.hstack([design.coded, design.dummy]))
     n_runs, n_columns = columns.shape
     cross = np.abs(np.column_stack([np.ones(n_runs), columns]).T @ columns)
     np.fill_diagonal(cross[1:], 0)

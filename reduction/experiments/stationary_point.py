@@ -42,29 +42,6 @@ def canonical_slopes(
         \frac{\partial x_s}{\partial \beta} = -(2B)^{-1} D(x_s), \qquad
         \frac{\partial \lambda_j}{\partial B} = v_j v_j^T
 
-    Parameters
-    ----------
-    point : array_like, shape (n_responses, n_factors)
-        Stationary, coded; NaN where there is none. [1]
-    eigenvalue : array_like, shape (n_responses, n_factors)
-        [unit of the response]
-    eigenvector : array_like, shape (n_responses, n_factors, n_factors)
-        A column each. [1]
-    exponents : ndarray of int, shape (n_terms, n_factors)
-        Powers of the terms. [1]
-
-    Returns
-    -------
-    of_point : ndarray, shape (n_responses, n_factors, n_terms)
-        NaN where there is no point. [1 per unit of the response]
-    of_eigenvalue : ndarray, shape (n_responses, n_factors, n_terms)
-        [1]
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not pair up.
-
     Notes
     -----
     Source: [1]_; of an eigenvalue [2]_.
@@ -99,7 +76,7 @@ _HALVINGS = 100
 """Bisection steps of the multiplier: below the last digit of a double."""
 
 
-class RidgePath(NamedTuple):
+class _RidgePath(NamedTuple):
     """Best point at each distance from the centre; coded, engineering, value, multiplier."""
 
     coded: Floats
@@ -108,34 +85,15 @@ class RidgePath(NamedTuple):
     multiplier: Floats
 
 
-def curvature(coefficient: ArrayLike, exponents: Integers) -> tuple[Floats, Floats]:
-    r"""Linear and quadratic part of surfaces.
+def _curvature(coefficient: ArrayLike, exponents: Integers) -> tuple[Floats, Floats]:
+    """Linear and quadratic part of surfaces.
 
     .. math:: y = b_0 + x^T b + x^T B x
-
-    Parameters
-    ----------
-    coefficient : array_like, shape (n_responses, n_terms)
-        Of coded factors. [unit of the response]
-    exponents : ndarray of int, shape (n_terms, n_factors)
-        Powers of the terms. [1]
-
-    Returns
-    -------
-    slope : ndarray, shape (n_responses, n_factors)
-        :math:`b`. [unit of the response]
-    form : ndarray, shape (n_responses, n_factors, n_factors)
-        :math:`B`, symmetric: an interaction stands in two halves. [unit of the response]
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not pair up.
 
     Examples
     --------
     >>> from reduction.experiments.designs import quadratic_exponents
-    >>> _, form = curvature([[0.0, 1.0, 2.0, 0.0, 0.0, 3.0]], quadratic_exponents(2))
+    >>> _, form = _curvature([[0.0, 1.0, 2.0, 0.0, 0.0, 3.0]], quadratic_exponents(2))
     >>> print(form[0])
     [[1.  1.5]
      [1.5 2. ]]
@@ -172,31 +130,6 @@ def canonical_analysis(
         \frac{\partial x_s}{\partial \beta} = -(2B)^{-1} D(x_s), \qquad
         \frac{\partial \lambda_j}{\partial B} = v_j v_j^T
 
-    Parameters
-    ----------
-    coefficient : array_like, shape (n_responses, n_terms)
-        Of coded factors. [unit of the response]
-    exponents : ndarray of int, shape (n_terms, n_factors)
-        Powers of the terms. [1]
-    covariance_factor : array_like, shape (n_patterns, n_terms, n_terms)
-        Of the coefficients, over sigma squared. [1]
-    pattern : ndarray of int, shape (n_responses,)
-        Row of the covariance factor. [1]
-    sigma : array_like, shape (n_responses,)
-        Standard deviation of a run. [unit of the response]
-    low, high : array_like, shape (n_factors,)
-        Levels that are -1 and +1. [SI unit of each factor]
-
-    Returns
-    -------
-    canonical : Canonical
-        NaN and a reason where there is no surface or no single stationary point.
-
-    Raises
-    ------
-    SettingsError
-        If a high level does not lie above its low one.
-
     Notes
     -----
     Source: [1]_; uncertainty of an eigenvalue as [2]_.  Eigenvalues belong to coded units: a
@@ -214,7 +147,7 @@ def canonical_analysis(
     [[10.]] [2.] [2]
     """
     values = np.asarray(coefficient, dtype=np.float64)
-    slope, form = curvature(values, exponents)
+    slope, form = _curvature(values, exponents)
     known = np.atleast_1d(np.isfinite(values).all(axis=1))
     eigenvalue = np.full(slope.shape, np.nan)
     eigenvector = np.full(form.shape, np.nan)
@@ -261,35 +194,11 @@ def ridge_path(
     low: ArrayLike,
     high: ArrayLike,
     direction: Literal["ascent", "descent"] = "ascent",
-) -> RidgePath:
+) -> _RidgePath:
     r"""Highest (or lowest) point of each surface on spheres about the centre of the design.
 
     .. math:: (B - \mu I) x = -\tfrac{1}{2} b, \qquad \lVert x \rVert = R, \qquad
               \mu > \lambda_{max}
-
-    Parameters
-    ----------
-    coefficient : array_like, shape (n_responses, n_terms)
-        Of coded factors. [unit of the response]
-    exponents : ndarray of int, shape (n_terms, n_factors)
-        Powers of the terms. [1]
-    radius : array_like, shape (n_radii,)
-        Of the spheres, zero or more, coded. [1]
-    low, high : array_like, shape (n_factors,)
-        Levels that are -1 and +1. [SI unit of each factor]
-    direction : {'ascent', 'descent'}
-        Of the path.
-
-    Returns
-    -------
-    path : RidgePath
-        Coded and engineering (n_responses, n_radii, n_factors), value and multiplier
-        (n_responses, n_radii); NaN where there is no surface.
-
-    Raises
-    ------
-    SettingsError
-        If a radius is negative, or a high level does not lie above its low one.
 
     Notes
     -----
@@ -319,7 +228,7 @@ def ridge_path(
     values = np.asarray(coefficient, dtype=np.float64)
     sign = 1.0 if direction == "ascent" else -1.0
     known = np.atleast_1d(np.isfinite(values).all(axis=1))
-    slope, form = curvature(sign * np.where(known[:, None], values, 0.0), exponents)
+    slope, form = _curvature(sign * np.where(known[:, None], values, 0.0), exponents)
     eigenvalue, eigenvector = np.linalg.eigh(form)
     half = np.einsum("rij,ri->rj", eigenvector, slope)[:, None, :] / 2
     # x = V half / (mu - lambda); written in the excess of mu over the largest eigenvalue
@@ -341,7 +250,7 @@ def ridge_path(
     terms = model_matrix(np.nan_to_num(coded), exponents)
     value = np.einsum("rmt,rt->rm", terms, values)
     multiplier = sign * (eigenvalue[:, -1:] + excess[..., 0])
-    return RidgePath(
+    return _RidgePath(
         coded,
         engineering_from_coded(coded, low=low, high=high),
         value,

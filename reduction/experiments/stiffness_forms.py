@@ -137,28 +137,10 @@ class StiffnessForm:
     confidence: float
 
 
-def form_quality(
+def _form_quality(
     forms: tuple[str, ...], fits: list[LeastSquares], shape: tuple[int, ...]
 ) -> FormQuality:
     """Scatter, r2 and AICc of several forms of the same responses.
-
-    Parameters
-    ----------
-    forms : tuple of str, length n_forms
-    fits : list of LeastSquares, length n_forms
-        Over the same runs.
-    shape : tuple of int
-        Of the responses, before the runs.
-
-    Returns
-    -------
-    quality : FormQuality
-        NaN and a reason where a form has no scatter to judge it by.
-
-    Raises
-    ------
-    ValueError
-        If the fits are not of as many responses as the shape says.
 
     Notes
     -----
@@ -171,7 +153,7 @@ def form_quality(
 
     >>> from reduction.experiments.least_squares_fit import fit_least_squares
     >>> fit = fit_least_squares(np.ones((3, 1)), [[1.0, 2.0, 3.0]])
-    >>> print(form_quality(("mean",), [fit], ()).sigma)
+    >>> print(_form_quality(("mean",), [fit], ()).sigma)
     [1.]
     """
     n_coefficients = tuple(fit.coefficient.shape[1] for fit in fits)
@@ -215,7 +197,7 @@ def form_quality(
 LoadAmplitude = Literal["half-range", "full-range"]
 
 
-def checked_strength(rated_break_strength: float | None) -> float:
+def _checked_strength(rated_break_strength: float | None) -> float:
     """Return the break strength, or raise where there is none."""
     if rated_break_strength is None:
         raise SettingsError(
@@ -243,7 +225,7 @@ def _above_zero(name: str, values: Floats) -> None:
         )
 
 
-def del_vecchio_matrix(
+def _del_vecchio_matrix(
     mean: Floats, amplitude: Floats, frequency: Floats, strength: float, kind: LoadAmplitude
 ) -> Floats:
     """Columns of a, b, c, d: per cent of break strength, seconds."""
@@ -261,7 +243,7 @@ def del_vecchio_matrix(
     return matrix
 
 
-def positive_levels(**named: ArrayLike) -> tuple[Floats, ...]:
+def _positive_levels(**named: ArrayLike) -> tuple[Floats, ...]:
     """Return levels as series of runs, none of them zero or less."""
     arrays = as_same_shape(**named)
     if arrays[0].ndim != 1:
@@ -273,7 +255,7 @@ def positive_levels(**named: ArrayLike) -> tuple[Floats, ...]:
     return arrays
 
 
-def relative_stiffness(
+def _relative_stiffness(
     spring_constant: ArrayLike, strength: float, n_runs: int
 ) -> tuple[Floats, tuple[int, ...]]:
     """Stiffness over break strength as (n_responses, n_runs), and the shape before the runs."""
@@ -302,7 +284,7 @@ def _form(
         raise SettingsError(
             "the confidence is not a share", found=f"{confidence:g}", needed="between 0 and 1"
         )
-    relative, shape = relative_stiffness(spring_constant, strength, matrix.shape[0])
+    relative, shape = _relative_stiffness(spring_constant, strength, matrix.shape[0])
     fit = fit_least_squares(matrix, relative)
     covariance = fit.covariance_factor[fit.pattern] * fit.sigma[:, None, None] ** 2
     uncertainty = np.sqrt(np.diagonal(covariance, axis1=1, axis2=2))
@@ -325,7 +307,7 @@ def _form(
         covariance=covariance.reshape(*shape, n, n),
         stiffness_fitted=(fit.fitted * strength).reshape(*shape, mean.size),
         stiffness_residual=(fit.residual * strength).reshape(*shape, mean.size),
-        quality=form_quality((form,), [fit], shape),
+        quality=_form_quality((form,), [fit], shape),
         mean_load_range=(
             (float(known.min()), float(known.max())) if known.size else (float("nan"), float("nan"))
         ),
@@ -348,34 +330,6 @@ def fit_del_vecchio_stiffness(
 
     .. math:: K_r = a + b\,L_m - c\,L_a - d\,\log_{10} T
 
-    Parameters
-    ----------
-    spring_constant : array_like, shape (..., n_runs)
-        Apparent (dynamic) spring constant EA of each run; NaN where a run is missing. [N]
-    mean_tension, tension_amplitude : array_like, shape (n_runs,)
-        As achieved; the amplitude is half the range. [N]
-    frequency : array_like, shape (n_runs,)
-        Its inverse is the loading period. [Hz]
-    rated_break_strength : float or None
-        MBL; None is refused. [N]
-    load_amplitude : str
-        What :math:`L_a` is in the equation wanted: ``half-range`` (this amplitude) or
-        ``full-range`` (twice it, half the coefficient c).
-    confidence : float
-        Of each interval alone. [1]
-
-    Returns
-    -------
-    form : StiffnessForm
-        a [1], b and c [1 over per cent of break strength], d [1 over a decade of period].
-
-    Raises
-    ------
-    SettingsError
-        If the break strength is missing or cannot be, or an option has another value.
-    DataError
-        If the levels are not above zero or the shapes do not fit.
-
     Notes
     -----
     Source: [2]_.  It was written for polyester, at loads and periods above those of [4]_:
@@ -395,8 +349,8 @@ def fit_del_vecchio_stiffness(
     >>> print(form.coefficient.round(6))
     [18.   0.3  0.2  1. ]
     """
-    strength = checked_strength(rated_break_strength)
-    mean, amplitude, rate = positive_levels(
+    strength = _checked_strength(rated_break_strength)
+    mean, amplitude, rate = _positive_levels(
         mean_tension=mean_tension, tension_amplitude=tension_amplitude, frequency=frequency
     )
     return _form(
@@ -405,7 +359,7 @@ def fit_del_vecchio_stiffness(
         f"{load_amplitude.replace('-', ' ')}, T in s",
         ("a", "b", "c", "d"),
         ("1", "1/%", "1/%", "1"),
-        del_vecchio_matrix(mean, amplitude, rate, strength, load_amplitude),
+        _del_vecchio_matrix(mean, amplitude, rate, strength, load_amplitude),
         spring_constant,
         mean,
         strength,
@@ -423,29 +377,6 @@ def fit_mean_load_stiffness(
     r"""Coefficients of the form that MoorDyn and MoorPy take.
 
     .. math:: EA_d = \alpha\, MBL + \beta\, T_m
-
-    Parameters
-    ----------
-    spring_constant : array_like, shape (..., n_runs)
-        Apparent (dynamic) spring constant EA of each run; NaN where a run is missing. [N]
-    mean_tension : array_like, shape (n_runs,)
-        As achieved. [N]
-    rated_break_strength : float or None
-        MBL; None is refused. [N]
-    confidence : float
-        Of each interval alone. [1]
-
-    Returns
-    -------
-    form : StiffnessForm
-        alpha and beta, both without unit.
-
-    Raises
-    ------
-    SettingsError
-        If the break strength is missing or cannot be, or the confidence is no share.
-    DataError
-        If the mean tensions are not above zero or the shapes do not fit.
 
     Notes
     -----
@@ -465,8 +396,8 @@ def fit_mean_load_stiffness(
     >>> print(form.coefficient.round(2))
     [-0.4  27.43]
     """
-    strength = checked_strength(rated_break_strength)
-    (mean,) = positive_levels(mean_tension=mean_tension)
+    strength = _checked_strength(rated_break_strength)
+    (mean,) = _positive_levels(mean_tension=mean_tension)
     return _form(
         "mean-load",
         "EA = alpha MBL + beta Tm; Tm is the mean tension",
@@ -494,31 +425,6 @@ def compare_stiffness_forms(
 ) -> FormQuality:
     """Both forms beside the quadratic surface of the same runs.
 
-    Parameters
-    ----------
-    spring_constant : array_like, shape (..., n_runs)
-        Apparent (dynamic) spring constant EA of each run; NaN where a run is missing. [N]
-    mean_tension, tension_amplitude : array_like, shape (n_runs,)
-        As achieved; the amplitude is half the range. [N]
-    frequency : array_like, shape (n_runs,)
-        [Hz]
-    coded : array_like, shape (n_runs, n_factors)
-        Factors of the surface in coded units. [1]
-    rated_break_strength : float or None
-        MBL; None is refused. [N]
-
-    Returns
-    -------
-    quality : FormQuality
-        ``del-vecchio``, ``mean-load`` and ``quadratic``, all of EA / MBL.
-
-    Raises
-    ------
-    SettingsError
-        If the break strength is missing or cannot be.
-    DataError
-        If the levels are not above zero or the shapes do not fit.
-
     Notes
     -----
     A run without one of its levels is left out of all three.  What the amplitude is makes
@@ -539,8 +445,8 @@ def compare_stiffness_forms(
     >>> quality.forms[int(np.argmin(quality.aicc))]
     'mean-load'
     """
-    strength = checked_strength(rated_break_strength)
-    mean, amplitude, rate = positive_levels(
+    strength = _checked_strength(rated_break_strength)
+    mean, amplitude, rate = _positive_levels(
         mean_tension=mean_tension, tension_amplitude=tension_amplitude, frequency=frequency
     )
     levels = np.asarray(coded, dtype=np.float64)
@@ -550,11 +456,11 @@ def compare_stiffness_forms(
             found=f"shape {levels.shape}",
             needed=f"{mean.size} rows, one column a factor",
         )
-    relative, shape = relative_stiffness(spring_constant, strength, mean.size)
-    first = del_vecchio_matrix(mean, amplitude, rate, strength, "half-range")
+    relative, shape = _relative_stiffness(spring_constant, strength, mean.size)
+    first = _del_vecchio_matrix(mean, amplitude, rate, strength, "half-range")
     whole = np.isfinite(first).all(axis=1) & np.isfinite(levels).all(axis=1)
     surface = np.full((mean.size, quadratic_exponents(levels.shape[1]).shape[0]), np.nan)
     surface[whole] = model_matrix(levels[whole], quadratic_exponents(levels.shape[1]))
     known = np.where(whole, relative, np.nan)
     matrices = (first, first[:, :2], surface)
-    return form_quality(FORMS, [fit_least_squares(matrix, known) for matrix in matrices], shape)
+    return _form_quality(FORMS, [fit_least_squares(matrix, known) for matrix in matrices], shape)

@@ -346,29 +346,6 @@ def strength_after(
 ) -> tuple[Floats, Floats, Floats, Bools]:
     """Strength on the line with its interval.
 
-    Parameters
-    ----------
-    trend : ExposureTrend
-        As fitted.
-    exposure : array_like
-        Time in the field. [year]
-    confidence : float
-        Of the interval, two-sided. [1]
-    of_one_break : bool
-        True for the interval of one further break, False for that of the mean.
-
-    Returns
-    -------
-    strength, low, high : ndarray
-        The shape of ``exposure``. [N]
-    is_inside : ndarray of bool
-        False outside the exposures tested. [1]
-
-    Raises
-    ------
-    DataError
-        If an exposure is not finite.
-
     Examples
     --------
     >>> trend = fit_exposure_trend([0, 2, 3, 5], [6400, 4672, 4365, 3241],
@@ -393,25 +370,7 @@ def strength_after(
 def share_lost_per_year(
     trend: ExposureTrend, *, confidence: float = 0.95
 ) -> tuple[float, float, float]:
-    r"""Share of the new strength that the line loses in a year, with Fieller's interval.
-
-    Parameters
-    ----------
-    trend : ExposureTrend
-        As fitted.
-    confidence : float
-        Of the interval, two-sided. [1]
-
-    Returns
-    -------
-    share, low, high : float
-        :math:`-\text{slope}/\text{intercept}`; the ends NaN where the new strength is not told
-        apart from zero. [year-1]
-
-    Raises
-    ------
-    FitError
-        If the line has no strength at no exposure.
+    """Share of the new strength that the line loses in a year, with Fieller's interval.
 
     Examples
     --------
@@ -453,28 +412,6 @@ def group_statistics(
     value: ArrayLike, group: ArrayLike, use: ArrayLike, *, n_groups: int
 ) -> GroupStatistics:
     """Mean, deviation and number of each group; breaks in the termination apart.
-
-    Parameters
-    ----------
-    value : array_like, shape (n,)
-        Outcomes of one quantity, in SI. [N, 1]
-    group : array_like of int, shape (n,)
-        Of which group, from 0. [1]
-    use : array_like of int, shape (n,)
-        `VALUE`, `LOWER_BOUND` (a break in the splice: the line holds at least this) or
-        `EXCLUDED`. [1]
-    n_groups : int
-        Number of groups. [1]
-
-    Returns
-    -------
-    statistics : GroupStatistics
-        One entry a group; only values enter mean and deviation.
-
-    Raises
-    ------
-    DataError
-        If a value is not finite and above zero, or the series do not pair up.
 
     Notes
     -----
@@ -531,25 +468,6 @@ def censored_mean(
     value: ArrayLike, is_lower_bound: ArrayLike, *, confidence: float = 0.95
 ) -> CensoredMean:
     r"""Mean strength where a break in the splice counts as a lower bound.
-
-    Parameters
-    ----------
-    value : array_like, shape (n,)
-        Strengths. [N]
-    is_lower_bound : array_like of bool, shape (n,)
-        True where the termination broke and the line held at least this. [1]
-    confidence : float
-        Of the interval of the mean, two-sided. [1]
-
-    Returns
-    -------
-    censored : CensoredMean
-        NaN with a reason where the breaks in the line do not tell mean and deviation.
-
-    Raises
-    ------
-    DataError
-        If a value is not above zero, or the series do not pair up.
 
     Notes
     -----
@@ -624,30 +542,7 @@ def summarise_snap_loading(
     slack_load_ratio: float = 0.0,
     confidence: float = 0.95,
 ) -> SnapLevels:
-    r"""What each level of peak load did to lines that go slack, and where failures begin.
-
-    Parameters
-    ----------
-    peak_load_ratio, minimum_load_ratio : array_like, shape (n,)
-        Of each cycle over the rated break strength; a minimum that is NaN is not stated. [1]
-    cycles : array_like, shape (n,)
-        To failure, or to the end of a test that was stopped. [1]
-    is_suspended : array_like of bool, shape (n,)
-        True for a run-out or a suspended test. [1]
-    slack_load_ratio : float
-        Greatest minimum load at which a line counts as slack. [1]
-    confidence : float
-        Of the upper bound of the share that fails. [1]
-
-    Returns
-    -------
-    levels : SnapLevels
-        Threshold loads are those of the tests; none is assumed.
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up, a number cannot be, or no test has a slack line.
+    """What each level of peak load did to lines that go slack, and where failures begin.
 
     Notes
     -----

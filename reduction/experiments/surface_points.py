@@ -56,23 +56,6 @@ _EDGE = 1e-9
 def is_within_levels(coded: ArrayLike, *, allowed: ArrayLike = 0.0) -> Bools:
     """Whether points lie between the low and the high level of every factor.
 
-    Parameters
-    ----------
-    coded : array_like, shape (..., n_factors)
-        The points. [1]
-    allowed : array_like, shape (n_factors,), optional
-        By how much a point may lie beyond, as where levels are printed in whole units. [1]
-
-    Returns
-    -------
-    is_within : ndarray of bool, shape (...)
-        False where a level is NaN. [1]
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not pair up.
-
     Notes
     -----
     The range is that of the plan ([1]_).  A point within can still lie where no run was near.
@@ -88,25 +71,8 @@ def is_within_levels(coded: ArrayLike, *, allowed: ArrayLike = 0.0) -> Bools:
     return np.asarray(within.all(axis=-1))
 
 
-def levels_tested(reached: Floats, plan: Floats) -> Floats:
+def _levels_tested(reached: Floats, plan: Floats) -> Floats:
     """Coded levels that count as tested: those reached, and those of the plan beside them.
-
-    Parameters
-    ----------
-    reached : ndarray, shape (n_runs, n_factors)
-        As reached. [1]
-    plan : ndarray, shape (n_runs, n_factors)
-        As planned; NaN where a run has no plan. [1]
-
-    Returns
-    -------
-    tested : ndarray, shape (n_tested, n_factors)
-        Those reached first. [1]
-
-    Raises
-    ------
-    ValueError
-        If reached and planned levels do not pair up.
 
     Notes
     -----
@@ -115,7 +81,7 @@ def levels_tested(reached: Floats, plan: Floats) -> Floats:
 
     Examples
     --------
-    >>> levels_tested(np.array([[0.98], [0.2]]), np.array([[1.0], [-1.0]])).ravel()
+    >>> _levels_tested(np.array([[0.98], [0.2]]), np.array([[1.0], [-1.0]])).ravel()
     array([0.98, 0.2 , 1.  ])
     """
     is_near = np.all(np.abs(reached - plan) <= ON_PLAN, axis=1)
@@ -163,7 +129,7 @@ def greatest_leverage(surfaces: ResponseSurfaces, plan: ArrayLike | None = None)
         zip(surfaces.covariance_factor, surfaces.is_used, strict=True)
     ):
         own = known & used
-        levels = levels_tested(coded[own], planned[own])
+        levels = _levels_tested(coded[own], planned[own])
         leverage = variance_factor(model_matrix(levels, surfaces.exponents), factor)
         leverage = leverage[np.isfinite(leverage)]
         if leverage.size:
@@ -173,41 +139,16 @@ def greatest_leverage(surfaces: ResponseSurfaces, plan: ArrayLike | None = None)
 
 @dataclass(frozen=True)
 @read_only_arrays
-class PlanPoints:
-    """Points of a plan, none twice.
-
-    Parameters
-    ----------
-    coded : ndarray, shape (n_points, n_factors)
-        Levels. [1]
-    name : tuple of str, length n_points
-        The coded levels, ``(-1, 0, +1)``.
-    kind : tuple of str, length n_points
-        ``centre``, ``face centre``, ``edge midpoint``, ``corner``, or ``design point``.
-    """
+class _PlanPoints:
+    """Points of a plan, none twice."""
 
     coded: Floats
     name: tuple[str, ...]
     kind: tuple[str, ...]
 
 
-def plan_points(plan: ArrayLike) -> PlanPoints:
+def plan_points(plan: ArrayLike) -> _PlanPoints:
     """Centre of the cube, then the points of the plan that differ, then the corners.
-
-    Parameters
-    ----------
-    plan : array_like, shape (n_runs, n_factors)
-        Coded levels as planned, repeats and all. [1]
-
-    Returns
-    -------
-    points : PlanPoints
-        The points of the plan in its order.
-
-    Raises
-    ------
-    DataError
-        If the plan is no table, or a level is not finite.
 
     Notes
     -----
@@ -239,7 +180,7 @@ def plan_points(plan: ArrayLike) -> PlanPoints:
     kept = every[np.sort(first)]
     is_corner = (np.abs(kept) == 1).all(axis=1)
     coded = np.vstack([kept[~is_corner], corners])
-    return PlanPoints(
+    return _PlanPoints(
         coded=coded,
         name=tuple(f"({', '.join(f'{x:+g}' if x else '0' for x in row)})" for row in coded),
         kind=_kinds(coded),

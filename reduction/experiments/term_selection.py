@@ -80,24 +80,6 @@ class ReducedSurfaces:
 def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> ReducedSurfaces:
     """Best subset of the terms of every surface by the corrected criterion of Akaike.
 
-    Parameters
-    ----------
-    surfaces : ResponseSurfaces
-        Full surfaces; responses that miss the same runs are searched together.
-    hierarchical : bool
-        Keep the linear terms of every square and interaction that is kept; without it a
-        reduced surface depends on where the zero of a factor lies.
-
-    Returns
-    -------
-    reduced : ReducedSurfaces
-        NaN for a response without a surface, or whose residuals are rounding.
-
-    Raises
-    ------
-    SettingsError
-        If there are too many subsets to look at, or random blocks.
-
     Notes
     -----
     Source: [1]_ for the criterion, [2]_ for the hierarchy.  All subsets are looked at (95 of

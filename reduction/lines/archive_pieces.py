@@ -40,27 +40,7 @@ _ROWS = "_uncertainty_contribution"
 def parts_of(
     dataset: xr.Dataset, name: str, specimen: int | None = None, *, of: str
 ) -> tuple[Floats, Contributions | None]:
-    """Both parts of the uncertainty of one curve of an archive.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        An archive of a reduced test.
-    name : str
-        Of the curve.
-    specimen : int, optional
-        Its place, where the curve has one a specimen.
-    of : str
-        What the contributions are called.
-
-    Returns
-    -------
-    random : ndarray, shape (...)
-        Standard uncertainty of the curve by itself; all of it, where the archive keeps the shared
-        part not apart. [unit of the curve]
-    shared : Contributions or None
-        Errors that touch it; None where the archive keeps none apart. [unit of the curve]
-    """
+    """Both parts of the uncertainty of one curve of an archive."""
     rows = stored(dataset, f"{name}{_ROWS}")
     whole = f"{name}_standard_uncertainty"
     own = np.asarray(
@@ -78,25 +58,10 @@ def parts_of(
     return random, Contributions(component, {of: table[touched]})
 
 
-def pieces_of_weights(
+def _pieces_of_weights(
     dataset: xr.Dataset, branch: PieceBranch, name: str
 ) -> tuple[CurvePiece, ...]:
-    """One branch of a stepwise test, or the mean of both.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        Its archive.
-    branch : {"ascending", "descending", "mean"}
-        Which way; where weights were never taken off the way up stands for the mean.
-    name : str
-        Of the piece.
-
-    Returns
-    -------
-    pieces : tuple of CurvePiece
-        One.
-    """
+    """One branch of a stepwise test, or the mean of both."""
     random, shared = parts_of(dataset, "secant_modulus", of="secant_modulus")
     steps = _steps(dataset, random)
     if branch != "mean":
@@ -153,30 +118,13 @@ def specimens_of(dataset: xr.Dataset) -> tuple[str, ...]:
     return tuple(dataset.variables["specimen"].values.astype(str).tolist())
 
 
-def pieces_of_test(
+def _pieces_of_test(
     dataset: xr.Dataset, specimen: str, *, branch: PieceBranch, name: str
 ) -> tuple[CurvePiece, ...]:
-    """Pieces that one test gives: its cycles, its first rise, its weights, or its slow pull.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        An archive of a reduced test.
-    specimen : str
-        One of its specimens.
-    branch : {"ascending", "descending", "mean"}
-        Of cycles and weights; a first rise and a slow pull only rise, and stand in for the mean.
-    name : str
-        Of the pieces.
-
-    Returns
-    -------
-    pieces : tuple of CurvePiece
-        None where the test has no curve of the branch.
-    """
+    """Pieces that one test gives: its cycles, its first rise, its weights, or its slow pull."""
     place = specimens_of(dataset).index(specimen)
     if "secant_modulus" in dataset and "step" in dataset.sizes:
-        return pieces_of_weights(dataset, branch, name)
+        return _pieces_of_weights(dataset, branch, name)
     pieces: tuple[CurvePiece, ...] = ()
     if "branch_tension" in dataset:
         random, shared = parts_of(dataset, "branch_tension", place, of="tension")
@@ -214,29 +162,7 @@ def pieces_of_test(
 def source_of_tests(
     datasets: Sequence[xr.Dataset], specimen: str, *, branch: PieceBranch
 ) -> PieceSource:
-    """Pieces of one specimen from all of its tests.
-
-    Parameters
-    ----------
-    datasets : sequence of xarray.Dataset
-        Archives of reduced tests.
-    specimen : str
-        Its name, the same in all of them; archives without it are told in a note.
-    branch : {"ascending", "descending", "mean"}
-        As `pieces_of_test`.
-
-    Returns
-    -------
-    source : PieceSource
-        With the strain model of the first test that has one.
-
-    Raises
-    ------
-    SettingsError
-        If one test stands there twice, or diameters differ.
-    DataError
-        If no test gives a piece.
-    """
+    """Pieces of one specimen from all of its tests."""
     own = [one for one in datasets if specimen in specimens_of(one)]
     others = sorted(_id(one) for one in datasets if specimen not in specimens_of(one))
     own.sort(key=lambda one: (_order(one), _id(one)))
@@ -255,7 +181,7 @@ def source_of_tests(
         if whole in wholes:
             notes.append(f"{test} is left out: it is a part of {whole}")
             continue
-        found = pieces_of_test(one, specimen, branch=branch, name=test)
+        found = _pieces_of_test(one, specimen, branch=branch, name=test)
         if not found:
             notes.append(f"{test} ({one.attrs.get('test_kind', 'unknown')}) has no {branch} curve")
             continue

@@ -46,21 +46,8 @@ CURVES = (*_OVER_STRAIN, *_OVER_TENSION)
 """Variables of a reduced test that are looked up as curves."""
 
 
-def curves_of_specimen(dataset: xr.Dataset, place: int) -> tuple[LineCurve, ...]:
-    """Curves of one specimen of a reduced test.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        An archive of a reduced test.
-    place : int
-        Of the specimen.
-
-    Returns
-    -------
-    curves : tuple of LineCurve
-        None where the test has none.
-    """
+def _curves_of_specimen(dataset: xr.Dataset, place: int) -> tuple[LineCurve, ...]:
+    """Curves of one specimen of a reduced test."""
     return (
         *(
             curve
@@ -170,32 +157,10 @@ Facts = Mapping[str, str | float]
 """Fields of `LineSource` that a specimen states, by name."""
 
 
-def line_source_of_experiment(
+def _line_source_of_experiment(
     dataset: xr.Dataset, experiment: str, *, specimens: Mapping[str, Facts] | None = None
 ) -> LineSource:
-    """Surfaces of an experiment as a source of design values.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        An archive of experiments.
-    experiment : str
-        Name of one.
-    specimens : mapping of str to mapping, optional
-        What is known of its specimens, by name: `facts_of_specimens` of the archives of its
-        tests.  The line has what all of them agree on.
-
-    Returns
-    -------
-    line : LineSource
-        With a surface of each response that was fitted.
-
-    Raises
-    ------
-    ArchiveError
-        If the archive has no such experiment, it has no surface, or its levels are shares of
-        break strengths that differ.
-    """
+    """Surfaces of an experiment as a source of design values."""
     names = surface_names(dataset, experiment)
     if not names:
         raise ArchiveError(f"experiment '{experiment}' has no surface", needed="a Box-Behnken one")
@@ -226,11 +191,11 @@ def line_source_of_experiment(
         factor_names=factors,
         surfaces=surfaces,
         notes=_synthetic(dataset),
-        **_agreed([(specimens or {}).get(one, {}) for one in specimens_of(dataset, experiment)]),
+        **_agreed([(specimens or {}).get(one, {}) for one in _specimens_of(dataset, experiment)]),
     )
 
 
-def specimens_of(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
+def _specimens_of(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
     """Names of the specimens whose runs an experiment is of."""
     row = dataset.variables["experiment"].values.astype(str).tolist().index(experiment)
     return tuple(
@@ -238,7 +203,7 @@ def specimens_of(dataset: xr.Dataset, experiment: str) -> tuple[str, ...]:
     )
 
 
-def facts_of_specimens(dataset: xr.Dataset) -> dict[str, Facts]:
+def _facts_of_specimens(dataset: xr.Dataset) -> dict[str, Facts]:
     """What the archive of a reduced test states of each of its specimens, by name."""
     if "specimen" not in dataset:
         return {}
@@ -352,27 +317,8 @@ def _scale(name: str, unit: str, strength: float, experiment: str) -> float:
     )  # fmt: skip
 
 
-def line_source_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
-    """Curves of one specimen of a reduced test as a source of design values.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        An archive of a reduced test.
-    specimen : str
-        One of its specimens.
-
-    Returns
-    -------
-    line : LineSource
-        Tangent modulus and tension over strain on each branch; of a slow pull K_0 over the mean
-        tension and strain over tension.
-
-    Raises
-    ------
-    ArchiveError
-        If the archive has no such specimen, or no curve.
-    """
+def _line_source_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
+    """Curves of one specimen of a reduced test as a source of design values."""
     known = (
         []
         if "specimen" not in dataset
@@ -384,7 +330,7 @@ def line_source_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
         )
     place = known.index(specimen)
     strength = "rated_break_strength"
-    curves = curves_of_specimen(dataset, place)
+    curves = _curves_of_specimen(dataset, place)
     if not curves:
         raise ArchiveError(
             f"the archive of test {dataset.attrs.get('test', '')} has no curve",
@@ -417,23 +363,7 @@ def archives_of_lines(folder: Path) -> list[Path]:
 
 
 def lines_of_archive(path: Path) -> list[LineSource]:
-    """Every line of one archive that has something to look up.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Of a reduced test, or of experiments.
-
-    Returns
-    -------
-    lines : list of LineSource
-        None where there is no surface and no curve.
-
-    Raises
-    ------
-    ArchiveError
-        If the archive cannot be read.
-    """
+    """Every line of one archive that has something to look up."""
     with reading(path) as archive:
         return lines_of_open_archive(archive, path)
 
@@ -441,55 +371,25 @@ def lines_of_archive(path: Path) -> list[LineSource]:
 def lines_of_open_archive(
     archive: xr.Dataset, path: Path, opener: Opener = reading
 ) -> list[LineSource]:
-    """Every line of one archive that is open, as `lines_of_archive`.
-
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        As `reduction.archive.open.open_archive` gives it.
-    path : pathlib.Path
-        Where it is: of an experiment the tests beside it say what its specimens are.
-    opener : Opener
-        How archives are opened.
-
-    Returns
-    -------
-    lines : list of LineSource
-        None where there is no surface and no curve.
-
-    Raises
-    ------
-    ArchiveError
-        If an archive beside it cannot be read.
-    """
+    """Every line of one archive that is open, as `lines_of_archive`."""
     if "experiment" in archive.sizes:
         names = archive.variables["experiment"].values.astype(str).tolist()
         kinds = archive.variables["experiment_kind"].values.astype(str).tolist()
-        wanted = {one for name in names for one in specimens_of(archive, name)}
+        wanted = {one for name in names for one in _specimens_of(archive, name)}
         known = _specimens(path, wanted, opener)
         return [
-            line_source_of_experiment(archive, name, specimens=known)
+            _line_source_of_experiment(archive, name, specimens=known)
             for name, kind in zip(names, kinds, strict=True)
             if kind == "box-behnken"
         ]
     if not any(name in archive for name in CURVES):
         return []
     names = archive.variables["specimen"].values.astype(str).tolist()
-    return [line_source_of_test(archive, name) for name in names]
+    return [_line_source_of_test(archive, name) for name in names]
 
 
 def told_apart(found: Sequence[tuple[str, Sequence[LineSource]]]) -> list[LineSource]:
     """Lines of a campaign by their files; a specimen that is in several is called TEST SPECIMEN.
-
-    Parameters
-    ----------
-    found : sequence of (str, sequence of LineSource)
-        Name of the test, and the lines of its archive.
-
-    Returns
-    -------
-    lines : list of LineSource
-        In that order.
 
     Examples
     --------
@@ -515,5 +415,5 @@ def _specimens(path: Path, names: set[str], opener: Opener) -> dict[str, Facts]:
         if names <= known.keys():
             break
         with opener(one) as archive:
-            known |= facts_of_specimens(archive)
+            known |= _facts_of_specimens(archive)
     return known

@@ -55,18 +55,8 @@ from reduction.stages.strain.strain_model import StrainModel, position_by_model,
 
 
 @dataclass(frozen=True)
-class Tether:
-    """A tether with its splices.
-
-    Parameters
-    ----------
-    curve : CompositeCurve
-        Tension against strain of the free length. [SI]
-    model : StrainModel
-        How strain and tension give its length, thimble to thimble: the strain correction.
-    is_stated : bool
-        The splices are stated: no load cell of the tests is in them.
-    """
+class _Tether:
+    """A tether with its splices."""
 
     curve: CompositeCurve
     model: StrainModel
@@ -115,25 +105,8 @@ class SeriesPart:
         return np.asarray(self.length * (1 + load / self.spring_constant))
 
 
-def equal_tethers(tether: Tether, n_tethers: int) -> tuple[Tether, ...]:
+def _equal_tethers(tether: _Tether, n_tethers: int) -> tuple[_Tether, ...]:
     """Return tethers that are all alike.
-
-    Parameters
-    ----------
-    tether : Tether
-        One of them.
-    n_tethers : int
-        How many. [1]
-
-    Returns
-    -------
-    tethers : tuple of Tether
-        The same one again and again.
-
-    Raises
-    ------
-    SettingsError
-        If there are none.
 
     Notes
     -----
@@ -141,32 +114,15 @@ def equal_tethers(tether: Tether, n_tethers: int) -> tuple[Tether, ...]:
 
     Examples
     --------
-    See `reduction.lines.assembly.assemble`.
+    See `reduction.lines.assembly._assemble`.
     """
     if n_tethers < 1:
         raise SettingsError("an assembly has tethers", found=str(n_tethers), needed="1 or more")
     return (tether,) * n_tethers
 
 
-def unequal_tethers(tether: Tether, free_length: ArrayLike) -> tuple[Tether, ...]:
+def _unequal_tethers(tether: _Tether, free_length: ArrayLike) -> tuple[_Tether, ...]:
     """Return tethers of one material and one kind of splice, cut to lengths of their own.
-
-    Parameters
-    ----------
-    tether : Tether
-        As it was tested.
-    free_length : array_like, shape (n_tethers,)
-        Relaxed, splice toe to splice toe. [m]
-
-    Returns
-    -------
-    tethers : tuple of Tether
-        In that order.
-
-    Raises
-    ------
-    DataError
-        If a length is not positive, or the strain method knows no splice apart.
 
     Notes
     -----
@@ -174,7 +130,7 @@ def unequal_tethers(tether: Tether, free_length: ArrayLike) -> tuple[Tether, ...
 
     Examples
     --------
-    See `reduction.lines.assembly.worst_sharing`.
+    See `reduction.lines.assembly._worst_sharing`.
     """
     lengths = np.atleast_1d(as_positive("free_length", free_length))
     return tuple(
@@ -231,25 +187,6 @@ def stated_model(splices: StatedSplices, free_length: float, *, name: str) -> St
     .. math:: \ell_s(F) = \ell_{s0} (1 + \rho\,\varepsilon) \quad \text{or} \quad
        \ell_{s0} \Big(1 + \varepsilon_1 \big(F / F_1\big)^n\Big)
 
-    Parameters
-    ----------
-    splices : StatedSplices
-        Length and law.
-    free_length : float
-        Relaxed, splice toe to splice toe. [m]
-    name : str
-        Of the tether.
-
-    Returns
-    -------
-    model : StrainModel
-        By gauge-length without splices, by strain-ratio or by tension-driven with them.
-
-    Raises
-    ------
-    DataError
-        If the free length is not positive.
-
     Notes
     -----
     The two laws are those of the strain correction: a splice that strains by a share of what the
@@ -275,25 +212,8 @@ def stated_model(splices: StatedSplices, free_length: float, *, name: str) -> St
     return StrainModel(name, "strain-ratio", lengths | {"splice_strain_ratio": ratio})
 
 
-def deployed_model(model: StrainModel, free_length: float | None) -> StrainModel:
+def _deployed_model(model: StrainModel, free_length: float | None) -> StrainModel:
     """Strain model of a tether that is deployed, from the one that was tested.
-
-    Parameters
-    ----------
-    model : StrainModel
-        Of the test.
-    free_length : float or None
-        Relaxed, of the deployed tether; None where it is the tested one. [m]
-
-    Returns
-    -------
-    model : StrainModel
-        Whose positions are lengths, thimble to thimble.
-
-    Raises
-    ------
-    DataError
-        If the method says nothing of the length of a tether, or of one of another length.
 
     Notes
     -----
@@ -304,7 +224,7 @@ def deployed_model(model: StrainModel, free_length: float | None) -> StrainModel
     Examples
     --------
     >>> model = StrainModel("T", "gauge-length", {"reference_position": 0.0, "gauge_length": 2.0})
-    >>> deployed_model(model, None).coefficients["reference_position"]
+    >>> _deployed_model(model, None).coefficients["reference_position"]
     2.0
     """
     if model.method == "extensometer":
@@ -330,36 +250,8 @@ _APART = 1e-9
 
 @dataclass(frozen=True)
 @read_only_arrays
-class AssemblyCurve:
-    """Tension of an assembly against its length; arrays have shape (n,), nodes of straight lines.
-
-    Parameters
-    ----------
-    total_length, tension : ndarray
-        End to end, both rising; the first is where the assembly goes slack, at zero. [m], [N]
-    standard_uncertainty : ndarray
-        Of the tension at one length: that of the curves, which all tethers share; both parts that
-        follow, together. [N]
-    random_standard_uncertainty : ndarray
-        Of the curves by themselves. [N]
-    component : tuple of Component, length n_components
-        Errors that the curves share with others.
-    contribution : ndarray, shape (n_components, n)
-        What each of them adds to the tension at one length, signed. [N]
-    tether_length : ndarray
-        Thimble to thimble, one for all. [m]
-    tether_tension : ndarray, shape (n_tethers, n)
-        Zero where a tether is slack. [N]
-    tether_strain : ndarray, shape (n_tethers, n)
-        Of the free length. [1]
-    slack_length : ndarray, shape (n_tethers,)
-        Length of the assembly below which each tether is slack. [m]
-    is_tested : ndarray of bool
-        Every tether is at a strain that a piece of its curve reaches.
-    is_join, is_moved : ndarray of bool
-        A tether is where pieces of its curve hand over; where the rule of rising has moved it, so
-        that its slope is that of the rule and of no piece.
-    """
+class _AssemblyCurve:
+    """Tension of an assembly against its length; arrays of shape (n,) are nodes."""
 
     total_length: Floats
     tension: Floats
@@ -413,27 +305,8 @@ class AssemblyCurve:
         return np.stack(rows)
 
 
-def assemble(tethers: Sequence[Tether], parts: Sequence[SeriesPart] = ()) -> AssemblyCurve:
+def _assemble(tethers: Sequence[_Tether], parts: Sequence[SeriesPart] = ()) -> _AssemblyCurve:
     """Tension of an assembly against its length.
-
-    Parameters
-    ----------
-    tethers : sequence of Tether, length n_tethers
-        Side by side between two bridles.
-    parts : sequence of SeriesPart, optional
-        In line with them.
-
-    Returns
-    -------
-    assembly : AssemblyCurve
-        To where the first tether, or part, is at the end of its curve.
-
-    Raises
-    ------
-    SettingsError
-        If there is no tether.
-    DataError
-        If a tether does not lengthen with tension, or is at its end before another one is taut.
 
     Notes
     -----
@@ -452,12 +325,12 @@ def assemble(tethers: Sequence[Tether], parts: Sequence[SeriesPart] = ()) -> Ass
 
     >>> from reduction.lines.composite import composite_curve
     >>> from reduction.lines.curve_pieces import CurvePiece
-    >>> from reduction.lines.assembly import equal_tethers
+    >>> from reduction.lines.assembly import _equal_tethers
     >>> from reduction.stages.strain.strain_model import StrainModel
     >>> at = np.linspace(0.1, 2.0, 20)
     >>> curve = composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
     >>> model = StrainModel("T", "gauge-length", {"reference_position": 1.0, "gauge_length": 1.0})
-    >>> two = assemble(equal_tethers(Tether(curve, model), 2), [SeriesPart("bridle", 0.5)])
+    >>> two = _assemble(_equal_tethers(_Tether(curve, model), 2), [SeriesPart("bridle", 0.5)])
     >>> print(two.slack_length, two.tension_at([1.5, 2.5]).round(6))
     [1.5 1.5] [  0. 200.]
     """
@@ -498,7 +371,7 @@ def assemble(tethers: Sequence[Tether], parts: Sequence[SeriesPart] = ()) -> Ass
     slack = np.interp([one.length[0] for one in own], nodes, total)
     random = spread[kept] * stiffness
     moved_by = shared.values["tension"].sum(axis=1)[:, kept] * stiffness
-    return AssemblyCurve(
+    return _AssemblyCurve(
         total_length=total,
         tension=tension,
         standard_uncertainty=combined_standard_uncertainty(moved_by, random),
@@ -536,7 +409,7 @@ class _Loaded:
         return Contributions(self.component, {"tension": rows.reshape(-1, length.size)})
 
 
-def _random(tethers: Sequence[Tether], spread: Floats) -> Floats:
+def _random(tethers: Sequence[_Tether], spread: Floats) -> Floats:
     """What is not shared with other curves: in full by tethers of one curve, else as squares."""
     curves = [id(one.curve) for one in tethers]
     of_curves = [
@@ -545,7 +418,7 @@ def _random(tethers: Sequence[Tether], spread: Floats) -> Floats:
     return np.asarray(np.sqrt(np.sum(np.square(of_curves), axis=0)))
 
 
-def _lengths(tether: Tether) -> _Loaded:
+def _lengths(tether: _Tether) -> _Loaded:
     """Length, strain, and uncertainty of the tension at one length, on nodes of tension."""
     curve = tether.curve
     fine = curve.tension[-1] * np.linspace(0.0, 1.0, _N_NODES) ** 2
@@ -582,29 +455,8 @@ def _has(curve: CompositeCurve, flags: Bools, strain: Floats) -> Bools:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class WorkingPoint:
-    """An assembly under a cycle of tension; arrays have the shape (...) of the points.
-
-    Parameters
-    ----------
-    mean_tension, peak_tension, minimum_tension : ndarray
-        Of the assembly. [N]
-    total_length, peak_length, minimum_length : ndarray
-        At these. [m]
-    stiffness : ndarray
-        Tension over length, between the ends of the cycle; the tangent where the amplitude is
-        zero. [N m-1]
-    apparent_spring_constant : ndarray
-        EA: stiffness times the length at which the assembly goes slack. [N]
-    tether_tension, peak_tether_tension, minimum_tether_tension : ndarray, shape (n_tethers, ...)
-        [N]
-    load_share : ndarray, shape (n_tethers, ...)
-        Of the mean tension. [1]
-    peak_share, minimum_share : ndarray, shape (n_tethers, ...)
-        Of the rated break strength of a tether; NaN where that is not known. [1]
-    is_tested : ndarray of bool
-        Both ends of the cycle are at strains that were tested.
-    """
+class _WorkingPoint:
+    """An assembly under a cycle of tension; arrays have the shape (...) of the points."""
 
     mean_tension: Floats
     peak_tension: Floats
@@ -623,36 +475,16 @@ class WorkingPoint:
     is_tested: Bools
 
 
-def working_point(
-    assembly: AssemblyCurve,
+def _working_point(
+    assembly: _AssemblyCurve,
     mean_tension: ArrayLike,
     tension_amplitude: ArrayLike = 0.0,
     *,
     rated_break_strength: float = float("nan"),
-) -> WorkingPoint:
+) -> _WorkingPoint:
     r"""Stiffness and loads of an assembly under cycles of tension.
 
     .. math:: EA = L_0 \, \frac{2 A}{L(T + A) - L(T - A)}
-
-    Parameters
-    ----------
-    assembly : AssemblyCurve
-        From `assemble`.
-    mean_tension, tension_amplitude : array_like, shape (...)
-        Of the assembly; the amplitude is half the range. [N]
-    rated_break_strength : float, optional
-        Of one tether; NaN where not known. [N]
-
-    Returns
-    -------
-    point : WorkingPoint
-        With the load of each tether.
-
-    Raises
-    ------
-    DataError
-        If a tether reaches zero tension, an amplitude is above its mean or negative, or the peak
-        is beyond the curves.
 
     Notes
     -----
@@ -669,7 +501,7 @@ def working_point(
     >>> at = np.linspace(0.1, 2.0, 20)
     >>> curve = composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
     >>> model = StrainModel("T", "gauge-length", {"reference_position": 1.0, "gauge_length": 1.0})
-    >>> point = working_point(assemble([Tether(curve, model)]), 100.0, 40.0)
+    >>> point = _working_point(_assemble([_Tether(curve, model)]), 100.0, 40.0)
     >>> print(point.total_length.round(6), point.apparent_spring_constant.round(6))
     2.0 100.0
     """
@@ -704,7 +536,7 @@ def working_point(
         assembly.is_tested[np.clip(np.searchsorted(assembly.tension, one), 0, None)]
         for one in (peak, least)
     ]
-    return WorkingPoint(
+    return _WorkingPoint(
         mean_tension=mean,
         peak_tension=peak,
         minimum_tension=least,
@@ -723,7 +555,7 @@ def working_point(
     )
 
 
-def _tension_at_slack(assembly: AssemblyCurve) -> float:
+def _tension_at_slack(assembly: _AssemblyCurve) -> float:
     """Tension of the assembly at which its longest tether goes slack."""
     longest = assembly.slack_length.max()
     return float(np.interp(longest, assembly.total_length, assembly.tension))
@@ -731,22 +563,8 @@ def _tension_at_slack(assembly: AssemblyCurve) -> float:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class LoadSharing:
-    """Worst loads of one tether over a tolerance of lengths; arrays have the shape (...).
-
-    Parameters
-    ----------
-    tension : ndarray
-        Of the assembly. [N]
-    equal_load : ndarray
-        Of each tether, where the lengths are equal. [N]
-    greatest_load : ndarray
-        Of one that is short, where all others are long. [N]
-    least_load : ndarray
-        Of one that is long, where all others are short; zero where it is slack. [N]
-    tension_at_slack : float
-        Of the assembly, at which that long one goes slack. [N]
-    """
+class _LoadSharing:
+    """Worst loads of one tether over a tolerance of lengths; arrays have the shape (...)."""
 
     tension: Floats
     equal_load: Floats
@@ -755,43 +573,16 @@ class LoadSharing:
     tension_at_slack: float
 
 
-def worst_sharing(
-    tether: Tether,
+def _worst_sharing(
+    tether: _Tether,
     n_tethers: int,
     tension: ArrayLike,
     *,
     free_length: float,
     tolerance: float,
     parts: Sequence[SeriesPart] = (),
-) -> LoadSharing:
+) -> _LoadSharing:
     """Greatest and least load of a tether in an assembly whose lengths have a tolerance.
-
-    Parameters
-    ----------
-    tether : Tether
-        As it was tested.
-    n_tethers : int
-        Two or more. [1]
-    tension : array_like, shape (...)
-        Of the assembly. [N]
-    free_length : float
-        Nominal, relaxed. [m]
-    tolerance : float
-        Of a free length: it is between 1 - tolerance and 1 + tolerance of the nominal. [1]
-    parts : sequence of SeriesPart, optional
-        In line; they see the sum, and do not change how it is shared.
-
-    Returns
-    -------
-    sharing : LoadSharing
-        At the same tensions.
-
-    Raises
-    ------
-    SettingsError
-        If there is one tether, or the tolerance is not between 0 and 1.
-    DataError
-        If a tension is not positive, or beyond the curves.
 
     Notes
     -----
@@ -809,7 +600,7 @@ def worst_sharing(
     >>> at = np.linspace(0.1, 2.0, 20)
     >>> curve = composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
     >>> model = StrainModel("T", "gauge-length", {"reference_position": 1.0, "gauge_length": 1.0})
-    >>> found = worst_sharing(Tether(curve, model), 2, 200.0, free_length=1.0, tolerance=0.01)
+    >>> found = _worst_sharing(_Tether(curve, model), 2, 200.0, free_length=1.0, tolerance=0.01)
     >>> print(found.greatest_load.round(2), found.least_load.round(2))
     102.0 98.0
     """
@@ -832,7 +623,7 @@ def worst_sharing(
     for sign in (-1.0, 1.0):
         lengths = np.full(n_tethers, free_length * (1 - sign * tolerance))
         lengths[0] = free_length * (1 + sign * tolerance)
-        assembly = assemble(unequal_tethers(tether, lengths), parts)
+        assembly = _assemble(_unequal_tethers(tether, lengths), parts)
         if np.any(load > assembly.tension[-1]):
             raise DataError(
                 "the tension is beyond the curves of the assembly",
@@ -840,7 +631,7 @@ def worst_sharing(
                 needed=f"at most {assembly.tension[-1]:.4g} N",
             )
         rows.append(assembly.loads_at(load)[0])
-    return LoadSharing(load, load / n_tethers, rows[0], rows[1], _tension_at_slack(assembly))
+    return _LoadSharing(load, load / n_tethers, rows[0], rows[1], _tension_at_slack(assembly))
 
 
 _SPAN = 0.05
@@ -875,40 +666,22 @@ class WorkingState:
     """
 
     level: WorkingLevel
-    point: WorkingPoint
+    point: _WorkingPoint
     strain: Floats
     standard_uncertainty: float
     random_standard_uncertainty: float
     shared_standard_uncertainty: float
     secant_spring_constant: float
     is_moved: bool
-    sharing: LoadSharing | None
+    sharing: _LoadSharing | None
 
 
 @dataclass(frozen=True)
 @read_only_arrays
-class DeployedAssembly:
-    """An assembly and its work; arrays have the shape (n,) of the nodes of its curve.
+class _DeployedAssembly:
+    """An assembly and its work; arrays have the shape (n,) of the nodes of its curve."""
 
-    Parameters
-    ----------
-    assembly : AssemblyCurve
-        Tension against length.
-    strain : ndarray
-        Of the assembly: length over that at which it goes slack, less one. [1]
-    apparent_spring_constant : ndarray
-        EA, tangent: slope of tension on that strain. [N]
-    secant_spring_constant : ndarray
-        EA over 5 % of the length that the assembly has there, to each side. [N]
-    free_length : tuple of float
-        Of each tether, relaxed; NaN where its strain model knows none. [m]
-    working : tuple of WorkingState
-        One a level.
-    notes : tuple of str
-        What is not in it.
-    """
-
-    assembly: AssemblyCurve
+    assembly: _AssemblyCurve
     strain: Floats
     apparent_spring_constant: Floats
     secant_spring_constant: Floats
@@ -925,7 +698,7 @@ class DeployedLine:
     """
 
     name: str
-    deployed: DeployedAssembly
+    deployed: _DeployedAssembly
     source: PieceSource
     curve: CompositeCurve
     splices: str
@@ -957,48 +730,13 @@ def deploy(
     tolerance: float = float("nan"),
     rated_break_strength: float = float("nan"),
     has_stated_splices: bool = False,
-) -> DeployedAssembly:
-    """Put tethers side by side and parts in line, and work them.
-
-    Parameters
-    ----------
-    curve : CompositeCurve
-        Tension against strain of the free length of a tether. [SI]
-    model : StrainModel
-        How the length of a tether follows from strain and tension.
-    n_tethers : int
-        Side by side. [1]
-    free_lengths : sequence of float
-        Relaxed, one a tether; that of the model for all where it is empty. [m]
-    parts : sequence of SeriesPart
-        In line.
-    levels : sequence of WorkingLevel
-        Where the assembly stands.
-    tolerance : float
-        Of a free length, of tethers that are all alike; NaN where none is stated. [1]
-    rated_break_strength : float
-        Of one tether; NaN where not known. [N]
-    has_stated_splices : bool
-        The law of the splices is stated, and not of the tests of the curve.
-
-    Returns
-    -------
-    deployed : DeployedAssembly
-        In SI.
-
-    Raises
-    ------
-    SettingsError
-        If there is no tether.
-    DataError
-        If tethers of these lengths cannot be, or a level is beyond the curve or lets a tether go
-        slack; names the level by its place, ``working.1`` the first.
-    """
+) -> _DeployedAssembly:
+    """Put tethers side by side and parts in line, and work them."""
     first = free_lengths[0] if free_lengths else None
-    tether = Tether(curve, deployed_model(model, first), is_stated=has_stated_splices)
+    tether = _Tether(curve, _deployed_model(model, first), is_stated=has_stated_splices)
     alike = len(set(free_lengths)) < 2
-    tethers = equal_tethers(tether, n_tethers) if alike else unequal_tethers(tether, free_lengths)
-    assembly = assemble(tethers, parts)
+    tethers = _equal_tethers(tether, n_tethers) if alike else _unequal_tethers(tether, free_lengths)
+    assembly = _assemble(tethers, parts)
     slack = float(assembly.total_length[0])
     lengths = tuple(one.model.relaxed_length for one in tethers)
     states = []
@@ -1010,7 +748,7 @@ def deploy(
                 f"working.{number}: {error.problem}", found=error.found, needed=error.needed,
                 hint=error.hint,
             ) from error  # fmt: skip
-    return DeployedAssembly(
+    return _DeployedAssembly(
         assembly=assembly,
         strain=assembly.total_length / slack - 1,
         apparent_spring_constant=slack * np.gradient(assembly.tension, assembly.total_length),
@@ -1021,7 +759,7 @@ def deploy(
     )
 
 
-def _secant(assembly: AssemblyCurve, length: Floats) -> Floats:
+def _secant(assembly: _AssemblyCurve, length: Floats) -> Floats:
     """EA over a span about a length, cut off at the ends of the curve. [N]."""
     low = np.maximum((1 - _SPAN) * length, assembly.total_length[0])
     high = np.minimum((1 + _SPAN) * length, assembly.total_length[-1])
@@ -1030,20 +768,20 @@ def _secant(assembly: AssemblyCurve, length: Floats) -> Floats:
 
 
 def _state(
-    assembly: AssemblyCurve,
-    tether: Tether,
+    assembly: _AssemblyCurve,
+    tether: _Tether,
     level: WorkingLevel,
     parts: Sequence[SeriesPart],
     tolerance: float,
     rated_break_strength: float,
 ) -> WorkingState:
     mean = _tension(assembly, level)
-    point = working_point(
+    point = _working_point(
         assembly, mean, level.tension_amplitude, rated_break_strength=rated_break_strength
     )
     sharing = None
     if np.isfinite(tolerance):
-        sharing = worst_sharing(
+        sharing = _worst_sharing(
             tether,
             assembly.n_tethers,
             mean,
@@ -1072,13 +810,13 @@ def _state(
     )
 
 
-def _node(assembly: AssemblyCurve, length: float) -> int:
+def _node(assembly: _AssemblyCurve, length: float) -> int:
     """The node at a length, or the next one above: flags are of the way to it."""
     place = int(np.searchsorted(assembly.total_length, length))
     return min(place, assembly.total_length.size - 1)
 
 
-def _tension(assembly: AssemblyCurve, level: WorkingLevel) -> float:
+def _tension(assembly: _AssemblyCurve, level: WorkingLevel) -> float:
     """Tension at a level; refused where the assembly is slack or its curve ends. [N]."""
     if level.quantity == "tension":
         return level.value
@@ -1095,7 +833,7 @@ def _tension(assembly: AssemblyCurve, level: WorkingLevel) -> float:
     return float(np.interp(level.value, axis, assembly.tension))
 
 
-def _notes(assembly: AssemblyCurve, model: StrainModel) -> tuple[str, ...]:
+def _notes(assembly: _AssemblyCurve, model: StrainModel) -> tuple[str, ...]:
     notes = [
         "weight, buoyancy, bending and twist of the assembly are not in it; its bridles stay "
         "parallel",

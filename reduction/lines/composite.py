@@ -62,31 +62,10 @@ from reduction.record.measurement import Bools, Floats, Integers, read_only_arra
 from reduction.stages.strain.strain_model import StrainModel
 
 
-def between_pieces(
+def _between_pieces(
     pieces: Sequence[CurvePiece], tension: Floats, variance: Floats, rows: Floats, known: Bools
 ) -> dict[PieceKind, float]:
     """Relative deviation between pieces of each kind, by pairs, less what their errors explain.
-
-    Parameters
-    ----------
-    pieces : sequence of CurvePiece, length n_pieces
-        Of any kinds.
-    tension, variance : ndarray, shape (n_pieces, n)
-        On one grid, the variance of the random part. [N], [N2]
-    rows : ndarray, shape (n_components, n_pieces, n)
-        What each shared error adds to the tension, signed. [N]
-    known : ndarray of bool, shape (n_pieces, n)
-        Where a piece is. [1]
-
-    Returns
-    -------
-    between : dict of str to float
-        By kind; NaN where no two of it overlap. [1]
-
-    Raises
-    ------
-    IndexError
-        If the arrays are not of these pieces.
 
     Notes
     -----
@@ -103,7 +82,7 @@ def between_pieces(
     >>> seen = np.ones((2, 2), dtype=bool)
     >>> one_cell, two_cells = 0.07 * load[None], 0.07 * load * np.eye(2)[:, :, None]
     >>> for rows in (one_cell, two_cells):
-    ...     print(round(between_pieces(two, load, 0 * load, rows, seen)["cyclic"], 4))
+    ...     print(round(_between_pieces(two, load, 0 * load, rows, seen)["cyclic"], 4))
     0.0707
     0.0112
     """
@@ -129,27 +108,8 @@ def between_pieces(
     }
 
 
-def variance_apart(pieces: Sequence[CurvePiece], strain: Floats, tension: Floats) -> Floats:
+def _variance_apart(pieces: Sequence[CurvePiece], strain: Floats, tension: Floats) -> Floats:
     """Variance of each piece by shared errors, without the part that all pieces have alike.
-
-    Parameters
-    ----------
-    pieces : sequence of CurvePiece, length n_pieces
-        Of one curve.
-    strain : ndarray, shape (n,)
-        The grid. [1]
-    tension : ndarray, shape (n_pieces, n)
-        On it, zero where a piece is not. [N]
-
-    Returns
-    -------
-    variance : ndarray, shape (n_pieces, n)
-        Zero of what is a load cell of all of them. [N2]
-
-    Raises
-    ------
-    ValueError
-        If the grid is not that of the tensions.
 
     Notes
     -----
@@ -169,7 +129,7 @@ def variance_apart(pieces: Sequence[CurvePiece], strain: Floats, tension: Floats
     >>> good = CurvePiece("T-1", "cyclic", "mean", at, load, 0 * at, (both,), 0.03 * load[None])
     >>> bad = CurvePiece("T-2", "cyclic", "mean", at, load, 0 * at, (both, cell),
     ...     np.stack([0.03 * load, 0.05 * load]))
-    >>> print(np.sqrt(variance_apart([good, bad], at, np.stack([load, load]))))
+    >>> print(np.sqrt(_variance_apart([good, bad], at, np.stack([load, load]))))
     [[0.  0. ]
      [2.5 5. ]]
     """
@@ -179,31 +139,10 @@ def variance_apart(pieces: Sequence[CurvePiece], strain: Floats, tension: Floats
     return np.asarray(((share - common[:, None]) ** 2).sum(axis=0) * tension**2)
 
 
-def beside_loops(
+def _beside_loops(
     pieces: Sequence[CurvePiece], strain: Floats, tension: Floats, known: Bools
 ) -> Floats:
     """Relative difference of first loadings to the kinds before them, over strain.
-
-    Parameters
-    ----------
-    pieces : sequence of CurvePiece, length n_pieces
-        Kind by kind, those that go before first.
-    strain : ndarray, shape (n,)
-        The grid. [1]
-    tension : ndarray, shape (n_pieces, n)
-        On it, zero where a piece is not. [N]
-    known : ndarray of bool, shape (n_pieces, n)
-        Where a piece is. [1]
-
-    Returns
-    -------
-    beside : ndarray, shape (n,)
-        On straight lines between the strains where both are; NaN where they never are. [1]
-
-    Raises
-    ------
-    IndexError
-        If the arrays are not of these pieces.
 
     Notes
     -----
@@ -215,7 +154,7 @@ def beside_loops(
     >>> load = np.array([110 * at, 90 * at])
     >>> pair = [CurvePiece("T", kind, "ascending", at, one, 0 * at)
     ...     for kind, one in zip(("cyclic", "first-loading"), load)]
-    >>> print(beside_loops(pair, at, load, load > 0).round(6))
+    >>> print(_beside_loops(pair, at, load, load > 0).round(6))
     [0.2 0.2]
     """
     own = np.array([one.kind == "first-loading" for one in pieces])
@@ -249,33 +188,8 @@ _LEAST_SLOPE = 1e-6
 
 @dataclass(frozen=True)
 @read_only_arrays
-class Blend:
-    """Pieces as one curve on a grid; arrays have shape (n,), of intervals (n - 1,).
-
-    Parameters
-    ----------
-    strain, tension, variance : ndarray
-        Nodes that a piece reaches, the rising curve [N], its variance but for what is shared [N2].
-    component : tuple of Component, length n_components
-        Errors that pieces share.
-    contribution : ndarray, shape (n_components, n)
-        What each of them adds to the rising curve, signed. [N]
-    variance_apart : ndarray
-        By which a piece may lie off the curve: without what all pieces share. [N2]
-    change : ndarray
-        Of the rising curve from the weighted mean. [N]
-    piece : ndarray of int
-        With the greatest weight.
-    is_covered, is_join : ndarray of bool
-        Of each interval: a piece reaches over it; more than one has a say.
-    between_pieces : dict of str to float
-        Relative deviation between pieces of each kind; NaN without an overlap. [1]
-    beside_loops : float
-        Greatest relative difference of first loadings to the kinds before them; NaN where these do
-        not overlap. [1]
-    farthest : ndarray
-        Of the rising curve from a piece that has a say there. [N]
-    """
+class _Blend:
+    """Pieces as one curve on a grid; arrays have shape (n,), of intervals (n - 1,)."""
 
     strain: Floats
     tension: Floats
@@ -292,31 +206,10 @@ class Blend:
     farthest: Floats
 
 
-def blend_pieces(
+def _blend_pieces(
     pieces: Sequence[CurvePiece], *, taper: float, least_slope: float, n_points: int
-) -> Blend:
+) -> _Blend:
     """Weighted mean of pieces, and the nearest curve that rises.
-
-    Parameters
-    ----------
-    pieces : sequence of CurvePiece
-        Kind by kind, those that go before first. [SI]
-    taper : float
-        Share of a piece at each end over which its weight falls to zero. [1]
-    least_slope : float
-        Share of the least slope of the pieces there, below which the curve may not fall. [1]
-    n_points : int
-        Of the grid. [1]
-
-    Returns
-    -------
-    blend : Blend
-        On the nodes that a piece reaches. [SI]
-
-    Raises
-    ------
-    DataError
-        Never by itself: pieces are checked when they are made.
 
     Notes
     -----
@@ -335,17 +228,17 @@ def blend_pieces(
     --------
     >>> at = np.array([0.5, 1.0])
     >>> one = CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)
-    >>> blend_pieces([one], taper=0.5, least_slope=0.5, n_points=3).tension
+    >>> _blend_pieces([one], taper=0.5, least_slope=0.5, n_points=3).tension
     array([ 50.,  75., 100.])
     """
     strain, is_covered = _grid(pieces, n_points)
     tension, variance, fade = _on_grid(pieces, strain, taper)
     shared = stacked([one.shared_at(strain) for one in pieces])
     rows = shared.values["tension"] * (fade > 0)
-    apart = variance_apart(pieces, strain, tension)
+    apart = _variance_apart(pieces, strain, tension)
     simple = (fade * tension).sum(axis=0) / fade.sum(axis=0)
-    between = between_pieces(pieces, tension, variance, rows, fade > 0)
-    beside = beside_loops(pieces, strain, tension, fade > 0)
+    between = _between_pieces(pieces, tension, variance, rows, fade > 0)
+    beside = _beside_loops(pieces, strain, tension, fade > 0)
     is_first = np.array([one.kind == "first-loading" for one in pieces])
     # of the kind of each piece: rises from slack differ by far more than cycles do
     own_kind = np.nan_to_num([between[one.kind] for one in pieces])[:, None]
@@ -361,7 +254,7 @@ def blend_pieces(
     off = (share * (tension - mean) ** 2).sum(axis=0)
     own = (share * variance).sum(axis=0)
     own += np.maximum(off, (share * differs**2).sum(axis=0)) + (rising - mean) ** 2
-    return Blend(
+    return _Blend(
         strain=strain,
         tension=rising,
         variance=own,
@@ -487,23 +380,8 @@ _FAR = 2.0
 _LITTLE = 0.03
 
 
-def doubt_of(blend: Blend) -> str:
+def _doubt_of(blend: _Blend) -> str:
     """Where the curve is not among its pieces by its own uncertainty, in words.
-
-    Parameters
-    ----------
-    blend : Blend
-        Of the pieces. [SI]
-
-    Returns
-    -------
-    doubt : str
-        Empty where there is none.
-
-    Raises
-    ------
-    ValueError
-        If the blend has no nodes.
 
     Notes
     -----
@@ -511,11 +389,11 @@ def doubt_of(blend: Blend) -> str:
 
     Examples
     --------
-    >>> from reduction.lines.composite import blend_pieces
+    >>> from reduction.lines.composite import _blend_pieces
     >>> at = np.array([0.5, 1.0])
     >>> pieces = [CurvePiece("T", "static", "ascending", at, load * at, 0 * at)
     ...     for load in (*[100] * 5, 200)]
-    >>> print(doubt_of(blend_pieces(pieces, taper=0.5, least_slope=0.5, n_points=3))[:42])
+    >>> print(_doubt_of(_blend_pieces(pieces, taper=0.5, least_slope=0.5, n_points=3))[:42])
     up to 2.24 standard uncertainties from a p
     """
     # near slack a little strain is any share of the tension
@@ -531,31 +409,10 @@ def doubt_of(blend: Blend) -> str:
     )
 
 
-def notes_of(
-    pieces: Sequence[CurvePiece], rule: CompositeRule, blend: Blend, moved: Bools
+def _notes_of(
+    pieces: Sequence[CurvePiece], rule: CompositeRule, blend: _Blend, moved: Bools
 ) -> tuple[str, ...]:
     """Rule, range, joins, gaps, what is between the pieces, and the greatest change.
-
-    Parameters
-    ----------
-    pieces : sequence of CurvePiece
-        That were used. [SI]
-    rule : CompositeRule
-        By which they became one.
-    blend : Blend
-        Of them. [SI]
-    moved : ndarray of bool, shape (n,)
-        Nodes that are not the mean of the pieces. [1]
-
-    Returns
-    -------
-    notes : tuple of str
-        In that order.
-
-    Raises
-    ------
-    IndexError
-        If the flags are not of these nodes.
 
     Notes
     -----
@@ -563,7 +420,7 @@ def notes_of(
 
     Examples
     --------
-    See `reduction.lines.composite.composite_curve`.
+    See `reduction.lines.composite._composite_curve`.
     """
     named = Counter((one.kind, one.branch, one.name) for one in pieces)
     used = ", ".join(
@@ -699,27 +556,10 @@ class CompositeCurve:
         )
 
 
-def composite_curve(
+def _composite_curve(
     pieces: Sequence[CurvePiece], *, rule: CompositeRule | None = None
 ) -> CompositeCurve:
-    r"""Monotone curve of tension against strain from zero, nearest to all pieces.
-
-    Parameters
-    ----------
-    pieces : sequence of CurvePiece
-        Of one line or tether, in one condition. [SI]
-    rule : CompositeRule, optional
-        Which kind goes before which, and how pieces fade.
-
-    Returns
-    -------
-    curve : CompositeCurve
-        With joins, gaps and the change that monotony asked for.
-
-    Raises
-    ------
-    DataError
-        If no piece is of a kind that the rule names.
+    """Monotone curve of tension against strain from zero, nearest to all pieces.
 
     Notes
     -----
@@ -748,7 +588,7 @@ def composite_curve(
     >>> low, high = np.linspace(0.2, 1.0, 9), np.linspace(0.8, 2.0, 9)
     >>> pieces = [CurvePiece(name, "cyclic", "mean", at, 100 * at, 0 * at + 0.1)
     ...     for name, at in (("T-1", low), ("T-2", high))]
-    >>> curve = composite_curve(pieces)
+    >>> curve = _composite_curve(pieces)
     >>> print(curve.tension_at([0.1, 0.9, 2.0]).round(6), curve.is_gap.sum())
     [ 10.  90. 200.] 2
     """
@@ -760,7 +600,7 @@ def composite_curve(
             found=", ".join(sorted({one.kind for one in pieces})) or "no pieces",
             needed=" or ".join(rule.precedence),
         )
-    blend = blend_pieces(
+    blend = _blend_pieces(
         used, taper=rule.taper, least_slope=rule.least_slope, n_points=rule.n_points
     )
     moved = np.abs(blend.change) > _MOVED * blend.tension
@@ -799,8 +639,8 @@ def composite_curve(
         ),
         piece_names=tuple(one.name for one in used),
         piece_words=tuple(one.words for one in used),
-        doubt=doubt_of(blend),
-        notes=notes_of(used, rule, blend, moved),
+        doubt=_doubt_of(blend),
+        notes=_notes_of(used, rule, blend, moved),
     )
 
 
@@ -946,7 +786,7 @@ def compose(source: PieceSource, rule: CompositeRule) -> CompositeCurve:
 
     Notes
     -----
-    See `reduction.lines.composite.composite_curve`.
+    See `reduction.lines.composite._composite_curve`.
 
     References
     ----------
@@ -962,7 +802,7 @@ def compose(source: PieceSource, rule: CompositeRule) -> CompositeCurve:
     75.0
     """
     try:
-        return composite_curve(source.pieces, rule=rule)
+        return _composite_curve(source.pieces, rule=rule)
     except DataError as error:
         raise DataError(
             f"{source.name}: {error.problem}", found=error.found, needed=error.needed,

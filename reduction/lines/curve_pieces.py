@@ -139,33 +139,6 @@ def pieces_of_branches(
 ) -> tuple[CurvePiece, ...]:
     """Tension of both branches on one grid of strain, as an archive holds it, as pieces.
 
-    Parameters
-    ----------
-    strain : array_like, shape (n,)
-        Rising. [1]
-    tension, random_standard_uncertainty : array_like, shape (2, n)
-        Ascending, then descending; NaN where not known. [N]
-    name : str
-        Of the pieces.
-    branch : {"ascending", "descending", "mean"}, optional
-        A first rise has only the first one.
-    kind : {"cyclic", "first-loading"}, optional
-        What the curves are.
-    shared : Contributions, optional
-        To ``tension``, shape (n_components, 2, n); NaN where nothing is known adds nothing. [N]
-
-    Returns
-    -------
-    pieces : tuple of CurvePiece
-        One for each range without a gap; none where nothing is known.
-
-    Raises
-    ------
-    SettingsError
-        If another branch than the ascending one is asked of a first rise.
-    DataError
-        If there are not two branches on the grid, or strain does not rise.
-
     Notes
     -----
     The mean branch runs through the middle of the loop ([1]_, Figure 21): it is neither way of
@@ -272,21 +245,6 @@ class CompositeRule:
 def mean_piece(ascending: CurvePiece, descending: CurvePiece) -> CurvePiece:
     """Mean of both branches of a static test, where both were read.
 
-    Parameters
-    ----------
-    ascending, descending : CurvePiece
-        Of one test.
-
-    Returns
-    -------
-    piece : CurvePiece
-        On the strains of both that lie between the ends of both. [SI]
-
-    Raises
-    ------
-    DataError
-        If the branches do not overlap.
-
     Notes
     -----
     Straight lines between the rows.  What both branches share is in their mean as it is.  Neither
@@ -335,29 +293,6 @@ def piece_of_pull(
     .. math:: u(T) = u(\varepsilon) \, \frac{d T}{d \varepsilon}, \qquad
         c_k(T) = -c_k(\varepsilon) \, \frac{d T}{d \varepsilon}
 
-    Parameters
-    ----------
-    strain : array_like, shape (n,)
-        Of the fit, on a grid of tension; NaN where not known. [1]
-    tension : array_like, shape (n,)
-        The grid, rising. [N]
-    strain_uncertainty : array_like, shape (n,)
-        Standard, of the strain, by what is of this pull alone. [1]
-    name : str
-        Of the piece.
-    shared : Contributions, optional
-        To ``strain`` at the tensions of the grid, shape (n_components, n). [1]
-
-    Returns
-    -------
-    piece : CurvePiece
-        Where strain and tension are above zero, up to where the fit turns back. [SI]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up, or fewer than two points are left.
-
     Notes
     -----
     A slow pull ([3]_) is a static test that only rises; the loads of [2]_ were hung.
@@ -398,27 +333,6 @@ def piece_of_steps(
     r"""One branch of a static test as a piece.
 
     .. math:: u(T) = T \, u(E_s) / E_s, \qquad c_k(T) = T \, c_k(E_s) / E_s
-
-    Parameters
-    ----------
-    steps : StepwiseResult
-        Weights and lengths. [SI]
-    name : str
-        Of the piece.
-    branch : {"ascending", "descending"}, optional
-        Weights added or taken off.
-    shared : Contributions, optional
-        To ``secant_modulus``, shape (n_components, n_steps). [Pa]
-
-    Returns
-    -------
-    piece : CurvePiece
-        Rows that contradict themselves, and rows that do not rise in strain, are left out.
-
-    Raises
-    ------
-    DataError
-        If fewer than two rows are left.
 
     Notes
     -----

@@ -73,35 +73,7 @@ FORMATS = (*_TABLES, *FORMS)
 def export_line(
     line: ExportLine, to: str, path: Path, *, form: str | None = None, units: UnitSystem = "si"
 ) -> list[Path]:
-    """Write a line in a format.
-
-    Parameters
-    ----------
-    line : ExportLine
-        What is exported.
-    to : str
-        One of `FORMATS`.
-    path : pathlib.Path
-        The file. What it names stands beside it, its name begins with that of the file.
-    form : str, optional
-        One of `FORMS` of the format; the first of them where it is not given.
-    units : {"si", "us"}
-        Of csv, json, latex and markdown; the others are SI.
-
-    Returns
-    -------
-    paths : list of pathlib.Path
-        What was written, ``path`` last.
-
-    Raises
-    ------
-    SettingsError
-        If the format or the form is not known, or the line has not what the format needs.
-    DataError
-        If the curve cannot be exported.
-    ArchiveError
-        If the disk refuses.
-    """
+    """Write a line in a format."""
     if to in _TABLES:
         _refuse_form(to, form, ())
         return export_table(curve_table(line), to, path, units=units)
@@ -188,28 +160,7 @@ _POINTS = {
 
 
 def closeness_of(line: ExportLine, to: str, form: str | None) -> tuple[str, ...]:
-    """What is said of the errors of a curve in a format.
-
-    Parameters
-    ----------
-    line : ExportLine
-        What is exported.
-    to : str
-        The format.
-    form : str or None
-        Of it.
-
-    Returns
-    -------
-    words : tuple of str
-        Empty where every point is written, or no curve is; DOUBTFUL where a tension is off by more
-        than a twentieth of itself.
-
-    Raises
-    ------
-    DataError
-        If the curve cannot be exported.
-    """
+    """What is said of the errors of a curve in a format."""
     if to not in _POINTS or form in ("static-dynamic", "load-dependent", "syrope", "library"):
         return ()
     is_table = to != "whoi-cable" or form == "table"

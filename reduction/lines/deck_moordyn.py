@@ -89,22 +89,7 @@ def one_line(text: str) -> str:
 
 
 def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) -> list[str]:
-    """Header of a file, without the signs that make it a remark there.
-
-    Parameters
-    ----------
-    line : ExportLine
-        What is exported.
-    curve : ThinnedCurve, optional
-        As it stands in the file; None where no curve does.
-    *remarks : str
-        Of the format.
-
-    Returns
-    -------
-    lines : list of str
-        One sentence each, broken at 100 characters.
-    """
+    """Header of a file, without the signs that make it a remark there."""
     told = [f"{line.name}, by reduction {__version__}"]
     if line.is_synthetic:
         told.append("SYNTHETIC: made from a formula, nothing was tested")
@@ -166,7 +151,7 @@ def segment_length(line: ExportLine) -> float:
     return _length(line) / _SEGMENTS
 
 
-def line_type(line: ExportLine, stiffness: str, damping: str) -> str:
+def _line_type(line: ExportLine, stiffness: str, damping: str) -> str:
     """Return the row of the line types."""
     water = line.hydrodynamics
     numbers = (water.normal_drag, water.normal_added_mass, water.axial_drag, water.axial_added_mass)
@@ -175,7 +160,7 @@ def line_type(line: ExportLine, stiffness: str, damping: str) -> str:
     return " ".join((*row, *map(number, numbers)))
 
 
-def deck(
+def _deck(
     line: ExportLine,
     row: str,
     head: list[str],
@@ -186,33 +171,7 @@ def deck(
     conditions: tuple[str, ...] = (),
     program: str = "MoorDyn",
 ) -> str:
-    """A whole input file: one line between two points, with a strain that it may have.
-
-    Parameters
-    ----------
-    line : ExportLine
-        For its name.
-    row : str
-        Of `line_type`.
-    head : list of str
-        Front matter.
-    strain : float
-        At the start. [1]
-    stiffness : float
-        Greatest slope of tension over strain; it limits the time step. [N]
-    damping : float
-        Of the fast spring; it does so too. 0 where it is numerical. [N s]
-    conditions : tuple of str
-        Section of initial conditions, where the form needs one.
-    program : str
-        That the first line names; no grammar reads it.
-
-    Returns
-    -------
-    text : str
-        Point 1 is fixed, point 2 is coupled; the unstretched length of the line, 10 m where it
-        has none. Gravity is left out, so that the tension is that of the strain.
-    """
+    """A whole input file: one line between two points, with a strain that it may have."""
     length = _length(line)
     segments, step = _steps(line.needed("linear_density"), stiffness, damping, segment_length(line))
     # the upper end stays under water however long the line is
@@ -277,7 +236,7 @@ NUMERICAL_DAMPING = -1.0
 _FAST_SHARE = 0.1
 
 
-def table_text(line: ExportLine, curve: ThinnedCurve) -> str:
+def _table_text(line: ExportLine, curve: ThinnedCurve) -> str:
     """Look-up table: three lines of header, rows with one blank, no line end at the end."""
     low, high = line.tested
     where = (
@@ -299,25 +258,6 @@ def table_text(line: ExportLine, curve: ThinnedCurve) -> str:
 def fast_damping(stiffness: float, linear_density: float, apart: float) -> float:
     """Numerical damping of the fast spring, a tenth of critical for the segments of a deck. [N s].
 
-    Parameters
-    ----------
-    stiffness : float
-        Of the fast spring. [N]
-    linear_density : float
-        In air. [kg m-1]
-    apart : float
-        Length of a segment. [m]
-
-    Returns
-    -------
-    damping : float
-        [N s]
-
-    Raises
-    ------
-    ValueError
-        If one is negative.
-
     Examples
     --------
     >>> fast_damping(5e4, 0.5, 2.0)
@@ -328,28 +268,6 @@ def fast_damping(stiffness: float, linear_density: float, apart: float) -> float
 
 def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -> dict[str, str]:
     """Files of a line type for MoorDyn, the deck first.
-
-    Parameters
-    ----------
-    line : ExportLine
-        What is exported.
-    stem : str
-        Of the names of the files beside the deck.
-    form : {"table", "static-dynamic", "load-dependent", "syrope"}
-        ``table``: the curve. ``static-dynamic``: EA_s|EA_d. ``load-dependent``:
-        EA_s|alpha|beta. ``syrope``: working curves under the original one.
-
-    Returns
-    -------
-    files : dict of str to str
-        Text by name; the key of the deck is empty.
-
-    Raises
-    ------
-    SettingsError
-        If the line has not what the form needs, or the form is not known.
-    DataError
-        If the curve cannot be exported.
 
     Notes
     -----
@@ -405,9 +323,9 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
         "m, numerical, not measured; without it the integration grows",
     )
     return {
-        "": deck(
+        "": _deck(
             line,
-            line_type(line, stiffness, damping),
+            _line_type(line, stiffness, damping),
             head,
             strain=line.strain[-1] / 2,
             stiffness=part.fast_stiffness,
@@ -450,11 +368,11 @@ def _table_files(line: ExportLine, stem: str) -> dict[str, str]:
         "measured",
         f"{table} belongs beside this file",
     )
-    row = line_type(line, table, number(NUMERICAL_DAMPING))
+    row = _line_type(line, table, number(NUMERICAL_DAMPING))
     steepest = float(np.max(np.diff(curve.tension) / np.diff(curve.strain)))
     return {
-        "": deck(line, row, head, strain=line.strain[-1] / 2, stiffness=steepest),
-        table: table_text(line, curve),
+        "": _deck(line, row, head, strain=line.strain[-1] / 2, stiffness=steepest),
+        table: _table_text(line, curve),
     }
 
 
@@ -469,7 +387,7 @@ def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
     curve = thin_curve(part.strain, part.tension, most=MOST_POINTS)
     working, settings = f"{stem}_owc.dat", f"{stem}_syrope.dat"
     alpha, beta = part.dynamic_stiffness, part.dynamic_stiffness_per_mean_tension
-    row = line_type(
+    row = _line_type(
         line,
         f"SYROPE:{settings}|{number(alpha)}|{number(beta)}",
         f"{number(part.slow_damping)}|{number(part.fast_damping)}",
@@ -489,7 +407,7 @@ def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
         f"{settings} and {working} belong beside this file",
     )
     return {
-        "": deck(
+        "": _deck(
             line,
             row,
             head,
@@ -499,7 +417,7 @@ def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
             conditions=conditions,
         ),
         settings: _syrope_text(part, working),
-        working: table_text(line, curve),
+        working: _table_text(line, curve),
     }
 
 
@@ -518,30 +436,7 @@ MoorPyForm = Literal["table", "library"]
 
 
 def moorpy_files(line: ExportLine, stem: str, *, form: MoorPyForm = "table") -> dict[str, str]:
-    """Files of a line type for MoorPy, the deck or the library first.
-
-    Parameters
-    ----------
-    line : ExportLine
-        What is exported.
-    stem : str
-        Of the name of the table.
-    form : {"table", "library"}
-        ``table``: a deck with the curve. ``library``: YAML, static and dynamic stiffness over the
-        break strength; linear only.
-
-    Returns
-    -------
-    files : dict of str to str
-        Text by name; the key of the deck or library is empty.
-
-    Raises
-    ------
-    SettingsError
-        If the line has not what the form needs, or the form is not known.
-    DataError
-        If the curve cannot be exported.
-    """
+    """Files of a line type for MoorPy, the deck or the library first."""
     if form == "library":
         return {"": _library(line)}
     if form != "table":
@@ -549,7 +444,7 @@ def moorpy_files(line: ExportLine, stem: str, *, form: MoorPyForm = "table") -> 
             "the form of a MoorPy line is not known", found=repr(form), needed="table or library"
         )
     curve, table = thin_curve(line.strain, line.tension, most=MOST_POINTS), f"{stem}_moorpy.txt"
-    row = line_type(line, f"|{table}|", number(NUMERICAL_DAMPING))
+    row = _line_type(line, f"|{table}|", number(NUMERICAL_DAMPING))
     head = header_lines(
         line,
         curve,
@@ -559,10 +454,10 @@ def moorpy_files(line: ExportLine, stem: str, *, form: MoorPyForm = "table") -> 
         "with a table MoorPy takes the line as straight, and halves its weight to the ends",
     )
     steepest = float(np.max(np.diff(curve.tension) / np.diff(curve.strain)))
-    text = deck(
+    text = _deck(
         line, row, head, strain=float(line.strain[-1]) / 2, stiffness=steepest, program="MoorPy"
     )
-    return {"": text, table: f"{table_text(line, curve)}\n---"}
+    return {"": text, table: f"{_table_text(line, curve)}\n---"}
 
 
 def _library(line: ExportLine) -> str:
@@ -617,27 +512,7 @@ _ABOUT_GRAVITY = "gravity is that of OpenFAST: the line sags, and has more tensi
 
 
 def openfast_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -> dict[str, str]:
-    """Files of a line type for OpenFAST, the input file of its MoorDyn module first.
-
-    Parameters
-    ----------
-    line : ExportLine
-        What is exported.
-    stem : str
-        Of the names of the files beside it.
-    form : {"table", "static-dynamic", "load-dependent", "syrope"}
-        As `reduction.lines.deck_moordyn.moordyn_files`.
-
-    Returns
-    -------
-    files : dict of str to str
-        Text by name; the key of the input file is empty.
-
-    Raises
-    ------
-    SettingsError, DataError
-        As `reduction.lines.deck_moordyn.moordyn_files`.
-    """
+    """Files of a line type for OpenFAST, the input file of its MoorDyn module first."""
     files = moordyn_files(line, stem, form=form)
     remarks = ["grammar of MoorDyn, not run in OpenFAST", _ABOUT_GRAVITY]
     if form in ("table", "syrope"):

@@ -67,23 +67,6 @@ ABAQUS_POINTS = 200
 def abaqus_text(line: ExportLine) -> str:
     """A material for Abaqus, nominal stress and nominal strain.
 
-    Parameters
-    ----------
-    line : ExportLine
-        What is exported.
-
-    Returns
-    -------
-    text : str
-        All of it.
-
-    Raises
-    ------
-    SettingsError
-        If the diameter is not known.
-    DataError
-        If the curve cannot be exported.
-
     Notes
     -----
     Stress is tension over the area at zero tension, of the nominal diameter.  The potential of
@@ -123,25 +106,7 @@ _PER_KILO = 1e-3
 
 
 def orcaflex_text(line: ExportLine) -> str:
-    """A text data file for OrcaFlex.
-
-    Parameters
-    ----------
-    line : ExportLine
-        What is exported.
-
-    Returns
-    -------
-    text : str
-        All of it.
-
-    Raises
-    ------
-    SettingsError
-        If diameter or mass is not known.
-    DataError
-        If the curve cannot be exported.
-    """
+    """A text data file for OrcaFlex."""
     curve = thin_curve(line.strain, line.tension, most=ORCAFLEX_POINTS)
     volume, words = line.volume_diameter
     mass, water = line.needed("linear_density"), line.hydrodynamics
@@ -206,26 +171,8 @@ _GRID = 801
 
 @dataclass(frozen=True)
 @read_only_arrays
-class SmoothCurve:
-    """Cubic pieces of a curve.
-
-    Parameters
-    ----------
-    start : ndarray, shape (n_pieces,)
-        Strain at which each begins; the first is zero. [1]
-    end : float
-        Of the last one. [1]
-    coefficient : ndarray, shape (n_pieces, 4)
-        Of rising powers of the strain less ``start``. [N]
-    error, share : float
-        Greatest difference in tension from the curve that was given [N], and over the greatest
-        tension. [1]
-    local : float
-        The greatest difference over the tension at its place, or a thousandth of the greatest
-        tension. [1]
-    words : str
-        What was added at the start.
-    """
+class _SmoothCurve:
+    """Cubic pieces of a curve."""
 
     start: Floats
     end: float
@@ -236,26 +183,8 @@ class SmoothCurve:
     words: str
 
 
-def fit_smooth_curve(strain: Floats, tension: Floats) -> SmoothCurve:
+def fit_smooth_curve(strain: Floats, tension: Floats) -> _SmoothCurve:
     """Fit a rising cubic spline to a curve.
-
-    Parameters
-    ----------
-    strain : ndarray, shape (n_points,)
-        Strictly rising. [1]
-    tension : ndarray, shape (n_points,)
-        Not falling. [N]
-
-    Returns
-    -------
-    curve : SmoothCurve
-        With as many pieces as come within a thousandth of the greatest tension, or the closest
-        with at most 24.
-
-    Raises
-    ------
-    DataError
-        If the curve cannot be exported; see `reduction.lines.export_line.curve_from_zero`.
 
     Notes
     -----
@@ -289,7 +218,7 @@ def fit_smooth_curve(strain: Floats, tension: Floats) -> SmoothCurve:
         if off < error:
             best, error = fitted, off
     local = local_share(best(grid) - wanted, wanted, top)
-    return SmoothCurve(
+    return _SmoothCurve(
         best.x[:-1].copy(), end, best.c[::-1].T.copy(), error, error / top, local, words
     )
 
@@ -352,28 +281,7 @@ _SMALL = 1e-4  # bending and torsion were not measured, and zero is singular
 
 
 def whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> str:
-    """A materials section for WHOI Cable.
-
-    Parameters
-    ----------
-    line : ExportLine
-        What is exported.
-    form : {"expression", "table"}
-        ``expression``: T, Te and Tee of a rising cubic spline. ``table``: T through points, and
-        the slopes of the same spline, since Cable needs them.
-
-    Returns
-    -------
-    text : str
-        All of it.
-
-    Raises
-    ------
-    SettingsError
-        If diameter or mass is not known, or the form is not.
-    DataError
-        If the curve cannot be exported.
-    """
+    """A materials section for WHOI Cable."""
     if form not in ("expression", "table"):
         raise SettingsError(
             "the form of a Cable material is not known",
@@ -434,7 +342,7 @@ def whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> s
     return "\n".join([*text, "", "End", ""])
 
 
-def _expression(curve: SmoothCurve, powers: Floats) -> str:
+def _expression(curve: _SmoothCurve, powers: Floats) -> str:
     """Pieces chosen by ``?:``, each in Horner's form; ``e`` stands in every one of them."""
     text = ""
     for piece in range(len(powers) - 1, -1, -1):

@@ -286,7 +286,7 @@ class Syrope:
         return top * (self.k1 + share * (1 - self.k1))
 
 
-def said_identified(
+def _said_identified(
     part: Viscoelasticity, amplitude: float, half: Mapping[str, Floats], *, is_exact: bool
 ) -> str:
     """K_1 and tau, what they give back, and how well they are known.
@@ -318,7 +318,7 @@ def _said_known(half: Mapping[str, Floats], *, is_exact: bool) -> str:
     )
 
 
-def said_printed(
+def _said_printed(
     rest: float,
     printed: Mapping[str, DesignValues],
     measured: Mapping[str, DesignValues],
@@ -339,7 +339,7 @@ def said_printed(
     return f"{said}: they would give {_against(part, measured, amplitude)}"
 
 
-def said_instead(
+def _said_instead(
     part: Viscoelasticity, measured: Mapping[str, DesignValues], amplitude: float, reason: int
 ) -> str:
     """That the printed K_1 and tau stand, and how far off they are."""
@@ -366,7 +366,7 @@ def _against(part: Viscoelasticity, measured: Mapping[str, DesignValues], amplit
     return "; ".join(parts)
 
 
-def doubts_of_identified(
+def _doubts_of_identified(
     line: LineParameters, half_widths: Mapping[str, Floats], energy: DesignValues
 ) -> list[str]:
     """Intervals in which there is no damping at all, or that are not known."""
@@ -376,7 +376,7 @@ def doubts_of_identified(
     elif float(energy.surface_low) <= 0:
         said.append(
             "DOUBTFUL: the damping may be none: the 95 percent interval of H, "
-            f"{interval_of(energy)}, holds zero"
+            f"{_interval_of(energy)}, holds zero"
         )
     half = float(half_widths["relaxation_time"])
     time = float(line.relaxation_time)
@@ -388,19 +388,19 @@ def doubts_of_identified(
     return said
 
 
-def doubts_of_printed(time: DesignValues) -> list[str]:
+def _doubts_of_printed(time: DesignValues) -> list[str]:
     """The same of a tau that is a design value itself."""
     if not math.isfinite(float(time.surface_low)):
         return ["DOUBTFUL: how well the dashpot is known is not known: tau has no interval"]
     if float(time.surface_low) <= 0:
         return [
             "DOUBTFUL: the dashpot may be none: the 95 percent interval of tau, "
-            f"{interval_of(time)}, holds zero"
+            f"{_interval_of(time)}, holds zero"
         ]
     return []
 
 
-def said_over_frequency(part: Viscoelasticity, frequencies: Floats, found: DesignValues) -> str:
+def _said_over_frequency(part: Viscoelasticity, frequencies: Floats, found: DesignValues) -> str:
     """K_ap of the exported line against the surface at several frequencies."""
     rows = []
     for row, frequency in enumerate(frequencies):
@@ -418,7 +418,7 @@ def said_over_frequency(part: Viscoelasticity, frequencies: Floats, found: Desig
     )
 
 
-def interval_of(found: DesignValues) -> str:
+def _interval_of(found: DesignValues) -> str:
     """The 95 % interval of one surface, in words."""
     if not math.isfinite(float(found.surface_low)):
         return "an interval, which the source does not have"
@@ -428,13 +428,13 @@ def interval_of(found: DesignValues) -> str:
     )
 
 
-def said_of_value(found: DesignValues) -> str:
+def _said_of_value(found: DesignValues) -> str:
     """Where one design value is from."""
     known = math.isfinite(float(found.surface_high))
     is_vague = known and float(found.surface_low) < 0
     return (
         f"{found.source}: {found.quantity} {plain_number(float(found.value), 6)} {found.unit}, "
-        + (f"95 percent of the surface {interval_of(found)}" if known else "no interval known")
+        + (f"95 percent of the surface {_interval_of(found)}" if known else "no interval known")
         + (": its lower end is below zero: not told from zero" if is_vague else "")
         + (f", errata {', '.join(found.errata)}" if found.errata else "")
         + ("" if found.is_inside else ", OUTSIDE what was tested")
@@ -447,28 +447,10 @@ _REST_OF_SPREAD = "quasi_static_spring_constant"
 _LOOP = ("apparent_spring_constant", "hysteresis_energy")
 
 
-def half_widths(
+def _half_widths(
     line: LineParameters, rest: DesignValues, apparent: DesignValues, energy: DesignValues
 ) -> dict[str, Floats]:
     """Half widths of the 95 % intervals of what was identified from three design values.
-
-    Parameters
-    ----------
-    line : LineParameters
-        From K_ap, H and K_0, by `reduction.stages.line.line_model.identify_by_amplitude`.
-    rest, apparent, energy : DesignValues
-        K_0, K_ap and H at the point, of the surface. [N], [N], [J m-1]
-
-    Returns
-    -------
-    half : dict of str to ndarray, shape (...)
-        By the names of `reduction.stages.line.line_model.OUTPUTS`; NaN where K_ap or H has no
-        interval; K_0 counts as exact where it has none. [SI]
-
-    Raises
-    ------
-    SettingsError
-        If an error stands twice among those of one value.
 
     Notes
     -----
@@ -518,7 +500,7 @@ Extrapolate = Literal["refuse", "flag"]
 
 
 @dataclass(frozen=True)
-class LineDynamics:
+class _LineDynamics:
     """The three parameters at one point, where they are from, and what is against them."""
 
     part: Viscoelasticity
@@ -528,30 +510,8 @@ class LineDynamics:
 
 def line_dynamics(
     source: LineSource, levels: Mapping[str, float], extrapolate: Extrapolate = "refuse"
-) -> LineDynamics:
+) -> _LineDynamics:
     """Static and dynamic stiffness and dashpot of a line at a frequency, a mean and an amplitude.
-
-    Parameters
-    ----------
-    source : LineSource
-        With K_0, and K_ap and H, or K_1 and tau.
-    levels : mapping of str to float
-        ``frequency``, ``mean_tension`` and ``tension_amplitude``. [Hz], [N], [N]
-    extrapolate : {"refuse", "flag"}
-        Outside the levels that were tested.
-
-    Returns
-    -------
-    found : LineDynamics
-        With what the line's own surfaces say of K_ap and H beside what is exported.
-
-    Raises
-    ------
-    SettingsError
-        If a level or a quantity is missing.
-    DataError
-        If a level is outside what was tested, or no K_1 and tau give back K_ap within its 95 %
-        interval.
 
     Notes
     -----
@@ -587,18 +547,20 @@ def line_dynamics(
         is_identified = reason == 0
         if is_identified:
             spring = float(line.dissipation_spring_constant)
-            half = half_widths(line, rest, measured[_APPARENT], measured[_ENERGY])
+            half = _half_widths(line, rest, measured[_APPARENT], measured[_ENERGY])
             part = _part(rest, spring, float(line.relaxation_time), levels)
             notes = [
-                said_identified(part, amplitude, half, is_exact=not np.isfinite(rest.surface_high)),
-                said_printed(float(rest.value), printed, measured, frequency, amplitude),
-                *doubts_of_identified(line, half, measured[_ENERGY]),
+                _said_identified(
+                    part, amplitude, half, is_exact=not np.isfinite(rest.surface_high)
+                ),
+                _said_printed(float(rest.value), printed, measured, frequency, amplitude),
+                *_doubts_of_identified(line, half, measured[_ENERGY]),
             ]
         else:
             part = _instead(source, rest, measured, printed, levels, reason)
             notes = [
-                said_instead(part, measured, amplitude, reason),
-                *doubts_of_printed(printed[_TIME]),
+                _said_instead(part, measured, amplitude, reason),
+                *_doubts_of_printed(printed[_TIME]),
             ]
         notes += _over_frequency(source, part, levels)
     else:
@@ -606,7 +568,7 @@ def line_dynamics(
         part = _part(rest, spring, time, levels)
         notes = [
             "K_1 and tau are those of the source: it has no K_ap and H to hold them against",
-            *doubts_of_printed(printed[_TIME]),
+            *_doubts_of_printed(printed[_TIME]),
         ]
     slope, growth = _growth(source, levels, part.fast_stiffness, is_identified=is_identified)
     every = (rest, *measured.values(), *printed.values())
@@ -619,7 +581,7 @@ def line_dynamics(
         dynamic_stiffness_per_mean_tension=slope,
         growth=growth,
     )
-    return LineDynamics(part, tuple(map(said_of_value, every)), (*notes, growth))
+    return _LineDynamics(part, tuple(map(_said_of_value, every)), (*notes, growth))
 
 
 def _part(
@@ -698,7 +660,7 @@ def _instead(
         raise DataError(
             f"{why}; and the printed ones give another K_ap than the line has",
             found=f"K_ap {plain_number(model)} N; {numbers}",
-            needed=interval_of(apparent),
+            needed=_interval_of(apparent),
             hint="Another level, or the curve alone: leave the levels away.",
         )
     return part
@@ -714,7 +676,7 @@ def _over_frequency(
     frequencies = np.linspace(surface.low[place], surface.high[place], _FREQUENCIES)
     over = {name: np.full(_FREQUENCIES, value) for name, value in levels.items()}
     found = _value(source, _APPARENT, over | {"frequency": frequencies}, "flag")
-    return [said_over_frequency(part, frequencies, found)]
+    return [_said_over_frequency(part, frequencies, found)]
 
 
 def _growth(

@@ -282,25 +282,7 @@ _DOUBT = 0.05
 
 
 def siblings_of(line: LineSource, others: Sequence[LineSource]) -> tuple[LineSource, ...]:
-    """Other tests of the same tether in the same condition.
-
-    Parameters
-    ----------
-    line : LineSource
-        One test of a tether.
-    others : sequence of LineSource
-        Among which they are sought.
-
-    Returns
-    -------
-    siblings : tuple of LineSource
-        Empty for a rope, whose tests are one line.
-
-    Raises
-    ------
-    AttributeError
-        If it is no source.
-    """
+    """Other tests of the same tether in the same condition."""
     if not line.is_tether:
         return ()
     same = ("kind", "material", "construction", "condition", "diameter")
@@ -315,25 +297,6 @@ def start_against(
     strain: Floats, tension: Floats, branch: str, siblings: Sequence[LineSource]
 ) -> tuple[str, ...]:
     """How far the straight line from 0 0 is from what was measured there in other tests.
-
-    Parameters
-    ----------
-    strain, tension : ndarray, shape (n_points,)
-        Of the curve, without what stands below its first point. [1], [N]
-    branch : str
-        Of the curve.
-    siblings : sequence of LineSource
-        Other tests of the same tether.
-
-    Returns
-    -------
-    words : tuple of str
-        One sentence a test that reaches below the first point; DOUBTFUL from a twentieth on.
-
-    Raises
-    ------
-    AttributeError
-        If one is no source.
 
     Notes
     -----
@@ -567,25 +530,6 @@ def local_words(curve: _Close) -> str:
 
 def local_share(difference: ArrayLike, tension: ArrayLike, greatest: float) -> float:
     """Greatest difference over the tension at its place, or a thousandth of the greatest one.
-
-    Parameters
-    ----------
-    difference : array_like, shape (n_points,)
-        Of two curves. [N]
-    tension : array_like, shape (n_points,)
-        At the points. [N]
-    greatest : float
-        Of the curve. [N]
-
-    Returns
-    -------
-    share : float
-        Zero where there is no point. [1]
-
-    Raises
-    ------
-    ValueError
-        If differences and tensions do not pair up.
 
     Examples
     --------

@@ -68,40 +68,12 @@ def line_from_archive(
     specimen: str | None = None,
     **stated: Any,
 ) -> ExportLine:
-    """Read one curve of an archive as a line.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        Archive of a reduced test, or of predicted hoses.
-    curve : {"mean", "ascending", "descending"}, optional
-        Of a test: mean over the cycles of one branch, or the mean of both; "mean" where it is
-        not said. A hose has one curve.
-    specimen : str, optional
-        Which specimen or hose; needed where there are several.
-    **stated
-        Fields of `ExportLine` that the archive does not hold, or that are better known; None and
-        NaN are passed over.
-
-    Returns
-    -------
-    line : ExportLine
-        With what the archive says of it.
-
-    Raises
-    ------
-    ArchiveError
-        If the archive cannot be opened.
-    SettingsError
-        If the specimen is not there or not said, or a hose is asked for a branch.
-    DataError
-        If there is no curve, or it falls by more than noise.
-    """
+    """Read one curve of an archive as a line."""
     with reading(path) as archive:
-        return line_from_open_archive(archive, path.stem, curve=curve, specimen=specimen, **stated)
+        return _line_from_open_archive(archive, path.stem, curve=curve, specimen=specimen, **stated)
 
 
-def line_from_open_archive(
+def _line_from_open_archive(
     archive: xr.Dataset,
     stem: str,
     *,
@@ -109,33 +81,7 @@ def line_from_open_archive(
     specimen: str | None = None,
     **stated: Any,
 ) -> ExportLine:
-    """One curve of an archive that is open, as `line_from_archive`.
-
-    Parameters
-    ----------
-    archive : xarray.Dataset
-        As `reduction.archive.open.open_archive` gives it.
-    stem : str
-        Of the name of its file.
-    curve : {"mean", "ascending", "descending"}, optional
-        As `line_from_archive`.
-    specimen : str, optional
-        As `line_from_archive`.
-    **stated
-        As `line_from_archive`.
-
-    Returns
-    -------
-    line : ExportLine
-        With what the archive says of it.
-
-    Raises
-    ------
-    SettingsError
-        If the specimen is not there or not said, or a hose is asked for a branch.
-    DataError
-        If there is no curve, or it falls by more than noise.
-    """
+    """One curve of an archive that is open, as `line_from_archive`."""
     given = {
         name: value
         for name, value in stated.items()
@@ -294,18 +240,7 @@ def _rising(strain: Floats, tension: Floats) -> dict[str, Floats]:
 
 
 def assembly_table(line: DeployedLine) -> ValueTable:
-    """Return every node of an assembly: length, tension, stiffness, and what each tether carries.
-
-    Parameters
-    ----------
-    line : DeployedLine
-        The assembly.
-
-    Returns
-    -------
-    table : ValueTable
-        One column for all tethers where they are alike.
-    """
+    """Return every node of an assembly: length, tension, stiffness, load of each tether."""
     deployed, assembly = line.deployed, line.deployed.assembly
     columns = [
         TableColumn("total_length", "m", "end to end", np.array(assembly.total_length)),
@@ -377,23 +312,6 @@ def _assembly_spread(line: DeployedLine) -> CurveSpread:
 def line_from_assembly(line: DeployedLine, **stated: Any) -> ExportLine:
     """Make a line for export of an assembly: its strain is over the length at which it goes slack.
 
-    Parameters
-    ----------
-    line : DeployedLine
-        The assembly.
-    **stated
-        Fields of `ExportLine`; None and NaN are passed over.
-
-    Returns
-    -------
-    line : ExportLine
-        Whose unstretched length stands in its notes.
-
-    Raises
-    ------
-    SettingsError
-        If it cannot be named.
-
     Notes
     -----
     Diameter and mass of several tethers side by side are not those of one, and are left to be
@@ -462,20 +380,7 @@ def ranges_of(curve: CompositeCurve, flags: Bools) -> list[tuple[float, float]]:
 
 
 def composite_table(source: PieceSource, curve: CompositeCurve) -> ValueTable:
-    """Return every node of a composite curve, its piece, and what is flagged below it.
-
-    Parameters
-    ----------
-    source : PieceSource
-        Of the pieces.
-    curve : CompositeCurve
-        Of them.
-
-    Returns
-    -------
-    table : ValueTable
-        For csv, json, latex, markdown and netcdf.
-    """
+    """Return every node of a composite curve, its piece, and what is flagged below it."""
     source = used_of(source, curve)
     piece = np.array([curve.piece_words[place] if place >= 0 else "" for place in curve.piece])
 
@@ -530,25 +435,6 @@ def _composite_spread(curve: CompositeCurve) -> CurveSpread:
 
 def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: Any) -> ExportLine:
     """Make a line for export of a composite curve.
-
-    Parameters
-    ----------
-    source : PieceSource
-        Of the pieces.
-    curve : CompositeCurve
-        Of them.
-    **stated
-        Fields of `ExportLine` that are better known; None and NaN are passed over.
-
-    Returns
-    -------
-    line : ExportLine
-        With rule, pieces, joins and gaps in its notes.
-
-    Raises
-    ------
-    SettingsError
-        If the line cannot be named.
 
     Notes
     -----
@@ -618,36 +504,6 @@ def line_from_lookup(
     **stated: Any,
 ) -> ExportLine:
     """Make a line for export of a source of design values.
-
-    Parameters
-    ----------
-    source : LineSource
-        Published, or of a campaign.
-    branch : {"ascending", "descending"}, optional
-        Where curves differ by it.
-    siblings : sequence of LineSource
-        Other tests of the same tether: what they measured below the first point of the curve is
-        held against the straight line that stands there.
-    levels : mapping of str to float, optional
-        ``frequency``, ``mean_tension`` and ``tension_amplitude`` at which static and dynamic
-        stiffness are taken; without them the line has a curve alone. [Hz], [N], [N]
-    extrapolate : {"refuse", "flag"}
-        Outside the levels that were tested.
-    **stated
-        Fields of `ExportLine` that are better known; None and NaN are passed over.
-
-    Returns
-    -------
-    line : ExportLine
-        With source, range and errata of every number.
-
-    Raises
-    ------
-    SettingsError
-        If there is no curve of strain and tension, or it differs by branch and none is said, or
-        the dynamics were not measured.
-    DataError
-        If the curve falls before its last tenth of tension, or a level is outside what was tested.
 
     Notes
     -----

@@ -153,28 +153,7 @@ def _said(table: ValueTable) -> list[str]:
 
 
 def table_text_of(table: ValueTable, form: str, *, units: UnitSystem = "si") -> str:
-    """A table as text.
-
-    Parameters
-    ----------
-    table : ValueTable
-        What is written.
-    form : {"csv", "json", "latex", "markdown"}
-        CSV has title, sources and notes in two columns, since it has no place for a remark: in the
-        first row, and empty below, where a reader of tables has nothing.
-    units : {"si", "us"}
-        What is shown.
-
-    Returns
-    -------
-    text : str
-        All of it.
-
-    Raises
-    ------
-    SettingsError
-        If the form is not known.
-    """
+    """A table as text."""
     writers = {"csv": _csv, "json": _json, "latex": _latex, "markdown": _markdown}
     if form not in writers:
         raise SettingsError(
@@ -285,23 +264,7 @@ _NO_INTERVAL = "nothing: no scatter is known"
 
 
 def format_of_file(path: Path) -> str:
-    """Format of a table by the end of its file's name.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        ``values.tex``.
-
-    Returns
-    -------
-    form : str
-        As `reduction.lines.deck_formats.export_table` takes it.
-
-    Raises
-    ------
-    SettingsError
-        If no format has that end.
-    """
+    """Format of a table by the end of its file's name."""
     form = _OF_SUFFIX.get(path.suffix.lower())
     if form is None:
         raise SettingsError(
@@ -314,27 +277,7 @@ def format_of_file(path: Path) -> str:
 def table_of_values(
     line: LineSource, found: DesignValues, levels: Mapping[str, ArrayLike]
 ) -> ValueTable:
-    """Design values of one line as a table, one row a point.
-
-    Parameters
-    ----------
-    line : LineSource
-        Whose values they are.
-    found : DesignValues
-        Of the points.
-    levels : mapping of str to array_like
-        As they were looked up; broadcast to the points. [SI]
-
-    Returns
-    -------
-    table : ValueTable
-        Tensions in % of the break strength too, where that is known.
-
-    Raises
-    ------
-    SettingsError
-        If the levels do not broadcast to the points.
-    """
+    """Design values of one line as a table, one row a point."""
     unit = found.unit
     columns = [
         *_levels(line, found, levels),
@@ -372,27 +315,7 @@ def table_of_difference(
     levels: Mapping[str, ArrayLike],
     other_levels: Mapping[str, ArrayLike],
 ) -> ValueTable:
-    """Two lines at the same points as a table, one row a point.
-
-    Parameters
-    ----------
-    first, second : LineSource
-        Whose values they are.
-    found : LineDifference
-        The second against the first.
-    levels, other_levels : mapping of str to array_like
-        At which the first and the second were looked up. [SI]
-
-    Returns
-    -------
-    table : ValueTable
-        Columns of the second line begin with ``other_``.
-
-    Raises
-    ------
-    SettingsError
-        If the levels do not broadcast to the points.
-    """
+    """Two lines at the same points as a table, one row a point."""
     unit, name = found.unit, found.quantity
     a, b = found.first, found.second
     columns = [
@@ -537,20 +460,7 @@ def _is_synthetic(line: LineSource) -> bool:
 
 
 def write_netcdf(table: ValueTable, path: Path) -> None:
-    """Write a table as a netCDF file, SI, with its sources as attributes.
-
-    Parameters
-    ----------
-    table : ValueTable
-        What is written.
-    path : pathlib.Path
-        The file; it appears whole or not at all.
-
-    Raises
-    ------
-    ArchiveError
-        If the disk refuses.
-    """
+    """Write a table as a netCDF file, SI, with its sources as attributes."""
     variables: dict[str, Any] = {}
     for column in table.columns:
         is_flag = column.values.dtype == np.bool_

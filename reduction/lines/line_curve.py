@@ -61,24 +61,8 @@ _EDGE = 1e-9
 
 @dataclass(frozen=True)
 @read_only_arrays
-class CurvePoints:
-    """A curve at points; arrays have the shape (...) of the points.
-
-    Parameters
-    ----------
-    value : ndarray
-        A polynomial goes on beyond its range; between points straight lines, beyond the last
-        one NaN. [SI unit of the quantity]
-    random, freedom : ndarray
-        Standard uncertainty of what is of this curve alone, and its degrees of freedom; NaN where
-        not known. [SI unit of the quantity], [1]
-    contribution : ndarray, shape (n_components, ...)
-        Of the errors that the curve shares. [SI unit of the quantity]
-    standard_uncertainty, half_width : ndarray
-        Of both together, and of the 95 % interval; NaN where not known. [SI unit of the quantity]
-    is_inside : ndarray of bool
-        Between the ends of the range that was tested, and in none of its gaps. [1]
-    """
+class _CurvePoints:
+    """A curve at points; arrays have the shape (...) of the points."""
 
     value: Floats
     random: Floats
@@ -89,7 +73,7 @@ class CurvePoints:
     is_inside: Bools
 
 
-def evaluate_curve(curve: LineCurve, at: ArrayLike) -> CurvePoints:
+def evaluate_curve(curve: LineCurve, at: ArrayLike) -> _CurvePoints:
     """Value of a curve, its uncertainty, and whether the point was tested.
 
     Parameters
@@ -154,7 +138,7 @@ def evaluate_curve(curve: LineCurve, at: ArrayLike) -> CurvePoints:
         contribution=rows,
         of_contribution=np.array([one.degrees_of_freedom for one in curve.component]),
     )
-    return CurvePoints(
+    return _CurvePoints(
         value=value,
         random=random,
         freedom=freedom,
@@ -179,30 +163,6 @@ def interval_between_lines(
     is_another: bool,
 ) -> tuple[Floats, Floats]:
     """95 % interval of the mean of all lines of a kind, or of one more of them.
-
-    Parameters
-    ----------
-    value, low, high : ndarray, shape (...)
-        Of the lines that were tested: the interval of their surface for the mean of the kind, that
-        of one more run for another line. [unit of the quantity]
-    line_scatter : float
-        Standard deviation between lines over their mean. [1]
-    n_lines : float
-        That were tested. [1]
-    degrees_of_freedom : float
-        Of Student's t, of both parts. [1]
-    is_another : bool
-        Another line, in place of the mean of all.
-
-    Returns
-    -------
-    low, high : ndarray, shape (...)
-        NaN where the scatter is not known, or the value is not above zero. [unit of the quantity]
-
-    Raises
-    ------
-    DataError
-        If the scatter is negative.
 
     Notes
     -----

@@ -94,7 +94,7 @@ _SLACK = 1e-9
 
 @dataclass(frozen=True)
 @read_only_arrays
-class CycleLoads:
+class _CycleLoads:
     """Ends of a cycle of tension; arrays have the shape (...) of the points.
 
     ``is_slack`` where the minimum is zero; ``is_above_rule`` where the peak is above the share
@@ -118,27 +118,8 @@ def cycle_loads(
     *,
     rated_break_strength: float,
     tensile_strength: float = float("nan"),
-) -> CycleLoads:
+) -> _CycleLoads:
     """Peak and minimum tension of a cycle, as loads and as shares of the break strength.
-
-    Parameters
-    ----------
-    mean_tension, tension_amplitude : array_like, shape (...)
-        Amplitude is half the range. [N]
-    rated_break_strength : float
-        NaN where not known. [N]
-    tensile_strength : float, optional
-        That the line has in its condition; the rated one where not known. [N]
-
-    Returns
-    -------
-    loads : CycleLoads
-        With the rule of the source.
-
-    Raises
-    ------
-    DataError
-        If an amplitude is above its mean: the line would be pushed; or is negative.
 
     Notes
     -----
@@ -179,7 +160,7 @@ def cycle_loads(
             own_peak, own_least = peak / tensile_strength, least / tensile_strength
         is_low = own_least < LEAST_SHARE * (1 - _SLACK)
         above = own_peak > np.where(is_low, SLACK_SHARE, LOADED_SHARE) * (1 + _SLACK)
-    return CycleLoads(
+    return _CycleLoads(
         peak_tension=np.asarray(peak),
         minimum_tension=np.asarray(least),
         peak_share=np.asarray(peak_share),
@@ -191,32 +172,10 @@ def cycle_loads(
     )
 
 
-def loads_of_line(
+def _loads_of_line(
     line: LineSource, given: Mapping[str, Floats], shape: tuple[int, ...], *, branch: str = ""
-) -> CycleLoads:
+) -> _CycleLoads:
     """Ends of the tension at the points of a look-up.
-
-    Parameters
-    ----------
-    line : LineSource
-        Whose rule and break strength count.
-    given : mapping of str to ndarray, shape (...)
-        Levels that broadcast to ``shape``. [SI]
-    shape : tuple of int
-        Of the points.
-    branch : {"", "ascending", "descending"}
-        Of the value that is looked up, where it differs by branch.
-
-    Returns
-    -------
-    loads : CycleLoads
-        Of mean and amplitude; where one tension is given, or follows from the strain on the same
-        branch, peak and minimum are that one; else NaN.
-
-    Raises
-    ------
-    DataError
-        If an amplitude is above its mean, a tension is negative, or a tether goes slack.
 
     Notes
     -----
@@ -227,7 +186,7 @@ def loads_of_line(
     Examples
     --------
     >>> rope = LineSource("a", "", "nylon", "braid", "new", 0.0127, 1e4)
-    >>> loads = loads_of_line(rope, {"mean_tension": np.array(3000.0)}, ())
+    >>> loads = _loads_of_line(rope, {"mean_tension": np.array(3000.0)}, ())
     >>> print(loads.peak_share, loads.minimum_share)
     0.3 0.3
     """
@@ -269,7 +228,7 @@ def _one_tension(line: LineSource, given: Mapping[str, Floats], branch: str) -> 
     return np.asarray(np.nan)
 
 
-def _unknown_at(loads: CycleLoads, unknown: Bools) -> CycleLoads:
+def _unknown_at(loads: _CycleLoads, unknown: Bools) -> _CycleLoads:
     numbers = (
         "peak_tension", "minimum_tension", "peak_share", "minimum_share", "own_peak_share",
         "own_minimum_share",
@@ -281,7 +240,7 @@ def _unknown_at(loads: CycleLoads, unknown: Bools) -> CycleLoads:
     )
 
 
-def _refuse_slack(line: LineSource, loads: CycleLoads) -> None:
+def _refuse_slack(line: LineSource, loads: _CycleLoads) -> None:
     if loads.is_slack.any():
         peak = loads.peak_tension[loads.is_slack].ravel()[0]
         raise DataError(
@@ -293,11 +252,11 @@ def _refuse_slack(line: LineSource, loads: CycleLoads) -> None:
         )
 
 
-def design_values(
+def _design_values(
     line: LineSource,
     of: LineSurface | LineCurve,
     *,
-    loads: CycleLoads,
+    loads: _CycleLoads,
     inside: Bools,
     untested: Bools,
     words: tuple[str, str],
@@ -307,38 +266,9 @@ def design_values(
 ) -> DesignValues:
     """Put a look-up together.
 
-    Parameters
-    ----------
-    line : LineSource
-        Whose values they are.
-    of : LineSurface or LineCurve
-        That they are of.
-    loads : CycleLoads
-        Ends of the tension at the points.
-    inside, untested : ndarray of bool, shape (...)
-        Inside what was tested, and there farther from the runs than any. [1]
-    words : tuple of str
-        What ``low`` and ``high``, and what ``surface_low`` and ``surface_high`` are of.
-    more : tuple of str, optional
-        Notes beside those of line, surface and curve.
-    component : tuple of Component, optional
-        Errors that ``contribution`` is of.
-    **numbers : ndarray, shape (...)
-        Value, limits and contribution, by name. [SI]
-
-    Returns
-    -------
-    values : DesignValues
-        With notes on what the numbers show.
-
-    Raises
-    ------
-    KeyError
-        If the vocabulary has no such quantity.
-
     Examples
     --------
-    See `reduction.lines.line_lookup.values_of_curve`.
+    See `reduction.lines.line_lookup._values_of_curve`.
     """
     notes = [*line.notes, *of.notes, *more]
     if words[0] or words[1]:
@@ -399,7 +329,7 @@ _BLOCK = 16_384
 
 @dataclass(frozen=True)
 @read_only_arrays
-class SurfacePoints:
+class _SurfacePoints:
     """A surface at points; arrays have the shape (n_points,).
 
     ``low`` and ``high`` hold one more run there with 95 %, ``surface_low`` and
@@ -421,25 +351,8 @@ class SurfacePoints:
     is_inside: Bools
 
 
-def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
+def _evaluate_surface(surface: LineSurface, points: ArrayLike) -> _SurfacePoints:
     """Value of a surface at points, with two intervals.
-
-    Parameters
-    ----------
-    surface : LineSurface
-        One quantity.
-    points : array_like, shape (n_points, n_factors)
-        [SI unit of each factor]
-
-    Returns
-    -------
-    points : SurfacePoints
-        Outside the levels too, and flagged there.
-
-    Raises
-    ------
-    DataError
-        If a point is not finite, or has another number of factors.
 
     Notes
     -----
@@ -456,7 +369,7 @@ def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
     ...     "apparent_spring_constant", np.array([3.451, *[0.0] * 9]), exponents,
     ...     np.array([0.1, 768, 320]), np.array([0.5, 1920, 768]), np.eye(10) / 3, 0.1, 5, 0.75,
     ... )
-    >>> print(evaluate_surface(surface, [[0.3, 1344, 544]]).value)
+    >>> print(_evaluate_surface(surface, [[0.3, 1344, 544]]).value)
     [3.451]
     """
     given = np.asarray(points, dtype=np.float64)
@@ -518,33 +431,13 @@ def evaluate_surface(surface: LineSurface, points: ArrayLike) -> SurfacePoints:
             out[name] = back_transformed_change(scaled, out[name], surface.exponent)
         for name in ("value", "low", "high", "surface_low", "surface_high"):
             out[name] = back_transform(out[name], surface.exponent)
-    return SurfacePoints(**out, contribution=moved, is_inside=inside)
+    return _SurfacePoints(**out, contribution=moved, is_inside=inside)
 
 
 def sigma_from_r2(coefficient: ArrayLike, r2: float, *, n_factors: int = 3) -> float:
     r"""Scatter of a run about a surface of which only coefficients and r2 are printed.
 
     .. math:: s^2 = \frac{(1 - r^2)}{r^2 \, \nu} \sum_i (\hat y_i - \bar{\hat y})^2
-
-    Parameters
-    ----------
-    coefficient : array_like, shape (n_terms,)
-        Coded, in printed order, of a Box-Behnken design. [unit of the quantity]
-    r2 : float
-        As printed. [1]
-    n_factors : int
-        Of the design.
-
-    Returns
-    -------
-    sigma : float
-        With the residual degrees of freedom of the design, 5 of fifteen runs; NaN where
-        r2 is not between 0 and 1. [unit of the quantity]
-
-    Raises
-    ------
-    DataError
-        If there are not as many coefficients as the quadratic has terms.
 
     Notes
     -----
@@ -575,33 +468,10 @@ def sigma_from_r2(coefficient: ArrayLike, r2: float, *, n_factors: int = 3) -> f
     return float(np.sqrt(explained * (1 - r2) / r2 / freedom))
 
 
-def values_of_curve(
+def _values_of_curve(
     line: LineSource, curve: LineCurve, given: Mapping[str, Floats], extrapolate: str
 ) -> DesignValues:
     """Design values of a curve.
-
-    Parameters
-    ----------
-    line : LineSource
-        Whose curve it is.
-    curve : LineCurve
-        Polynomial or points.
-    given : mapping of str to ndarray, shape (...)
-        The variable of the curve alone. [SI]
-    extrapolate : {"refuse", "flag"}
-        What to do outside the range.
-
-    Returns
-    -------
-    values : DesignValues
-        With one interval, of the curve itself: a curve of one test says nothing of others.
-
-    Raises
-    ------
-    SettingsError
-        If a level is not of the curve.
-    DataError
-        If a point is outside and ``extrapolate`` is "refuse", or the loads are refused.
 
     Notes
     -----
@@ -611,7 +481,7 @@ def values_of_curve(
     --------
     >>> pull = LineCurve("strain", "tension", 0.0, 100.0, coefficient=np.array([0.0, 0.01]))
     >>> rope = LineSource("rope", "", "nylon", "", "new", 0.0127, 1e4, curves=(pull,))
-    >>> found = values_of_curve(rope, pull, {"tension": np.array([10.0, 50.0])}, "refuse")
+    >>> found = _values_of_curve(rope, pull, {"tension": np.array([10.0, 50.0])}, "refuse")
     >>> print(found.value, found.peak_share)
     [0.1 0.5] [0.001 0.005]
     """
@@ -646,10 +516,10 @@ def values_of_curve(
             ),
         )  # fmt: skip
     nothing = np.full(at.shape, np.nan)
-    return design_values(
+    return _design_values(
         line,
         curve,
-        loads=loads_of_line(line, given, at.shape, branch=curve.branch),
+        loads=_loads_of_line(line, given, at.shape, branch=curve.branch),
         inside=inside,
         untested=np.zeros(at.shape, dtype=bool),
         words=("", curve.spread_of if curve.standard_uncertainty.size else ""),
@@ -695,37 +565,14 @@ _RUN = "one more run of the same lines"
 _SURFACE = "the surface of these lines"
 
 
-def values_of_surface(
+def _values_of_surface(
     line: LineSource, surface: LineSurface, given: Mapping[str, Floats], extrapolate: str
 ) -> DesignValues:
     """Design values of a surface.
 
-    Parameters
-    ----------
-    line : LineSource
-        Whose surface it is.
-    surface : LineSurface
-        One quantity.
-    given : mapping of str to ndarray, shape (...)
-        All its factors, of shapes that broadcast. [SI]
-    extrapolate : {"refuse", "flag"}
-        What to do outside the levels.
-
-    Returns
-    -------
-    values : DesignValues
-        Intervals span coefficients and levels that are open.
-
-    Raises
-    ------
-    SettingsError
-        If a level is not of the surface.
-    DataError
-        If a point is outside and ``extrapolate`` is "refuse", or the loads are refused.
-
     Notes
     -----
-    See `reduction.lines.line_lookup.evaluate_surface` for a run and the surface, and
+    See `reduction.lines.line_lookup._evaluate_surface` for a run and the surface, and
     `reduction.lines.line_curve.interval_between_lines` for other lines.
 
     Examples
@@ -737,7 +584,7 @@ def values_of_surface(
     ...     np.array([0.5]), np.eye(1) / 15, 0.1, 14.0, 1.0, line_scatter=0.1, n_lines=1.0,
     ... )
     >>> rope = LineSource("rope", "", "nylon", "", "new", 0.0127, 1e4, ("frequency",))
-    >>> found = values_of_surface(rope, surface, {"frequency": np.array([0.3])}, "refuse")
+    >>> found = _values_of_surface(rope, surface, {"frequency": np.array([0.3])}, "refuse")
     >>> print(found.value, found.high.round(2), found.line_high.round(2))
     [1.5] [1.72] [2.1]
     """
@@ -750,7 +597,7 @@ def values_of_surface(
     columns = np.broadcast_arrays(*(given[name] for name in line.factor_names))
     shape = columns[0].shape
     at = np.stack([one.ravel() for one in columns], axis=1)
-    points = evaluate_surface(surface, at)
+    points = _evaluate_surface(surface, at)
     boxes = [(surface.low, surface.high), *surface.alternative_boxes]
     # the first of all is the surface itself
     choices = [
@@ -759,7 +606,7 @@ def values_of_surface(
         for one in (surface.coefficient, *surface.alternatives)
     ]
     others = [
-        evaluate_surface(replace(surface, coefficient=one, low=low, high=high), at)
+        _evaluate_surface(replace(surface, coefficient=one, low=low, high=high), at)
         for low, high, one in choices[1:]
     ]
 
@@ -792,10 +639,10 @@ def values_of_surface(
     def part(values: Floats) -> Floats:
         return values.reshape(shape) if is_apart else np.empty(0)
 
-    return design_values(
+    return _design_values(
         line,
         surface,
-        loads=loads_of_line(line, given, shape),
+        loads=_loads_of_line(line, given, shape),
         inside=inside,
         untested=inside & untested,
         words=(_RUN, _SURFACE) if has_interval else ("", ""),
@@ -907,7 +754,7 @@ def look_up(
     if surface is not None and set(given) >= set(line.factor_names):
         if branch is not None:
             raise _no_branch(quantity, line, branch)
-        return values_of_surface(line, surface, given, extrapolate)
+        return _values_of_surface(line, surface, given, extrapolate)
     curves = [one for one in line.curves if one.quantity == quantity]
     if not curves and surface is None:
         why = line.absent.get(quantity)
@@ -924,7 +771,7 @@ def look_up(
             found=", ".join(given) or "none",
             needed=" or ".join(dict.fromkeys(needed)),
         )
-    return values_of_curve(line, _of_branch(line, curves, branch), given, extrapolate)
+    return _values_of_curve(line, _of_branch(line, curves, branch), given, extrapolate)
 
 
 def _numbers(levels: Mapping[str, ArrayLike]) -> dict[str, Floats]:

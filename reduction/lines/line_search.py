@@ -67,28 +67,6 @@ def find_lines(
 ) -> list[LineSource]:
     """Lines of which all that is asked for holds.
 
-    Parameters
-    ----------
-    lines : iterable of LineSource
-        Published, or of a campaign.
-    material, construction, condition : str, optional
-        Words, in any case and order.  Each has to be in the text of the line; the beginning of a
-        word does, but of a number the whole of it.
-    diameter : float, optional
-        A line without a diameter is not found then. [m]
-    tolerance : float
-        Greatest difference of a diameter, over the one that is asked for. [1]
-
-    Returns
-    -------
-    found : list of LineSource
-        In the order of ``lines``; one or more.
-
-    Raises
-    ------
-    SettingsError
-        If no line is so, the diameter is not positive, or the tolerance is negative.
-
     Notes
     -----
     Sizes are nominal ([1]_).  Sizes in inches are 1/16 in or more apart: the default joins names
@@ -225,22 +203,6 @@ class LineDifference:
 
 def compare_values(first: DesignValues, second: DesignValues) -> LineDifference:
     """Difference and ratio of two lines at the points of two look-ups.
-
-    Parameters
-    ----------
-    first, second : DesignValues
-        Of one quantity, at the same number of points: at the same tensions, or at the same
-        shares of two break strengths.
-
-    Returns
-    -------
-    difference : LineDifference
-        The second against the first.
-
-    Raises
-    ------
-    SettingsError
-        If the quantities or the shapes differ.
 
     Notes
     -----

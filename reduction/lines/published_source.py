@@ -76,21 +76,8 @@ _SHARE = 1.96 * 0.1
 _NODES = 8001
 
 
-def curves_of_line(line: PublishedLine) -> tuple[tuple[LineCurve, ...], dict[str, str]]:
-    """K_0 and strain of a line, and why one of them is not there.
-
-    Parameters
-    ----------
-    line : PublishedLine
-        As the page has it, in SI.
-
-    Returns
-    -------
-    curves : tuple of LineCurve
-        K_0 from the slope of strain where there is no cubic of its own.
-    absent : dict of str to str
-        Reasons, by quantity.
-    """
+def _curves_of_line(line: PublishedLine) -> tuple[tuple[LineCurve, ...], dict[str, str]]:
+    """K_0 and strain of a line, and why one of them is not there."""
     rest, strain = (
         None if cubic is None else _curve(cubic) for cubic in (line.stiffness, line.load_strain)
     )
@@ -247,7 +234,7 @@ def published_sources() -> dict[str, LineSource]:
 
 def _line(line: PublishedLine) -> LineSource:
     surfaces = {}
-    curves, absent = curves_of_line(line)
+    curves, absent = _curves_of_line(line)
     for response, found in line.surfaces.items():
         if any(term.index == 0 for term in found.open_terms):
             (term,) = (one for one in found.open_terms if one.index == 0)
@@ -420,12 +407,6 @@ _TO_THE_POUND = scale_to_si("lbf", "force")[0] / np.sqrt(12)
 @cache
 def published_piece_sources() -> dict[str, PieceSource]:
     """Published tethers by name, each with a piece of every test that is tabulated.
-
-    Returns
-    -------
-    sources : dict of str to PieceSource
-        ``rubber-tether-new``, ``rubber-tether-used``; ascending, since no other branch is
-        tabulated.
 
     Notes
     -----

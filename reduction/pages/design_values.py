@@ -39,51 +39,41 @@ _NUMBERS = (
 )  # fmt: skip
 
 
-def json_text(data: Any) -> str:
+def _json_text(data: Any) -> str:
     """JSON that ends no element of a page, whatever stands in it."""
     text = json.dumps(data, separators=(",", ":"), allow_nan=False)
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
 
 
-def numbers(values: ArrayLike) -> Any:
+def _numbers(values: ArrayLike) -> Any:
     """Numbers for JSON, nested as they are: null is NaN, the text inf is infinite.
 
     Examples
     --------
-    >>> numbers([1.5, float("nan"), float("inf")])
+    >>> _numbers([1.5, float("nan"), float("inf")])
     [1.5, None, 'inf']
     """
     array = np.asarray(values)
     if array.ndim:
-        return [numbers(one) for one in array]
+        return [_numbers(one) for one in array]
     number = array.item()
     if isinstance(number, float) and not math.isfinite(number):
         return None if math.isnan(number) else "inf" if number > 0 else "-inf"
     return number
 
 
-def line_data(line: LineSource) -> dict[str, Any]:
+def _line_data(line: LineSource) -> dict[str, Any]:
     """All that a look-up needs of a line.
-
-    Parameters
-    ----------
-    line : LineSource
-        Published, or of a campaign.
-
-    Returns
-    -------
-    data : dict
-        For JSON, by the names of the fields; a float is given back by its text to the last bit.
 
     Examples
     --------
     >>> line = LineSource("a", "b", "nylon", "braid", "new", 0.0127, 28e3)
-    >>> line_data(line)["rated_break_strength"]
+    >>> _line_data(line)["rated_break_strength"]
     28000.0
     """
     return (
         {name: getattr(line, name) for name in _TEXTS}
-        | {name: numbers(getattr(line, name)) for name in _NUMBERS}
+        | {name: _numbers(getattr(line, name)) for name in _NUMBERS}
         | {
             "factors": list(line.factor_names),
             "surfaces": {name: _surface(one) for name, one in line.surfaces.items()},
@@ -103,14 +93,14 @@ def _surface(surface: LineSurface) -> dict[str, Any]:
         "quantity": surface.quantity,
         "exponents": surface.exponents.tolist(),
         **{
-            name: numbers(getattr(surface, name))
+            name: _numbers(getattr(surface, name))
             for name in (
                 "coefficient", "low", "high", "covariance_factor", "sigma", "degrees_of_freedom",
                 "greatest_leverage", "exponent", "contribution", "alternatives", "rounding",
                 "line_scatter", "n_lines",
             )
         },
-        "alternative_boxes": [[numbers(end) for end in box] for box in surface.alternative_boxes],
+        "alternative_boxes": [[_numbers(end) for end in box] for box in surface.alternative_boxes],
         "component": _components(surface.component),
         "errata": list(surface.errata),
         "notes": list(surface.notes),
@@ -126,7 +116,7 @@ def _curve(curve: LineCurve) -> dict[str, Any]:
         "range_note": curve.range_note,
         "is_inverse_slope": curve.is_inverse_slope,
         **{
-            name: numbers(getattr(curve, name))
+            name: _numbers(getattr(curve, name))
             for name in (
                 "low", "high", "coefficient", "at", "value", "standard_uncertainty",
                 "degrees_of_freedom", "contribution", "gaps",
@@ -140,7 +130,7 @@ def _curve(curve: LineCurve) -> dict[str, Any]:
 
 def _components(component: tuple[Component, ...]) -> list[list[Any]]:
     """Of each shared error what tells it from others, and its degrees of freedom."""
-    return [[one.source, one.of, one.number, numbers(one.degrees_of_freedom)] for one in component]
+    return [[one.source, one.of, one.number, _numbers(one.degrees_of_freedom)] for one in component]
 
 
 _LINES: ReportId = "CG-D-39-80"
@@ -148,14 +138,14 @@ _LINES: ReportId = "CG-D-39-80"
 _TETHER = re.compile(r"WHOI-2005-10, Table (\d+)")
 
 
-def printed_at(line: LineSource) -> dict[str, str]:
+def _printed_at(line: LineSource) -> dict[str, str]:
     """Report, table and page of each quantity of a published line, in words.
 
     Examples
     --------
     >>> from reduction.lines.published_source import published_sources
     >>> line = published_sources()["nylon-double-braid-0.5in-new"]
-    >>> printed_at(line)["relaxation_time"]
+    >>> _printed_at(line)["relaxation_time"]
     'CG-D-39-80, Table 17 (page 48), Table 18 (page 49)'
     """
     tether = _TETHER.match(line.source)
@@ -184,7 +174,7 @@ def _pages(report: ReportId, table: str) -> str:
     return f"page{'s' if len(found) > 1 else ''} {', '.join(found)}"
 
 
-def errata_told(lines: Iterable[LineSource]) -> dict[str, list[str]]:
+def _errata_told(lines: Iterable[LineSource]) -> dict[str, list[str]]:
     """Place, print and correction, and evidence of every erratum that touches a line, by its id."""
     touching: set[str] = set()
     for line in lines:
@@ -214,21 +204,8 @@ _FAULTS = (ReductionError, OSError, RuntimeError, KeyError, IndexError, ValueErr
 
 
 @dataclass(frozen=True)
-class CampaignLines:
-    """A campaign as the page keeps it.
-
-    Parameters
-    ----------
-    name : str
-        Of its folder.
-    files : dict of str to dict
-        By the name of the archive without its end: ``state``, a digest of its bytes by which a
-        change is seen, and ``lines``, none where there is nothing to look up.
-    faults : dict of str to str
-        Archives that cannot be read, with the reason.
-    left_out : int
-        Archives that a page has no room for; they are not read.
-    """
+class _CampaignLines:
+    """A campaign as the page keeps it."""
 
     name: str
     files: dict[str, dict[str, Any]] = field(default_factory=dict)
@@ -243,7 +220,7 @@ class CampaignLines:
         )
 
 
-def state_of(processed: Path) -> str:
+def _state_of(processed: Path) -> str:
     """Digest of which archives there are and when each was written; it changes with any of them."""
     text = "\n".join(
         f"{path.parent.name}/{path.name} {_stamp(path)}"
@@ -253,33 +230,14 @@ def state_of(processed: Path) -> str:
     return sha256(text.encode("utf-8", "surrogateescape")).hexdigest()
 
 
-def read_campaigns(
+def _read_campaigns(
     processed: Path,
     known: Mapping[str, Mapping[str, Any]] | None = None,
     *,
     room: int,
     opener: Opener = reading,
-) -> list[CampaignLines]:
-    """Lines of every campaign below a folder, as far as a page has room.
-
-    Parameters
-    ----------
-    processed : pathlib.Path
-        Folder in which campaigns have theirs.
-    known : mapping of str to mapping, optional
-        ``files`` of campaigns by name, as they were read before: an archive that has not changed
-        is not read again.
-    room : int
-        For all of them. Surfaces come first, which are of all tests of an experiment, then tests,
-        those of the campaign that was written last before others. [bytes]
-    opener : Opener
-        How archives are opened.
-
-    Returns
-    -------
-    campaigns : list of CampaignLines
-        By name; an archive that cannot be read is among the faults of its own.
-    """
+) -> list[_CampaignLines]:
+    """Lines of every campaign below a folder, as far as a page has room."""
     found = [
         _Reading(folder, (known or {}).get(folder.name, {}), opener)
         for folder in _folders(processed)
@@ -325,7 +283,7 @@ class _Reading:
                 text = str(error) if isinstance(error, ReductionError) else repr(error)
                 self._faults[path.name] = text.replace(str(path), path.name)
                 return 0
-        return len(json_text(self._files[path]))
+        return len(_json_text(self._files[path]))
 
     def _digest(self, path: Path) -> str:
         """Of all bytes: by times and numbers of files the page would not be the same elsewhere."""
@@ -344,10 +302,10 @@ class _Reading:
         return 0
 
     @property
-    def campaign(self) -> CampaignLines:
+    def campaign(self) -> _CampaignLines:
         """What was read, in the order of the folder."""
         files = {path.stem: self._files[path] for path in self.paths if path in self._files}
-        return CampaignLines(self._name, files, self._faults, len(self._left))
+        return _CampaignLines(self._name, files, self._faults, len(self._left))
 
 
 def _folders(processed: Path) -> list[Path]:
@@ -370,7 +328,7 @@ def _stamp(path: Path) -> str:
 
 def _lines(path: Path, opener: Opener) -> list[dict[str, Any]]:
     with opener(path) as archive:
-        return [line_data(line) for line in lines_of_open_archive(archive, path, opener)]
+        return [_line_data(line) for line in lines_of_open_archive(archive, path, opener)]
 
 
 PAGE_NAME = "design-values.html"
@@ -425,64 +383,28 @@ def write_design_page(
     unreadable: Callable[[Path, str], None] | None = None,
     opener: Opener = reading,
 ) -> Path:
-    """Write the page of a folder of products, or write it again.
-
-    Parameters
-    ----------
-    processed : pathlib.Path
-        Folder in which campaigns have theirs; an archive that cannot be read is named on the page.
-    reports : pathlib.Path
-        Folder of the page; one that is there is replaced in one piece.
-    unreadable : callable, optional
-        Told each archive that cannot be read, and why, before the page is written, which says
-        it too.
-    opener : Opener
-        How archives are opened.
-
-    Returns
-    -------
-    path : pathlib.Path
-        ``design-values.html``.
-
-    Raises
-    ------
-    ArchiveError
-        If the disk refuses.
-    """
+    """Write the page of a folder of products, or write it again."""
     path = reports / PAGE_NAME
     known = _files_on(path)
     for _ in range(_TIMES):
-        state = state_of(processed)
-        campaigns = read_campaigns(processed, known, room=MOST_BYTES, opener=opener)
+        state = _state_of(processed)
+        campaigns = _read_campaigns(processed, known, room=MOST_BYTES, opener=opener)
         if unreadable is not None:
             for one in campaigns:
                 for name, why in one.faults.items():
                     unreadable(processed / one.name / name, why)
-        write_whole(path, render_design_page(campaigns, _reports_beside(reports, campaigns)))
-        if state_of(processed) == state:
+        write_whole(path, _render_design_page(campaigns, _reports_beside(reports, campaigns)))
+        if _state_of(processed) == state:
             break
         # another run ended meanwhile, and the page that it wrote may just have been replaced
         known = {one.name: one.files for one in campaigns}
     return path
 
 
-def render_design_page(
-    campaigns: Sequence[CampaignLines] = (), reports: Mapping[str, str] | None = None
+def _render_design_page(
+    campaigns: Sequence[_CampaignLines] = (), reports: Mapping[str, str] | None = None
 ) -> str:
-    """Return the page as HTML that opens from disk.
-
-    Parameters
-    ----------
-    campaigns : sequence of CampaignLines
-        Beside the published lines.
-    reports : mapping of str to str, optional
-        Address of the report of a campaign, from this page, by the name of the campaign.
-
-    Returns
-    -------
-    html : str
-        With everything inside.
-    """
+    """Return the page as HTML that opens from disk."""
     room = files("reduction.pages")
     environment = Environment(
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
@@ -504,11 +426,11 @@ def render_design_page(
         script="\n".join(
             (room / "design_values_static" / name).read_text("utf-8") for name in _SCRIPTS
         ),
-        data=json_text(data),
+        data=_json_text(data),
     )
 
 
-def _reports_beside(reports: Path, campaigns: Sequence[CampaignLines]) -> dict[str, str]:
+def _reports_beside(reports: Path, campaigns: Sequence[_CampaignLines]) -> dict[str, str]:
     """Address of each campaign's report that is there, as a link takes it."""
     return {
         one.name: f"{quote(one.name)}/{_REPORT}"
@@ -520,13 +442,13 @@ def _reports_beside(reports: Path, campaigns: Sequence[CampaignLines]) -> dict[s
 def _constants() -> dict[str, Any]:
     """What does not depend on any campaign."""
     lines = tuple(published_sources().values())
-    published = [line_data(line) | {"printed": printed_at(line)} for line in lines]
+    published = [_line_data(line) | {"printed": _printed_at(line)} for line in lines]
     known = {name: quantity(name) for name in (*_OF_LINES, *_LEVELS)}
     units = {one.unit for one in known.values()}
     return {
         "version": __version__,
         "published": published,
-        "errata": errata_told(lines),
+        "errata": _errata_told(lines),
         "quantities": {name: [one.unit, one.long_name] for name, one in known.items()},
         "symbols": dict(zip(_OF_LINES, _SYMBOLS, strict=False)),
         "shown": {

@@ -58,7 +58,7 @@ _CYCLIC = ("cyclic", "fatigue", "snap", "bedding-in")
 
 
 @dataclass(frozen=True)
-class Slider:
+class _Slider:
     """Ends and step of a slider, in the unit that is written behind its number."""
 
     low: float
@@ -79,7 +79,7 @@ class Setting:
     group: Group
     words: str
     choices: tuple[str, ...] = ()
-    slider: Slider | None = None
+    slider: _Slider | None = None
     kinds: tuple[str, ...] = ()
 
     @property
@@ -91,7 +91,7 @@ class Setting:
 
 _OF_TEST = ("control", "waveform", "strain.method")
 
-_SHARE = Slider(0.5, 1.0, 0.005)
+_SHARE = _Slider(0.5, 1.0, 0.005)
 
 SETTINGS: tuple[Setting, ...] = (
     Setting(
@@ -101,7 +101,7 @@ SETTINGS: tuple[Setting, ...] = (
     ),
     Setting(
         "cycles.break_in_cycles", "Trim and cycles", "first cycles left out of every mean",
-        slider=Slider(0, 20, 1), kinds=_CYCLIC,
+        slider=_Slider(0, 20, 1), kinds=_CYCLIC,
     ),
     Setting(
         "cycles.band", "Trim and cycles", "smallest range that makes a reversal", kinds=_CYCLIC
@@ -116,18 +116,18 @@ SETTINGS: tuple[Setting, ...] = (
     ),
     Setting(
         "modulus.strain_bin_width", "Modulus windows", "spacing of the strain grid",
-        slider=Slider(0.25, 10.0, 0.25, "%"),
+        slider=_Slider(0.25, 10.0, 0.25, "%"),
     ),
     Setting(
         "modulus.window", "Modulus windows", "width of the regression window",
-        slider=Slider(0.5, 30.0, 0.5, "%"),
+        slider=_Slider(0.5, 30.0, 0.5, "%"),
     ),
     Setting(
         "modulus.minimum_count", "Modulus windows", "fewest samples in a window that give a slope"
     ),
     Setting(
         "modulus.maximum_segments", "Modulus windows", "most straight segments tried",
-        slider=Slider(1, 8, 1), kinds=_CYCLIC,
+        slider=_Slider(1, 8, 1), kinds=_CYCLIC,
     ),
     Setting(
         "modulus.segment_tolerance", "Modulus windows",
@@ -151,7 +151,7 @@ SETTINGS: tuple[Setting, ...] = (
     Setting("phases.slack_tension", "Phases", "a standstill at or below it is a rest"),
     Setting("holds.minimum_duration", "Holds", "shortest hold that gives relaxation numbers"),
     Setting(
-        "holds.maximum_terms", "Holds", "most Prony terms tried", slider=Slider(1, 5, 1)
+        "holds.maximum_terms", "Holds", "most Prony terms tried", slider=_Slider(1, 5, 1)
     ),
     Setting("holds.times", "Holds", "times after the ramp at which tension is given"),
     Setting("rope.last_cycles", "Rope", "last cycles that give the dynamic stiffness"),
@@ -170,7 +170,7 @@ SETTINGS: tuple[Setting, ...] = (
 _BY_KEY = {one.key: one for one in SETTINGS}
 
 
-def setting_of(key: str) -> Setting | None:
+def _setting_of(key: str) -> Setting | None:
     """The setting of a key; None where it is not offered."""
     return _BY_KEY.get(key)
 
@@ -191,43 +191,25 @@ _NAMED = 2
 """Keys of a header that is added where a table is not there, as in ``[tests.T-1]``."""
 
 
-def edited(text: str, changes: Mapping[Keys, Value | None]) -> str:
+def _edited(text: str, changes: Mapping[Keys, Value | None]) -> str:
     r"""Return a TOML text with some keys set, or left out where the value is None.
-
-    Parameters
-    ----------
-    text : str
-        A document that `tomllib` reads.
-    changes : mapping of path to value
-        In the order in which they are made. The first two keys of a path name a table that
-        need not be there: ``("tests", "T-1", "reduction", "cycles", "band")``.
-
-    Returns
-    -------
-    text : str
-        The same lines but those that change.
-
-    Raises
-    ------
-    SettingsError
-        If the text is written in a way in which a key cannot be changed by itself.
 
     Examples
     --------
-    >>> print(edited('[tests.T-1]\nfile = "a.csv"  # raw\n', {("tests", "T-1", "order"): 2}))
+    >>> print(_edited('[tests.T-1]\nfile = "a.csv"  # raw\n', {("tests", "T-1", "order"): 2}))
     [tests.T-1]
     file = "a.csv"  # raw
     order = 2
     """
     for path, value in changes.items():
         before = tomllib.loads(text)
-        now = value_at(before, path)
+        now = _value_at(before, path)
         if now == value and type(now) is type(value):
             continue
         try:
             made = _with(text, path, value)
             after = tomllib.loads(made)
-            is_meant = value_at(after, path) == value
+            is_meant = _value_at(after, path) == value
             is_meant &= dict(_leaves(before, path)) == dict(_leaves(after, path))
         except (TOMLKitError, ValueError, KeyError, TypeError, AttributeError):
             is_meant = False
@@ -242,7 +224,7 @@ def edited(text: str, changes: Mapping[Keys, Value | None]) -> str:
     return text
 
 
-def value_at(document: object, path: Keys) -> Any:
+def _value_at(document: object, path: Keys) -> Any:
     """What stands at a path of a document; None where nothing does."""
     for key in path:
         if isinstance(document, dict) and isinstance(key, str):
@@ -384,7 +366,7 @@ class CampaignText:
     def in_table(self) -> dict[str, set[str]]:
         """Keys of each test that stand in the table of tests, where there is one."""
         tests = self.document.get("tests")
-        name = tests if isinstance(tests, str) else value_at(self.document, ("campaign", "tests"))
+        name = tests if isinstance(tests, str) else _value_at(self.document, ("campaign", "tests"))
         if not name:
             return {}
         rows = read_test_table(self.path.parent / str(name))
@@ -392,10 +374,7 @@ class CampaignText:
 
     @cached_property
     def named(self) -> tuple[Path, ...]:
-        """Where every file of the campaign folder would be that the text names, marks among them.
-
-        Any text of it may be a name; one that is none leads to no file.
-        """
+        """Path of every file of the campaign folder that the text names."""
         return tuple(self.path.parent / one for one in dict.fromkeys(_texts(self.document)))
 
     def written(self, test: str, setting: Setting) -> Written:
@@ -405,14 +384,14 @@ class CampaignText:
         own = ("tests", test, *setting.path)
         if setting.key == "strain.method":
             # a table of a test is taken whole: what it leaves out is not in the defaults
-            is_own = value_at(self.document, own[:-1]) is not None
+            is_own = _value_at(self.document, own[:-1]) is not None
         else:
-            is_own = value_at(self.document, own) is not None
+            is_own = _value_at(self.document, own) is not None
         places: tuple[tuple[Place, Keys], ...] = (
             (("test", own),) if is_own else (("defaults", ("defaults", *setting.path)),)
         )
         for place, keys in places:
-            value = value_at(self.document, keys)
+            value = _value_at(self.document, keys)
             if value is not None:
                 return Written(place, _as_text(value))
         return Written("test" if is_own else "nowhere")
@@ -421,33 +400,13 @@ class CampaignText:
         """``from`` and ``to`` of a step of a log, by their keys on the page."""
         return {
             f"steps.{place}.{end}": _as_text(
-                value_at(self.document, ("tests", test, "steps", place, end)) or ""
+                _value_at(self.document, ("tests", test, "steps", place, end)) or ""
             )
             for end in _STEP_ENDS
         }
 
     def changed(self, test: str, changes: Mapping[str, str], *, control: str) -> CampaignText:
-        """Return what the file would say with settings of one test changed.
-
-        Parameters
-        ----------
-        test : str
-            Key of the test in campaign.toml.
-        changes : mapping of str to str
-            Texts by key, as a person writes them; empty where the key is to be left out.
-        control : str
-            Channel of the test, which says what a band is.
-
-        Returns
-        -------
-        text : CampaignText
-            The same where nothing changes.
-
-        Raises
-        ------
-        SettingsError
-            If a key is not one that may be moved, or stands in the table of tests.
-        """
+        """Return what the file would say with settings of one test changed."""
         paths: dict[Keys, Value | None] = {}
         for key, text in changes.items():
             paths |= self._change(test, key, text.strip(), control)
@@ -457,7 +416,7 @@ class CampaignText:
         if isinstance(table, str):
             # beside [tests.ID] the table of tests is named in [campaign]
             paths = {("tests",): None, ("campaign", "tests"): table, **paths}
-        return replace(self, text=edited(self.text, paths))
+        return replace(self, text=_edited(self.text, paths))
 
     def _change(self, test: str, key: str, text: str, control: str) -> dict[Keys, Value | None]:
         group, _, rest = key.partition(".")
@@ -468,7 +427,7 @@ class CampaignText:
             return {
                 ("tests", test, "steps", int(place), end): int(text) if text.isdecimal() else text
             }
-        setting = setting_of(key)
+        setting = _setting_of(key)
         if setting is None:
             raise SettingsError("a setting is not one that is moved here", found=repr(key))
         if setting.path[0] in self.in_table.get(test, ()):
@@ -482,8 +441,8 @@ class CampaignText:
 
     def _strain_change(self, test: str, method: str) -> dict[Keys, Value | None]:
         """A test that has a strain method of its own names the marks again."""
-        own = value_at(self.document, ("tests", test, "strain"))
-        default = value_at(self.document, ("defaults", "strain")) or {}
+        own = _value_at(self.document, ("tests", test, "strain"))
+        default = _value_at(self.document, ("defaults", "strain")) or {}
         rest = {key: value for key, value in (own or default).items() if key != "method"}
         wanted = {"method": method, **rest} if method else rest
         table = ("tests", test, "strain")
@@ -503,15 +462,7 @@ class CampaignText:
         return "\n".join(lines)
 
     def replace_with(self, other: CampaignText) -> None:
-        """Put another text in the place of this one, whole or not at all.
-
-        Raises
-        ------
-        SettingsError
-            If the file is not what this text was read from any more.
-        ArchiveError
-            If the disk refuses.
-        """
+        """Put another text in the place of this one, whole or not at all."""
         # a link is followed: what it leads to is replaced, and the link stays
         target = self.path.resolve()
         if CampaignText.read(target).digest != self.digest:
@@ -586,13 +537,8 @@ COMMAND = "reduction run campaign.toml"
 
 
 @dataclass(frozen=True)
-class Made:
-    """What a text makes of one test.
-
-    ``dataset`` is None where it cannot be reduced, and ``error`` says why. ``is_standing`` where
-    its archive is of this text. ``also`` are other tests that a run would make anew with this text
-    and not with the one on the disk.
-    """
+class _Made:
+    """What a text makes of one test."""
 
     survey: Survey
     dataset: xr.Dataset | None
@@ -655,27 +601,8 @@ class Session:
         control = changes.get("control") or plan.control
         return self.text.changed(plan.log, changes, control=control)
 
-    def made(self, test: str, text: CampaignText) -> Made:
-        """Reduce a test as a text says.
-
-        Parameters
-        ----------
-        test : str
-            Id of its product.
-        text : CampaignText
-            From `changed`, or as on the disk.
-
-        Returns
-        -------
-        made : Made
-            Of a test that cannot be reduced with its error.
-
-        Raises
-        ------
-        SettingsError
-            If the text is not a campaign that could be run, or a file changed on the disk: what is
-            shown side by side is of the same files.
-        """
+    def made(self, test: str, text: CampaignText) -> _Made:
+        """Reduce a test as a text says."""
         begun = time.perf_counter()
         if self.is_changed_on_disk:
             raise SettingsError(
@@ -701,7 +628,7 @@ class Session:
         also = tuple(one for one in others if settings.get(one) != self._settings.get(one))
         said = "" if error is None else campaign.in_words(str(error))
         seconds = time.perf_counter() - begun
-        return Made(replace(survey, located=None), dataset, said, seconds, is_standing, also)
+        return _Made(replace(survey, located=None), dataset, said, seconds, is_standing, also)
 
     def _surveyed(self, text: CampaignText, log: str) -> tuple[Campaign, Wanted]:
         """The campaign of a text, with one of its logs read again."""
@@ -721,15 +648,7 @@ class Session:
         return found is not None
 
     def save(self, text: CampaignText) -> None:
-        """Put a text in the place of campaign.toml, and go on from it.
-
-        Raises
-        ------
-        SettingsError
-            If the file changed on the disk meanwhile.
-        ArchiveError
-            If the disk refuses.
-        """
+        """Put a text in the place of campaign.toml, and go on from it."""
         load_campaign(self.path, text=text.text)
         self.text.replace_with(text)
         self.read_again()

@@ -58,19 +58,7 @@ def campaign_document(session: Session, units: UnitSystem) -> dict[str, Any]:
 def change_document(
     session: Session, units: UnitSystem, *, test: str, changes: Mapping[str, str]
 ) -> dict[str, Any]:
-    """Settings of a test, its section of the report, and the diff of campaign.toml.
-
-    Parameters
-    ----------
-    session : Session
-        The campaign.
-    units : UnitSystem
-        What a reader is shown.
-    test : str
-        Id of the product.
-    changes : mapping of str to str
-        Texts by key, as a person writes them; none for what the file on the disk says.
-    """
+    """Settings of a test, its section of the report, and the diff of campaign.toml."""
     text = session.changed(test, changes)
     made = session.made(test, text)
     key = "standing" if text.digest == session.text.digest else "changed"

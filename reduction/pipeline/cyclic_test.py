@@ -33,13 +33,10 @@ from reduction.stages.reduced_test import History
 _SAME_STRAIN = 0.05  # share by which equal greatest strains may differ: one crosshead, two splices
 
 
-def compare_specimens(
+def _compare_specimens(
     curves: ModulusCurves, specimens: tuple[Specimen, ...], history: History | None
 ) -> list[Ratio]:
-    """Modulus of each specimen over that of the first, with notes on what they had seen.
-
-    Used against new, where the campaign names new first.
-    """
+    """Modulus of each specimen over that of the first, with notes on what they had seen."""
     first = specimens[0]
     ratios = []
     for index, specimen in enumerate(specimens[1:], start=1):
@@ -130,7 +127,7 @@ def parts_of_cycles(
         "trend": fit_peak_trend(loops, area=area, break_in_cycles=break_in),
     }
     loops.let_go()
-    ratios = compare_specimens(curves, specimens, history)
+    ratios = _compare_specimens(curves, specimens, history)
     if cycles.n_cycles >= settings.slip.minimum_cycles:
         level, slope = cycle_tension_level(
             located.position, tension, cycle_number=cycles.cycle_number,
@@ -224,11 +221,7 @@ def parts_of_first_loading(
     *,
     kind: str,
 ) -> tuple[dict[str, Any], list[str]]:
-    """The first rise of a record that begins slack: curve; of rubber, stress and laws too.
-
-    Without an area there is one of a bedding-in alone: its tension, and no modulus.  Beside the
-    fields, what a reader has to know of them.
-    """
+    """The first rise of a record that begins slack: curve; of rubber, stress and laws too."""
     begins = [_first_finite(force) for force in tension]
     if all(start > located.standstills.slack_tension for start in begins):
         return {}, []

@@ -60,12 +60,12 @@ def locate(record: Record, *, kind: str, settings: ReductionSettings) -> Located
             found=kind,
             needed="one of " + ", ".join((*CYCLIC, *PULLED, *HELD, "stepwise")),
         )
-    position = usable(record.crosshead_position, record.crosshead_position_quality_flag)
+    position = _usable(record.crosshead_position, record.crosshead_position_quality_flag)
     if kind == "creep" or (settings.cycles.control == "load" and kind != "relaxation"):
         record, standstills = _held_on_tension(record, position, settings)
-        tension = usable(record.tension, record.quality_flag)
+        tension = _usable(record.tension, record.quality_flag)
     else:
-        tension = usable(record.tension, record.quality_flag)
+        tension = _usable(record.tension, record.quality_flag)
         standstills = find_standstills(record.time, position, tension, settings=settings.phases)
     if kind not in CYCLIC:
         return Located(record, position, tension, standstills, None)
@@ -87,7 +87,7 @@ def _held_on_tension(
     standstills = find_tension_stands(
         record.time,
         position,
-        usable(record.tension, record.quality_flag, but=_REPEATS),
+        _usable(record.tension, record.quality_flag, but=_REPEATS),
         settings=settings.phases,
     )
     flags, freed = copied(record.quality_flag), 0
@@ -107,11 +107,8 @@ def _held_on_tension(
     return replace(record, quality_flag=flags, notes=(*record.notes, note)), standstills
 
 
-def usable(values: Floats, flags: NDArray[np.uint16], *, but: int = 0) -> Floats:
-    """A channel without the samples that no number may rest on, NaN there.
-
-    Flags of the masks ``but`` are passed over.
-    """
+def _usable(values: Floats, flags: NDArray[np.uint16], *, but: int = 0) -> Floats:
+    """A channel without the samples that no number may rest on, NaN there."""
     masks = UNUSABLE & ~np.uint16(but)
     n_samples = values.shape[-1]
     if not any(np.any(flags[..., part] & masks) for part in sample_blocks(n_samples, flags)):
@@ -149,10 +146,7 @@ def strain_of_record(
 
 
 def parts_of_stress(record: Record, specimens: tuple[Specimen, ...]) -> dict[str, Any]:
-    """Uncertainty of one reading of nominal stress, by field of `ReducedTest`.
-
-    Stress itself is tension over an area, and is made where it is stored.
-    """
+    """Uncertainty of one reading of nominal stress, by field of `ReducedTest`."""
     spread = record.tension_standard_uncertainty
     if not spread or not any(specimen.diameter for specimen in specimens):
         return {}
@@ -180,31 +174,7 @@ def flagged_record(located: Located, models: Sequence[StrainModel]) -> Record:
 def tension_at_marks(
     located: Located, marks: Mapping[str, SpliceMarks], specimens: Sequence[str], *, log: str
 ) -> dict[MarkReading, dict[str, Floats]]:
-    """Tension of each specimen while each of its marks was read.
-
-    Parameters
-    ----------
-    located : Located
-        The whole log, since a mark belongs to a log and not to a step of it.
-    marks : mapping of str to SpliceMarks
-        Tape readings by specimen, over the campaign.
-    specimens : sequence of str, length n_specimens
-        In the order of the record.
-    log : str
-        Name by which the marks know it.
-
-    Returns
-    -------
-    tension : dict of {"end", "start"} to dict of str to ndarray
-        By specimen, one a mark of this log in the order of the marks, as
-        `reduction.stages.strain.splice_marks.measure_mark_tension` has it; specimens without one
-        are left out. [N]
-
-    Raises
-    ------
-    DataError
-        If marks of the log contradict each other.
-    """
+    """Tension of each specimen while each of its marks was read."""
     in_log = {
         name: tension
         for name, tension in zip(specimens, located.tension, strict=True)

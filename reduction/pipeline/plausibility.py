@@ -62,34 +62,7 @@ def plausibility_notes(
     control: Literal["position", "load"] = "position",
     is_snap: bool = False,
 ) -> tuple[str, ...]:
-    """Name what is hardly so: sign, unit of position, slack or drift in cycles, waveform.
-
-    Parameters
-    ----------
-    strain : ndarray, shape (n_specimens, n_samples)
-        NaN where it is not known. [1]
-    specimens : tuple of str, length n_specimens
-        Their names.
-    slack_tension : float
-        At or below it a specimen is slack. [N]
-    waveform : {"triangular", "sinusoidal", "other"}
-        As declared. [-]
-    cycles : Cycles or None
-        None where the test has none.
-    loops : Loops or None
-        Likewise.
-    curves : ModulusCurves or None
-        Likewise.
-    control : {"position", "load"}, optional
-        Channel that the machine moved, and whose wave was declared. [-]
-    is_snap : bool, optional
-        Whether each cycle is to go slack, so that one that does is no fault.
-
-    Returns
-    -------
-    notes : tuple of str
-        Empty for a test that is as tests are.
-    """
+    """Name what is hardly so: sign, unit of position, slack or drift in cycles, waveform."""
     notes = []
     greatest = [finite_extremes(one)[1] for one in strain]
     for name, one in zip(specimens, greatest, strict=True):
@@ -124,11 +97,7 @@ def _half_range(strain: Floats, cycles: Cycles) -> Floats:
 
 
 def _shape(name: str, loops: Loops, index: int, half_strain: Floats, control: str) -> list[str]:
-    """A sinusoidal test whose range is not that of its fundamental, from which numbers come.
-
-    The channel that the machine moved tells whether it moved in sines; the other one is no
-    sine where the curve of tension against strain bends or has a kink.
-    """
+    """A sinusoidal test whose range is not that of its fundamental, from which numbers come."""
     half_tension = (loops.peak_tension[index] - loops.valley_tension[index]) / 2
     of_strain = _median(half_strain / loops.strain_amplitude[index]) - 1
     of_tension = _median(half_tension / loops.tension_amplitude[index]) - 1
@@ -242,39 +211,7 @@ class _Limit:
 def check_stated_errors(
     located: Located, instruments: Sequence[InstrumentErrors], *, place: str
 ) -> tuple[str, ...]:
-    """Refuse standard uncertainties that a log shows to be impossible; say which are too large.
-
-    Parameters
-    ----------
-    located : Located
-        Record, with its cycles where the test has them.
-    instruments : sequence of InstrumentErrors, length n_specimens
-        What is stated.
-    place : str
-        File and table, for the message.
-
-    Returns
-    -------
-    notes : tuple of str
-        That a lag is too long for the first order, in which errors are propagated.
-
-    Raises
-    ------
-    SettingsError
-        If a zero or a reading of tension is beyond ten times the greatest tension of its specimen,
-        one of position beyond ten times the greatest position, or a lag beyond the longest cycle,
-        beyond a quarter of the record where there are no cycles.
-
-    Notes
-    -----
-    Ten times: a zero that is not known to 1 % of the capacity of an instrument is a fault of it,
-    and a test that uses less than a thousandth of that capacity needs another instrument.  What
-    the layout declares of one reading takes the place of what is stated, which then counts nowhere.
-
-    A lag of a whole cycle lays a tension on the position of the cycle before: nobody can tell it
-    from none.  A lag of the share s of a cycle turns the loop by 2 pi s, of which the stiffness
-    loses 1 - cos(2 pi s), a twentieth at s = 1/20; that is of second order and in no contribution.
-    """
+    """Refuse standard uncertainties that a log shows to be impossible; say which are too large."""
     for index, errors in enumerate(instruments):
         for limit in _limits(located, index, errors):
             if np.isfinite(limit.most) and limit.stated > limit.most:
@@ -342,12 +279,7 @@ _SAMPLES = 4096  # spread over the record: the uncertainty changes slowly with s
 def readings_of(
     record: Record, instruments: Sequence[InstrumentErrors]
 ) -> tuple[InstrumentErrors, ...]:
-    """Errors with that of one reading of each channel: the one rule of which statement counts.
-
-    What the layout declares of one reading takes the place of noise and resolution of the
-    campaign, which hold for every log: the layout is of this one.  Gain and zero are stated by the
-    campaign alone, and stand beside either.
-    """
+    """Errors with that of one reading of each channel: the one rule of which statement counts."""
     known = instruments or tuple(InstrumentErrors(name) for name in record.specimens)
     tension = record.tension_standard_uncertainty or (np.nan,) * len(known)
     position = record.position_standard_uncertainty
@@ -378,11 +310,7 @@ def reading_spread(
     *,
     phase: NDArray[np.int8],
 ) -> Floats:
-    """Standard uncertainty of strain by one reading of position and tension. [1].
-
-    Root mean square over the samples, shape (n_specimens,); NaN where nothing is known of either
-    channel, and for an extensometer, which reads neither.
-    """
+    """Standard uncertainty of strain by one reading of position and tension. [1]."""
     rows = _rows_of(phase)
     position, tension = take_samples(located.position, rows), take_samples(located.tension, rows)
     found = np.full(len(models), np.nan)
@@ -419,13 +347,7 @@ def channel_contributions(
     *,
     phase: NDArray[np.int8],
 ) -> Contributions:
-    """What shared errors do to the samples, by archive name of the channel.
-
-    Each contribution is the root mean square over the cycling samples, or over all but rests
-    where none cycles, with the sign of the mean.  Of tension and position it is what the channel
-    itself may be wrong by; strain has in addition the tape and the strain method, and stress the
-    diameter.  The lag between the channels is in none of them.  Nothing without stated errors.
-    """
+    """What shared errors do to the samples, by archive name of the channel."""
     if not errors:
         return Contributions(())
     rows = _rows_of(phase)

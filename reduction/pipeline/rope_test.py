@@ -59,11 +59,7 @@ def pull_specimens(
     specimens: Sequence[Specimen],
     models: Sequence[StrainModel],
 ) -> tuple[tuple[SlowPull | None, ...], list[str]]:
-    """Load-strain cubic of each specimen of a slow pull; None and a note where it has none.
-
-    A stretch hose has one only where it fits: one that softens, and stiffens again where its
-    cords pick up, would be designed by a slope that it has nowhere.
-    """
+    """Load-strain cubic of each specimen of a slow pull; None and a note where it has none."""
     pulls: list[SlowPull | None] = []
     notes: list[str] = []
     for index, name in enumerate(located.record.specimens):
@@ -161,37 +157,7 @@ def rope_step(
     failed: bool | None,
     settings: RopeSettings,
 ) -> RopeStep | None:
-    """Reduce one test as a step of a programme; None where its kind, or a tether, has none.
-
-    Parameters
-    ----------
-    located : Located
-        From `reduction.pipeline.located_test`.
-    strain, tension : ndarray, shape (n_specimens, n_samples)
-        NaN where not usable. [1], [N]
-    kind : str
-        Of the test: it says which step it is.
-    specimens : tuple of Specimen, length n_specimens
-        In the order of the rows.
-    loops : Loops or None
-        Of the cycles, where there are some.
-    holds : tuple of HoldResult
-        Of the test.
-    failed : bool or None
-        Whether the specimens broke, in the laboratory's word.
-    settings : RopeSettings
-        Which cycles and which time count.
-
-    Returns
-    -------
-    step : RopeStep or None
-        With notes.
-
-    Raises
-    ------
-    DataError
-        If a rated break strength is not positive.
-    """
+    """Reduce one test as a step of a programme; None where its kind, or a tether, has none."""
     is_rope = any(specimen.is_rope for specimen in specimens)
     if kind not in _NAMES or not (is_rope or kind in _OF_ALL):
         return None

@@ -24,7 +24,7 @@ _MOST_KEPT = 1 << 20  # samples, or up to twice as many
 
 
 @dataclass(frozen=True)
-class Samples:
+class _Samples:
     """Some samples of one specimen: position [m] and tension [N], shape (n_kept,) each."""
 
     position: Floats
@@ -56,8 +56,8 @@ class Extremes:
 
     greatest_tension: Mapping[str, float] = field(default_factory=dict)
     greatest_measured_strain: Mapping[str, float] = field(default_factory=dict)
-    at_greatest_position: Mapping[str, Samples] = field(default_factory=dict)
-    first_rise: Mapping[str, Samples] = field(default_factory=dict)
+    at_greatest_position: Mapping[str, _Samples] = field(default_factory=dict)
+    first_rise: Mapping[str, _Samples] = field(default_factory=dict)
     slack_tension: float = float("nan")
     position_is_length: bool = True
     has_extensometer: bool = False
@@ -65,23 +65,7 @@ class Extremes:
 
 
 def extremes_of_test(located: Located) -> Extremes:
-    """How far a logged test went.
-
-    Parameters
-    ----------
-    located : Located
-        From `reduction.pipeline.located_test.locate`.
-
-    Returns
-    -------
-    extremes : Extremes
-        A specimen without a usable reading has no entry.
-
-    Raises
-    ------
-    ValueError
-        If the record has another number of specimens than of tensions.
-    """
+    """How far a logged test went."""
     record = located.record
     measured = record.measured_strain
     return Extremes(
@@ -98,27 +82,7 @@ def extremes_of_test(located: Located) -> Extremes:
 def extremes_of_readings(
     readings: StepReadings, specimen: str, *, stated_gauge_length: float | None
 ) -> Extremes:
-    """How far a stepwise test went; weights hang from one specimen.
-
-    Parameters
-    ----------
-    readings : StepReadings
-        As a person took them.
-    specimen : str
-        Its name.
-    stated_gauge_length : float or None
-        As `reduction.stages.moduli.stepwise_test.greatest_step_strain` has it. [m]
-
-    Returns
-    -------
-    extremes : Extremes
-        Of tension and measured strain.
-
-    Raises
-    ------
-    DataError
-        As `reduction.stages.moduli.stepwise_test.greatest_step_strain` has it.
-    """
+    """How far a stepwise test went; weights hang from one specimen."""
     strain = greatest_step_strain(readings, stated_gauge_length=stated_gauge_length)
     return Extremes(
         greatest_tension={specimen: float(readings.tension.max())},
@@ -129,25 +93,6 @@ def extremes_of_readings(
 
 def greatest_strain(extremes: Extremes, specimen: str, model: StrainModel | None) -> float:
     """Greatest strain of a test: measured, or at one of the samples at the greatest position.
-
-    Parameters
-    ----------
-    extremes : Extremes
-        Of the test.
-    specimen : str
-        Its name.
-    model : StrainModel or None
-        How position becomes strain, where a model could be fitted.
-
-    Returns
-    -------
-    greatest_strain : float
-        NaN where the test has no number of it. [1]
-
-    Raises
-    ------
-    DataError
-        As `reduction.stages.strain.strain_model.strain_by_model` has it.
 
     Examples
     --------
@@ -169,27 +114,6 @@ def growth_of_slack_length(
 ) -> tuple[float, float, float]:
     """Growth of the length at which a specimen becomes taut, from its first test to a later one.
 
-    Parameters
-    ----------
-    first, later : Extremes
-        Of the two tests.
-    specimen : str
-        Its name.
-    free_length : float
-        Length that the growth is a share of. [m]
-
-    Returns
-    -------
-    growth, standard_uncertainty : float
-        NaN where a test has no first rise, or no length. [1]
-    by_tension : float
-        Change of the growth with the tension that counts as slack. [N-1]
-
-    Raises
-    ------
-    ZeroDivisionError
-        If the free length is zero.
-
     Examples
     --------
     Taut at 3.0 m in the first test, at 3.3 m in the second.
@@ -197,7 +121,7 @@ def growth_of_slack_length(
     >>> position = np.linspace(2.0, 4.0, 401)
     >>> def rise(slack):
     ...     tension = 100 * np.clip(position - slack, 0, None)
-    ...     return Extremes(first_rise={"hose": Samples(position, tension)}, slack_tension=5.0)
+    ...     return Extremes(first_rise={"hose": _Samples(position, tension)}, slack_tension=5.0)
     >>> growth, _, _ = growth_of_slack_length(rise(3.0), rise(3.3), "hose", free_length=3.0)
     >>> round(growth, 6)
     0.1
@@ -232,7 +156,7 @@ def _greatest(specimens: tuple[str, ...], values: Floats) -> dict[str, float]:
     return {name: most for name, most in zip(specimens, greatest, strict=True) if np.isfinite(most)}
 
 
-def _at_greatest_position(located: Located) -> dict[str, Samples]:
+def _at_greatest_position(located: Located) -> dict[str, _Samples]:
     """Samples within the tolerance of a standstill of the greatest position, some of many."""
     position = located.position
     near = finite_extremes(position)[1] - located.standstills.position_tolerance
@@ -243,7 +167,7 @@ def _at_greatest_position(located: Located) -> dict[str, Samples]:
     )
     place, loads = take_samples(position, at_top), take_samples(located.tension, at_top)
     return {
-        name: Samples(place, load)
+        name: _Samples(place, load)
         for name, load in zip(located.record.specimens, loads, strict=True)
         if np.isfinite(load).any()
     }
@@ -253,7 +177,7 @@ def _first_above(series: Floats, level: float) -> int | None:
     return first_sample(lambda part: series[part] > level, 0, series.size, series)
 
 
-def _first_rise(located: Located) -> dict[str, Samples]:
+def _first_rise(located: Located) -> dict[str, _Samples]:
     """Samples up to the first that is over half of the greatest tension; of many, the last."""
     found = {}
     for name, tension in zip(located.record.specimens, located.tension, strict=True):
@@ -262,5 +186,5 @@ def _first_rise(located: Located) -> dict[str, Samples]:
         stop = 0 if over is None else over + 1
         rise = slice(max(stop - _MOST_KEPT, 0), stop)
         # copies, lest the whole record is kept with its first part
-        found[name] = Samples(np.array(located.position[rise]), np.array(tension[rise]))
+        found[name] = _Samples(np.array(located.position[rise]), np.array(tension[rise]))
     return found

@@ -27,11 +27,7 @@ def notes_of_test(
     of_stages: Iterable[str],
     slack_remarks: Sequence[str],
 ) -> tuple[str, ...]:
-    """What a reader has to know before the numbers are used, nothing twice.
-
-    ``parts`` are those of cycles and first rise by field of `ReducedTest`, ``of_stages`` what
-    the stages themselves said, and ``slack_remarks`` has one text a specimen, empty for none.
-    """
+    """What a reader has to know before the numbers are used, nothing twice."""
     record, standstills = located.record, located.standstills
     notes = [note for specimen in specimens for note in check_constant_volume(specimen)]
     notes += of_stages

@@ -214,37 +214,8 @@ def _need(name: str, value: Floats, is_good: Bools, needed: str) -> None:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class ArmourResponse:
-    """Response of one wire at each strain of the cable.  Arrays have the shape (..., n_strain).
-
-    Parameters
-    ----------
-    theory : {"small", "intermediate", "large", "exact", "conjugate"}
-        Which gave it.
-    strain : ndarray, shape (n_strain,)
-        Of the cable along its axis. [1]
-    wire_strain : ndarray
-        Of the wire along itself. [1]
-    current_winding_angle, angle_change : ndarray
-        From the axis; the change is below zero in extension.  NaN by the theory of large
-        angles, which does not say. [rad]
-    curvature_change, torsion_change : ndarray
-        Those that make the moments. [m-1]
-    axial_force, shear_force : ndarray
-        On the section of a wire along the tangent (T) and the binormal (N'). [N]
-    bending_moment, torsion_moment : ndarray
-        G', above zero where it bends the wire more, and H. [N m]
-    axial_stress, bending_stress, torsion_stress : ndarray
-        Of the axial force; greatest of the bending moment and of the torsion moment on the
-        section, with the sign of the moment. [Pa]
-    tension, torque : ndarray
-        What the wire adds to the tension of the cable and to its torque about the axis; a
-        right-handed wire in extension has a torque above zero. [N], [N m]
-    contact_line_load : ndarray
-        Outwards, by the core on the wire, per length of the wire. [N m-1]
-    is_lifted : ndarray of bool
-        The core would have to pull: the wire leaves it, and no theory here holds.
-    """
+class _ArmourResponse:
+    """Response of one wire at each strain of the cable.  Arrays have the shape (..., n_strain)."""
 
     theory: ArmourTheory
     strain: Floats
@@ -267,7 +238,7 @@ class ArmourResponse:
 
 
 @dataclass(frozen=True)
-class Wire:
+class _Wire:
     """Numbers of a design with an axis of strain behind them, shape (..., 1)."""
 
     angle: Floats
@@ -281,7 +252,7 @@ class Wire:
     torsion_stiffness: Floats
 
     @classmethod
-    def of(cls, design: ArmourDesign) -> Wire:
+    def of(cls, design: ArmourDesign) -> _Wire:
         """Spread a design."""
         angle = _behind(design.winding_angle)
         return cls(
@@ -302,7 +273,7 @@ def _behind(value: ArrayLike) -> Floats:
 
 
 @dataclass(frozen=True)
-class Deformed:
+class _Deformed:
     """How a wire is deformed: strains, and the helix on which its forces are in balance."""
 
     wire_strain: Floats
@@ -312,9 +283,9 @@ class Deformed:
     balance_angle: Floats
 
 
-def respond(
-    wire: Wire, theory: ArmourTheory, strain: Floats, is_as: Deformed, axial_force: Floats
-) -> ArmourResponse:
+def _respond(
+    wire: _Wire, theory: ArmourTheory, strain: Floats, is_as: _Deformed, axial_force: Floats
+) -> _ArmourResponse:
     """Give forces, moments and stresses of a deformed wire.
 
     Equations 4 (torsion with the torsional stiffness), 6, 17-19 of the module's reference.
@@ -348,32 +319,16 @@ def respond(
         "is_lifted": contact < 0,
     }
     spread = {name: np.broadcast_to(number, shape) for name, number in numbers.items()}
-    return ArmourResponse(theory=theory, strain=strain, **spread)
+    return _ArmourResponse(theory=theory, strain=strain, **spread)
 
 
 _STEPS = 40  # each doubles the digits once it is near; the slowest start needs about ten
 
 
-def fill_factor(design: ArmourDesign) -> Floats:
+def _fill_factor(design: ArmourDesign) -> Floats:
     r"""Share of the circumference that the wires take, on the unrolled cylinder of their centres.
 
     .. math:: n R_2 / (\pi r \cos\alpha)
-
-    Parameters
-    ----------
-    design : ArmourDesign
-        Shape (...).
-
-    Returns
-    -------
-    fill_factor : ndarray, shape (...)
-        Above one the wires do not fit; a little below one they may still not, since the
-        cylinder is round: `wire_gap` decides. [1]
-
-    Raises
-    ------
-    SettingsError
-        By the design.
 
     Notes
     -----
@@ -382,32 +337,17 @@ def fill_factor(design: ArmourDesign) -> Floats:
     Examples
     --------
     >>> design = ArmourDesign(np.radians(20.0), 2.5e-3, 25e-3, 210e9, n_wires=30)
-    >>> print(fill_factor(design).round(3))
+    >>> print(_fill_factor(design).round(3))
     0.924
     """
     across = np.asarray(design.n_wires) * np.asarray(design.wire_radius)
     return np.asarray(across / (pi * design.helix_radius * np.cos(design.winding_angle)))
 
 
-def wire_gap(design: ArmourDesign) -> Floats:
+def _wire_gap(design: ArmourDesign) -> Floats:
     r"""Room between neighbouring wires at rest, by the least distance of their centre lines.
 
     .. math:: \min_\psi r\sqrt{2(1 - \cos\psi) + \cot^2\!\alpha\,(2\pi/n - \psi)^2} - 2 R_2
-
-    Parameters
-    ----------
-    design : ArmourDesign
-        Shape (...).
-
-    Returns
-    -------
-    wire_gap : ndarray, shape (...)
-        Below zero the wires do not fit; of a single wire, to its own next turn. [m]
-
-    Raises
-    ------
-    SettingsError
-        By the design.
 
     Notes
     -----
@@ -421,7 +361,7 @@ def wire_gap(design: ArmourDesign) -> Floats:
     All but straight wires as thick as their core: six would just fit, as in a strand of seven
 
     >>> design = ArmourDesign(1e-9, 1.0, 1.0, 210e9, n_wires=np.array([5, 7]))
-    >>> print(wire_gap(design).round(3))
+    >>> print(_wire_gap(design).round(3))
     [ 0.351 -0.264]
     """
     angle = np.asarray(design.winding_angle, dtype=np.float64)
@@ -439,29 +379,12 @@ def wire_gap(design: ArmourDesign) -> Floats:
     return np.asarray(design.helix_radius * np.sqrt(square) - 2 * np.asarray(design.wire_radius))
 
 
-def predict_intermediate(design: ArmourDesign, strain: Floats) -> ArmourResponse:
+def _predict_intermediate(design: ArmourDesign, strain: Floats) -> _ArmourResponse:
     r"""Response of a wire to the first order in the strain.
 
     .. math:: \zeta = \varepsilon\cos^2\alpha,\quad \Delta\alpha = -\varepsilon\sin\alpha\cos\alpha,
        \quad \Delta\kappa' = -2\varepsilon\sin^2\alpha\cos^2\alpha/r,
        \quad \Delta\tau = \varepsilon\sin\alpha\cos\alpha(\sin^2\alpha - \cos^2\alpha)/r
-
-    Parameters
-    ----------
-    design : ArmourDesign
-        Shape (...).
-    strain : ndarray, shape (n_strain,)
-        Of the cable. [1]
-
-    Returns
-    -------
-    response : ArmourResponse
-        Arrays of shape (..., n_strain).
-
-    Raises
-    ------
-    SettingsError
-        By the design; see `reduction.prediction.armour.predict_armour` for the strain.
 
     Notes
     -----
@@ -477,44 +400,27 @@ def predict_intermediate(design: ArmourDesign, strain: Floats) -> ArmourResponse
     At 45 deg the torsion does not change, and the bending moment is greatest:
 
     >>> design = ArmourDesign(np.radians(45.0), 2.5e-3, 25e-3, 210e9)
-    >>> wire = predict_intermediate(design, np.array([1e-3]))
+    >>> wire = _predict_intermediate(design, np.array([1e-3]))
     >>> print((wire.axial_stress / 1e6).round(1), abs(wire.torsion_moment).round(9))
     [105.] [0.]
     """
-    wire = Wire.of(design)
+    wire = _Wire.of(design)
     product = wire.sine * wire.cosine
     wire_strain = strain * wire.cosine**2
-    is_as = Deformed(
+    is_as = _Deformed(
         wire_strain=wire_strain,
         angle_change=-strain * product,
         curvature_change=-2 * strain * product**2 / wire.helix_radius,
         torsion_change=-strain * product * np.cos(2 * wire.angle) / wire.helix_radius,
         balance_angle=wire.angle,
     )
-    return respond(wire, "intermediate", strain, is_as, wire.axial_stiffness * wire_strain)
+    return _respond(wire, "intermediate", strain, is_as, wire.axial_stiffness * wire_strain)
 
 
-def predict_small(design: ArmourDesign, strain: Floats) -> ArmourResponse:
+def _predict_small(design: ArmourDesign, strain: Floats) -> _ArmourResponse:
     r"""Response of a wire with the change of angle from a cosine.
 
     .. math:: \cos\bar\alpha = (1 + \varepsilon - \varepsilon\cos^2\alpha)\cos\alpha
-
-    Parameters
-    ----------
-    design : ArmourDesign
-        Shape (...).
-    strain : ndarray, shape (n_strain,)
-        Of the cable. [1]
-
-    Returns
-    -------
-    response : ArmourResponse
-        Arrays of shape (..., n_strain); NaN where the cosine passes one.
-
-    Raises
-    ------
-    SettingsError
-        By the design; see `reduction.prediction.armour.predict_armour` for the strain.
 
     Notes
     -----
@@ -526,45 +432,28 @@ def predict_small(design: ArmourDesign, strain: Floats) -> ArmourResponse:
     Examples
     --------
     >>> design = ArmourDesign(np.radians([10.0, 20.0]), 2.5e-3, 25e-3, 210e9)
-    >>> print((predict_small(design, np.array([1e-3])).axial_force[:, 0] / 1e3).round(3))
+    >>> print((_predict_small(design, np.array([1e-3])).axial_force[:, 0] / 1e3).round(3))
     [3.999 3.641]
     """
-    wire = Wire.of(design)
+    wire = _Wire.of(design)
     wire_strain = strain * wire.cosine**2
     with np.errstate(invalid="ignore"):
         change = np.arccos((1 + strain - wire_strain) * wire.cosine) - wire.angle
-    is_as = Deformed(
+    is_as = _Deformed(
         wire_strain=wire_strain,
         angle_change=change,
         curvature_change=np.sin(2 * wire.angle) * change / wire.helix_radius,
         torsion_change=np.cos(2 * wire.angle) * change / wire.helix_radius,
         balance_angle=wire.angle,
     )
-    return respond(wire, "small", strain, is_as, wire.axial_stiffness * wire_strain)
+    return _respond(wire, "small", strain, is_as, wire.axial_stiffness * wire_strain)
 
 
-def predict_large(design: ArmourDesign, strain: Floats) -> ArmourResponse:
+def _predict_large(design: ArmourDesign, strain: Floats) -> _ArmourResponse:
     r"""Response of a wire as a close-coiled helical spring, free of the core.
 
     .. math:: f = \frac{\pi E R_2^4 \varepsilon}{4 (1+\nu) r^2 \tan\alpha},\quad
        T = f\cos\alpha,\quad N' = f\sin\alpha,\quad G' = -f r\cos\alpha,\quad H = f r\sin\alpha
-
-    Parameters
-    ----------
-    design : ArmourDesign
-        Shape (...).
-    strain : ndarray, shape (n_strain,)
-        Of the cable. [1]
-
-    Returns
-    -------
-    response : ArmourResponse
-        Arrays of shape (..., n_strain); the angle is NaN, the contact load zero.
-
-    Raises
-    ------
-    SettingsError
-        By the design; see `reduction.prediction.armour.predict_armour` for the strain.
 
     Notes
     -----
@@ -579,25 +468,25 @@ def predict_large(design: ArmourDesign, strain: Floats) -> ArmourResponse:
     --------
     >>> design = ArmourDesign(np.radians(80.0), 2.5e-3, 25e-3, 210e9)
     >>> strain = np.array([1e-3])
-    >>> rod = predict_intermediate(design, strain)
-    >>> print((100 * predict_large(design, strain).axial_force / rod.axial_force).round(2))
+    >>> rod = _predict_intermediate(design, strain)
+    >>> print((100 * _predict_large(design, strain).axial_force / rod.axial_force).round(2))
     [0.16]
     """
-    wire = Wire.of(design)
+    wire = _Wire.of(design)
     force = wire.torsion_stiffness * strain * wire.cosine / (wire.sine * wire.helix_radius**2)
     arm = force * wire.helix_radius
     axial_force = force * wire.cosine
-    is_as = Deformed(
+    is_as = _Deformed(
         wire_strain=axial_force / wire.axial_stiffness,
         angle_change=np.full_like(axial_force, np.nan),
         curvature_change=-arm * wire.cosine / wire.bending_stiffness,
         torsion_change=arm * wire.sine / wire.torsion_stiffness,
         balance_angle=wire.angle,
     )
-    return respond(wire, "large", strain, is_as, axial_force)
+    return _respond(wire, "large", strain, is_as, axial_force)
 
 
-def _deform(wire: Wire, strain: Floats, *, torsion_per_rest_length: bool) -> Deformed:
+def _deform(wire: _Wire, strain: Floats, *, torsion_per_rest_length: bool) -> _Deformed:
     """Deform the helix; every difference is a product, so that small strains lose no digits."""
     stretch = cord_stretch_ratio(1 + strain, wire.angle, core="rigid")
     change = -np.arcsin(strain * wire.sine * wire.cosine / stretch)
@@ -610,32 +499,15 @@ def _deform(wire: Wire, strain: Floats, *, torsion_per_rest_length: bool) -> Def
         half = -2 * np.sin(change / 2) * np.sin(wire.angle + change / 2)
         torsion_change = wire.sine * half / wire.helix_radius
         curvature_change = stretch * curvature_change
-    return Deformed(
+    return _Deformed(
         wire_strain, change, curvature_change, torsion_change, balance_angle=wire.angle + change
     )
 
 
-def predict_exact(design: ArmourDesign, strain: Floats) -> ArmourResponse:
+def _predict_exact(design: ArmourDesign, strain: Floats) -> _ArmourResponse:
     r"""Response of a wire with the exact helix and the moments of the report.
 
     .. math:: G' = EI(\bar\kappa' - \kappa'),\quad H = GJ(\bar\tau - \tau),\quad T = EA\zeta
-
-    Parameters
-    ----------
-    design : ArmourDesign
-        Shape (...).
-    strain : ndarray, shape (n_strain,)
-        Of the cable. [1]
-
-    Returns
-    -------
-    response : ArmourResponse
-        Arrays of shape (..., n_strain).
-
-    Raises
-    ------
-    SettingsError
-        By the design; see `reduction.prediction.armour.predict_armour` for the strain.
 
     Notes
     -----
@@ -645,37 +517,20 @@ def predict_exact(design: ArmourDesign, strain: Floats) -> ArmourResponse:
     Examples
     --------
     >>> design = ArmourDesign(np.radians(45.0), 2.5e-3, 25e-3, 210e9)
-    >>> wire = predict_exact(design, np.array([1e-3, 0.1]))
+    >>> wire = _predict_exact(design, np.array([1e-3, 0.1]))
     >>> print((100 * wire.wire_strain).round(5), np.degrees(wire.current_winding_angle).round(4))
     [0.05001 5.11898] [44.9714 42.2737]
     """
-    wire = Wire.of(design)
+    wire = _Wire.of(design)
     is_as = _deform(wire, strain, torsion_per_rest_length=False)
-    return respond(wire, "exact", strain, is_as, wire.axial_stiffness * is_as.wire_strain)
+    return _respond(wire, "exact", strain, is_as, wire.axial_stiffness * is_as.wire_strain)
 
 
-def predict_conjugate(design: ArmourDesign, strain: Floats) -> ArmourResponse:
+def _predict_conjugate(design: ArmourDesign, strain: Floats) -> _ArmourResponse:
     r"""Response of a wire whose tension is the derivative of its energy.
 
     .. math:: T = EA\zeta - \kappa' G',\quad G' = EI(1+\zeta)(\bar\kappa' - \kappa'),\quad
        H = GJ((1+\zeta)\bar\tau - \tau)
-
-    Parameters
-    ----------
-    design : ArmourDesign
-        Shape (...).
-    strain : ndarray, shape (n_strain,)
-        Of the cable. [1]
-
-    Returns
-    -------
-    response : ArmourResponse
-        Arrays of shape (..., n_strain); curvature and torsion changes per rest length.
-
-    Raises
-    ------
-    SettingsError
-        By the design; see `reduction.prediction.armour.predict_armour` for the strain.
 
     Notes
     -----
@@ -686,30 +541,30 @@ def predict_conjugate(design: ArmourDesign, strain: Floats) -> ArmourResponse:
     The torsion moment at 45 deg, which [4]_ makes zero, to the first order GJ strain / (4 r):
 
     >>> design = ArmourDesign(np.radians(45.0), 2.5e-3, 25e-3, 210e9)
-    >>> wire = predict_conjugate(design, np.array([1e-6]))
+    >>> wire = _predict_conjugate(design, np.array([1e-6]))
     >>> print((wire.torsion_moment * 4 * 27.5e-3 / (design.torsion_stiffness * 1e-6)).round(4))
     [1.]
     """
-    wire = Wire.of(design)
+    wire = _Wire.of(design)
     is_as = _deform(wire, strain, torsion_per_rest_length=True)
     rest_curvature = wire.sine**2 / wire.helix_radius
     eccentric = rest_curvature * wire.bending_stiffness * is_as.curvature_change
     axial_force = wire.axial_stiffness * is_as.wire_strain - eccentric
-    return respond(wire, "conjugate", strain, is_as, axial_force)
+    return _respond(wire, "conjugate", strain, is_as, axial_force)
 
 
-_PREDICT: dict[ArmourTheory, Callable[[ArmourDesign, Floats], ArmourResponse]] = {
-    "small": predict_small,
-    "intermediate": predict_intermediate,
-    "large": predict_large,
-    "exact": predict_exact,
-    "conjugate": predict_conjugate,
+_PREDICT: dict[ArmourTheory, Callable[[ArmourDesign, Floats], _ArmourResponse]] = {
+    "small": _predict_small,
+    "intermediate": _predict_intermediate,
+    "large": _predict_large,
+    "exact": _predict_exact,
+    "conjugate": _predict_conjugate,
 }
 
 
 def predict_armour(
     design: ArmourDesign, strain: ArrayLike, *, theory: ArmourTheory = "exact"
-) -> ArmourResponse:
+) -> _ArmourResponse:
     """Forces, moments and stresses of one wire at each strain of the cable.
 
     Parameters
@@ -736,7 +591,7 @@ def predict_armour(
     -----
     Source: [1]_.  The material is elastic at any stress: `reduction.prediction.armour` says
     where a wire yields.  The core is rigid; where it gives, or the wire thins on it, the wire is
-    strained less (`reduction.prediction.armour.thinning_loss`).  A strain below zero is
+    strained less (`reduction.prediction.armour._thinning_loss`).  A strain below zero is
     computed, and flagged: wires under compression leave the core.
 
     Examples
@@ -779,21 +634,8 @@ _SIMPLER: tuple[ArmourTheory, ...] = ("small", "intermediate", "large")
 
 @dataclass(frozen=True)
 @read_only_arrays
-class TheoryErrors:
-    """Error of each theory.
-
-    Parameters
-    ----------
-    theory : tuple of str, length n_theories
-        Those that are judged.
-    quantity : tuple of str, length n_quantities
-        `ARMOUR_QUANTITIES`.
-    reference : {"exact", "conjugate"}
-        What they are held against.
-    error : ndarray, shape (n_theories, n_quantities, ..., n_strain)
-        Theory minus reference, relative to the reference; of the torsion moment, relative to
-        that of the whole change of curvature and torsion.  NaN without strain. [1]
-    """
+class _TheoryErrors:
+    """Error of each theory."""
 
     theory: tuple[ArmourTheory, ...]
     quantity: tuple[str, ...]
@@ -803,7 +645,7 @@ class TheoryErrors:
 
 def theory_errors(
     design: ArmourDesign, strain: ArrayLike, *, reference: Reference = "exact"
-) -> TheoryErrors:
+) -> _TheoryErrors:
     r"""Error of the theories of small, intermediate and large angles, quantity by quantity.
 
     Parameters
@@ -855,31 +697,17 @@ def theory_errors(
     each = [_table(predict_armour(design, strain, theory=theory)) for theory in _SIMPLER]
     miss = np.stack(each) - _table(true)
     error = np.divide(miss, scale, out=np.full_like(miss, np.nan), where=scale > 0)
-    return TheoryErrors(_SIMPLER, ARMOUR_QUANTITIES, reference, error)
+    return _TheoryErrors(_SIMPLER, ARMOUR_QUANTITIES, reference, error)
 
 
-def _table(response: ArmourResponse) -> Floats:
+def _table(response: _ArmourResponse) -> Floats:
     return np.stack([getattr(response, name) for name in ARMOUR_QUANTITIES])
 
 
 @dataclass(frozen=True)
 @read_only_arrays
-class AnglesOfUse:
-    """Where each theory holds.
-
-    Parameters
-    ----------
-    theory, quantity : tuple of str
-        As `TheoryErrors`.
-    winding_angle : ndarray, shape (n_angles,)
-        That were tried. [rad]
-    is_within : ndarray of bool, shape (n_theories, n_quantities, n_angles)
-        The error is at most the tolerance.
-    least_angle, greatest_angle : ndarray, shape (n_theories, n_quantities)
-        Ends of the longest run of angles at which it is; NaN where it is nowhere. [rad]
-    statement : tuple of str
-        One sentence for each theory and quantity.
-    """
+class _AnglesOfUse:
+    """Where each theory holds."""
 
     theory: tuple[ArmourTheory, ...]
     quantity: tuple[str, ...]
@@ -890,33 +718,10 @@ class AnglesOfUse:
     statement: tuple[str, ...]
 
 
-def angles_of_use(
+def _angles_of_use(
     design: ArmourDesign, strain: float, *, tolerance: float, reference: Reference = "exact"
-) -> AnglesOfUse:
+) -> _AnglesOfUse:
     """Winding angles at which each theory is within a tolerance, and the statement of it.
-
-    Parameters
-    ----------
-    design : ArmourDesign
-        Of a rising series of winding angles, shape (n_angles,).
-    strain : float
-        Of the cable, the greatest in use. [1]
-    tolerance : float
-        Of the error of `theory_errors`. [1]
-    reference : {"exact", "conjugate"}
-        As `theory_errors`.
-
-    Returns
-    -------
-    angles : AnglesOfUse
-        Among those of the design; no angle between two of them is looked at.
-
-    Raises
-    ------
-    SettingsError
-        If the tolerance is not above zero, or the design is not a series.
-    DataError
-        If the winding angles do not rise.
 
     Notes
     -----
@@ -926,7 +731,7 @@ def angles_of_use(
     Examples
     --------
     >>> design = ArmourDesign(np.radians(np.arange(5.0, 86.0)), 2.5e-3, 25e-3, 210e9)
-    >>> use = angles_of_use(design, 1e-3, tolerance=0.02)
+    >>> use = _angles_of_use(design, 1e-3, tolerance=0.02)
     >>> print(use.statement[2])
     small angles: bending_moment within 2 % of exact at 5-85 deg
     """
@@ -953,7 +758,7 @@ def angles_of_use(
                 f"{theory} angles: {quantity} within {100 * tolerance:g} % of {reference} "
                 + (f"at {places} deg" if places else "nowhere")
             )
-    return AnglesOfUse(
+    return _AnglesOfUse(
         theory=errors.theory,
         quantity=errors.quantity,
         winding_angle=angle,
@@ -975,25 +780,10 @@ def _degrees(ends: Floats) -> str:
     return f"{first:.4g}" if first == last else f"{first:.4g}-{last:.4g}"
 
 
-def thinning_loss(design: ArmourDesign) -> Floats:
+def _thinning_loss(design: ArmourDesign) -> Floats:
     r"""Share of its strain that a wire loses because it thins and sinks towards the core.
 
     .. math:: \frac{\nu (R_2/r)\sin^2\alpha}{1 + \nu (R_2/r)\sin^2\alpha}
-
-    Parameters
-    ----------
-    design : ArmourDesign
-        Shape (...).
-
-    Returns
-    -------
-    thinning_loss : ndarray, shape (...)
-        By which strain, axial force and tension are too high in every theory on a core. [1]
-
-    Raises
-    ------
-    SettingsError
-        By the design.
 
     Notes
     -----
@@ -1006,7 +796,7 @@ def thinning_loss(design: ArmourDesign) -> Floats:
     Examples
     --------
     >>> design = ArmourDesign(np.radians([20.0, 30.0, 80.0]), 2.5e-3, 25e-3, 210e9)
-    >>> print((100 * thinning_loss(design)).round(2))
+    >>> print((100 * _thinning_loss(design)).round(2))
     [0.32 0.68 2.58]
     """
     slender = np.asarray(design.wire_radius) / design.helix_radius
@@ -1016,20 +806,11 @@ def thinning_loss(design: ArmourDesign) -> Floats:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class LayerStiffness:
+class _LayerStiffness:
     """Stiffness of layers at rest; arrays have the shape (...) of the designs.
 
     ``torque_per_strain`` is also the tension per twist.  It is that of right-handed wires; of
     left-handed ones it has the other sign.
-
-    Parameters
-    ----------
-    tension_per_strain : ndarray
-        Where the cable cannot turn. [N]
-    torque_per_strain : ndarray
-        [N m]
-    torque_per_twist : ndarray
-        Twist in rad per length. [N m2]
     """
 
     tension_per_strain: Floats
@@ -1043,23 +824,8 @@ class LayerStiffness:
         return np.asarray(self.tension_per_strain - lost)
 
 
-def layer_stiffness(design: ArmourDesign) -> LayerStiffness:
+def _layer_stiffness(design: ArmourDesign) -> _LayerStiffness:
     """Stiffness of all wires of a layer together, at rest.
-
-    Parameters
-    ----------
-    design : ArmourDesign
-        Shape (...).
-
-    Returns
-    -------
-    stiffness : LayerStiffness
-        Arrays of shape (...).
-
-    Raises
-    ------
-    SettingsError
-        By the design.
 
     Notes
     -----
@@ -1072,7 +838,7 @@ def layer_stiffness(design: ArmourDesign) -> LayerStiffness:
     30 wires at 20 deg, of their 124 MN together: held, and free to turn
 
     >>> design = ArmourDesign(np.radians(20.0), 2.5e-3, 25e-3, 210e9, n_wires=30)
-    >>> stiffness = layer_stiffness(design)
+    >>> stiffness = _layer_stiffness(design)
     >>> print((stiffness.tension_per_strain / 1e6).round(2))
     102.66
     >>> print((stiffness.free_tension_per_strain / 1e6).round(3))
@@ -1089,7 +855,7 @@ def layer_stiffness(design: ArmourDesign) -> LayerStiffness:
         terms = (rod * x * y for rod, x, y in zip(rods, one, other, strict=True))
         return np.asarray(count * sum(terms))
 
-    return LayerStiffness(
+    return _LayerStiffness(
         tension_per_strain=pair(by_strain, by_strain),
         torque_per_strain=pair(by_strain, by_twist),
         torque_per_twist=pair(by_twist, by_twist),
@@ -1103,28 +869,11 @@ _YIELD_STEPS = 100
 _CLOSE = 1e-10  # of the yield stress; strains of the cable are differences from one
 
 
-def wire_stress(response: ArmourResponse, *, criterion: YieldCriterion = "von-mises") -> Floats:
+def _wire_stress(response: _ArmourResponse, *, criterion: YieldCriterion = "von-mises") -> Floats:
     r"""Greatest stress on the section of a wire.
 
     .. math:: |\sigma_T|,\quad |\sigma_T| + |\sigma_{G'}|,\quad
        \sqrt{(|\sigma_T| + |\sigma_{G'}|)^2 + 3\sigma_H^2}
-
-    Parameters
-    ----------
-    response : ArmourResponse
-        Arrays of shape (..., n_strain).
-    criterion : {"axial", "normal", "von-mises"}
-        Of the axial force; with bending; with torsion too.
-
-    Returns
-    -------
-    wire_stress : ndarray, shape (..., n_strain)
-        To be held against a yield stress. [Pa]
-
-    Raises
-    ------
-    SettingsError
-        If the criterion is unknown.
 
     Notes
     -----
@@ -1137,7 +886,7 @@ def wire_stress(response: ArmourResponse, *, criterion: YieldCriterion = "von-mi
     >>> from reduction.prediction.armour import predict_armour
     >>> design = ArmourDesign(np.radians(45.0), 2.5e-3, 25e-3, 210e9)
     >>> wire = predict_armour(design, 1e-3, theory="intermediate")
-    >>> print((wire_stress(wire, criterion="normal") / 1e6).round(2))
+    >>> print((_wire_stress(wire, criterion="normal") / 1e6).round(2))
     [114.55]
     """
     _known(criterion)
@@ -1150,7 +899,7 @@ def wire_stress(response: ArmourResponse, *, criterion: YieldCriterion = "von-mi
     return np.asarray(np.hypot(normal, np.sqrt(3.0) * response.torsion_stress))
 
 
-def yield_strain(
+def _yield_strain(
     design: ArmourDesign,
     yield_stress: ArrayLike,
     *,
@@ -1158,30 +907,6 @@ def yield_strain(
     theory: Literal["exact", "conjugate"] = "conjugate",
 ) -> Floats:
     """Strain of the cable at which the wires begin to yield in extension.
-
-    Parameters
-    ----------
-    design : ArmourDesign
-        Shape (...).
-    yield_stress : array_like, shape (...)
-        Of the wires. [Pa]
-    criterion : {"axial", "normal", "von-mises"}
-        As `wire_stress`.
-    theory : {"exact", "conjugate"}
-        As `reduction.prediction.armour.predict_armour`.
-
-    Returns
-    -------
-    yield_strain : ndarray, shape (...)
-        Of the cable. [1]
-
-    Raises
-    ------
-    SettingsError
-        If a yield stress is not above zero, or criterion or theory are unknown.
-    FitError
-        If the strain is not found: the yield strain is lost in rounding, or the wires are much
-        thicker than their core.
 
     Notes
     -----
@@ -1195,7 +920,7 @@ def yield_strain(
     Steel of 800 MPa at 20 and 80 deg: the steeper the wires, the more the cable may stretch
 
     >>> design = ArmourDesign(np.radians([20.0, 80.0]), 2.5e-3, 25e-3, 210e9)
-    >>> strain = yield_strain(design, 800e6, criterion="axial", theory="exact")
+    >>> strain = _yield_strain(design, 800e6, criterion="axial", theory="exact")
     >>> print((100 * strain).round(3))
     [ 0.431 11.944]
     """
@@ -1209,13 +934,13 @@ def yield_strain(
         raise SettingsError(
             "yield_stress is not above zero", found=f"{limit.min():g} Pa", needed="above 0 Pa"
         )
-    predict = predict_exact if theory == "exact" else predict_conjugate
+    predict = _predict_exact if theory == "exact" else _predict_conjugate
     shape = np.broadcast_shapes(design.shape, limit.shape)
     angle = np.broadcast_to(np.asarray(design.winding_angle, dtype=np.float64), shape)
     wire_strain = np.broadcast_to(limit / np.asarray(design.elastic_modulus), shape)
     for _ in range(_YIELD_STEPS):
         strain = hose_stretch_ratio(1 + wire_strain, angle, core="rigid") - 1
-        stress = wire_stress(predict(design, strain[..., None]), criterion=criterion)[..., 0]
+        stress = _wire_stress(predict(design, strain[..., None]), criterion=criterion)[..., 0]
         if np.all(np.abs(stress - limit) <= _CLOSE * limit):
             return np.asarray(strain)
         wire_strain = wire_strain * limit / stress
@@ -1253,7 +978,7 @@ def layer_strength(design: ArmourDesign, yield_stress: ArrayLike) -> Floats:
     -----
     Source: [8]_, sec. 5.3, which divides by the cosine where the component along the axis is
     to be multiplied by it: at 20 deg 13 % too much, at 80 deg 33 times.  The angle is that at
-    rest, and bending, torsion and shear are left out; `yield_strain` has them.
+    rest, and bending, torsion and shear are left out; `_yield_strain` has them.
 
     Examples
     --------
@@ -1334,7 +1059,7 @@ class ArmourLayers:
                 needed=f"{inside[at - 1]:g} m or more",
                 hint="Give the layers from the innermost outwards.",
             )
-        gap = np.broadcast_to(wire_gap(self.design), (count,))
+        gap = np.broadcast_to(_wire_gap(self.design), (count,))
         bad = gap < -_TOUCH * wire
         if bad.any():
             at = _first(bad)
@@ -1361,31 +1086,10 @@ def _first(bad: Bools) -> int:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class LayersResponse:
-    """Response of the cable at each strain; a layer has the shape (n_layers, n_strain).
+class _LayersResponse:
+    """Response of the cable at each strain; a layer has the shape (n_layers, n_strain)."""
 
-    Parameters
-    ----------
-    wire : ArmourResponse
-        Of one wire of each layer.
-    layer_tension, tension : ndarray, shape (n_layers, n_strain), (n_strain,)
-        Along the axis, of all wires of a layer and of all layers. [N]
-    layer_torque, torque : ndarray, shape (n_layers, n_strain), (n_strain,)
-        About the axis, above zero as of right-handed wires. [N m]
-    torque_imbalance : ndarray, shape (n_strain,)
-        Size of the torque over the sum of the sizes of the layers'; 0 is balanced, 1 all of one
-        hand.  NaN where there is none. [1]
-    layer_pressure : ndarray, shape (n_layers, n_strain)
-        By the layer alone on the surface it lies on. [Pa]
-    core_pressure : ndarray, shape (n_layers, n_strain)
-        By the layer and all outside it on that surface. [Pa]
-    wire_stress : ndarray, shape (n_layers, n_strain)
-        After von Mises. [Pa]
-    is_yielding : ndarray of bool, shape (n_layers, n_strain)
-        The stress passes the yield stress; beyond it, all loads are too high.
-    """
-
-    wire: ArmourResponse
+    wire: _ArmourResponse
     layer_tension: Floats
     tension: Floats
     layer_torque: Floats
@@ -1397,33 +1101,14 @@ class LayersResponse:
     is_yielding: Bools
 
 
-def predict_layers(
+def _predict_layers(
     layers: ArmourLayers, strain: ArrayLike, *, theory: ArmourTheory = "conjugate"
-) -> LayersResponse:
+) -> _LayersResponse:
     r"""Tension, torque, pressure and stress of a cable that is stretched and cannot turn.
 
     .. math:: F = \sum n (T\cos\bar\alpha + N'\sin\bar\alpha),\quad
        M = \sum \pm n (r(T\sin\bar\alpha - N'\cos\bar\alpha) + H\cos\bar\alpha + G'\sin\bar\alpha),
        \quad p = \frac{-n X_1}{2\pi R_1\cos\bar\alpha}
-
-    Parameters
-    ----------
-    layers : ArmourLayers
-        Of n_layers layers.
-    strain : array_like, shape (n_strain,)
-        Of the cable. [1]
-    theory : {"small", "intermediate", "exact", "conjugate"}
-        As `reduction.prediction.armour.predict_armour`; the spring has no core to lie on.
-
-    Returns
-    -------
-    response : LayersResponse
-        Arrays of shape (n_layers, n_strain) and (n_strain,).
-
-    Raises
-    ------
-    SettingsError
-        If the theory is none of these, or the strain is not a series of numbers above -1.
 
     Notes
     -----
@@ -1438,7 +1123,7 @@ def predict_layers(
     >>> design = ArmourDesign(np.radians([24.0, 20.0]), 2.5e-3, np.array([25e-3, 30e-3]), 210e9,
     ...                       n_wires=np.array([30, 36]))
     >>> layers = ArmourLayers(design, ("right", "left"), np.array([800e6, 800e6]))
-    >>> cable = predict_layers(layers, [1e-3])
+    >>> cable = _predict_layers(layers, [1e-3])
     >>> print((cable.tension / 1e3).round(1), cable.torque_imbalance.round(2))
     [217.6] [0.12]
     """
@@ -1456,8 +1141,8 @@ def predict_layers(
     inwards = np.cumsum(radial[::-1], axis=0)[::-1]
     torque = layer_torque.sum(axis=0)
     size = np.abs(layer_torque).sum(axis=0)
-    stress = wire_stress(wire)
-    return LayersResponse(
+    stress = _wire_stress(wire)
+    return _LayersResponse(
         wire=wire,
         layer_tension=layer_tension,
         tension=layer_tension.sum(axis=0),
@@ -1473,25 +1158,8 @@ def predict_layers(
     )
 
 
-def cable_stiffness(layers: ArmourLayers) -> tuple[float, float]:
+def _cable_stiffness(layers: ArmourLayers) -> tuple[float, float]:
     """Tension per strain of the cable at rest: held against turning, and free to turn.
-
-    Parameters
-    ----------
-    layers : ArmourLayers
-        Of n_layers layers.
-
-    Returns
-    -------
-    tension_per_strain : float
-        Where the cable cannot turn. [N]
-    free_tension_per_strain : float
-        Where it turns as it likes. [N]
-
-    Raises
-    ------
-    SettingsError
-        By the layers.
 
     Notes
     -----
@@ -1503,10 +1171,10 @@ def cable_stiffness(layers: ArmourLayers) -> tuple[float, float]:
     >>> design = ArmourDesign(np.radians([24.0, 20.0]), 2.5e-3, np.array([25e-3, 30e-3]), 210e9,
     ...                       n_wires=np.array([30, 36]))
     >>> layers = ArmourLayers(design, ("right", "left"), np.full(2, np.nan))
-    >>> print("{:.3e} {:.3e}".format(*cable_stiffness(layers)))
+    >>> print("{:.3e} {:.3e}".format(*_cable_stiffness(layers)))
     2.175e+08 2.146e+08
     """
-    each = layer_stiffness(layers.design)
+    each = _layer_stiffness(layers.design)
     held = float(np.sum(each.tension_per_strain))
     coupling = float(np.sum(layers.hand * each.torque_per_strain))
     return held, held - coupling**2 / float(np.sum(each.torque_per_twist))
@@ -1514,22 +1182,8 @@ def cable_stiffness(layers: ArmourLayers) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class CableStrength:
-    """First yield of a cable.
-
-    Parameters
-    ----------
-    layer_strength : ndarray, shape (n_layers,)
-        By the axial stress at the angle of rest, were each layer alone. [N]
-    layer_yield_strain : ndarray, shape (n_layers,)
-        Of the cable, at which each layer yields. [1]
-    governing_layer : int
-        That which yields first; 0 is the innermost.
-    strain : float
-        Of the cable at first yield. [1]
-    tension : float
-        Of the cable at first yield, all layers together. [N]
-    """
+class _CableStrength:
+    """First yield of a cable."""
 
     layer_strength: Floats
     layer_yield_strain: Floats
@@ -1538,28 +1192,10 @@ class CableStrength:
     tension: float
 
 
-def cable_strength(
+def _cable_strength(
     layers: ArmourLayers, *, criterion: YieldCriterion = "von-mises"
-) -> CableStrength:
+) -> _CableStrength:
     """Where the first wire of the cable yields, and what the cable carries there.
-
-    Parameters
-    ----------
-    layers : ArmourLayers
-        Every layer with its yield stress.
-    criterion : {"axial", "normal", "von-mises"}
-        As `reduction.prediction.armour.wire_stress`.
-
-    Returns
-    -------
-    strength : CableStrength
-        The tension is less than the sum of the strengths of the layers, which do not yield at
-        one strain.
-
-    Raises
-    ------
-    SettingsError
-        If a layer has no yield stress, or the criterion is unknown.
 
     Notes
     -----
@@ -1573,7 +1209,7 @@ def cable_strength(
     >>> design = ArmourDesign(np.radians([35.0, 20.0]), 2.5e-3, np.array([25e-3, 30e-3]), 210e9,
     ...                       n_wires=np.array([26, 36]))
     >>> layers = ArmourLayers(design, ("right", "left"), np.array([800e6, 800e6]))
-    >>> strength = cable_strength(layers, criterion="axial")
+    >>> strength = _cable_strength(layers, criterion="axial")
     >>> strength.governing_layer, round(100 * strength.strain, 3)
     (1, 0.431)
     """
@@ -1583,15 +1219,15 @@ def cable_strength(
             f"layer {int(np.flatnonzero(bare)[0]) + 1} has no yield stress",
             needed="one for every layer",
         )
-    strain = yield_strain(layers.design, layers.yield_stress, criterion=criterion)
+    strain = _yield_strain(layers.design, layers.yield_stress, criterion=criterion)
     governing = int(np.argmin(strain))
     first = float(strain[governing])
-    return CableStrength(
+    return _CableStrength(
         layer_strength=layer_strength(layers.design, layers.yield_stress),
         layer_yield_strain=strain,
         governing_layer=governing,
         strain=first,
-        tension=float(predict_layers(layers, first).tension[0]),
+        tension=float(_predict_layers(layers, first).tension[0]),
     )
 
 
@@ -1606,20 +1242,20 @@ class PredictedArmour:
 
     ``responses`` are of one wire of each layer by theory, shape (n_layers, 1); ``use`` is
     of each layer, at the ``tolerance`` [1]; ``axial_stiffness`` is of the cable held from
-    turning, and free to [N]; ``thinning_loss`` is the share of its strain that a wire of each
+    turning, and free to [N]; ``_thinning_loss`` is the share of its strain that a wire of each
     layer loses as it thins, which no theory has in it [1].
     """
 
     layer_names: tuple[str, ...]
     layers: ArmourLayers
     strain: Floats
-    responses: dict[ArmourTheory, ArmourResponse]
-    errors: TheoryErrors
-    use: tuple[AnglesOfUse, ...]
+    responses: dict[ArmourTheory, _ArmourResponse]
+    errors: _TheoryErrors
+    use: tuple[_AnglesOfUse, ...]
     tolerance: float
-    together: LayersResponse
+    together: _LayersResponse
     axial_stiffness: tuple[float, float]
-    strength: CableStrength | None
+    strength: _CableStrength | None
     fill: Floats
     gap: Floats
     thinning_loss: Floats
@@ -1658,7 +1294,7 @@ def predict_armour_case(
     responses = {
         theory: predict_armour(design, strain, theory=theory) for theory in ARMOUR_THEORIES
     }
-    together = predict_layers(layers, strain)
+    together = _predict_layers(layers, strain)
     known = np.isfinite(layers.yield_stress)
     notes = []
     for place, name in enumerate(names):
@@ -1678,16 +1314,18 @@ def predict_armour_case(
         responses=responses,
         errors=theory_errors(design, strain),
         use=tuple(
-            angles_of_use(wound_at_all_angles(design, place), float(strain[0]), tolerance=tolerance)
+            _angles_of_use(
+                wound_at_all_angles(design, place), float(strain[0]), tolerance=tolerance
+            )
             for place in range(len(names))
         ),
         tolerance=tolerance,
         together=together,
-        axial_stiffness=cable_stiffness(layers),
-        strength=cable_strength(layers) if known.all() else None,
-        fill=fill_factor(design),
-        gap=wire_gap(design),
-        thinning_loss=thinning_loss(design),
+        axial_stiffness=_cable_stiffness(layers),
+        strength=_cable_strength(layers) if known.all() else None,
+        fill=_fill_factor(design),
+        gap=_wire_gap(design),
+        thinning_loss=_thinning_loss(design),
         notes=tuple(notes),
     )
 

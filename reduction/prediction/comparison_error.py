@@ -69,7 +69,7 @@ from reduction.record.measurement import Floats, Integers, read_only_arrays
 
 @dataclass(frozen=True)
 @read_only_arrays
-class Difference:
+class _Difference:
     """Comparison error of one curve; ``difference`` has the shape (n_strain,), NaN outside.
 
     ``relative_rms`` is the RMS of the comparison error over the RMS of the measured tension at
@@ -111,7 +111,7 @@ class EventDifference:
 
 
 @dataclass(frozen=True)
-class EnergyDifference:
+class _EnergyDifference:
     """Energies per relaxed length between the same two strains. [J m-1].
 
     The prediction is elastic and has no loop; ``loop_share`` is the measured loop over the
@@ -129,7 +129,7 @@ class EnergyDifference:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class CycleDifference:
+class _CycleDifference:
     """Comparison error cycle by cycle, at the judged curve of each; shape (n_cycle,). [N].
 
     ``bias_per_decade`` is the slope of the bias over log10 of the cycle number, over all
@@ -146,37 +146,10 @@ class CycleDifference:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class Validation:
+class _Validation:
     """Comparison error against what measurement and prediction are uncertain by.
 
     Arrays have the shape (n_strain,), NaN where nothing was compared. [N]
-
-    Parameters
-    ----------
-    input_standard_uncertainty : ndarray
-        Of the prediction, from the numbers that went into it. [N]
-    measurement_standard_uncertainty : ndarray
-        Of the measured curve, calibration and type A. [N]
-    standard_uncertainty : ndarray
-        u_val, both together. [N]
-    coverage_factor : float
-        What the largest abs(E) / u_val of the whole curve stays below in 95 % of all cases in
-        which the prediction is right. [1]
-    ratio : float
-        Largest abs(E) / u_val. [1]
-    ratio_strain : float
-        Where it is. [1]
-    chi_square, chi_square_freedom, chi_square_probability : float
-        E' V^-1 E, the rank of V, and how often a right prediction exceeds it. [1]
-    share : float
-        Median of U = coverage factor times u_val over the measured tension. [1]
-    agrees, is_informative : bool
-        Whether the ratio is inside; whether U is small enough for that to mean anything.
-    verdict : str
-        In words, with newtons; `reduction.prediction.comparison_error.verdict_words` has other
-        units.
-    ratio_difference : float
-        Comparison error, signed, where the ratio is largest. [N]
     """
 
     input_standard_uncertainty: Floats
@@ -276,8 +249,8 @@ class Calibration:
     correlation: Floats
     identifiability: Identifiability
     design: HoseDesign
-    before: Difference
-    after: Difference
+    before: _Difference
+    after: _Difference
     model_error: float
     effective_points: float
     shared_error: tuple[str, ...]
@@ -298,11 +271,11 @@ class Comparison:
     measured: MeasuredCurve
     prediction: HosePrediction
     judged: CurveName
-    differences: dict[CurveName, Difference]
+    differences: dict[CurveName, _Difference]
     events: tuple[EventDifference, ...]
-    energy: EnergyDifference
-    cycles: CycleDifference
-    validation: Validation
+    energy: _EnergyDifference
+    cycles: _CycleDifference
+    validation: _Validation
     calibration: Calibration | None
     notes: tuple[str, ...]
     measured_pick_up_strain: float = float("nan")
@@ -358,7 +331,7 @@ def autocorrelation_length(residual: ArrayLike) -> float:
 
 def difference_of(
     strain: ArrayLike, predicted: ArrayLike, measured: ArrayLike, *, curve: CurveName
-) -> Difference:
+) -> _Difference:
     """Comparison error E = predicted - measured of one curve.
 
     Parameters
@@ -410,7 +383,7 @@ def difference_of(
     worst = int(np.nanargmax(np.abs(error)))
     rms = float(np.sqrt(np.mean(error[both] ** 2)))
     level = float(np.sqrt(np.mean(test[both] ** 2)))
-    return Difference(
+    return _Difference(
         curve=curve,
         strain=x,
         difference=error,
@@ -429,32 +402,12 @@ def _range(strain: Floats, there: np.ndarray) -> str:
     return f"{100 * strain[there].min():.4g} to {100 * strain[there].max():.4g} %"
 
 
-def strain_at_tension(strain: ArrayLike, tension: ArrayLike, level: float) -> float:
+def _strain_at_tension(strain: ArrayLike, tension: ArrayLike, level: float) -> float:
     """Strain at which a measured curve first reaches a tension.
-
-    Parameters
-    ----------
-    strain : array_like, shape (n_strain,)
-        Rising. [1]
-    tension : array_like, shape (n_strain,)
-        NaN where not visited. [N]
-    level : float
-        The tension. [N]
-
-    Returns
-    -------
-    reached : float
-        Between two points on the straight line; NaN where the curve begins above the level
-        or does not reach it. [1]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up.
 
     Examples
     --------
-    >>> print(round(strain_at_tension([0.0, 0.1, 0.2], [0.0, 10.0, 30.0], 15.0), 6))
+    >>> print(round(_strain_at_tension([0.0, 0.1, 0.2], [0.0, 10.0, 30.0], 15.0), 6))
     0.125
     """
     x, y = as_same_shape(strain=strain, tension=tension)
@@ -469,7 +422,7 @@ def strain_at_tension(strain: ArrayLike, tension: ArrayLike, level: float) -> fl
     return float(x[k - 1] + (level - y[k - 1]) / (y[k] - y[k - 1]) * (x[k] - x[k - 1]))
 
 
-def energy_difference(predicted: ArrayLike, measured: MeasuredCurve) -> EnergyDifference:
+def energy_difference(predicted: ArrayLike, measured: MeasuredCurve) -> _EnergyDifference:
     """Energy under the ascending branch, and of the loop, beside the elastic prediction.
 
     Parameters
@@ -512,11 +465,11 @@ def energy_difference(predicted: ArrayLike, measured: MeasuredCurve) -> EnergyDi
     if has_loop:
         there &= np.isfinite(down)
     if np.count_nonzero(there) < 2:
-        return EnergyDifference(*[float("nan")] * 7)
+        return _EnergyDifference(*[float("nan")] * 7)
     x = measured.strain[there]
     taken, stored = (float(np.trapezoid(curve[there], x)) for curve in (up, model))
     loop = taken - float(np.trapezoid(down[there], x)) if has_loop else float("nan")
-    return EnergyDifference(
+    return _EnergyDifference(
         strain_low=float(x[0]),
         strain_high=float(x[-1]),
         measured=taken,
@@ -527,7 +480,7 @@ def energy_difference(predicted: ArrayLike, measured: MeasuredCurve) -> EnergyDi
     )
 
 
-def cycle_differences(predicted: ArrayLike, measured: MeasuredCurve) -> CycleDifference:
+def cycle_differences(predicted: ArrayLike, measured: MeasuredCurve) -> _CycleDifference:
     """Comparison error of every cycle, and its trend over the cycles.
 
     Parameters
@@ -577,7 +530,7 @@ def cycle_differences(predicted: ArrayLike, measured: MeasuredCurve) -> CycleDif
     squares = np.where(there, (model - each) ** 2, 0.0).sum(axis=1) / n
     bias = (float((model - mean)[whole].mean()) if whole.any() else np.nan) - above
     slope, slope_uncertainty = _slope(np.log10(measured.cycle_number), bias)
-    return CycleDifference(
+    return _CycleDifference(
         cycle_number=measured.cycle_number,
         bias=bias,
         rms=np.sqrt(squares),
@@ -895,7 +848,7 @@ def _compare(
 ) -> EventDifference:
     x, y, predicted, own = test_curve
     strain, tension = float(event.strain), float(event.tension)
-    reached = strain_at_tension(x, y, tension)
+    reached = _strain_at_tension(x, y, tension)
     slope = np.gradient(y, x) if x.size > 1 else np.full(x.size, np.nan)
 
     def uncertainty(at: float) -> float:
@@ -1013,33 +966,18 @@ LEAST_PROBABILITY = 0.05
 _SMALLEST = 1e-3  # four thousand draws do not tell smaller ones apart
 
 
-def probability_words(probability: float) -> str:
+def _probability_words(probability: float) -> str:
     """A probability in per cent, as far as draws can tell.
-
-    Parameters
-    ----------
-    probability : float
-        Of 1. [1]
-
-    Returns
-    -------
-    words : str
-        With its sign of per cent.
-
-    Raises
-    ------
-    Nothing
-        Any number has words.
 
     Examples
     --------
-    >>> print(probability_words(0.0153), "and", probability_words(4e-137))
+    >>> print(_probability_words(0.0153), "and", _probability_words(4e-137))
     1.5 % and below 0.1 %
     """
     return "below 0.1 %" if probability < _SMALLEST else f"{100 * probability:.2g} %"
 
 
-def verdict_words(validation: Validation, *, unit: str = "N", factor: float = 1.0) -> str:
+def verdict_words(validation: _Validation, *, unit: str = "N", factor: float = 1.0) -> str:
     """What a comparison says, with forces in the unit of the reader.
 
     Parameters
@@ -1102,7 +1040,7 @@ def verdict_words(validation: Validation, *, unit: str = "N", factor: float = 1.
     )
     words = f"agrees within U, {size}"
     if validation.chi_square_probability < LEAST_PROBABILITY:
-        chance = probability_words(validation.chi_square_probability)
+        chance = _probability_words(validation.chi_square_probability)
         words = f"agrees within U point by point, but its shape does not ({chance}); U is {size}"
     return words if validation.is_informative else f"{words}: so wide that agreement says little"
 
@@ -1200,7 +1138,7 @@ def validate_curve(
     *,
     input_error: ArrayLike,
     largest_useful_share: float = 0.3,
-) -> Validation:
+) -> _Validation:
     """Whether prediction and test agree within what both are uncertain by.
 
     Parameters
@@ -1211,7 +1149,7 @@ def validate_curve(
         The test; its judged curve counts. [SI]
     input_error : array_like, shape (n_draws, n_strain)
         What the prediction may be off by, in draws of the numbers that went into it, from
-        `reduction.prediction.hose_comparison.input_draws`; no rows where it counts as exact. [N]
+        `reduction.prediction.hose_comparison._input_draws`; no rows where it counts as exact. [N]
     largest_useful_share : float
         Where U is more than this part of the measured tension at half of the strains,
         agreement says little. [1]
@@ -1302,7 +1240,7 @@ def validate_curve(
     share = float(np.nanmedian(shares)) if np.isfinite(shares).any() else float("nan")
     agrees = bool(largest <= factor)
     is_informative = bool(share <= largest_useful_share)
-    found = Validation(
+    found = _Validation(
         input_standard_uncertainty=of_model,
         measurement_standard_uncertainty=np.where(there, of_test, np.nan),
         standard_uncertainty=total,
@@ -1338,7 +1276,7 @@ def _notes(
     if agrees and judged.probability < LEAST_PROBABILITY:
         notes.append(
             f"no strain differs by more than U, but the shape of the difference is one that the "
-            f"stated errors make in {probability_words(judged.probability)} of all cases alone"
+            f"stated errors make in {_probability_words(judged.probability)} of all cases alone"
         )
     if judged.outside > _OUTSIDE:
         notes.append(

@@ -110,29 +110,12 @@ _LEAST_SEEN = 1e-6  # of the tension: nothing
 _NAMED = 0.1  # of the largest part of a direction: less is not named
 
 
-def plausible_error(name: str, start: float) -> float:
+def _plausible_error(name: str, start: float) -> float:
     """How far a number of a hose may be off before it is measured on the hose.
-
-    Parameters
-    ----------
-    name : str
-        One of `CALIBRATED`.
-    start : float
-        Its value. [SI]
-
-    Returns
-    -------
-    error : float
-        1 degree of wrap angle, a twentieth of the length, a tenth of the others. [SI]
-
-    Raises
-    ------
-    SettingsError
-        If the number is not one to be fitted, or its tenth is nothing.
 
     Examples
     --------
-    >>> print(plausible_error("cord_load_scale", 1.0))
+    >>> print(_plausible_error("cord_load_scale", 1.0))
     0.1
     """
     if name not in CALIBRATED:
@@ -152,7 +135,7 @@ def plausible_error(name: str, start: float) -> float:
     return _PART * start
 
 
-def identify_directions(
+def _identify_directions(
     sensitivity: ArrayLike,
     *,
     tension: ArrayLike,
@@ -170,33 +153,6 @@ def identify_directions(
 
     .. math:: \min_z \lVert S v + C z \rVert^2 + \delta^2 \lVert z \rVert^2 < \delta^2
 
-    Parameters
-    ----------
-    sensitivity : array_like, shape (n_strain, n_parameter)
-        Derivative of tension by each number. [N a unit]
-    tension : array_like, shape (n_strain,)
-        Of the fitted hose. [N]
-    names : sequence of str, length n_parameter
-        Numbers that were fitted.
-    plausible : array_like, shape (n_parameter,)
-        Of each, from `plausible_error`. [SI]
-    value : array_like, shape (n_parameter,)
-        Of each. [SI]
-    contribution : array_like, shape (n_source, n_strain)
-        Errors that were fitted beside them, each within its standard uncertainty. [N]
-    misfit : float
-        RMS of what the fit left. [N]
-
-    Returns
-    -------
-    found : Identifiability
-        The direction that the curve sees least, and all that it does not see in words.
-
-    Raises
-    ------
-    DataError
-        If the arrays do not pair up.
-
     Notes
     -----
     :math:`\delta` is 1 %, or the relative misfit where that is greater: an error of the model
@@ -213,7 +169,7 @@ def identify_directions(
     --------
     Two numbers that do the same cannot be told apart, whatever the noise.
 
-    >>> found = identify_directions(
+    >>> found = _identify_directions(
     ...     [[1.0, 1.0], [2.0, 2.0]], tension=[10.0, 20.0],
     ...     names=["cord_load_scale", "cord_strain_scale"], plausible=[0.1, 0.1],
     ...     value=[1.0, 1.0], contribution=np.zeros((0, 2)), misfit=0.0,
@@ -300,33 +256,15 @@ _LOWEST = {"dead_length_share": 0.0, "rubber_modulus": 0.0}
 _SMALLEST = 1e-6  # of what has to be above zero
 
 
-def number_of(design: HoseDesign, name: str) -> float:
+def _number_of(design: HoseDesign, name: str) -> float:
     """A number of one design by its name.
-
-    Parameters
-    ----------
-    design : HoseDesign
-        One hose.
-    name : str
-        Of `reduction.prediction.hose_product.HOSE_PARAMETERS`; ``layer_diameter`` is the mean of
-        the two.
-
-    Returns
-    -------
-    value : float
-        In the unit of the number. [SI]
-
-    Raises
-    ------
-    SettingsError
-        If there is no such number, or the design is many.
 
     Examples
     --------
     >>> from reduction.prediction.cord_curve import CordCurve
     >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
     ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
-    >>> print(round(number_of(design, "layer_diameter"), 6))
+    >>> print(round(_number_of(design, "layer_diameter"), 6))
     0.085
     """
     if name not in HOSE_PARAMETERS:
@@ -340,37 +278,20 @@ def number_of(design: HoseDesign, name: str) -> float:
     return float(design.wrap_diameter if name == "layer_diameter" else getattr(design, name))
 
 
-def design_with(design: HoseDesign, numbers: Mapping[str, Any]) -> HoseDesign:
+def _design_with(design: HoseDesign, numbers: Mapping[str, Any]) -> HoseDesign:
     """The design with some of its numbers replaced.
-
-    Parameters
-    ----------
-    design : HoseDesign
-        One hose.
-    numbers : mapping of str to float or ndarray
-        By name; a ``layer_diameter`` moves both layers alike. [SI]
-
-    Returns
-    -------
-    changed : HoseDesign
-        One hose, or many where a number is an array.
-
-    Raises
-    ------
-    SettingsError
-        If there is no such number, or no hose has these.
 
     Examples
     --------
     >>> from reduction.prediction.cord_curve import CordCurve
     >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
     ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
-    >>> print(design_with(design, {"wrap_angle": 1.2}).wrap_angle)
+    >>> print(_design_with(design, {"wrap_angle": 1.2}).wrap_angle)
     1.2
     """
     changes: dict[str, Any] = {}
     for name, value in numbers.items():
-        before = number_of(design, name)
+        before = _number_of(design, name)
         if name == "layer_diameter":
             inner, outer = design.layer_diameter
             changes[name] = (inner + (value - before), outer + (value - before))
@@ -379,31 +300,10 @@ def design_with(design: HoseDesign, numbers: Mapping[str, Any]) -> HoseDesign:
     return replace(design, **changes)
 
 
-def trial_tension(
+def _trial_tension(
     design: HoseDesign, names: Sequence[str], values: Floats, strain: Floats
 ) -> Floats:
     """Tension at trial values of some numbers.
-
-    Parameters
-    ----------
-    design : HoseDesign
-        One hose, from which the other numbers are.
-    names : sequence of str, length n_parameter
-        Numbers that are tried.
-    values : ndarray, shape (n_trial, n_parameter)
-        Of each trial. [SI]
-    strain : ndarray, shape (n_strain,)
-        Of the whole length. [1]
-
-    Returns
-    -------
-    tension : ndarray, shape (n_trial, n_strain)
-        Finite everywhere. [N]
-
-    Raises
-    ------
-    SettingsError
-        If no hose has these numbers.
 
     Notes
     -----
@@ -417,10 +317,10 @@ def trial_tension(
     >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
     ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
     >>> steps = np.array([0.0, 1.0, 5.0])
-    >>> print(np.isfinite(trial_tension(design, ["wrap_angle"], np.array([[1.1]]), steps)).all())
+    >>> print(np.isfinite(_trial_tension(design, ["wrap_angle"], np.array([[1.1]]), steps)).all())
     True
     """
-    trials = design_with(design, {name: values[:, k] for k, name in enumerate(names)})
+    trials = _design_with(design, {name: values[:, k] for k, name in enumerate(names)})
     tension = np.array(predict_hose(trials, strain).tension)
     gap = ~np.isfinite(tension)
     if gap.any():
@@ -431,27 +331,12 @@ def trial_tension(
     return tension
 
 
-def range_of(name: str) -> tuple[float, float]:
+def _range_of(name: str) -> tuple[float, float]:
     """Between what a number of a hose has to lie.
-
-    Parameters
-    ----------
-    name : str
-        Of `reduction.prediction.hose_product.HOSE_PARAMETERS`.
-
-    Returns
-    -------
-    low, high : float
-        In the unit of the number. [SI]
-
-    Raises
-    ------
-    Nothing
-        A name of no number has the range of one that has to be above zero.
 
     Examples
     --------
-    >>> print(range_of("dead_length_share"))
+    >>> print(_range_of("dead_length_share"))
     (0.0, 0.99)
     """
     if name == "wrap_angle":
@@ -468,7 +353,7 @@ _LEAST_POINTS = 4  # of a cord curve, for a spline that is another one than the 
 _SEED = 20  # any; that it stays makes answers repeatable
 
 
-def input_draws(
+def _input_draws(
     design: HoseDesign,
     standard_uncertainty: Mapping[str, float],
     strain: Floats,
@@ -476,29 +361,6 @@ def input_draws(
     n_draws: int,
 ) -> Floats:
     """What the tension of a hose may be off by, in draws of its uncertain numbers.
-
-    Parameters
-    ----------
-    design : HoseDesign
-        One hose.
-    standard_uncertainty : mapping of str to float
-        By name of `reduction.prediction.hose_product.HOSE_PARAMETERS`, in SI. [rad, m, m-1, Pa or
-        1]
-    strain : ndarray, shape (n_strain,)
-        Of the whole length. [1]
-    n_draws : int
-        Hoses that are drawn; the same ones every time. [1]
-
-    Returns
-    -------
-    error : ndarray, shape (n_draws, n_strain)
-        Tension of the drawn hose less that of the design; no rows where nothing is uncertain. [N]
-
-    Raises
-    ------
-    SettingsError
-        If there is no such number, an uncertainty is negative or unknown, or so large that
-        what is drawn is no hose.
 
     Notes
     -----
@@ -512,11 +374,11 @@ def input_draws(
     >>> from reduction.prediction.cord_curve import CordCurve
     >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
     ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
-    >>> error = input_draws(design, {"rubber_modulus": 1e5}, np.array([0.0, 0.2]), n_draws=500)
+    >>> error = _input_draws(design, {"rubber_modulus": 1e5}, np.array([0.0, 0.2]), n_draws=500)
     >>> print(error.shape, error[:, 0].max(), bool(abs(error[:, 1].std() / 143 - 1) < 0.1))
     (500, 2) 0.0 True
     """
-    known = known_uncertainties(design, standard_uncertainty)
+    known = _known_uncertainties(design, standard_uncertainty)
     if not known:
         return np.zeros((0, strain.size))
     normal = np.random.default_rng(_SEED).standard_normal((n_draws, len(HOSE_PARAMETERS)))
@@ -524,37 +386,20 @@ def input_draws(
     values = np.stack(
         [
             np.clip(
-                number_of(design, name) + spread * steps[:, HOSE_PARAMETERS.index(name)],
-                *range_of(name),
+                _number_of(design, name) + spread * steps[:, HOSE_PARAMETERS.index(name)],
+                *_range_of(name),
             )
             for name, spread in known.items()
         ],
         axis=1,
     )
-    centre = np.array([[number_of(design, name) for name in known]])
-    tension = trial_tension(design, tuple(known), np.vstack([centre, values]), strain)
+    centre = np.array([[_number_of(design, name) for name in known]])
+    tension = _trial_tension(design, tuple(known), np.vstack([centre, values]), strain)
     return np.asarray(tension[1:] - tension[0])
 
 
-def cord_curve_error(design: HoseDesign, strain: Floats) -> Floats:
+def _cord_curve_error(design: HoseDesign, strain: Floats) -> Floats:
     """What the tension may be off by since the cord curve is known at its points alone.
-
-    Parameters
-    ----------
-    design : HoseDesign
-        One hose.
-    strain : ndarray, shape (n_strain,)
-        Of the whole length. [1]
-
-    Returns
-    -------
-    error : ndarray, shape (n_strain,)
-        Signed, one standard uncertainty; zero for a curve of fewer than four points. [N]
-
-    Raises
-    ------
-    Nothing
-        Where the spline falls, there is no other curve than the monotone one.
 
     Notes
     -----
@@ -569,7 +414,7 @@ def cord_curve_error(design: HoseDesign, strain: Floats) -> Floats:
 
     >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
     ...     CordCurve(np.linspace(0.0, 0.2, 5), np.linspace(0.0, 130.0, 5)))
-    >>> print(np.abs(cord_curve_error(design, np.array([0.5, 1.0]))).max() < 1e-6)
+    >>> print(np.abs(_cord_curve_error(design, np.array([0.5, 1.0]))).max() < 1e-6)
     True
     """
     points = design.cord
@@ -585,46 +430,29 @@ def cord_curve_error(design: HoseDesign, strain: Floats) -> Floats:
         CordCurve(np.append(dense, points.strain[-1]), np.append(load, points.load[-1]))
         for load in (other, plain)
     )
-    scale = np.array([[number_of(design, "cord_load_scale")]])
+    scale = np.array([[_number_of(design, "cord_load_scale")]])
     spline, monotone = (
-        trial_tension(replace(design, cord=curve), ("cord_load_scale",), scale, strain)[0]
+        _trial_tension(replace(design, cord=curve), ("cord_load_scale",), scale, strain)[0]
         for curve in curves
     )
     return np.asarray(spline - monotone)
 
 
-def known_uncertainties(
+def _known_uncertainties(
     design: HoseDesign, standard_uncertainty: Mapping[str, float]
 ) -> dict[str, float]:
     """Uncertainties above zero, in the order of `HOSE_PARAMETERS`.
-
-    Parameters
-    ----------
-    design : HoseDesign
-        One hose.
-    standard_uncertainty : mapping of str to float
-        By name of `reduction.prediction.hose_product.HOSE_PARAMETERS`. [SI]
-
-    Returns
-    -------
-    known : dict of str to float
-        Those that are stated and not zero. [SI]
-
-    Raises
-    ------
-    SettingsError
-        If there is no such number, or an uncertainty is negative or unknown.
 
     Examples
     --------
     >>> from reduction.prediction.cord_curve import CordCurve
     >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
     ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
-    >>> print(known_uncertainties(design, {"rubber_modulus": 1e5, "wrap_angle": 0.0}))
+    >>> print(_known_uncertainties(design, {"rubber_modulus": 1e5, "wrap_angle": 0.0}))
     {'rubber_modulus': 100000.0}
     """
     for name, spread in standard_uncertainty.items():
-        number_of(design, name)
+        _number_of(design, name)
         as_spread(name, spread)
     return {
         name: float(standard_uncertainty[name])
@@ -644,33 +472,15 @@ _POLISHING_STEPS = 30
 _LEAST = 1e-14  # information below this part of the greatest is rounding
 
 
-def parameter_bounds(name: str, start: float) -> tuple[float, float]:
+def _parameter_bounds(name: str, start: float) -> tuple[float, float]:
     """Between what a number is kept while it is fitted.
-
-    Parameters
-    ----------
-    name : str
-        One of `reduction.prediction.hose_comparison.CALIBRATED`.
-    start : float
-        Its value. [SI]
-
-    Returns
-    -------
-    low, high : float
-        10 degrees around a wrap angle, up to half of the length that does not stretch, a fifth to
-        five times the others. [SI]
-
-    Raises
-    ------
-    SettingsError
-        If the number is not one to be fitted.
 
     Examples
     --------
-    >>> print(parameter_bounds("cord_load_scale", 1.0))
+    >>> print(_parameter_bounds("cord_load_scale", 1.0))
     (0.2, 5.0)
     """
-    plausible_error(name, start)
+    _plausible_error(name, start)
     if name == "wrap_angle":
         low, high = start - np.radians(10.0), start + np.radians(10.0)
         return max(float(low), float(np.radians(1.0))), min(float(high), float(np.radians(89.0)))
@@ -681,30 +491,11 @@ def parameter_bounds(name: str, start: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class FitProblem:
+class _FitProblem:
     """Measured points and what is to be fitted to them.
 
     What is fitted stands in one vector: numbers in plausible errors, then errors in standard
     uncertainties, those of held numbers, of strain, and those in proportion.
-
-    Parameters
-    ----------
-    design : HoseDesign
-        From which the numbers are that are not fitted.
-    names : tuple of str, length n_parameter
-        Numbers that are fitted.
-    unit, low, high : ndarray, shape (n_parameter,)
-        Plausible error of each [SI], and its bounds in that unit.
-    held : mapping of str to float
-        Standard uncertainties of numbers that are not fitted. [SI]
-    moved : ndarray, shape (n_moved, n_node)
-        Errors of strain at the nodes of the reading, signed. [1]
-    measured : MeasuredCurve
-        The test. [SI]
-    noise : ndarray, shape (n_used,)
-        Standard uncertainty that no two measured points share. [N]
-    shared : ndarray, shape (n_source, n_used)
-        Errors in proportion that they share, signed. [N]
 
     Notes
     -----
@@ -750,8 +541,8 @@ class FitProblem:
         p, q = len(self.names), len(self.held)
         values = [traced[:, :p] * self.unit]
         for k, (name, spread) in enumerate(self.held.items()):
-            at = number_of(self.design, name) + spread * traced[:, p + k]
-            values.append(np.clip(at, *range_of(name))[:, None])
+            at = _number_of(self.design, name) + spread * traced[:, p + k]
+            values.append(np.clip(at, *_range_of(name))[:, None])
         numbers, names = np.hstack(values), (*self.names, *self.held)
         node = self.measured.reading.node
         tension = np.empty((traced.shape[0], self.noise.size))
@@ -761,7 +552,7 @@ class FitProblem:
             trials = which.ravel() == k
             strain = node - size @ self.moved
             # a record that is read low has strains just below zero: the curve goes on there
-            curve = trial_tension(self.design, names, numbers[trials], np.abs(strain))
+            curve = _trial_tension(self.design, names, numbers[trials], np.abs(strain))
             tension[trials] = self.measured.reading.of(np.sign(strain) * curve)[:, used]
         return tension
 
@@ -803,7 +594,7 @@ class FitProblem:
         p = first.size
         offsets = np.array(list(product(_START_STEPS, repeat=p)))
         tried = np.clip(first + offsets, self.low, self.high)
-        curve = trial_tension(
+        curve = _trial_tension(
             self.design, self.names, tried * self.unit, self.measured.strain[self.used]
         )
         error = (curve - self.tension_of_test()[self.used]) / self.noise
@@ -877,7 +668,7 @@ class FitProblem:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class FitSpread:
+class _FitSpread:
     """Covariance of the fitted numbers, in plausible errors, and what it rests on."""
 
     covariance: Floats
@@ -885,27 +676,8 @@ class FitSpread:
     effective_points: float
 
 
-def spread_of(problem: FitProblem, best: Floats, noise: Floats) -> FitSpread:
+def _spread_of(problem: _FitProblem, best: Floats, noise: Floats) -> _FitSpread:
     """Covariance of what was fitted, from the points that the residuals are worth.
-
-    Parameters
-    ----------
-    problem : FitProblem
-        What was fitted.
-    best : ndarray, shape (n_parameter + n_source,)
-        Its answer. [1]
-    noise : ndarray, shape (n_strain,)
-        Standard uncertainty that the points were weighed by. [N]
-
-    Returns
-    -------
-    spread : FitSpread
-        Degrees of freedom at least one.
-
-    Raises
-    ------
-    Nothing
-        A number that the curve does not show has a variance beyond all use, not none.
 
     Notes
     -----
@@ -914,9 +686,9 @@ def spread_of(problem: FitProblem, best: Floats, noise: Floats) -> FitSpread:
 
     Examples
     --------
-    See `reduction.prediction.hose_comparison.calibrate_hose`.
+    See `reduction.prediction.hose_comparison._calibrate_hose`.
 
-    >>> FitSpread(np.eye(2), 8.0, 10.0).freedom
+    >>> _FitSpread(np.eye(2), 8.0, 10.0).freedom
     8.0
     """
     p, n = problem.unit.size, noise.size
@@ -933,7 +705,7 @@ def spread_of(problem: FitProblem, best: Floats, noise: Floats) -> FitSpread:
     size, axes = np.linalg.eigh(information / np.outer(scale, scale))
     inverse = (axes / np.maximum(size, _LEAST)) @ axes.T
     covariance = inverse / np.outer(scale, scale)
-    return FitSpread(covariance[:p, :p], freedom, worth)
+    return _FitSpread(covariance[:p, :p], freedom, worth)
 
 
 _LEAST_NOISE = 1e-6  # of the RMS tension: points without scatter are not infinitely exact
@@ -947,7 +719,7 @@ _NOTHING = 1e-3  # of the noise
 _WIDE = 0.5  # of the width between the bounds
 
 
-def calibrate_hose(
+def _calibrate_hose(
     design: HoseDesign,
     measured: MeasuredCurve,
     parameters: Sequence[str],
@@ -967,33 +739,6 @@ def calibrate_hose(
     are not fitted change the hose, and :math:`T_i` is read from it as the curve was from the
     samples; errors of load and the scatter that cycles have in common are in proportion.
 
-    Parameters
-    ----------
-    design : HoseDesign
-        One hose; where the fit begins, and the numbers that are not fitted.
-    measured : MeasuredCurve
-        The test. [SI]
-    parameters : sequence of str, length n_parameter
-        One to five of `reduction.prediction.hose_comparison.CALIBRATED`.
-    standard_uncertainty : mapping of str to float, optional
-        Of numbers of the design; those of fitted numbers do not hold them back. [SI]
-    bounds : mapping of str to tuple of float, optional
-        Instead of `reduction.prediction.hose_comparison.parameter_bounds`. [SI]
-
-    Returns
-    -------
-    calibration : Calibration
-        Values, intervals, correlations, and whether the curve can tell them apart. [SI]
-
-    Raises
-    ------
-    SettingsError
-        If a number is not one to be fitted, is named twice, or its bounds are empty.
-    DataError
-        If there are fewer points than numbers and two.
-    FitError
-        If the least sum of squares is not found.
-
     Notes
     -----
     *Weights* [9]_. Type A of each strain, and s, one variance for all strains that makes the
@@ -1005,7 +750,7 @@ def calibrate_hose(
     residuals are correlated, tau, and by what is left of the reduced chi square where that
     is above 1 [7]_; the interval is Student's with n / tau - p degrees of freedom.  Shared
     errors keep their stated variance.  Not in the interval: a smooth error of the model that
-    fitted numbers can follow and that leaves no residual; but where `identify_directions` finds
+    fitted numbers can follow and that leaves no residual; but where `_identify_directions` finds
     that the curve does not show a direction, what one percent of it would do is.  An interval
     that would reach beyond all that a number was allowed is NaN.
 
@@ -1027,8 +772,8 @@ def calibrate_hose(
     ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
     >>> stroke = np.linspace(0.0, 1.0, 1001)
     >>> pull = measured_curve(stroke, predict_hose(hose, stroke).tension, loading="static")
-    >>> found = calibrate_hose(
-    ...     design_with(hose, {"rubber_modulus": 1.26e6}), pull, ["rubber_modulus"]
+    >>> found = _calibrate_hose(
+    ...     _design_with(hose, {"rubber_modulus": 1.26e6}), pull, ["rubber_modulus"]
     ... )
     >>> print(found.parameter, (found.value / 1e6).round(3), found.identifiability.is_identified)
     ('rubber_modulus',) [1.4] True
@@ -1037,12 +782,12 @@ def calibrate_hose(
     held = {name: u for name, u in stated.items() if name not in names}
     judged = measured.tension_of(measured.judged)
     used = np.isfinite(judged)
-    start = np.array([number_of(design, name) for name in names])
+    start = np.array([_number_of(design, name) for name in names])
     problem, sources = _pose(design, measured, names, bounds or {}, held)
     p = len(names)
     first = problem.solve(problem.start(start / problem.unit), problem.noise)
-    near = design_with(design, dict(zip(names, (first[:p] * problem.unit).tolist(), strict=True)))
-    between = cord_curve_error(near, measured.strain)[used]
+    near = _design_with(design, dict(zip(names, (first[:p] * problem.unit).tolist(), strict=True)))
+    between = _cord_curve_error(near, measured.strain)[used]
     if np.any(np.abs(between) > problem.noise * _NOTHING):
         problem = replace(problem, shared=np.vstack([problem.shared, between]))
         sources = (*sources, "cord curve between its points")
@@ -1053,9 +798,9 @@ def calibrate_hose(
     noise = np.hypot(problem.noise, model_error)
     best = problem.solve(first, noise)
     value = best[:p] * problem.unit
-    fitted = design_with(design, dict(zip(names, value.tolist(), strict=True)))
-    spread = spread_of(problem, best, noise)
-    told_apart = identify_directions(
+    fitted = _design_with(design, dict(zip(names, value.tolist(), strict=True)))
+    spread = _spread_of(problem, best, noise)
+    told_apart = _identify_directions(
         problem.slopes(best[: problem.n_traced])[:, :p] / problem.unit,
         tension=problem.tension_at(best[None, : problem.n_traced])[0],
         names=names,
@@ -1111,7 +856,7 @@ def _pose(
     names: tuple[str, ...],
     bounds: Mapping[str, tuple[float, float]],
     held: Mapping[str, float],
-) -> tuple[FitProblem, tuple[str, ...]]:
+) -> tuple[_FitProblem, tuple[str, ...]]:
     """The problem, and the names of the errors that are fitted beside the numbers."""
     if not names or len(set(names)) < len(names):
         raise SettingsError(
@@ -1119,11 +864,11 @@ def _pose(
             found=", ".join(names) or "nothing",
             needed="one number or more, each once",
         )
-    start = [number_of(design, name) for name in names]
-    unit = np.array([plausible_error(name, at) for name, at in zip(names, start, strict=True)])
+    start = [_number_of(design, name) for name in names]
+    unit = np.array([_plausible_error(name, at) for name, at in zip(names, start, strict=True)])
     limits = []
     for name, at in zip(names, start, strict=True):
-        low, high = bounds[name] if name in bounds else parameter_bounds(name, at)
+        low, high = bounds[name] if name in bounds else _parameter_bounds(name, at)
         if not low < high:
             raise SettingsError(
                 f"the bounds of {name} leave nothing between them",
@@ -1141,12 +886,12 @@ def _pose(
             needed=f"{len(names) + 2} or more",
         )
     floor = _LEAST_NOISE * float(np.sqrt(np.mean(judged[used] ** 2)))
-    stated = known_uncertainties(design, held)
+    stated = _known_uncertainties(design, held)
     is_moved = np.any(measured.strain_error != 0, axis=1)
     in_proportion = measured.contribution_of(measured.judged)[~is_moved]
     node = measured.reading.node
     scatter = measured.scatter_contribution
-    problem = FitProblem(
+    problem = _FitProblem(
         design=design,
         names=names,
         unit=unit,
@@ -1193,7 +938,7 @@ def _notes_of_numbers(
 
 
 def _notes_of_fit(
-    spread: FitSpread, n_fitted: int, sources: tuple[str, ...], z: Floats, broken: Bools
+    spread: _FitSpread, n_fitted: int, sources: tuple[str, ...], z: Floats, broken: Bools
 ) -> list[str]:
     notes = []
     if spread.effective_points < n_fitted + 1:
@@ -1230,7 +975,7 @@ _DYNAMIC = (
 )
 
 
-def compare_hose(
+def _compare_hose(
     design: HoseDesign,
     measured: MeasuredCurve,
     *,
@@ -1238,32 +983,6 @@ def compare_hose(
     calibrate: Sequence[str] = (),
 ) -> Comparison:
     """Hold a prediction against a test.
-
-    Parameters
-    ----------
-    design : HoseDesign
-        One hose.
-    measured : MeasuredCurve
-        The test. [SI]
-    standard_uncertainty : mapping of str to float, optional
-        By name of `reduction.prediction.hose_product.HOSE_PARAMETERS`. [SI]
-    calibrate : sequence of str
-        Numbers of the hose to be fitted to the test as well; none where empty.
-
-    Returns
-    -------
-    comparison : Comparison
-        Differences of every curve that was measured; events, energy, cycles, verdict and
-        calibration by the judged one. [SI]
-
-    Raises
-    ------
-    SettingsError
-        If the design is of many hoses, or a name or an uncertainty cannot be used.
-    DataError
-        If prediction and test have no strain in common, or too few for the calibration.
-    FitError
-        If the calibration does not come to an end.
 
     Notes
     -----
@@ -1283,7 +1002,7 @@ def compare_hose(
     ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
     >>> stroke = np.linspace(0.0, 1.0, 1001)
     >>> softer = measured_curve(stroke, 0.9 * predict_hose(hose, stroke).tension, loading="static")
-    >>> found = compare_hose(hose, softer, standard_uncertainty={"rubber_modulus": 0.01e6})
+    >>> found = _compare_hose(hose, softer, standard_uncertainty={"rubber_modulus": 0.01e6})
     >>> print(round(found.differences["ascending"].relative_rms, 3), found.validation.agrees)
     0.111 False
     """
@@ -1299,10 +1018,10 @@ def compare_hose(
         )
         for curve in measured.curves()
     }
-    inputs = input_draws(design, known, measured.strain, n_draws=N_DRAWS)
+    inputs = _input_draws(design, known, measured.strain, n_draws=N_DRAWS)
     events = event_differences(design, measured, standard_uncertainty=known)
     calibration = (
-        calibrate_hose(design, measured, calibrate, standard_uncertainty=known)
+        _calibrate_hose(design, measured, calibrate, standard_uncertainty=known)
         if calibrate
         else None
     )
@@ -1449,7 +1168,7 @@ def compare_record(
         break_in_cycles=break_in_cycles,
         shared=shared,
     )
-    return compare_hose(
+    return _compare_hose(
         plan.design, curve, standard_uncertainty=plan.standard_uncertainty, calibrate=calibrate
     )
 

@@ -53,27 +53,8 @@ from reduction.record.errors import SettingsError
 from reduction.record.measurement import Bools, Floats
 
 
-def design_angle(like: HoseDesign, *, strain: ArrayLike) -> HoseDesign:
+def _design_angle(like: HoseDesign, *, strain: ArrayLike) -> HoseDesign:
     """Wrap angle that gives a wanted stretch at the working load.
-
-    Parameters
-    ----------
-    like : HoseDesign
-        What the hose has in common with it: all but the wrap angle.
-    strain : array_like, shape (...)
-        Wanted of the whole relaxed length where the cords bear their working share. [1]
-
-    Returns
-    -------
-    design : HoseDesign
-        The same with the wrap angle replaced; `reduction.prediction.hose_tension.find_events` finds
-        the wanted strain at ``working``.
-
-    Raises
-    ------
-    SettingsError
-        If a strain is not positive, or so small that no angle gives it: cords along the hose
-        would stretch as far themselves.
 
     Notes
     -----
@@ -88,7 +69,7 @@ def design_angle(like: HoseDesign, *, strain: ArrayLike) -> HoseDesign:
     >>> cord = CordCurve(np.array([0.0, 0.095, 0.26]), np.array([0.0, 44.5, 133.5]))
     >>> like = HoseDesign(np.radians(68.0), (0.0889, 0.0889), 0.0635, 0.127,
     ...     34 / 0.0254, 0.022 * 0.0254, 1.379e6, cord)
-    >>> print(np.degrees(design_angle(like, strain=[0.3, 1.4]).wrap_angle).round(2))
+    >>> print(np.degrees(_design_angle(like, strain=[0.3, 1.4]).wrap_angle).round(2))
     [46.9 67.5]
     """
     wanted = _positive("strain", strain)
@@ -103,28 +84,8 @@ def design_angle(like: HoseDesign, *, strain: ArrayLike) -> HoseDesign:
     return replace(like, wrap_angle=angle)
 
 
-def design_fabric(like: HoseDesign, *, strain: ArrayLike, tension: ArrayLike) -> HoseDesign:
+def _design_fabric(like: HoseDesign, *, strain: ArrayLike, tension: ArrayLike) -> HoseDesign:
     """Wrap angle and cords per length for a wanted stretch and working load, diameters held.
-
-    Parameters
-    ----------
-    like : HoseDesign
-        What the hose has in common with it: all but wrap angle and cords per length.
-    strain : array_like, shape (...)
-        Wanted of the whole relaxed length where the cords bear their working share. [1]
-    tension : array_like, shape (...)
-        Wanted net tension there, the safe working load. [N]
-
-    Returns
-    -------
-    design : HoseDesign
-        The same with wrap angle and cords per length replaced.
-
-    Raises
-    ------
-    SettingsError
-        If a strain has no angle, a load is not above that of the rubber alone, the cords
-        would touch, or the bore at the working load is below its limit.
 
     Notes
     -----
@@ -136,12 +97,12 @@ def design_fabric(like: HoseDesign, *, strain: ArrayLike, tension: ArrayLike) ->
     >>> cord = CordCurve(np.array([0.0, 0.095, 0.26]), np.array([0.0, 44.5, 133.5]))
     >>> like = HoseDesign(np.radians(68.0), (0.0889, 0.0889), 0.0635, 0.127,
     ...     34 / 0.0254, 0.022 * 0.0254, 1.379e6, cord)
-    >>> design = design_fabric(like, strain=1.0, tension=[14e3, 16e3])
+    >>> design = _design_fabric(like, strain=1.0, tension=[14e3, 16e3])
     >>> print(np.degrees(design.wrap_angle).round(2), (design.cords_per_length * 0.0254).round(1))
     63.45 [23.8 31.2]
     """
     load = _positive("tension", tension)
-    angled = design_angle(like, strain=strain)
+    angled = _design_angle(like, strain=strain)
     stretch, cords, rubber_stress = _loads(angled, strain)
     rubber = rubber_stress * numbers_of(angled).area
     _refuse(
@@ -160,29 +121,8 @@ def design_fabric(like: HoseDesign, *, strain: ArrayLike, tension: ArrayLike) ->
     return _with_bore(replace(angled, cords_per_length=count), stretch)
 
 
-def design_diameters(like: HoseDesign, *, strain: ArrayLike, tension: ArrayLike) -> HoseDesign:
+def _design_diameters(like: HoseDesign, *, strain: ArrayLike, tension: ArrayLike) -> HoseDesign:
     """Wrap angle and diameters for a wanted stretch and working load, wall and fabric held.
-
-    Parameters
-    ----------
-    like : HoseDesign
-        What the hose has in common with it: fabric, and the thicknesses of its wall from bore
-        to inner layer, between the layers, and from outer layer to skin.
-    strain : array_like, shape (...)
-        Wanted of the whole relaxed length where the cords bear their working share. [1]
-    tension : array_like, shape (...)
-        Wanted net tension there, the safe working load. [N]
-
-    Returns
-    -------
-    design : HoseDesign
-        The same with wrap angle and all diameters replaced.
-
-    Raises
-    ------
-    SettingsError
-        If a strain has no angle, the wanted load leaves no bore within such a wall, or the
-        bore at the working load is below its limit.
 
     Notes
     -----
@@ -196,12 +136,12 @@ def design_diameters(like: HoseDesign, *, strain: ArrayLike, tension: ArrayLike)
     >>> cord = CordCurve(np.array([0.0, 0.095, 0.26]), np.array([0.0, 44.5, 133.5]))
     >>> like = HoseDesign(np.radians(68.0), (0.0889, 0.0889), 0.0762, 0.1016,
     ...     34 / 0.0254, 0.022 * 0.0254, 1.379e6, cord)
-    >>> design = design_diameters(like, strain=1.4, tension=[8e3, 12e3])
+    >>> design = _design_diameters(like, strain=1.4, tension=[8e3, 12e3])
     >>> print((design.wrap_diameter / 0.0254).round(2), (design.inner_diameter / 0.0254).round(2))
     [2.32 3.48] [1.82 2.98]
     """
     load = _positive("tension", tension)
-    angled = design_angle(like, strain=strain)
+    angled = _design_angle(like, strain=strain)
     stretch, cords, rubber_stress = _loads(angled, strain)
     first, second = (np.asarray(one, dtype=np.float64) for one in like.layer_diameter)
     inside = (first - like.inner_diameter) / 2
@@ -317,12 +257,12 @@ def design_hoses(plan: HosePlan, target: HoseTarget) -> tuple[DesignedHose, ...]
     """
     like = plan.design
     ways: dict[str, Callable[[], HoseDesign]] = {
-        "wrap angle": partial(design_angle, like, strain=target.strain)
+        "wrap angle": partial(_design_angle, like, strain=target.strain)
     }
     if target.tension is not None:
         wanted = {"strain": target.strain, "tension": target.tension}
-        ways["wrap angle and fabric"] = partial(design_fabric, like, **wanted)
-        ways["wrap angle and diameters"] = partial(design_diameters, like, **wanted)
+        ways["wrap angle and fabric"] = partial(_design_fabric, like, **wanted)
+        ways["wrap angle and diameters"] = partial(_design_diameters, like, **wanted)
     return tuple(_designed(varied, make) for varied, make in ways.items())
 
 

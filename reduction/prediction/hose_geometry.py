@@ -82,27 +82,12 @@ NEUTRAL_ANGLE = atan(sqrt(2.0))
 """54.7356 deg: wrapped at more, a cord goes slack as a water-filled hose stretches. [rad]."""
 
 
-def squares_of_angle(wrap_angle: ArrayLike) -> tuple[Floats, Floats]:
+def _squares_of_angle(wrap_angle: ArrayLike) -> tuple[Floats, Floats]:
     """Squares of cosine and sine of the angle between helix and axis.
-
-    Parameters
-    ----------
-    wrap_angle : array_like, shape (...)
-        At rest. [rad]
-
-    Returns
-    -------
-    cosine2, sine2 : ndarray, shape (...)
-        [1]
-
-    Raises
-    ------
-    SettingsError
-        If an angle is not between 0 and 90 deg.
 
     Examples
     --------
-    >>> cosine2, sine2 = squares_of_angle(NEUTRAL_ANGLE)
+    >>> cosine2, sine2 = _squares_of_angle(NEUTRAL_ANGLE)
     >>> print(cosine2.round(4), sine2.round(4))
     0.3333 0.6667
     """
@@ -118,52 +103,25 @@ def squares_of_angle(wrap_angle: ArrayLike) -> tuple[Floats, Floats]:
     return np.asarray(np.cos(angle) ** 2), np.asarray(np.sin(angle) ** 2)
 
 
-def squared_radius_ratio(stretch_ratio: Floats, core: Core) -> Floats:
+def _squared_radius_ratio(stretch_ratio: Floats, core: Core) -> Floats:
     """Square of the ratio of the radius to that at rest.
-
-    Parameters
-    ----------
-    stretch_ratio : ndarray, shape (...)
-        Of the cylinder. [1]
-    core : {"isochoric", "rigid"}
-        What the radius does.
-
-    Returns
-    -------
-    squared_radius_ratio : ndarray, shape (...)
-        [1]
-
-    Raises
-    ------
-    SettingsError
-        If the core is unknown.
 
     Examples
     --------
-    >>> squared_radius_ratio(np.array([1.0, 2.0]), "isochoric")
+    >>> _squared_radius_ratio(np.array([1.0, 2.0]), "isochoric")
     array([1. , 0.5])
     """
-    check_core(core)
+    _check_core(core)
     unit = np.ones_like(stretch_ratio)
     return np.asarray(1 / stretch_ratio if core == "isochoric" else unit)
 
 
-def check_core(core: Core) -> None:
+def _check_core(core: Core) -> None:
     """Refuse a core that is none.
-
-    Parameters
-    ----------
-    core : {"isochoric", "rigid"}
-        What the radius does.
-
-    Raises
-    ------
-    SettingsError
-        If the core is unknown.
 
     Examples
     --------
-    >>> check_core("rigid")
+    >>> _check_core("rigid")
     """
     if core not in get_args(Core):
         raise SettingsError("unknown core", found=str(core), needed=" or ".join(get_args(Core)))
@@ -210,9 +168,9 @@ def cord_stretch_ratio(
     """
     stretch, (cosine2, sine2) = (
         as_positive("stretch_ratio", stretch_ratio),
-        squares_of_angle(wrap_angle),
+        _squares_of_angle(wrap_angle),
     )
-    return np.asarray(np.sqrt(stretch**2 * cosine2 + squared_radius_ratio(stretch, core) * sine2))
+    return np.asarray(np.sqrt(stretch**2 * cosine2 + _squared_radius_ratio(stretch, core) * sine2))
 
 
 def hose_stretch_ratio(
@@ -261,9 +219,9 @@ def hose_stretch_ratio(
     """
     cord, (cosine2, sine2) = (
         as_positive("cord_stretch_ratio", cord_stretch_ratio),
-        squares_of_angle(wrap_angle),
+        _squares_of_angle(wrap_angle),
     )
-    check_core(core)
+    _check_core(core)
     with np.errstate(invalid="ignore"):
         if core == "rigid":
             return np.asarray(np.sqrt(1 + (cord - 1) * (cord + 1) / cosine2))
@@ -305,7 +263,7 @@ def pick_up_stretch_ratio(wrap_angle: ArrayLike) -> Floats:
     >>> print((100 * pick_up_stretch_ratio(np.radians([50.0, 64.0, 68.0])) - 100).round(2))
     [  0.    61.04 102.51]
     """
-    cosine2, sine2 = squares_of_angle(wrap_angle)
+    cosine2, sine2 = _squares_of_angle(wrap_angle)
     above = np.maximum(sine2 / cosine2 - 2, 0.0)
     return np.asarray(1 + 2 * above / (3 + np.sqrt(9 + 4 * above)))
 
@@ -344,7 +302,7 @@ def slackest_stretch_ratio(wrap_angle: ArrayLike) -> Floats:
     >>> print(np.degrees(current_wrap_angle(slackest, np.radians([64.0, 68.0]))).round(4))
     [54.7356 54.7356]
     """
-    cosine2, sine2 = squares_of_angle(wrap_angle)
+    cosine2, sine2 = _squares_of_angle(wrap_angle)
     return np.asarray(np.maximum(np.cbrt(sine2 / cosine2 / 2), 1.0))
 
 
@@ -387,9 +345,9 @@ def current_wrap_angle(
     """
     stretch, (cosine2, sine2) = (
         as_positive("stretch_ratio", stretch_ratio),
-        squares_of_angle(wrap_angle),
+        _squares_of_angle(wrap_angle),
     )
-    tangent = np.sqrt(squared_radius_ratio(stretch, core) * sine2 / cosine2) / stretch
+    tangent = np.sqrt(_squared_radius_ratio(stretch, core) * sine2 / cosine2) / stretch
     return np.asarray(np.arctan(tangent))
 
 
@@ -434,7 +392,7 @@ def wrap_angle_for(
     """
     stretch = as_positive("stretch_ratio", stretch_ratio)
     cord2 = as_positive("cord_stretch_ratio", cord_stretch_ratio) ** 2
-    radius2 = squared_radius_ratio(stretch, core)
+    radius2 = _squared_radius_ratio(stretch, core)
     with np.errstate(invalid="ignore", divide="ignore"):
         tangent2 = (stretch**2 - cord2) / (cord2 - radius2)
         is_angle = (tangent2 > 0) & np.isfinite(tangent2)
@@ -525,25 +483,10 @@ def number_of_cords(
 
 @dataclass(frozen=True)
 @read_only_arrays
-class CordStrainChart:
+class _CordStrainChart:
     """Cord strain over hose strain for a family of wrap angles.
 
     Hose strains are of the whole relaxed length.
-
-    Parameters
-    ----------
-    wrap_angle : ndarray, shape (n_angles,)
-        At rest, from the axis. [rad]
-    strain : ndarray, shape (n_strain,)
-        Of the hose. [1]
-    cord_strain : ndarray, shape (n_angles, n_strain)
-        Below zero where a cord is slack. [1]
-    slackest_strain, slackest_cord_strain : ndarray, shape (n_angles,)
-        Of hose and cord where the cords are shortest; zero at 54.7356 degrees and below. [1]
-    pick_up_strain : ndarray, shape (n_angles,)
-        Of the hose where the cords are at length again. [1]
-    neutral_angle : float
-        Above it cords go slack at first: 54.7356 degrees. [rad]
     """
 
     wrap_angle: Floats
@@ -557,7 +500,7 @@ class CordStrainChart:
 
 def cord_strain_chart(
     wrap_angle: ArrayLike, strain: ArrayLike, *, dead_length_share: float = 0.0
-) -> CordStrainChart:
+) -> _CordStrainChart:
     """Cord strain over hose strain for a family of wrap angles: Figure 7.
 
     Parameters
@@ -599,7 +542,7 @@ def cord_strain_chart(
     angle, along = _series("wrap_angle", wrap_angle), _series("strain", strain)
     free = _free(dead_length_share)
     slackest = slackest_stretch_ratio(angle)
-    return CordStrainChart(
+    return _CordStrainChart(
         wrap_angle=np.array(angle),
         strain=np.array(along),
         cord_strain=cord_stretch_ratio(1 + along / free, angle[:, None]) - 1,
@@ -627,21 +570,10 @@ def _free(dead_length_share: float) -> float:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class LayerRange:
+class _LayerRange:
     """Strain of a helical layer while the hose goes from rest to a strain.
 
     Arrays have the shape (...) of angles and strains together.
-
-    Parameters
-    ----------
-    least_strain, greatest_strain : ndarray
-        Of the layer. [1]
-    strain_at_least, strain_at_greatest : ndarray
-        Of the hose, where they occur. [1]
-    final_strain : ndarray
-        Of the layer at the end of the range. [1]
-    is_compressed, is_over_limit : ndarray of bool
-        Shorter than at rest somewhere; longer than its limit somewhere.
     """
 
     least_strain: Floats
@@ -659,7 +591,7 @@ def layer_range(
     *,
     strain_limit: ArrayLike = np.inf,
     dead_length_share: ArrayLike = 0.0,
-) -> LayerRange:
+) -> _LayerRange:
     """Least and greatest strain of a layer while the hose is stretched from rest.
 
     Parameters
@@ -710,7 +642,7 @@ def layer_range(
         np.where(one > 1, cord_stretch_ratio(one, angle) - 1, 0.0)
         for one in (stretch, shortest)
     )
-    return LayerRange(
+    return _LayerRange(
         least_strain=np.asarray(least),
         greatest_strain=np.asarray(np.maximum(final, 0)),
         strain_at_least=np.asarray((1 - share) * (shortest - 1)),

@@ -74,7 +74,7 @@ class HoseTarget:
 
 
 @dataclass(frozen=True)
-class LayerResponse:
+class _LayerResponse:
     """Strain of a layer that carries no load while the hose goes to its working load.
 
     ``least_strain``, ``greatest_strain`` and ``break_strain``, the greatest one up to the
@@ -104,7 +104,7 @@ class PredictedHose:
     uncertainty: HoseUncertainty
     ribbon_width: tuple[float, float]
     number_of_cords: float
-    layers: tuple[LayerResponse, ...]
+    layers: tuple[_LayerResponse, ...]
     notes: tuple[str, ...]
 
 
@@ -181,7 +181,7 @@ def _strains(plan: HosePlan, at_break: float) -> Floats:
 
 def _layer(
     layer: HelicalLayer, working: float, at_break: float, dead_length_share: float
-) -> LayerResponse:
+) -> _LayerResponse:
     upto = layer_range(layer.wrap_angle, working, dead_length_share=dead_length_share)
     further = layer_range(layer.wrap_angle, at_break, dead_length_share=dead_length_share)
     least = greatest = np.nan
@@ -199,7 +199,7 @@ def _layer(
                 dead_length_share=dead_length_share,
             )
         )
-    return LayerResponse(
+    return _LayerResponse(
         layer=layer,
         least_strain=float(upto.least_strain),
         greatest_strain=float(upto.greatest_strain),
@@ -209,7 +209,7 @@ def _layer(
     )
 
 
-def _says(one: LayerResponse) -> list[str]:
+def _says(one: _LayerResponse) -> list[str]:
     """What a layer does that it does not bear."""
     name, said = one.layer.name, []
     if one.greatest_strain > one.layer.strain_limit:

@@ -55,30 +55,11 @@ from reduction.record.arrays import as_finite
 from reduction.record.measurement import Floats, read_only_arrays
 
 
-def stretch_ratio_per_angle(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike) -> Floats:
+def _stretch_ratio_per_angle(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike) -> Floats:
     r"""How the stretch of a water-filled hose at a given stretch of its cords goes with the angle.
 
     .. math:: \frac{\partial\lambda_h}{\partial a_0} = \frac{(\lambda_h^2 - 1/\lambda_h)\sin a_0
        \cos a_0}{\lambda_h \cos^2 a_0 - \sin^2 a_0/(2\lambda_h^2)}
-
-    Parameters
-    ----------
-    cord_stretch_ratio : array_like, shape (...)
-        :math:`\lambda_c`, held. [1]
-    wrap_angle : array_like, shape (...)
-        :math:`a_0` at rest, from the axis. [rad]
-
-    Returns
-    -------
-    stretch_ratio_per_angle : ndarray, shape (...)
-        NaN where the cord is nowhere as short as asked. [rad-1]
-
-    Raises
-    ------
-    SettingsError
-        If an angle is not between 0 and 90 deg.
-    DataError
-        If a stretch ratio is not a positive number.
 
     Notes
     -----
@@ -88,38 +69,19 @@ def stretch_ratio_per_angle(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike
     --------
     Points of stretch a degree, at a cord strain of 9.5 %:
 
-    >>> print(np.radians(100 * stretch_ratio_per_angle(1.095, np.radians([64.0, 68.0]))).round(1))
+    >>> print(np.radians(100 * _stretch_ratio_per_angle(1.095, np.radians([64.0, 68.0]))).round(1))
     [ 8.6 12.5]
     """
     stretch, cosine2, sine2 = _stretched(cord_stretch_ratio, wrap_angle)
     rise = (stretch**2 - 1 / stretch) * np.sqrt(cosine2 * sine2)
-    return np.asarray(rise / rise_of_cord(stretch, cosine2, sine2))
+    return np.asarray(rise / _rise_of_cord(stretch, cosine2, sine2))
 
 
-def stretch_ratio_per_cord_stretch(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike) -> Floats:
+def _stretch_ratio_per_cord_stretch(cord_stretch_ratio: ArrayLike, wrap_angle: ArrayLike) -> Floats:
     r"""How the stretch of a water-filled hose goes with the stretch of its cords.
 
     .. math:: \frac{\partial\lambda_h}{\partial\lambda_c} =
        \frac{\lambda_c}{\lambda_h \cos^2 a_0 - \sin^2 a_0/(2\lambda_h^2)}
-
-    Parameters
-    ----------
-    cord_stretch_ratio : array_like, shape (...)
-        :math:`\lambda_c`. [1]
-    wrap_angle : array_like, shape (...)
-        :math:`a_0` at rest, from the axis. [rad]
-
-    Returns
-    -------
-    stretch_ratio_per_cord_stretch : ndarray, shape (...)
-        NaN where the cord is nowhere as short as asked. [1]
-
-    Raises
-    ------
-    SettingsError
-        If an angle is not between 0 and 90 deg.
-    DataError
-        If a stretch ratio is not a positive number.
 
     Notes
     -----
@@ -127,14 +89,14 @@ def stretch_ratio_per_cord_stretch(cord_stretch_ratio: ArrayLike, wrap_angle: Ar
 
     Examples
     --------
-    >>> print(stretch_ratio_per_cord_stretch(1.095, np.radians([64.0, 68.0])).round(1))
+    >>> print(_stretch_ratio_per_cord_stretch(1.095, np.radians([64.0, 68.0])).round(1))
     [3.7 4. ]
     """
     stretch, cosine2, sine2 = _stretched(cord_stretch_ratio, wrap_angle)
-    return np.asarray(np.asarray(cord_stretch_ratio) / rise_of_cord(stretch, cosine2, sine2))
+    return np.asarray(np.asarray(cord_stretch_ratio) / _rise_of_cord(stretch, cosine2, sine2))
 
 
-def rise_of_cord(stretch: Floats, cosine2: Floats, sine2: Floats) -> Floats:
+def _rise_of_cord(stretch: Floats, cosine2: Floats, sine2: Floats) -> Floats:
     """Half the derivative of lambda_c squared: lambda_c times d lambda_c / d lambda_h."""
     return np.asarray(stretch * cosine2 - sine2 / (2 * stretch**2))
 
@@ -152,7 +114,7 @@ Rates = Mapping[str, Floats]
 
 
 @dataclass(frozen=True)
-class HoseState:
+class _HoseState:
     """Where a hose is, and how each parameter moves it from there; ``columns`` adds an axis."""
 
     stretch: Floats
@@ -164,16 +126,16 @@ class HoseState:
     columns: bool = False
 
 
-def as_number(value: ArrayLike, *, columns: bool) -> Floats:
+def _as_number(value: ArrayLike, *, columns: bool) -> Floats:
     """Numbers of designs as float64, with an axis for strain where there are ``columns``."""
     array = np.asarray(value, dtype=np.float64)
     return array[..., None] if columns else array
 
 
-def on_the_curve(design: HoseDesign, strain: Floats) -> HoseState:
+def _on_the_curve(design: HoseDesign, strain: Floats) -> _HoseState:
     """Where hoses are at strains of their whole length."""
     angle, dead, load_scale, strain_scale = (
-        as_number(one, columns=True)
+        _as_number(one, columns=True)
         for one in (
             design.wrap_angle,
             design.dead_length_share,
@@ -187,7 +149,7 @@ def on_the_curve(design: HoseDesign, strain: Floats) -> HoseState:
     load = load_scale * cord_load(design.cord, at)
     stiffness = load_scale / strain_scale * cord_stiffness(design.cord, at)
     cosine, sine = np.cos(angle), np.sin(angle)
-    by_stretch = rise_of_cord(stretch, cosine**2, sine**2) / cord
+    by_stretch = _rise_of_cord(stretch, cosine**2, sine**2) / cord
     per_strain = 1 / (1 - dead)
     of_stretch = {"strain": per_strain, "dead_length_share": (stretch - 1) * per_strain}
     of_cord = {name: by_stretch * rate for name, rate in of_stretch.items()}
@@ -195,10 +157,10 @@ def on_the_curve(design: HoseDesign, strain: Floats) -> HoseState:
     of_load = {name: stiffness * rate for name, rate in of_cord.items()}
     of_load["cord_load_scale"] = load / load_scale
     of_load["cord_strain_scale"] = -stiffness * at
-    return HoseState(stretch, cord, load, of_stretch, of_cord, of_load, columns=True)
+    return _HoseState(stretch, cord, load, of_stretch, of_cord, of_load, columns=True)
 
 
-def at_deepest_slack(design: HoseDesign) -> HoseState:
+def _at_deepest_slack(design: HoseDesign) -> _HoseState:
     """Where the cords are slackest."""
     angle = np.asarray(design.wrap_angle, dtype=np.float64)
     stretch = slackest_stretch_ratio(angle)
@@ -206,7 +168,7 @@ def at_deepest_slack(design: HoseDesign) -> HoseState:
     return _slack(design, stretch, per_angle)
 
 
-def at_pick_up(design: HoseDesign) -> HoseState:
+def _at_pick_up(design: HoseDesign) -> _HoseState:
     """Where the cords begin to carry."""
     angle = np.asarray(design.wrap_angle, dtype=np.float64)
     stretch = pick_up_stretch_ratio(angle)
@@ -214,17 +176,17 @@ def at_pick_up(design: HoseDesign) -> HoseState:
     return _slack(design, stretch, per_angle)
 
 
-def _slack(design: HoseDesign, stretch: Floats, per_angle: Floats) -> HoseState:
+def _slack(design: HoseDesign, stretch: Floats, per_angle: Floats) -> _HoseState:
     """Where the cords carry nothing; below the neutral angle the hose is at rest there."""
     is_above = np.asarray(design.wrap_angle) > NEUTRAL_ANGLE
     of_stretch = {
         "strain": 1 / (1 - np.asarray(design.dead_length_share, dtype=np.float64)),
         "wrap_angle": np.where(is_above, per_angle, 0.0),
     }
-    return HoseState(stretch, np.ones(stretch.shape), np.zeros(stretch.shape), of_stretch, {}, {})
+    return _HoseState(stretch, np.ones(stretch.shape), np.zeros(stretch.shape), of_stretch, {}, {})
 
 
-def at_cord_strain(design: HoseDesign, at: Floats) -> HoseState:
+def _at_cord_strain(design: HoseDesign, at: Floats) -> _HoseState:
     """Where the cords are at a strain of their measured curve."""
     angle, load_scale, strain_scale, dead = (
         np.asarray(one, dtype=np.float64)
@@ -237,15 +199,15 @@ def at_cord_strain(design: HoseDesign, at: Floats) -> HoseState:
     )
     load, slope = cord_load(design.cord, at), cord_stiffness(design.cord, at)
     cord = 1 + strain_scale * at
-    per_cord = stretch_ratio_per_cord_stretch(cord, angle)
+    per_cord = _stretch_ratio_per_cord_stretch(cord, angle)
     per_strain = 1 / (1 - dead)
-    return HoseState(
+    return _HoseState(
         hose_stretch_ratio(cord, angle),
         cord,
         load_scale * load,
         of_stretch={
             "strain": per_strain,
-            "wrap_angle": stretch_ratio_per_angle(cord, angle),
+            "wrap_angle": _stretch_ratio_per_angle(cord, angle),
             "cord_strain_scale": per_cord * at,
         },
         of_cord_stretch={"strain": per_strain / per_cord, "cord_strain_scale": at},
@@ -274,22 +236,8 @@ class EventSensitivity:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class HoseSensitivity:
-    """Derivatives of a prediction.
-
-    Parameters
-    ----------
-    strain : ndarray, shape (n_strain,)
-        Of the whole relaxed length, held. [1]
-    tension, fill_pressure : ndarray, shape (n_parameters, ..., n_strain)
-        Rows as `reduction.prediction.hose_product.HOSE_PARAMETERS`; NaN where the cords are broken.
-        [N or Pa, a unit of the parameter]
-    stiffness : ndarray, shape (..., n_strain)
-        Slope of tension over strain. [N]
-    deepest_slack, pick_up, working, cord_break : EventSensitivity
-        Where the cords are shortest, pick up, reach the working share of their break load,
-        and break.
-    """
+class _HoseSensitivity:
+    """Derivatives of a prediction."""
 
     strain: Floats
     tension: Floats
@@ -301,7 +249,7 @@ class HoseSensitivity:
     cord_break: EventSensitivity
 
 
-def hose_sensitivity(design: HoseDesign, strain: ArrayLike) -> HoseSensitivity:
+def hose_sensitivity(design: HoseDesign, strain: ArrayLike) -> _HoseSensitivity:
     r"""Derivatives by every number of the design that may be uncertain.
 
     Parameters
@@ -348,24 +296,24 @@ def hose_sensitivity(design: HoseDesign, strain: ArrayLike) -> HoseSensitivity:
     [3.7 4. ]
     """
     along = as_finite("strain", strain)
-    curve = on_the_curve(design, along)
+    curve = _on_the_curve(design, along)
     tension, pressure = _chain(design, curve)
     shape = (*design.shape, along.size)
     working = cord_strain_at(design.cord, design.working_share * design.cord.break_load)
     broken = np.where(np.isnan(curve.cord_tension), np.nan, 0.0)  # the rubber knows nothing of it
-    return HoseSensitivity(
+    return _HoseSensitivity(
         strain=np.array(along),
         tension=_rows(tension, shape) + broken,
         fill_pressure=_rows(pressure, shape) + broken,
         stiffness=np.broadcast_to(tension["strain"], shape).copy(),
-        deepest_slack=_of_event(design, at_deepest_slack(design)),
-        pick_up=_of_event(design, at_pick_up(design)),
-        working=_of_event(design, at_cord_strain(design, working)),
-        cord_break=_of_event(design, at_cord_strain(design, np.asarray(design.cord.break_strain))),
+        deepest_slack=_of_event(design, _at_deepest_slack(design)),
+        pick_up=_of_event(design, _at_pick_up(design)),
+        working=_of_event(design, _at_cord_strain(design, working)),
+        cord_break=_of_event(design, _at_cord_strain(design, np.asarray(design.cord.break_strain))),
     )
 
 
-def _of_event(design: HoseDesign, state: HoseState) -> EventSensitivity:
+def _of_event(design: HoseDesign, state: _HoseState) -> EventSensitivity:
     free = 1 - np.asarray(design.dead_length_share, dtype=np.float64)
     of_strain = {name: free * rate for name, rate in state.of_stretch.items()}
     of_strain["dead_length_share"] = 1 - state.stretch
@@ -378,10 +326,10 @@ def _of_event(design: HoseDesign, state: HoseState) -> EventSensitivity:
     )
 
 
-def _chain(design: HoseDesign, state: HoseState) -> tuple[Rates, Rates]:
+def _chain(design: HoseDesign, state: _HoseState) -> tuple[Rates, Rates]:
     """Tension and fill pressure by every parameter: directly, and through the state."""
     angle, first, second, bore, skin, density, modulus = (
-        as_number(one, columns=state.columns)
+        _as_number(one, columns=state.columns)
         for one in (
             design.wrap_angle,
             *design.layer_diameter,
@@ -393,7 +341,7 @@ def _chain(design: HoseDesign, state: HoseState) -> tuple[Rates, Rates]:
     )
     stretch, cord, load = state.stretch, state.cord_stretch, state.cord_tension
     cosine, sine = np.cos(angle), np.sin(angle)
-    lever = rise_of_cord(stretch, cosine**2, sine**2) / cord
+    lever = _rise_of_cord(stretch, cosine**2, sine**2) / cord
     hoop = sine**2 / (stretch * cord)
     around = pi * density * (first + second)
     inverse = 2 * density * (1 / first + 1 / second)

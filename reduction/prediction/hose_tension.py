@@ -75,32 +75,8 @@ from reduction.record.measurement import Floats
 
 
 @dataclass(frozen=True)
-class HoseNumbers:
-    """What the loads need of designs, worked out once.  Arrays of one shape.
-
-    Parameters
-    ----------
-    free_share : ndarray
-        Part of the relaxed length that stretches. [1]
-    cosine2, sine2, tangent : ndarray
-        Of the wrap angle: squares of cosine and sine, and the tangent. [1]
-    axial_factor : ndarray
-        Axial load of the cords over their tension: pi (d1 + d2) n cos^2 a0. [1]
-    end_cap_factor : ndarray
-        End-cap load over cord tension: pi (d1 + d2) n sin^2 a0 / 2. [1]
-    pressure_factor : ndarray
-        Fill pressure over cord tension: 2 n (1/d1 + 1/d2) sin^2 a0. [m-2]
-    cord_spacing : ndarray
-        At rest. [m]
-    inner_diameter, cord_diameter : ndarray
-        As in the design. [m]
-    area : ndarray
-        Of the rubber wall at rest. [m2]
-    modulus : ndarray
-        Of the rubber. [Pa]
-    load_scale, strain_scale : ndarray
-        Of the cord curve. [1]
-    """
+class _HoseNumbers:
+    """What the loads need of designs, worked out once.  Arrays of one shape."""
 
     free_share: Floats
     cosine2: Floats
@@ -117,14 +93,14 @@ class HoseNumbers:
     load_scale: Floats
     strain_scale: Floats
 
-    def column(self, rows: slice) -> HoseNumbers:
+    def column(self, rows: slice) -> _HoseNumbers:
         """Some of the designs, flattened, as a column: shape (n_rows, 1)."""
         parts = {item.name: getattr(self, item.name) for item in fields(self)}
-        return HoseNumbers(**{name: one.reshape(-1, 1)[rows] for name, one in parts.items()})
+        return _HoseNumbers(**{name: one.reshape(-1, 1)[rows] for name, one in parts.items()})
 
 
 @dataclass(frozen=True)
-class HoseLoads:
+class _HoseLoads:
     """Loads of the cords and of the water; ``cord_axial_load`` is after the end cap."""
 
     fill_pressure: Floats
@@ -132,7 +108,7 @@ class HoseLoads:
     cord_axial_load: Floats
 
 
-def numbers_of(design: HoseDesign) -> HoseNumbers:
+def numbers_of(design: HoseDesign) -> _HoseNumbers:
     """Work out what the loads need of a design.
 
     Parameters
@@ -193,17 +169,17 @@ def numbers_of(design: HoseDesign) -> HoseNumbers:
         "strain_scale": np.asarray(design.cord_strain_scale, dtype=np.float64),
     }
     shape = design.shape
-    return HoseNumbers(**{name: np.broadcast_to(one, shape) for name, one in parts.items()})
+    return _HoseNumbers(**{name: np.broadcast_to(one, shape) for name, one in parts.items()})
 
 
 def loads_at(
-    numbers: HoseNumbers,
+    numbers: _HoseNumbers,
     stretch: Floats,
     cord_stretch: Floats,
     cord_tension: Floats,
     *,
-    out: HoseLoads | None = None,
-) -> HoseLoads:
+    out: _HoseLoads | None = None,
+) -> _HoseLoads:
     r"""Loads of cords and water.
 
     .. math:: p = \sum_i \frac{2 P n \sin^2 a_0}{\lambda_h \lambda_c d_i}, \qquad
@@ -254,7 +230,7 @@ def loads_at(
     """
     if out is None:
         shape = np.broadcast_shapes(numbers.cosine2.shape, stretch.shape, cord_tension.shape)
-        out = HoseLoads(np.empty(shape), np.empty(shape), np.empty(shape))
+        out = _HoseLoads(np.empty(shape), np.empty(shape), np.empty(shape))
     along = np.divide(cord_tension, cord_stretch, out=out.cord_axial_load)
     around = np.divide(along, stretch, out=out.fill_pressure)
     end_cap = np.divide(around, stretch, out=out.end_cap_load)
@@ -372,7 +348,7 @@ def predict_hose(design: HoseDesign, strain: ArrayLike) -> HosePrediction:
 
 
 def _respond(
-    numbers: HoseNumbers,
+    numbers: _HoseNumbers,
     pieces: CordPieces,
     strain: Floats,
     design: HoseDesign,
@@ -400,7 +376,7 @@ def _respond(
     np.equal(piece, len(pieces.knot), out=out["is_broken"])
     cord_tension = evaluate_into(out["cord_tension"], spare, pieces, curve_strain, piece)
     cord_tension *= numbers.load_scale
-    cords = HoseLoads(out["fill_pressure"], out["end_cap_load"], spare)
+    cords = _HoseLoads(out["fill_pressure"], out["end_cap_load"], spare)
     loads_at(numbers, stretch, cord_stretch, cord_tension, out=cords)
     tension = tension_into(
         out["tension"], stretch, numbers.area * numbers.modulus, design.rubber_law
@@ -550,7 +526,7 @@ def find_events(design: HoseDesign) -> HoseEvents:
 
 def _event(
     design: HoseDesign,
-    numbers: HoseNumbers,
+    numbers: _HoseNumbers,
     stretch: Floats,
     cord_strain: Floats,
     cord_tension: Floats,

@@ -56,19 +56,11 @@ NODES_A_BIN = 40
 
 @dataclass(frozen=True)
 @read_only_arrays
-class Reading:
+class _Reading:
     """How a test shows a curve: weights of the strains between the bin centres.
 
     Samples lie at some strains of a bin and the mean is moved to its centre; at a kink that is
     not the tension at the centre.  A prediction that is read in the same way has the same kink.
-
-    Parameters
-    ----------
-    node : ndarray, shape (n_node,)
-        Equally spaced strains, `NODES_A_BIN` a bin, from one bin below the first bin. [1]
-    weight : ndarray, shape (n_strain, 3 * NODES_A_BIN + 1)
-        Of the nodes from the bin below each bin to the bin above it; zero where the judged curve
-        is not known. [1]
     """
 
     node: Floats
@@ -139,7 +131,7 @@ class MeasuredCurve:
     contribution: Floats
     strain_error: Floats
     loading: Loading
-    reading: Reading
+    reading: _Reading
     end_strain: float = float("nan")
     end_tension: float = float("nan")
     end_standard_uncertainty: float = float("nan")
@@ -203,20 +195,8 @@ _MOST_ROWS = 1000
 
 @dataclass(frozen=True)
 @read_only_arrays
-class BranchSamples:
-    """Samples that are finite and belong to a branch.
-
-    Parameters
-    ----------
-    strain, tension : ndarray, shape (n_samples,)
-        In the order of the record. [1], [N]
-    row : ndarray of int, shape (n_samples,)
-        2 k where cycle k ascends, 2 k + 1 where it descends.
-    cycle_number : ndarray of int, shape (n_cycle,)
-        First cycle of each k; cycles without a sample have none.
-    cycles_pooled, n_break_in : int
-        Consecutive cycles in one k; how many k are break-in.
-    """
+class _BranchSamples:
+    """Samples that are finite and belong to a branch."""
 
     strain: Floats
     tension: Floats
@@ -236,45 +216,19 @@ class BranchSamples:
         return float(power * next(k for k in (1, 2, 5, 10) if k * power >= least * (1 - 1e-9)))
 
 
-def select_samples(
+def _select_samples(
     strain: ArrayLike,
     tension: ArrayLike,
     *,
     cycle_number: ArrayLike | None,
     branch: ArrayLike | None,
     break_in_cycles: int,
-) -> BranchSamples:
+) -> _BranchSamples:
     """Samples that are finite and belong to a branch, each with its cycle and branch.
-
-    Parameters
-    ----------
-    strain : array_like, shape (n_samples,)
-        NaN where missing. [1]
-    tension : array_like, shape (n_samples,)
-        NaN where missing. [N]
-    cycle_number : array_like of int, shape (n_samples,), or None
-        From 1; 0 outside cycles; None for a slow pull. [1]
-    branch : array_like of int, shape (n_samples,), or None
-        0 none, 1 ascending, 2 descending; None for a slow pull. [1]
-    break_in_cycles : int
-        First cycles that are in no mean. [1]
-
-    Returns
-    -------
-    samples : BranchSamples
-        Of a slow pull, those up to its greatest tension: what follows is a hold, an
-        unloading or a break. [SI]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up, no sample belongs to a branch, or no cycle is left.
-    SettingsError
-        If one of ``cycle_number`` and ``branch`` is missing.
 
     Examples
     --------
-    >>> pull = select_samples(
+    >>> pull = _select_samples(
     ...     [0.0, 0.1, 0.2, 0.2], [0.0, 5.0, 9.0, 8.0],
     ...     cycle_number=None, branch=None, break_in_cycles=0,
     ... )
@@ -322,7 +276,7 @@ def select_samples(
     pooled = -(-there.size // _MOST_ROWS)
     k = np.searchsorted(there, number[use]) // pooled
     n_break_in = int(np.searchsorted(there, break_in_cycles, side="right"))
-    return BranchSamples(
+    return _BranchSamples(
         strain=strains[use],
         tension=tensions[use],
         row=2 * k + side[use] - 1,
@@ -351,7 +305,7 @@ _OUTSIDE = 0.05
 
 @dataclass(frozen=True)
 @read_only_arrays
-class Cells:
+class _Cells:
     """Moments of the samples of each row and bin; arrays have the shape (n_rows, n_bins).
 
     ``offset`` and ``spread`` are mean and variance of strain from the bin centre, in bins, and
@@ -372,37 +326,14 @@ class Cells:
     freedom: Floats
 
 
-def fill_cells(
+def _fill_cells(
     strain: Floats, tension: Floats, *, row: Integers, n_rows: int, step: float
-) -> tuple[Cells, Floats]:
+) -> tuple[_Cells, Floats]:
     """Moments of the samples in each bin, and the centres of the bins.
-
-    Parameters
-    ----------
-    strain, tension : ndarray, shape (n_samples,)
-        Of samples that belong to a row; finite. [1], [N]
-    row : ndarray of int, shape (n_samples,)
-        Row of each sample, such as a branch of a cycle. [1]
-    n_rows : int
-        Number of rows. [1]
-    step : float
-        Width of a bin; centres are whole multiples of it, from zero. [1]
-
-    Returns
-    -------
-    cells : Cells
-        Moments of each. [SI]
-    centre : ndarray, shape (n_bins,)
-        From the first bin that was visited to the last. [1]
-
-    Raises
-    ------
-    DataError
-        If no sample has a strain of zero or more.
 
     Examples
     --------
-    >>> cells, centre = fill_cells(
+    >>> cells, centre = _fill_cells(
     ...     np.array([0.11, 0.12]), np.array([5.0, 7.0]),
     ...     row=np.array([0, 0]), n_rows=1, step=0.1,
     ... )
@@ -446,7 +377,7 @@ def fill_cells(
 
     nearest, furthest = ends(x)
     lowest, highest = ends(y + reference)
-    cells = Cells(
+    cells = _Cells(
         count=count,
         offset=offset,
         spread=spread,
@@ -461,24 +392,8 @@ def fill_cells(
     return cells, centre
 
 
-def centre_weights(cells: Cells) -> Floats:
+def _centre_weights(cells: _Cells) -> Floats:
     """What the tension at a centre takes from the means of its own bin and of the two beside it.
-
-    Parameters
-    ----------
-    cells : Cells
-        Moments of rows and bins. [SI]
-
-    Returns
-    -------
-    weight : ndarray, shape (3, n_rows, n_bins)
-        Of the bin below, of the bin itself and of the bin above; NaN where the tension at the
-        centre cannot be read. [1]
-
-    Raises
-    ------
-    Nothing
-        An empty bin is NaN.
 
     Notes
     -----
@@ -489,10 +404,10 @@ def centre_weights(cells: Cells) -> Floats:
     --------
     Means of three samples that lie at the centres: the middle one is taken as it is.
 
-    >>> cells, _ = fill_cells(
+    >>> cells, _ = _fill_cells(
     ...     np.array([0.1, 0.2, 0.3]), np.zeros(3), row=np.zeros(3, int), n_rows=1, step=0.1
     ... )
-    >>> print(np.abs(centre_weights(cells)[:, 0, 1].round(9)))
+    >>> print(np.abs(_centre_weights(cells)[:, 0, 1].round(9)))
     [0. 1. 0.]
     """
     level, offset = cells.tension, cells.offset
@@ -517,24 +432,8 @@ def centre_weights(cells: Cells) -> Floats:
     return np.asarray(np.where(is_read, weight, np.nan))
 
 
-def tension_at_centres(cells: Cells) -> Floats:
+def _tension_at_centres(cells: _Cells) -> Floats:
     """Tension at the bin centres, by the slope and bend through the neighbouring bins.
-
-    Parameters
-    ----------
-    cells : Cells
-        Moments of rows and bins. [SI]
-
-    Returns
-    -------
-    tension : ndarray, shape (n_rows, n_bins)
-        NaN where there is no sample, or samples on one side of the centre alone; between the
-        least and the greatest sample of the bin and of those beside it. [N]
-
-    Raises
-    ------
-    Nothing
-        An empty bin is NaN.
 
     Notes
     -----
@@ -546,11 +445,11 @@ def tension_at_centres(cells: Cells) -> Floats:
     Samples of a parabola, moved to the centres 0.1, 0.2 and 0.3.
 
     >>> place = np.linspace(0.0501, 0.3499, 300)
-    >>> cells, centre = fill_cells(place, place**2, row=np.zeros(300, int), n_rows=1, step=0.1)
-    >>> print(tension_at_centres(cells)[0, 1].round(6))
+    >>> cells, centre = _fill_cells(place, place**2, row=np.zeros(300, int), n_rows=1, step=0.1)
+    >>> print(_tension_at_centres(cells)[0, 1].round(6))
     0.04
     """
-    below, own, above = centre_weights(cells)
+    below, own, above = _centre_weights(cells)
     level = cells.tension
     padded = np.pad(np.nan_to_num(level), ((0, 0), (1, 1)))
     moved = below * padded[:, :-2] + own * padded[:, 1:-1] + above * padded[:, 2:]
@@ -562,43 +461,18 @@ def tension_at_centres(cells: Cells) -> Floats:
     return np.asarray(np.clip(moved, least - slack, most + slack))
 
 
-def reading_of(
-    strain: Floats, *, row: Integers, cells: Cells, row_weight: Floats, centre: Floats, step: float
-) -> Reading:
+def _reading_of(
+    strain: Floats, *, row: Integers, cells: _Cells, row_weight: Floats, centre: Floats, step: float
+) -> _Reading:
     """How a mean of rows was read from the samples, as weights of strains between the centres.
-
-    Parameters
-    ----------
-    strain : ndarray, shape (n_samples,)
-        Of the samples that are in the cells. [1]
-    row : ndarray of int, shape (n_samples,)
-        Row of each sample. [1]
-    cells : Cells
-        Moments of rows and bins. [SI]
-    row_weight : ndarray, shape (n_rows, n_bins)
-        Of each row in the mean at each bin; zero where it is not in it. [1]
-    centre : ndarray, shape (n_bins,)
-        Of the bins. [1]
-    step : float
-        Width of a bin. [1]
-
-    Returns
-    -------
-    reading : Reading
-        A smooth curve comes back as it is, a kink as the test shows it. [1]
-
-    Raises
-    ------
-    Nothing
-        A bin without a row reads nothing.
 
     Examples
     --------
     A straight line is read as it is.
 
     >>> place, row = np.linspace(0.0, 0.5, 600), np.zeros(600, int)
-    >>> cells, centre = fill_cells(place, place, row=row, n_rows=1, step=0.1)
-    >>> reading = reading_of(
+    >>> cells, centre = _fill_cells(place, place, row=row, n_rows=1, step=0.1)
+    >>> reading = _reading_of(
     ...     place, row=row, cells=cells, row_weight=np.ones((1, 6)), centre=centre, step=0.1
     ... )
     >>> print(reading.of(reading.node).round(9)[1:-1])
@@ -613,7 +487,7 @@ def reading_of(
     left = np.clip(np.floor(of_node).astype(np.int64), 0, NODES_A_BIN - 1)
     part = of_node - left
     weight = np.zeros(n_bins * wide)
-    for side, of_rows in enumerate(centre_weights(cells)):
+    for side, of_rows in enumerate(_centre_weights(cells)):
         # the bin whose tension takes its share from the bin of the sample
         taker = place + 1 - side
         known = (taker >= 0) & (taker < n_bins)
@@ -624,7 +498,7 @@ def reading_of(
         for one, share in ((at, 1 - part[known]), (at + 1, part[known])):
             weight += np.bincount(one, weights=each * share, minlength=weight.size)
     node = centre[0] + step * (np.arange((n_bins + 2) * NODES_A_BIN + 1) / NODES_A_BIN - 1.5)
-    return Reading(node, weight.reshape(n_bins, wide))
+    return _Reading(node, weight.reshape(n_bins, wide))
 
 
 _POOLED_FREEDOM = 10.0  # what the scatter of the whole branch weighs beside that of one bin
@@ -636,29 +510,12 @@ _CUBIC = 4  # coefficients
 _ROUNDING = 1e-12
 
 
-def bin_noise(cells: Cells, tension: Floats) -> Floats:
+def _bin_noise(cells: _Cells, tension: Floats) -> Floats:
     """Variance of the tension of each bin by noise alone.
 
     The greater of two: the scatter of samples about the line in their bin, as means are moved
     to the centre (half a bin at the end of a branch is moved by a slope of its own), and what
     third differences from bin to bin leave, which sees noise that is slower than the samples.
-
-    Parameters
-    ----------
-    cells : Cells
-        Moments of rows and bins. [SI]
-    tension : ndarray, shape (n_rows, n_bins)
-        At the bin centres. [N]
-
-    Returns
-    -------
-    variance : ndarray, shape (n_rows, n_bins)
-        NaN where there is no tension. [N2]
-
-    Raises
-    ------
-    Nothing
-        A row without a degree of freedom has no noise inside its bins.
 
     Notes
     -----
@@ -669,10 +526,10 @@ def bin_noise(cells: Cells, tension: Floats) -> Floats:
     --------
     Without noise there is none.
 
-    >>> from reduction.prediction.measured_curve import fill_cells, tension_at_centres
+    >>> from reduction.prediction.measured_curve import _fill_cells, _tension_at_centres
     >>> place = np.linspace(0, 1, 1001)
-    >>> cells, _ = fill_cells(place, 3 * place, row=np.zeros(1001, int), n_rows=1, step=0.1)
-    >>> print(bool(np.all(bin_noise(cells, tension_at_centres(cells)) < 1e-9)))
+    >>> cells, _ = _fill_cells(place, 3 * place, row=np.zeros(1001, int), n_rows=1, step=0.1)
+    >>> print(bool(np.all(_bin_noise(cells, _tension_at_centres(cells)) < 1e-9)))
     True
     """
     freedom = cells.freedom.sum()
@@ -681,33 +538,14 @@ def bin_noise(cells: Cells, tension: Floats) -> Floats:
     found = np.abs(third[np.isfinite(third)])
     between = (np.median(found) / 0.6745) ** 2 / 20 if found.size else 0.0
     per_sample = np.pad(1 / np.where(cells.count > 0, cells.count, np.inf), ((0, 0), (1, 1)))
-    below, own, above = centre_weights(cells) ** 2
+    below, own, above = _centre_weights(cells) ** 2
     leverage = below * per_sample[:, :-2] + own * per_sample[:, 1:-1] + above * per_sample[:, 2:]
     by_bin = np.maximum(inside * leverage, between)
     return np.where(np.isfinite(tension), by_bin, np.nan)
 
 
-def branch_scatter(tension: Floats, noise: Floats) -> tuple[Floats, Floats]:
+def _branch_scatter(tension: Floats, noise: Floats) -> tuple[Floats, Floats]:
     """Mean over the cycles, and the variance of that mean.
-
-    Parameters
-    ----------
-    tension : ndarray, shape (n_cycle, n_branch, n_strain)
-        Of each cycle; NaN where not visited. [N]
-    noise : ndarray, shape (n_cycle, n_branch, n_strain)
-        Variance by noise alone. [N2]
-
-    Returns
-    -------
-    mean : ndarray, shape (n_branch, n_strain)
-        NaN where fewer than half of the cycles came. [N]
-    variance : ndarray, shape (n_branch, n_strain)
-        Of the mean. [N2]
-
-    Raises
-    ------
-    Nothing
-        A bin without a cycle is NaN.
 
     Notes
     -----
@@ -719,7 +557,7 @@ def branch_scatter(tension: Floats, noise: Floats) -> tuple[Floats, Floats]:
     --------
     Cycles at 9 and 11 N: scatter 2 N2, of the mean 1 N2.
 
-    >>> mean, variance = branch_scatter(np.array([[[9.0]], [[11.0]]]), np.zeros((2, 1, 1)))
+    >>> mean, variance = _branch_scatter(np.array([[[9.0]], [[11.0]]]), np.zeros((2, 1, 1)))
     >>> print(mean, variance)
     [[10.]] [[1.]]
     """
@@ -738,7 +576,7 @@ def branch_scatter(tension: Floats, noise: Floats) -> tuple[Floats, Floats]:
     return mean, np.maximum(own, by_noise) / n
 
 
-def shared_scatter(tension: Floats, mean: Floats) -> tuple[Floats, Floats]:
+def _shared_scatter(tension: Floats, mean: Floats) -> tuple[Floats, Floats]:
     r"""What the scatter of the cycles has in common over strain, and what is left of the cycles.
 
     Deviations from the mean are taken apart into a cubic over strain and the rest; the
@@ -747,25 +585,6 @@ def shared_scatter(tension: Floats, mean: Floats) -> tuple[Floats, Floats]:
     .. math:: \frac{\mathrm{cov}(b)}{n} - \frac{v}{n} I = \sum_k q_k q_k^T, \qquad c_k = B q_k
 
     with v the variance of the rest.
-
-    Parameters
-    ----------
-    tension : ndarray, shape (n_cycle, n_strain)
-        Of each cycle; NaN where not visited. [N]
-    mean : ndarray, shape (n_strain,)
-        Over the cycles; NaN where there is none. [N]
-
-    Returns
-    -------
-    contribution : ndarray, shape (n_component, n_strain)
-        One standard uncertainty of the mean each; none of them for a single cycle. [N]
-    rest : ndarray, shape (n_cycle, n_strain)
-        The cycles without their common scatter. [N]
-
-    Raises
-    ------
-    Nothing
-        Bins that a cycle did not visit count as its mean.
 
     Notes
     -----
@@ -781,7 +600,7 @@ def shared_scatter(tension: Floats, mean: Floats) -> tuple[Floats, Floats]:
     Eleven cycles that lie apart by 1 N everywhere: scatter 3.3 N, of the mean 1 N, widened 14 %.
 
     >>> cycles = np.arange(-5.0, 6.0)[:, None] + np.zeros(50)
-    >>> parts, rest = shared_scatter(cycles, np.zeros(50))
+    >>> parts, rest = _shared_scatter(cycles, np.zeros(50))
     >>> print(np.abs(parts)[:, 0].round(3), bool(np.abs(rest).max() < 1e-9))
     [1.137] True
     """
@@ -809,7 +628,7 @@ def shared_scatter(tension: Floats, mean: Floats) -> tuple[Floats, Floats]:
 _AT_AN_END = 5  # points whose straight line goes on beyond an end
 
 
-class CurveErrors(NamedTuple):
+class _CurveErrors(NamedTuple):
     """What shared errors do to points of two branches, shape (n_component, 2, n_strain).
 
     ``tension`` at the strain of the point [N], ``strain`` at its tension [1].
@@ -855,7 +674,7 @@ class SharedErrors:
         shapes = {"tension": (2, n_point), "tension_error": rows, "strain_error": rows}
         require_shapes(self, shapes, of="shared errors")
 
-    def at(self, strain: Floats, tension: Floats) -> CurveErrors:
+    def at(self, strain: Floats, tension: Floats) -> _CurveErrors:
         """Errors at points of both branches, strain (n_strain,) and tension (2, n_strain)."""
         found = np.zeros((2, len(self.component), 2, strain.size))
         for branch in range(2):
@@ -865,7 +684,7 @@ class SharedErrors:
                 axis = np.broadcast_to(self.strain, (2, self.strain.size))
                 of_strain = self._known(axis, self.strain_error[row], branch)
                 found[1, row, branch] = read_along(strain, *of_strain)
-        return CurveErrors(*found)
+        return _CurveErrors(*found)
 
     @staticmethod
     def _known(at: Floats, error: Floats, branch: int) -> tuple[Floats, Floats]:
@@ -1111,7 +930,7 @@ def measured_curve(
     """
     if loading not in ("static", "dynamic"):
         raise SettingsError("loading is unknown", found=str(loading), needed="static or dynamic")
-    samples = select_samples(
+    samples = _select_samples(
         strain, tension, cycle_number=cycle_number, branch=branch, break_in_cycles=break_in_cycles
     )
     step = samples.least_step() if strain_step is None else strain_step
@@ -1125,21 +944,21 @@ def measured_curve(
             needed=f"strains as a part of the relaxed length, {_GREATEST_STRAIN:g} at most",
         )
     n_cycle = samples.cycle_number.size
-    cells, centre = fill_cells(
+    cells, centre = _fill_cells(
         samples.strain, samples.tension, row=samples.row, n_rows=2 * n_cycle, step=step
     )
-    by_row = tension_at_centres(cells)
+    by_row = _tension_at_centres(cells)
     by_cycle = by_row.reshape(n_cycle, 2, centre.size)
     kept = by_cycle[samples.n_break_in :]
-    noise = bin_noise(cells, by_row).reshape(by_cycle.shape)[samples.n_break_in :]
-    mean, variance = branch_scatter(kept, noise)
+    noise = _bin_noise(cells, by_row).reshape(by_cycle.shape)[samples.n_break_in :]
+    mean, variance = _branch_scatter(kept, noise)
     middle, noise_of_middle = kept.mean(axis=1), noise.mean(axis=1) / 2
-    midline = branch_scatter(middle[:, None], noise_of_middle[:, None])[0][0]
+    midline = _branch_scatter(middle[:, None], noise_of_middle[:, None])[0][0]
     is_paired = bool(np.isfinite(midline).any())
     judged = midline if is_paired else mean[0]
     cycles, its_noise = (middle, noise_of_middle) if is_paired else (kept[:, 0], noise[:, 0])
-    common, rest = shared_scatter(cycles, judged)
-    _, independent = branch_scatter(rest[:, None], its_noise[:, None])
+    common, rest = _shared_scatter(cycles, judged)
+    _, independent = _branch_scatter(rest[:, None], its_noise[:, None])
     type_a = np.sqrt(independent[0] + np.sum(common**2, axis=0))
     of_branch = np.sqrt(variance)
     if not is_paired:
@@ -1166,7 +985,7 @@ def measured_curve(
         contribution=contribution,
         strain_error=strain_error.mean(axis=1) if is_paired else strain_error[:, 0],
         loading=loading,
-        reading=reading_of(
+        reading=_reading_of(
             samples.strain,
             row=samples.row,
             cells=cells,
@@ -1183,7 +1002,7 @@ def measured_curve(
 
 
 def _end_of_curve(
-    cells: Cells, rows: Integers, is_judged: Bools, type_a: Floats
+    cells: _Cells, rows: Integers, is_judged: Bools, type_a: Floats
 ) -> tuple[float, float, float]:
     """Strain from the first centre in bins, tension and type A where samples end; NaN if earlier.
 

@@ -219,31 +219,12 @@ def immerse_hose(
     return ImmersedSection(
         outer_diameter=np.array(diameter),
         submerged_section_area=np.asarray(area),
-        immersion_depth=immersion_depth_of(area, diameter),
+        immersion_depth=_immersion_depth_of(area, diameter),
     )
 
 
-def immersion_depth_of(submerged_section_area: ArrayLike, outer_diameter: ArrayLike) -> Floats:
+def _immersion_depth_of(submerged_section_area: ArrayLike, outer_diameter: ArrayLike) -> Floats:
     """Depth of a circular segment of this area.
-
-    Parameters
-    ----------
-    submerged_section_area : array_like, shape (...)
-        From 0 to that of the whole circle. [m2]
-    outer_diameter : array_like, shape (...)
-        Of the circle. [m]
-
-    Returns
-    -------
-    immersion_depth : ndarray, shape (...)
-        From 0 to the diameter. [m]
-
-    Raises
-    ------
-    DataError
-        If a diameter is not positive, or an area is below zero or above the circle.
-    FitError
-        If the last Newton step is not below 1e-14 of the root.
 
     Notes
     -----
@@ -257,7 +238,7 @@ def immersion_depth_of(submerged_section_area: ArrayLike, outer_diameter: ArrayL
     --------
     Half a circle, and nearly none.
 
-    >>> print(immersion_depth_of([np.pi / 8, 1e-12], 1.0))
+    >>> print(_immersion_depth_of([np.pi / 8, 1e-12], 1.0))
     [5.00000000e-01 8.25481814e-09]
     """
     area, diameter = np.broadcast_arrays(
@@ -321,20 +302,8 @@ GREATEST_DIAMETER_TO_LENGTH = 0.2
 
 
 @dataclass(frozen=True)
-class PublishedCoefficients:
-    """One row of a table; where the source gives one number, low and high are equal.
-
-    Parameters
-    ----------
-    wave_theory : str
-        With which the source used them.
-    drag_coefficient : tuple of 2 float
-        C_D, low and high. [1]
-    inertia_coefficient : float
-        C_M = 1 + C_m, with the added mass C_m. [1]
-    comment, source : str
-        As printed.
-    """
+class _PublishedCoefficients:
+    """One row of a table; where the source gives one number, low and high are equal."""
 
     wave_theory: str
     drag_coefficient: tuple[float, float]
@@ -344,20 +313,20 @@ class PublishedCoefficients:
 
 
 PUBLISHED_COEFFICIENTS = (
-    PublishedCoefficients(
+    _PublishedCoefficients(
         "linear", (1.0, 1.0), 0.95,
         "mean values for ocean wave data on 13-24 in cylinders", "Wiegel et al. (1957)",
     ),
-    PublishedCoefficients(
+    _PublishedCoefficients(
         "linear", (1.0, 1.4), 2.0,
         "recommended design values based on statistical analysis of published data",
         "Agerschou and Edens (1965)",
     ),
-    PublishedCoefficients(
+    _PublishedCoefficients(
         "Stokes, third order", (1.34, 1.34), 1.6,
         "mean values for oscillatory flow for 2-3 in cylinders", "Keulegan and Carpenter (1958)",
     ),
-    PublishedCoefficients(
+    _PublishedCoefficients(
         "Stokes, fifth order", (0.8, 1.0), 2.0,
         "recommended values based on statistical analysis of published data",
         "Agerschou and Edens (1965)",
@@ -366,7 +335,7 @@ PUBLISHED_COEFFICIENTS = (
 
 """Table 2 of [1]_; none is for a cylinder that floats."""
 
-CODE_OF_HYDROLOGY = PublishedCoefficients(
+CODE_OF_HYDROLOGY = _PublishedCoefficients(
     "any", (1.2, 1.2), 2.0,
     "settled for the sea area of China; used in all examples of the paper",
     "Code of Hydrology for Sea Harbour (1998)",
@@ -402,29 +371,10 @@ class FlowRegime:
     diameter_to_length: Floats
 
 
-def keulegan_carpenter_number(
+def _keulegan_carpenter_number(
     greatest_velocity: ArrayLike, wave_period: ArrayLike, outer_diameter: ArrayLike
 ) -> Floats:
     """Way of the water over the diameter, times pi in a sine.
-
-    Parameters
-    ----------
-    greatest_velocity : array_like, shape (...)
-        Of the water over a period. [m s-1]
-    wave_period : array_like, shape (...)
-        Of the wave. [s]
-    outer_diameter : array_like, shape (...)
-        Of the cylinder. [m]
-
-    Returns
-    -------
-    keulegan_carpenter_number : ndarray, shape (...)
-        KC. [1]
-
-    Raises
-    ------
-    DataError
-        If a velocity is not finite, or a period or diameter not positive.
 
     Notes
     -----
@@ -434,7 +384,7 @@ def keulegan_carpenter_number(
     --------
     The hose of [2]_ in its 6 m deep wave, 1.15 m/s: far in the region of drag, yet not steady.
 
-    >>> print(keulegan_carpenter_number(1.15, 3.57, 0.114).round(1))
+    >>> print(_keulegan_carpenter_number(1.15, 3.57, 0.114).round(1))
     36.0
     """
     speed = np.abs(as_finite("greatest_velocity", greatest_velocity))
@@ -442,7 +392,7 @@ def keulegan_carpenter_number(
     return np.asarray(speed * period / as_positive("outer_diameter", outer_diameter))
 
 
-def reynolds_number(
+def _reynolds_number(
     greatest_velocity: ArrayLike,
     outer_diameter: ArrayLike,
     *,
@@ -450,32 +400,13 @@ def reynolds_number(
 ) -> Floats:
     """Inertia of the flow over its friction.
 
-    Parameters
-    ----------
-    greatest_velocity : array_like, shape (...)
-        Of the water over a period. [m s-1]
-    outer_diameter : array_like, shape (...)
-        Of the cylinder. [m]
-    kinematic_viscosity : float
-        Of the water. [m2 s-1]
-
-    Returns
-    -------
-    reynolds_number : ndarray, shape (...)
-        Re. [1]
-
-    Raises
-    ------
-    DataError
-        If a velocity is not finite, or a diameter or the viscosity not positive.
-
     Notes
     -----
     Viscosity of seawater from [4]_.
 
     Examples
     --------
-    >>> print(reynolds_number(1.15, 0.114).round(-3))
+    >>> print(_reynolds_number(1.15, 0.114).round(-3))
     110000.0
     """
     speed = np.abs(as_finite("greatest_velocity", greatest_velocity))
@@ -483,7 +414,7 @@ def reynolds_number(
     return np.asarray(speed * as_positive("outer_diameter", outer_diameter) / viscosity)
 
 
-def drag_to_inertia(
+def _drag_to_inertia(
     keulegan_carpenter_number: ArrayLike,
     *,
     drag_coefficient: float = CODE_OF_HYDROLOGY.drag_coefficient[0],
@@ -491,30 +422,13 @@ def drag_to_inertia(
 ) -> Floats:
     """Greatest drag over greatest inertia of a whole cylinder in a sine.
 
-    Parameters
-    ----------
-    keulegan_carpenter_number : array_like, shape (...)
-        KC. [1]
-    drag_coefficient, inertia_coefficient : float
-        C_D, C_M. [1]
-
-    Returns
-    -------
-    ratio : ndarray, shape (...)
-        Above 1 the drag is the larger one. [1]
-
-    Raises
-    ------
-    DataError
-        If a number is not finite, or C_M not positive.
-
     Notes
     -----
     From eq. (1) of [2]_ with u = u_max cos: (C_D D u^2 / 2) / (C_M pi D^2 / 4 * 2 pi u / T).
 
     Examples
     --------
-    >>> print(drag_to_inertia(36.0).round(2))
+    >>> print(_drag_to_inertia(36.0).round(2))
     2.19
     """
     number = as_finite("keulegan_carpenter_number", keulegan_carpenter_number)
@@ -574,14 +488,14 @@ def flow_regime(
     period = 2 * pi / wave.angular_frequency
     velocity = cosine_series(wave.horizontal_velocity, current_velocity)
     speed = float(np.max(np.abs(sum_at(velocity, root_phases(phase_derivative(velocity))))))
-    number = keulegan_carpenter_number(speed, period, outer_diameter)
-    reynolds = reynolds_number(speed, outer_diameter, kinematic_viscosity=kinematic_viscosity)
+    number = _keulegan_carpenter_number(speed, period, outer_diameter)
+    reynolds = _reynolds_number(speed, outer_diameter, kinematic_viscosity=kinematic_viscosity)
     return FlowRegime(
         greatest_velocity=speed,
         keulegan_carpenter_number=number,
         reynolds_number=reynolds,
         frequency_parameter=np.asarray(reynolds / number),
-        drag_to_inertia=drag_to_inertia(
+        drag_to_inertia=_drag_to_inertia(
             number, drag_coefficient=drag_coefficient, inertia_coefficient=inertia_coefficient
         ),
         diameter_to_length=np.asarray(
@@ -599,7 +513,7 @@ SEAWATER_DENSITY = 1025.0
 
 @dataclass(frozen=True)
 @read_only_arrays
-class LoadFactors:
+class _LoadFactors:
     """What u|u| and the acceleration are multiplied with; arrays have the shape (...).
 
     Drag factors are in [kg m-2], inertia factors in [kg m-1]; the classic load has the same
@@ -649,7 +563,7 @@ def load_factors(
     inertia_coefficient: float = CODE_OF_HYDROLOGY.inertia_coefficient,
     water_density: float = SEAWATER_DENSITY,
     vertical_width: VerticalWidth = "submerged",
-) -> LoadFactors:
+) -> _LoadFactors:
     """Drag and inertia of a section per velocity squared and per acceleration.
 
     Parameters
@@ -690,7 +604,7 @@ def load_factors(
     inertia = float(as_positive("inertia_coefficient", inertia_coefficient))
     density = float(as_positive("water_density", water_density))
     width = section.submerged_width if vertical_width == "submerged" else section.immersion_depth
-    return LoadFactors(
+    return _LoadFactors(
         horizontal_drag=np.asarray(drag * density / 2 * section.immersion_depth),
         vertical_drag=np.asarray(drag * density / 2 * width),
         inertia=np.asarray(inertia * density * section.submerged_section_area),
@@ -897,7 +811,7 @@ def find_extremes(
     upwards = sine_series(wave.vertical_velocity), cosine_series(wave.vertical_acceleration)
 
     def of(motion: tuple[Coefficients, Coefficients], drag: Floats, inertia: Floats) -> LoadRange:
-        return load_range(
+        return _load_range(
             *motion, drag=drag, inertia=inertia, wave_number=wave.wave_number,
             angular_frequency=wave.angular_frequency, position=position,
         )  # fmt: skip
@@ -910,7 +824,7 @@ def find_extremes(
     )
 
 
-def load_range(
+def _load_range(
     velocity: Coefficients,
     acceleration: Coefficients,
     *,
@@ -922,31 +836,6 @@ def load_range(
 ) -> LoadRange:
     """Greatest and least value of drag u|u| + inertia du/dt over a period.
 
-    Parameters
-    ----------
-    velocity, acceleration : ndarray of complex, shape (2 n_harmonics + 1,)
-        Coefficients of `reduction.prediction.wave_theory`. [m s-1] and [m s-2]
-    drag : array_like, shape (...)
-        Factor of u|u|. [kg m-2]
-    inertia : array_like, shape (...)
-        Factor of the acceleration. [kg m-1]
-    wave_number : float
-        k. [rad m-1]
-    angular_frequency : float
-        omega. [rad s-1]
-    position : float
-        Along the wave. [m]
-
-    Returns
-    -------
-    extremes : LoadRange
-        Arrays of shape (...).
-
-    Raises
-    ------
-    DataError
-        If a factor or the position is not finite.
-
     Notes
     -----
     The load is tried at the phases of *all* roots of both branches with its true sign.  The
@@ -957,7 +846,7 @@ def load_range(
     2 cos|cos| + sin: the greatest value is at sin = 1/4.
 
     >>> u, a = cosine_series(np.array([1.0])), sine_series(np.array([1.0]))
-    >>> extremes = load_range(u, a, drag=2.0, inertia=1.0, wave_number=1.0, angular_frequency=1.0)
+    >>> extremes = _load_range(u, a, drag=2.0, inertia=1.0, wave_number=1.0, angular_frequency=1.0)
     >>> print(extremes.maximum.round(6))
     2.125
     """

@@ -59,22 +59,8 @@ AIR_DENSITY = 1.225
 
 @dataclass(frozen=True)
 @read_only_arrays
-class AnchorForce:
-    """Horizontal force on a length of hose; arrays have the shape (...), positive along the wave.
-
-    Parameters
-    ----------
-    wind, current : ndarray
-        Each alone, steady. [N]
-    wave : ndarray
-        Alone: that extreme of a period that makes the sum greatest. [N]
-    separate : ndarray
-        Their sum, eq. (4) as written. [N]
-    combined : ndarray
-        Wind, and wave and current as one flow: the extreme of the larger magnitude. [N]
-    difference : ndarray
-        Combined less separate force, over the combined one. [1]
-    """
+class _AnchorForce:
+    """Horizontal force on a length of hose, shape (...), positive along the wave."""
 
     wind: Floats
     current: Floats
@@ -84,7 +70,7 @@ class AnchorForce:
     difference: Floats
 
 
-def wind_load(
+def _wind_load(
     section: ImmersedSection,
     *,
     wind_velocity: float,
@@ -92,27 +78,6 @@ def wind_load(
     air_density: float = AIR_DENSITY,
 ) -> Floats:
     """Load of a steady wind on the part of the hose above the water.
-
-    Parameters
-    ----------
-    section : ImmersedSection
-        Arrays of shape (...).
-    wind_velocity : float
-        Across the hose at its height, positive along the wave. [m s-1]
-    wind_drag_coefficient : float
-        On the emergent height. [1]
-    air_density : float
-        Of the air. [kg m-3]
-
-    Returns
-    -------
-    load : ndarray, shape (...)
-        Per length. [N m-1]
-
-    Raises
-    ------
-    DataError
-        If a velocity or coefficient is not finite, or the density not positive.
 
     Notes
     -----
@@ -122,7 +87,7 @@ def wind_load(
     Examples
     --------
     >>> hose = ImmersedSection(np.array(0.114), np.array(0.0091), np.array(0.0951))
-    >>> print(wind_load(hose, wind_velocity=10.0, wind_drag_coefficient=1.2).round(3))
+    >>> print(_wind_load(hose, wind_velocity=10.0, wind_drag_coefficient=1.2).round(3))
     1.389
     """
     speed = float(as_finite("wind_velocity", wind_velocity))
@@ -131,7 +96,7 @@ def wind_load(
     return np.asarray(density / 2 * drag * section.emergent_height * speed * abs(speed))
 
 
-def current_load(
+def _current_load(
     section: ImmersedSection,
     *,
     current_velocity: float,
@@ -140,27 +105,6 @@ def current_load(
 ) -> Floats:
     """Load of a steady current alone.
 
-    Parameters
-    ----------
-    section : ImmersedSection
-        Arrays of shape (...).
-    current_velocity : float
-        Across the hose, positive along the wave. [m s-1]
-    drag_coefficient : float
-        C_D. [1]
-    water_density : float
-        Of the sea. [kg m-3]
-
-    Returns
-    -------
-    load : ndarray, shape (...)
-        Per length. [N m-1]
-
-    Raises
-    ------
-    DataError
-        If the velocity or C_D is not finite, or the density not positive.
-
     Notes
     -----
     The drag of eq. (9) of [1]_ with the current for the velocity.
@@ -168,7 +112,7 @@ def current_load(
     Examples
     --------
     >>> hose = ImmersedSection(np.array(0.114), np.array(0.0091), np.array(0.0951))
-    >>> print(current_load(hose, current_velocity=0.5).round(3))
+    >>> print(_current_load(hose, current_velocity=0.5).round(3))
     14.622
     """
     speed = float(as_finite("current_velocity", current_velocity))
@@ -176,7 +120,7 @@ def current_load(
     return np.asarray(factors.horizontal_drag * speed * abs(speed))
 
 
-def anchor_force(
+def _anchor_force(
     wave: WaveHarmonics,
     section: ImmersedSection,
     *,
@@ -188,35 +132,8 @@ def anchor_force(
     inertia_coefficient: float = CODE_OF_HYDROLOGY.inertia_coefficient,
     water_density: float = SEAWATER_DENSITY,
     air_density: float = AIR_DENSITY,
-) -> AnchorForce:
+) -> _AnchorForce:
     """Greatest horizontal force of wind, wave and current, added and combined.
-
-    Parameters
-    ----------
-    wave : WaveHarmonics
-        At the hose.
-    section : ImmersedSection
-        Arrays of shape (...).
-    hose_length : float
-        That meets the same phase: lying along the crest. [m]
-    current_velocity, wind_velocity : float
-        Across the hose, positive along the wave. [m s-1]
-    wind_drag_coefficient : float
-        On the emergent height. [1]
-    drag_coefficient, inertia_coefficient : float
-        C_D and C_M = 1 + C_m. [1]
-    water_density, air_density : float
-        Of sea and air. [kg m-3]
-
-    Returns
-    -------
-    force : AnchorForce
-        Arrays of shape (...).
-
-    Raises
-    ------
-    DataError
-        If a velocity or C_D is not finite, or a length, density or C_M is not positive.
 
     Notes
     -----
@@ -232,19 +149,19 @@ def anchor_force(
     >>> from reduction.prediction.wave_theory import airy_wave
     >>> hose = ImmersedSection(np.array(0.114), np.array(0.0091), np.array(0.0951))
     >>> wave = airy_wave(wave_height=1.25, wave_period=3.57, water_depth=6.0, elevation=-0.038)
-    >>> force = anchor_force(wave, hose, hose_length=100.0, current_velocity=0.5,
+    >>> force = _anchor_force(wave, hose, hose_length=100.0, current_velocity=0.5,
     ...                      wind_velocity=10.0)
     >>> print(force.separate.round(0), force.combined.round(0), force.difference.round(3))
     9530.0 15996.0 0.404
     """
     length = float(as_positive("hose_length", hose_length))
-    wind = length * wind_load(
+    wind = length * _wind_load(
         section,
         wind_velocity=wind_velocity,
         wind_drag_coefficient=wind_drag_coefficient,
         air_density=air_density,
     )
-    current = length * current_load(
+    current = length * _current_load(
         section,
         current_velocity=current_velocity,
         drag_coefficient=drag_coefficient,
@@ -265,7 +182,7 @@ def anchor_force(
     wave_force = _larger_sum(wind + current, length * alone.maximum, length * alone.minimum)
     separate = wind + current + wave_force
     combined = wind + _larger_sum(wind, length * together.maximum, length * together.minimum)
-    return AnchorForce(
+    return _AnchorForce(
         wind=np.asarray(wind),
         current=np.asarray(current),
         wave=wave_force,
@@ -309,7 +226,7 @@ class PredictedWaveLoad:
     extremes: LoadExtremes
     difference: LoadDifference
     regime: FlowRegime
-    anchor: AnchorForce
+    anchor: _AnchorForce
     notes: tuple[str, ...]
 
 
@@ -446,7 +363,7 @@ def predict_wave_load(
         extremes=extremes,
         difference=load_difference(load, extremes),
         regime=regime,
-        anchor=anchor_force(
+        anchor=_anchor_force(
             wave,
             section,
             hose_length=hose_length,

@@ -114,38 +114,14 @@ _RESIDUAL = 4 * float(np.finfo(np.float64).eps)
 _MOST_STEPS = 100  # four or five are enough but at the very edge of blocking
 
 
-def wave_number(
+def _wave_number(
     wave_period: ArrayLike,
     water_depth: ArrayLike,
     *,
     current_velocity: ArrayLike = 0.0,
     gravity: float = STANDARD_GRAVITY,
 ) -> Floats:
-    r"""Wave number of the linear wave with this period.
-
-    Parameters
-    ----------
-    wave_period : array_like, shape (...)
-        As a fixed point sees it. [s]
-    water_depth : array_like, shape (...)
-        Of the still water. [m]
-    current_velocity : array_like, shape (...)
-        Uniform over the depth, positive along the wave. [m s-1]
-    gravity : float
-        Acceleration of free fall. [m s-2]
-
-    Returns
-    -------
-    wave_number : ndarray, shape (...)
-        Of the longer of the two waves that an opposing current allows: the one whose energy
-        still goes forward. [rad m-1]
-
-    Raises
-    ------
-    DataError
-        If a period or depth is not positive, or the current stops the wave.
-    FitError
-        If the last Newton step is not below 1e-14 of the root.
+    """Wave number of the linear wave with this period.
 
     Notes
     -----
@@ -159,7 +135,7 @@ def wave_number(
     --------
     Table 4 of [1]_ gives 20 m beside 3.57 s, the length over deep water; 3 m deep it is 16.3 m.
 
-    >>> print((2 * np.pi / wave_number(3.57, [100.0, 6.0, 3.0])).round(2))
+    >>> print((2 * np.pi / _wave_number(3.57, [100.0, 6.0, 3.0])).round(2))
     [19.89 19.13 16.31]
     """
     period, depth, current = _conditions(wave_period, water_depth, current_velocity)
@@ -204,7 +180,7 @@ def wave_period_of(
 
     Notes
     -----
-    The inverse of `wave_number`.
+    The inverse of `_wave_number`.
 
     Examples
     --------
@@ -218,35 +194,16 @@ def wave_period_of(
         as_positive("water_depth", water_depth),
         as_finite("current_velocity", current_velocity),
     )
-    group = group_velocity(number, depth, gravity=gravity)
+    group = _group_velocity(number, depth, gravity=gravity)
     _refuse_blocked(current + group <= 0, current)
     intrinsic = np.sqrt(gravity * number * np.tanh(number * depth))
     return np.asarray(2 * pi / (intrinsic + number * current))
 
 
-def group_velocity(
+def _group_velocity(
     wave_number: ArrayLike, water_depth: ArrayLike, *, gravity: float = STANDARD_GRAVITY
 ) -> Floats:
     """Speed of the energy of a linear wave through the water.
-
-    Parameters
-    ----------
-    wave_number : array_like, shape (...)
-        2 pi over the wave length. [rad m-1]
-    water_depth : array_like, shape (...)
-        Of the still water. [m]
-    gravity : float
-        Acceleration of free fall. [m s-2]
-
-    Returns
-    -------
-    group_velocity : ndarray, shape (...)
-        An opposing current as fast as this stops the wave. [m s-1]
-
-    Raises
-    ------
-    DataError
-        If a wave number or depth is not positive.
 
     Notes
     -----
@@ -254,7 +211,7 @@ def group_velocity(
 
     Examples
     --------
-    >>> print(group_velocity(2 * np.pi / 20, 100.0).round(3))
+    >>> print(_group_velocity(2 * np.pi / 20, 100.0).round(3))
     2.794
     """
     number = as_positive("wave_number", wave_number)
@@ -325,20 +282,8 @@ def _refuse_blocked(is_blocked: np.ndarray, current: Floats) -> None:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class WaveLengthCheck:
-    """A length and a period that were given together, against the dispersion relation.
-
-    Parameters
-    ----------
-    period_of_length : ndarray, shape (...)
-        That a wave of the given length has. [s]
-    length_of_period : ndarray, shape (...)
-        That a wave of the given period has. [m]
-    period_mismatch : ndarray, shape (...)
-        Period of the length over the given period, less one. [1]
-    length_mismatch : ndarray, shape (...)
-        Given length over the length of the period, less one. [1]
-    """
+class _WaveLengthCheck:
+    """A length and a period that were given together, against the dispersion relation."""
 
     period_of_length: Floats
     length_of_period: Floats
@@ -346,38 +291,15 @@ class WaveLengthCheck:
     length_mismatch: Floats
 
 
-def check_wave_length(
+def _check_wave_length(
     wave_length: ArrayLike,
     wave_period: ArrayLike,
     water_depth: ArrayLike,
     *,
     current_velocity: ArrayLike = 0.0,
     gravity: float = STANDARD_GRAVITY,
-) -> WaveLengthCheck:
+) -> _WaveLengthCheck:
     """How far a length and a period that were given together are from one wave.
-
-    Parameters
-    ----------
-    wave_length : array_like, shape (...)
-        As given. [m]
-    wave_period : array_like, shape (...)
-        As given. [s]
-    water_depth : array_like, shape (...)
-        Of the still water. [m]
-    current_velocity : array_like, shape (...)
-        Uniform over the depth, positive along the wave. [m s-1]
-    gravity : float
-        Acceleration of free fall. [m s-2]
-
-    Returns
-    -------
-    check : WaveLengthCheck
-        Both mismatches.
-
-    Raises
-    ------
-    DataError
-        If a number is not positive, or the current stops the wave.
 
     Notes
     -----
@@ -387,7 +309,7 @@ def check_wave_length(
     --------
     Table 4 of [4]_ at the depths of its two examples.
 
-    >>> check = check_wave_length(20.0, 3.57, [6.0, 3.0])
+    >>> check = _check_wave_length(20.0, 3.57, [6.0, 3.0])
     >>> print(check.period_mismatch.round(3), check.length_mismatch.round(3))
     [0.026 0.169] [0.045 0.227]
     """
@@ -399,9 +321,9 @@ def check_wave_length(
     by_period = (
         2
         * pi
-        / wave_number(period, water_depth, current_velocity=current_velocity, gravity=gravity)
+        / _wave_number(period, water_depth, current_velocity=current_velocity, gravity=gravity)
     )
-    return WaveLengthCheck(
+    return _WaveLengthCheck(
         period_of_length=by_length,
         length_of_period=np.asarray(by_period),
         period_mismatch=np.asarray(by_length / period - 1),
@@ -457,22 +379,8 @@ def breaking_height(wave_number: ArrayLike, water_depth: ArrayLike) -> Floats:
     return np.asarray(np.minimum(miche, GREATEST_HEIGHT_TO_DEPTH * depth))
 
 
-def refuse_breaking(*, wave_height: float, wave_number: float, water_depth: float) -> None:
+def _refuse_breaking(*, wave_height: float, wave_number: float, water_depth: float) -> None:
     """Raise where a wave is higher than it can be.
-
-    Parameters
-    ----------
-    wave_height : float
-        Trough to crest. [m]
-    wave_number : float
-        2 pi over the wave length. [rad m-1]
-    water_depth : float
-        Of the still water. [m]
-
-    Raises
-    ------
-    DataError
-        If the wave is beyond breaking.
 
     Notes
     -----
@@ -482,7 +390,7 @@ def refuse_breaking(*, wave_height: float, wave_number: float, water_depth: floa
     --------
     The wave of [7]_ is well below breaking.
 
-    >>> refuse_breaking(wave_height=1.25, wave_number=2 * np.pi / 20, water_depth=3.0)
+    >>> _refuse_breaking(wave_height=1.25, wave_number=2 * np.pi / 20, water_depth=3.0)
     """
     greatest = float(breaking_height(wave_number, water_depth))
     if wave_height <= greatest:
@@ -949,7 +857,7 @@ def _frequency_and_number(
     """Frequency in water that moves with the current, and wave number."""
     as_positive("wave_height", height)
     if number is None:
-        number = float(wave_number(period, depth, current_velocity=current, gravity=gravity))
+        number = float(_wave_number(period, depth, current_velocity=current, gravity=gravity))
     as_positive("wave_number", number)
     intrinsic = float(2 * pi / as_positive("wave_period", period)) - number * current
     if intrinsic <= 0:
@@ -958,7 +866,7 @@ def _frequency_and_number(
             found=f"a current of {current:g} m/s, a wave of {2 * pi / (period * number):.4g} m/s",
             needed="a wave that goes forward through the water",
         )
-    refuse_breaking(wave_height=height, wave_number=number, water_depth=depth)
+    _refuse_breaking(wave_height=height, wave_number=number, water_depth=depth)
     return intrinsic, number
 
 
@@ -1007,23 +915,8 @@ WaveTheoryName = Literal["airy", "stokes", "cnoidal or solitary", "beyond the ta
 PrintedTheory = Literal["airy", "stokes", "cnoidal or solitary", "none"]
 
 
-def theory_by_depth(relative_depth: float) -> WaveTheoryName:
+def _theory_by_depth(relative_depth: float) -> WaveTheoryName:
     """Theory by the relative depth alone.
-
-    Parameters
-    ----------
-    relative_depth : float
-        Depth over wave length. [1]
-
-    Returns
-    -------
-    theory : {"airy", "stokes", "cnoidal or solitary", "beyond the table"}
-        Of a wave that does not break.
-
-    Raises
-    ------
-    DataError
-        If the relative depth is not positive.
 
     Notes
     -----
@@ -1034,7 +927,7 @@ def theory_by_depth(relative_depth: float) -> WaveTheoryName:
     --------
     The 20 m wave of [11]_ over 6 m, 3 m and 1.5 m of water.
 
-    >>> [theory_by_depth(depth / 20) for depth in (6.0, 3.0, 1.5)]
+    >>> [_theory_by_depth(depth / 20) for depth in (6.0, 3.0, 1.5)]
     ['airy', 'stokes', 'cnoidal or solitary']
     """
     as_positive("relative_depth", relative_depth)
@@ -1045,25 +938,8 @@ def theory_by_depth(relative_depth: float) -> WaveTheoryName:
     return "cnoidal or solitary" if relative_depth > 0.04 else "beyond the table"
 
 
-def printed_theory(relative_depth: float, steepness: float) -> PrintedTheory:
+def _printed_theory(relative_depth: float, steepness: float) -> PrintedTheory:
     """Theory by Table 1 to the letter.
-
-    Parameters
-    ----------
-    relative_depth : float
-        Depth over wave length. [1]
-    steepness : float
-        Height over wave length. [1]
-
-    Returns
-    -------
-    printed : {"airy", "stokes", "cnoidal or solitary", "none"}
-        What the table names.
-
-    Raises
-    ------
-    DataError
-        If a number is not positive.
 
     Notes
     -----
@@ -1073,7 +949,7 @@ def printed_theory(relative_depth: float, steepness: float) -> PrintedTheory:
 
     Examples
     --------
-    >>> printed_theory(0.3, 0.0625), printed_theory(0.15, 0.0625)
+    >>> _printed_theory(0.3, 0.0625), _printed_theory(0.15, 0.0625)
     ('airy', 'none')
     """
     as_positive("relative_depth", relative_depth)
@@ -1205,7 +1081,7 @@ def describe_wave(
         as_positive(name, value)
     if wave_length is None:
         number = float(
-            wave_number(
+            _wave_number(
                 wave_period, water_depth, current_velocity=current_velocity, gravity=gravity
             )
         )
@@ -1214,12 +1090,12 @@ def describe_wave(
         as_positive("wave_length", wave_length)
         length, number = wave_length, 2 * pi / wave_length
         mismatch = float(
-            check_wave_length(
+            _check_wave_length(
                 length, wave_period, water_depth, current_velocity=current_velocity, gravity=gravity
             ).length_mismatch
         )
     relative_depth, steepness = water_depth / length, wave_height / length
-    theory = theory_by_depth(relative_depth)
+    theory = _theory_by_depth(relative_depth)
     surface, velocity = _second_harmonics(number * wave_height, number * water_depth)
     breaking_ratio = wave_height / float(breaking_height(number, water_depth))
     ursell = wave_height * length**2 / water_depth**3
@@ -1242,7 +1118,7 @@ def describe_wave(
     }
     return WaveTheory(
         theory=theory,
-        printed=printed_theory(relative_depth, steepness),
+        printed=_printed_theory(relative_depth, steepness),
         wave_length=length,
         relative_depth=relative_depth,
         steepness=steepness,
@@ -1344,7 +1220,7 @@ def _second_harmonics(height: float, depth: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class ParticleMotion:
+class _ParticleMotion:
     """Surface and water at one place over time; arrays have the shape (n_times,).
 
     Velocities [m s-1] and accelerations [m s-2] are of the wave alone, without a current;
@@ -1358,7 +1234,7 @@ class ParticleMotion:
     vertical_acceleration: Floats
 
 
-def particle_motion(wave: WaveHarmonics, time: ArrayLike, position: float = 0.0) -> ParticleMotion:
+def particle_motion(wave: WaveHarmonics, time: ArrayLike, position: float = 0.0) -> _ParticleMotion:
     """Surface and water at one place over time.
 
     Parameters
@@ -1398,7 +1274,7 @@ def particle_motion(wave: WaveHarmonics, time: ArrayLike, position: float = 0.0)
     phase = wave.wave_number * position - wave.angular_frequency * when
     order = np.arange(1, wave.elevation.size + 1)
     cosines, sines = (part(np.multiply.outer(phase, order)) for part in (np.cos, np.sin))
-    return ParticleMotion(
+    return _ParticleMotion(
         elevation=cosines @ wave.elevation,
         horizontal_velocity=cosines @ wave.horizontal_velocity,
         vertical_velocity=sines @ wave.vertical_velocity,

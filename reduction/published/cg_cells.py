@@ -25,13 +25,7 @@ CUBIC_SCALES = np.array([1e-4, 1e-4, 1e-8, 1e-12])
 
 
 def number(cell: Cell) -> float:
-    """The number of a cell as printed.
-
-    Raises
-    ------
-    DataError
-        If it holds none.
-    """
+    """The number of a cell as printed."""
     found = number_of(cell.printed)
     if found is None:
         raise DataError("a cell holds no number", found=f"{'/'.join(cell.key)}: {cell.printed}")
@@ -45,13 +39,7 @@ class Pages:
         self.by_key = {cell.key: cell for cell in cells}
 
     def cell(self, table: str, row: str, column: str) -> Cell:
-        """One cell.
-
-        Raises
-        ------
-        DataError
-            If there is none.
-        """
+        """One cell."""
         found = self.by_key.get((table, row, column))
         if found is None:
             raise DataError("no such cell", found=f"{table} / {row} / {column}")
@@ -107,18 +95,6 @@ def rounding(
     function: Callable[..., float], values: Sequence[float], halves: Sequence[float]
 ) -> float:
     """By how much the rounding of its inputs may move a result.
-
-    Parameters
-    ----------
-    function : callable
-        Of as many numbers as there are values.
-    values, halves : sequence of float
-        Inputs as printed, and half their last digits.
-
-    Returns
-    -------
-    allowance : float
-        Sum over the inputs, each at the end of its interval that moves the result most.
 
     Examples
     --------

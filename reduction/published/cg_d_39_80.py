@@ -37,46 +37,18 @@ PRINTED_ONCE = "measured, or a setting that is printed once"
 
 
 def items() -> list[Item]:
-    """Verdicts on every cell of the report, in the order of its cells.
-
-    Returns
-    -------
-    items : list of Item
-    """
-    return items_of(cells_of("CG-D-39-80"))
+    """Verdicts on every cell of the report, in the order of its cells."""
+    return _items_of(cells_of("CG-D-39-80"))
 
 
-def items_of(cells: Sequence[Cell]) -> list[Item]:
-    """Verdicts on cells that need not be those of the package.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        All of the report.
-
-    Returns
-    -------
-    items : list of Item
-        One a cell.
-    """
+def _items_of(cells: Sequence[Cell]) -> list[Item]:
+    """Verdicts on cells that need not be those of the package."""
     pages = Pages(cells)
-    return [item_of(cell, pages) for cell in cells]
+    return [_item_of(cell, pages) for cell in cells]
 
 
-def item_of(cell: Cell, pages: Pages) -> Item:
-    """Verdict on one cell among the others of the report.
-
-    Parameters
-    ----------
-    cell : Cell
-        Which one.
-    pages : Pages
-        All of them.
-
-    Returns
-    -------
-    item : Item
-    """
+def _item_of(cell: Cell, pages: Pages) -> Item:
+    """Verdict on one cell among the others of the report."""
     of_table = OF_TABLE.get(cell.table)
     if of_table is not None:
         return of_table(cell, pages)

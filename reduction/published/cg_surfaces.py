@@ -412,10 +412,7 @@ def _change(cell: Cell, pages: Pages) -> Item:
 
 
 def change_of_mean(pages: Pages, table: str, row: str, quantity: str) -> tuple[float, str] | None:
-    """Per cent by which B1 of an exposed line is above that of the new one.
-
-    Four and five years of the polyester braid count together, weighted by their lines.
-    """
+    """Per cent by which B1 of an exposed line is above that of the new one."""
     new = row.rpartition(" | ")[0] + " | new"
     column, lines = f"{quantity} B1", f"{quantity} number of lines"
     if (table, row, column) not in pages.by_key:

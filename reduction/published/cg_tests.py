@@ -43,7 +43,7 @@ GROUPS = {
 SAMPLES = {DRY: 13, WET: 9, UNCYCLED: 9, AFTER: 6, LOW: 3, HIGH: 3}
 
 
-def common_step(pages: Pages, kind: str) -> int:
+def _common_step(pages: Pages, kind: str) -> int:
     """What every number of a column of Table A-3 is a multiple of: ten pounds."""
     numbers = [
         int(number(cell)) for cell in pages.by_key.values()
@@ -52,7 +52,7 @@ def common_step(pages: Pages, kind: str) -> int:
     return gcd(*numbers)
 
 
-def item_of_f_test(cell: Cell, pages: Pages, groups: tuple[str, str]) -> Item:
+def _item_of_f_test(cell: Cell, pages: Pages, groups: tuple[str, str]) -> Item:
     """Verdict on F, its degrees of freedom or its critical value."""
     line = cell.row.rpartition(" | ")[0]
     quantity = STRENGTH if cell.table == "A-3" else STRAIN_AT_FAILURE
@@ -69,7 +69,7 @@ def item_of_f_test(cell: Cell, pages: Pages, groups: tuple[str, str]) -> Item:
     if cell.column == "F":
         halves = [pages.half(*place) for place in places]
         if cell.table == "A-3":
-            steps = [common_step(pages, column.partition(" ")[2]) for column in columns]
+            steps = [_common_step(pages, column.partition(" ")[2]) for column in columns]
             halves = [0.5 * step for step in steps for _ in groups]
         allowed = rounding(statistic, inputs, halves) + 0.5 * printed_step(cell.printed)
         return judge(
@@ -83,14 +83,14 @@ def item_of_f_test(cell: Cell, pages: Pages, groups: tuple[str, str]) -> Item:
     return judge(cell, found[cell.column], counted)
 
 
-def item_of_group(cell: Cell, pages: Pages) -> Item:
+def _item_of_group(cell: Cell, pages: Pages) -> Item:
     """Means and deviations of Tables A-3 and A-4."""
     line, _, condition = cell.row.rpartition(" | ")
     quantity, _, kind = cell.column.partition(" ")
     if condition == DRY:
         scale = 1.0 if quantity == STRENGTH else 100.0
         place = ("10", f"{line} | new", cell.column)
-        step = float(common_step(pages, kind)) if quantity == STRENGTH and kind != "mean" else 0.0
+        step = float(_common_step(pages, kind)) if quantity == STRENGTH and kind != "mean" else 0.0
         return judge(
             cell, scale * pages.value(*place), "Table 10",
             tolerance=max(scale * pages.half(*place), 0.5 * step),
@@ -129,8 +129,8 @@ def item_of_test(cell: Cell, pages: Pages) -> Item:
         return _effect(cell, pages)
     pair = cell.row.rpartition(" | ")[2]
     if pair in GROUPS:
-        return item_of_f_test(cell, pages, GROUPS[pair])
-    return item_of_group(cell, pages)
+        return _item_of_f_test(cell, pages, GROUPS[pair])
+    return _item_of_group(cell, pages)
 
 
 def change_of_table_10(pages: Pages, row: str, quantity: str) -> float:
@@ -197,7 +197,7 @@ def _dry(cell: Cell, pages: Pages) -> tuple[float, float, str] | None:
         within = pages.value("A-3", pair, "degrees of freedom within")
         return within + 2 - SAMPLES[WET], 0.5, "degrees of freedom of Table A-3"
     if quantity == STRENGTH:
-        half = 0.5 * common_step(pages, kind)
+        half = 0.5 * _common_step(pages, kind)
         return pages.printed("A-3", dry, f"{STRENGTH} {kind}"), half, "Table A-3, in tens of pounds"
     place = ("A-4", dry, f"{STRAIN_AT_FAILURE} {kind}")
     return pages.printed(*place) / 100, pages.half(*place) / 100, "Table A-4"

@@ -134,23 +134,7 @@ _HEADER = [
 
 @cache
 def cells_of(report: ReportId) -> tuple[Cell, ...]:
-    """Every printed number of a report.
-
-    Parameters
-    ----------
-    report : ReportId
-        Which of the five.
-
-    Returns
-    -------
-    cells : tuple of Cell
-        In the order of the files, which are in the order of the tables.
-
-    Raises
-    ------
-    DataError
-        If the package's own data are not as they have to be.
-    """
+    """Every printed number of a report."""
     room = files("reduction.published") / "data" / report
     cells: list[Cell] = []
     for entry in sorted(room.iterdir(), key=lambda one: one.name):
@@ -198,18 +182,7 @@ def _read(report: ReportId, name: str, text: str) -> list[Cell]:
 
 @cache
 def errata_of(report: ReportId) -> tuple[Erratum, ...]:
-    """Every known fault of a report, in the order of its ids.
-
-    Parameters
-    ----------
-    report : ReportId
-        Which of the five.
-
-    Returns
-    -------
-    errata : tuple of Erratum
-        With the evidence.
-    """
+    """Every known fault of a report, in the order of its ids."""
     text = (files("reduction.published") / "data" / report / "errata.csv").read_text("utf-8")
     return tuple(
         Erratum(
@@ -233,24 +206,7 @@ def _confidence(text: str, place: str) -> Confidence:
 
 
 def table_of(report: ReportId, table: str) -> dict[tuple[str, str], Cell]:
-    """Cells of one table by row and column.
-
-    Parameters
-    ----------
-    report : ReportId
-        Which of the five.
-    table : str
-        As the page numbers it.
-
-    Returns
-    -------
-    cells : dict of (row, column) to Cell
-
-    Raises
-    ------
-    DataError
-        If the report has no such table.
-    """
+    """Cells of one table by row and column."""
     found = {(cell.row, cell.column): cell for cell in cells_of(report) if cell.table == table}
     if not found:
         known = sorted({cell.table for cell in cells_of(report)})

@@ -67,7 +67,7 @@ ABSENT = {
 }  # fmt: skip
 
 
-class LineCells:
+class _LineCells:
     """Cells by table, row and column."""
 
     def __init__(self, cells: Sequence[Cell]) -> None:
@@ -94,35 +94,31 @@ class LineCells:
         )
 
 
-def number_printed(cell: Cell) -> float:
+def _number_printed(cell: Cell) -> float:
     """As printed; NaN of words."""
     value = number_of(cell.printed)
     return float("nan") if value is None else value
 
 
-def number_used(cell: Cell | None) -> float:
+def _number_used(cell: Cell | None) -> float:
     """As corrected; NaN where open or absent."""
     value = None if cell is None else cell.value
     return float("nan") if value is None else value
 
 
-def errata_of_cells(cells: Sequence[Cell]) -> tuple[str, ...]:
+def _errata_of_cells(cells: Sequence[Cell]) -> tuple[str, ...]:
     """Ids that touch some cells, in their order."""
-    return in_order({cell.erratum for cell in cells if cell.erratum})
+    return _in_order({cell.erratum for cell in cells if cell.erratum})
 
 
-def in_order(ids: Iterable[str]) -> tuple[str, ...]:
+def _in_order(ids: Iterable[str]) -> tuple[str, ...]:
     """Ids by their number."""
     return tuple(sorted(ids, key=lambda one: int(one.partition("-")[2])))
 
 
 @dataclass(frozen=True)
-class OpenTerm:
-    """A coefficient of which nothing says what is right.
-
-    ``values`` are those that are printed, in SI, in the order of ``tables``; two open terms of
-    one curve go together by that order.
-    """
+class _OpenTerm:
+    """A coefficient of which nothing says what is right."""
 
     term: str
     index: int
@@ -133,18 +129,8 @@ class OpenTerm:
 
 
 @dataclass(frozen=True)
-class LevelBox:
-    """Levels at -1 and +1: the range of use, and the scale of the coded coefficients.
-
-    Parameters
-    ----------
-    frequency, mean_tension, tension_amplitude : tuple of float
-        Low and high; the amplitude is half the range. [Hz], [N], [N]
-    rated_break_strength : float
-        That the levels are shares of. [N]
-    table : str
-        That prints them.
-    """
+class _LevelBox:
+    """Levels at -1 and +1: the range of use, and the scale of the coded coefficients."""
 
     frequency: tuple[float, float]
     mean_tension: tuple[float, float]
@@ -181,8 +167,8 @@ class PublishedSurface:
 
     response: str
     coefficient: Floats
-    open_terms: tuple[OpenTerm, ...]
-    boxes: tuple[LevelBox, ...]
+    open_terms: tuple[_OpenTerm, ...]
+    boxes: tuple[_LevelBox, ...]
     r2: float
     passes_f_test: bool
     n_lines: int | None
@@ -216,7 +202,7 @@ class PublishedCubic:
 
     quantity: str
     coefficient: Floats
-    open_terms: tuple[OpenTerm, ...]
+    open_terms: tuple[_OpenTerm, ...]
     tension_high: float
     n_samples: int | None
     tables: tuple[str, ...]
@@ -225,7 +211,7 @@ class PublishedCubic:
 
 
 @dataclass(frozen=True)
-class StatedStrength:
+class _StatedStrength:
     """One statement of a strength; there are several for most lines, and they differ."""
 
     value: float
@@ -235,22 +221,8 @@ class StatedStrength:
 
 
 @dataclass(frozen=True)
-class PublishedStrength:
-    """Breaks of a line; NaN and None where not printed, or open.
-
-    Parameters
-    ----------
-    tensile_strength, tensile_strength_standard_deviation : float
-        [N]
-    strain_at_failure, strain_at_failure_standard_deviation : float
-        [1]
-    n_samples : int or None
-        Breaks.
-    table : str
-        Where they are printed.
-    errata : tuple of str
-        What touches them.
-    """
+class _PublishedStrength:
+    """Breaks of a line; NaN and None where not printed, or open."""
 
     tensile_strength: float
     tensile_strength_standard_deviation: float
@@ -297,11 +269,11 @@ class PublishedLine:
     diameter: float
     condition: str
     rated_break_strength: float
-    stated_strengths: tuple[StatedStrength, ...]
+    stated_strengths: tuple[_StatedStrength, ...]
     surfaces: Mapping[str, PublishedSurface]
     stiffness: PublishedCubic | None
     load_strain: PublishedCubic | None
-    strength: PublishedStrength | None
+    strength: _PublishedStrength | None
     absent: Mapping[str, str]
 
     @property
@@ -314,21 +286,21 @@ class PublishedLine:
 
 
 def _terms(
-    cells: LineCells, tables: Sequence[str], row: str, quantity: str, names: Sequence[str],
+    cells: _LineCells, tables: Sequence[str], row: str, quantity: str, names: Sequence[str],
     scale: Sequence[float],
-) -> tuple[list[float], tuple[OpenTerm, ...], list[Cell]]:  # fmt: skip
+) -> tuple[list[float], tuple[_OpenTerm, ...], list[Cell]]:  # fmt: skip
     """Coefficients in SI, those that are open, and the cells."""
     values, opened, used = [], [], []
     for index, (name, factor) in enumerate(zip(names, scale, strict=True)):
         prints = cells.prints(tables, row, f"{quantity} {name}")
         used += prints
-        values.append(number_used(prints[0]) * float(factor))
+        values.append(_number_used(prints[0]) * float(factor))
         if prints[0].confidence == "open":
             opened.append(
-                OpenTerm(
+                _OpenTerm(
                     term=name,
                     index=index,
-                    values=tuple(number_printed(cell) * float(factor) for cell in prints),
+                    values=tuple(_number_printed(cell) * float(factor) for cell in prints),
                     tables=tuple(cell.table for cell in prints),
                     erratum=prints[0].erratum,
                     note=prints[0].note,
@@ -337,7 +309,7 @@ def _terms(
     return values, tuple(opened), used
 
 
-def _surface(cells: LineCells, row: str, response: str) -> PublishedSurface | None:
+def _surface(cells: _LineCells, row: str, response: str) -> PublishedSurface | None:
     tables, scale = RESPONSES[response]
     printed = tuple(table for table in tables if cells.get(table, row, f"{response} B1"))
     if not printed:
@@ -347,29 +319,29 @@ def _surface(cells: LineCells, row: str, response: str) -> PublishedSurface | No
     share = cells.prints(printed, row, f"{response} r2")
     statistic = cells.prints(printed, row, f"{response} F-stat")
     count = cells.prints(printed, row, f"{response} number of lines")
-    lines = number_used(count[0]) if count else float("nan")
+    lines = _number_used(count[0]) if count else float("nan")
     found = statistic[0]
     return PublishedSurface(
         response=response,
         coefficient=np.array(values),
         open_terms=opened,
         boxes=_boxes(cells, row, response, printed),
-        r2=number_used(share[0]),
-        passes_f_test=(number_printed(found) if found.corrected is None else found.corrected)
+        r2=_number_used(share[0]),
+        passes_f_test=(_number_printed(found) if found.corrected is None else found.corrected)
         > CRITICAL_F,
         n_lines=None if np.isnan(lines) else int(lines),
         tables=printed,
-        errata=in_order(
+        errata=_in_order(
             {
-                *errata_of_cells([*used, *share, *statistic, *count]),
-                *errata_of_cells(_range_cells(cells, row, response, printed)),
+                *_errata_of_cells([*used, *share, *statistic, *count]),
+                *_errata_of_cells(_range_cells(cells, row, response, printed)),
                 *OF_SURFACE.get((row, response), ()),
             }
         ),
     )
 
 
-def _ends(cells: LineCells, table: str, row: str, what: str) -> list[Cell]:
+def _ends(cells: _LineCells, table: str, row: str, what: str) -> list[Cell]:
     """Low and high level, of the line itself or of all its conditions."""
     whole = row.rpartition(" | ")[0] + " | all"
     found = [
@@ -378,7 +350,7 @@ def _ends(cells: LineCells, table: str, row: str, what: str) -> list[Cell]:
     return [cell for cell in found if cell is not None]
 
 
-def _range_cells(cells: LineCells, row: str, response: str, tables: Sequence[str]) -> list[Cell]:
+def _range_cells(cells: _LineCells, row: str, response: str, tables: Sequence[str]) -> list[Cell]:
     return [
         cell
         for table in tables
@@ -388,18 +360,18 @@ def _range_cells(cells: LineCells, row: str, response: str, tables: Sequence[str
 
 
 def _boxes(
-    cells: LineCells, row: str, response: str, tables: Sequence[str]
-) -> tuple[LevelBox, ...]:
+    cells: _LineCells, row: str, response: str, tables: Sequence[str]
+) -> tuple[_LevelBox, ...]:
     """One box; of a new line with open levels both, the smaller strength first."""
     is_new = row.endswith("new")
     # levels are those of one programme, whatever the response
     places = [(table, response) for table in tables]
     if is_new:
         places += [(table, other) for other in RESPONSES for table in RESPONSES[other][0]]
-    boxes: dict[float, LevelBox] = {}
+    boxes: dict[float, _LevelBox] = {}
     for table, name in places:
         ends = {
-            what: [number_printed(cell) if cell.corrected is None else cell.corrected
+            what: [_number_printed(cell) if cell.corrected is None else cell.corrected
                    for cell in _ends(cells, table, row, f"{name} {what}")]
             for what in ("mean_tension", "tension_amplitude")
         }  # fmt: skip
@@ -408,7 +380,7 @@ def _boxes(
         mean, amplitude = ends["mean_tension"], ends["tension_amplitude"]
         boxes.setdefault(
             mean[1],
-            LevelBox(
+            _LevelBox(
                 frequency=(0.1, 0.5),
                 mean_tension=(mean[0] * POUND, mean[1] * POUND),
                 tension_amplitude=(amplitude[0] * POUND, amplitude[1] * POUND),
@@ -425,7 +397,7 @@ def _strength_of_level(row: str, mean_high: float) -> float:
     return round(mean_high / share, 1)
 
 
-def _cubic(cells: LineCells, row: str, quantity: str) -> PublishedCubic | None:
+def _cubic(cells: _LineCells, row: str, quantity: str) -> PublishedCubic | None:
     tables, scale = SCALE_OF_CUBIC[quantity]
     combined = row.rpartition(" | ")[0] + f" | {EXPOSED}"
     # K_0 of four and five years stands in one row
@@ -436,41 +408,41 @@ def _cubic(cells: LineCells, row: str, quantity: str) -> PublishedCubic | None:
     values, opened, used = _terms(cells, printed, place, quantity, "ABCD", scale)
     ranges = cells.prints(printed, place, f"{quantity} mean_tension high")
     # tables of new and of exposed lines have ranges of their own: both vouch for the smaller one
-    known = [number_used(cell) for cell in ranges if not np.isnan(number_used(cell))]
+    known = [_number_used(cell) for cell in ranges if not np.isnan(_number_used(cell))]
     counts = cells.prints(printed, place, f"{quantity} number of samples")
     return PublishedCubic(
         quantity=quantity,
         coefficient=np.array(values),
         open_terms=opened,
         tension_high=min(known) * POUND if known else float("nan"),
-        n_samples=int(number_used(counts[0])) if counts else None,
+        n_samples=int(_number_used(counts[0])) if counts else None,
         tables=printed,
-        errata=errata_of_cells([*used, *ranges]),
+        errata=_errata_of_cells([*used, *ranges]),
         note="of four and five years together" if place == combined else "",
     )
 
 
-def _strength(cells: LineCells, row: str) -> PublishedStrength | None:
+def _strength(cells: _LineCells, row: str) -> _PublishedStrength | None:
     kinds = ("mean", "standard deviation")
     columns = [f"{quantity} {kind}" for quantity in (BREAK, "strain_at_failure") for kind in kinds]
     found = [cells.get("10", row, column) for column in columns]
     count = cells.get("10", row, f"{BREAK} number of samples")
     if not any(found):
         return None
-    mean, deviation, strain, strain_deviation = (number_used(cell) for cell in found)
-    n_samples = number_used(count)
-    return PublishedStrength(
+    mean, deviation, strain, strain_deviation = (_number_used(cell) for cell in found)
+    n_samples = _number_used(count)
+    return _PublishedStrength(
         tensile_strength=mean * POUND,
         tensile_strength_standard_deviation=deviation * POUND,
         strain_at_failure=strain,
         strain_at_failure_standard_deviation=strain_deviation,
         n_samples=None if np.isnan(n_samples) else int(n_samples),
         table="10",
-        errata=errata_of_cells([cell for cell in [*found, count] if cell is not None]),
+        errata=_errata_of_cells([cell for cell in [*found, count] if cell is not None]),
     )
 
 
-def _strengths_when_new(cells: LineCells, row: str) -> tuple[StatedStrength, ...]:
+def _strengths_when_new(cells: _LineCells, row: str) -> tuple[_StatedStrength, ...]:
     """Rated and measured strengths of the new line, as the tables have them."""
     line = row.rpartition(" | ")[0]
     places = (
@@ -486,11 +458,11 @@ def _strengths_when_new(cells: LineCells, row: str) -> tuple[StatedStrength, ...
     for table, place, column, what in places:
         cell = cells.get(table, place, column)
         if cell is not None:
-            stated.append(StatedStrength(number_printed(cell) * POUND, table, what, cell.erratum))
+            stated.append(_StatedStrength(_number_printed(cell) * POUND, table, what, cell.erratum))
     return tuple(stated)
 
 
-def _line(cells: LineCells, row: str) -> PublishedLine:
+def _line(cells: _LineCells, row: str) -> PublishedLine:
     material, construction, size, condition = row.split(" | ")
     inches = float(sum(Fraction(part) for part in size.removesuffix(" in").split(" ")))
     surfaces = {name: _surface(cells, row, name) for name in RESPONSES}
@@ -524,11 +496,6 @@ def _line(cells: LineCells, row: str) -> PublishedLine:
 def published_lines() -> tuple[PublishedLine, ...]:
     """Every line of CG-D-39-80 with a surface, a pull or a break.
 
-    Returns
-    -------
-    lines : tuple of PublishedLine
-        New lines first.
-
     Examples
     --------
     The surface of the polyester braid is that of Table 13, not its misprint in Table 11:
@@ -538,7 +505,7 @@ def published_lines() -> tuple[PublishedLine, ...]:
     >>> print(round(float(surface.coefficient[0]) / 4.4482216, 3), surface.errata[:1])
     1.2 ('CG-5',)
     """
-    cells = LineCells(cells_of("CG-D-39-80"))
+    cells = _LineCells(cells_of("CG-D-39-80"))
     return tuple(_line(cells, row) for row in cells.rows())
 
 
@@ -605,7 +572,7 @@ def line_scatter(line: PublishedLine) -> float:
     """Standard deviation between lines over their mean, of K_ap: sec. 4.4.1."""
     row = "new" if line.condition == "new" else "field exposure"
     cell = table_of("CG-D-39-80", "sec 4.4.1")[row, "relative variability"]
-    return scale_to_si("%", "strain")[0] * number_used(cell)
+    return scale_to_si("%", "strain")[0] * _number_used(cell)
 
 
 def scatter_told(line: PublishedLine) -> tuple[str, ...]:

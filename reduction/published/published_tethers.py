@@ -31,7 +31,7 @@ _SEGMENT = re.compile(
 )
 
 
-class SegmentName(NamedTuple):
+class _SegmentName(NamedTuple):
     """What the heading of a row of Tables 5 and 6 says."""
 
     test: str
@@ -68,7 +68,7 @@ class TetherSegment:
         Alternatives, and what else to know.
     """
 
-    name: SegmentName
+    name: _SegmentName
     strain_low: float
     strain_high: float
     tension_low: float
@@ -82,12 +82,8 @@ class TetherSegment:
 
 
 @dataclass(frozen=True)
-class TetherTest:
-    """One row of Table 1.
-
-    The target is a position of the crosshead over an effective length, not the strain of the
-    rubber: at 275 % that is 2.6.  [1]
-    """
+class _TetherTest:
+    """One row of Table 1."""
 
     name: str
     target_strain_low: float
@@ -120,20 +116,14 @@ class PublishedTether:
     specimen: Specimen
     printed_diameter: float
     marks: SpliceMarks
-    tests: tuple[TetherTest, ...]
+    tests: tuple[_TetherTest, ...]
     segments: tuple[TetherSegment, ...]
     errata: tuple[str, ...]
 
     def segments_of(
         self, test: str, *, data: SegmentData, condition: str = "ten cycles"
     ) -> tuple[TetherSegment, ...]:
-        """Segments of one test, in rising strain.
-
-        Raises
-        ------
-        DataError
-            If the report has none.
-        """
+        """Segments of one test, in rising strain."""
         found = tuple(
             one
             for one in self.segments
@@ -148,32 +138,18 @@ class PublishedTether:
         return found
 
 
-def name_of_segment(row: str) -> SegmentName:
+def _name_of_segment(row: str) -> _SegmentName:
     """What the heading of a row of Tables 5 and 6 says.
-
-    Parameters
-    ----------
-    row : str
-        Of a `Cell`.
-
-    Returns
-    -------
-    name : SegmentName
-
-    Raises
-    ------
-    DataError
-        If the row is none of a segment.
 
     Examples
     --------
-    >>> name_of_segment("T-1 rubber tether used, raw data, ascending, segment 1").tether
+    >>> _name_of_segment("T-1 rubber tether used, raw data, ascending, segment 1").tether
     'used'
     """
     found = _SEGMENT.fullmatch(row)
     if found is None:
         raise DataError("a row is no segment", found=row, needed="a row of Tables 5 and 6")
-    return SegmentName(
+    return _SegmentName(
         test=found[1],
         condition="after 3000 cycles" if found[2] else "ten cycles",
         tether=cast("TetherName", found[3]),
@@ -200,16 +176,6 @@ _TAPE_READING = 0.01 / np.sqrt(12)  # rectangular, one unit of the last printed 
 def published_tethers() -> tuple[PublishedTether, PublishedTether]:
     """The new and the used tether.
 
-    Returns
-    -------
-    tethers : tuple of PublishedTether
-        New, used.
-
-    Notes
-    -----
-    Moduli of the new tether belong to a diameter of 1.04 in and not to the 1.01 in of Table 2:
-    with these segments ``modulus * area`` is the slope of tension on strain.
-
     Examples
     --------
     >>> new, used = published_tethers()
@@ -226,12 +192,6 @@ def published_tethers() -> tuple[PublishedTether, PublishedTether]:
 
 def published_static_test() -> StepReadings:
     """Table 4, with the length at 1325 as corrected.
-
-    Returns
-    -------
-    readings : StepReadings
-        What `reduction.stages.moduli.stepwise_test.reduce_stepwise` takes; the report prints no
-        diameter, and says that the material varied from 0.9 to 1.1 in.
 
     Examples
     --------
@@ -319,14 +279,14 @@ def _marks(name: TetherName) -> SpliceMarks:
     )
 
 
-def _tests() -> tuple[TetherTest, ...]:
+def _tests() -> tuple[_TetherTest, ...]:
     table = table_of(TETHER_REPORT, "1")
     tests = []
     for row in dict.fromkeys(row for row, _ in table):
         one = {column: _number(cell) for (at, column), cell in table.items() if at == row}
         held = one.get("target_strain", float("nan"))
         tests.append(
-            TetherTest(
+            _TetherTest(
                 name=row.removeprefix("dynamic test ").partition(",")[0],
                 target_strain_low=_PER_CENT * one.get("target_strain_low", held),
                 target_strain_high=_PER_CENT * one.get("target_strain_high", held),
@@ -343,7 +303,7 @@ def _segments(table: str, tether: TetherName) -> list[TetherSegment]:
             rows.setdefault(one.row, {})[one.column] = one
     segments = []
     for row, cells in rows.items():
-        name = name_of_segment(row)
+        name = _name_of_segment(row)
         if name.tether != tether:
             continue
         number = {column: _number(one) for column, one in cells.items()}

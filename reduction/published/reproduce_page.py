@@ -96,14 +96,14 @@ def counts_by_table(items: Iterable[Item]) -> dict[str, Counts]:
 
 
 @dataclass(frozen=True)
-class TouchedErratum:
+class _TouchedErratum:
     """A fault of a page, and the items whose cells name it."""
 
     erratum: Erratum
     items: tuple[Item, ...]
 
 
-def touched_errata(report: ReportId, items: Iterable[Item]) -> list[TouchedErratum]:
+def touched_errata(report: ReportId, items: Iterable[Item]) -> list[_TouchedErratum]:
     """Every known fault of a report with its cells.
 
     Parameters
@@ -121,7 +121,7 @@ def touched_errata(report: ReportId, items: Iterable[Item]) -> list[TouchedErrat
     by_id: dict[str, list[Item]] = {}
     for item in items:
         by_id.setdefault(item.cell.erratum, []).append(item)
-    return [TouchedErratum(one, tuple(by_id.get(one.id, ()))) for one in errata_of(report)]
+    return [_TouchedErratum(one, tuple(by_id.get(one.id, ()))) for one in errata_of(report)]
 
 
 def csv_of(items: Iterable[Item]) -> str:
@@ -206,7 +206,7 @@ class _Report:
     title: str
     counts: Counts
     tables: tuple[_Table, ...]
-    errata: tuple[TouchedErratum, ...]
+    errata: tuple[_TouchedErratum, ...]
     without_cell: tuple[str, ...]
 
 

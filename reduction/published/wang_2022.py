@@ -39,68 +39,32 @@ _DEGREES = 20.0
 _BENDING, _TORSION = "bending moment G'", "torsion moment H"
 
 
-def armour(degrees: float | Floats, *, wire: float = _WIRE) -> ArmourDesign:
-    """Steel wires of the paper on a core that it does not give.
-
-    Parameters
-    ----------
-    degrees : float or ndarray
-        Winding angle. [deg]
-    wire : float
-        Radius of the wire, at one radius of the helix. [m]
-
-    Returns
-    -------
-    design : ArmourDesign
-        Of the shape of the angles.
-    """
+def _armour(degrees: float | Floats, *, wire: float = _WIRE) -> ArmourDesign:
+    """Steel wires of the paper on a core that it does not give."""
     return ArmourDesign(
         np.radians(degrees), wire, _HELIX - wire, ELASTIC_MODULUS, poisson_ratio=POISSON_RATIO
     )
 
 
-def response(
+def _response(
     degrees: float | Floats,
     quantity: str,
     *,
     theory: ArmourTheory = "intermediate",
     wire: float = _WIRE,
 ) -> Floats:
-    """One quantity of a wire at the strain of the paper.
-
-    Parameters
-    ----------
-    degrees : float or ndarray
-        Winding angle. [deg]
-    quantity : str
-        Of `reduction.prediction.armour.ArmourResponse`.
-    theory : ArmourTheory
-        Which.
-    wire : float
-        Radius of the wire. [m]
-
-    Returns
-    -------
-    values : ndarray
-        Of the shape of the angles.
-    """
-    found = predict_armour(armour(degrees, wire=wire), _STRAIN, theory=theory)
+    """One quantity of a wire at the strain of the paper."""
+    found = predict_armour(_armour(degrees, wire=wire), _STRAIN, theory=theory)
     return np.asarray(getattr(found, quantity)[..., 0])
 
 
-def equation_answers() -> Answers:
-    """Answers to the factors and the powers of equations (2) to (29), and of section 5.3.
-
-    Returns
-    -------
-    answers : Answers
-        By cell.
-    """
+def _equation_answers() -> Answers:
+    """Answers to the factors and the powers of equations (2) to (29), and of section 5.3."""
     return _geometry() | _stiffness() | _intermediate() | _stresses() | _small() | _spring()
 
 
 def _at(quantity: str, theory: ArmourTheory = "intermediate", degrees: float = _DEGREES) -> float:
-    return float(response(degrees, quantity, theory=theory))
+    return float(_response(degrees, quantity, theory=theory))
 
 
 def _trigonometry(degrees: float = _DEGREES) -> tuple[float, float, float]:
@@ -139,7 +103,7 @@ def _geometry() -> Answers:
 
 def _stiffness() -> Answers:
     whole = pi * _WIRE**4 * ELASTIC_MODULUS
-    design = armour(_DEGREES)
+    design = _armour(_DEGREES)
     round_wire = "stiffness of a round wire"
     return {
         ("eq 4", _BENDING, "divisor of pi R2^4 E"): Answer(
@@ -154,8 +118,8 @@ def _intermediate() -> Answers:
     sine, cosine, tangent = _trigonometry()
     pair = np.array([20.0, 50.0])
     tangents = np.tan(np.radians(pair))
-    strain = response(pair, "wire_strain") / _STRAIN
-    change = response(pair, "angle_change") / (_STRAIN * tangents)
+    strain = _response(pair, "wire_strain") / _STRAIN
+    change = _response(pair, "angle_change") / (_STRAIN * tangents)
     common = _STRAIN * tangent / (1 + tangent**2)
     curvature, torsion = _at("curvature_change") * _HELIX, _at("torsion_change") * _HELIX
     moment = ELASTIC_MODULUS * pi * _WIRE**4 * _STRAIN / _HELIX
@@ -208,10 +172,10 @@ def _small() -> Answers:
     bending = _at("bending_moment", "small") / (pi / 4 * ELASTIC_MODULUS * _WIRE**4)
     per_change = _at("torsion_change", "small") * _HELIX / change
     wires = np.array([2e-3, 3e-3])
-    moments = [response(_DEGREES, "torsion_moment", theory="small", wire=one) for one in wires]
+    moments = [_response(_DEGREES, "torsion_moment", theory="small", wire=one) for one in wires]
     return {
         ("eq 20", "wire strain, small angles", "power of cos(alpha)"): Answer(
-            log_slope(np.cos(np.radians(pair)), response(pair, "wire_strain", theory="small")),
+            log_slope(np.cos(np.radians(pair)), _response(pair, "wire_strain", theory="small")),
             how),
         ("eq 22", _BENDING, "factor"): Answer(bending * _HELIX / (sine * cosine * change), how),
         ("eq 22", _TORSION, "power of R2"): Answer(log_slope(wires, np.array(moments)), how),
@@ -228,7 +192,7 @@ def _spring() -> Answers:
     constant = force / (_STRAIN * 2 * pi * _HELIX / tangent)
     size = _STRAIN * ELASTIC_MODULUS * _WIRE**4 * pi / (_HELIX**2 * (1 + POISSON_RATIO) * tangent)
     cosines = np.cos(np.radians([20.0, 80.0]))
-    strength = layer_strength(armour(np.array([20.0, 80.0])), 800e6)
+    strength = layer_strength(_armour(np.array([20.0, 80.0])), 800e6)
     answers: Answers = {
         ("eq 24", "spring constant k", "divisor of G R2^4"): Answer(
             shear_modulus * _WIRE**4 / _HELIX**3 / constant, how),
@@ -261,25 +225,13 @@ _FINE = np.arange(10.0, 80.001, 0.02)
 
 
 def items() -> list[Item]:
-    """One item for every printed number of the paper.
-
-    Returns
-    -------
-    items : list of Item
-        In the order of its cells.
-    """
-    return items_from("Wang-2022", answers())
+    """One item for every printed number of the paper."""
+    return items_from("Wang-2022", _answers())
 
 
-def answers() -> Answers:
-    """What every printed number ought to be.
-
-    Returns
-    -------
-    answers : Answers
-        By cell.
-    """
-    return _settings() | _trends() | _errors() | _complementary() | equation_answers()
+def _answers() -> Answers:
+    """What every printed number ought to be."""
+    return _settings() | _trends() | _errors() | _complementary() | _equation_answers()
 
 
 def _settings() -> Answers:
@@ -322,16 +274,16 @@ def _peak(values: Floats) -> float:
 
 def _trends() -> Answers:
     degrees = np.arange(10.0, 80.001, 0.5)
-    force = response(degrees, "axial_force")
+    force = _response(degrees, "axial_force")
     squared = float(np.corrcoef(degrees, force)[0, 1] ** 2)
     falls = float(np.sign(force[-1] - force[0]))
     place = "winding_angle of its peak"
     rod = "the rod that agrees with three-dimensional elasticity"
     peaks = {
-        name: _peak(response(_FINE, name, theory="conjugate"))
+        name: _peak(_response(_FINE, name, theory="conjugate"))
         for name in ("bending_moment", "shear_force", "torsion_moment")
     }
-    of_4 = _peak(response(_FINE, "shear_force"))
+    of_4 = _peak(_response(_FINE, "shear_force"))
     return {
         ("sec 5.1", f"{_AXIAL}, numerical",
          "squared correlation with a straight line in the angle"): Answer(
@@ -347,12 +299,12 @@ def _trends() -> Answers:
 
 
 def _errors() -> Answers:
-    linear = theory_errors(armour(_FINE), 1e-3).error[:2, 0, :, 0]
+    linear = theory_errors(_armour(_FINE), 1e-3).error[:2, 0, :, 0]
     missing = "a finite-element result is one side of it, and the core radius is not given"
     shear = "shear stress of intermediate angles"
-    zero = float(_FINE[np.argmin(np.abs(response(_FINE, "torsion_moment")))])
-    true = response(45.0, "torsion_stress", theory="conjugate")
-    wrong = 100 * float(abs(response(45.0, "torsion_stress") / true - 1))
+    zero = float(_FINE[np.argmin(np.abs(_response(_FINE, "torsion_moment")))])
+    true = _response(45.0, "torsion_stress", theory="conjugate")
+    wrong = 100 * float(abs(_response(45.0, "torsion_stress") / true - 1))
     largest = max(normal for _, normal, _ in _NAMED.values())
     found: Answers = {
         ("sec 5.2", f"{_AXIAL} of small and intermediate angles", "greatest error"): Answer(
@@ -383,7 +335,7 @@ def _complementary() -> Answers:
     pair = np.array([20.0, 70.0])
     found: Answers = {}
     for row, name in names.items():
-        low, high = response(pair, name)
+        low, high = _response(pair, name)
         found["sec 5.2", row, "at 20 deg over at 70 deg"] = Answer(
             float(low / high), "theory of intermediate angles", meaning=1.0
         )

@@ -49,14 +49,8 @@ _STRAIN = np.array([1.2, 1.6, 2.0])
 _AXIAL = 1e-4  # rad: a wrap angle at which the second term of (8) is nothing
 
 
-def equation_answers() -> Answers:
-    """Answers to the factors and the powers of equations (5) to (26).
-
-    Returns
-    -------
-    answers : Answers
-        By cell.
-    """
+def _equation_answers() -> Answers:
+    """Answers to the factors and the powers of equations (5) to (26)."""
     return _kinematics() | _sheave() | _helix() | _pressure() | _axial_load()
 
 
@@ -223,25 +217,13 @@ _TEST = "sec 3.0"
 
 
 def items() -> list[Item]:
-    """One item for every printed number of the report.
-
-    Returns
-    -------
-    items : list of Item
-        In the order of its cells.
-    """
-    return items_from("WHOI-2004-06", answers())
+    """One item for every printed number of the report."""
+    return items_from("WHOI-2004-06", _answers())
 
 
-def answers() -> Answers:
-    """What every printed number ought to be.
-
-    Returns
-    -------
-    answers : Answers
-        By cell.
-    """
-    return equation_answers() | _cords() | _angles() | _tests()
+def _answers() -> Answers:
+    """What every printed number ought to be."""
+    return _equation_answers() | _cords() | _angles() | _tests()
 
 
 def _cords() -> Answers:

@@ -35,17 +35,14 @@ from reduction.stages.strain.strain_model import free_length_fraction, free_leng
 from reduction.stages.strain.stress import constant_volume_diameter
 
 
-def number_in_use(cell: Cell) -> float:
-    """Number of a cell as corrected, or as printed where it is open; NaN where there is none.
-
-    An open number has no other to be held against than those beside it on the page.
-    """
+def _number_in_use(cell: Cell) -> float:
+    """Number of a cell as corrected, or as printed where it is open; NaN where there is none."""
     value = number_of(cell.printed) if cell.value is None else cell.value
     return float("nan") if value is None else value
 
 
 @dataclass(frozen=True)
-class Row:
+class _Row:
     """One row of a table; indexed by column it gives the number in use."""
 
     name: str
@@ -53,7 +50,7 @@ class Row:
 
     def __getitem__(self, column: str) -> float:
         """Number of one column."""
-        return number_in_use(self.cells[column])
+        return _number_in_use(self.cells[column])
 
     @property
     def tether(self) -> str:
@@ -66,22 +63,12 @@ class Row:
         return "descending" if "descending" in self.name else "ascending"
 
 
-def rows_of(cells: Sequence[Cell]) -> list[Row]:
-    """Rows of one table, in the order of the page.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        Of one table.
-
-    Returns
-    -------
-    rows : list of Row
-    """
+def _rows_of(cells: Sequence[Cell]) -> list[_Row]:
+    """Rows of one table, in the order of the page."""
     rows: dict[str, dict[str, Cell]] = {}
     for cell in cells:
         rows.setdefault(cell.row, {})[cell.column] = cell
-    return [Row(name, columns) for name, columns in rows.items()]
+    return [_Row(name, columns) for name, columns in rows.items()]
 
 
 _PART = {
@@ -95,23 +82,11 @@ _STRETCHED = "measured at three places of the tether; {:.3f} in at constant volu
 _TIMES = "time of a reading, later than the one before"
 
 
-def items_of_diameters(
+def _items_of_diameters(
     cells: Sequence[Cell], areas: Mapping[str, Sequence[float]]
 ) -> Iterator[Item]:
-    """Table 2.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        Of Table 2.
-    areas : mapping of str to sequence of float
-        By tether, what Tables 5 and 6 imply. [in2]
-
-    Yields
-    ------
-    item : Item
-    """
-    for row in rows_of(cells):
+    """Table 2."""
+    for row in _rows_of(cells):
         implied = areas[row.tether]
         before = float(np.mean([sqrt(4 * area / pi) for area in implied]))
         for column, cell in row.cells.items():
@@ -124,19 +99,9 @@ def items_of_diameters(
                 yield not_testable(cell, _STRETCHED.format(stretched))
 
 
-def items_of_marks(cells: Sequence[Cell]) -> Iterator[Item]:
-    """Table 3.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        Of Table 3.
-
-    Yields
-    ------
-    item : Item
-    """
-    rows = rows_of(cells)
+def _items_of_marks(cells: Sequence[Cell]) -> Iterator[Item]:
+    """Table 3."""
+    rows = _rows_of(cells)
     for row in rows:
         own = [one for one in rows if one.tether == row.tether and "far_thimble" in one.cells]
         stretched = own[1:]
@@ -148,7 +113,9 @@ def items_of_marks(cells: Sequence[Cell]) -> Iterator[Item]:
                 yield judge(cell, *_mark(column, row, own, stretched))
 
 
-def _mark(column: str, row: Row, own: Sequence[Row], stretched: Sequence[Row]) -> tuple[float, str]:
+def _mark(
+    column: str, row: _Row, own: Sequence[_Row], stretched: Sequence[_Row]
+) -> tuple[float, str]:
     if column in _PART:
         return 100 * row[_PART[column]] / row["far_thimble"], "share of the far thimble's position"
     slack = own[0]["free_length"]
@@ -180,45 +147,19 @@ def _mark(column: str, row: Row, own: Sequence[Row], stretched: Sequence[Row]) -
     return 100 * float(strain), "constant-fraction: one mean free share of the stretched rows"
 
 
-def static_gauge_length(rows: Sequence[Row]) -> tuple[float, float]:
-    """Range of gauge length that rounds to the elongations of Table 4.
-
-    Parameters
-    ----------
-    rows : sequence of Row
-        Of Table 4.
-
-    Returns
-    -------
-    low, high : float
-        Low above high where no one length does. [in]
-
-    Notes
-    -----
-    All fifteen rows of [1]_, with 15.38 in at 1325, share 6.1270 to 6.1305 in: 6 1/8 in to two
-    decimals, as the other lengths are printed.
-    """
+def _static_gauge_length(rows: Sequence[_Row]) -> tuple[float, float]:
+    """Range of gauge length that rounds to the elongations of Table 4."""
     length = np.array([one["length"] for one in rows])
     stretch = 1 + np.array([one["strain"] for one in rows]) / 100
     return float(np.max(length / (stretch + 0.005))), float(np.min(length / (stretch - 0.005)))
 
 
-def items_of_weights(cells: Sequence[Cell]) -> Iterator[Item]:
-    """Table 4.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        Of Table 4.
-
-    Yields
-    ------
-    item : Item
-    """
-    rows = rows_of(cells)
+def _items_of_weights(cells: Sequence[Cell]) -> Iterator[Item]:
+    """Table 4."""
+    rows = _rows_of(cells)
     for place, row in enumerate(rows):
         others = [one for one in rows if one is not row]
-        low, high = static_gauge_length(others)
+        low, high = _static_gauge_length(others)
         gauge, half = (low + high) / 2, abs(high - low) / 2
         for column, cell in row.cells.items():
             match column:
@@ -283,19 +224,8 @@ _FROM_OTHERS: dict[str, Callable[[dict[str, float]], float]] = {
 }
 
 
-def shared_area(rows: Sequence[Row]) -> tuple[float, float]:
-    """Range of area on which every row rounds to its printed modulus.
-
-    Parameters
-    ----------
-    rows : sequence of Row
-        Of Tables 5 or 6, one tether, with nothing against them.
-
-    Returns
-    -------
-    low, high : float
-        Low above high where no one area does. [in2]
-    """
+def _shared_area(rows: Sequence[_Row]) -> tuple[float, float]:
+    """Range of area on which every row rounds to its printed modulus."""
     low, high = 0.0, float("inf")
     for row in rows:
         slope = (row[HIGH] - row[LOW]) / (row[UPPER] - row[LOWER])
@@ -304,7 +234,7 @@ def shared_area(rows: Sequence[Row]) -> tuple[float, float]:
     return low, high
 
 
-def _sound(rows: Sequence[Row], tether: str) -> list[Row]:
+def _sound(rows: Sequence[_Row], tether: str) -> list[_Row]:
     """Rows of which no number is corrected or open."""
     return [
         row
@@ -313,43 +243,19 @@ def _sound(rows: Sequence[Row], tether: str) -> list[Row]:
     ]
 
 
-def areas_of_tables(*tables: Sequence[Cell]) -> dict[str, tuple[float, ...]]:
-    """Area of each tether that each table implies.
-
-    Parameters
-    ----------
-    *tables : sequence of Cell
-        Tables 5 and 6.
-
-    Returns
-    -------
-    areas : dict of str to tuple of float
-        By tether, the middle of what its sound rows share, one a table. [in2]
-    """
+def _areas_of_tables(*tables: Sequence[Cell]) -> dict[str, tuple[float, ...]]:
+    """Area of each tether that each table implies."""
     return {
-        tether: tuple(sum(shared_area(_sound(rows_of(cells), tether))) / 2 for cells in tables)
+        tether: tuple(sum(_shared_area(_sound(_rows_of(cells), tether))) / 2 for cells in tables)
         for tether in ("new", "used")
     }
 
 
-def items_of_segments(cells: Sequence[Cell]) -> Iterator[Item]:
-    """Table 5 or Table 6.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        Of one of them.
-
-    Yields
-    ------
-    item : Item
-        Each number from the other four of its row and the area that the other rows share. Its
-        tolerance carries half the last digit of the modulus and of every corrected number, and
-        half the range of area.
-    """
-    rows = rows_of(cells)
+def _items_of_segments(cells: Sequence[Cell]) -> Iterator[Item]:
+    """Table 5 or Table 6."""
+    rows = _rows_of(cells)
     for row in rows:
-        low, high = shared_area([one for one in _sound(rows, row.tether) if one is not row])
+        low, high = _shared_area([one for one in _sound(rows, row.tether) if one is not row])
         area, half_range = (low + high) / 2, abs(high - low) / 2
         given = {column: row[column] for column in row.cells} | {"area": area}
         half = {"area": half_range, MODULUS: _HALF_A_PSI} | {
@@ -454,20 +360,8 @@ _TWIN: dict[Key, Key] = {
 }  # fmt: skip
 
 
-def items_of_plan(cells: Sequence[Cell], book: Mapping[Key, Cell]) -> Iterator[Item]:
-    """Table 1, against the sections on its tests.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        Of Table 1.
-    book : mapping of (str, str, str) to Cell
-        The whole report.
-
-    Yields
-    ------
-    item : Item
-    """
+def _items_of_plan(cells: Sequence[Cell], book: Mapping[Key, Cell]) -> Iterator[Item]:
+    """Table 1, against the sections on its tests."""
     for cell in cells:
         name = _test_of_row(cell.row)
         if name not in _SECTION:
@@ -483,22 +377,9 @@ def items_of_plan(cells: Sequence[Cell], book: Mapping[Key, Cell]) -> Iterator[I
         yield _as_elsewhere(cell, key, book)
 
 
-def item_of_programme(cell: Cell, plan: Sequence[Cell]) -> Item | None:
-    """A claim of the text on a test, against Table 1.
-
-    Parameters
-    ----------
-    cell : Cell
-        Of the text.
-    plan : sequence of Cell
-        Table 1.
-
-    Returns
-    -------
-    item : Item or None
-        None where the claim is not of the test plan.
-    """
-    rows = {_test_of_row(row.name): row for row in rows_of(plan)}
+def _item_of_programme(cell: Cell, plan: Sequence[Cell]) -> Item | None:
+    """A claim of the text on a test, against Table 1."""
+    rows = {_test_of_row(row.name): row for row in _rows_of(plan)}
     cycled = [row for name, row in rows.items() if name in _SECTION and name != "T-4 Extended"]
     if cell.row in _LEAST | _GREATEST:
         centre = [_columns(row)["mean_strain"] for row in cycled]
@@ -516,7 +397,7 @@ def item_of_programme(cell: Cell, plan: Sequence[Cell]) -> Item | None:
     return judge(cell, _columns(rows[name])[column], f"Table 1, {name}")
 
 
-def _columns(row: Row) -> dict[str, float]:
+def _columns(row: _Row) -> dict[str, float]:
     low, high = row["target_strain_low"], row["target_strain_high"]
     return {
         "mean_strain": (low + high) / 2,
@@ -527,28 +408,15 @@ def _columns(row: Row) -> dict[str, float]:
     }
 
 
-def item_printed_twice(cell: Cell, book: Mapping[Key, Cell]) -> Item | None:
-    """A claim of the text against where the text makes it again.
-
-    Parameters
-    ----------
-    cell : Cell
-        Of the text.
-    book : mapping of (str, str, str) to Cell
-        The whole report.
-
-    Returns
-    -------
-    item : Item or None
-        None where it is printed once.
-    """
+def _item_printed_twice(cell: Cell, book: Mapping[Key, Cell]) -> Item | None:
+    """A claim of the text against where the text makes it again."""
     return _as_elsewhere(cell, _TWIN[cell.key], book) if cell.key in _TWIN else None
 
 
 def _as_elsewhere(cell: Cell, key: Key, book: Mapping[Key, Cell]) -> Item:
     there = book[key]
     place = f"printed again, {there.page}: {there.printed} {there.unit}"
-    return judge(cell, number_in_use(there), place)
+    return judge(cell, _number_in_use(there), place)
 
 
 def _test_of_row(row: str) -> str:
@@ -564,20 +432,10 @@ _NEAR = 0.1  # of strain: how far the line of a first segment is carried down to
 _SPREAD = 0.1  # of 1 in: the material varied from 0.9 to 1.1 in (sec. 2.3.1)
 
 
-def items_of_claims(book: Mapping[Key, Cell]) -> Iterator[Item]:
-    """Every claim that a table decides.
-
-    Parameters
-    ----------
-    book : mapping of (str, str, str) to Cell
-        The whole report.
-
-    Yields
-    ------
-    item : Item
-    """
+def _items_of_claims(book: Mapping[Key, Cell]) -> Iterator[Item]:
+    """Every claim that a table decides."""
     tables = {
-        table: rows_of([cell for cell in book.values() if cell.table == table])
+        table: _rows_of([cell for cell in book.values() if cell.table == table])
         for table in "123456"
     }
     yield from _of_lengths(book, tables["2"], tables["3"])
@@ -589,7 +447,7 @@ def items_of_claims(book: Mapping[Key, Cell]) -> Iterator[Item]:
 
 
 def _of_lengths(
-    book: Mapping[Key, Cell], diameters: Sequence[Row], marks: Sequence[Row]
+    book: Mapping[Key, Cell], diameters: Sequence[_Row], marks: Sequence[_Row]
 ) -> Iterator[Item]:
     slack = [row for row in marks if row.name.endswith("stretch 0 %")]
     splices = [row[f"splice_length {end}"] for row in slack for end in ("near", "far")]
@@ -618,7 +476,9 @@ def _of_lengths(
     yield judge_limit(greatest, max(read), how, is_upper=True)
 
 
-def _of_time(book: Mapping[Key, Cell], plan: Sequence[Row], marks: Sequence[Row]) -> Iterator[Item]:
+def _of_time(
+    book: Mapping[Key, Cell], plan: Sequence[_Row], marks: Sequence[_Row]
+) -> Iterator[Item]:
     """The extended test: stroke, velocity, rate and duration say the same."""
     new = [row for row in marks if "far_thimble" in row.cells and row.tether == "new"]
     low, high = new[1], new[-1]
@@ -630,7 +490,7 @@ def _of_time(book: Mapping[Key, Cell], plan: Sequence[Row], marks: Sequence[Row]
     duration = book["sec 4.7", "test T-4 Extended", "duration"]
     velocity = book["sec 4.1", "all tests", "crosshead velocity"]
     rate = book["sec 4.7", "test T-4 Extended", "cycle rate"]
-    at, hours = number_in_use(velocity), number_in_use(duration)
+    at, hours = _number_in_use(velocity), _number_in_use(duration)
     stroke = f"{path / 2:.1f} ft each way (Table 3: {per_point:.3f} ft a point of target)"
     yield judge(duration, test["n_cycles"] * path / at / 3600, f"cycles of {stroke} at {at:g} ft/s")
     yield judge(rate, 60 * at / path, f"cycles of {stroke} at {at:g} ft/s")
@@ -639,9 +499,9 @@ def _of_time(book: Mapping[Key, Cell], plan: Sequence[Row], marks: Sequence[Row]
     )
 
 
-def _of_tension(book: Mapping[Key, Cell], rows: Sequence[Row]) -> Iterator[Item]:
+def _of_tension(book: Mapping[Key, Cell], rows: Sequence[_Row]) -> Iterator[Item]:
     """Tension of one tether at 100 %, by every test that comes near it."""
-    first: dict[str, tuple[float, Row]] = {}
+    first: dict[str, tuple[float, _Row]] = {}
     for row in rows:
         if any(cell.confidence == "open" for cell in row.cells.values()):
             continue
@@ -671,7 +531,7 @@ def _of_tension(book: Mapping[Key, Cell], rows: Sequence[Row]) -> Iterator[Item]
         yield beside(book[key], mean, how.format(what, unknown))
 
 
-def _of_strain(book: Mapping[Key, Cell], marks: Sequence[Row], raw: Sequence[Row]) -> Item:
+def _of_strain(book: Mapping[Key, Cell], marks: Sequence[_Row], raw: Sequence[_Row]) -> Item:
     """Which stretch of Table 3 the strains of Table 5 go by: where T-1 ends on both tethers."""
     misses = {"interpolated": 0.0, "actual": 0.0}
     for tether in ("new", "used"):
@@ -691,7 +551,7 @@ def _of_strain(book: Mapping[Key, Cell], marks: Sequence[Row], raw: Sequence[Row
 
 
 def _of_modulus(
-    book: Mapping[Key, Cell], raw: Sequence[Row], consolidated: Sequence[Row]
+    book: Mapping[Key, Cell], raw: Sequence[_Row], consolidated: Sequence[_Row]
 ) -> Iterator[Item]:
     low = [
         row[MODULUS] for row in [*raw, *consolidated]
@@ -716,9 +576,9 @@ def _of_modulus(
     yield judge_round(greatest, max(about), f"greatest {how}")
     top = book["sec 6.0", "greatest of all tests", "tangent_modulus"]
     ratio = book["sec 6.0", "greatest modulus to that of lower elongations", "ratio of moduli"]
-    yield judge(ratio, number_in_use(top) / number_in_use(greatest), "900 over 150 psi, sec 6.0")
+    yield judge(ratio, _number_in_use(top) / _number_in_use(greatest), "900 over 150 psi, sec 6.0")
     bottom = book["sec 6.0", "relaxation at the low end of a cycle", "tangent_modulus"]
-    span = number_in_use(top) / number_in_use(bottom)
+    span = _number_in_use(top) / _number_in_use(bottom)
     yield agree(
         book["sec 6.0", "greatest modulus to the least", "ratio of moduli"],
         10**0.5 < span < 10**1.5,
@@ -737,7 +597,7 @@ def _of_modulus(
 
 
 def _of_static_test(
-    book: Mapping[Key, Cell], readings: Sequence[Row], raw: Sequence[Row]
+    book: Mapping[Key, Cell], readings: Sequence[_Row], raw: Sequence[_Row]
 ) -> Iterator[Item]:
     area = pi / 4 * _INCH**2
     reduced = reduce_stepwise(published_static_test(), area=area)
@@ -785,7 +645,7 @@ def _of_static_test(
     yield judge(book["sec 4.8", f"{later}, last", "strain"], elongation[-1], how)
     yield judge(
         book["sec 4.8", later, "strain_gauge_length"],
-        float(np.mean(static_gauge_length(readings))),
+        float(np.mean(_static_gauge_length(readings))),
         "length over 1 + elongation, range that all rows of Table 4 share",
     )
     minutes = np.diff(reduced.time) / 60
@@ -842,45 +702,28 @@ _WHY_BY_ROW = {
 
 
 def items() -> list[Item]:
-    """Every cell of the report, with its verdict.
-
-    Returns
-    -------
-    items : list of Item
-        In the order of `cells_of`.
-    """
-    return items_of(cells_of(TETHER_REPORT))
+    """Every cell of the report, with its verdict."""
+    return _items_of(cells_of(TETHER_REPORT))
 
 
-def items_of(cells: Sequence[Cell]) -> list[Item]:
-    """Every cell, with its verdict.
-
-    Parameters
-    ----------
-    cells : sequence of Cell
-        The whole report, as printed and as corrected.
-
-    Returns
-    -------
-    items : list of Item
-        In the order of the cells.
-    """
+def _items_of(cells: Sequence[Cell]) -> list[Item]:
+    """Every cell, with its verdict."""
     book = {cell.key: cell for cell in cells}
     table = {number: [cell for cell in cells if cell.table == number] for number in "123456"}
     found = [
-        *items_of_plan(table["1"], book),
-        *items_of_diameters(table["2"], areas_of_tables(table["5"], table["6"])),
-        *items_of_marks(table["3"]),
-        *items_of_weights(table["4"]),
-        *items_of_segments(table["5"]),
-        *items_of_segments(table["6"]),
-        *items_of_claims(book),
+        *_items_of_plan(table["1"], book),
+        *_items_of_diameters(table["2"], _areas_of_tables(table["5"], table["6"])),
+        *_items_of_marks(table["3"]),
+        *_items_of_weights(table["4"]),
+        *_items_of_segments(table["5"]),
+        *_items_of_segments(table["6"]),
+        *_items_of_claims(book),
     ]
     by_key = {item.cell.key: item for item in found}
     return [
         by_key.get(cell.key)
-        or item_of_programme(cell, table["1"])
-        or item_printed_twice(cell, book)
+        or _item_of_programme(cell, table["1"])
+        or _item_printed_twice(cell, book)
         or not_testable(cell, _why_not(cell))
         for cell in cells
     ]

@@ -56,19 +56,13 @@ GRAVITY = 9.8
 """Not printed. [m/s2]."""
 
 
-def cells_of_table(table: str) -> list[Cell]:
+def _cells_of_table(table: str) -> list[Cell]:
     """Cells of one table of the paper."""
     return [cell for cell in cells_of("Zhang-2015") if cell.table == table]
 
 
-def equation_answers() -> Answers:
-    """Answers to the numbers in equations (1) to (17).
-
-    Returns
-    -------
-    answers : Answers
-        By cell.
-    """
+def _equation_answers() -> Answers:
+    """Answers to the numbers in equations (1) to (17)."""
     return _load_equations() | _airy() | _stokes()
 
 
@@ -172,21 +166,15 @@ _WITH_15 = "velocity of (15) in both columns"
 _AS_PRINTED = "as printed with (pi H / T) tanh kd in F0 and pi H / T in F1"
 
 
-def table_answers() -> Answers:
-    """Answers to the loads, the extremes and the ratios.
-
-    Returns
-    -------
-    answers : Answers
-        By cell.
-    """
+def _table_answers() -> Answers:
+    """Answers to the loads, the extremes and the ratios."""
     answers: Answers = {}
     for table, last in (("5", 5.0), ("6", 10.0)):
-        for cell in cells_of_table(table):
+        for cell in _cells_of_table(table):
             answers[cell.key] = _extreme(cell, last)
-    for cell in cells_of_table("7"):
+    for cell in _cells_of_table("7"):
         answers[cell.key] = _load(cell)
-    for cell in cells_of_table("8"):
+    for cell in _cells_of_table("8"):
         answers[cell.key] = _ratio(cell)
     return answers
 
@@ -249,7 +237,7 @@ def _ratio(cell: Cell) -> Answer:
     values = np.array(
         [
             one.value
-            for one in cells_of_table("7")
+            for one in _cells_of_table("7")
             if one.row.startswith(theory) and one.column == f"{direction} ratio P"
         ],
         dtype=np.float64,
@@ -290,26 +278,14 @@ _HALF_DIGIT = 0.005  # of the loads of Table 7
 
 
 def items() -> list[Item]:
-    """One item for every printed number of the paper.
-
-    Returns
-    -------
-    items : list of Item
-        In the order of its cells.
-    """
-    return items_from("Zhang-2015", answers())
+    """One item for every printed number of the paper."""
+    return items_from("Zhang-2015", _answers())
 
 
-def answers() -> Answers:
-    """What every printed number ought to be.
-
-    Returns
-    -------
-    answers : Answers
-        By cell.
-    """
-    tables = _conditions() | _hose() | _waves() | _coefficients() | table_answers()
-    return tables | equation_answers() | _depths() | _claims()
+def _answers() -> Answers:
+    """What every printed number ought to be."""
+    tables = _conditions() | _hose() | _waves() | _coefficients() | _table_answers()
+    return tables | _equation_answers() | _depths() | _claims()
 
 
 def _conditions() -> Answers:
@@ -329,9 +305,9 @@ def _conditions() -> Answers:
             limit, "the steepest wave there is before it breaks, at d/L = 0.2"
         ),
     }
-    for cell in cells_of_table("1"):
+    for cell in _cells_of_table("1"):
         found.setdefault(cell.key, quoted)
-    return found | {cell.key: "measured by others, and quoted" for cell in cells_of_table("2")}
+    return found | {cell.key: "measured by others, and quoted" for cell in _cells_of_table("2")}
 
 
 def _hose() -> Answers:
@@ -483,8 +459,8 @@ def _depths() -> Answers:
 
 
 def _claims() -> Answers:
-    ratios = [cell.value or 0.0 for cell in cells_of_table("7") if cell.column.endswith("ratio P")]
-    averages = [cell.value or 0.0 for cell in cells_of_table("8") if cell.row == "average"]
+    ratios = [cell.value or 0.0 for cell in _cells_of_table("7") if cell.column.endswith("ratio P")]
+    averages = [cell.value or 0.0 for cell in _cells_of_table("8") if cell.row == "average"]
     table_1 = "a limit of d/L in Table 1 times the wave length of Table 4"
     return {
         ("sec 2", "Morison's equation", "greatest size of the structure over the wave length"):

@@ -77,7 +77,7 @@ _AS_FORCE_FIRST: tuple[Dimension, ...] = (
 
 
 @lru_cache(maxsize=1)
-def registry() -> pint.UnitRegistry[float]:
+def _registry() -> pint.UnitRegistry[float]:
     """Units of pint, with those of test houses that it lacks."""
     known: pint.UnitRegistry[float] = pint.UnitRegistry(cache_folder=None)
     known.define("kip = 1000 * lbf")
@@ -134,7 +134,7 @@ def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
     >>> scale_to_si("%", "strain")
     (0.01, 0.0)
     """
-    known = registry()
+    known = _registry()
     target = DIMENSIONS[dimension]
     powers = unit.count("^") + unit.count("**")
     too_long = len(unit) > _LONGEST or powers > _MOST_POWERS or re.search(r"\d{3}", unit)
@@ -210,10 +210,10 @@ def scale_of_unit(unit: str) -> tuple[str, float, float]:
                 raise SettingsError(
                     error.problem, found=error.found, needed="a unit that is known", hint=hint
                 ) from error
-    base = registry().Quantity(1.0, _pint_text(text)).to_base_units()
+    base = _registry().Quantity(1.0, _pint_text(text)).to_base_units()
     powers = pint.util.to_units_container(base.units).items()
     si_unit = " ".join(
-        registry().get_symbol(name) + ("" if power == 1 else f"{power:g}")
+        _registry().get_symbol(name) + ("" if power == 1 else f"{power:g}")
         for name, power in sorted(powers)
     )
     return si_unit, float(base.magnitude), 0.0
@@ -309,7 +309,7 @@ def display_unit(si_unit: str, system: UnitSystem) -> tuple[str, float]:
     if shown is None:
         return si_unit, 1.0
     source = {"J m-1": "N", "m2": "m**2", "m s-1": "m/s"}.get(si_unit, si_unit)
-    factor = registry().Quantity(1.0, source).to(_US_PINT.get(shown, shown)).magnitude
+    factor = _registry().Quantity(1.0, source).to(_US_PINT.get(shown, shown)).magnitude
     return shown, float(factor)
 
 

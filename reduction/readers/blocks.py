@@ -32,22 +32,8 @@ _NEWLINE, _RETURN = b"\n\r"
 
 
 @dataclass(frozen=True)
-class BlockLines:
-    """Lines of a part as places in its bytes.
-
-    Parameters
-    ----------
-    data : bytes
-        In UTF-8.
-    starts, stops : ndarray of int, shape (n_lines,)
-        Place of the first byte of each line, and of that after its line end.
-    openers : ndarray of int, shape (n_blocks,)
-        Lines that open a block; its header is here too.
-    first_row : int
-        Editor's row of the first line.
-    is_open : bool
-        Whether the file ends with the last line, without a line end.
-    """
+class _BlockLines:
+    """Lines of a part as places in its bytes."""
 
     data: bytes
     starts: Integers
@@ -77,7 +63,7 @@ class BlockLines:
         return looks
 
 
-def block_lines(file: TextFile, layout: Layout) -> Iterator[BlockLines]:
+def _block_lines(file: TextFile, layout: Layout) -> Iterator[_BlockLines]:
     """Parts of a file; one that ends in a header leaves it to the next."""
     held, row, is_open = b"", 0, False
     for part in file:
@@ -86,14 +72,14 @@ def block_lines(file: TextFile, layout: Layout) -> Iterator[BlockLines]:
         lines = _to_lines(held + bytes(part.text), row, layout)
         n_lines = lines.starts.size
         for opener in lines.openers[::-1].tolist():
-            if opener + header_length(layout) < n_lines:
+            if opener + _header_length(layout) < n_lines:
                 break
             n_lines = opener
         held = b""
         if n_lines < lines.starts.size:
             held, row = lines.data[lines.starts[n_lines] :] + b"\n", row + n_lines
         if n_lines:
-            yield BlockLines(
+            yield _BlockLines(
                 lines.data,
                 lines.starts[:n_lines],
                 lines.stops[:n_lines],
@@ -103,16 +89,16 @@ def block_lines(file: TextFile, layout: Layout) -> Iterator[BlockLines]:
             )
     if held:
         lines = _to_lines(held[:-1], row, layout)
-        openers = lines.openers[lines.openers + header_length(layout) < lines.starts.size]
+        openers = lines.openers[lines.openers + _header_length(layout) < lines.starts.size]
         yield replace(lines, openers=openers, is_open=is_open)
 
 
-def header_length(layout: Layout) -> int:
+def _header_length(layout: Layout) -> int:
     """Lines of a header below the one that opens the block."""
     return 1 + layout.has_unit_row
 
 
-def _to_lines(data: bytes, first_row: int, layout: Layout) -> BlockLines:
+def _to_lines(data: bytes, first_row: int, layout: Layout) -> _BlockLines:
     starts = line_starts(memoryview(data))
     marker = layout.block_marker.encode("utf-8")
     found: list[int] = []
@@ -120,7 +106,7 @@ def _to_lines(data: bytes, first_row: int, layout: Layout) -> BlockLines:
         first = np.frombuffer(data, np.uint8)[np.minimum(starts, len(data) - 1)]
         candidates = np.flatnonzero(first == marker[0]).tolist()
         found = [line for line in candidates if data.startswith(marker, int(starts[line]))]
-    return BlockLines(
+    return _BlockLines(
         data=data,
         starts=starts,
         stops=np.append(starts[1:], len(data)),
@@ -155,39 +141,11 @@ def read_blocks(
     parts: Parts | None = None,
     watch: Watch | None = None,
 ) -> RawLog:
-    """Read a log of repeated blocks.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-    layout : Layout
-        What it looks like; the decimal mark of an MTS file is the one that its first
-        line states.
-    name : str
-        File name relative to the campaign folder.
-    parts : Parts, optional
-        How much of it is read at a time.
-    watch : Watch, optional
-        Holds it against its limits.
-
-    Returns
-    -------
-    log : RawLog
-        Rows of all blocks that have the declared columns, one after another; lines
-        between them as metadata; a note on every kind of block left out.
-
-    Raises
-    ------
-    LogError
-        If no block has the declared columns, or a row is not what the layout says.
-    DataError
-        If the disk is full.
-    """
+    """Read a log of repeated blocks."""
     watch = watch or Watch(path)
     with unchanged(path), open_text(path, layout.encoding, parts or Parts(), watch) as file:
         blocks: _Blocks | None = None
-        for lines in block_lines(file, layout):
+        for lines in _block_lines(file, layout):
             if blocks is None:
                 blocks = _Blocks(path, _with_separators(path, lines, layout), file.folder, watch)
             blocks.take(lines)
@@ -211,11 +169,11 @@ class _Blocks:
         self.metadata: dict[str, str] = {}
         self.n_loose = 0
 
-    def take(self, lines: BlockLines) -> None:
+    def take(self, lines: _BlockLines) -> None:
         """Sort the lines of one more part, and read its rows."""
         kinds = [self.open, *(self._opened(lines, line) for line in lines.openers.tolist())]
         self.open = kinds[-1]
-        n_header = header_length(self.layout)
+        n_header = _header_length(self.layout)
         number = np.arange(lines.starts.size)
         block = np.searchsorted(lines.openers, number, side="right")
         is_below = number - np.append(-n_header - 1, lines.openers)[block] > n_header
@@ -275,9 +233,9 @@ class _Blocks:
             notes=tuple(self._notes()),
         )
 
-    def _opened(self, lines: BlockLines, opener: int) -> _Kind:
+    def _opened(self, lines: _BlockLines, opener: int) -> _Kind:
         """Kind of the block that a line opens: that of all blocks with its header."""
-        last = opener + header_length(self.layout)
+        last = opener + _header_length(self.layout)
         text = lines.data[lines.starts[opener + 1] : lines.stops[last]]
         header = text.replace(b"\r\n", b"\n").rstrip(b"\n")
         row = lines.first_row + opener
@@ -292,7 +250,7 @@ class _Blocks:
         kind.n_blocks += 1
         return kind
 
-    def _choose(self, lines: BlockLines, opener: int, names: list[str], kind: _Kind) -> None:
+    def _choose(self, lines: _BlockLines, opener: int, names: list[str], kind: _Kind) -> None:
         """Read blocks of this kind if it is the first that has every declared column."""
         row = lines.first_row + opener
         try:
@@ -310,7 +268,7 @@ class _Blocks:
         self.chosen, self.wanted = kind, wanted
         self.log = GrowingLog([want for want, _ in wanted], self.folder)
 
-    def _keep_loose(self, lines: BlockLines, is_loose: Bools) -> None:
+    def _keep_loose(self, lines: _BlockLines, is_loose: Bools) -> None:
         """Keep lines between the rows as metadata, the first of them."""
         for line in np.flatnonzero(is_loose & lines.filled()).tolist():
             if (text := lines.text(line)).strip():
@@ -331,7 +289,7 @@ class _Blocks:
                 )
 
 
-def _with_separators(path: Path, lines: BlockLines, layout: Layout) -> Layout:
+def _with_separators(path: Path, lines: _BlockLines, layout: Layout) -> Layout:
     """The layout with the decimal mark of an MTS file's first line."""
     first = lines.text(0)
     if not first.startswith(_MTS):

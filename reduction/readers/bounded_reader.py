@@ -87,7 +87,7 @@ _reader: _Reader | None = None
 
 
 @atexit.register
-def end_reader() -> None:
+def _end_reader() -> None:
     """End the process that reads, if there is one; the next file starts another."""
     global _reader
     if _reader is not None and _reader.parent == os.getpid():
@@ -98,32 +98,7 @@ def end_reader() -> None:
 def bounded(
     function: Callable[..., Result], path: Path, *given: Any, watch: Watch, **named: Any
 ) -> Result:
-    """Result of a function in the process that reads.
-
-    Parameters
-    ----------
-    function : callable
-        Of a module.  It is called with the path, what is given, and a watch of its own.
-    path : pathlib.Path
-        The file.
-    *given, **named
-        What can be pickled.
-    watch : Watch
-        The process ends after its ``time``, and may take its ``unpacked_size`` and 300 MB of
-        memory (on Linux; elsewhere the time alone is bounded).
-
-    Returns
-    -------
-    result
-        Columns on disk are not copied.
-
-    Raises
-    ------
-    LogError
-        If the process ends before it has answered, or its memory does.
-    Exception
-        Whatever the function raises.
-    """
+    """Result of a function in the process that reads."""
     global _reader
     scratch = named.get("parts", Parts()).folder, f"reduction-{os.getpid()}-{secrets.token_hex(8)}-"
     work = pickle.dumps((function, path, given, named))
@@ -136,18 +111,18 @@ def bounded(
             value, error = _reader.ask(request)
         except EOFError:
             status = _reader.process.wait()
-            end_reader()
+            _end_reader()
             seconds = time.monotonic() - begin
             if status == 1 and seconds > watch.limits.time:
                 raise watch.too_slow(seconds) from None
             raise watch.broken(_how_it_ended(status)) from None
         except BaseException:  # what it would answer later belongs to no other request
-            end_reader()
+            _end_reader()
             raise
         finally:
             _remove(*scratch)
         if isinstance(error, MemoryError):
-            end_reader()
+            _end_reader()
             raise watch.too_much_memory()
     if error is not None:
         raise error

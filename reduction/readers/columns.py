@@ -35,16 +35,7 @@ def clock_to_seconds(
     row: Integers | None,
     first_row: int,
 ) -> Floats:
-    """Seconds from the first reading, shape (n_rows,); missing marks are NaN. [s].
-
-    A reading more than half a day before the one above it is on the next day; a
-    smaller step back is kept as it is.
-
-    Raises
-    ------
-    LogError
-        If a text is no clock time, with its row.
-    """
+    """Seconds from the first reading, shape (n_rows,); missing marks are NaN. [s]."""
     seconds = np.full(len(texts), np.nan)
     for index, text in enumerate(texts):
         if text in missing:
@@ -122,15 +113,7 @@ def find_column(
     in_order: bool = True,
     row: int | None = None,
 ) -> int:
-    """Place from 0 of a declared column among the names of a file.
-
-    Names count without the blanks around them.
-
-    Raises
-    ------
-    LogError
-        If the column is not there (with what is there), or is there twice.
-    """
+    """Place from 0 of a declared column among the names of a file."""
     stripped = [name.strip() for name in names]
     if isinstance(wanted.column, int):
         if in_order and 1 <= wanted.column <= len(names):
@@ -168,13 +151,7 @@ def find_column(
 
 
 def stated_scale(text: str, dimension: Dimension) -> tuple[float, float]:
-    """Factor and offset to SI of a unit that a file states, which may be any text at all.
-
-    Raises
-    ------
-    SettingsError
-        If it is no unit of that dimension.
-    """
+    """Factor and offset to SI of a unit that a file states, which may be any text at all."""
     try:
         if len(text) <= _LONGEST_UNIT and len(_POWER.findall(text)) < 2:
             return scale_to_si(text, dimension)
@@ -186,15 +163,7 @@ def stated_scale(text: str, dimension: Dimension) -> tuple[float, float]:
 
 
 def check_unit(path: Path, wanted: Wanted, found: str, *, row: int | None = None) -> None:
-    """Compare the unit that a file states with the declared one; blank states nothing.
-
-    Two spellings of one unit agree: ``(sec)`` and ``s``, ``lb`` and ``lbf`` of a force.
-
-    Raises
-    ------
-    LogError
-        If they differ, or the file's unit is not known.
-    """
+    """Compare the unit that a file states with the declared one; blank states nothing."""
     text = found.strip()
     if text[:1] in _BRACKETS and text.endswith(_BRACKETS[text[0]]):
         text = text[1:-1].strip()
@@ -220,13 +189,7 @@ def check_unit(path: Path, wanted: Wanted, found: str, *, row: int | None = None
 
 
 def check_lengths(path: Path, columns: dict[str, Floats]) -> int:
-    """Number of rows that the columns share; a channel with own time stamps has its own.
-
-    Raises
-    ------
-    LogError
-        If columns differ in length, or there are no rows.
-    """
+    """Number of rows that the columns share; a channel with own time stamps has its own."""
     pairs = [(key, f"{key}.time") for key in columns if f"{key}.time" in columns]
     shared = [key for key in columns if not any(key in pair for pair in pairs)]
     for group in (shared, *pairs):
@@ -247,10 +210,7 @@ def check_lengths(path: Path, columns: dict[str, Floats]) -> int:
 
 
 def without_marks(values: NDArray[Any], layout: Layout) -> Floats:
-    """As float64, with NaN where a missing mark that is a number stands (-9999), shape as given.
-
-    Marks are compared in the column's own precision: -99.9 of a float32 column is found.
-    """
+    """As float64, with NaN where a missing mark that is a number stands (-9999), shape as given."""
     marks = []
     for mark in layout.missing:
         try:
@@ -294,18 +254,7 @@ def check_units(
     units: Sequence[str],
     unit_row: int | None,
 ) -> None:
-    """Compare the units that the file states with the declared ones.
-
-    A unit row must agree.  A unit in brackets at the end of a column's name must
-    agree where it is a unit of the channel's dimension; other words in brackets are
-    part of the name.  Not compared are a channel with a factor, of which the file has
-    the volts, and a counter, whose unit may be any word.
-
-    Raises
-    ------
-    LogError
-        If the file contradicts the layout.
-    """
+    """Compare the units that the file states with the declared ones."""
     for want, place in wanted:
         if not want.is_compared or want.dimension == "number":
             continue
@@ -362,20 +311,8 @@ _INFINITE = ("infinite", "finite numbers", None)
 _FAULTS = (_LARGE, _MISSING, _INFINITE)  # what is told first
 
 
-class CheckedColumn:
-    """A declared column, shape (n_rows,); declared missing marks are NaN.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        For messages.
-    wanted : Wanted
-        What it has to be.
-    layout : Layout
-        Missing marks.
-    folder : pathlib.Path or None
-        Where its scratch file lies; None keeps it in memory.
-    """
+class _CheckedColumn:
+    """A declared column, shape (n_rows,); declared missing marks are NaN."""
 
     def __init__(self, path: Path, wanted: Wanted, layout: Layout, folder: Path | None) -> None:
         """Begin with no rows."""
@@ -385,15 +322,7 @@ class CheckedColumn:
         self._found: dict[tuple[str, str, str | None], tuple[int, int, float]] = {}
 
     def add(self, values: NDArray[Any]) -> None:
-        """Add rows, shape (n_rows,).
-
-        Raises
-        ------
-        LogError
-            If the values are not real numbers.
-        DataError
-            If the disk is full.
-        """
+        """Add rows, shape (n_rows,)."""
         kind = values.dtype.kind
         if self._wanted.unit == CLOCK or kind not in "fiu":
             raise LogError(
@@ -419,14 +348,7 @@ class CheckedColumn:
         self._writer.append(column)
 
     def finish(self) -> Floats:
-        """The column.
-
-        Raises
-        ------
-        LogError
-            If values cannot be held exactly, are infinite, or are NaN where the layout does
-            not declare ``NaN`` a missing mark.
-        """
+        """The column."""
         for fault in _FAULTS:
             if fault in self._found:
                 count, first, value = self._found[fault]
@@ -483,7 +405,7 @@ class ColumnTable:
     sizes: tuple[int, ...] = ()
 
 
-class Matrix(Protocol):
+class _Matrix(Protocol):
     """An array, or a data set that is read when it is asked for rows."""
 
     @property
@@ -500,38 +422,14 @@ class Matrix(Protocol):
 
 def matrix_table(
     path: Path,
-    matrix: Matrix,
+    matrix: _Matrix,
     *,
     where: str,
     names: tuple[str, ...] | None = None,
     units: tuple[str, ...] | None = None,
     n_together: int = 1,
 ) -> ColumnTable:
-    """Columns of a matrix, shape (n_rows, n_columns), or of a table with named fields.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        For messages.
-    matrix : Matrix
-        The values.
-    where : str
-        What holds them, for messages.
-    names, units : tuple of str, optional
-        Of the columns.
-    n_together : int
-        Rows that the file keeps in one piece.
-
-    Returns
-    -------
-    table : ColumnTable
-        Parts of its columns come from the same rows, which are read once.
-
-    Raises
-    ------
-    LogError
-        If it has another number of dimensions, or of columns than it has names or units.
-    """
+    """Columns of a matrix, shape (n_rows, n_columns), or of a table with named fields."""
     fields = matrix.dtype.names
     if fields is not None:
         if len(matrix.shape) != 1:
@@ -596,19 +494,7 @@ def read_columns(
     parts: Parts | None = None,
     watch: Watch | None = None,
 ) -> tuple[dict[str, Floats], int]:
-    """Declared columns of a binary file by channel key, and how many rows they have.
-
-    ``made`` holds those that the reader makes from properties of the file, in parts of so many
-    rows.  The watch is asked for the time between the parts.
-
-    Raises
-    ------
-    LogError
-        If a column is missing, stands in another unit, holds no numbers, or has another
-        length than the rest.
-    DataError
-        If the disk is full.
-    """
+    """Declared columns of a binary file by channel key, and how many rows they have."""
     made, parts, watch = made or {}, parts or Parts(), watch or Watch(path)
     watch.check_columns(len(table.names))
     wanted = wanted_columns(layout)
@@ -625,7 +511,9 @@ def read_columns(
         check_room(folder, 8 * sum(stated))
     n_rows = max(parts.length_of(n_bytes) // (8 * max(len(wanted), 1)), 1)
     checked = {
-        want.key: CheckedColumn(path, want, layout, folder) for want in wanted if want.key in places
+        want.key: _CheckedColumn(path, want, layout, folder)
+        for want in wanted
+        if want.key in places
     }
     writers = {key: ColumnWriter(folder) for key in made}
     coming = [

@@ -74,33 +74,7 @@ def read_delimited(
     parts: Parts | None = None,
     watch: Watch | None = None,
 ) -> RawLog:
-    """Read a delimited text log.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-    layout : Layout
-        What it looks like.
-    name : str
-        File name relative to the campaign folder.
-    parts : Parts, optional
-        How much of it is read at a time.
-    watch : Watch, optional
-        Holds it against its limits.
-
-    Returns
-    -------
-    log : RawLog
-        Declared columns; preamble and comment lines as metadata.
-
-    Raises
-    ------
-    LogError
-        If the file is not what the layout says, naming row and channel.
-    DataError
-        If the disk is full.
-    """
+    """Read a delimited text log."""
     head, watch = _Head(), watch or Watch(path)
     log: GrowingLog | None = None
     with (

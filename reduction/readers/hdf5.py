@@ -31,12 +31,8 @@ _PLAIN_CLASSES = (h5py.h5t.INTEGER, h5py.h5t.FLOAT, h5py.h5t.STRING, h5py.h5t.EN
 _LARGEST = 1 << 20  # bytes; texts of any length stand elsewhere
 
 
-def is_plain_attribute(item: h5py.Group | h5py.Dataset, name: str) -> bool:
-    """Whether an attribute that is there is of numbers or texts, as long as a file has them.
-
-    Of others, rows of any length above all, the library takes what a damaged file states at its
-    word, and the process may end.
-    """
+def _is_plain_attribute(item: h5py.Group | h5py.Dataset, name: str) -> bool:
+    """Whether an attribute that is there is of numbers or texts, as long as a file has them."""
     found = item.attrs.get_id(name)
     if found.get_type().get_class() not in _PLAIN_CLASSES or found.get_storage_size() > _LARGEST:
         return False
@@ -51,7 +47,7 @@ def plain_attribute(path: Path, item: h5py.Group | h5py.Dataset, name: str) -> N
     """Value of an attribute, None where it is not there; `LogError` where it is not a plain one."""
     if name not in item.attrs:
         return None
-    if not is_plain_attribute(item, name):
+    if not _is_plain_attribute(item, name):
         raise LogError(
             path, f"the attribute '{name}' of '{item.name}' cannot be read",
             found="a type that is neither number nor text", needed="an intact file",
@@ -59,7 +55,7 @@ def plain_attribute(path: Path, item: h5py.Group | h5py.Dataset, name: str) -> N
     return np.asarray(item.attrs[name])
 
 
-def unit_attribute(path: Path, dataset: h5py.Dataset) -> str:
+def _unit_attribute(path: Path, dataset: h5py.Dataset) -> str:
     """Unit that a data set states; empty text where it states none."""
     for key in _UNIT_KEYS:
         found = plain_attribute(path, dataset, key)
@@ -79,13 +75,7 @@ _SHOWN = 40
 
 @contextmanager
 def open_hdf5(path: Path) -> Iterator[h5py.File]:
-    """Open an HDF5 file for a block.
-
-    Raises
-    ------
-    LogError
-        If the file is none, or is damaged.
-    """
+    """Open an HDF5 file for a block."""
     try:
         file = h5py.File(path, "r", locking=False)
     except OSError as error:
@@ -101,7 +91,7 @@ def open_hdf5(path: Path) -> Iterator[h5py.File]:
             ) from error
 
 
-def names_in(group: h5py.Group) -> Iterator[str]:
+def _names_in(group: h5py.Group) -> Iterator[str]:
     """Names that a group holds itself."""
     return (name for name in group if isinstance(group.get(name, getlink=True), h5py.HardLink))
 
@@ -110,7 +100,7 @@ def find_member(path: Path, group: h5py.Group, name: str) -> h5py.Group | h5py.D
     """Group or data set by its path below a group, never by way of a link."""
     for part in (part for part in name.split("/") if part):
         if not isinstance(group, h5py.Group) or part not in group.keys():
-            held = list(islice(names_in(group), _SHOWN)) if isinstance(group, h5py.Group) else []
+            held = list(islice(_names_in(group), _SHOWN)) if isinstance(group, h5py.Group) else []
             more = ", ..." if len(held) == _SHOWN else ""
             listed = ", ".join(repr(key) for key in held) or "nothing"
             raise LogError(
@@ -221,7 +211,7 @@ def _column(path: Path, dataset: h5py.Group | h5py.Dataset) -> tuple[h5py.Datase
     return dataset, int(np.argmax(dataset.shape))
 
 
-def series_parts(
+def _series_parts(
     path: Path, dataset: h5py.Group | h5py.Dataset, n_rows: int, watch: Watch
 ) -> Iterator[NDArray[Any]]:
     """Values of such a data set in parts, each of whole chunks of the file."""
@@ -229,12 +219,12 @@ def series_parts(
     if dataset.dtype.kind not in "biufc":
         # refused by its kind; texts of any length, read first, could be one text many times
         yield np.empty(0, dtype=dataset.dtype)
-    for part in row_parts(dataset.shape[axis], n_rows, chunk_length(dataset, axis)):
+    for part in row_parts(dataset.shape[axis], n_rows, _chunk_length(dataset, axis)):
         selection = (slice(None),) * axis + (part,)
         yield _values(path, dataset, selection, part.stop - part.start, watch).ravel()
 
 
-def chunk_length(dataset: h5py.Dataset, axis: int) -> int:
+def _chunk_length(dataset: h5py.Dataset, axis: int) -> int:
     """Rows that the file keeps together."""
     return int(dataset.chunks[axis]) if dataset.chunks else 1
 
@@ -271,13 +261,7 @@ class _DataSet:
 
 
 def data_set(path: Path, dataset: h5py.Group | h5py.Dataset, watch: Watch) -> _DataSet:
-    """A data set that stands in this file, before any of it is read.
-
-    Raises
-    ------
-    LogError
-        If it is none, or its values do not all stand in this file as they are.
-    """
+    """A data set that stands in this file, before any of it is read."""
     return _DataSet(path, _plain(path, dataset), watch)
 
 
@@ -313,7 +297,7 @@ def _no_text(path: Path, dataset: h5py.Dataset) -> LogError:
     )  # fmt: skip
 
 
-def hdf5_table(
+def _hdf5_table(
     path: Path, file: h5py.File, layout: Layout, watch: Watch | None = None
 ) -> ColumnTable:
     """Columns of the group or matrix that a layout names."""
@@ -333,7 +317,7 @@ def hdf5_table(
             where=f"'{layout.matrix}'",
             names=names,
             units=units,
-            n_together=chunk_length(matrix.dataset, 0),
+            n_together=_chunk_length(matrix.dataset, 0),
         )
     if not isinstance(group, h5py.Group):
         raise LogError(
@@ -347,13 +331,13 @@ def group_table(path: Path, group: h5py.Group, watch: Watch) -> ColumnTable:
     """Columns of a group: its data sets."""
     watch.check_columns(len(group))
     members = {
-        name: member for name in names_in(group) if isinstance(member := group[name], h5py.Dataset)
+        name: member for name in _names_in(group) if isinstance(member := group[name], h5py.Dataset)
     }
     sets = list(members.values())
     return ColumnTable(
         names=tuple(members),
-        units=tuple(unit_attribute(path, member) for member in sets),
-        load=lambda place, n_rows: series_parts(path, sets[place], n_rows, watch),
+        units=tuple(_unit_attribute(path, member) for member in sets),
+        load=lambda place, n_rows: _series_parts(path, sets[place], n_rows, watch),
         n_rows=max((member.size or 0 for member in sets), default=0),
         where=f"group '{group.name}'",
         in_order=False,
@@ -365,7 +349,7 @@ def _attributes(group: h5py.Group | h5py.Dataset) -> dict[str, str]:
     """Attributes that are one text or number, as text."""
     texts = {}
     for key in group.attrs:
-        if group.attrs.get_id(key).shape != () or not is_plain_attribute(group, key):
+        if group.attrs.get_id(key).shape != () or not _is_plain_attribute(group, key):
             continue
         value = group.attrs[key]
         if isinstance(value, (str, bytes, np.generic)) and not isinstance(value, np.void):
@@ -381,39 +365,12 @@ def read_hdf5(
     parts: Parts | None = None,
     watch: Watch | None = None,
 ) -> RawLog:
-    """Read the declared columns of one group, or of one matrix.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-    layout : Layout
-        ``group``, or ``matrix`` with ``matrix_names`` and ``matrix_units`` (paths below the
-        group), ``missing`` and the channels.
-    name : str
-        Name of the file for the product.
-    parts : Parts, optional
-        How much of it is read at a time.
-    watch : Watch, optional
-        Holds it against its limits.
-
-    Returns
-    -------
-    log : RawLog
-        With the attributes of file and group as metadata.
-
-    Raises
-    ------
-    LogError
-        If the file, a data set or a column cannot be used.
-    DataError
-        If the disk is full.
-    """
+    """Read the declared columns of one group, or of one matrix."""
     watch = watch or Watch(path)
     source = hash_source(path, name)
     with open_hdf5(path) as file:
         columns, n_rows = read_columns(
-            path, layout, hdf5_table(path, file, layout, watch), parts=parts, watch=watch
+            path, layout, _hdf5_table(path, file, layout, watch), parts=parts, watch=watch
         )
         metadata, notes = short_metadata(
             _attributes(file) | _attributes(find_member(path, file, layout.group))

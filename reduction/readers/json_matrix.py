@@ -24,31 +24,7 @@ _MOST_DIGITS = 300  # of whole numbers that are finite as float64
 
 
 def read_json(path: Path, layout: Layout, *, name: str, watch: Watch | None = None) -> RawLog:
-    """Read a JSON log: the matrix under the layout's ``matrix`` key, one list a row.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-    layout : Layout
-        ``matrix``, where there are such keys ``matrix_names`` and ``matrix_units``, and
-        a channel's ``unit_key``.
-    name : str
-        File name relative to the campaign folder.
-    watch : Watch, optional
-        Holds it against its limits.
-
-    Returns
-    -------
-    log : RawLog
-        Declared columns; every other text or number of the file as metadata.
-
-    Raises
-    ------
-    LogError
-        If the file is no JSON, has no such key, states another unit, or a value of the
-        matrix is neither a number nor a declared missing mark.
-    """
+    """Read a JSON log: the matrix under the layout's ``matrix`` key, one list a row."""
     watch = watch or Watch(path)
     raw, content = json_content(path, watch, layout.encoding)
     rows = _entry(path, content, layout.matrix, "matrix")
@@ -91,13 +67,7 @@ def _once(path: Path, pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def json_content(path: Path, watch: Watch, encoding: str = "utf-8") -> tuple[bytes, Any]:
-    """Bytes of a JSON file, and what they say.
-
-    Raises
-    ------
-    LogError
-        If it is no JSON, is nested too deep to be read, or takes more memory than it may.
-    """
+    """Bytes of a JSON file, and what they say."""
     watch.check_unpacked(path.stat().st_size)
     raw = read_bytes(path)
     n_lists = raw.count(b"[") + raw.count(b"{")

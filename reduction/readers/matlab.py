@@ -38,44 +38,23 @@ from reduction.readers.raw_log import RawLog, hash_source
 from reduction.record.errors import LogError
 
 
-def has_narrow_numbers(value: Any) -> bool:
+def _has_narrow_numbers(value: Any) -> bool:
     """Whether numbers in it, at any depth, are of a class that does not hold every stored one.
-
-    Parameters
-    ----------
-    value : Any
-        A variable as `scipy.io.loadmat` gives it.
-
-    Returns
-    -------
-    is_narrow : bool
-        Of other classes than double: numbers stored as doubles lose their fractions in a class of
-        whole numbers, and no word is said.
 
     Examples
     --------
-    >>> has_narrow_numbers(np.array([1.5])), has_narrow_numbers(np.array([1], dtype=np.int8))
+    >>> _has_narrow_numbers(np.array([1.5])), _has_narrow_numbers(np.array([1], dtype=np.int8))
     (False, True)
     """
     return any(numbers.dtype != np.float64 for numbers in _numbers(value))
 
 
-def equal_numbers(value: Any, stored: Any) -> bool:
+def _equal_numbers(value: Any, stored: Any) -> bool:
     """Whether all numbers in two values are the same, whatever their types.
-
-    Parameters
-    ----------
-    value, stored : Any
-        A variable as `scipy.io.loadmat` gives it, by its class and as it is stored.
-
-    Returns
-    -------
-    are_equal : bool
-        NaN counts as NaN.
 
     Examples
     --------
-    >>> equal_numbers(np.array([2], dtype=np.int8), np.array([2.96]))
+    >>> _equal_numbers(np.array([2], dtype=np.int8), np.array([2.96]))
     False
     """
     return all(
@@ -119,7 +98,7 @@ _NOT_MATLAB = (
 )  # fmt: skip
 
 
-class Variables(Mapping[str, Any]):
+class _Variables(Mapping[str, Any]):
     """Variables of a v4 to v7 file, each read when it is asked for."""
 
     def __init__(self, path: Path, watch: Watch) -> None:
@@ -141,14 +120,14 @@ class Variables(Mapping[str, Any]):
     def __getitem__(self, name: str) -> Any:
         place = self.places[name]
         if name in self.twice:
-            raise no_array(self.path, name, "two variables of that name")
+            raise _no_array(self.path, name, "two variables of that name")
         self.watch.check_time()
         found = self._loaded(name, place, mat_dtype=True)  # true/false apart from numbers
         if scipy.sparse.issparse(found):
-            raise no_array(self.path, name, "a sparse matrix")
+            raise _no_array(self.path, name, "a sparse matrix")
         if np.iscomplexobj(found):
-            raise no_array(self.path, name, _COMPLEX)
-        if has_narrow_numbers(found) and not equal_numbers(
+            raise _no_array(self.path, name, _COMPLEX)
+        if _has_narrow_numbers(found) and not _equal_numbers(
             found, self._loaded(name, place, mat_dtype=False)
         ):
             raise LogError(
@@ -164,7 +143,7 @@ class Variables(Mapping[str, Any]):
                 file: Any = stream if place is None else _alone(stream, *place)
                 return scipy.io.loadmat(file, mat_dtype=mat_dtype, variable_names=[name])[name]
         except np.exceptions.ComplexWarning:  # of the imaginary part, which would be dropped
-            raise no_array(self.path, name, _COMPLEX) from None
+            raise _no_array(self.path, name, _COMPLEX) from None
         except (*_NOT_MATLAB, UserWarning, RuntimeWarning) as error:
             raise LogError(
                 self.path, f"variable '{name}' cannot be read", found=str(error)[:200],
@@ -216,7 +195,7 @@ def _alone(stream: BinaryIO, begin: int, length: int) -> Any:
     return io.BytesIO(head + stream.read(length))
 
 
-def no_array(path: Path, name: str, found: str) -> LogError:
+def _no_array(path: Path, name: str, found: str) -> LogError:
     """Error of a variable or field that is no array of numbers."""
     return LogError(
         path,
@@ -341,7 +320,7 @@ def _scope(path: Path, scope: Mapping[str, Any], name: str) -> Mapping[str, Any]
 
 def _array(path: Path, name: str, value: Any) -> NDArray[Any]:
     if not isinstance(value, np.ndarray) or isinstance(value, _OWN_CLASSES):
-        raise no_array(path, name, type(value).__name__)
+        raise _no_array(path, name, type(value).__name__)
     return value
 
 
@@ -408,34 +387,11 @@ def open_matlab(path: Path, watch: Watch | None = None) -> Iterator[Mapping[str,
         with open_hdf5(path) as file:
             yield _Struct(path, file, watch)
     else:
-        yield Variables(path, watch)
+        yield _Variables(path, watch)
 
 
 def read_matlab(path: Path, layout: Layout, *, name: str, watch: Watch | None = None) -> RawLog:
-    """Read the declared columns of one struct, of one matrix, or of the file's variables.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-    layout : Layout
-        ``group``, or ``matrix`` with ``matrix_names`` and ``matrix_units`` (inside the
-        group), ``missing`` and the channels.
-    name : str
-        Name of the file for the product.
-    watch : Watch, optional
-        Holds it against its limits.
-
-    Returns
-    -------
-    log : RawLog
-        With the header text of the file as metadata.
-
-    Raises
-    ------
-    LogError
-        If the file, a variable or a column cannot be used.
-    """
+    """Read the declared columns of one struct, of one matrix, or of the file's variables."""
     source = hash_source(path, name)
     with open_matlab(path, watch) as scope:
         columns, n_rows = read_columns(path, layout, matlab_table(path, scope, layout), watch=watch)

@@ -50,28 +50,7 @@ class Fields:
 
 
 def read_fields(rows: TextRows, wanted: Sequence[tuple[Wanted, int]], n_fields: int) -> Fields:
-    """Declared columns of delimited rows: numbers, and the text of a clock.
-
-    Parameters
-    ----------
-    rows : TextRows
-        What to parse.
-    wanted : sequence of (Wanted, int)
-        Each column with its place from 0.
-    n_fields : int
-        Fields in a row.
-
-    Returns
-    -------
-    fields : Fields
-        Of no rows where the lines are blank.
-
-    Raises
-    ------
-    LogError
-        Naming row and channel of the first field that is neither a number nor a
-        declared missing mark, or the first row with another number of fields.
-    """
+    """Declared columns of delimited rows: numbers, and the text of a clock."""
     try:
         return _read(rows, wanted, n_fields)
     except LogError as error:
@@ -239,10 +218,7 @@ _WORKERS = 4
 def in_order(
     workers: Executor, read: Callable[[TextRows], Fields], parts: Iterator[TextRows]
 ) -> Iterator[tuple[TextRows, Fields]]:
-    """Parts with what has been read from each, a few at the same time.
-
-    An error in the making of a part is told after what stands above it.
-    """
+    """Parts with what has been read from each, a few at the same time."""
     waiting: deque[tuple[TextRows, Future[Fields]]] = deque()
     error: ReductionError | None = None
     is_done = False
@@ -283,13 +259,7 @@ class GrowingLog:
         self.first_row = 0
 
     def add(self, fields: Fields, first_row: int) -> None:
-        """Add data rows that follow; the first of them stands in an editor's row.
-
-        Raises
-        ------
-        DataError
-            If the disk is full.
-        """
+        """Add data rows that follow; the first of them stands in an editor's row."""
         if not fields.n_rows:
             return
         row = fields.row
@@ -309,13 +279,7 @@ class GrowingLog:
         self.n_rows += fields.n_rows
 
     def finish(self, path: Path, layout: Layout) -> dict[str, Floats]:
-        """All columns, shape (n_rows,); of a clock the elapsed seconds.
-
-        Raises
-        ------
-        LogError
-            If a text is no clock time.
-        """
+        """All columns, shape (n_rows,); of a clock the elapsed seconds."""
         self.row: Integers | None = None if self._row is None else self._row.finish()
         self.text = {key: tuple(texts) for key, texts in self._clock.items()}
         with ThreadPoolExecutor(_WORKERS) as workers:

@@ -96,33 +96,7 @@ def read_parquet(
     parts: Parts | None = None,
     watch: Watch | None = None,
 ) -> RawLog:
-    """Read the declared columns; a field's ``unit`` or ``units`` is checked.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-    layout : Layout
-        ``missing`` and the channels.
-    name : str
-        Name of the file for the product.
-    parts : Parts, optional
-        How much of it is read at a time.
-    watch : Watch, optional
-        Holds it against its limits.
-
-    Returns
-    -------
-    log : RawLog
-        With the key-value metadata of the file.
-
-    Raises
-    ------
-    LogError
-        If the file or a column cannot be used.
-    DataError
-        If the disk is full.
-    """
+    """Read the declared columns; a field's ``unit`` or ``units`` is checked."""
     source = hash_source(path, name)
     with open_parquet(path) as file:
         columns, n_rows = read_columns(

@@ -26,19 +26,7 @@ from reduction.record.settings import QualitySettings
 
 
 def length_at_slack(layouts: Sequence[Layout]) -> float | None:
-    """Thimble-to-thimble length at which the layouts of a log say that it is slack.
-
-    Parameters
-    ----------
-    layouts : sequence of Layout
-        One a file.
-
-    Returns
-    -------
-    length : float or None
-        ``reference_length`` where it was read at slack; None where none is stated, where it
-        was read under tension, or where the files differ. [m]
-    """
+    """Thimble-to-thimble length at which the layouts of a log say that it is slack."""
     lengths = set()
     for layout in layouts:
         channel = layout.channels.get("crosshead_position")
@@ -54,20 +42,8 @@ _COUNTED = "cycle_counter"
 
 
 @dataclass(frozen=True)
-class CommonTime:
-    """Channels on one time axis.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n_samples,)
-        Of the slowest channel. [s]
-    values : dict of str to ndarray, shape (n_samples,)
-        By channel key; NaN where a channel has no sample near enough.
-    resampled : frozenset of str
-        Channels that were interpolated.
-    notes : tuple of str
-        What was done, with both rates.
-    """
+class _CommonTime:
+    """Channels on one time axis."""
 
     time: Floats
     values: dict[str, Floats]
@@ -88,39 +64,14 @@ class _Axis:
         return float(np.median(steps)) if steps.size else np.nan
 
 
-def on_common_time(
+def _on_common_time(
     shared: Floats | None,
     values: Mapping[str, Floats],
     own: Mapping[str, Floats],
     *,
     gap_factor: float,
-) -> CommonTime:
-    """Bring channels to the time axis of the slowest by linear interpolation.
-
-    Nothing is interpolated over a gap or a missing value, nor beyond the ends: the
-    value is NaN there.  A cycle counter keeps the count of the sample before.
-
-    Parameters
-    ----------
-    shared : ndarray, shape (n_rows,), optional
-        Time of the channels that have no time stamps of their own. [s]
-    values : mapping of str to ndarray, shape (n_rows_of_channel,)
-        Channels. [any]
-    own : mapping of str to ndarray, shape (n_rows_of_channel,)
-        Time stamps of the channels that have their own. [s]
-    gap_factor : float
-        As in `reduction.record.settings.QualitySettings`. [1]
-
-    Returns
-    -------
-    common : CommonTime
-        The channels as they came where there is one time axis only.
-
-    Raises
-    ------
-    DataError
-        If a channel has no time or fewer than two stamps, or the axes do not overlap.
-    """
+) -> _CommonTime:
+    """Bring channels to the time axis of the slowest by linear interpolation."""
     axes: list[_Axis] = []
     trimmed: dict[str, Floats] = {}
     for key, series in values.items():
@@ -147,7 +98,7 @@ def on_common_time(
         else:
             same.keys.append(key)
     if len(axes) == 1:
-        return CommonTime(axes[0].time, trimmed)
+        return _CommonTime(axes[0].time, trimmed)
     base = max(axes, key=lambda axis: axis.step)
     result = {key: trimmed[key] for key in base.keys}
     notes = []
@@ -164,7 +115,7 @@ def on_common_time(
             f"{1 / base.step:.4g} Hz of {', '.join(base.keys)} by linear interpolation"
         )
     moved = frozenset(key for axis in axes if axis is not base for key in axis.keys)
-    return CommonTime(base.time, {key: result[key] for key in values}, moved, tuple(notes))
+    return _CommonTime(base.time, {key: result[key] for key in values}, moved, tuple(notes))
 
 
 def _is_same(one: Floats, other: Floats) -> bool:
@@ -207,26 +158,8 @@ _RESTART_SAMPLES = 3
 
 
 @dataclass(frozen=True)
-class Piece:
-    """One file of a record.
-
-    Parameters
-    ----------
-    log : RawLog
-        As it was read.
-    layout : Layout
-        What it looked like.
-    time : ndarray, shape (n_samples,)
-        Elapsed time as logged. [s]
-    values : dict of str to ndarray, shape (n_samples,)
-        By channel key, in the file's unit.
-    scale : dict of str to (float, float)
-        Factor and shift that bring each channel to SI, sign and zero applied.
-    resampled : frozenset of str
-        Channels that were interpolated.
-    notes : tuple of str
-        What the reader of the product has to know.
-    """
+class _Piece:
+    """One file of a record."""
 
     log: RawLog
     layout: Layout
@@ -254,28 +187,8 @@ class Piece:
         return f"{what} of {self.log.source.name}"
 
 
-def to_piece(log: RawLog, layout: Layout, *, gap_factor: float) -> Piece:
-    """Bring a log to one time axis.
-
-    Parameters
-    ----------
-    log : RawLog
-        As it was read.
-    layout : Layout
-        What it looked like.
-    gap_factor : float
-        As in `reduction.record.settings.QualitySettings`. [1]
-
-    Returns
-    -------
-    piece : Piece
-        Channels that a record holds; others are named in the notes.
-
-    Raises
-    ------
-    DataError
-        If channels have no time or two time bases, or time starts again.
-    """
+def _to_piece(log: RawLog, layout: Layout, *, gap_factor: float) -> _Piece:
+    """Bring a log to one time axis."""
     values, scale, unused = {}, {}, []
     for name, channel in layout.channels.items():
         kind = name.split(".")[0]
@@ -290,11 +203,11 @@ def to_piece(log: RawLog, layout: Layout, *, gap_factor: float) -> Piece:
         for key, name in ((key, _declared(layout, key)) for key in values)
         if f"{name}.time" in log.columns
     }
-    common = on_common_time(_shared_time(log, layout), values, own, gap_factor=gap_factor)
+    common = _on_common_time(_shared_time(log, layout), values, own, gap_factor=gap_factor)
     notes = [*log.notes, *common.notes]
     if unused:
         notes.append(f"read, but not part of a record: {', '.join(unused)}")
-    piece = Piece(log, layout, common.time, common.values, scale, common.resampled, tuple(notes))
+    piece = _Piece(log, layout, common.time, common.values, scale, common.resampled, tuple(notes))
     _check_restart(piece)
     return piece
 
@@ -341,7 +254,7 @@ def _shared_time(log: RawLog, layout: Layout) -> Floats | None:
     return time
 
 
-def _check_restart(piece: Piece) -> None:
+def _check_restart(piece: _Piece) -> None:
     """Refuse a log in which time starts again: a slip of the clock is short or small."""
     time, low, high = piece.time, np.inf, -np.inf
     for part in sample_blocks(time.size, time, overlap=1):
@@ -356,7 +269,7 @@ def _check_restart(piece: Piece) -> None:
         low, high = np.fmin.reduce(block, initial=low), np.fmax.reduce(block, initial=high)
 
 
-def _check_slip(piece: Piece, last: int, top: float) -> None:
+def _check_slip(piece: _Piece, last: int, top: float) -> None:
     """Refuse a fall of time after which it goes on for some samples, below where it was."""
     time = piece.time
     after = time[last + 1 : last + 2 + _RESTART_SAMPLES]
@@ -392,40 +305,12 @@ def to_record(
     quality: QualitySettings,
     length_needed: bool = True,
 ) -> Record:
-    """Convert the log or logs of a test; several are a record in pieces, in order.
-
-    Parameters
-    ----------
-    logs : sequence of (RawLog, Layout)
-        In order of time.
-    test_id : str
-        Key of the test.
-    specimens : sequence of str
-        Names; ``tension.1`` belongs to the first.
-    quality : QualitySettings
-        When a sample is flagged.
-    length_needed : bool
-        Whether position has to be a thimble-to-thimble length.  False where strain
-        comes from an extensometer or a gauge length, or where cycles alone are wanted:
-        a displacement without a reference length is then kept as a displacement.
-
-    Returns
-    -------
-    record : Record
-        In SI, flags set, every row kept.
-
-    Raises
-    ------
-    SettingsError
-        If the layouts do not fit the test, or a displacement is used as a length.
-    DataError
-        If the logs have two time bases, or a channel holds no number.
-    """
+    """Convert the log or logs of a test; several are a record in pieces, in order."""
     if not logs:
         raise SettingsError(f"test '{test_id}' has no file", needed="one or more logs")
     n_strain = [_check_channels(layout, test_id, len(specimens)) for _, layout in logs]
     position_is_length = _check_datum([layout for _, layout in logs], test_id, length_needed)
-    pieces = [to_piece(log, layout, gap_factor=quality.gap_factor) for log, layout in logs]
+    pieces = [_to_piece(log, layout, gap_factor=quality.gap_factor) for log, layout in logs]
     _check_order(pieces)
     n_samples = sum(piece.time.size for piece in pieces)
     beside, rows = pieces[0].time, (len(specimens), n_samples)
@@ -517,7 +402,7 @@ def _check_datum(layouts: Sequence[Layout], test_id: str, length_needed: bool) -
     return is_length == {True}
 
 
-def _check_order(pieces: Sequence[Piece]) -> None:
+def _check_order(pieces: Sequence[_Piece]) -> None:
     """Time goes on from piece to piece; strain and counter are in all pieces or in none."""
     for before, after in pairwise(pieces):
         end, start = finite_extremes(before.time)[1], finite_extremes(after.time)[0]
@@ -538,7 +423,7 @@ def _check_order(pieces: Sequence[Piece]) -> None:
             )
 
 
-def _fill(target: Floats, pieces: Sequence[Piece], key: str) -> None:
+def _fill(target: Floats, pieces: Sequence[_Piece], key: str) -> None:
     """Write a channel of all pieces, in SI, one after another."""
     start = 0
     for piece in pieces:
@@ -557,7 +442,7 @@ def _fill(target: Floats, pieces: Sequence[Piece], key: str) -> None:
         start += piece.time.size
 
 
-def _check_size(part: Floats, piece: Piece, key: str) -> None:
+def _check_size(part: Floats, piece: _Piece, key: str) -> None:
     """Refuse numbers that no machine can have measured."""
     absurd = np.concatenate(
         [
@@ -575,7 +460,7 @@ def _check_size(part: Floats, piece: Piece, key: str) -> None:
         )
 
 
-def _check_clock(piece: Piece) -> None:
+def _check_clock(piece: _Piece) -> None:
     """Refuse times that no clock can have shown."""
     low, high = finite_extremes(piece.time)
     if low < -_ABSURD_TIME or high > _ABSURD_TIME:
@@ -588,7 +473,7 @@ def _check_clock(piece: Piece) -> None:
         )
 
 
-def _counter(pieces: Sequence[Piece], n_samples: int) -> tuple[Integers | None, tuple[str, ...]]:
+def _counter(pieces: Sequence[_Piece], n_samples: int) -> tuple[Integers | None, tuple[str, ...]]:
     """The machine's own count as whole numbers, -1 where it is missing."""
     key = "cycle_counter"
     if key not in pieces[0].values:
@@ -615,7 +500,7 @@ def _counter(pieces: Sequence[Piece], n_samples: int) -> tuple[Integers | None, 
     return whole, ()
 
 
-def _uncertainty(pieces: Sequence[Piece], key: str, dimension: Dimension) -> float:
+def _uncertainty(pieces: Sequence[_Piece], key: str, dimension: Dimension) -> float:
     """Largest declared standard uncertainty; NaN where a piece declares none."""
     texts = [piece.channel(key).standard_uncertainty for piece in pieces]
     return max(
@@ -624,7 +509,7 @@ def _uncertainty(pieces: Sequence[Piece], key: str, dimension: Dimension) -> flo
     )
 
 
-def _metadata(pieces: Sequence[Piece]) -> dict[str, str]:
+def _metadata(pieces: Sequence[_Piece]) -> dict[str, str]:
     metadata: dict[str, str] = {}
     for piece in pieces:
         for key, value in piece.log.metadata.items():
@@ -633,7 +518,7 @@ def _metadata(pieces: Sequence[Piece]) -> dict[str, str]:
     return metadata
 
 
-def _piece_notes(pieces: Sequence[Piece]) -> list[str]:
+def _piece_notes(pieces: Sequence[_Piece]) -> list[str]:
     if len(pieces) == 1:
         return list(pieces[0].notes)
     joined = " and ".join(piece.log.source.name for piece in pieces)
@@ -642,7 +527,7 @@ def _piece_notes(pieces: Sequence[Piece]) -> list[str]:
 
 
 def _verified(
-    pieces: Sequence[Piece], n_specimens: int
+    pieces: Sequence[_Piece], n_specimens: int
 ) -> dict[tuple[int, int, int], tuple[float, float]]:
     """Verified range of each load cell by specimen, first row and row after the last. [N]."""
     verified = {}
@@ -658,7 +543,7 @@ def _verified(
     return verified
 
 
-def _datum_notes(record: Record, piece: Piece) -> tuple[str, ...]:
+def _datum_notes(record: Record, piece: _Piece) -> tuple[str, ...]:
     """Compare the tension at displacement zero with that at which the length was read."""
     channel = piece.channel("crosshead_position")
     if channel.datum != "displacement" or channel.reference_length is None:

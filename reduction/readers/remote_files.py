@@ -50,27 +50,7 @@ def product_fault(place: str, problem: str, **parts: str | None) -> ArchiveError
 
 
 def allowed(text: str, allow_remote: bool, *, what: str) -> bool:
-    """Whether a text is an address; one that may not be fetched is refused.
-
-    Parameters
-    ----------
-    text : str
-        As it was written.
-    allow_remote : bool
-        Whether the user said so.
-    what : str
-        What is to be found there, for the message.
-
-    Returns
-    -------
-    is_remote : bool
-        False of a file of this machine.
-
-    Raises
-    ------
-    SettingsError
-        If it is an address and addresses are not allowed, or one of another kind.
-    """
+    """Whether a text is an address; one that may not be fetched is refused."""
     if not is_address(text):
         return False
     shown = repr(shown_address(text))
@@ -97,24 +77,7 @@ def base_name(address: str) -> str:
 
 
 def fetch(address: str, target: Path, *, fault: Fault = LogError) -> None:
-    """Copy a file from the net.
-
-    Parameters
-    ----------
-    address : str
-        As `allowed` lets it pass.
-    target : pathlib.Path
-        The copy; its folder is made. Nothing stands there where the copy is not whole.
-    fault : callable
-        Makes the error.
-
-    Raises
-    ------
-    ReductionError
-        From ``fault``, if the file is not there, may not be read, breaks off or changes meanwhile.
-    SettingsError
-        If no package speaks to such an address.
-    """
+    """Copy a file from the net."""
     system, path = _file_system(address)
     shown = shown_address(address)
     told: ReductionError | None = None
@@ -249,18 +212,6 @@ def scratch_folder() -> Iterator[Path]:
 
 def in_words(text: str, names: Mapping[str, str]) -> str:
     """A text with addresses instead of the paths of their copies.
-
-    Parameters
-    ----------
-    text : str
-        A message.
-    names : mapping of str to str
-        What may be shown of an address, by the path of its copy.
-
-    Returns
-    -------
-    text : str
-        The same where it names no copy.
 
     Examples
     --------

@@ -44,11 +44,8 @@ _MOST_IN_A_ROW = 3  # more that follow each other closely are a signal
 _SIGNAL_SHARE = 0.1  # of a series in excursions: they are its signal
 
 
-def usual_step(values: Floats, first: Integers, last: Integers) -> Floats:
-    """Third largest of the eight steps before the first and after the last step of a place.
-
-    Another spike nearby makes two large steps, which are passed over.
-    """
+def _usual_step(values: Floats, first: Integers, last: Integers) -> Floats:
+    """Third largest of the eight steps before the first and after the last step of a place."""
     around = np.arange(1, _NEIGHBOURS + 1)
     left = np.concatenate([first[:, np.newaxis] - around, last[:, np.newaxis] + around], axis=1)
     is_inside = (left >= 0) & (left < values.size - 1)
@@ -59,36 +56,11 @@ def usual_step(values: Floats, first: Integers, last: Integers) -> Floats:
     return usual
 
 
-def find_excursions(values: Floats, jumps: Integers, *, limit: float) -> Integers:
-    """Samples between a jump off the course of a series and the jump back to it.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        A channel. [any]
-    jumps : ndarray of int, shape (n_jumps,)
-        Steps that may be jumps, in order, each by the sample before it. [1]
-    limit : float
-        Smallest jump. [as values]
-
-    Returns
-    -------
-    off : ndarray of int, shape (n_off,)
-        Samples of excursions of two to ten samples, whose jumps have opposite signs and are five
-        times the usual step nearby.  Every sample between is off the line across by half
-        the jump, and the channel comes back to its course, extrapolated from before and
-        after, a turn within allowed for, within a tenth of the jump.
-
-    Notes
-    -----
-    Levels that change there and back again and again are a signal: more than three
-    excursions with ten samples or fewer between them are none, nor are two or three of which
-    one is longer than what is between them, nor any where together they make more than a
-    tenth of the series.
-    """
+def _find_excursions(values: Floats, jumps: Integers, *, limit: float) -> Integers:
+    """Samples between a jump off the course of a series and the jump back to it."""
     none = np.empty(0, dtype=np.intp)
     size = take_samples(values, jumps + 1) - take_samples(values, jumps)
-    is_jump = np.abs(size) > np.fmax(limit, _JUMP_TO_STEPS * usual_step(values, jumps, jumps))
+    is_jump = np.abs(size) > np.fmax(limit, _JUMP_TO_STEPS * _usual_step(values, jumps, jumps))
     jumps, size = jumps[is_jump], np.abs(size[is_jump])
     if not jumps.size:
         return none
@@ -148,7 +120,7 @@ def _returns(values: Floats, out: Integers, back: Integers, limit: float) -> Boo
     line = before[:, np.newaxis] + (rows - out[:, np.newaxis]) * (change / n_steps)[:, np.newaxis]
     off = np.sign(leaves)[:, np.newaxis] * (take_samples(values, rows) - line)
     is_large = (n_steps > 2) & (
-        size > np.fmax(limit, _JUMP_TO_STEPS * usual_step(values, out, back))
+        size > np.fmax(limit, _JUMP_TO_STEPS * _usual_step(values, out, back))
     )
     is_back = (leaves * comes < 0) & (missed <= limit + _RETURN * size)
     return np.asarray(is_large & is_back & (off > _OFF_COURSE * size[:, np.newaxis]).all(axis=1))
@@ -166,20 +138,8 @@ _STEP = np.sqrt(12.0)  # one step of a quantised value over its standard deviati
 
 
 @dataclass(frozen=True)
-class Timing:
-    """Faults of a time axis.
-
-    Parameters
-    ----------
-    step : float
-        Median time step. [s]
-    gap, backward : ndarray of bool, shape (n_samples,)
-        First sample after a gap; samples not later than one before them.
-    n_uneven : int
-        Steps, gaps apart, that differ from the median by more than the tolerance.
-    shortest, longest : float
-        Of the steps that are neither gaps nor backward. [s]
-    """
+class _Timing:
+    """Faults of a time axis."""
 
     step: float
     gap: Bools
@@ -190,24 +150,15 @@ class Timing:
 
 
 @dataclass(frozen=True)
-class RowAccount:
-    """Every row of a record accounted for.
-
-    Parameters
-    ----------
-    n_read, n_kept : int
-        Rows in the files, rows in the record.
-    n_flagged : dict of str to dict of str to int
-        By channel (``crosshead_position``, ``tension of NAME``) and mask; masks that
-        flag nothing are left out.
-    """
+class _RowAccount:
+    """Every row of a record accounted for."""
 
     n_read: int
     n_kept: int
     n_flagged: dict[str, dict[str, int]]
 
 
-def account_rows(record: Record) -> RowAccount:
+def account_rows(record: Record) -> _RowAccount:
     """Rows read, kept, and flagged by mask and channel."""
     channels = {"crosshead_position": record.crosshead_position_quality_flag}
     for name, flags in zip(record.specimens, record.quality_flag, strict=True):
@@ -225,10 +176,10 @@ def account_rows(record: Record) -> RowAccount:
             if mask.name is not None
         }
         n_flagged[channel] = {name: count for name, count in of_mask.items() if count}
-    return RowAccount(record.n_rows_read, record.n_samples, n_flagged)
+    return _RowAccount(record.n_rows_read, record.n_samples, n_flagged)
 
 
-def find_missing(values: Floats) -> Bools:
+def _find_missing(values: Floats) -> Bools:
     """Where a value is NaN, shape (n_samples,)."""
     missing = zeros_like(values, dtype=bool)
     for part in sample_blocks(values.size, values, missing):
@@ -237,7 +188,7 @@ def find_missing(values: Floats) -> Bools:
     return missing
 
 
-def find_outside_range(values: Floats, low: float, high: float) -> Bools:
+def _find_outside_range(values: Floats, low: float, high: float) -> Bools:
     """Where a value lies outside the range a load cell is verified for, shape (n_samples,)."""
     outside = zeros_like(values, dtype=bool)
     for part in sample_blocks(values.size, values, outside):
@@ -246,7 +197,7 @@ def find_outside_range(values: Floats, low: float, high: float) -> Bools:
     return outside
 
 
-def sampled_windows(values: Floats) -> Floats:
+def _sampled_windows(values: Floats) -> Floats:
     """Windows spread evenly over a series, one a row; a short series is one window."""
     if values.size <= _WINDOWS * _WINDOW:
         return values[np.newaxis]
@@ -255,33 +206,15 @@ def sampled_windows(values: Floats) -> Floats:
     return windows
 
 
-def time_faults(time: Floats, *, gap_factor: float, rate_tolerance: float) -> Timing:
-    """Gaps, backward or repeated time, and steps that differ from the median.
-
-    A gap is a step ``gap_factor`` times as long as the median of the record and of the
-    steps around it, so that a slow part of a log is not a row of gaps.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n_samples,)
-        Elapsed time; NaN where missing. [s]
-    gap_factor : float
-        As in `reduction.record.settings.QualitySettings`. [1]
-    rate_tolerance : float
-        Likewise. [1]
-
-    Returns
-    -------
-    timing : Timing
-        Masks and steps.
-    """
+def _time_faults(time: Floats, *, gap_factor: float, rate_tolerance: float) -> _Timing:
+    """Gaps, backward or repeated time, and steps that differ from the median."""
     n_samples = time.size
     gap, backward = zeros_like(time, dtype=bool), zeros_like(time, dtype=bool)
-    steps = np.diff(sampled_windows(time), axis=1).ravel()
+    steps = np.diff(_sampled_windows(time), axis=1).ravel()
     steps = steps[steps > 0]
     if not steps.size:
         backward[1:] = True
-        return Timing(np.nan, gap, backward, 0, np.nan, np.nan)
+        return _Timing(np.nan, gap, backward, 0, np.nan, np.nan)
     step = float(np.median(steps))
     low, high = (1 - rate_tolerance) * step, (1 + rate_tolerance) * step
     latest, n_uneven, shortest, longest = -np.inf, 0, np.inf, -np.inf
@@ -305,7 +238,7 @@ def time_faults(time: Floats, *, gap_factor: float, rate_tolerance: float) -> Ti
         if usual.size:
             n_uneven += int(np.count_nonzero((usual < low) | (usual > high)))
             shortest, longest = min(shortest, usual.min()), max(longest, usual.max())
-    return Timing(step, gap, backward, n_uneven, float(shortest), float(longest))
+    return _Timing(step, gap, backward, n_uneven, float(shortest), float(longest))
 
 
 def _usual_time_step(time: Floats, place: Integers) -> Floats:
@@ -322,25 +255,9 @@ def _usual_time_step(time: Floats, place: Integers) -> Floats:
     return usual
 
 
-def noise_of(values: Floats) -> tuple[float, float]:
-    """Standard deviation of a series about its own course, and the step it is printed in.
-
-    From second differences in windows over the series (median absolute deviation), so
-    that ramps, reversals and holds do not count; never below what the step makes.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        A channel. [any]
-
-    Returns
-    -------
-    noise : float
-        Standard deviation of one sample. [as values]
-    step : float
-        Smallest change between neighbours; 0 for a constant series. [as values]
-    """
-    windows = sampled_windows(values)
+def _noise_of(values: Floats) -> tuple[float, float]:
+    """Standard deviation of a series about its own course, and the step it is printed in."""
+    windows = _sampled_windows(values)
     changes = np.abs(np.diff(windows, axis=1))
     changes = changes[changes > 0]
     step = float(changes.min()) if changes.size else 0.0
@@ -350,27 +267,8 @@ def noise_of(values: Floats) -> tuple[float, float]:
     return max(_MAD_TO_SIGMA * spread / _SECOND_DIFFERENCE, step / _STEP), step
 
 
-def find_spikes(values: Floats, *, noise: float, factor: float) -> Bools:
-    """Samples off the course of their neighbours: single ones, and excursions of up to ten.
-
-    A sample is off by ``factor`` times the noise and by three times the usual step
-    nearby, so that a reversal, the start of a ramp, a step and a rough stretch are none;
-    for excursions of several samples see `reduction.readers.sample_flags`.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        A channel. [any]
-    noise : float
-        From `noise_of`. [as values]
-    factor : float
-        ``spike_factor`` of the settings. [1]
-
-    Returns
-    -------
-    is_spike : ndarray of bool, shape (n_samples,)
-        True at the samples that are off.
-    """
+def _find_spikes(values: Floats, *, noise: float, factor: float) -> Bools:
+    """Samples off the course of their neighbours: single ones, and excursions of up to ten."""
     is_spike = zeros_like(values, dtype=bool)
     limit = factor * noise
     if limit <= 0:
@@ -389,11 +287,11 @@ def find_spikes(values: Floats, *, noise: float, factor: float) -> Bools:
     before, here, after = (take_samples(values, place + step) for step in (-1, 0, 1))
     off = np.minimum(np.abs(here - before), np.abs(here - after))
     opposite = (here - before) * (after - here) < -(limit**2)
-    nearby = np.fmax(np.abs(after - before), usual_step(values, place - 1, place))
+    nearby = np.fmax(np.abs(after - before), _usual_step(values, place - 1, place))
     single = place[opposite & (off > limit) & (off > _SPIKE_TO_NEIGHBOURS * nearby)]
     is_spike[single] = True
     of_single = is_spike[jump] | is_spike[jump + 1]
-    is_spike[find_excursions(values, jump[~of_single], limit=limit)] = True
+    is_spike[_find_excursions(values, jump[~of_single], limit=limit)] = True
     return is_spike
 
 
@@ -406,29 +304,10 @@ _STAYS = 0.5  # of the step, at least, is left of it between the levels on its s
 _OUTER = (0.01, 0.99)
 
 
-def find_lone_steps(
+def _find_lone_steps(
     values: Floats, beside: Floats, *, noise: float, noise_beside: Floats, factor: float
 ) -> Integers:
     """Steps of a channel that stay, at which no channel beside it steps.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        A channel; NaN where it is flagged. [any]
-    beside : ndarray, shape (n_beside, n_samples)
-        Those that would step with it. [any]
-    noise : float
-        From `reduction.readers.sample_flags.noise_of`. [as values]
-    noise_beside : ndarray, shape (n_beside,)
-        Likewise. [as beside]
-    factor : float
-        ``spike_factor`` of the settings. [1]
-
-    Returns
-    -------
-    step : ndarray of int, shape (n_steps,)
-        The sample before each step, which is larger than ``factor`` times the noise, than five
-        times the usual step nearby and than a twentieth of the range of the channel. [1]
 
     Examples
     --------
@@ -436,12 +315,12 @@ def find_lone_steps(
     >>> tension = np.sin(time / 10) + np.where(time > 120, 3.0, 0.0)
     >>> position = np.sin(time / 10)[np.newaxis]
     >>> given = {"noise": 0.01, "noise_beside": np.array([0.01]), "factor": 12.0}
-    >>> find_lone_steps(tension, position, **given)
+    >>> _find_lone_steps(tension, position, **given)
     array([120])
-    >>> find_lone_steps(tension, tension[np.newaxis], **given).size
+    >>> _find_lone_steps(tension, tension[np.newaxis], **given).size
     0
     """
-    seen = sampled_windows(values)
+    seen = _sampled_windows(values)
     low, high = np.quantile(seen[np.isfinite(seen)], _OUTER) if np.isfinite(seen).any() else (0, 0)
     limit = max(factor * noise, _SHARE_OF_RANGE * float(high - low))
     found = []
@@ -468,7 +347,7 @@ def _candidates(step: Floats, limit: float) -> Integers:
 
 def _stands_out(values: Floats, step: Integers, limit: float) -> Bools:
     change = np.abs(take_samples(values, step + 1) - take_samples(values, step))
-    return np.asarray(change > np.fmax(limit, _STEP_TO_STEPS * usual_step(values, step, step)))
+    return np.asarray(change > np.fmax(limit, _STEP_TO_STEPS * _usual_step(values, step, step)))
 
 
 def _level_change(values: Floats, step: Integers) -> Floats:
@@ -504,39 +383,23 @@ _RISE_NOISE = 20.0
 
 
 @dataclass(frozen=True)
-class Runs:
+class _Runs:
     """Runs of equal values: first sample and the one after the last, shape (n_runs,) each."""
 
     start: Integers
     stop: Integers
 
-    def where(self, keep: Bools) -> Runs:
+    def where(self, keep: Bools) -> _Runs:
         """Some of the runs."""
-        return Runs(self.start[keep], self.stop[keep])
+        return _Runs(self.start[keep], self.stop[keep])
 
     def mask(self, like: Floats) -> Bools:
         """True inside the runs, for each sample of a series like that."""
         return interval_labels(like, self.start, self.stop, np.ones(self.start.size, dtype=bool))
 
 
-def constant_runs(values: Floats, minimum: int) -> Runs:
-    """Runs of at least ``minimum`` equal values.
-
-    A run that long holds a whole block of half that length, and a block can be ruled
-    out by three of its samples.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        A channel. [any]
-    minimum : int
-        Shortest run. [1]
-
-    Returns
-    -------
-    runs : Runs
-        In order.
-    """
+def _constant_runs(values: Floats, minimum: int) -> _Runs:
+    """Runs of at least ``minimum`` equal values."""
     length = max(minimum // 2, 1)
     found = [np.empty(0, dtype=np.intp)]
     step = length * max(BLOCK // length, 1)
@@ -547,14 +410,14 @@ def constant_runs(values: Floats, minimum: int) -> Runs:
         found.append(part.start // length + equal)
     place = np.concatenate(found)
     if not place.size:
-        return Runs(place, place)
+        return _Runs(place, place)
     level = take_samples(values, place * length)
     is_first = np.concatenate([[True], (np.diff(place) > 1) | (np.diff(level) != 0)])
     is_last = np.concatenate([is_first[1:], [True]])
     start, stop = place[is_first] * length, (place[is_last] + 1) * length
     start = start - _repeats(values, start, -np.arange(1, length))
     stop = stop + _repeats(values, stop - 1, np.arange(1, length))
-    runs = Runs(start, stop)
+    runs = _Runs(start, stop)
     return runs.where(stop - start >= minimum)
 
 
@@ -570,11 +433,11 @@ def _repeats(values: Floats, edge: Integers, reach: Integers) -> Integers:
     return repeats
 
 
-def moves(position: Floats, runs: Runs) -> Bools:
+def _moves(position: Floats, runs: _Runs) -> Bools:
     """Whether the crosshead moves in each run, shape (n_runs,)."""
     if not runs.start.size:
         return np.empty(0, dtype=bool)
-    noise, _ = noise_of(position)
+    noise, _ = _noise_of(position)
     low, high = finite_extremes(position)
     reach = np.fmax(high - position[0], position[0] - low)
     tolerance = _MOVING_NOISE * noise + _MOVING_SHARE * reach
@@ -585,26 +448,10 @@ def moves(position: Floats, runs: Runs) -> Bools:
     return np.asarray(travel > tolerance)
 
 
-def find_stuck(tension: Floats, position: Floats, *, samples: int) -> Bools:
-    """Where a load channel repeats one value while the crosshead moves.
-
-    Parameters
-    ----------
-    tension : ndarray, shape (n_samples,)
-        Load. [N]
-    position : ndarray, shape (n_samples,)
-        Crosshead position. [m]
-    samples : int
-        ``stuck_samples`` of the settings. [1]
-
-    Returns
-    -------
-    is_stuck : ndarray of bool, shape (n_samples,)
-        A run at the level of a slack specimen counts only where the load jumps to it
-        or from it, as when a cable comes loose.
-    """
-    runs = constant_runs(tension, samples)
-    runs = runs.where(moves(position, runs))
+def _find_stuck(tension: Floats, position: Floats, *, samples: int) -> Bools:
+    """Where a load channel repeats one value while the crosshead moves."""
+    runs = _constant_runs(tension, samples)
+    runs = runs.where(_moves(position, runs))
     if not runs.start.size:
         return runs.mask(tension)
     low, high = finite_extremes(tension)
@@ -616,24 +463,8 @@ def find_stuck(tension: Floats, position: Floats, *, samples: int) -> Bools:
     return runs.where(~is_slack | jumps).mask(tension)
 
 
-def find_saturated(tension: Floats, position: Floats) -> Bools:
-    """Where a load channel stands at its greatest or least value because it can go no further.
-
-    A quantised peak repeats its greatest value as well.  It is saturated only where the
-    load came, in as many samples before or after, from further than a rounded peak does.
-
-    Parameters
-    ----------
-    tension : ndarray, shape (n_samples,)
-        Load. [N]
-    position : ndarray, shape (n_samples,)
-        Crosshead position. [m]
-
-    Returns
-    -------
-    is_saturated : ndarray of bool, shape (n_samples,)
-        Runs of at least five samples while the crosshead moves.
-    """
+def _find_saturated(tension: Floats, position: Floats) -> Bools:
+    """Where a load channel stands at its greatest or least value because it can go no further."""
     starts: list[Integers] = [np.empty(0, dtype=np.intp)]
     stops = list(starts)
     low, high = finite_extremes(tension)
@@ -650,24 +481,20 @@ def find_saturated(tension: Floats, position: Floats) -> Bools:
             continue
         is_first = np.concatenate([[True], np.diff(place) > 1])
         is_last = np.concatenate([is_first[1:], [True]])
-        runs = Runs(place[is_first], place[is_last] + 1)
+        runs = _Runs(place[is_first], place[is_last] + 1)
         length = runs.stop - runs.start
         runs = runs.where(length >= _SATURATED_SAMPLES)
         if not runs.start.size:
             continue
         runs = runs.where(_comes_from_afar(tension, runs))
-        runs = runs.where(moves(position, runs))
+        runs = runs.where(_moves(position, runs))
         starts.append(runs.start)
         stops.append(runs.stop)
-    return Runs(np.sort(np.concatenate(starts)), np.sort(np.concatenate(stops))).mask(tension)
+    return _Runs(np.sort(np.concatenate(starts)), np.sort(np.concatenate(stops))).mask(tension)
 
 
-def _comes_from_afar(tension: Floats, runs: Runs) -> Bools:
-    """Whether the load beside a run changes by far more than it does at a rounded peak.
-
-    Where the top of a sine is one printed step high and as wide as the run, the load one
-    width further out is eight such steps lower; that of a triangle, two.
-    """
+def _comes_from_afar(tension: Floats, runs: _Runs) -> Bools:
+    """Whether the load beside a run changes by far more than it does at a rounded peak."""
     length, last = runs.stop - runs.start, tension.size - 1
     level = take_samples(tension, runs.start)
 
@@ -682,30 +509,15 @@ def _comes_from_afar(tension: Floats, runs: Runs) -> Bools:
     return np.asarray(np.fmax(before, after) >= _SATURATED_STEPS * step)
 
 
-def find_stuck_position(position: Floats, tension: Floats, *, samples: int) -> Bools:
-    """Where position stands still although tension rises: a hold does not make it rise.
-
-    Parameters
-    ----------
-    position : ndarray, shape (n_samples,)
-        Crosshead position. [m]
-    tension : ndarray, shape (n_specimens, n_samples)
-        Loads. [N]
-    samples : int
-        ``stuck_samples`` of the settings. [1]
-
-    Returns
-    -------
-    is_stuck : ndarray of bool, shape (n_samples,)
-        Runs in which any load rises by a quarter of its range.
-    """
-    runs = constant_runs(position, samples)
+def _find_stuck_position(position: Floats, tension: Floats, *, samples: int) -> Bools:
+    """Where position stands still although tension rises: a hold does not make it rise."""
+    runs = _constant_runs(position, samples)
     if not runs.start.size:
         return runs.mask(position)
     rises = np.zeros(runs.start.size, dtype=bool)
     middle = (runs.start + runs.stop) // 2
     for load in tension:
-        noise, _ = noise_of(load)
+        noise, _ = _noise_of(load)
         low, high = finite_extremes(load)
         enough = max(_RISE_SHARE * (high - low), _RISE_NOISE * noise)
         halves = (runs.start, middle), (middle, runs.stop - 1)
@@ -720,21 +532,8 @@ def find_stuck_position(position: Floats, tension: Floats, *, samples: int) -> B
 _STEPS_READ = 100_001
 
 
-def bridge_stamps(time: Floats, missing: Bools) -> Floats:
-    """Time without missing stamps: even steps between neighbours, the median step at the ends.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n_samples,)
-        Elapsed time; NaN where missing, at least one stamp there. [s]
-    missing : ndarray of bool, shape (n_samples,)
-        Where it is NaN. [1]
-
-    Returns
-    -------
-    bridged : ndarray, shape (n_samples,)
-        The stamps that are there as they are. [s]
-    """
+def _bridge_stamps(time: Floats, missing: Bools) -> Floats:
+    """Time without missing stamps: even steps between neighbours, the median step at the ends."""
     lost = np.concatenate(
         [part.start + np.flatnonzero(missing[part]) for part in sample_blocks(time.size, missing)]
     )
@@ -784,39 +583,13 @@ def flag_record(
     verified: Mapping[tuple[int, int, int], tuple[float, float]] | None = None,
     notes: Sequence[str] = (),
 ) -> Record:
-    """Return the record with its flags set and what they mean in its notes.
-
-    Parameters
-    ----------
-    record : Record
-        In SI.
-    settings : QualitySettings
-        When a sample is flagged.
-    resampled : sequence of str
-        Channel keys (``crosshead_position``, ``tension.1``) that were interpolated.
-    verified : mapping of (int, int, int) to (float, float), optional
-        By specimen, first row and row after the last: the range that the load cell is
-        verified for. [N]
-    notes : sequence of str
-        Further notes of the record.
-
-    Returns
-    -------
-    record : Record
-        Every row kept.
-
-    Raises
-    ------
-    DataError
-        If a channel holds no number that can be used, a tension is zero throughout, or a
-        pin-to-pin length is not positive.
-    """
+    """Return the record with its flags set and what they mean in its notes."""
     position_flag: _Flags = zeros_like(record.time, dtype=np.uint16)
     tension_flag: _Flags = zeros_like(record.tension, dtype=np.uint16)
     position = record.crosshead_position
     no_stamp = _missing("time", record.time)
-    record = replace(record, time=bridge_stamps(record.time, no_stamp))
-    timing = time_faults(
+    record = replace(record, time=_bridge_stamps(record.time, no_stamp))
+    timing = _time_faults(
         record.time, gap_factor=settings.gap_factor, rate_tolerance=settings.rate_tolerance
     )
     _set(position_flag, no_stamp, Quality.MISSING)
@@ -832,8 +605,8 @@ def flag_record(
     def flag_tension(index: int) -> None:
         load, flags = record.tension[index], tension_flag[index]
         _set(flags, _missing(f"tension of '{record.specimens[index]}'", load), Quality.MISSING)
-        saturated = find_saturated(load, position)
-        stuck = find_stuck(load, position, samples=settings.stuck_samples)
+        saturated = _find_saturated(load, position)
+        stuck = _find_stuck(load, position, samples=settings.stuck_samples)
         _set(flags, stuck, Quality.STUCK)
         _set(flags, saturated, Quality.SATURATED, instead_of=Quality.STUCK)
         _set(flags, _spikes(load, settings), Quality.SPIKE)
@@ -842,9 +615,9 @@ def flag_record(
 
     run_blocks(flag_tension, range(len(record.specimens)))
     for (index, start, stop), (low, high) in (verified or {}).items():
-        outside = find_outside_range(record.tension[index, start:stop], low, high)
+        outside = _find_outside_range(record.tension[index, start:stop], low, high)
         _set(tension_flag[index, start:stop], outside, Quality.OUTSIDE_VERIFIED_RANGE)
-    stuck = find_stuck_position(position, record.tension, samples=settings.stuck_samples)
+    stuck = _find_stuck_position(position, record.tension, samples=settings.stuck_samples)
     _set(position_flag, stuck, Quality.STUCK)
     flagged = replace(
         record, quality_flag=tension_flag, crosshead_position_quality_flag=position_flag
@@ -891,7 +664,7 @@ def _set_all(flags: _Flags, mask: Quality) -> None:
 
 
 def _missing(name: str, values: Floats) -> Bools:
-    missing = find_missing(values)
+    missing = _find_missing(values)
     if count_samples(missing) == missing.size:
         raise DataError(
             f"{name} holds no number", found=f"{values.size} missing values", needed="a channel"
@@ -900,8 +673,8 @@ def _missing(name: str, values: Floats) -> Bools:
 
 
 def _spikes(values: Floats, settings: QualitySettings) -> Bools:
-    noise, _ = noise_of(values)
-    return find_spikes(values, noise=noise, factor=settings.spike_factor)
+    noise, _ = _noise_of(values)
+    return _find_spikes(values, noise=noise, factor=settings.spike_factor)
 
 
 def _lone_steps(record: Record, settings: QualitySettings) -> list[str]:
@@ -911,12 +684,12 @@ def _lone_steps(record: Record, settings: QualitySettings) -> list[str]:
     channels = [("crosshead_position", "m", position[0], tension, of_time)]
     for name, load, of_load in zip(record.specimens, tension, record.quality_flag, strict=True):
         channels.append((f"tension of '{name}'", "N", load, position, of_load))
-    noise = [noise_of(channel[2])[0] for channel in channels]
+    noise = [_noise_of(channel[2])[0] for channel in channels]
     notes = [""] * len(channels)
 
     def look(index: int) -> None:
         name, unit, values, beside, flags = channels[index]
-        step = find_lone_steps(
+        step = _find_lone_steps(
             values, beside, noise=noise[index], factor=settings.spike_factor,
             noise_beside=np.array(noise[1:] if index == 0 else noise[:1]),
         )  # fmt: skip

@@ -97,11 +97,8 @@ _RISING = 0.9  # share of the steps of a time column that do not go back
 
 
 @dataclass(frozen=True)
-class SeenColumn:
-    """One column as it was seen: ``texts`` and ``values`` (NaN where no number) of some rows.
-
-    ``is_named`` is false where the reader will not find the name in the file.
-    """
+class _SeenColumn:
+    """One column as it was seen: ``texts`` and ``values`` (NaN where no number) of some rows."""
 
     number: int
     name: str = ""
@@ -112,7 +109,7 @@ class SeenColumn:
 
 
 @dataclass(frozen=True)
-class Proposal:
+class _Proposal:
     """Channels as lines of TOML, whether any was found, and what is a guess in them."""
 
     lines: tuple[str, ...]
@@ -121,7 +118,7 @@ class Proposal:
 
 
 @lru_cache(maxsize=4096)
-def is_unit(text: str, dimension: Dimension | None = None) -> bool:
+def _is_unit(text: str, dimension: Dimension | None = None) -> bool:
     """Whether a text is a unit, of one dimension or of any."""
     if not text:
         return False
@@ -143,23 +140,23 @@ def _plain(name: str) -> str:
     return " ".join(words)
 
 
-def _unit(column: SeenColumn, dimension: Dimension) -> str | None:
+def _unit(column: _SeenColumn, dimension: Dimension) -> str | None:
     """Unit that a column states; ``?`` where it states none, None where it is another kind."""
     stated = column.unit.strip().strip("()[]").strip()
     bracketed = _BRACKETED.search(column.name)
     for text in (stated, bracketed[1].strip() if bracketed else ""):
-        if is_unit(text, dimension):
+        if _is_unit(text, dimension):
             return "lbf" if dimension == "force" and text in ("lb", "lbs") else text
-        if is_unit(text):
+        if _is_unit(text):
             return None
     suffix = re.split(r"[\s_.]+", column.name.strip())[-1]
     unit = _SUFFIXES.get(suffix.lower(), "") if suffix != column.name.strip() else ""
-    if unit and is_unit(unit):
-        return unit if is_unit(unit, dimension) else None
+    if unit and _is_unit(unit):
+        return unit if _is_unit(unit, dimension) else None
     return "1" if dimension == "number" else UNKNOWN
 
 
-def _is_clock(column: SeenColumn) -> bool:
+def _is_clock(column: _SeenColumn) -> bool:
     """Whether all texts are clock times; four digits only where one begins with 0."""
     return (
         bool(column.texts)
@@ -168,7 +165,7 @@ def _is_clock(column: SeenColumn) -> bool:
     )
 
 
-def _fits(key: str, column: SeenColumn) -> bool:
+def _fits(key: str, column: _SeenColumn) -> bool:
     """Whether the values can be those of a channel."""
     values = column.values[np.isfinite(column.values)]
     if key == "time" and _is_clock(column):
@@ -182,7 +179,7 @@ def _fits(key: str, column: SeenColumn) -> bool:
     return True
 
 
-def _candidates(key: str, columns: Sequence[SeenColumn]) -> list[tuple[SeenColumn, str]]:
+def _candidates(key: str, columns: Sequence[_SeenColumn]) -> list[tuple[_SeenColumn, str]]:
     """Columns that may be a channel, best first, each with its unit."""
     dimension, patterns, barred = _NAMES[key]
     found = []
@@ -194,17 +191,17 @@ def _candidates(key: str, columns: Sequence[SeenColumn]) -> list[tuple[SeenColum
             unit = _unit(column, dimension)
             if unit is not None and _fits(key, column):
                 found.append((rank, column, unit))
-    best: dict[int, tuple[SeenColumn, str]] = {}
+    best: dict[int, tuple[_SeenColumn, str]] = {}
     for _, column, unit in found:
         best.setdefault(column.number, (column, unit))
     return list(best.values())
 
 
-def _label(column: SeenColumn) -> str:
+def _label(column: _SeenColumn) -> str:
     return toml_text(column.name.strip()) if column.name else str(column.number)
 
 
-def _reference(column: SeenColumn, columns: Sequence[SeenColumn]) -> str:
+def _reference(column: _SeenColumn, columns: Sequence[_SeenColumn]) -> str:
     """The column's name where it is the only one of that name, else its number."""
     names = [other.name.strip() for other in columns if other.is_named]
     return _label(column) if names.count(column.name.strip()) == 1 else str(column.number)
@@ -218,7 +215,7 @@ def _line(key: str, column: str, unit: str, *, is_commented: bool = False) -> st
     return f"# {text}" if is_commented else text
 
 
-def propose_channels(columns: Sequence[SeenColumn]) -> Proposal:
+def _propose_channels(columns: Sequence[_SeenColumn]) -> _Proposal:
     """Lines of a layout's ``channels`` table for the columns of a log."""
     lines: list[str] = []
     keys: list[str] = []
@@ -269,10 +266,10 @@ def propose_channels(columns: Sequence[SeenColumn]) -> Proposal:
         for column in columns
         if column.number not in used
     ]
-    return Proposal(tuple(lines), tuple(keys), tuple(remarks))
+    return _Proposal(tuple(lines), tuple(keys), tuple(remarks))
 
 
-def _described(column: SeenColumn) -> str:
+def _described(column: _SeenColumn) -> str:
     name = f", {_label(column)}" if column.name else ""
     unit = f" in {toml_comment(column.unit)}" if column.unit.strip() else ""
     values = column.values[np.isfinite(column.values)]
@@ -291,7 +288,7 @@ _NUMBER = {
 
 
 @dataclass(frozen=True)
-class TableShape:
+class _TableShape:
     """Where a table stands in rows of fields; rows count from 0."""
 
     start: int
@@ -305,14 +302,14 @@ class TableShape:
     """Fields of some data rows."""
 
 
-def is_number(text: str, decimal: str) -> bool:
+def _is_number(text: str, decimal: str) -> bool:
     """Whether a field is a number with this decimal mark and no thousands mark."""
     return _NUMBER[decimal].fullmatch(text) is not None
 
 
-def look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> TableShape | None:
+def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape | None:
     """Header and data of rows of fields; None where no table of numbers is among them."""
-    counts = [sum(is_number(text, decimal) for text in row) for row in rows]
+    counts = [sum(_is_number(text, decimal) for text in row) for row in rows]
     data = [
         len(row) > 1 and 2 * count >= sum(map(bool, row)) > 0
         for row, count in zip(rows, counts, strict=True)
@@ -342,7 +339,7 @@ def look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> TableShape | N
     names = rows[name_row] if name_row is not None else ()
     units = rows[unit_row] if unit_row is not None else ()
     pad = ("",) * n_fields
-    return TableShape(
+    return _TableShape(
         start=start,
         n_fields=n_fields,
         name_row=name_row,
@@ -364,22 +361,22 @@ def _is_header(fields: Sequence[str], n_fields: int) -> bool:
 
 def _is_unit_row(fields: Sequence[str]) -> bool:
     filled = [text.strip("()[] ") for text in fields if text.strip("()[] -")]
-    known = sum(is_unit(text) for text in filled)
+    known = sum(_is_unit(text) for text in filled)
     return bool(filled) and 2 * known >= len(filled)
 
 
-def seen_columns(table: TableShape, decimal: str, thousands: str = "") -> list[SeenColumn]:
+def _seen_columns(table: _TableShape, decimal: str, thousands: str = "") -> list[_SeenColumn]:
     """Columns of a table with the values of its rows."""
     columns = []
     for place in range(table.n_fields):
         texts = tuple(row[place] for row in table.rows)
         plain = [text.replace(thousands, "") if thousands else text for text in texts]
         values = [
-            float(text.replace(decimal, ".")) if is_number(text, decimal) else math.nan
+            float(text.replace(decimal, ".")) if _is_number(text, decimal) else math.nan
             for text in plain
         ]
         columns.append(
-            SeenColumn(place + 1, table.names[place], table.units[place], np.array(values), texts)
+            _SeenColumn(place + 1, table.names[place], table.units[place], np.array(values), texts)
         )
     if columns and not columns[-1].name and not any(columns[-1].texts):
         columns.pop()  # a delimiter at the end of each line
@@ -411,11 +408,11 @@ _MARKED = (
 
 
 @dataclass(frozen=True)
-class SeenText:
+class _SeenText:
     """A text log: its columns, the layout settings that read it, and remarks."""
 
     format: Format
-    columns: list[SeenColumn]
+    columns: list[_SeenColumn]
     settings: dict[str, object]
     remarks: tuple[str, ...]
 
@@ -460,17 +457,17 @@ def _without_comments(lines: Sequence[str], comment: str) -> list[str]:
     return ["" if comment and line.startswith(comment) else line for line in lines]
 
 
-def _best_table(lines: Sequence[str]) -> tuple[str, str, TableShape] | None:
+def _best_table(lines: Sequence[str]) -> tuple[str, str, _TableShape] | None:
     """Delimiter, decimal mark and table that make the most of the fields numbers."""
     best, best_score = None, (0.0, 0)
     for delimiter in _DELIMITERS:
         rows = _split(lines, delimiter)
         for decimal in ".,":
-            table = look_at_table(rows, decimal) if decimal != delimiter else None
+            table = _look_at_table(rows, decimal) if decimal != delimiter else None
             if table is None:
                 continue
             fields = [text for row in table.rows for text in row if text]
-            numbers = sum(is_number(text, decimal) for text in fields)
+            numbers = sum(_is_number(text, decimal) for text in fields)
             score = (round(numbers / len(fields), 2), numbers)
             if score > best_score and score[0] > _LEAST_SHARE[delimiter == " "]:
                 best, best_score = (delimiter, decimal, table), score
@@ -478,12 +475,12 @@ def _best_table(lines: Sequence[str]) -> tuple[str, str, TableShape] | None:
 
 
 def _number_settings(
-    table: TableShape, delimiter: str, decimal: str
+    table: _TableShape, delimiter: str, decimal: str
 ) -> tuple[dict[str, object], list[str]]:
     """Thousands mark and missing marks, and how sure the decimal mark is."""
     fields = [text for row in table.rows for text in row if text]
     remarks = []
-    marked = [text for text in fields if decimal in text and is_number(text, decimal)]
+    marked = [text for text in fields if decimal in text and _is_number(text, decimal)]
     if not marked:
         remarks.append(f"guess: decimal mark '{decimal}', because no number has one")
     elif decimal == "," and all(re.fullmatch(r"[+-]?\d{1,3},\d{3}", text) for text in marked):
@@ -495,7 +492,7 @@ def _number_settings(
     is_parted = False
     for place in range(table.n_fields):
         texts = [row[place] for row in table.rows if row[place]]
-        strange = [text for text in texts if not is_number(text, decimal)]
+        strange = [text for text in texts if not _is_number(text, decimal)]
         parted = [text for text in strange if _THOUSANDS[decimal].fullmatch(text)]
         if 2 * (len(strange) - len(parted)) < len(texts):
             odd += strange
@@ -514,14 +511,8 @@ def _number_settings(
     return settings, remarks
 
 
-def look_at_text(path: Path) -> SeenText:
-    """Shape of the table in a text file, from its first 256 kB.
-
-    Raises
-    ------
-    LogError
-        If the file is binary, or no table of numbers stands at its start.
-    """
+def _look_at_text(path: Path) -> _SeenText:
+    """Shape of the table in a text file, from its first 256 kB."""
     with path.open("rb") as stream:
         head = stream.read(_HEAD)
         is_whole = not stream.read(1)
@@ -540,7 +531,7 @@ def look_at_text(path: Path) -> SeenText:
     remarks = [remark, f"sure: delimiter {delimiter!r}, {table.n_fields} fields a row"]
     more, more_remarks = _number_settings(table, delimiter, decimal)
     remarks += more_remarks
-    columns = seen_columns(table, decimal, str(more.get("thousands", "")))
+    columns = _seen_columns(table, decimal, str(more.get("thousands", "")))
     if comment:
         settings["comment"] = comment
         remarks.append(f"guess: lines that begin with '{comment}' are comments")
@@ -571,12 +562,12 @@ def look_at_text(path: Path) -> SeenText:
     if table.unit_row is not None:
         remarks.append(f"guess: units stand in row {table.unit_row + 1}")
     is_blocks = "block_marker" in settings
-    return SeenText("blocks" if is_blocks else "delimited", columns, settings, tuple(remarks))
+    return _SeenText("blocks" if is_blocks else "delimited", columns, settings, tuple(remarks))
 
 
 def _named_by_comment(
-    above: Sequence[str], comment: str, delimiter: str, columns: list[SeenColumn]
-) -> tuple[list[SeenColumn], list[str]]:
+    above: Sequence[str], comment: str, delimiter: str, columns: list[_SeenColumn]
+) -> tuple[list[_SeenColumn], list[str]]:
     """Names from the last comment line, where it has as many as there are columns."""
     last = next((line for line in reversed(above) if line.startswith(comment)), "")
     names = _split([last.removeprefix(comment)], delimiter)[0]
@@ -599,29 +590,29 @@ Candidate = tuple[dict[str, object], ColumnTable]
 
 
 @dataclass(frozen=True)
-class SeenTable:
+class _SeenTable:
     """A table that may be the log: its columns, the layout settings that read it, remarks."""
 
     format: Format
-    columns: list[SeenColumn]
+    columns: list[_SeenColumn]
     settings: dict[str, object] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
 
 
-def table_sheets(path: Path, watch: Watch) -> list[tuple[str, TableShape]]:
+def _table_sheets(path: Path, watch: Watch) -> list[tuple[str, _TableShape]]:
     """Sheets of a workbook that hold a table of two or more rows of numbers."""
     workbook = open_workbook(path, watch)
     found = []
     for place, name in enumerate(workbook.sheet_names):
-        table = look_at_table(read_rows(path, workbook, place, _ROWS), ".")
+        table = _look_at_table(read_rows(path, workbook, place, _ROWS), ".")
         if table is not None:
             found.append((name, table))
     return found
 
 
-def look_at_sheet(path: Path, sheet: str | None, watch: Watch) -> SeenTable:
+def _look_at_sheet(path: Path, sheet: str | None, watch: Watch) -> _SeenTable:
     """One sheet of a workbook, or the one that holds the longest table."""
-    found = table_sheets(path, watch)
+    found = _table_sheets(path, watch)
     chosen = [entry for entry in found if sheet in (None, entry[0])]
     if not chosen:
         raise LogError(
@@ -641,10 +632,10 @@ def look_at_sheet(path: Path, sheet: str | None, watch: Watch) -> SeenTable:
         remarks.append(f"sure: the table begins below row {top}")
     settings["has_name_row"] = table.name_row is not None
     settings["has_unit_row"] = table.unit_row is not None
-    return SeenTable("spreadsheet", seen_columns(table, "."), settings, tuple(remarks))
+    return _SeenTable("spreadsheet", _seen_columns(table, "."), settings, tuple(remarks))
 
 
-def _seen(table: ColumnTable) -> list[SeenColumn]:
+def _seen(table: ColumnTable) -> list[_SeenColumn]:
     """Columns of numbers that share the most common length."""
     columns, sizes = [], []
     for place, (name, unit) in enumerate(zip(table.names, table.units, strict=True)):
@@ -660,7 +651,7 @@ def _seen(table: ColumnTable) -> list[SeenColumn]:
             continue
         if values.ndim == 1 and size > 1 and values.dtype.kind in "fiu":
             first = values[:_ROWS].astype(np.float64)
-            columns.append(SeenColumn(place + 1, name, unit, first, is_named=bool(name)))
+            columns.append(_SeenColumn(place + 1, name, unit, first, is_named=bool(name)))
             sizes.append(size)
     if not sizes:
         return []
@@ -678,7 +669,7 @@ def _named_matrix(
     for name, entries in texts.items():
         if matrix.ndim == 2 and len(entries) == matrix.shape[1]:
             filled = [text for text in entries if text]
-            kind = "units" if 2 * sum(map(is_unit, filled)) >= len(filled) else "names"
+            kind = "units" if 2 * sum(map(_is_unit, filled)) >= len(filled) else "names"
             if kind not in given:
                 given[kind] = tuple(entries)
                 settings[f"matrix_{kind}"] = name
@@ -763,7 +754,7 @@ def _tdms_candidates(path: Path, file: Any, watch: Watch) -> Iterator[Candidate]
         yield settings, tdms_table(path, file, group, watch)
 
 
-def look_at_binary(path: Path, kind: Format, watch: Watch) -> SeenTable:
+def _look_at_binary(path: Path, kind: Format, watch: Watch) -> _SeenTable:
     """The largest table of a TDMS, MATLAB, HDF5 or Parquet file."""
     with ExitStack() as stack:
         candidates: Iterator[Candidate]
@@ -779,7 +770,7 @@ def look_at_binary(path: Path, kind: Format, watch: Watch) -> SeenTable:
         else:
             parquet = stack.enter_context(open_parquet(path))
             candidates = iter([({}, parquet_table(path, parquet, watch))])
-        best: tuple[dict[str, object], list[SeenColumn]] = ({}, [])
+        best: tuple[dict[str, object], list[_SeenColumn]] = ({}, [])
         count = 0
         for settings, table in candidates:
             columns = _seen(table)
@@ -792,20 +783,20 @@ def look_at_binary(path: Path, kind: Format, watch: Watch) -> SeenTable:
     remarks = [f"sure: {len(columns)} columns of numbers of one length"]
     if count > 1:
         remarks.append(f"guess: the largest of {count} tables of the file is the log")
-    return SeenTable(kind, columns, settings, tuple(remarks))
+    return _SeenTable(kind, columns, settings, tuple(remarks))
 
 
 def _waveform(
-    file: Any, settings: Mapping[str, object], columns: list[SeenColumn]
-) -> list[SeenColumn]:
+    file: Any, settings: Mapping[str, object], columns: list[_SeenColumn]
+) -> list[_SeenColumn]:
     """Time by the waveform properties, as one more column where the channels have them."""
     group = file[settings["group"]] if "group" in settings else file.groups()[0]
     if all(channel.properties.get(WAVEFORM_COLUMN, 0) for channel in group.channels()):
-        return [SeenColumn(len(columns) + 1, WAVEFORM_COLUMN, "s", np.arange(2.0))]
+        return [_SeenColumn(len(columns) + 1, WAVEFORM_COLUMN, "s", np.arange(2.0))]
     return []
 
 
-def look_at_json(path: Path, watch: Watch) -> SeenTable:
+def _look_at_json(path: Path, watch: Watch) -> _SeenTable:
     """The largest matrix of a JSON object."""
     _, content = json_content(path, watch)
     texts, matrices = {}, {}
@@ -829,7 +820,7 @@ def look_at_json(path: Path, watch: Watch) -> SeenTable:
     settings, table = _named_matrix(path, key, matrices[key], texts)
     columns = _seen(table)
     stated = {
-        name: value for name, value in content.items() if isinstance(value, str) and is_unit(value)
+        name: value for name, value in content.items() if isinstance(value, str) and _is_unit(value)
     }
     of_time = [value for name, value in stated.items() if "time" in name.lower()]
     if columns and len(of_time) == 1 and not columns[0].name:
@@ -839,7 +830,7 @@ def look_at_json(path: Path, watch: Watch) -> SeenTable:
         f"sure: the file states {name!r} as {value!r}; give it as unit_key of its channel"
         for name, value in stated.items()
     ]
-    return SeenTable("json", columns, settings, tuple(remarks))
+    return _SeenTable("json", columns, settings, tuple(remarks))
 
 
 _LIMITS = Limits(time=60.0)
@@ -892,45 +883,25 @@ def format_of(path: Path) -> Format:
     return "json" if head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{") else "delimited"
 
 
-def _look(path: Path, sheet: str | None, watch: Watch) -> SeenTable:
+def _look(path: Path, sheet: str | None, watch: Watch) -> _SeenTable:
     kind = format_of(path)
     if kind == "spreadsheet":
-        return bounded(look_at_sheet, path, sheet, watch=watch)
+        return bounded(_look_at_sheet, path, sheet, watch=watch)
     if kind == "json":
-        return look_at_json(path, watch)
+        return _look_at_json(path, watch)
     if kind != "delimited":
-        return bounded(look_at_binary, path, kind, watch=watch)
-    text = look_at_text(path)
-    return SeenTable(text.format, text.columns, text.settings, text.remarks)
+        return bounded(_look_at_binary, path, kind, watch=watch)
+    text = _look_at_text(path)
+    return _SeenTable(text.format, text.columns, text.settings, text.remarks)
 
 
 def sheets_with_tables(path: Path) -> list[str]:
     """Names of the sheets of a workbook that hold a table of numbers."""
-    return [name for name, _ in bounded(table_sheets, path, watch=Watch(path, _LIMITS))]
+    return [name for name, _ in bounded(_table_sheets, path, watch=Watch(path, _LIMITS))]
 
 
 def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> SniffedLayout:
-    """Propose a layout for a log.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The log.
-    name : str
-        Key of the layout.
-    sheet : str, optional
-        Sheet of a workbook; the first that holds a table of numbers where not given.
-
-    Returns
-    -------
-    sniffed : SniffedLayout
-        To be confirmed by a person.
-
-    Raises
-    ------
-    LogError
-        If the file cannot be read or is beyond a limit, or no table of numbers is found.
-    """
+    """Propose a layout for a log."""
     watch = Watch(path, _LIMITS)
     with unchanged(path) as n_bytes:
         watch.check_size(n_bytes)
@@ -938,7 +909,7 @@ def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> 
         seen = _look(path, sheet, watch)
     if not seen.columns:
         raise LogError(path, "no columns of numbers are found", needed="a log")
-    proposal = propose_channels(seen.columns)
+    proposal = _propose_channels(seen.columns)
     lines = [f"[layouts.{name}]", f'format = "{seen.format}"']
     lines += [f"{key} = {toml_text(value)}" for key, value in seen.settings.items()]
     remarks = [*seen.remarks, *proposal.remarks]

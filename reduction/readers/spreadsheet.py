@@ -37,27 +37,19 @@ from reduction.record.measurement import Bools, Floats
 _SUFFIXES = (".xml", ".rels")
 
 
-def is_markup(name: str) -> bool:
+def _is_markup(name: str) -> bool:
     """Whether a part of a workbook has to be XML.
 
     Examples
     --------
-    >>> is_markup("xl/worksheets/sheet1.xml"), is_markup("xl/media/image1.png")
+    >>> _is_markup("xl/worksheets/sheet1.xml"), _is_markup("xl/media/image1.png")
     (True, False)
     """
     return name.lower().endswith(_SUFFIXES)
 
 
-class SoundMarkup:
-    """Parses a part as it is unpacked; keeps nothing, and fetches nothing from elsewhere.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The workbook, for messages.
-    name : str
-        Of the part.
-    """
+class _SoundMarkup:
+    """Parses a part as it is unpacked; keeps nothing, and fetches nothing from elsewhere."""
 
     def __init__(self, path: Path, name: str) -> None:
         """Begin before the first byte."""
@@ -66,23 +58,11 @@ class SoundMarkup:
         self._parser.StartDoctypeDeclHandler = self._refuse
 
     def add(self, data: bytes) -> None:
-        """The bytes that follow.
-
-        Raises
-        ------
-        LogError
-            If they cannot follow those before, or declare a document type.
-        """
+        """The bytes that follow."""
         self._parse(data, False)
 
     def finish(self) -> None:
-        """After the last byte.
-
-        Raises
-        ------
-        LogError
-            If something is still open.
-        """
+        """After the last byte."""
         self._parse(b"", True)
 
     def _parse(self, data: bytes, is_last: bool) -> None:
@@ -115,11 +95,8 @@ _ERROR_MARKS = {
 }
 
 
-class parsed:  # noqa: N801 - read as a word of the ``with`` statement
-    """Make a `LogError` of whatever the parser of workbooks ends with.
-
-    Where one of its own checks fails it ends with a class that no ``except Exception`` catches.
-    """
+class _parsed:  # noqa: N801 - read as a word of the ``with`` statement
+    """Make a `LogError` of whatever the parser of workbooks ends with."""
 
     def __init__(self, path: Path, problem: str, *, needed: str | None = None) -> None:
         """Remember what is said then."""
@@ -145,7 +122,7 @@ def _first_line(error: BaseException) -> str:
 
 
 @dataclass
-class SheetCells:
+class _SheetCells:
     """Declared columns of a sheet, where they are blank, and the text of a clock."""
 
     values: list[Floats] = field(default_factory=list)
@@ -160,7 +137,7 @@ def _fast_columns(
     places: Sequence[int],
     wanted: Sequence[Wanted],
     layout: Layout,
-) -> SheetCells | None:
+) -> _SheetCells | None:
     """Columns that hold numbers and blanks (NaN) alone; None where one holds more."""
     if any(want.unit == CLOCK for want in wanted):
         return None
@@ -182,7 +159,7 @@ def _fast_columns(
     values = [np.array(columns[order.index(place)], dtype=np.float64) for place in places]
     if any(np.isinf(column).any() for column in values):
         return None
-    return SheetCells(
+    return _SheetCells(
         [without_marks(column, layout) for column in values],
         [np.isnan(column) for column in values],
     )
@@ -219,9 +196,9 @@ def _exact_columns(
     places: Sequence[int],
     wanted: Sequence[Wanted],
     layout: Layout,
-) -> SheetCells:
+) -> _SheetCells:
     """Columns cell by cell; `LogError` at the first that is neither number nor missing mark."""
-    with parsed(path, f"sheet {sheet + 1} cannot be read"):
+    with _parsed(path, f"sheet {sheet + 1} cannot be read"):
         rows = (
             python_calamine.CalamineWorkbook.from_path(path)
             .get_sheet_by_index(sheet)
@@ -233,7 +210,7 @@ def _exact_columns(
             for (row, place), mark in errors.items():
                 for index in (i for i, wanted_place in enumerate(places) if wanted_place == place):
                     columns[index][row - first] = mark
-    found = SheetCells()
+    found = _SheetCells()
     for cells, want in zip(columns, wanted, strict=True):
         odd = [
             index for index, cell in enumerate(cells) if type(cell) is not float or math.isinf(cell)
@@ -277,7 +254,7 @@ def _number(path: Path, cell: object, want: Wanted, layout: Layout, *, row: int)
     )
 
 
-def read_cells(
+def _read_cells(
     path: Path,
     workbook: fastexcel.ExcelReader,
     sheet: int,
@@ -285,14 +262,8 @@ def read_cells(
     places: Sequence[int],
     wanted: Sequence[Wanted],
     layout: Layout,
-) -> SheetCells:
-    """Declared columns of a sheet below its first rows; blanks and missing marks are NaN.
-
-    Raises
-    ------
-    LogError
-        With row and column of the first cell that is neither a number nor a missing mark.
-    """
+) -> _SheetCells:
+    """Declared columns of a sheet below its first rows; blanks and missing marks are NaN."""
     cells = _fast_columns(workbook, sheet, first, places, wanted, layout)
     if cells is None:
         cells = _exact_columns(path, workbook, sheet, first, places, wanted, layout)
@@ -308,16 +279,10 @@ _NOT_ZIP = (
 
 
 def open_workbook(path: Path, watch: Watch | None = None) -> fastexcel.ExcelReader:
-    """Open a workbook that is sound.
-
-    Raises
-    ------
-    LogError
-        If the file is no workbook, or is damaged.
-    """
+    """Open a workbook that is sound."""
     if zipfile.is_zipfile(path):
         _check_sound(path, watch or Watch(path))
-    with parsed(
+    with _parsed(
         path,
         "the file is not a spreadsheet that can be read",
         needed="an .xlsx, .xls or .ods workbook without a password",
@@ -332,7 +297,7 @@ def _check_sound(path: Path, watch: Watch) -> None:
             parts = archive.infolist()
             watch.check_unpacked(sum(part.file_size for part in parts), "the workbook")
             for part in parts:
-                markup = SoundMarkup(path, part.filename) if is_markup(part.filename) else None
+                markup = _SoundMarkup(path, part.filename) if _is_markup(part.filename) else None
                 with archive.open(part) as stream:
                     while block := stream.read(_BLOCK):
                         watch.check_time()
@@ -349,7 +314,7 @@ def _check_sound(path: Path, watch: Watch) -> None:
         ) from error  # fmt: skip
 
 
-def find_sheet(path: Path, sheet_names: Sequence[str], sheet: str | int) -> int:
+def _find_sheet(path: Path, sheet_names: Sequence[str], sheet: str | int) -> int:
     """Place from 0 of a sheet given by name or by number from 1."""
     if isinstance(sheet, int) and 1 <= sheet <= len(sheet_names):
         return sheet - 1
@@ -367,7 +332,7 @@ def read_rows(
     path: Path, workbook: fastexcel.ExcelReader, sheet: int, n_rows: int
 ) -> list[list[str]]:
     """First rows of a sheet as text, from row 1 and column A on; blank cells are ''."""
-    with parsed(path, f"sheet {sheet + 1} cannot be read"):
+    with _parsed(path, f"sheet {sheet + 1} cannot be read"):
         top = workbook.load_sheet(
             sheet, header_row=None, skip_rows=0, n_rows=n_rows, dtypes="string"
         )
@@ -413,35 +378,11 @@ def _metadata(sheet_name: str, preamble: list[list[str]]) -> dict[str, str]:
 def read_spreadsheet(
     path: Path, layout: Layout, *, name: str, watch: Watch | None = None
 ) -> RawLog:
-    """Read the declared columns of one sheet.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The workbook.
-    layout : Layout
-        ``sheet``, ``preamble_rows``, ``has_name_row``, ``has_unit_row``, ``missing`` and the
-        channels.
-    name : str
-        Name of the file for the product.
-    watch : Watch, optional
-        Holds it against its limits.
-
-    Returns
-    -------
-    log : RawLog
-        Rows as the sheet counts them.  Rows at the end in which every declared column is
-        blank are left out, with a note.
-
-    Raises
-    ------
-    LogError
-        If the file, the sheet, a column or a cell cannot be used.
-    """
+    """Read the declared columns of one sheet."""
     watch = watch or Watch(path)
     source = hash_source(path, name)
     workbook = open_workbook(path, watch)
-    sheet = find_sheet(path, workbook.sheet_names, layout.sheet)
+    sheet = _find_sheet(path, workbook.sheet_names, layout.sheet)
     sheet_name = workbook.sheet_names[sheet]
     preamble, names, units = _head(path, workbook, sheet, layout)
     watch.check_columns(len(names))
@@ -465,7 +406,7 @@ def read_spreadsheet(
         units=units,
         unit_row=first if layout.has_unit_row else None,
     )
-    cells = read_cells(path, workbook, sheet, first, places, wanted, layout)
+    cells = _read_cells(path, workbook, sheet, first, places, wanted, layout)
     all_blank = np.logical_and.reduce(cells.blanks)
     n_rows = all_blank.size - int(np.argmin(all_blank[::-1])) if not all_blank.all() else 0
     for want, blank in zip(wanted, cells.blanks, strict=True):

@@ -97,24 +97,7 @@ def _logs_of(path: Path) -> list[_Log]:
 
 
 def starter_campaign(folder: Path) -> dict[str, str]:
-    """Text of ``campaign.toml`` and ``tests.csv`` for the logs of a folder.
-
-    Parameters
-    ----------
-    folder : pathlib.Path
-        Its own files are looked at; folders inside it are not.
-
-    Returns
-    -------
-    files : dict of str to str
-        Text by file name.  One row of ``tests.csv`` a log (a sheet of a workbook is a
-        log), one layout for all logs that look alike.
-
-    Raises
-    ------
-    LogError
-        If the folder holds no log.
-    """
+    """Text of ``campaign.toml`` and ``tests.csv`` for the logs of a folder."""
     logs: list[_Log] = []
     marks: list[str] = []
     refused: list[str] = []

@@ -55,10 +55,7 @@ log_manager.set_level(logging.CRITICAL)
 
 @contextmanager
 def open_tdms(path: Path) -> Iterator[nptdms.TdmsFile]:
-    """Open a TDMS file; `LogError` where the file is none.
-
-    The stream, not the path, is handed on: npTDMS would believe an index file beside it.
-    """
+    """Open a TDMS file; `LogError` where the file is none."""
     with path.open("rb") as stream:
         try:
             file = nptdms.TdmsFile.open(stream)
@@ -70,7 +67,7 @@ def open_tdms(path: Path) -> Iterator[nptdms.TdmsFile]:
             yield file
 
 
-def tdms_group(path: Path, file: nptdms.TdmsFile, group: str) -> nptdms.TdmsGroup:
+def _tdms_group(path: Path, file: nptdms.TdmsFile, group: str) -> nptdms.TdmsGroup:
     """The named group, or the only one where no name is given."""
     names = [entry.name for entry in file.groups()]
     if not group and len(names) == 1:
@@ -156,12 +153,7 @@ def _waveform(path: Path, wanted: Wanted, channel: nptdms.TdmsChannel) -> tuple[
 def _waveform_times(
     path: Path, layout: Layout, group: nptdms.TdmsGroup, table: ColumnTable
 ) -> dict[str, Callable[[int], Iterator[Floats]]]:
-    """Times that the layout takes from waveform properties, by channel key, in parts.
-
-    ``time`` is that of the channels without own time stamps, which must agree; a channel
-    with ``time_column = "wf_increment"`` has its own, on the same zero where both state
-    their start.
-    """
+    """Times that the layout takes from waveform properties, by channel key, in parts."""
     if WAVEFORM_COLUMN in table.names:  # a channel of that name is read like any other
         return {}
     wanted = {want.key: want for want in wanted_columns(layout)}
@@ -218,37 +210,11 @@ def read_tdms(
     parts: Parts | None = None,
     watch: Watch | None = None,
 ) -> RawLog:
-    """Read the declared channels of one group; channel scaling in the file is applied.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-    layout : Layout
-        ``group`` (may be left out where there is one), ``missing`` and the channels.
-    name : str
-        Name of the file for the product.
-    parts : Parts, optional
-        How much of it is read at a time.
-    watch : Watch, optional
-        Holds it against its limits.
-
-    Returns
-    -------
-    log : RawLog
-        With the properties of file and group as metadata.
-
-    Raises
-    ------
-    LogError
-        If the file, the group or a channel cannot be used.
-    DataError
-        If the disk is full.
-    """
+    """Read the declared channels of one group; channel scaling in the file is applied."""
     source = hash_source(path, name)
     watch = watch or Watch(path)
     with open_tdms(path) as file:
-        group = tdms_group(path, file, layout.group)
+        group = _tdms_group(path, file, layout.group)
         table = tdms_table(path, file, group, watch)
         made = _waveform_times(path, layout, group, table)
         columns, n_rows = read_columns(path, layout, table, made, parts=parts, watch=watch)

@@ -47,20 +47,8 @@ _SAMPLE = "0,1\n"
 
 
 @dataclass(frozen=True)
-class TextEncoding:
-    """How the bytes of a file are text.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        For messages.
-    declared : str
-        As the layout spells it.
-    codec : str
-        What the text is in: UTF-8 where its byte-order mark says so.
-    mark : bytes
-        Byte-order mark of UTF-8 that the file begins with.
-    """
+class _TextEncoding:
+    """How the bytes of a file are text."""
 
     path: Path
     declared: str
@@ -105,16 +93,8 @@ class TextEncoding:
         )
 
 
-def find_encoding(path: Path, head: bytes, declared: str) -> TextEncoding:
-    """Compare the declared encoding with the first bytes of a file.
-
-    Raises
-    ------
-    LogError
-        If the file begins with the byte-order mark of another encoding.
-    SettingsError
-        If there is no such encoding.
-    """
+def _find_encoding(path: Path, head: bytes, declared: str) -> _TextEncoding:
+    """Compare the declared encoding with the first bytes of a file."""
     try:
         codec = codecs.lookup(declared).name
         is_text = codec not in _NO_TEXT and _SAMPLE.encode(declared).decode(declared) == _SAMPLE
@@ -137,36 +117,28 @@ def find_encoding(path: Path, head: bytes, declared: str) -> TextEncoding:
             hint=f'Declare encoding = "{marked}" in the layout.',
         )
     if marked == "utf-8":
-        return TextEncoding(path, declared, marked, mark)
+        return _TextEncoding(path, declared, marked, mark)
     if not marked and codec in ("utf-16", "utf-32"):
         codec += "-le"  # as most machines write
-    return TextEncoding(path, declared, codec, b"")
+    return _TextEncoding(path, declared, codec, b"")
 
 
 def decode(path: Path, data: bytes, encoding: str) -> bytes:
-    """Bytes of a whole text file as UTF-8 without a byte-order mark.
-
-    Raises
-    ------
-    LogError
-        If the file is binary, or is not in the declared encoding, with the row.
-    SettingsError
-        If there is no such encoding.
-    """
-    found = find_encoding(path, data[:4], encoding)
+    """Bytes of a whole text file as UTF-8 without a byte-order mark."""
+    found = _find_encoding(path, data[:4], encoding)
     keeps_ascii = found.keeps_ascii
     if keeps_ascii and (nul := data.find(b"\0")) >= 0:
-        raise found.binary(row_of(data, nul))
+        raise found.binary(_row_of(data, nul))
     if keeps_ascii and data.isascii():
         return data
     try:
         return bytes(found.to_utf8(data[len(found.mark) :], is_first=True))
     except UnicodeDecodeError as error:
         place = len(found.mark) + error.start
-        raise found.other(error, row_of(data, place) if keeps_ascii else None) from error
+        raise found.other(error, _row_of(data, place) if keeps_ascii else None) from error
 
 
-def row_of(data: bytes | bytearray, place: int) -> int:
+def _row_of(data: bytes | bytearray, place: int) -> int:
     """Row from 1 of a byte: lines end in a line feed, a carriage return, or both."""
     returns = data.count(b"\r", 0, place) - data.count(b"\r\n", 0, place)
     return data.count(b"\n", 0, place) + returns + 1
@@ -227,13 +199,7 @@ class TextRows:
         return replace(self, text=memoryview(text), is_open=False, n_lines=None)
 
     def rows(self, n_rows: int) -> Integers | None:
-        """Editor's row of each of so many data rows, or None where they are those of the lines.
-
-        Raises
-        ------
-        LogError
-            If a quoted field goes over the end of its line.
-        """
+        """Editor's row of each of so many data rows, or None where they are those of the lines."""
         n_lines = count_lines(self.text) if self.n_lines is None else self.n_lines
         row = None if self.line_row is None else self.line_row[:n_lines]
         if n_lines != n_rows:
@@ -318,20 +284,8 @@ _Fault = tuple[int, Callable[[int], LogError]]  # lines above it, and the error 
 
 
 @dataclass(frozen=True)
-class TextPart:
-    """Whole lines of a file.
-
-    Parameters
-    ----------
-    text : memoryview
-        In UTF-8, from the first line to the end of the last one, which is not blank.
-    first_row : int
-        Editor's row of the first line.
-    n_lines : int
-        Lines, blank ones included.
-    is_open : bool
-        Whether the file ends with the last line, without a line end.
-    """
+class _TextPart:
+    """Whole lines of a file."""
 
     text: memoryview
     first_row: int
@@ -350,7 +304,7 @@ class TextFile:
         check_not_empty(path, size)
         try:
             head = stream.read(_LOOK)
-            self._encoding = find_encoding(path, head[:_MARK], encoding)
+            self._encoding = _find_encoding(path, head[:_MARK], encoding)
             stream.seek(len(self._encoding.mark))
         except OSError as error:
             raise unreadable(path, error) from error
@@ -361,14 +315,14 @@ class TextFile:
         self._left = size - len(self._encoding.mark)
         self._keeps_ascii = self._encoding.keeps_ascii
         if self._keeps_ascii and (nul := head.find(b"\0")) >= 0:
-            raise self._encoding.binary(row_of(head, nul))
+            raise self._encoding.binary(_row_of(head, nul))
         self._decoder = codecs.getincrementaldecoder(self._encoding.codec)()
         self._is_at_start = True
         self._worker = ThreadPoolExecutor(1)
         self._hash = RunningHash()
         self._hash.add(memoryview(self._encoding.mark))
 
-    def __iter__(self) -> Iterator[TextPart]:
+    def __iter__(self) -> Iterator[_TextPart]:
         """Parts in order; the next one is read while the caller works on this one."""
         parts = self._parts()
         coming = self._worker.submit(next, parts, None)
@@ -387,13 +341,13 @@ class TextFile:
         self._worker.shutdown()
         self._hash.close()
 
-    def _parts(self) -> Iterator[TextPart]:
+    def _parts(self) -> Iterator[_TextPart]:
         """Lines in parts; what is not whole yet goes over to the next one."""
         rest, row, is_last = b"", 1, False
         while not is_last:
             data, fault = self._read(rest)
             if fault is None and _unfinished(data) > 2 * self.longest_line:
-                fault = row_of(data, len(data)) - 1, self._watch.long_line
+                fault = _row_of(data, len(data)) - 1, self._watch.long_line
             is_last = fault is None and self._left == 0
             stop, begin = (_end(data, len(data)), len(data)) if is_last else _cut(data)
             rest = bytes(memoryview(data)[begin:])
@@ -401,7 +355,7 @@ class TextFile:
             n_lines = count_lines(text) if text else 0
             if n_lines:
                 is_open = is_last and bytes(data[stop : stop + 1]) not in (b"\n", b"\r")
-                yield TextPart(text, row, n_lines, is_open)
+                yield _TextPart(text, row, n_lines, is_open)
             if found is not None or fault is not None:
                 above, error = found or fault or (0, self._watch.long_line)
                 raise error(row + above)
@@ -435,14 +389,14 @@ class TextFile:
         if self._is_at_start and text:
             text, self._is_at_start = text.removeprefix("\ufeff"), False
         data = bytearray(rest + text.encode())
-        return data, None if wrong is None else (row_of(data, len(data)) - 1, wrong)
+        return data, None if wrong is None else (_row_of(data, len(data)) - 1, wrong)
 
     def _checked(self, data: bytearray, stop: int) -> tuple[memoryview, _Fault | None]:
         """Lines as UTF-8, with one kind of line end: all, or those above the first fault."""
         text, fault = memoryview(data)[:stop], None
         if self._keeps_ascii and stop:
             if (nul := data.find(b"\0", 0, stop)) >= 0:
-                text, fault = _above(text, nul), (row_of(data, nul) - 1, self._encoding.binary)
+                text, fault = _above(text, nul), (_row_of(data, nul) - 1, self._encoding.binary)
             if not data.isascii():
                 at_start, self._is_at_start = self._is_at_start, False
                 try:
@@ -450,7 +404,7 @@ class TextFile:
                 except UnicodeDecodeError as error:
                     text = _above(text, error.start)
                     text = self._encoding.to_utf8(text, is_first=at_start)
-                    fault = row_of(data, error.start) - 1, partial(self._encoding.other, error)
+                    fault = _row_of(data, error.start) - 1, partial(self._encoding.other, error)
             self._is_at_start = False
         if data.find(b"\r", 0, stop) >= 0 and _has_lone_return(text):
             text = memoryview(bytes(text).replace(b"\r\n", b"\n").replace(b"\r", b"\n"))
@@ -463,16 +417,7 @@ class TextFile:
 def open_text(
     path: Path, encoding: str, parts: Parts, watch: Watch | None = None
 ) -> Iterator[TextFile]:
-    """Open a text file to be read in parts.
-
-    Raises
-    ------
-    LogError
-        If the file cannot be opened, is empty or binary, is not in the declared encoding, or
-        has a line that is longer than the limits of the watch allow.
-    SettingsError
-        If there is no such encoding.
-    """
+    """Open a text file to be read in parts."""
     try:
         stream = path.open("rb")
     except OSError as error:
@@ -489,11 +434,7 @@ def _end(data: bytearray, stop: int) -> int:
 
 
 def _cut(data: bytearray) -> tuple[int, int]:
-    """Where the last whole line that is not blank ends, and where the next one begins.
-
-    What may be the end of the file, blank lines and the mark of DOS, is left to the next
-    part, as is a carriage return at the end: its line feed may follow.
-    """
+    """Where the last whole line that is not blank ends, and where the next one begins."""
     stop = _last_line_end(data, len(data))
     while stop >= 0:
         end = _end(data, stop)

@@ -87,7 +87,7 @@ def name_of_scratch_file(array: NDArray[Any]) -> tuple[str, Path] | None:
     return found.name, found.folder
 
 
-def is_on_disk(array: NDArray[Any]) -> bool:
+def _is_on_disk(array: NDArray[Any]) -> bool:
     """Whether an array lies in a scratch file."""
     return _map_of(array) is not None
 
@@ -107,7 +107,7 @@ def give_back(*arrays: NDArray[Any]) -> None:
     long log after a few stages.
     """
     if _MALLOC_TRIM is not None and any(
-        array.nbytes >= _LONG or is_on_disk(array) for array in arrays
+        array.nbytes >= _LONG or _is_on_disk(array) for array in arrays
     ):
         _MALLOC_TRIM(0)
 
@@ -157,7 +157,7 @@ def empty_like(
 
 def beside(reference: NDArray[Any], made: NDArray[Any]) -> NDArray[Any]:
     """Return an array moved to disk where the reference is, else as it is; both are let go."""
-    if not is_on_disk(reference):
+    if not _is_on_disk(reference):
         return made
     moved = empty_like(reference, shape=made.shape, dtype=made.dtype)
     moved[...] = made
@@ -174,7 +174,7 @@ def zeros_like(
     """Return an array of zeros; parameters as in `empty_like`."""
     made = empty_like(reference, shape=shape, dtype=dtype)
     # a new scratch file holds zeros, and so does memory that the system gives when it is touched
-    return made if is_on_disk(made) else np.zeros(made.shape, dtype=made.dtype)
+    return made if _is_on_disk(made) else np.zeros(made.shape, dtype=made.dtype)
 
 
 class ColumnWriter:
@@ -371,7 +371,7 @@ def take_samples(series: NDArray[Any], index: NDArray[np.integer[Any]]) -> NDArr
     >>> take_samples(np.array([5.0, 6.0, 7.0]), np.array([2, 0]))
     array([7., 5.])
     """
-    if not is_on_disk(series):
+    if not _is_on_disk(series):
         return np.asarray(series.take(index, axis=-1))
     flat = index.reshape(-1)
     taken = np.empty((*series.shape[:-1], flat.size), dtype=series.dtype)

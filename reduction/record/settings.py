@@ -131,7 +131,7 @@ class RopeSettings:
 
 
 @dataclass(frozen=True)
-class ArchiveSettings:
+class _ArchiveSettings:
     """Which samples an archive holds."""
 
     samples: StoredSamples | None = None
@@ -168,4 +168,4 @@ class ReductionSettings:
     holds: HoldSettings = field(default_factory=HoldSettings)
     slip: SlipSettings = field(default_factory=SlipSettings)
     rope: RopeSettings = field(default_factory=RopeSettings)
-    archive: ArchiveSettings = field(default_factory=ArchiveSettings)
+    archive: _ArchiveSettings = field(default_factory=_ArchiveSettings)

@@ -117,18 +117,7 @@ class AnswerBudget:
 
 
 def answer_budgets(view: TestView) -> list[AnswerBudget]:
-    """Return the budgets of the answers of a test: segments, K_ap, H, K_1, tau; of weights slopes.
-
-    Parameters
-    ----------
-    view : TestView
-        Of a reduced test; one that keeps no shared errors has no budget to show.
-
-    Returns
-    -------
-    answers : list of AnswerBudget
-        By quantity, in the order of the archive.
-    """
+    """Return the budgets of a test's answers: segments, K_ap, H, K_1, tau, slopes of weights."""
     names = view.data["specimen"].values if "specimen" in view.data else ()
     places = {str(name): place for place, name in enumerate(names)}
     found = []
@@ -206,18 +195,7 @@ _MOST_ROWS = 24
 
 
 def design_modulus_table(tests: Sequence[TestView]) -> Table | None:
-    """Return the moduli to design with: of the whole cycle, and of each branch at its middle.
-
-    Parameters
-    ----------
-    tests : sequence of TestView
-        Of a campaign; those without cycles have no row.
-
-    Returns
-    -------
-    table : Table or None
-        None where no test has a modulus of its cycles.
-    """
+    """Return the moduli to design with: of the whole cycle, and of each branch at its middle."""
     order = all_specimens(tests)
     is_of_ropes = bool(tests) and all(view.is_rope for view in tests)
     whole = _OF_ROPE if is_of_ropes else _WHOLE

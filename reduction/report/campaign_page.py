@@ -67,32 +67,20 @@ _OWN = re.compile(r"tests-\d{2,}\.html")
 """Names that are given here: a page of somebody else beside them stays."""
 
 
-def is_page_of_tests(name: str) -> bool:
+def _is_page_of_tests(name: str) -> bool:
     """Whether a file of this name holds sections for which the page of a campaign has no room."""
     return _OWN.fullmatch(name) is not None
 
 
-def over_pages(
+def _over_pages(
     sections: Sequence[RenderedSection], most: int = MOST_BYTES
 ) -> list[Sequence[RenderedSection]]:
     """Part sections into pages, in their order.
 
-    Parameters
-    ----------
-    sections : sequence of RenderedSection
-        All of them.
-    most : int
-        Bytes on a page; one that is longer by itself has a page of its own. [1]
-
-    Returns
-    -------
-    pages : list of sequence of RenderedSection
-        One where all have room together.
-
     Examples
     --------
     >>> sections = [RenderedSection(f"test-{n}", f"T-{n}", 40 * "x") for n in range(5)]
-    >>> [len(page) for page in over_pages(sections, most=100)]
+    >>> [len(page) for page in _over_pages(sections, most=100)]
     [2, 2, 1]
     """
     pages: list[list[RenderedSection]] = [[]]
@@ -107,40 +95,15 @@ def over_pages(
     return list(pages)
 
 
-def write_pages(
+def _write_pages(
     content: Page,
     sections: Sequence[RenderedSection],
     out: Path,
     most: int = MOST_BYTES,
     most_in_all: int = MOST_IN_ALL,
 ) -> Path:
-    """Write the page of a campaign, and those beside it where it has no room for all sections.
-
-    Parameters
-    ----------
-    content : Page
-        Without sections.
-    sections : sequence of RenderedSection
-        Of its tests, in order.
-    out : pathlib.Path
-        Folder of the pages.
-    most : int
-        Bytes of sections on a page. [1]
-    most_in_all : int
-        Bytes of the page of the campaign, from which its sections stand beside it. [1]
-
-    Returns
-    -------
-    page : pathlib.Path
-        ``index.html``, which is written last; pages of an earlier run that it does not name are
-        taken away.
-
-    Raises
-    ------
-    ArchiveError
-        If the disk refuses.
-    """
-    pages = over_pages(sections, most)
+    """Write the page of a campaign, and those beside it where it has no room for all sections."""
+    pages = _over_pages(sections, most)
     index = out / "index.html"
     kept: set[Path] = set()
     text = ""
@@ -159,7 +122,7 @@ def write_pages(
         text = render_page(replace(content, links=links, beside=beside))
     write_whole(index, text)
     for path in out.iterdir():
-        if is_page_of_tests(path.name) and path not in kept:
+        if _is_page_of_tests(path.name) and path not in kept:
             take_away(path)
     return index
 
@@ -218,38 +181,7 @@ def write_report(
     unreadable: Callable[[str, str], None] | None = None,
     opener: Opener = reading,
 ) -> Path:
-    """Write the page of a campaign.
-
-    Parameters
-    ----------
-    processed : pathlib.Path
-        Folder of the archives; status.csv beside them is read where it is there.
-    out : pathlib.Path
-        Folder of the page; made where it is not there.
-    units : UnitSystem
-        What a reader is shown; ``us`` is psi, lbf and ft.
-    values_page : str
-        Address of the design-value page from ``out``; empty where there is none to lead to.
-    stray : collection of str
-        Files that nothing in the campaign stands for now; what is shown of them says so.
-    unreadable : callable, optional
-        Told the name of each archive that cannot be read, and why, before the page is written,
-        which says it too.
-    opener : Opener
-        How archives are opened.
-
-    Returns
-    -------
-    page : pathlib.Path
-        ``out/index.html``; it appears whole or not at all. Beside it stand the pages of tests for
-        which it has no room, and the report to the client, where the folder holds what the
-        laboratory states for it.
-
-    Raises
-    ------
-    ArchiveError
-        If the folder holds neither an archive nor a status.csv, or the disk refuses.
-    """
+    """Write the page of a campaign."""
     paths = sorted(archives_of_tests(processed), key=lambda path: natural_order(path.stem))
     statuses = _read_statuses(processed / "status.csv")
     if not (paths or statuses or is_there(processed)):
@@ -296,7 +228,7 @@ def write_report(
         render_section(section, is_folded=len(paths) + len(whole.outcomes) > 1)
         for _, section in whole.outcomes
     ]
-    page = write_pages(content, [*outcomes, *(rendered[view.key] for view in tests)], out)
+    page = _write_pages(content, [*outcomes, *(rendered[view.key] for view in tests)], out)
     beside = out / CLIENT_PAGE_NAME
     if details is None:
         take_away(beside)  # of an earlier run: the campaign has no such report now
@@ -381,10 +313,7 @@ def _read_statuses(path: Path) -> list[Status]:
 
 
 def _place(view: TestView, by_id: Mapping[str, TestView], starts: Mapping[str, float]) -> Place:
-    """Return where a test stands: by its order, the parts of a test behind it as they began.
-
-    The steps of a log stand as they began, too.
-    """
+    """Return where a test stands: by its order, the parts of a test behind it as they began."""
     name = view.attribute("part_of")
     whole = by_id.get(name or view.id)
     order = "" if whole is None else whole.attribute("test_order")

@@ -110,16 +110,8 @@ from reduction.report.test_view import TestView
 from reduction.report.text_style import DEGREES, Table, number_text, shown
 
 
-def make_experiment_section(view: ExperimentView, tests: Mapping[str, TestView]) -> Section:
-    """Return the section of one experiment.
-
-    Parameters
-    ----------
-    view : ExperimentView
-        The experiment.
-    tests : mapping of str to TestView
-        The runs that were tests, by their names; what is not there is left out.
-    """
+def _make_experiment_section(view: ExperimentView, tests: Mapping[str, TestView]) -> Section:
+    """Return the section of one experiment."""
     surfaces = view.surfaces
     parts = [
         make_part("What was run", (), [run_table(view, tests), caution_table(view)]),
@@ -246,7 +238,7 @@ _HOLDS = (
 )
 
 
-def make_hose_section(view: HoseView) -> Section:
+def _make_hose_section(view: HoseView) -> Section:
     """Return the section of one hose; parts with nothing in them are left out."""
     parts = [
         make_part(
@@ -278,14 +270,14 @@ def make_hose_section(view: HoseView) -> Section:
     )
 
 
-def hose_findings(view: HoseView) -> list[Finding]:
+def _hose_findings(view: HoseView) -> list[Finding]:
     """Return what a reader must know of a hose before its numbers."""
     return [
         Finding(_FINDING[kind], (f"hose {view.name}",), text) for text, kind in view.notes.items()
     ]
 
 
-def hose_tiles(views: Sequence[HoseView]) -> list[Tile]:
+def _hose_tiles(views: Sequence[HoseView]) -> list[Tile]:
     """Return how many hoses are predicted; of one alone what it bears, too."""
     if not views:
         return []
@@ -322,7 +314,7 @@ def _story(view: HoseView) -> str:
 _TAKE_NONE = ". The fitted values are one choice of many, and their intervals do not hold"
 
 
-def make_comparison_section(view: ComparisonView) -> Section:
+def _make_comparison_section(view: ComparisonView) -> Section:
     """Return the section of one comparison; parts with nothing in them are left out."""
     parts = [
         make_part(
@@ -355,7 +347,7 @@ def make_comparison_section(view: ComparisonView) -> Section:
     )
 
 
-def comparison_findings(view: ComparisonView) -> list[Finding]:
+def _comparison_findings(view: ComparisonView) -> list[Finding]:
     """Return what a reader must know of a comparison before its numbers."""
     of = (f"comparison {view.name}",)
     found = []
@@ -368,7 +360,7 @@ def comparison_findings(view: ComparisonView) -> list[Finding]:
     return found + [Finding(_FINDING[kind], of, text) for text, kind in _other_notes(view).items()]
 
 
-def comparison_tiles(views: Sequence[ComparisonView]) -> list[Tile]:
+def _comparison_tiles(views: Sequence[ComparisonView]) -> list[Tile]:
     """Return how many comparisons there are, and how many of them differ."""
     if not views:
         return []
@@ -418,7 +410,7 @@ def _identified(view: ComparisonView) -> list[str]:
     ]
 
 
-def make_outcome_section(view: OutcomeView) -> Section:
+def _make_outcome_section(view: OutcomeView) -> Section:
     """Return the section; parts with nothing in them are left out."""
     parts = [
         make_part(
@@ -447,7 +439,7 @@ def make_outcome_section(view: OutcomeView) -> Section:
     )
 
 
-def make_rope_section(view: RopeView) -> Section:
+def _make_rope_section(view: RopeView) -> Section:
     """Return the section of one rope; parts with nothing in them are left out."""
     parts = [
         make_part(
@@ -472,7 +464,7 @@ def make_rope_section(view: RopeView) -> Section:
     )
 
 
-def rope_tiles(views: Sequence[RopeView]) -> list[Tile]:
+def _rope_tiles(views: Sequence[RopeView]) -> list[Tile]:
     """Return how many ropes have a programme."""
     if not views:
         return []
@@ -536,8 +528,8 @@ class WholeCampaign:
         """What a reader must know first."""
         found = [Finding("warning", (name,), _STRAY) for name in self.stray]
         found += [one for view, _ in self.experiments for one in experiment_findings(view)]
-        found += [one for view, _ in self.compared for one in comparison_findings(view)]
-        return found + [one for view, _ in self.hoses for one in hose_findings(view)]
+        found += [one for view, _ in self.compared for one in _comparison_findings(view)]
+        return found + [one for view, _ in self.hoses for one in _hose_findings(view)]
 
     @property
     def answers(self) -> list[Table]:
@@ -573,9 +565,9 @@ class WholeCampaign:
             size = len(self.experiments)
             noun = "experiment" if size == 1 else "experiments"
             found.append(Tile(f"{size:,}", noun, self.experiments[0][0].key))
-        found += rope_tiles([view for view, _ in self.ropes])
-        found += hose_tiles([view for view, _ in self.hoses])
-        return [*found, *comparison_tiles([view for view, _ in self.compared]), *of_tests]
+        found += _rope_tiles([view for view, _ in self.ropes])
+        found += _hose_tiles([view for view, _ in self.hoses])
+        return [*found, *_comparison_tiles([view for view, _ in self.compared]), *of_tests]
 
 
 def is_there(processed: Path) -> bool:
@@ -591,23 +583,7 @@ def read_whole(
     stray: Collection[str] = (),
     opener: Opener = reading,
 ) -> WholeCampaign:
-    """Read what there is; a file that cannot be read is told in ``unreadable``.
-
-    Parameters
-    ----------
-    processed : pathlib.Path
-        Folder of the archives.
-    tests : mapping of str to TestView
-        The tests of the campaign, by name.
-    units : UnitSystem
-        What a reader is shown.
-    unreadable : dict of str to str
-        File name to message; added to.
-    stray : collection of str
-        Names of archives that nothing in the campaign stands for now.
-    opener : Opener
-        How archives are opened.
-    """
+    """Read what there is; a file that cannot be read is told in ``unreadable``."""
 
     def read(name: str, views: Callable[[xr.Dataset], list[_Read]]) -> tuple[_Read, ...]:
         path = processed / f"{name}.nc"
@@ -622,7 +598,7 @@ def read_whole(
 
     def outcomes(data: xr.Dataset) -> list[tuple[OutcomeView, Section]]:
         view = view_outcomes(data, units)
-        return [(view, make_outcome_section(view))]
+        return [(view, _make_outcome_section(view))]
 
     def experiments(data: xr.Dataset) -> list[tuple[ExperimentView, Section]]:
         loaded = data.load()
@@ -630,16 +606,16 @@ def read_whole(
             ExperimentView(f"experiment-{index}", loaded, index, units)
             for index in range(loaded.sizes["experiment"])
         ]
-        return [(view, make_experiment_section(view, tests)) for view in views]
+        return [(view, _make_experiment_section(view, tests)) for view in views]
 
     def hoses(data: xr.Dataset) -> list[tuple[HoseView, Section]]:
-        return [(view, make_hose_section(view)) for view in view_hoses(data, units)]
+        return [(view, _make_hose_section(view)) for view in view_hoses(data, units)]
 
     def compared(data: xr.Dataset) -> list[tuple[ComparisonView, Section]]:
-        return [(view, make_comparison_section(view)) for view in view_comparisons(data, units)]
+        return [(view, _make_comparison_section(view)) for view in view_comparisons(data, units)]
 
     def ropes(data: xr.Dataset) -> list[tuple[RopeView, Section]]:
-        return [(view, make_rope_section(view)) for view in view_ropes(data, tests, units)]
+        return [(view, _make_rope_section(view)) for view in view_ropes(data, tests, units)]
 
     return WholeCampaign(
         outcomes=read("outcomes", outcomes),

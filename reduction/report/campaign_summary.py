@@ -81,19 +81,7 @@ def find_faults(
     unreadable: Mapping[str, str],
     others: Sequence[Finding] = (),
 ) -> list[Finding]:
-    """Return failures, then warnings, notes and refusals; the same text of many tests once.
-
-    Parameters
-    ----------
-    tests : sequence of TestView
-        The archives that could be read.
-    statuses : sequence of Status
-        Rows of status.csv.
-    unreadable : mapping of str to str
-        File name to message, of the files that could not be read.
-    others : sequence of Finding
-        What is no test's, to stand behind those of tests that are as serious.
-    """
+    """Return failures, then warnings, notes and refusals; the same text of many tests once."""
     gathered: dict[tuple[Severity, str], list[tuple[str, str]]] = {}
     for severity, test, pattern, text in _all_faults(tests, statuses, unreadable):
         gathered.setdefault((severity, pattern), []).append((test, text))
@@ -106,7 +94,7 @@ def find_faults(
     return sorted([*found, *others], key=lambda one: _ORDER.index(one.severity))
 
 
-def all_notes(view: TestView) -> list[str]:
+def _all_notes(view: TestView) -> list[str]:
     """Return every note of a test, with the stage that gave it where the note does not say."""
     return [
         full_note(stage, text)
@@ -118,7 +106,7 @@ def grouped_notes(view: TestView) -> list[tuple[str, list[str]]]:
     """Return the notes of a test under headings, most serious first; no empty heading."""
     stages, texts = view.texts("note_stage"), view.texts("note")
     kinds = [severity_of(*pair) for pair in zip(stages, texts, strict=True)]
-    said = list(zip(kinds, all_notes(view), strict=True))
+    said = list(zip(kinds, _all_notes(view), strict=True))
     groups = [(_HEADINGS[kind], [text for own, text in said if own == kind]) for kind in SEVERITIES]
     return [(heading, notes) for heading, notes in groups if notes]
 
@@ -142,11 +130,7 @@ def brief(view: TestView) -> str:
 
 
 def summary_sentence(tests: Sequence[TestView]) -> str:
-    """Return what the campaign says of itself; else how many tests of what it holds.
-
-    An archive of a campaign without a summary has one of its own test, which would
-    read as if the page held no other.
-    """
+    """Return what the campaign says of itself; else how many tests of what it holds."""
     if not tests:
         return ""
     summaries = {view.attribute("summary") for view in tests}
@@ -232,15 +216,12 @@ def _all_faults(
             text = "The archive was made from other raw files than status.csv."
             yield "warning", view.id, text, text
         raw = zip(view.texts("note_stage"), view.texts("note"), strict=True)
-        for (stage, note), text in zip(raw, all_notes(view), strict=True):
+        for (stage, note), text in zip(raw, _all_notes(view), strict=True):
             yield _FINDING[severity_of(stage, note)], view.id, _pattern(view, note), text
 
 
 def _pattern(view: TestView, note: str) -> str:
-    """Return a note without its numbers and specimens: of those alike one is enough on top.
-
-    Each test has every note of its own in its section.
-    """
+    """Return a note without its numbers and specimens: of those alike one is enough on top."""
     for specimen in view.specimens:
         note = re.sub(rf"\b{re.escape(specimen)}\b", "#", note)
     return _NUMBER.sub("#", note)

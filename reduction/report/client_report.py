@@ -45,7 +45,7 @@ NOT_STATED = "not stated"
 
 
 @dataclass(frozen=True)
-class Entry:
+class _Entry:
     """One field; an empty text was not stated."""
 
     label: str
@@ -62,23 +62,23 @@ class Entry:
         return self.given or NOT_STATED
 
 
-def identification(details: ReportDetails, tests: Sequence[TestView]) -> list[Entry]:
+def _identification(details: ReportDetails, tests: Sequence[TestView]) -> list[_Entry]:
     """Return which report this is, who made it for whom, and when."""
     found = [
-        Entry("Report number", details.number),
-        Entry("Revision", _revision(details)),
-        Entry("Date of issue", details.issued),
-        Entry("Laboratory", _lines(details.laboratory)),
-        Entry("Place of the tests", details.laboratory.location),
+        _Entry("Report number", details.number),
+        _Entry("Revision", _revision(details)),
+        _Entry("Date of issue", details.issued),
+        _Entry("Laboratory", _lines(details.laboratory)),
+        _Entry("Place of the tests", details.laboratory.location),
     ]
     if details.laboratory.accreditation:
-        found.append(Entry("Accreditation", details.laboratory.accreditation))
+        found.append(_Entry("Accreditation", details.laboratory.accreditation))
     return [
         *found,
-        Entry("Client", _lines(details.client)),
-        Entry("Order", details.client.order),
-        Entry("Items received", details.received or _received(details.items)),
-        Entry("Date of the tests", details.tested or _dates(tests)),
+        _Entry("Client", _lines(details.client)),
+        _Entry("Order", details.client.order),
+        _Entry("Items received", details.received or _received(details.items)),
+        _Entry("Date of the tests", details.tested or _dates(tests)),
     ]
 
 
@@ -109,43 +109,43 @@ def _dates(tests: Sequence[TestView]) -> str:
     return " to ".join(ends)
 
 
-def method(details: ReportDetails, tests: Sequence[TestView]) -> list[Entry]:
+def _method(details: ReportDetails, tests: Sequence[TestView]) -> list[_Entry]:
     """Return by which method, what was done otherwise, and how the items were chosen."""
     return [
-        Entry("Method", details.method or _of_tests(tests, "procedure")),
-        Entry("Deviations from the method", details.deviations),
-        Entry("Sampling", details.sampling),
-        Entry(
+        _Entry("Method", details.method or _of_tests(tests, "procedure")),
+        _Entry("Deviations from the method", details.deviations),
+        _Entry("Sampling", details.sampling),
+        _Entry(
             "Published source",
             next(filter(None, (one.attribute("references") for one in tests)), ""),
         ),
     ]
 
 
-def environment(details: ReportDetails, tests: Sequence[TestView]) -> list[Entry]:
+def _environment(details: ReportDetails, tests: Sequence[TestView]) -> list[_Entry]:
     """Return the conditions during the tests."""
     found = [
-        Entry("Medium", _of_tests(tests, "medium")),
-        Entry("Temperature", _of_tests(tests, "temperature")),
+        _Entry("Medium", _of_tests(tests, "medium")),
+        _Entry("Temperature", _of_tests(tests, "temperature")),
     ]
     soak = _of_tests(tests, "soak")
     if soak:
-        found.append(Entry("Soaking", soak))
+        found.append(_Entry("Soaking", soak))
     if details.environment or all(one.is_missing for one in found):
-        found.append(Entry("Other conditions", details.environment))
+        found.append(_Entry("Other conditions", details.environment))
     return found
 
 
-def authorisation(details: ReportDetails) -> list[Entry]:
+def _authorisation(details: ReportDetails) -> list[_Entry]:
     """Return who answers for the report."""
     return [
-        Entry("Authorised by", details.authorised.by),
-        Entry("Function", details.authorised.function),
-        Entry("Date", details.authorised.on),
+        _Entry("Authorised by", details.authorised.by),
+        _Entry("Function", details.authorised.function),
+        _Entry("Date", details.authorised.on),
     ]
 
 
-def missing_of(groups: Iterable[Sequence[Entry]]) -> list[str]:
+def _missing_of(groups: Iterable[Sequence[_Entry]]) -> list[str]:
     """Return the labels of what is not stated, in the order of the report."""
     return [one.label for group in groups for one in group if one.is_missing]
 
@@ -162,7 +162,7 @@ def _of_tests(tests: Sequence[TestView], name: str) -> str:
     return "; ".join(f"{', '.join(ids)}: {text or NOT_STATED}" for text, ids in by_text.items())
 
 
-def item_table(details: ReportDetails, tests: Sequence[TestView]) -> Table:
+def _item_table(details: ReportDetails, tests: Sequence[TestView]) -> Table:
     """Return what came in: every specimen that was tested, stated or not."""
     names = dict.fromkeys([*all_specimens(tests), *details.items])
     given = {name: details.items.get(name, Item()) for name in names}
@@ -180,7 +180,7 @@ def item_table(details: ReportDetails, tests: Sequence[TestView]) -> Table:
     )  # fmt: skip
 
 
-def calibration_table(details: ReportDetails, tests: Sequence[TestView]) -> Table:
+def _calibration_table(details: ReportDetails, tests: Sequence[TestView]) -> Table:
     """Return the instruments with their calibration: as stated, then as the tests name them."""
     stated = list(details.instruments)
     known = {one.name for one in stated}
@@ -225,7 +225,7 @@ _FIGURES = ("Modulus against strain", "Loops", "Slow pull", "Stepwise readings",
 
 
 @dataclass(frozen=True)
-class Drawing:
+class _Drawing:
     """A figure with its caption; a wide one takes the whole width of the page."""
 
     vector: Markup
@@ -233,28 +233,28 @@ class Drawing:
     is_wide: bool = False
 
 
-def drawings(figures: Collection[tuple[Figure, bool]]) -> list[Drawing]:
+def _drawings(figures: Collection[tuple[Figure, bool]]) -> list[_Drawing]:
     """Return the figures that can be drawn; ``True`` beside one asks for the whole width."""
     return [_drawing(one, is_wide=wide) for one, wide in figures if can_be_drawn(one)]
 
 
-def not_drawn(figures: Collection[tuple[Figure, bool]]) -> list[str]:
+def _not_drawn(figures: Collection[tuple[Figure, bool]]) -> list[str]:
     """Return the titles of the others."""
     return [one.title for one, _ in figures if not can_be_drawn(one)]
 
 
-def chosen_figures(
+def _chosen_figures(
     tests: Sequence[TestView], sections: Sequence[Section]
 ) -> Iterator[tuple[Figure, bool]]:
     """Give what is to be drawn, and whether it takes the whole width."""
     for one in draw_all_moduli(tests):
         yield one, True
-    for _, part in chosen_parts(tests, sections, _FIGURES):
+    for _, part in _chosen_parts(tests, sections, _FIGURES):
         for one in part.figures:
             yield one, False
 
 
-def _drawing(figure: Figure, *, is_wide: bool) -> Drawing:
+def _drawing(figure: Figure, *, is_wide: bool) -> _Drawing:
     width, height = (680.0, 360.0) if is_wide else (440.0, 225.0)
     if "yaxis2" in figure.layout:
         height *= _TWO_PANELS
@@ -262,10 +262,10 @@ def _drawing(figure: Figure, *, is_wide: bool) -> Drawing:
     caption += _BANDS if about else ""
     # the drawing escapes what it is given
     drawn = Markup(vector_of(figure, width=width, height=height))  # noqa: S704
-    return Drawing(drawn, caption, is_wide)
+    return _Drawing(drawn, caption, is_wide)
 
 
-def chosen_parts(
+def _chosen_parts(
     tests: Sequence[TestView], sections: Sequence[Section], headings: Collection[str]
 ) -> Iterator[tuple[Section, Part]]:
     """Give parts of the sections of the tests; of holds those that a test was made for."""
@@ -310,12 +310,12 @@ class ClientContent:
     units: UnitSystem
 
 
-def _groups(details: ReportDetails, tests: Sequence[TestView]) -> dict[str, list[Entry]]:
+def _groups(details: ReportDetails, tests: Sequence[TestView]) -> dict[str, list[_Entry]]:
     return {
-        "identification": identification(details, tests),
-        "method": method(details, tests),
-        "environment": environment(details, tests),
-        "authorisation": authorisation(details),
+        "identification": _identification(details, tests),
+        "method": _method(details, tests),
+        "environment": _environment(details, tests),
+        "authorisation": _authorisation(details),
     }
 
 
@@ -324,7 +324,7 @@ def render_client_report(content: ClientContent) -> str:
     details, tests, units = content.details, content.tests, content.units
     synthetic = any_synthetic(tests) or content.whole.is_synthetic
     label = f"Report {details.number or NOT_STATED}, revision {details.revision}"
-    figures = list(chosen_figures(tests, content.sections))
+    figures = list(_chosen_figures(tests, content.sections))
     environment_of = Environment(
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
@@ -333,7 +333,7 @@ def render_client_report(content: ClientContent) -> str:
     groups = _groups(details, tests)
     return template.render(
         **groups,
-        missing=missing_of(groups.values()),
+        missing=_missing_of(groups.values()),
         style=Markup(  # noqa: S704  # the style of the package; what stands on each sheet is quoted
             _sheet_style(details, label, synthetic=synthetic)
             + (room / "static" / "client.css").read_text("utf-8")
@@ -343,16 +343,16 @@ def render_client_report(content: ClientContent) -> str:
         title=content.title,
         campaign=content.campaign,
         synthetic=synthetic,
-        items=item_table(details, tests),
+        items=_item_table(details, tests),
         specimens=specimen_table(tests, units) if tests else None,
         specimen_notes=specimen_notes(tests),
         tests=_tests(content),
-        calibration=calibration_table(details, tests),
+        calibration=_calibration_table(details, tests),
         instruments=instrument_table(tests, units),
         instrument_notes=instrument_sentences(tests),
         results=_results(content),
-        drawings=drawings(figures),
-        not_drawn=not_drawn(figures),
+        drawings=_drawings(figures),
+        not_drawn=_not_drawn(figures),
         conformity=conformity_table(details, tests, units),
         doubts=[one for one in content.faults if one.severity in ("failure", "warning")],
         statements=_STATEMENTS,
@@ -368,7 +368,7 @@ def _results(content: ClientContent) -> list[Table]:
     found += [table for view in content.tests if (table := _answers(view)) is not None]
     found += [
         replace(table, caption=f"{section.title}: {table.caption}")
-        for section, part in chosen_parts(content.tests, content.sections, _TABLES)
+        for section, part in _chosen_parts(content.tests, content.sections, _TABLES)
         for table in part.tables
     ]
     return [*found, *content.whole.answers]

@@ -85,10 +85,7 @@ _ON_SCALE = {"log": ", by its logarithm", "box-cox": ", by its Box-Cox transform
 
 
 def run_table(view: ExperimentView, tests: Mapping[str, TestView] | None = None) -> Table | None:
-    """Return the runs as planned and as reached, with what each gave.
-
-    Runs that are ``tests`` have the uncertainty that their archives know.
-    """
+    """Return the runs as planned and as reached, with what each gave."""
     own = {} if tests is None else tests
     strength = view.per_run("run_rated_break_strength")
     is_share = bool(np.isfinite(strength).any())
@@ -181,10 +178,7 @@ def effect_table(view: ExperimentView, name: str) -> Table | None:
 
 
 def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> Table | None:
-    """Return each response in the middle of the tested range, and from where to where it goes.
-
-    Of a response that another surface holds above zero, the one that falls below is left out.
-    """
+    """Return each response in the middle of the tested range, and from where to where it goes."""
     least, greatest, _ = extremes_in_box(surfaces)
     centre = np.zeros((1, len(view.factors)))
     middle = evaluate_surfaces(surfaces, centre, units="coded")
@@ -461,20 +455,7 @@ _RUN_TO_RUN, _REGRESSION = "run_to_run", "regression"
 def coefficient_budgets(
     view: ExperimentView, surfaces: ResponseSurfaces, index: int
 ) -> list[AnswerBudget]:
-    """Return the budget of each coded coefficient of a surface: what runs share, and what not.
-
-    Of the scatter about the surface the part that runs at one point of the plan have among each
-    other is from run to run; the rest is what the surface misses, and so of the regression.
-
-    Parameters
-    ----------
-    view : ExperimentView
-        Whose archive keeps what the runs share; one that keeps nothing has no budget to show.
-    surfaces : ResponseSurfaces
-        Of it.
-    index : int
-        Of the surface.
-    """
+    """Return the budget of each coded coefficient of a surface: what runs share, and what not."""
     name = surfaces.response_names[index]
     unit = response_unit(name, view.units)
     share = _share_of_repeats(surfaces, index)

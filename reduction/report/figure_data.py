@@ -94,9 +94,6 @@ def script_json(document: object) -> str:
 def plain_numbers(values: Floats, digits: int = _DIGITS) -> list[float | None]:
     """Return numbers of a few digits, at most 12, None where one is not finite.
 
-    As Python's format ``g`` has them, but for a number within rounding of the middle between two,
-    which may become either.
-
     Examples
     --------
     >>> plain_numbers(np.array([1.23456789, np.nan]))
@@ -166,11 +163,7 @@ def band(
 
 
 def axis(label: str, **more: Any) -> dict[str, Any]:
-    """Return an axis with its title; the unit is part of the label.
-
-    A number on it is written out: the thousands of plotly are a k that reads like a unit, and a
-    logarithmic axis takes the format of the pointer for its ticks.
-    """
+    """Return an axis with its title; the unit is part of the label."""
     return {
         "title": {"text": label}, "hoverformat": ",.4~r", "exponentformat": "none",
         "separatethousands": True, **more,
@@ -203,10 +196,7 @@ def make_figure(
     spoken: str = "",
     **layout: Any,
 ) -> Figure:
-    """Return a figure; ``synthetic`` puts the words into the figure itself.
-
-    They stay with it when a reader saves it as a picture.
-    """
+    """Return a figure; ``synthetic`` puts the words into the figure itself."""
     heading: dict[str, Any] = {"text": plot_text(title, _TITLE_LENGTH)}
     if synthetic:
         heading["subtitle"] = {"text": "SYNTHETIC DATA"}
@@ -226,26 +216,6 @@ POINTS = 2000
 
 def keep_extremes(coordinate: Floats, *channels: Floats, limit: int = POINTS) -> NDArray[np.intp]:
     """Return the indices of the samples to draw, in order.
-
-    Parameters
-    ----------
-    coordinate : ndarray, shape (n_samples,)
-        Along which the intervals have equal width: time, or its logarithm.  Where it
-        runs backward or is missing the sample stays in the interval before it.
-    *channels : ndarray, shape (n_samples,)
-        Whose extremes are kept; a sample that is not finite is a gap.
-    limit : int
-        Most indices returned.
-
-    Returns
-    -------
-    indices : ndarray of int, shape (n_kept,)
-        Rising.  All of them where there are no more than ``limit`` samples.
-
-    Raises
-    ------
-    DataError
-        If there is no channel, or the limit leaves no room for one interval.
 
     Examples
     --------
@@ -284,24 +254,6 @@ def least_and_greatest(
 ) -> tuple[Floats, Floats, Floats]:
     """Return the edges of what a channel does in intervals of equal width.
 
-    For a record of so many cycles that a line through them would be a block of colour.
-
-    Parameters
-    ----------
-    coordinate : ndarray, shape (n_samples,)
-        Along which the intervals have equal width, as in `keep_extremes`.
-    channel : ndarray, shape (n_samples,)
-        What is drawn; a sample that is not finite is left out. [any]
-    n_intervals : int
-        Most intervals. [1]
-
-    Returns
-    -------
-    middle : ndarray, shape (n_found,)
-        Middle of the samples of each interval. [as coordinate]
-    least, greatest : ndarray, shape (n_found,)
-        NaN of an interval without a finite sample. [as channel]
-
     Examples
     --------
     >>> wave = np.tile([1.0, 5.0, 2.0], 100)
@@ -320,18 +272,6 @@ def least_and_greatest(
 
 def with_gaps(piece: Integers, *series: Floats) -> list[Floats]:
     """Put a sample that is not there between pieces, so that no line is drawn across.
-
-    Parameters
-    ----------
-    piece : ndarray of int, shape (n_samples,)
-        Number of the piece that each sample is in.
-    *series : ndarray, shape (n_samples,)
-        What is drawn. [any]
-
-    Returns
-    -------
-    broken : list of ndarray, shape (n_samples + n_gaps,)
-        NaN in each gap. [as in series]
 
     Examples
     --------

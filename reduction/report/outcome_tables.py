@@ -80,10 +80,7 @@ class _Groups(Sheet):
         return self.cells(heading, (count(one) if one else words("") for one in self.of(name)))
 
     def grouped(self, caption: str, reason: str, held: str, *notes: str) -> Table | None:
-        """Return the table: what ± holds, what is missing, and why, stands below.
-
-        ``reason`` is the column of the words that say why.
-        """
+        """Return the table: what ± holds, what is missing, and why, stands below."""
         told: dict[str, list[str]] = {}
         for name, row in zip(self.names, self.rows, strict=True):
             load = _real(row, "peak_load_ratio")

@@ -138,12 +138,12 @@ def about_page(
     return [*found, f"Made by mooring-reduction {__version__} from {made_from}.", *definitions]
 
 
-def packed(text: str) -> tuple[str, int]:
+def _packed(text: str) -> tuple[str, int]:
     """Return text deflated, in base64, and its length as UTF-8: a page has to stay small.
 
     Examples
     --------
-    >>> text, size = packed("nought " * 100)
+    >>> text, size = _packed("nought " * 100)
     >>> size, len(text) < 40
     (700, True)
     """
@@ -182,5 +182,5 @@ def _environment() -> Environment:
         loader=PackageLoader("reduction.report"), autoescape=True, undefined=StrictUndefined,
         trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
-    environment.globals["packed"] = packed
+    environment.globals["packed"] = _packed
     return environment

@@ -58,7 +58,7 @@ _PLUS_MINUS = (
 )
 
 
-def plus_minus_of_hoses(views: Sequence[HoseView]) -> list[str]:
+def _plus_minus_of_hoses(views: Sequence[HoseView]) -> list[str]:
     """Return the sentence that says what ± is, or that nothing is known."""
     named = (name for view in views for name in view.sources)
     sources = dict.fromkeys(SOURCE_WORDS.get(name, name.replace("_", " ")) for name in named)
@@ -91,7 +91,7 @@ def answer_of_hoses(views: Sequence[HoseView]) -> Table | None:
     ).table(
         "Predicted hoses, from construction alone: strain where the cords pick up, strain and"
         " tension at the working load and where the cords break.",
-        remarks=plus_minus_of_hoses(views),
+        remarks=_plus_minus_of_hoses(views),
     )
 
 
@@ -109,7 +109,7 @@ def hose_event_table(view: HoseView) -> Table | None:
     )
     return sheet.table(
         f"Events of hose {view.name}, from rest to the break of its cords.",
-        remarks=[*plus_minus_of_hoses([view]), *([_TOGETHER] if view.sources else [])],
+        remarks=[*_plus_minus_of_hoses([view]), *([_TOGETHER] if view.sources else [])],
     )
 
 
@@ -243,7 +243,7 @@ def hose_curve_table(view: HoseView) -> Table | None:
     return sheet.table(
         f"Predicted curve of hose {view.name}, {sheet.n_rows:,} of {size:,} points; the archive"
         " and predictions.csv have them all.",
-        is_tall=True, is_compact=True, remarks=plus_minus_of_hoses([view]),
+        is_tall=True, is_compact=True, remarks=_plus_minus_of_hoses([view]),
     )  # fmt: skip
 
 

@@ -162,7 +162,7 @@ _IDENTIFIED = {0: False, 1: True}
 
 
 @dataclass(frozen=True)
-class MetEvent:
+class _MetEvent:
     """What happens to the cords, on both sides; SI, NaN where the test did not go there."""
 
     name: str
@@ -324,13 +324,13 @@ class ComparisonView(RowView):
         return np.asarray(self.array_like("calibrated_tension", measured) - measured)
 
     @cached_property
-    def events(self) -> tuple[MetEvent, ...]:
+    def events(self) -> tuple[_MetEvent, ...]:
         """What happens to the cords, in the order of strain."""
         names = self.data.variables["hose_event"].values.astype(str)
-        fields = [name for name in MetEvent.__dataclass_fields__ if name != "name"]
+        fields = [name for name in _MetEvent.__dataclass_fields__ if name != "name"]
         table = [self.array_like(f"event_{name}", np.zeros(names.size)) for name in fields]
         return tuple(
-            MetEvent(str(name), *(float(row[place]) for row in table))
+            _MetEvent(str(name), *(float(row[place]) for row in table))
             for place, name in enumerate(names)
         )
 
@@ -671,10 +671,7 @@ class RopeView:
         return [row for row, one in enumerate(self.names) if one == name and known[row]]
 
     def entries(self, along: str, needed: str) -> Iterator[tuple[TestView, int]]:
-        """Every test and place of this rope along ``specimen``, ``held_pair`` or ``hold``.
-
-        Only where the test has ``needed``.
-        """
+        """Every test and place of this rope along ``specimen``, ``held_pair`` or ``hold``."""
         for view in self.tests:
             owners = view.texts(along if along == "specimen" else f"{along}_specimen")
             if needed in view.data:

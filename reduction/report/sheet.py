@@ -45,7 +45,7 @@ Source = str | Iterable[Any]
 """Name of a variable, or what stands in the rows."""
 
 
-class Shows(Protocol):
+class _Shows(Protocol):
     """What a table is of: anything with units, that is synthetic or not."""
 
     @property
@@ -81,7 +81,7 @@ class Sheet:
     (('cycle', 'peak [N]'), [['1', '99.60'], ['2', '101.2']])
     """
 
-    view: Shows
+    view: _Shows
     dims: Sequence[str] = ()
     where: str = ""
     headings: list[str] = field(default_factory=list)
@@ -107,11 +107,8 @@ class Sheet:
             self.keep(np.isfinite(self.of(self.where)))
 
     @classmethod
-    def stack(cls, sheets: Iterable[Sheet], of: Shows | None = None) -> Sheet:
-        """Return the rows of several sheets of equal columns, one below the other.
-
-        The table is of all of them, or ``of`` something that they are parts of.
-        """
+    def stack(cls, sheets: Iterable[Sheet], of: _Shows | None = None) -> Sheet:
+        """Return the rows of several sheets of equal columns, one below the other."""
         all_of = list(sheets)
         if not all_of:
             return cls(Calculated("si"))
@@ -203,10 +200,7 @@ class Sheet:
         *,
         is_short: bool = False,
     ) -> Self:
-        """Add a column of numbers with their expanded uncertainty.
-
-        An archive says that of its variables; ``spread`` says it of arrays, or otherwise.
-        """
+        """Add a column of numbers with their expanded uncertainty."""
         own = self.unit_of(source, unit)
         if isinstance(source, str):
             self.known.append(source)
@@ -262,11 +256,7 @@ class Sheet:
         is_compact: bool = False,
         is_tall: bool = False,
     ) -> Table | None:
-        """Return the table; None where it has no row.
-
-        It is tall with more rows than ``tall``; columns of ``optional`` headings in which nothing
-        stands are left out.
-        """
+        """Return the table; None where it has no row."""
         pairs = [
             (heading, column)
             for heading, column in zip(self.headings, self.columns, strict=True)

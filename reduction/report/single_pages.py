@@ -62,29 +62,7 @@ _OF_ARMOUR = (
 def write_wave_page(
     found: PredictedWaveLoad, out: Path, *, name: str, units: UnitSystem = "si"
 ) -> Path:
-    """Write the page of a wave load.
-
-    Parameters
-    ----------
-    found : PredictedWaveLoad
-        The prediction.
-    out : pathlib.Path
-        Folder of the page; made where it is not there.
-    name : str
-        Of the case.
-    units : UnitSystem
-        What a reader is shown.
-
-    Returns
-    -------
-    page : pathlib.Path
-        ``out/index.html``; it appears whole or not at all.
-
-    Raises
-    ------
-    ArchiveError
-        If the disk refuses.
-    """
+    """Write the page of a wave load."""
     unit, force = force_per_length(units), shown("tension", units)
     tiles = [
         Tile(_with_unit(float(one.greatest), unit), f"{words}, greatest", "load")
@@ -112,29 +90,7 @@ def write_wave_page(
 def write_armour_page(
     found: PredictedArmour, out: Path, *, name: str, units: UnitSystem = "si"
 ) -> Path:
-    """Write the page of an armour.
-
-    Parameters
-    ----------
-    found : PredictedArmour
-        The prediction.
-    out : pathlib.Path
-        Folder of the page; made where it is not there.
-    name : str
-        Of the case.
-    units : UnitSystem
-        What a reader is shown.
-
-    Returns
-    -------
-    page : pathlib.Path
-        ``out/index.html``; it appears whole or not at all.
-
-    Raises
-    ------
-    ArchiveError
-        If the disk refuses.
-    """
+    """Write the page of an armour."""
     force = shown("tension", units)
     size = len(found.layer_names)
     tension = _with_unit(float(found.together.tension[0]), force)
@@ -217,24 +173,7 @@ _DOUBTS = ("DOUBTFUL", "no pieces of one curve", "slipped", "not known", "extrap
 def write_composite_page(
     source: PieceSource, curve: CompositeCurve, path: Path, *, units: UnitSystem = "si"
 ) -> None:
-    """Write the page of a composite curve.
-
-    Parameters
-    ----------
-    source : PieceSource
-        Of the pieces.
-    curve : CompositeCurve
-        Of them.
-    path : pathlib.Path
-        The page; it appears whole or not at all.
-    units : UnitSystem
-        What a reader is shown.
-
-    Raises
-    ------
-    ArchiveError
-        If the disk refuses.
-    """
+    """Write the page of a composite curve."""
     force, percent = shown("tension", units), shown("strain", units)
     tests = len(set(curve.piece_names))
     tiles = [
@@ -254,22 +193,7 @@ def write_composite_page(
 
 
 def write_assembly_page(found: DeployedLine, path: Path, *, units: UnitSystem = "si") -> None:
-    """Write the page of a deployed assembly, with the curve of its tethers.
-
-    Parameters
-    ----------
-    found : DeployedLine
-        The assembly.
-    path : pathlib.Path
-        The page; it appears whole or not at all.
-    units : UnitSystem
-        What a reader is shown.
-
-    Raises
-    ------
-    ArchiveError
-        If the disk refuses.
-    """
+    """Write the page of a deployed assembly, with the curve of its tethers."""
     length = shown("length", units)
     assembly, source = found.deployed.assembly, found.source
     tiles = [

@@ -62,10 +62,7 @@ class Planes:
 
 
 def make_planes(view: ExperimentView, surfaces: ResponseSurfaces) -> Planes | None:
-    """Return the planes over two loads at three frequencies; None with fewer than three factors.
-
-    The factor that is held is the frequency where there is one, else the last.
-    """
+    """Return the planes over two loads at three frequencies; None with fewer than three factors."""
     names = view.factors
     if len(names) < 3:
         return None
@@ -98,10 +95,7 @@ def runs_on_plane(view: ExperimentView, planes: Planes, level: float) -> Bools:
 
 
 def extremes_in_box(surfaces: ResponseSurfaces) -> tuple[Floats, Floats, Floats]:
-    """Return least and greatest value of each surface within the levels, and where it is least.
-
-    The place is coded; the values are of the response itself.
-    """
+    """Return least and greatest value of each surface within the levels, and where it is least."""
     n_factors = surfaces.coded.shape[1]
     n_side = max(2, min(21, int(_MOST_POINTS ** (1 / n_factors))))
     points = np.array(list(product(np.linspace(-1, 1, n_side), repeat=n_factors)))
@@ -127,11 +121,8 @@ _CONTRIBUTION = "_uncertainty_contribution"
 
 
 @dataclass(frozen=True)
-class CoefficientSpread:
-    """Expanded uncertainty of the coefficients of a surface, and its shared part alone.
-
-    The parts of scatter and of what is shared add up by their squares; both have the factor of all.
-    """
+class _CoefficientSpread:
+    """Expanded uncertainty of the coefficients of a surface, and its shared part alone."""
 
     all: Expanded
     shared: Floats
@@ -139,11 +130,8 @@ class CoefficientSpread:
 
 def expanded_of_coefficients(
     view: ExperimentView, surfaces: ResponseSurfaces, index: int, *, in_units: bool = False
-) -> CoefficientSpread:
-    """Return the uncertainty of the coefficients of a surface, coded or in units.
-
-    An archive that keeps no shared errors has those of scatter alone.
-    """
+) -> _CoefficientSpread:
+    """Return the uncertainty of the coefficients of a surface, coded or in units."""
     name = f"{surfaces.response_names[index]}_coefficient"
     random = surfaces.coefficient_standard_uncertainty[index]
     if in_units:
@@ -159,7 +147,7 @@ def expanded_of_coefficients(
         )
     )
     shared = np.sqrt(np.sum(contribution**2, axis=0))
-    return CoefficientSpread(Expanded(factor * np.hypot(random, shared), factor), factor * shared)
+    return _CoefficientSpread(Expanded(factor * np.hypot(random, shared), factor), factor * shared)
 
 
 def shared_by_runs(view: ExperimentView, surfaces: ResponseSurfaces) -> list[str]:
@@ -175,22 +163,7 @@ def shared_by_runs(view: ExperimentView, surfaces: ResponseSurfaces) -> list[str
 def interval_of_surfaces(
     view: ExperimentView, surfaces: ResponseSurfaces, coded: ArrayLike
 ) -> tuple[Floats, Floats]:
-    """Return the ends of the 95 % interval of every surface at points in coded levels.
-
-    Parameters
-    ----------
-    view : ExperimentView
-        Whose archive keeps what the runs share.
-    surfaces : ResponseSurfaces
-        Of it.
-    coded : array_like, shape (n_points, n_factors)
-        [1]
-
-    Returns
-    -------
-    low, high : ndarray, shape (n_responses, n_points)
-        NaN where there is no surface or no scatter. [unit of the response]
-    """
+    """Return the ends of the 95 % interval of every surface at points in coded levels."""
     at = evaluate_surfaces(surfaces, coded, units="coded", outside="flag")
     rows = [
         _rows(view, f"{name}_coefficient", len(surfaces.term_names))
@@ -202,11 +175,7 @@ def interval_of_surfaces(
 
 
 def expanded_of_runs(view: ExperimentView, name: str, tests: Mapping[str, TestView]) -> Expanded:
-    """Return the expanded uncertainty of a response in each run.
-
-    Where the run is a test of the campaign its archive knows all of it; a run from elsewhere has
-    the uncertainty that was given with it.
-    """
+    """Return the expanded uncertainty of a response in each run."""
     spread = view.per_run(f"{name}_measured_standard_uncertainty")
     given = expand(spread)
     half, factor = given.half.copy(), given.factor.copy()
@@ -223,10 +192,7 @@ def expanded_of_runs(view: ExperimentView, name: str, tests: Mapping[str, TestVi
 
 
 def _rows(view: ExperimentView, name: str, n_terms: int) -> Floats:
-    """Contributions to the coefficients, shape (n_components, n_terms): zero where none.
-
-    Not a number, where it is not kept of every run what it shares with the others.
-    """
+    """Contributions to the coefficients, shape (n_components, n_terms): zero where none."""
     found = view.array(f"{name}{_CONTRIBUTION}")
     n_components = _freedom(view).size
     if found.ndim != 2:

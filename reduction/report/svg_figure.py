@@ -27,7 +27,7 @@ _MARKUP = re.compile(r"<br\s*/?>")
 
 
 @dataclass(frozen=True)
-class Tick:
+class _Tick:
     """A mark on an axis with its words, a line each."""
 
     value: float
@@ -35,18 +35,15 @@ class Tick:
 
 
 @dataclass(frozen=True)
-class DrawnAxis:
-    """One axis: its ends and ticks, and the places of the ends on the drawing.
-
-    ``low`` and ``high`` of a logarithmic axis are powers of ten.
-    """
+class _DrawnAxis:
+    """One axis: its ends and ticks, and the places of the ends on the drawing."""
 
     title: str
     low: float
     high: float
     first: float
     last: float
-    ticks: tuple[Tick, ...]
+    ticks: tuple[_Tick, ...]
     is_log: bool = False
 
     @property
@@ -62,12 +59,12 @@ class DrawnAxis:
         return self.first + share * (self.last - self.first)
 
 
-def round_ticks(low: float, high: float, most: int) -> list[float]:
+def _round_ticks(low: float, high: float, most: int) -> list[float]:
     """Return round numbers between two ends, at most so many and as many as fit.
 
     Examples
     --------
-    >>> print(round_ticks(0.0, 1.3, 6))
+    >>> print(_round_ticks(0.0, 1.3, 6))
     [0.0, 0.25, 0.5, 0.75, 1.0, 1.25]
     """
     least = (high - low) / max(most, 2)
@@ -80,34 +77,22 @@ def round_ticks(low: float, high: float, most: int) -> list[float]:
     return [round(number * step, decimals) + 0.0 for number in range(first, last + 1)]
 
 
-def plain_label(text: str) -> str:
+def _plain_label(text: str) -> str:
     """Return what plotly would show of a title or a name, on one line.
 
     Examples
     --------
-    >>> plain_label("&lt;b&gt; and<br>stress [MPa]")
+    >>> _plain_label("&lt;b&gt; and<br>stress [MPa]")
     '<b> and stress [MPa]'
     """
     return html.unescape(_MARKUP.sub(" ", text))
 
 
-def axis_of(
+def _axis_of(
     layout: Mapping[str, Any], values: Iterable[float | None], *, first: float, last: float,
     most: int,
-) -> DrawnAxis:  # fmt: skip
-    """Return an axis as plotly would lay it out, linear or logarithmic.
-
-    Parameters
-    ----------
-    layout : mapping
-        Of the axis: ``title``, ``type``, ``range``, ``rangemode``, ``tickvals`` with ``ticktext``.
-    values : iterable of float or None
-        All that is drawn along it.
-    first, last : float
-        Where its ends stand on the drawing.
-    most : int
-        Ticks at most.
-    """
+) -> _DrawnAxis:  # fmt: skip
+    """Return an axis as plotly would lay it out, linear or logarithmic."""
     is_log = layout.get("type") == "log"
     known = [one for one in values if one is not None and isfinite(one)]
     if is_log:
@@ -116,15 +101,15 @@ def axis_of(
     if "ticktext" in layout:
         pairs = zip(layout["tickvals"], layout["ticktext"], strict=True)
         ticks = [
-            Tick(float(value), tuple(html.unescape(line) for line in _MARKUP.split(text)))
+            _Tick(float(value), tuple(html.unescape(line) for line in _MARKUP.split(text)))
             for value, text in pairs
         ]
     elif is_log:
         ticks = list(_decades(low, high, most))
     else:
-        ticks = [Tick(value, (_number(value),)) for value in round_ticks(low, high, most)]
-    title = plain_label(layout.get("title", {}).get("text", ""))
-    return DrawnAxis(title, low, high, first, last, tuple(ticks), is_log)
+        ticks = [_Tick(value, (_number(value),)) for value in _round_ticks(low, high, most)]
+    title = _plain_label(layout.get("title", {}).get("text", ""))
+    return _DrawnAxis(title, low, high, first, last, tuple(ticks), is_log)
 
 
 def _ends(layout: Mapping[str, Any], known: Sequence[float]) -> tuple[float, float]:
@@ -144,7 +129,7 @@ def _ends(layout: Mapping[str, Any], known: Sequence[float]) -> tuple[float, flo
     return low - margin, high + margin
 
 
-def _decades(low: float, high: float, most: int) -> Iterator[Tick]:
+def _decades(low: float, high: float, most: int) -> Iterator[_Tick]:
     """Give powers of ten, with 2 and 5 between them where there is room."""
     powers = range(floor(low), ceil(high) + 1)
     leading = (1, 2, 5) if 3 * (high - low) <= most else (1,)
@@ -153,7 +138,7 @@ def _decades(low: float, high: float, most: int) -> Iterator[Tick]:
         for digit in leading:
             value = digit * 10.0**power
             if low - _ROUNDING <= log10(value) <= high + _ROUNDING:
-                yield Tick(value, (_number(value),))
+                yield _Tick(value, (_number(value),))
 
 
 def _number(value: float) -> str:
@@ -183,7 +168,7 @@ _SHAPES: dict[str, list[tuple[float, float]]] = {
 _CROSSES = {"x": ((1, 1), (1, -1)), "cross": ((1, 0), (0, 1))}
 
 
-def drawn_trace(trace: Trace, horizontal: DrawnAxis, vertical: DrawnAxis) -> Iterator[str]:
+def _drawn_trace(trace: Trace, horizontal: _DrawnAxis, vertical: _DrawnAxis) -> Iterator[str]:
     """Give the elements of one trace on its axes."""
     opacity = f' opacity="{trace["opacity"]:g}"' if "opacity" in trace else ""
     runs = _runs(trace, horizontal, vertical)
@@ -205,7 +190,7 @@ def drawn_trace(trace: Trace, horizontal: DrawnAxis, vertical: DrawnAxis) -> Ite
             yield _marker(float(x), float(y), marker)
 
 
-def drawn_key(trace: Trace, x: float, y: float) -> Iterator[str]:
+def _drawn_key(trace: Trace, x: float, y: float) -> Iterator[str]:
     """What stands before a name: a piece of its line, its marker, a patch of its band."""
     middle = y - 3.6
     if trace.get("fill") == "toself":
@@ -220,7 +205,7 @@ def drawn_key(trace: Trace, x: float, y: float) -> Iterator[str]:
         yield _marker(x + 12, middle, trace.get("marker", {}))
 
 
-def _runs(trace: Trace, horizontal: DrawnAxis, vertical: DrawnAxis) -> list[list[str]]:
+def _runs(trace: Trace, horizontal: _DrawnAxis, vertical: _DrawnAxis) -> list[list[str]]:
     """Places of the points, parted where one is missing."""
     runs: list[list[str]] = [[]]
     for x, y in zip(trace["x"], trace["y"], strict=True):
@@ -242,7 +227,7 @@ def _stroke(trace: Trace) -> str:
     return f' stroke="{escape(str(colour))}" stroke-width="{style.get("width", 1.8):g}"{dashed}'
 
 
-def _bars(trace: Trace, horizontal: DrawnAxis, vertical: DrawnAxis) -> Iterator[str]:
+def _bars(trace: Trace, horizontal: _DrawnAxis, vertical: _DrawnAxis) -> Iterator[str]:
     colour = escape(str(trace.get("marker", {}).get("color", "#333333")))
     bars = trace["error_y"].get("array", ())
     for x, y, half in zip(trace["x"], trace["y"], bars, strict=False):
@@ -308,22 +293,12 @@ def can_be_drawn(figure: Figure) -> bool:
 
 
 def vector_of(figure: Figure, *, width: float = 680.0, height: float = 330.0) -> str:
-    """Return a figure as an SVG element.
-
-    What plotly draws only on a click is left out; so is what lies outside the axes.
-
-    Parameters
-    ----------
-    figure : Figure
-        One that `can_be_drawn`.
-    width, height : float
-        Of the drawing without its legend; on paper it is scaled to its column.
-    """
+    """Return a figure as an SVG element."""
     shown = [one for one in figure.data if one.get("visible", True) is True and one["y"]]
     panels = _panels(figure, shown, height)
     longest = max(one.longest for one, _ in panels)
     left = _LEFT + _LETTER * max(longest, _FEWEST_LETTERS)
-    horizontal = axis_of(
+    horizontal = _axis_of(
         figure.layout.get("xaxis", {}), (x for one in shown for x in one["x"]),
         first=left, last=width - _RIGHT, most=int((width - left - _RIGHT) / _TICK_SPACE[0]) + 1,
     )  # fmt: skip
@@ -343,7 +318,7 @@ def vector_of(figure: Figure, *, width: float = 680.0, height: float = 330.0) ->
             *_frame(horizontal, vertical, is_lowest=number == 0),
             f'<g clip-path="url(#{clip})">',
             *(_levels(figure, horizontal, vertical) if number == 0 else ()),
-            *(part for one in own for part in drawn_trace(one, horizontal, vertical)),
+            *(part for one in own for part in _drawn_trace(one, horizontal, vertical)),
             "</g>",
         ]
     return "\n".join([*parts, *(part for _, drawn in legend for part in drawn), "</svg>"])
@@ -351,7 +326,7 @@ def vector_of(figure: Figure, *, width: float = 680.0, height: float = 330.0) ->
 
 def _panels(
     figure: Figure, shown: Sequence[Trace], height: float
-) -> list[tuple[DrawnAxis, list[Trace]]]:
+) -> list[tuple[_DrawnAxis, list[Trace]]]:
     """Vertical axes one above the other, the lowest first, with what is drawn on each."""
     whole = height - _BOTTOM - _TOP
     found = []
@@ -360,7 +335,7 @@ def _panels(
         if name not in figure.layout and not own:
             continue
         low, high = figure.layout.get(name, {}).get("domain", (0.0, 1.0))
-        drawn = axis_of(
+        drawn = _axis_of(
             figure.layout.get(name, {}), (y for one in own for y in _heights(one)),
             first=height - _BOTTOM - low * whole, last=height - _BOTTOM - high * whole,
             most=int((high - low) * whole / _TICK_SPACE[1]) + 1,
@@ -387,7 +362,7 @@ def _text(
     return f"<text {place}{classes}{turn}>{escape(words)}</text>"
 
 
-def _frame(horizontal: DrawnAxis, vertical: DrawnAxis, *, is_lowest: bool) -> Iterator[str]:
+def _frame(horizontal: _DrawnAxis, vertical: _DrawnAxis, *, is_lowest: bool) -> Iterator[str]:
     """Grid, ticks and the two axes; words below the lowest panel alone."""
     bottom, top = vertical.first, vertical.last
     for tick in horizontal.ticks:
@@ -414,14 +389,14 @@ def _frame(horizontal: DrawnAxis, vertical: DrawnAxis, *, is_lowest: bool) -> It
     yield _text(14, middle, vertical.title, "middle", turn=turn)
 
 
-def _titles(figure: Figure, height: float, horizontal: DrawnAxis) -> Iterator[str]:
+def _titles(figure: Figure, height: float, horizontal: _DrawnAxis) -> Iterator[str]:
     yield _text(horizontal.first, 14, figure.title, kind="title")
     if figure.synthetic:
         yield _text(horizontal.first, 28, "SYNTHETIC DATA", kind="synthetic")
     yield _text((horizontal.first + horizontal.last) / 2, height - 10, horizontal.title, "middle")
 
 
-def _levels(figure: Figure, horizontal: DrawnAxis, vertical: DrawnAxis) -> Iterator[str]:
+def _levels(figure: Figure, horizontal: _DrawnAxis, vertical: _DrawnAxis) -> Iterator[str]:
     """Straight lines across the drawing; other shapes mark stretches of a record."""
     for shape in figure.layout.get("shapes", ()):
         if shape.get("type") == "line" and shape.get("xref", "x") == "paper":
@@ -439,7 +414,7 @@ def _legend(
     entries: dict[str, Trace] = {}
     for trace in shown:
         if trace.get("showlegend", True) and trace.get("name"):
-            entries.setdefault(plain_label(trace["name"]), trace)
+            entries.setdefault(_plain_label(trace["name"]), trace)
     if len(entries) < 2:
         return
     sizes = {name: _LEGEND_KEY + _LETTER * len(name) + 12 for name in entries}
@@ -456,5 +431,5 @@ def _legend(
         starts = [left + sum(sizes[one] for one in row[:place]) for place in range(len(row) + 1)]
         drawn = []
         for name, (start, _) in zip(row, pairwise(starts), strict=True):
-            drawn += [*drawn_key(entries[name], start, y), _text(start + 28, y, name)]
+            drawn += [*_drawn_key(entries[name], start, y), _text(start + 28, y, name)]
         yield 8 + _LEGEND_ROW * (number + 1) - 4, drawn

@@ -55,16 +55,8 @@ _DIGITS = 9
 
 
 @dataclass(frozen=True)
-class CycleLinks:
-    """Cycles of a test that can be chosen: their numbers, and from when to when each was.
-
-    Parameters
-    ----------
-    count : int
-        Number of cycles of the test.
-    number, start, end : ndarray, shape (n_listed,)
-        Rising numbers; elapsed time at start and end, NaN where it is not known. [1], [s]
-    """
+class _CycleLinks:
+    """Cycles of a test that can be chosen: their numbers, and from when to when each was."""
 
     count: int
     number: Floats
@@ -83,11 +75,8 @@ class CycleLinks:
         return script_json(document)
 
 
-def cycle_links(view: TestView) -> CycleLinks | None:
+def _cycle_links(view: TestView) -> _CycleLinks | None:
     """Return the cycles of a test that a reader can choose; None where there are not two.
-
-    Of a test with more than `MOST` cycles some are listed: evenly spaced ones, and those of
-    which a loop or a curve is drawn.
 
     Examples
     --------
@@ -99,7 +88,7 @@ def cycle_links(view: TestView) -> CycleLinks | None:
     ...     },
     ...     coords={"cycle": [1, 2]},
     ... )
-    >>> cycle_links(TestView("test-0", data)).json()
+    >>> _cycle_links(TestView("test-0", data)).json()
     '{"count":2,"start":[10.0,12.0],"end":[12.0,14.5]}'
     """
     cycle, start = view.array("cycle"), view.array("cycle_start_time")
@@ -111,7 +100,7 @@ def cycle_links(view: TestView) -> CycleLinks | None:
     start, end = (
         _first_known(values.reshape(-1, cycle.size)[:, places]) for values in (start, end)
     )
-    return CycleLinks(cycle.size, cycle[places], start, end)
+    return _CycleLinks(cycle.size, cycle[places], start, end)
 
 
 def _listed(view: TestView, cycle: Floats) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
@@ -167,7 +156,7 @@ class Section:
     provenance: tuple[tuple[str, str], ...]
     documents: tuple[tuple[str, str], ...] = field(default=())
     noun: str = "test"
-    cycles: CycleLinks | None = None
+    cycles: _CycleLinks | None = None
 
 
 def make_part(
@@ -228,7 +217,7 @@ def make_section(view: TestView) -> Section:
         notes=tuple(grouped_notes(view)),
         provenance=provenance,
         documents=documents,
-        cycles=cycle_links(view),
+        cycles=_cycle_links(view),
     )
 
 

@@ -176,10 +176,7 @@ def coefficient_table(view: TestView) -> Table | None:
 
 
 def slope_sentences(view: TestView) -> list[str]:
-    """Return what a constant splice fraction would make of the moduli, one sentence a specimen.
-
-    A modulus goes as the inverse of the strain slope.
-    """
+    """Return what a constant splice fraction would make of the moduli, one sentence a specimen."""
     ratio = view.array("strain_slope_ratio")
     if ratio is None or "tangent_modulus" not in view.data:
         return []
@@ -221,12 +218,7 @@ def _signed(residual: float) -> Cell:
 
 
 def design_tables(tests: Sequence[TestView]) -> list[Table]:
-    """Return the modulus at round strains: rows strain, columns the tests that reach one.
-
-    A value between two bins is on the straight line between them, and so is its
-    uncertainty, which is then that of bins whose errors go together; nothing is
-    extrapolated.
-    """
+    """Return the modulus at round strains: rows strain, columns the tests that reach one."""
     for step in STEPS:
         found = [_design_table(tests, specimen, step) for specimen in all_specimens(tests)]
         tables = [table for table in found if table is not None]

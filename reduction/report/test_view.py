@@ -206,10 +206,7 @@ class TestView:
         return {word: int(number) for word, number in zip(words, np.ravel(numbers), strict=True)}
 
     def without_samples(self) -> TestView:
-        """Return the same test without its record, all in memory: what campaign figures use.
-
-        Of single cycles only what the cycles of a test reach together is found from is left.
-        """
+        """Return the same test without its record, all in memory: what campaign figures use."""
         data = self.data.drop_dims("sample", errors="ignore")
         single = [
             name
@@ -258,13 +255,10 @@ _PERCENT = Shown("%", 100.0)
 
 
 def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> Table | None:
-    """Return what is stated, a column for each statement; None where nothing is.
-
-    Tests of one campaign are usually reduced with one statement.
-    """
+    """Return what is stated, a column for each statement; None where nothing is."""
     statements: dict[StatedErrors, list[TestView]] = {}
     for view in tests:
-        if is_stated(view):
+        if _is_stated(view):
             statements.setdefault(stated_errors_of(view.data), []).append(view)
     if not statements:
         return None
@@ -280,7 +274,7 @@ def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> Table | No
         if is_one
         else [", ".join(view.id for view in views) for views in statements.values()]
     )
-    without = [view.id for view in tests if not is_stated(view)]
+    without = [view.id for view in tests if not _is_stated(view)]
     has_one_cell = any(one.has_one_load_cell for one in statements)
     remarks = [
         "Standard uncertainties (k = 1), as computed from what campaign.toml states; what has no"
@@ -296,10 +290,10 @@ def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> Table | No
 
 def instrument_sentences(tests: Sequence[TestView]) -> list[str]:
     """Return the sentence that nothing is stated, where that is so of all tests."""
-    return [NOTHING_STATED] if tests and not any(is_stated(view) for view in tests) else []
+    return [NOTHING_STATED] if tests and not any(_is_stated(view) for view in tests) else []
 
 
-def is_stated(view: TestView) -> bool:
+def _is_stated(view: TestView) -> bool:
     """Return whether the archive states any error of the instruments."""
     return stated_errors_of(view.data).has_any
 
@@ -357,15 +351,6 @@ def expand(
 ) -> Expanded:
     """Return the expanded uncertainty for 95 %.
 
-    Parameters
-    ----------
-    standard_uncertainty : array_like
-        Combined. [any]
-    random : array_like, optional
-        Its random part; all of it where not given. [as standard_uncertainty]
-    degrees_of_freedom : array_like
-        Of the random part. [1]
-
     Examples
     --------
     The same scatter of ten cycles alone, and beside a shared part of twice its size:
@@ -388,19 +373,7 @@ NORMAL = float(expand(1.0).factor)
 
 
 def expanded_of(view: TestView, name: str, values: Floats) -> Expanded:
-    """Return the expanded uncertainty of a quantity of an archive, in the shape of its values.
-
-    The factor follows from what the archive says its parts were found from.
-
-    Parameters
-    ----------
-    view : TestView
-        The archive.
-    name : str
-        Of the quantity.
-    values : ndarray
-        Of it.
-    """
+    """Return the expanded uncertainty of a quantity of an archive, in the shape of its values."""
     spread = view.array_like(f"{name}_standard_uncertainty", values)
     if name not in view.data:
         return expand(spread)
@@ -408,10 +381,7 @@ def expanded_of(view: TestView, name: str, values: Floats) -> Expanded:
 
 
 def drawn_interval(view: TestView, name: str, place: int) -> tuple[float, float] | None:
-    """Return the 95 % interval of a parameter of the line where it was found by Monte Carlo.
-
-    None where linear propagation holds, and of other quantities.
-    """
+    """Return the 95 % interval of a parameter of the line where it was found by Monte Carlo."""
     method = view.array("test_line_uncertainty_method")
     low, high = view.array(f"{name}_low"), view.array(f"{name}_high")
     if method is None or low is None or high is None:
@@ -456,17 +426,6 @@ def plus_minus(
 ) -> str:
     """Return the sentence: what an uncertainty holds, and what it leaves out.
 
-    Parameters
-    ----------
-    factors : iterable of float
-        Coverage factors of the numbers that it is said of.
-    found_from : str
-        What it holds.
-    left_out : str
-        What it does not hold; nothing is said where it is empty.
-    mark : str
-        What shows it.
-
     Examples
     --------
     >>> plus_minus([2.26], "tape readings", left_out="position scale")
@@ -486,10 +445,7 @@ def plus_minus_of_tests(
     found_from: str = _CYCLES,
     mark: str = "±",
 ) -> str:
-    """Return the sentence for quantities of tests: with what is shared.
-
-    Where nothing is stated of the instruments, it says that.
-    """
+    """Return the sentence for quantities of tests: with what is shared."""
     shared = shared_sources(views, names)
     held = found_from
     if shared:
@@ -497,7 +453,7 @@ def plus_minus_of_tests(
     said = plus_minus(factors, held, left_out="", mark=mark)
     if set(shared) - FROM_READINGS:
         return said
-    if not any(is_stated(view) for view in views):
+    if not any(_is_stated(view) for view in views):
         nothing = NOTHING_STATED if shared else NOTHING_STATED.replace(" and tape readings", "")
         return f"{said} {nothing}"
     if any(f"{name}_uncertainty_contribution" in view.data for view in views for name in names):

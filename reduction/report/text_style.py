@@ -131,13 +131,6 @@ def shown_unit(unit: str, system: UnitSystem) -> Shown:
 def with_prefix(unit: Shown, greatest: float) -> Shown:
     """Return an SI unit with the prefix that leaves five digits at most before the point.
 
-    Parameters
-    ----------
-    unit : Shown
-        Another unit, or one that has a prefix, stays as it is.
-    greatest : float
-        Size of what is shown in it. [SI]
-
     Examples
     --------
     >>> with_prefix(Shown("N", 1.0), 2.2e8), with_prefix(Shown("lbf", 0.2248), 2.2e8)
@@ -153,19 +146,12 @@ def with_prefix(unit: Shown, greatest: float) -> Shown:
 
 
 def colour(index: int) -> str:
-    """Return the colour of the specimen or test with this index.
-
-    They repeat after seven; what may be more goes by `marker` too.
-    """
+    """Return the colour of the specimen or test with this index."""
     return COLOURS[index % len(COLOURS)]
 
 
 def symbol(index: int) -> str:
-    """Return the marker of the specimen or test with this index.
-
-    There is one marker more than there are colours, so that the pair of both repeats
-    only after fifty-six.
-    """
+    """Return the marker of the specimen or test with this index."""
     return SYMBOLS[index % len(SYMBOLS)]
 
 
@@ -228,9 +214,6 @@ def shorten(text: str, limit: int) -> str:
 
 def plot_text(text: str, limit: int = 36) -> str:
     """Return text that plotly draws as it stands, on one line and of bounded length.
-
-    Plotly reads a small set of markup in names and titles; a specimen called ``<b>``
-    has to come out as those three characters.
 
     Examples
     --------
@@ -299,10 +282,7 @@ def make_table(
     remarks: Sequence[str] = (),
     is_compact: bool = False,
 ) -> Table:
-    """Return a table; the caption says where the data are synthetic.
-
-    A mark for what is missing stands flush right among numbers, whoever made its cell.
-    """
+    """Return a table; the caption says where the data are synthetic."""
     text = f"{caption} SYNTHETIC DATA." if synthetic else caption
     cells = tuple(tuple(row) for row in rows)
     plain = Table(text, tuple(columns), cells, is_tall, tuple(remarks), is_compact)
@@ -360,10 +340,6 @@ def measured(
     is_short: bool = False,
 ) -> Cell:
     """Return a cell of a value and its expanded uncertainty, to two digits of the latter.
-
-    That holds before the decimal point as well: digits that nothing is known of are zeros.
-    ``factor`` is its coverage factor, for the words that explain the table.  The short form has
-    one digit where that is 2 or more, and is off by a fifth at most.
 
     Examples
     --------

@@ -184,27 +184,8 @@ def noise_range(values: ArrayLike) -> float:
 _AWAY = 4.0  # tolerances
 
 
-def block_extremes(position: Floats, length: int) -> tuple[Floats, Floats]:
+def _block_extremes(position: Floats, length: int) -> tuple[Floats, Floats]:
     """Return the least and greatest position of each block of samples.
-
-    Parameters
-    ----------
-    position : ndarray, shape (n_samples,)
-        Crosshead position; NaN where missing. [m]
-    length : int
-        Samples of a block; the last one has what is left. [1]
-
-    Returns
-    -------
-    least : ndarray, shape (n_blocks,)
-        +inf where all samples are missing. [m]
-    greatest : ndarray, shape (n_blocks,)
-        -inf where all samples are missing. [m]
-
-    Raises
-    ------
-    ZeroDivisionError
-        If the length is zero.
 
     Notes
     -----
@@ -213,7 +194,7 @@ def block_extremes(position: Floats, length: int) -> tuple[Floats, Floats]:
 
     Examples
     --------
-    >>> block_extremes(np.array([1.0, 2, 3, 5, np.nan]), 2)
+    >>> _block_extremes(np.array([1.0, 2, 3, 5, np.nan]), 2)
     (array([ 1., 3., inf]), array([ 2., 5., -inf]))
     """
     n_blocks = -(-position.size // length)
@@ -297,33 +278,10 @@ def _outlasts_its_approach(
     return np.asarray(np.maximum(high - middle, middle - low) > _AWAY * tolerance)
 
 
-def still_blocks(
+def _still_blocks(
     least: Floats, greatest: Floats, *, window: int, tolerance: float
 ) -> tuple[Integers, Integers]:
     """First and last block of each standstill.
-
-    Parameters
-    ----------
-    least : ndarray, shape (n_blocks,)
-        Least position of each block. [m]
-    greatest : ndarray, shape (n_blocks,)
-        Greatest position of each block. [m]
-    window : int
-        Blocks that the shortest standstill holds. [1]
-    tolerance : float
-        Range of position that any so many blocks in a row keep. [m]
-
-    Returns
-    -------
-    first : ndarray of int, shape (n_standstills,)
-        First block, up to one window before the true edge. [1]
-    last : ndarray of int, shape (n_standstills,)
-        Last block, inside. [1]
-
-    Raises
-    ------
-    ValueError
-        If there is no block.
 
     Notes
     -----
@@ -342,7 +300,7 @@ def still_blocks(
     Rising, standing for four blocks, rising.
 
     >>> least = np.array([0.0, 1, 2, 2, 2, 2, 3, 4, 5])
-    >>> still_blocks(least, least + 0.1, window=3, tolerance=0.5)
+    >>> _still_blocks(least, least + 0.1, window=3, tolerance=0.5)
     (array([2]), array([5]))
     """
     found = []
@@ -416,31 +374,13 @@ def _reach(values: Floats, edge: Integers, centre: Floats, half: float, step: in
     return np.where(near.all(axis=1), abs(step), np.argmin(near, axis=1))
 
 
-def interval_means(values: Floats, first: Integers, last: Integers) -> Floats:
+def _interval_means(values: Floats, first: Integers, last: Integers) -> Floats:
     """Mean of the finite values of each interval.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        Channel; NaN where missing. [any unit]
-    first : ndarray of int, shape (n_intervals,)
-        First sample of each interval, in order of time. [1]
-    last : ndarray of int, shape (n_intervals,)
-        Last sample, inside. [1]
-
-    Returns
-    -------
-    mean : ndarray, shape (n_intervals,)
-        NaN where no value is finite. [unit of the channel]
-
-    Raises
-    ------
-    IndexError
-        If an interval begins beyond the record.
 
     Examples
     --------
-    >>> print(interval_means(np.array([1.0, 3.0, np.nan, 5.0]), np.array([0, 2]), np.array([1, 3])))
+    >>> values = np.array([1.0, 3.0, np.nan, 5.0])
+    >>> print(_interval_means(values, np.array([0, 2]), np.array([1, 3])))
     [2. 5.]
     """
     if first.size == 0:
@@ -459,38 +399,14 @@ def _mean_of_finite(values: Floats) -> float:
     return total / count if count else float("nan")
 
 
-def still_intervals(
+def _still_intervals(
     time: Floats, values: Floats, *, tolerance: float, minimum_duration: float
 ) -> tuple[Integers, Integers]:
     """First and last sample of every interval in which a channel stands still.
 
-    Parameters
-    ----------
-    time : ndarray, shape (n_samples,)
-        Elapsed time. [s]
-    values : ndarray, shape (n_samples,)
-        Channel; NaN where missing. [any unit]
-    tolerance : float
-        Range that the channel keeps over every stretch of the shortest duration; twice that
-        over the whole interval. [unit of the channel]
-    minimum_duration : float
-        Shortest interval; four samples at least. [s]
-
-    Returns
-    -------
-    first : ndarray of int, shape (n_intervals,)
-        First sample, in order of time. [1]
-    last : ndarray of int, shape (n_intervals,)
-        Last sample, inside. [1]
-
-    Raises
-    ------
-    DataError
-        If time does not advance.
-
     Notes
     -----
-    The record is read in blocks of a quarter of the shortest interval (`still_blocks`);
+    The record is read in blocks of a quarter of the shortest interval (`_still_blocks`);
     edges, found to the sample, are where the channel comes and goes nearer to the mean than
     half the tolerance.  Missing samples do not end an interval and are no edge of one.
 
@@ -498,7 +414,7 @@ def still_intervals(
     --------
     >>> time = np.arange(0, 130.0)
     >>> values = np.interp(time, [0, 60, 70, 130], [0, 0, 1, 1])
-    >>> first, last = still_intervals(time, values, tolerance=0.01, minimum_duration=3.0)
+    >>> first, last = _still_intervals(time, values, tolerance=0.01, minimum_duration=3.0)
     >>> print(first, last)
     [ 0 70] [ 60 129]
     """
@@ -506,12 +422,12 @@ def still_intervals(
     length = max(fewest // 4, 1)
     # a standstill of the fewest samples holds this many whole blocks, wherever it begins
     window = max((fewest - length + 1) // length, 1)
-    least, greatest = block_extremes(values, length)
-    first_block, last_block = still_blocks(least, greatest, window=window, tolerance=tolerance)
+    least, greatest = _block_extremes(values, length)
+    first_block, last_block = _still_blocks(least, greatest, window=window, tolerance=tolerance)
 
     first = first_block * length
     last = np.minimum((last_block + 1) * length, values.size) - 1
-    centre = interval_means(values, first, last)
+    centre = _interval_means(values, first, last)
     for block, step in ((first_block, 1), (last_block, -1)):  # a block that moves is no edge
         outside = np.ones(centre.size, dtype=bool)
         while outside.any():
@@ -600,7 +516,7 @@ def _slack_tension(tension: Floats) -> float:
     return max(levels)
 
 
-def describe_standstills(
+def _describe_standstills(
     time: Floats,
     position: Floats,
     tension: Floats,
@@ -613,51 +529,22 @@ def describe_standstills(
 ) -> Standstills:
     """Means over given intervals, and which of them are rests.
 
-    Parameters
-    ----------
-    time : ndarray, shape (n_samples,)
-        Elapsed time. [s]
-    position : ndarray, shape (n_samples,)
-        Crosshead position; NaN where missing. [m]
-    tension : ndarray, shape (n_specimens, n_samples)
-        Tension; NaN where missing. [N]
-    first : ndarray of int, shape (n_standstills,)
-        First sample of each interval, in order of time. [1]
-    last : ndarray of int, shape (n_standstills,)
-        Last sample, inside. [1]
-    position_tolerance : float
-        As `Standstills` has it. [m]
-    slack_tension : float
-        As `Standstills` has it. [N]
-    tension_tolerance : float, optional
-        As `Standstills` has it. [N]
-
-    Returns
-    -------
-    standstills : Standstills
-        Of these intervals. [SI]
-
-    Raises
-    ------
-    IndexError
-        If an interval reaches beyond the record.
-
     Examples
     --------
     >>> time, load = np.arange(4.0), np.array([[0.0, 0.0, 9.0, 11.0]])
-    >>> found = describe_standstills(
+    >>> found = _describe_standstills(
     ...     time, time, load, np.array([0, 2]), np.array([1, 3]),
     ...     position_tolerance=1.0, slack_tension=1.0)
     >>> print(found.mean_tension, found.is_rest)
     [[ 0. 10.]] [ True False]
     """
-    mean_tension = np.array([interval_means(one, first, last) for one in tension])
+    mean_tension = np.array([_interval_means(one, first, last) for one in tension])
     return Standstills(
         first=first,
         last=last,
         start_time=take_samples(time, first),
         end_time=take_samples(time, last),
-        mean_position=interval_means(position, first, last),
+        mean_position=_interval_means(position, first, last),
         mean_tension=mean_tension.reshape(tension.shape[0], first.size),
         is_rest=(mean_tension <= slack_tension).all(axis=0).reshape(first.size),
         position_tolerance=float(position_tolerance),
@@ -746,10 +633,10 @@ def find_standstills(
     if slack is None:
         slack = _slack_tension(tension)
 
-    first, last = still_intervals(
+    first, last = _still_intervals(
         time, position, tolerance=tolerance, minimum_duration=settings.minimum_duration
     )
-    return describe_standstills(
+    return _describe_standstills(
         time, position, tension, first, last, position_tolerance=tolerance, slack_tension=slack
     )
 
@@ -783,7 +670,7 @@ def find_tension_stands(
     Notes
     -----
     *Holds* are intervals above the slack tension in which the tension stands still
-    (`still_intervals`), that of the machine: the mean over the specimens, which pull at one
+    (`_still_intervals`), that of the machine: the mean over the specimens, which pull at one
     crosshead.  Tolerance, where not stated: `noise_range` of it.  *Rests* are those of
     `find_standstills`, since a slack specimen has the same tension wherever the crosshead
     goes.  Where both meet the rest is shortened.
@@ -806,7 +693,7 @@ def find_tension_stands(
     tolerance = settings.tension_tolerance
     if tolerance is None:
         tolerance = noise_range(mean)
-    first, last = still_intervals(
+    first, last = _still_intervals(
         seconds, mean, tolerance=tolerance, minimum_duration=settings.minimum_duration
     )
     limits = {
@@ -814,7 +701,7 @@ def find_tension_stands(
         "slack_tension": crosshead.slack_tension,
         "tension_tolerance": float(tolerance),
     }
-    stands = describe_standstills(seconds, place, loads, first, last, **limits)
+    stands = _describe_standstills(seconds, place, loads, first, last, **limits)
     held, rest = ~stands.is_rest, crosshead.is_rest
     first = np.concatenate([stands.first[held], crosshead.first[rest]])
     last = np.concatenate([stands.last[held], crosshead.last[rest]])
@@ -825,4 +712,4 @@ def find_tension_stands(
     last[:-1][before] = np.minimum(last[:-1], first[1:] - 1)[before]
     first[1:][is_rest[1:]] = np.maximum(first[1:], last[:-1] + 1)[is_rest[1:]]
     left = first <= last
-    return describe_standstills(seconds, place, loads, first[left], last[left], **limits)
+    return _describe_standstills(seconds, place, loads, first[left], last[left], **limits)

@@ -97,31 +97,6 @@ def budget_of(
 ) -> Budget:
     """Put the sources of one number in order.
 
-    Parameters
-    ----------
-    quantity, unit : str
-        What it is.
-    value : float
-        [unit]
-    contributions : mapping of Component to float
-        Signed; those of one source and owner count together. [unit]
-    random : float
-        Standard uncertainty of what is not shared. [unit]
-    degrees_of_freedom : float
-        Of the random part. [1]
-    place, words : mapping of str to str, optional
-        Which one of its kind, and what that is.
-
-    Returns
-    -------
-    budget : Budget
-        With the expanded uncertainty for 95 %.
-
-    Raises
-    ------
-    ValueError
-        Never by itself.
-
     Notes
     -----
     Contributions of one source to one owner are of independent errors (the coefficients of a fit)
@@ -189,29 +164,6 @@ def conformity(
     rule: DecisionRule,
 ) -> Verdict:
     """Return what a rule makes of a number and its limits.
-
-    Parameters
-    ----------
-    value : float
-        The measured one. [any]
-    interval : tuple of float
-        Ends of its 95 % coverage interval. [as value]
-    lower, upper : float or None
-        Limits; what lies on one is inside. [as value]
-    rule : {"simple acceptance", "guard band"}
-        By the first the value alone decides; by the second the whole interval has to lie inside
-        the limits, or outside them.
-
-    Returns
-    -------
-    verdict : Verdict
-        No statement where the value, or by a guard band its interval, is not known, and by a
-        guard band where the interval reaches over a limit.
-
-    Raises
-    ------
-    ValueError
-        Never by itself.
 
     Notes
     -----

@@ -67,7 +67,7 @@ ROWS = (
     "tension", "strain", "tension_slope", "strain_slope", "strain_slope_over_tension",
 )  # fmt: skip
 
-"""Arrays of one error, in the order of the first axis of `field_rows`."""
+"""Arrays of one error, in the order of the first axis of `_field_rows`."""
 
 FieldPart = tuple[Component, Floats]
 
@@ -76,7 +76,7 @@ FieldPart = tuple[Component, Floats]
 _STEP = 1e-4  # of the strain 1, and of the tension: for the slopes of the field
 
 
-def field_rows(
+def _field_rows(
     like: Floats,
     *,
     tension: Floats | float = 0.0,
@@ -90,28 +90,13 @@ def field_rows(
     return np.stack([np.broadcast_to(one, like.shape) for one in given])
 
 
-def steps_of(load: Floats) -> Floats:
+def _steps_of(load: Floats) -> Floats:
     """Steps of tension for a slope over it. [N]."""
     return np.asarray(_STEP * np.maximum(np.abs(load), 1.0))
 
 
-def load_parts(errors: InstrumentErrors, model: StrainModel, load: Floats) -> list[FieldPart]:
+def _load_parts(errors: InstrumentErrors, model: StrainModel, load: Floats) -> list[FieldPart]:
     """Gain and zero of each load cell: that of the samples, and those of the marks.
-
-    Parameters
-    ----------
-    errors : InstrumentErrors
-        Standard uncertainties, which hold for every cell of the campaign.
-    model : StrainModel
-        Its ``mark_load_cell`` says under which cell each mark was read; where it says nothing
-        the cell is that of the samples.
-    load : ndarray, shape (...)
-        Tension at the points. [N]
-
-    Returns
-    -------
-    parts : list of (Component, ndarray)
-        Two a cell, less what is zero.
 
     Notes
     -----
@@ -129,12 +114,12 @@ def load_parts(errors: InstrumentErrors, model: StrainModel, load: Floats) -> li
     >>> for cell in ("A", "B"):
     ...     of = InstrumentErrors("new", tension_gain=0.01, tension_instrument=cell)
     ...     print([(one.of, float(rows[1].round(6))) for one, rows in
-    ...            load_parts(of, model, np.array(400.0))])
+    ...            _load_parts(of, model, np.array(400.0))])
     [('A', 0.0)]
     [('B', -0.00096), ('A', 0.00096)]
     """
     found: list[FieldPart] = []
-    step = steps_of(load)
+    step = _steps_of(load)
     read = _used(model)
     told = model.mark_load_cell or ("",) * len(model.mark_tension)
     cells = tuple(cell or errors.tension_instrument for cell in told)
@@ -153,7 +138,7 @@ def load_parts(errors: InstrumentErrors, model: StrainModel, load: Floats) -> li
                 _splice_error(model, force, gain * is_own, offset * is_own, law)
                 for force in (load, load + step, load - step)
             )
-            rows = field_rows(
+            rows = _field_rows(
                 load,
                 tension=is_own * (gain * load + offset),
                 strain=strain,
@@ -164,12 +149,12 @@ def load_parts(errors: InstrumentErrors, model: StrainModel, load: Floats) -> li
     return found
 
 
-def strain_by_tension(model: StrainModel, at: Floats, load: Floats) -> Floats:
+def _strain_by_tension(model: StrainModel, at: Floats, load: Floats) -> Floats:
     """Slope of strain over the logged tension at one position; zero for an extensometer. [N-1]."""
     if model.method == "extensometer":
         return np.zeros(load.shape)
     position = position_by_model(model, strain=at, tension=load)
-    step = steps_of(load)
+    step = _steps_of(load)
     above, below = strain_by_model(
         model, position=np.stack([position, position]), tension=np.stack([load + step, load - step])
     )
@@ -221,28 +206,10 @@ def _refitted(
     return float(solved[0]), float(solved[1]) if solved.size > 1 else 0.0
 
 
-def splice_method_error(
+def _splice_method_error(
     model: StrainModel, *, strain: ArrayLike, tension: ArrayLike
 ) -> tuple[Floats, Floats, Floats] | None:
     r"""Error of strain by position alone, and its slopes: what counts as one standard uncertainty.
-
-    Parameters
-    ----------
-    model : StrainModel
-        By ``marks``, ``strain-ratio`` or ``constant-fraction``, with its ``splice_law``.
-    strain, tension : array_like, shape (...)
-        Points of the plane. [1], [N]
-
-    Returns
-    -------
-    error : tuple of ndarray, shape (...), or None
-        Signed: strain [1], its slope over strain at one tension [1], and over tension at one
-        strain [N-1]; None where the model has no such law.
-
-    Raises
-    ------
-    DataError
-        If strain and tension differ in shape.
 
     Notes
     -----
@@ -263,7 +230,7 @@ def splice_method_error(
     ...     "splice_compliance": 0.22 / 450, "splice_exponent": 1.0}
     >>> line = StrainModel("new", "marks", {"free_length_intercept": -0.835,
     ...     "free_length_slope": 0.905, "relaxed_free_length": 2.55}, splice_law=law)
-    >>> strain, over_strain, _ = splice_method_error(line, strain=[1.0, 1.0],
+    >>> strain, over_strain, _ = _splice_method_error(line, strain=[1.0, 1.0],
     ...     tension=[450.0, 510.0])
     >>> print(np.diff(strain).round(4), over_strain[:1].round(3))
     [0.0137] [-0.105]
@@ -288,7 +255,7 @@ def splice_method_error(
 _REACH = 1e-4  # of the strain 1, for the slopes
 
 
-def position_parts(
+def _position_parts(
     errors: InstrumentErrors, model: StrainModel, at: Floats, load: Floats
 ) -> list[FieldPart]:
     """Gain and zero of the crosshead's scale; none for an extensometer.
@@ -302,7 +269,7 @@ def position_parts(
         begin, offset = model.coefficients["reference_position"], 0.0
     if model.method == "extensometer" or not (gain or offset):
         return []
-    step = steps_of(load)
+    step = _steps_of(load)
     # all points at once: what a model costs is its call
     position, further, longer, shorter = position_by_model(
         model,
@@ -312,7 +279,7 @@ def position_parts(
     slope = 1 / (further - position)
     found: list[FieldPart] = []
     if gain:
-        rows = field_rows(
+        rows = _field_rows(
             load,
             strain=gain * slope * (position - begin),
             strain_slope=gain,
@@ -320,29 +287,13 @@ def position_parts(
         )
         found.append((Component("position_gain", errors.position_instrument), rows))
     if offset:
-        rows = field_rows(load, strain=offset * slope)
+        rows = _field_rows(load, strain=offset * slope)
         found.append((Component("position_offset", errors.position_instrument), rows))
     return found
 
 
 def coefficient_errors(model: StrainModel) -> Floats:
     """Independent errors whose sum is the covariance of the coefficients.
-
-    Parameters
-    ----------
-    model : StrainModel
-        With the covariance of its coefficients.
-
-    Returns
-    -------
-    errors : ndarray, shape (n_coefficients, n_errors)
-        Signed change of each coefficient, in the order of the model, by each error: entry n is
-        that of the component ``strain_calibration`` with number n. [SI]
-
-    Raises
-    ------
-    DataError
-        Never.
 
     Notes
     -----
@@ -368,7 +319,7 @@ def coefficient_errors(model: StrainModel) -> Floats:
     return np.asarray(root[:, kept])
 
 
-def coefficient_parts(
+def _coefficient_parts(
     errors: InstrumentErrors, model: StrainModel, at: Floats, load: Floats
 ) -> list[FieldPart]:
     """Coefficients of the strain model, their covariance taken apart into independent errors."""
@@ -379,7 +330,7 @@ def coefficient_parts(
         model, strain=np.stack([at, at + 1]), tension=np.stack([load, load])
     )
     reach = _REACH * (further - position)
-    push = steps_of(load)
+    push = _steps_of(load)
     # the point itself, then one step of position and one of tension to either side
     place = np.stack([position, position + reach, position - reach, position, position])
     force = np.stack([load, load, load, load + push, load - push])
@@ -397,7 +348,7 @@ def coefficient_parts(
     return [
         (
             Component("strain_calibration", of, number),
-            field_rows(
+            _field_rows(
                 load,
                 strain=centre[number],
                 strain_slope=along[number],
@@ -492,8 +443,8 @@ def error_field(
     First order ([6]_, 5.1.3).  Where the marks were read under tensions from the same load cell,
     the splice law is fitted to them: an error of that cell is in the law too, and strain stays
     what the tape says; a law made under another cell has the errors of that one
-    (`reduction.uncertainty.error_field.load_parts`, [3]_).  An extensometer knows neither; what
-    position alone misses is `splice_method_error`.
+    (`reduction.uncertainty.error_field._load_parts`, [3]_).  An extensometer knows neither; what
+    position alone misses is `_splice_method_error`.
 
     Examples
     --------
@@ -531,26 +482,26 @@ def _table_at(
 ) -> tuple[tuple[Component, ...], Floats, Floats]:
     """Errors at points in a row, what each does there, and the strain by tension."""
     parts = [
-        *load_parts(errors, model, load),
-        *position_parts(errors, model, at, load),
-        *coefficient_parts(errors, model, at, load),
+        *_load_parts(errors, model, load),
+        *_position_parts(errors, model, at, load),
+        *_coefficient_parts(errors, model, at, load),
     ]
-    missed = splice_method_error(model, strain=at, tension=load)
+    missed = _splice_method_error(model, strain=at, tension=load)
     if missed is not None:
-        rows = field_rows(load, strain=missed[0], strain_slope=missed[1],
+        rows = _field_rows(load, strain=missed[0], strain_slope=missed[1],
                      strain_slope_over_tension=missed[2])  # fmt: skip
         parts.append((Component("splice_method", errors.specimen), rows))
     if errors.stiffness:
         # the rubber is warmer or colder than the test says: the cell reads what there is, or the
         # specimen stretches less under what is hung on it
         rows = (
-            field_rows(load, strain=-errors.stiffness * at, strain_slope=-errors.stiffness)
+            _field_rows(load, strain=-errors.stiffness * at, strain_slope=-errors.stiffness)
             if held == "tension"
-            else field_rows(load, tension=errors.stiffness * load, tension_slope=errors.stiffness)
+            else _field_rows(load, tension=errors.stiffness * load, tension_slope=errors.stiffness)
         )
         parts.append((Component("temperature", errors.test), rows))
     if errors.strain_gain:
-        rows = field_rows(load, strain=errors.strain_gain * at, strain_slope=errors.strain_gain)
+        rows = _field_rows(load, strain=errors.strain_gain * at, strain_slope=errors.strain_gain)
         parts.append((Component("strain_gain", errors.strain_model or errors.specimen), rows))
     table = np.stack([rows for _, rows in parts]) if parts else np.empty((0, len(ROWS), load.size))
-    return tuple(one for one, _ in parts), table, strain_by_tension(model, at, load)
+    return tuple(one for one, _ in parts), table, _strain_by_tension(model, at, load)

@@ -56,7 +56,7 @@ from reduction.stages.reduced_test import ReducedTest
 
 PARAMETERS = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
 
-"""K_1, tau and N = K_1 tau, in the order of the arrays of `LineDraws`."""
+"""K_1, tau and N = K_1 tau, in the order of the arrays of `_LineDraws`."""
 
 N_DRAWS = 20_000
 
@@ -73,22 +73,8 @@ _ONE_SIGMA = (0.158655, 0.841345)
 
 @dataclass(frozen=True)
 @read_only_arrays
-class LineDraws:
-    """What drawing gives of the line of each specimen; rows are `PARAMETERS`.
-
-    Parameters
-    ----------
-    linear_standard_uncertainty : ndarray, shape (3, n_specimens)
-        By first order from the same inputs. [N], [s], [N s]
-    standard_uncertainty : ndarray, shape (3, n_specimens)
-        Standard deviation of the draws; half of their 68.3 % interval where some have no solution,
-        since a standard deviation need not exist there. [N], [s], [N s]
-    low, high : ndarray, shape (3, n_specimens)
-        Ends of the 95 % interval, of equal shares on both sides, of draws with a solution.
-        [N], [s], [N s]
-    without_solution_share : ndarray, shape (n_specimens,)
-        Draws without K_1 and tau, of all. [1]
-    """
+class _LineDraws:
+    """What drawing gives of the line of each specimen; rows are `PARAMETERS`."""
 
     linear_standard_uncertainty: Floats
     standard_uncertainty: Floats
@@ -106,7 +92,7 @@ class LineDraws:
         return np.asarray(near)
 
 
-def draw_line(
+def _draw_line(
     values: Mapping[str, ArrayLike],
     *,
     reading: Literal["amplitude", "fundamental"],
@@ -114,37 +100,8 @@ def draw_line(
     degrees_of_freedom: ArrayLike,
     contribution: ArrayLike,
     n_draws: int = N_DRAWS,
-) -> LineDraws:
+) -> _LineDraws:
     """Propagate the distributions of what a line is found from.
-
-    Parameters
-    ----------
-    values : mapping of str to array_like, each of shape (n_specimens,)
-        Inputs of the reading, `reduction.stages.line.line_model.AMPLITUDE_INPUTS` or
-        `FUNDAMENTAL_INPUTS`. [N], [J m-1], [Hz]
-    reading : {"amplitude", "fundamental"}
-        From which quantities of the loop the line is found.
-    covariance : array_like, shape (n_specimens, n_inputs, n_inputs)
-        Relative, of the random errors of the inputs. [1]
-    degrees_of_freedom : array_like, shape (n_specimens,)
-        Of the random errors. [1]
-    contribution : array_like, shape (n_components, n_specimens, n_inputs)
-        Relative and signed, of errors that loops and pull share. [1]
-    n_draws : int
-        [1]
-
-    Returns
-    -------
-    draws : LineDraws
-        NaN for a specimen with an input or an uncertainty that is not known, or without a
-        solution itself.
-
-    Raises
-    ------
-    KeyError
-        If an input is not given.
-    DataError
-        If the arrays do not fit together.
 
     Notes
     -----
@@ -162,7 +119,7 @@ def draw_line(
     ...     "frequency": [0.3, 0.3], "quasi_static_spring_constant": [2.0, 2.0]}
     >>> shared = np.zeros((1, 2, 4))
     >>> shared[0, :, 3] = 0.01, 0.2
-    >>> found = draw_line(values, reading="fundamental", covariance=np.zeros((2, 4, 4)),
+    >>> found = _draw_line(values, reading="fundamental", covariance=np.zeros((2, 4, 4)),
     ...     degrees_of_freedom=[9.0, 9.0], contribution=shared)
     >>> print(found.is_linear, found.without_solution_share.round(3))
     [False False] [0.    0.006]
@@ -222,7 +179,7 @@ def draw_line(
         )
         ends = np.quantile(heavy[:, np.isfinite(heavy).all(axis=0)], _INTERVAL, axis=1)
         result["low"][:, place], result["high"][:, place] = ends
-    return LineDraws(**result, without_solution_share=without)
+    return _LineDraws(**result, without_solution_share=without)
 
 
 def _root(covariance: Floats) -> Floats:
@@ -271,20 +228,7 @@ def _identified(inputs: Floats, reading: Literal["amplitude", "fundamental"]) ->
 
 
 def with_line_spread(test: ReducedTest, cycles: CycleSettings) -> ReducedTest:
-    """Put the uncertainty of its line, by the propagation that holds, to a test.
-
-    Parameters
-    ----------
-    test : ReducedTest
-        With the contributions of shared errors, where any are stated.
-    cycles : CycleSettings
-        Break-in.
-
-    Returns
-    -------
-    test : ReducedTest
-        With ``line_spread`` and notes; as it was where it has no line.
-    """
+    """Put the uncertainty of its line, by the propagation that holds, to a test."""
     line, loops = test.line_of_test, test.loops
     if line is None or loops is None or not (line.reason == 0).any():
         return test
@@ -320,7 +264,7 @@ def with_line_spread(test: ReducedTest, cycles: CycleSettings) -> ReducedTest:
 
 def _drawn(
     test: ReducedTest, line: LineParameters, loops: Loops, break_in_cycles: int
-) -> tuple[LineDraws, Floats]:
+) -> tuple[_LineDraws, Floats]:
     """Draws of each specimen, and the degrees of freedom of what is random in it."""
     reading: Literal["amplitude", "fundamental"] = (
         "fundamental" if line.reading == "fundamental" else "amplitude"
@@ -340,7 +284,7 @@ def _drawn(
     contribution = np.stack(
         [np.broadcast_to(rows, (n_components, rest.size)) for rows in shared], axis=-1
     )
-    draws = draw_line(
+    draws = _draw_line(
         values, reading=reading, covariance=covariance, degrees_of_freedom=freedom,
         contribution=contribution,
     )  # fmt: skip
@@ -361,7 +305,7 @@ def _shared(test: ReducedTest, line: LineParameters, name: str) -> Floats:
     return np.zeros((1, line.reason.size))
 
 
-def _note(specimen: str, draws: LineDraws, place: int) -> str:
+def _note(specimen: str, draws: _LineDraws, place: int) -> str:
     share = draws.without_solution_share[place]
     if share > 0:
         reason = (

@@ -186,31 +186,6 @@ def strain_rate_of_wave(
     .. math:: \dot\varepsilon = 4 r f \varepsilon_a \quad\text{or}\quad
               \dot\varepsilon = 2 \pi f \sqrt{\varepsilon_a^2 - (\varepsilon - \varepsilon_m)^2}
 
-    Parameters
-    ----------
-    strain : array_like, shape (n,)
-        On the branch. [1]
-    frequency : float
-        Of the cycles. [Hz]
-    mean_strain, strain_amplitude : float
-        Of the cycles. [1]
-    waveform : {"triangular", "sinusoidal", "other"}
-        An unknown one counts as triangular.
-    speed_ratio : float
-        r, speed of a ramp over that of one without a stop at its ends. [1]
-
-    Returns
-    -------
-    strain_rate : ndarray, shape (n,)
-        Zero beyond the ends of a sine. [s-1]
-    slope : ndarray, shape (n,)
-        Of the rate over strain. [s-1]
-
-    Raises
-    ------
-    DataError
-        If frequency or amplitude is not positive.
-
     Examples
     --------
     >>> rate, _ = strain_rate_of_wave([1.0], frequency=0.1, mean_strain=1.0,
@@ -235,21 +210,6 @@ def strain_rate_of_wave(
 def diameter_error(errors: InstrumentErrors) -> Component:
     """Name the error of a diameter, with the degrees of freedom that it has.
 
-    Parameters
-    ----------
-    errors : InstrumentErrors
-        Stated, or of the scatter of readings. [m]
-
-    Returns
-    -------
-    component : Component
-        Of the specimen. [1]
-
-    Raises
-    ------
-    AttributeError
-        If there are no errors.
-
     Notes
     -----
     Readings less one, for their mean; what is stated counts as known.
@@ -267,25 +227,6 @@ def by_diameter(modulus: ArrayLike, errors: InstrumentErrors, *, area: float) ->
     r"""Contribution of the diameter to moduli.
 
     .. math:: \delta E = -2 E \, \delta d / d
-
-    Parameters
-    ----------
-    modulus : array_like, shape (...)
-        Any modulus: a tension, or a slope of it, over the area. [Pa]
-    errors : InstrumentErrors
-        For the diameter.
-    area : float
-        Nominal. [m2]
-
-    Returns
-    -------
-    contribution : ndarray, shape (...)
-        [Pa]
-
-    Raises
-    ------
-    DataError
-        If the area is not positive.
 
     Notes
     -----
@@ -310,32 +251,7 @@ def curve_contributions(
     strain_rate: ArrayLike = 0.0,
     strain_rate_slope: ArrayLike = 0.0,
 ) -> Contributions:
-    r"""Contributions to tangent modulus and tension at given strains of a curve.
-
-    Parameters
-    ----------
-    field : ErrorField
-        At the points of the curve, shape (...).
-    errors : InstrumentErrors
-        For lag and diameter, which no point of the plane knows.
-    tangent_modulus : array_like, shape (...)
-        Of the curve. [Pa]
-    modulus_slope : array_like, shape (...)
-        Of the modulus over strain. [Pa]
-    area : float
-        Nominal. [m2]
-    strain_rate, strain_rate_slope : array_like, shape (...)
-        Signed: negative on a descending branch. [s-1]
-
-    Returns
-    -------
-    contributions : Contributions
-        ``tangent_modulus`` [Pa] and ``branch_tension`` [N].
-
-    Raises
-    ------
-    DataError
-        If shapes differ, or the area is not positive.
+    """Contributions to tangent modulus and tension at given strains of a curve.
 
     Notes
     -----
@@ -503,31 +419,6 @@ def stress_contributions(
     .. math:: \delta\sigma = (\delta T - T' \delta\varepsilon - T' \dot\varepsilon \Delta t) / A
               - 2 \sigma \, \delta d / d
 
-    Parameters
-    ----------
-    field : ErrorField
-        At these strains.
-    errors : InstrumentErrors
-        For lag and diameter.
-    stress : array_like, shape (...)
-        Nominal. [Pa]
-    tension_slope : array_like, shape (...)
-        Of tension over strain there. [N]
-    area : float
-        Nominal. [m2]
-    strain_rate : array_like, shape (...)
-        At which it was stretched: tension that is logged late is lower. [s-1]
-
-    Returns
-    -------
-    contributions : Contributions
-        ``stress``. [Pa]
-
-    Raises
-    ------
-    DataError
-        If shapes differ, or the area is not positive.
-
     Notes
     -----
     First order ([1]_).
@@ -566,29 +457,6 @@ def secant_contributions(
 ) -> Contributions:
     """Contributions to stress over strain at points.
 
-    Parameters
-    ----------
-    field : ErrorField
-        At the points.
-    errors : InstrumentErrors
-        For the diameter.
-    strain : array_like, shape (...)
-        [1]
-    secant_modulus : array_like, shape (...)
-        [Pa]
-    area : float
-        Nominal. [m2]
-
-    Returns
-    -------
-    contributions : Contributions
-        ``secant_modulus``. [Pa]
-
-    Raises
-    ------
-    DataError
-        If shapes differ, or the area is not positive.
-
     Notes
     -----
     Eq. 1 of [3]_; first order ([1]_).
@@ -618,25 +486,6 @@ def chord_contributions(
     begin: ErrorField, end: ErrorField, *, stroke: ArrayLike, chord: ArrayLike
 ) -> Contributions:
     """Contributions to a difference of tension over the difference of strain beside it.
-
-    Parameters
-    ----------
-    begin, end : ErrorField
-        At the two points.
-    stroke : array_like, shape (...)
-        Strain at the end less that at the beginning. [1]
-    chord : array_like, shape (...)
-        Force per unit strain. [N]
-
-    Returns
-    -------
-    contributions : Contributions
-        ``chord``: over the area it is that of a modulus, but for the diameter. [N]
-
-    Raises
-    ------
-    DataError
-        If shapes differ.
 
     Notes
     -----
@@ -668,33 +517,7 @@ def segment_contributions(
     segment_modulus: ArrayLike,
     area: float,
 ) -> Contributions:
-    r"""Contributions to the segments of one branch, their breakpoints as found.
-
-    Parameters
-    ----------
-    of_curve : Contributions
-        ``branch_tension`` at the strains of the curve, shape (n_components, n_strains).
-    errors : InstrumentErrors
-        For the diameter.
-    strain : array_like, shape (n_strains,)
-        Of the points that were fitted. [1]
-    knot : array_like, shape (n_segments + 1,)
-        Ends and breakpoints. [1]
-    segment_modulus : array_like, shape (n_segments,)
-        As found. [Pa]
-    area : float
-        Nominal. [m2]
-
-    Returns
-    -------
-    contributions : Contributions
-        ``segment_tension_low``, ``segment_tension_high`` [N] and ``segment_modulus`` [Pa];
-        shape (n_components, n_segments).
-
-    Raises
-    ------
-    DataError
-        If strains or knots do not rise, or the area is not positive.
+    """Contributions to the segments of one branch, their breakpoints as found.
 
     Notes
     -----
@@ -747,29 +570,6 @@ def elastomer_contributions(
     parameters: dict[str, float],
 ) -> Floats:
     """Contributions to the parameters of one law.
-
-    Parameters
-    ----------
-    contribution : array_like, shape (n_components, n_strains)
-        To the nominal stress at the strains of the first loading. [Pa]
-    strain : array_like, shape (n_strains,)
-        [1]
-    stress : array_like, shape (n_strains,)
-        As it was fitted. [Pa]
-    law : str
-        As fitted.
-    parameters : dict of str to float
-        As fitted. [Pa], [1]
-
-    Returns
-    -------
-    contribution : ndarray, shape (n_components, n_parameters)
-        In the order of `PARAMETERS`. [Pa], [1]
-
-    Raises
-    ------
-    DataError
-        If no strain is above zero.
 
     Notes
     -----
@@ -838,27 +638,6 @@ def hold_contributions(
 ) -> Contributions:
     """Contributions to the numbers of one hold.
 
-    Parameters
-    ----------
-    field_at : callable
-        Errors at strains [1] and tensions [N] of the specimen, shape (n_points,); it is asked once.
-        In creep the machine keeps the tension, which the field has to know.
-    hold : HoldResult
-        As reduced.
-
-    Returns
-    -------
-    contributions : Contributions
-        To ``hold_strain``, ``hold_initial_tension``, ``hold_final_tension``,
-        ``relaxation_drop``, ``relaxation_rate_per_decade``, ``creep_rate_per_decade``,
-        ``tension_at_time``, ``strain_at_time``, ``prony_tension`` and ``long_time_tension``;
-        NaN where the hold has no such number. [SI]
-
-    Raises
-    ------
-    DataError
-        If the model of the strain is impossible.
-
     Notes
     -----
     First order ([1]_).  Relaxation is at one length of the machine; that splices take up a little
@@ -921,26 +700,7 @@ _K_0 = "quasi_static_spring_constant"
 def pull_contributions(
     field: ErrorField, *, quasi_static_spring_constant: ArrayLike, compliance_slope: ArrayLike
 ) -> Contributions:
-    r"""Contributions to the quasi-static spring constant at given tensions of a slow pull.
-
-    Parameters
-    ----------
-    field : ErrorField
-        At the points of the pull, shape (...).
-    quasi_static_spring_constant : array_like, shape (...)
-        K_0. [N]
-    compliance_slope : array_like, shape (...)
-        Second derivative of strain over tension, S'. [N-2]
-
-    Returns
-    -------
-    contributions : Contributions
-        ``quasi_static_spring_constant``. [N]
-
-    Raises
-    ------
-    DataError
-        If shapes differ.
+    """Contributions to the quasi-static spring constant at given tensions of a slow pull.
 
     Notes
     -----
@@ -1071,42 +831,6 @@ def loop_contributions(
 ) -> Contributions:
     """Contributions to the quantities of loops of one specimen.
 
-    Parameters
-    ----------
-    errors : InstrumentErrors
-        Standard uncertainties.
-    model : StrainModel
-        How position became strain.
-    frequency : ndarray, shape (...)
-        Of each loop. [Hz]
-    mean_tension, tension_amplitude : ndarray, shape (...)
-        [N]
-    mean_strain, strain_amplitude : ndarray, shape (...)
-        [1]
-    apparent_spring_constant, storage_spring_constant, loss_spring_constant : ndarray, shape (...)
-        [N]
-    hysteresis_energy : ndarray, shape (...)
-        [J m-1]
-    waveform : {"triangular", "sinusoidal", "other"}
-        How the control channel moves.
-    control : {"position", "load"}
-        Which channel the machine holds to its set values.
-    speed_ratio : ndarray, shape (...), or float
-        Speed of a ramp over that of one without a stop at its ends; a sine has none. [1]
-
-    Returns
-    -------
-    contributions : Contributions
-        To ``mean_tension``, ``tension_amplitude``, ``mean_strain``, ``strain_amplitude``,
-        ``peak_tension``, ``valley_tension``, ``apparent_spring_constant``,
-        ``hysteresis_energy``, ``storage_spring_constant``, ``loss_spring_constant`` and
-        ``loss_factor``. [SI]
-
-    Raises
-    ------
-    DataError
-        If shapes differ.
-
     Notes
     -----
     First order ([1]_).  The ends of the loop are where strain and tension have their extremes,
@@ -1227,25 +951,6 @@ _NEGLIGIBLE = 1e-12  # of the greatest variance
 def fit_contributions(pull: SlowPull, tension: ArrayLike, *, of: str) -> Contributions:
     """Contributions of the fit to the quasi-static spring constant at given tensions.
 
-    Parameters
-    ----------
-    pull : SlowPull
-        With the covariance of its coefficients.
-    tension : array_like, shape (...)
-        [N]
-    of : str
-        Name of the pull: runs that stand on it share its errors.
-
-    Returns
-    -------
-    contributions : Contributions
-        ``quasi_static_spring_constant``; NaN outside the range of use. [N]
-
-    Raises
-    ------
-    ValueError
-        If the tension is not numeric.
-
     Notes
     -----
     First order ([10]_, of the slope of [11]_).  The covariance is taken apart into independent
@@ -1287,26 +992,6 @@ def over_strength(
 ) -> Contributions:
     """Contributions with that of the rated break strength.
 
-    Parameters
-    ----------
-    found : Contributions
-        To these quantities, and others. [as quantity]
-    errors : InstrumentErrors
-        For the break strength.
-    powers : mapping of str to (ndarray, float)
-        Of those that know the strength: the value, and the power with which it grows with the
-        strength, -1 for what is divided by it.
-
-    Returns
-    -------
-    contributions : Contributions
-        As given where no error of the strength is stated. [as quantity]
-
-    Raises
-    ------
-    ValueError
-        If a value does not fit its contributions.
-
     Notes
     -----
     First order ([12]_, 5.1.6).
@@ -1334,26 +1019,6 @@ def stepwise_contributions(
     result: StepwiseResult, errors: InstrumentErrors, *, area: float
 ) -> Contributions:
     """Contributions to the strains and moduli of one stepwise test.
-
-    Parameters
-    ----------
-    result : StepwiseResult
-        As reduced, with the standard uncertainty of its gauge length.
-    errors : InstrumentErrors
-        Of the weights (tension), of strain, of the temperature and of the diameter.
-    area : float
-        Nominal. [m2]
-
-    Returns
-    -------
-    contributions : Contributions
-        ``tension`` [N], ``strain`` [1], ``secant_modulus`` [Pa], shape (n_components, n_steps),
-        and ``interval_modulus`` [Pa], (n_components, n_steps - 1).
-
-    Raises
-    ------
-    DataError
-        If the area is not positive.
 
     Notes
     -----
@@ -1472,25 +1137,6 @@ def with_shared_interval(
     ratio: Ratio, contribution: ArrayLike, *, of_contribution: ArrayLike = np.inf
 ) -> Ratio:
     """Ratio with the interval of both parts; its standard uncertainty stays the random one.
-
-    Parameters
-    ----------
-    ratio : Ratio
-        With its interval of type A. [1]
-    contribution : array_like, shape (n_components, 2, n_bins)
-        Of shared errors. [1]
-    of_contribution : array_like, shape (n_components,), optional
-        Degrees of freedom of each; infinite where it is stated. [1]
-
-    Returns
-    -------
-    ratio : Ratio
-        Wider where something is not shared; ``is_different`` follows. [1]
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not fit.
 
     Notes
     -----

@@ -121,7 +121,7 @@ def of_cycles(
         yield _of_tensile(step.tensile, index, errors, model, cycles)
 
 
-def of_ends(
+def _of_ends(
     test: ReducedTest, index: int, errors: InstrumentErrors, area: float
 ) -> Iterator[Contributions]:
     """Secant and chord moduli of each cycle, at the two ends of its loop."""
@@ -142,7 +142,7 @@ def of_ends(
     yield with_diameter(found, errors, {"chord_modulus": chord}, area=area)
 
 
-def of_slips(test: ReducedTest, errors: Sequence[InstrumentErrors]) -> list[Contributions]:
+def _of_slips(test: ReducedTest, errors: Sequence[InstrumentErrors]) -> list[Contributions]:
     """Every step of a splice, along one axis; an empty list where there is none.
 
     The length is a step of tension over a slope of it: gain and warmth are in both, a scale of
@@ -330,7 +330,7 @@ def _of_tensile(
     return over_strength(Contributions(field.component, values), errors, powers)
 
 
-def of_holds(test: ReducedTest, errors: Sequence[InstrumentErrors]) -> list[Contributions]:
+def _of_holds(test: ReducedTest, errors: Sequence[InstrumentErrors]) -> list[Contributions]:
     """Every hold of a test, along one axis; an empty list where there is none."""
     if not test.holds:
         return []
@@ -347,7 +347,7 @@ def of_holds(test: ReducedTest, errors: Sequence[InstrumentErrors]) -> list[Cont
     return [stacked(own)]
 
 
-def of_pairs(test: ReducedTest, errors: Sequence[InstrumentErrors]) -> list[Contributions]:
+def _of_pairs(test: ReducedTest, errors: Sequence[InstrumentErrors]) -> list[Contributions]:
     """Every pair of holds of a test, along one axis; an empty list where there is none."""
     if test.rope_step is None or not test.rope_step.held:
         return []
@@ -470,7 +470,7 @@ class PullOrigin:
     model: StrainModel
 
 
-def compliance_slope(pull: SlowPull, tension: Floats) -> Floats:
+def _compliance_slope(pull: SlowPull, tension: Floats) -> Floats:
     """Second derivative of strain over tension; zero at the very ends of the pull. [N-2]."""
     step = _STEP * pull.tension_half_range
     beside = [1 / quasi_static_spring_constant(pull, tension + way * step)[0] for way in (1, -1)]
@@ -478,12 +478,12 @@ def compliance_slope(pull: SlowPull, tension: Floats) -> Floats:
     return np.asarray(np.where(np.isfinite(bend), bend, 0.0))
 
 
-def of_rest(
+def _of_rest(
     pull: SlowPull, origin: PullOrigin, tension: Floats, of_mean_tension: Contributions
 ) -> Contributions:
     """K_0 at the mean tension of a run, which has its own errors, on a pull that has others."""
     field, constant = _at(pull, origin.errors, origin.model, tension)
-    bend = compliance_slope(pull, tension)
+    bend = _compliance_slope(pull, tension)
     at_tension = pull_contributions(
         field, quasi_static_spring_constant=constant, compliance_slope=bend
     )
@@ -497,7 +497,7 @@ def of_rest(
     return added([at_tension, along, fit_contributions(pull, tension, of=name)])
 
 
-def of_pull(
+def _of_pull(
     pull: SlowPull,
     errors: InstrumentErrors,
     model: StrainModel,
@@ -511,7 +511,7 @@ def of_pull(
     found = pull_contributions(
         field,
         quasi_static_spring_constant=constant,
-        compliance_slope=compliance_slope(pull, tension),
+        compliance_slope=_compliance_slope(pull, tension),
     )
     yield found
     of_strain = _at_tension(field, constant)
@@ -598,28 +598,7 @@ def lag_of_test(
     *,
     stated: Sequence[float] = (),
 ) -> tuple[LagEstimate, list[str]]:
-    """Estimate the lag of each tension channel, and say where it is more than what is stated.
-
-    Parameters
-    ----------
-    record : Record
-        With its clock.
-    position : ndarray, shape (n_samples,)
-        NaN where not usable. [m]
-    tension : ndarray, shape (n_specimens, n_samples)
-        NaN where not usable. [N]
-    cycles : Cycles
-        Where the wave turns.
-    stated : sequence of float, length n_specimens, optional
-        Standard uncertainty of the lag that is stated; empty where nothing is. [s]
-
-    Returns
-    -------
-    estimate : LagEstimate
-        By specimen.
-    notes : list of str
-        One a specimen whose tension is late by more than twice what is known.
-    """
+    """Estimate the lag of each tension channel, and say where it is more than what is stated."""
     turns = np.concatenate([cycles.branch_first.ravel(), cycles.branch_last.ravel()])
     estimate = lag_by_turns(record.time, position, tension, turns)
     known = np.asarray(stated) if len(stated) else np.zeros(len(record.specimens))
@@ -650,26 +629,7 @@ def contributions_of_test(
     pulls: Sequence[SlowPull | None] | None = None,
     pull_origins: Sequence[PullOrigin | None] = (),
 ) -> Contributions | None:
-    """What each shared error adds to the curves, segments and means of a test.
-
-    Parameters
-    ----------
-    test : ReducedTest
-        As reduced; its uncertainties are of type A.
-    errors : sequence of InstrumentErrors, length n_specimens
-        What is stated of the instruments.
-    cycles : CycleSettings
-        Control and waveform.
-    pulls : sequence of SlowPull or None, length n_specimens, optional
-        From which the test has its K_0.
-    pull_origins : sequence of PullOrigin or None, length n_specimens, optional
-        With what each pull was read; the instruments of the test itself where it is not said.
-
-    Returns
-    -------
-    contributions : Contributions or None
-        Shape (n_components, n_specimens, ...); None where no error is shared.
-    """
+    """What each shared error adds to the curves, segments and means of a test."""
     own = []
     for index, one in enumerate(errors):
         pull = None if pulls is None else pulls[index]
@@ -678,9 +638,9 @@ def contributions_of_test(
     found = stacked(own)
     parts = [
         found,
-        *of_holds(test, errors),
-        *of_pairs(test, errors),
-        *of_slips(test, errors),
+        *_of_holds(test, errors),
+        *_of_pairs(test, errors),
+        *_of_slips(test, errors),
         *of_elastomers(test, errors, found),
         *of_ratios(test, found),
     ]
@@ -696,26 +656,7 @@ def shared_uncertainty_of_cycles(
     pulls: Sequence[SlowPull | None] | None = None,
     pull_origins: Sequence[PullOrigin | None] = (),
 ) -> dict[str, Floats]:
-    """Shared standard uncertainty of the quantities of each cycle, shape (n_specimens, n_cycles).
-
-    Parameters
-    ----------
-    test : ReducedTest
-        With loops.
-    errors : sequence of InstrumentErrors, length n_specimens
-        What is stated of the instruments.
-    cycles : CycleSettings
-        Control and waveform.
-    pulls : sequence of SlowPull or None, length n_specimens, optional
-        From which the test has its K_0.
-    pull_origins : sequence of PullOrigin or None, length n_specimens, optional
-        As in `contributions_of_test`.
-
-    Returns
-    -------
-    shared : dict of str to ndarray
-        By name of the quantity; empty where no error is shared.
-    """
+    """Shared standard uncertainty of each cycle quantity, shape (n_specimens, n_cycles)."""
     if test.loops is None:
         return {}
     n_specimens, n_cycles = test.loops.mean_tension.shape
@@ -756,7 +697,7 @@ def _of_specimen(
     own = test.pulls[index] if test.pulls else None
     if own is not None:
         strength = test.specimens[index].rated_break_strength
-        yield from of_pull(
+        yield from _of_pull(
             own, errors, model, tension=tension_grid(test.pulls), share=np.array(BREAK_SHARES),
             rated_break_strength=strength,
         )  # fmt: skip
@@ -775,7 +716,7 @@ def _of_specimen(
         if np.isfinite(area):
             yield _named(of_dynamic_modulus(of_loop, summary, index, errors, area), "test_")
         if test.line_of_test is not None and pull is not None:
-            rest = of_rest(
+            rest = _of_rest(
                 pull, origin or PullOrigin(errors, model),
                 np.asarray(summary.mean_tension[index]), of_loop,
             )  # fmt: skip
@@ -799,9 +740,9 @@ def _of_cycles(
     of_loop = of_loops(part.loops, index, errors, model, part.cycles, cycles)
     parts = [of_loop]
     if part.end_moduli is not None:
-        parts += of_ends(part, index, errors, float(areas_of(test.specimens)[index]))
+        parts += _of_ends(part, index, errors, float(areas_of(test.specimens)[index]))
     if part.line is not None and test.amplitude is not None and pull is not None:
-        rest = of_rest(
+        rest = _of_rest(
             pull, origin or PullOrigin(errors, model),
             np.asarray(test.amplitude.mean_tension[index]),
             of_loops(test.amplitude, index, errors, model, test.cycles, cycles),

@@ -118,7 +118,7 @@ _LOOP = (
 _K_0 = "quasi_static_spring_constant"
 
 
-def speed_ratio(
+def _speed_ratio(
     loops: Loops | AmplitudeSummary,
     index: int,
     model: StrainModel,
@@ -163,7 +163,7 @@ def of_loops(
         **{name: np.asarray(getattr(loops, name)[index]) for name in _LOOP},
         waveform=settings.waveform,
         control=settings.control,
-        speed_ratio=speed_ratio(loops, index, model, cycles, settings),
+        speed_ratio=_speed_ratio(loops, index, model, cycles, settings),
     )  # fmt: skip
 
 
@@ -229,7 +229,7 @@ def strain_rates(
         mean_strain=float(summary.mean_strain[index]),
         strain_amplitude=float(amplitude),
         waveform=cycles.waveform,
-        speed_ratio=float(speed_ratio(summary, index, model, test.cycles, cycles)),
+        speed_ratio=float(_speed_ratio(summary, index, model, test.cycles, cycles)),
     )
     return np.stack([[rate, -rate], [slope, -slope]])
 

@@ -52,7 +52,7 @@ from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 
 
-def coefficient_contributions(
+def _coefficient_contributions(
     coded: ArrayLike,
     exponents: Integers,
     coefficient: ArrayLike,
@@ -62,32 +62,6 @@ def coefficient_contributions(
     blocks: ArrayLike | None = None,
 ) -> Floats:
     """Contributions to the coefficients of a surface from those to its runs.
-
-    Parameters
-    ----------
-    coded : array_like, shape (n_runs, n_factors)
-        Levels of the runs, as fitted. [1]
-    exponents : ndarray of int, shape (n_terms, n_factors)
-        Power of each factor in each term.
-    coefficient : array_like, shape (n_terms,)
-        As fitted. [unit of the response]
-    response : array_like, shape (n_components, n_runs)
-        Contributions to the response of each run, on the scale that was fitted; a run with NaN was
-        not used. [unit of the response]
-    level : array_like, shape (n_components, n_runs, n_factors)
-        Contributions to the levels, in coded units. [1]
-    blocks : array_like of int, shape (n_runs,), optional
-        Specimen of each run, where each has a mean of its own. [1]
-
-    Returns
-    -------
-    contribution : ndarray, shape (n_components, n_terms)
-        [unit of the response]
-
-    Raises
-    ------
-    DataError
-        If the runs do not pair up.
 
     Notes
     -----
@@ -103,7 +77,7 @@ def coefficient_contributions(
     >>> at, powers = box_behnken(3).coded, quadratic_exponents(3)
     >>> b = np.array([3.4, -0.1, 0.1, 0.3, 0.1, 0.5, -0.5, 0.0, 0.1, -0.2])
     >>> runs = model_matrix(at, powers) @ b
-    >>> found = coefficient_contributions(at, powers, b, response=0.01 * runs[None],
+    >>> found = _coefficient_contributions(at, powers, b, response=0.01 * runs[None],
     ...     level=np.zeros((1, len(at), 3)))
     >>> print(np.allclose(found, 0.01 * b))
     True
@@ -147,22 +121,8 @@ _MANY = 1e9
 
 @dataclass(frozen=True)
 @read_only_arrays
-class SharedAtPoints:
-    """Surfaces at points with both parts of their uncertainty, on the scale of the response.
-
-    Parameters
-    ----------
-    standard_uncertainty, random_standard_uncertainty : ndarray, shape (n_responses, n_points)
-        Of the surface: both parts, and the scatter of the runs alone. [unit of the response]
-    contribution : ndarray, shape (n_components, n_responses, n_points)
-        Of each shared error, signed. [unit of the response]
-    confidence_interval : ndarray, shape (n_responses, n_points, 2)
-        Of the surface at this point. [unit of the response]
-    prediction_interval : ndarray, shape (n_responses, n_points, 2)
-        Of one more run there. [unit of the response]
-    simultaneous_interval : ndarray, shape (n_responses, n_points, 2)
-        Of the surface everywhere at once. [unit of the response]
-    """
+class _SharedAtPoints:
+    """Surfaces at points with both parts of their uncertainty, on the scale of the response."""
 
     standard_uncertainty: Floats
     random_standard_uncertainty: Floats
@@ -177,7 +137,7 @@ def with_shared_at_points(
     values: SurfaceValues,
     contribution: ArrayLike,
     of_contribution: ArrayLike,
-) -> SharedAtPoints:
+) -> _SharedAtPoints:
     """Put what the runs share beside the scatter of the runs, at points of their surfaces.
 
     Parameters
@@ -252,7 +212,7 @@ def with_shared_at_points(
 
     own = values.fitted_standard_uncertainty
     random, moved = change(own), np.asarray([change(one) for one in rows]).reshape(rows.shape)
-    return SharedAtPoints(
+    return _SharedAtPoints(
         standard_uncertainty=combined_standard_uncertainty(moved, random),
         random_standard_uncertainty=random,
         contribution=moved,
@@ -266,18 +226,7 @@ _TRANSFORMED = ("log_", "box_cox_")
 
 
 def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
-    """Carry what the runs share to the coefficients of every surface.
-
-    Parameters
-    ----------
-    result : ExperimentResult
-        As fitted; its runs know what they share.
-
-    Returns
-    -------
-    result : ExperimentResult
-        With ``shared``; as it was where there are no surfaces or nothing is shared.
-    """
+    """Carry what the runs share to the coefficients of every surface."""
     surfaces, shared = result.surfaces, result.runs.shared
     if surfaces is None or shared is None or not shared.component:
         return result
@@ -295,7 +244,7 @@ def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
         own = shared.values[of] * _slope_of_scale(result, surfaces, index, of)
         several = _of_several_runs(own, level)
         rows.append(
-            coefficient_contributions(
+            _coefficient_contributions(
                 surfaces.coded, surfaces.exponents, surfaces.coefficient[index],
                 response=own * several[:, None], level=level * several[:, None, None],
                 blocks=names,

@@ -12,14 +12,14 @@ from scipy import stats
 
 from reduction.batch import run_campaign as batch_run
 from reduction.campaign.load import load_campaign
-from reduction.cli.lookup import lines_of
+from reduction.cli.lookup import _lines_of
 from reduction.cli.output import as_given, within
 from reduction.cli.usage import grouped
 from reduction.lines.lookup_product import LineCurve, LineSource
 from reduction.pages.design_values import (
-    CampaignLines,
-    line_data,
-    render_design_page,
+    _CampaignLines,
+    _line_data,
+    _render_design_page,
     write_design_page,
 )
 from reduction.quantities.digits import fixed_number, plain_number
@@ -53,7 +53,7 @@ def made(campaigns, tmp_path_factory):
     name = "nylon-synthetic"
     (processed / name).symlink_to(campaigns(name).processed, target_is_directory=True)
     page = write_design_page(processed, folder / "reports")
-    return page, processed, page_lines(processed, lines_of)
+    return page, processed, page_lines(processed, _lines_of)
 
 
 def assert_same(asked, wanted, found):
@@ -160,9 +160,9 @@ def test_lines_with_everything_at_once_have_the_answers_of_the_command(
     visit, tmp_path, monkeypatch
 ):
     lines = odd_lines()
-    files = {"odd": {"state": "", "lines": [line_data(one) for one in lines.values()]}}
+    files = {"odd": {"state": "", "lines": [_line_data(one) for one in lines.values()]}}
     page = tmp_path / "design-values.html"
-    page.write_text(render_design_page([CampaignLines("odd", files)]), encoding="utf-8")
+    page.write_text(_render_design_page([_CampaignLines("odd", files)]), encoding="utf-8")
     shown = visit(page)
     asked = questions([(f"odd/{name}", line) for name, line in lines.items()], ODD, SEED)
     wanted = [shown_by_command(one, list(lines.values()), monkeypatch) for one in asked]
@@ -187,10 +187,10 @@ def small(tmp_path_factory):
         ),
         notes=("synthetic data",),
     )  # fmt: skip
-    files = {"T<1>": {"state": "", "lines": [line_data(line)]}}
-    campaign = CampaignLines("<h1>campaign</h1>", files, {"T-2.nc": "<b>no</b> archive"})
+    files = {"T<1>": {"state": "", "lines": [_line_data(line)]}}
+    campaign = _CampaignLines("<h1>campaign</h1>", files, {"T-2.nc": "<b>no</b> archive"})
     page = tmp_path_factory.mktemp("small") / "design-values.html"
-    page.write_text(render_design_page([campaign]), encoding="utf-8")
+    page.write_text(_render_design_page([campaign]), encoding="utf-8")
     return page, name
 
 

@@ -9,7 +9,7 @@ import pytest
 from commandruns import ROOT, reduction
 
 from reduction.cli import campaigns as printing
-from reduction.cli.campaigns import find_browser, print_page
+from reduction.cli.campaigns import _find_browser, _print_page
 from reduction.record.errors import ArchiveError, SettingsError
 
 pytestmark = pytest.mark.slow
@@ -102,12 +102,12 @@ def test_a_machine_without_any_browser_is_told_which_would_do(monkeypatch):
     with pytest.raises(
         SettingsError, match="no browser that could print.*Chromium nor Chrome nor Edge"
     ):
-        find_browser()
+        _find_browser()
 
 
 def test_the_browser_that_is_named_is_taken_before_any_other(monkeypatch):
     monkeypatch.setenv("BROWSER_PROGRAM", sys.executable)
-    assert find_browser() == sys.executable
+    assert _find_browser() == sys.executable
 
 
 @pytest.fixture
@@ -131,7 +131,7 @@ def test_a_browser_that_prints_nothing_is_named_with_its_last_word(tmp_path, pro
     pdf = tmp_path / "out" / "report.pdf"
     browser = program("import sys; sys.exit('no display')")
     with pytest.raises(ArchiveError, match=r"report\.pdf was not printed; found .*no display"):
-        print_page(tmp_path / "page.html", pdf, browser=browser)
+        _print_page(tmp_path / "page.html", pdf, browser=browser)
     assert list(pdf.parent.iterdir()) == []
 
 
@@ -144,7 +144,7 @@ def test_what_is_no_pdf_does_not_become_one(tmp_path, program):
         "open(name.partition('=')[2], 'w').write('<html>')"
     )
     with pytest.raises(ArchiveError, match="no word of why"):
-        print_page(tmp_path / "page.html", pdf, browser=browser)
+        _print_page(tmp_path / "page.html", pdf, browser=browser)
     assert pdf.read_bytes() == b"%PDF- an earlier one"
 
 
@@ -152,7 +152,7 @@ def test_what_is_no_pdf_does_not_become_one(tmp_path, program):
 def test_a_browser_that_hangs_is_ended(tmp_path, program, monkeypatch):
     monkeypatch.setattr(printing, "_LONGEST", 0.2)
     with pytest.raises(ArchiveError, match="did not finish the report; found .*ended after 0.2 s"):
-        print_page(
+        _print_page(
             tmp_path / "page.html", tmp_path / "report.pdf",
             browser=program("import time; time.sleep(60)"),
         )  # fmt: skip
@@ -160,7 +160,7 @@ def test_a_browser_that_hangs_is_ended(tmp_path, program, monkeypatch):
 
 def test_a_program_that_cannot_be_started_is_named(tmp_path):
     with pytest.raises(ArchiveError, match="the browser cannot be started; found .*nowhere"):
-        print_page(
+        _print_page(
             tmp_path / "page.html", tmp_path / "report.pdf", browser=str(tmp_path / "nowhere")
         )
 
@@ -173,7 +173,7 @@ def test_the_browser_gets_no_network_and_a_profile_of_its_own(tmp_path, program)
         "name = [a for a in sys.argv if a.startswith('--print-to-pdf=')][0]\n"
         "open(name.partition('=')[2], 'w').write('%PDF-1.4')"
     )
-    print_page(tmp_path / "page.html", tmp_path / "report.pdf", browser=browser)
+    _print_page(tmp_path / "page.html", tmp_path / "report.pdf", browser=browser)
     given = listed.read_text().splitlines()
     assert "--host-resolver-rules=MAP * ~NOTFOUND" in given
     assert "--proxy-server=127.0.0.1:9" in given

@@ -15,7 +15,7 @@ from reduction.archive import open as products_module
 from reduction.archive.open import reading
 from reduction.batch import reduce_tests as reduce_module
 from reduction.batch import run_campaign as run_module
-from reduction.batch.run_lock import run_named
+from reduction.batch.run_lock import _run_named
 from reduction.batch.survey import as_reduction_error, survey_log
 from reduction.campaign.load import load_campaign
 from reduction.cli import campaigns as values_module
@@ -55,7 +55,7 @@ def test_a_log_that_vanishes_while_the_campaign_runs_fails_its_test_and_keeps_th
     assert done.returncode == 3
     assert "raw/A.csv: the file cannot be read; found No such file or directory" in done.stderr
     assert (older / "processed/short/A.nc").read_bytes() == before
-    assert run_named(older / "processed/short") == ""
+    assert _run_named(older / "processed/short") == ""
 
 
 def test_a_log_that_changes_while_the_campaign_runs_is_found_out_though_size_and_time_are_kept(
@@ -237,7 +237,7 @@ def test_a_folder_of_campaigns_that_is_refused_does_not_count_as_empty(older, mo
     def refused(folder):
         raise PermissionError(errno.EPERM, os.strerror(errno.EPERM), str(folder))
 
-    assert campaigns_module.read_campaigns(older / "none", room=1) == []
+    assert campaigns_module._read_campaigns(older / "none", room=1) == []
     monkeypatch.setattr(campaigns_module.Path, "iterdir", refused)
     with pytest.raises(PermissionError, match="processed"):
-        campaigns_module.read_campaigns(older / "processed", room=1)
+        campaigns_module._read_campaigns(older / "processed", room=1)

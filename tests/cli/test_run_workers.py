@@ -17,7 +17,7 @@ from manytests import ROOT, archives, products, run, start, wait_for, write_many
 
 from reduction.batch import run_campaign as run_module
 from reduction.batch.run_campaign import run_campaign
-from reduction.batch.run_lock import run_named
+from reduction.batch.run_lock import _run_named
 from reduction.batch.workers import local_workers
 from reduction.campaign.load import load_campaign
 
@@ -145,7 +145,7 @@ def test_a_run_that_was_killed_goes_on_where_it_was(campaign, serial, tmp_path):
     done = archives(tmp_path)
     assert 3 <= len(done) < len(SOUND)
     folder = tmp_path / "processed" / "many"
-    assert f"process {process.pid} on" in run_named(folder)
+    assert f"process {process.pid} on" in _run_named(folder)
     (folder / ".T09.nc.12345.part").write_text("half")
     status, _, _ = run(campaign, tmp_path)
     assert status == 3
@@ -213,7 +213,7 @@ def test_a_request_to_end_that_is_ignored_stays_so(campaign, serial, tmp_path):
 
 def test_a_second_run_on_the_same_products_is_refused(campaign, serial, tmp_path):
     first = start(campaign, tmp_path)
-    wait_for(lambda: run_named(tmp_path / "processed" / "many"))
+    wait_for(lambda: _run_named(tmp_path / "processed" / "many"))
     status, said, errors = run(campaign, tmp_path)
     assert status == 6 and said == ""
     assert "another run holds" in errors and f"process {first.pid} on" in errors
@@ -315,7 +315,7 @@ def test_a_folder_of_products_that_workers_do_not_see_ends_the_run(campaign, sch
     address, _ = scheduler
     process = start(campaign, tmp_path, "--scheduler", address)
     folder = tmp_path / "processed" / "many"
-    wait_for(lambda: run_named(folder))
+    wait_for(lambda: _run_named(folder))
     (folder / "run.lock").unlink()
     _, errors = process.communicate(timeout=60)
     assert process.returncode == 6

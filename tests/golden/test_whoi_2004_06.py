@@ -23,8 +23,8 @@ from reduction.prediction.hose_geometry import (
 )
 from reduction.prediction.hose_product import HoseDesign
 from reduction.prediction.hose_sensitivity import (
-    stretch_ratio_per_angle,
-    stretch_ratio_per_cord_stretch,
+    _stretch_ratio_per_angle,
+    _stretch_ratio_per_cord_stretch,
 )
 from reduction.prediction.hose_tension import find_events, numbers_of, predict_hose
 from reduction.prediction.rubber_wall import rubber_tension
@@ -149,7 +149,7 @@ def test_no_one_cord_strain_gives_both_stretches_measured(cord_strain, at_64, at
 def test_what_a_degree_and_a_percent_of_cord_strain_are_worth():
     angles = np.radians([64.0, 68.0])
     cord = 1 + np.array([0.033, 0.095])[:, None]
-    points = np.radians(100 * stretch_ratio_per_angle(cord, angles))
+    points = np.radians(100 * _stretch_ratio_per_angle(cord, angles))
     # at cord strains of 3.3 and 9.5 %, in points of stretch a degree
     np.testing.assert_allclose(points[:, 0], [8.3, 8.6], atol=HALF_OF_ONE_PLACE, rtol=0)
     np.testing.assert_allclose(points[:, 1], [12.1, 12.5], atol=HALF_OF_ONE_PLACE, rtol=0)
@@ -159,7 +159,7 @@ def test_what_a_degree_and_a_percent_of_cord_strain_are_worth():
     ]
     searched = 100 * np.diff(half_a_degree)[::2]
     np.testing.assert_allclose(points[1], searched, rtol=1e-3)
-    a_percent = stretch_ratio_per_cord_stretch(1.095, angles)
+    a_percent = _stretch_ratio_per_cord_stretch(1.095, angles)
     np.testing.assert_allclose(a_percent, [3.7, 4.0], atol=HALF_OF_ONE_PLACE, rtol=0)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from reduction.prediction.cord_curve import CordCurve
-from reduction.prediction.hose_design import design_angle
+from reduction.prediction.hose_design import _design_angle
 from reduction.prediction.hose_geometry import (
     cord_strain_chart,
     greatest_layer_angle,
@@ -24,7 +24,7 @@ from reduction.prediction.hose_geometry import (
     wrap_angle_for,
 )
 from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseDesign
-from reduction.prediction.hose_sensitivity import hose_sensitivity, stretch_ratio_per_angle
+from reduction.prediction.hose_sensitivity import _stretch_ratio_per_angle, hose_sensitivity
 from reduction.prediction.hose_tension import find_events
 from reduction.prediction.hose_uncertainty import propagate_hose
 
@@ -72,7 +72,7 @@ def test_a_degree_of_wrap_angle_is_eight_to_twelve_points_of_stretch(hose, cord_
         stretch_by_bisection(degrees + 0.1, cord_strain)
         - stretch_by_bisection(degrees - 0.1, cord_strain)
     )
-    found = 100 * np.radians(stretch_ratio_per_angle(1 + cord_strain, np.radians(degrees)))
+    found = 100 * np.radians(_stretch_ratio_per_angle(1 + cord_strain, np.radians(degrees)))
     assert found == pytest.approx(by_hand, abs=0.001)
     assert found == pytest.approx(points, abs=0.005)
 
@@ -145,7 +145,7 @@ def test_the_range_of_stretches_of_the_abstract_as_angles(percent, low, high):
     for cord_strain in (0.075, 0.095, 0.115):
         cord = CordCurve(np.array([0.0, cord_strain, 0.26]), np.array([0.0, 1.0, 3.0]))
         like = dataclasses.replace(HOSES, wrap_angle=1.0, cord=cord)
-        design = design_angle(like, strain=percent / 100)
+        design = _design_angle(like, strain=percent / 100)
         assert find_events(design).working.strain == pytest.approx(percent / 100, rel=1e-12)
         angles.append(float(np.degrees(design.wrap_angle)))
     assert low - 0.5 < min(angles) and max(angles) < high + 0.5

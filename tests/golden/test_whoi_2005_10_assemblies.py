@@ -18,13 +18,13 @@ import pytest
 
 from reduction.lines.assembly import (
     SeriesPart,
-    Tether,
-    assemble,
-    equal_tethers,
-    working_point,
-    worst_sharing,
+    _assemble,
+    _equal_tethers,
+    _Tether,
+    _working_point,
+    _worst_sharing,
 )
-from reduction.lines.composite import composite_curve
+from reduction.lines.composite import _composite_curve
 from reduction.lines.curve_pieces import CurvePiece
 from reduction.stages.strain.strain_model import StrainModel
 
@@ -102,7 +102,7 @@ def tether_of(table, tether, *, total_length=None):
             "splice_strain_ratio": ratio,
         },
     )
-    return Tether(composite_curve(pieces(table, tether)), model)
+    return _Tether(_composite_curve(pieces(table, tether)), model)
 
 
 def at_stretch(assembly, strain):
@@ -114,7 +114,7 @@ def at_stretch(assembly, strain):
 
 @pytest.mark.parametrize("table", [5, 6])
 def test_four_used_tethers_at_the_mean_stretch_of_the_design_give_about_350_pounds(table):
-    four = assemble(equal_tethers(tether_of(table, "used"), 4))
+    four = _assemble(_equal_tethers(tether_of(table, "used"), 4))
     tension, spread = at_stretch(four, 1.0)
     assert tension == pytest.approx(350, rel=0.03)
     assert abs(tension - 350) < spread
@@ -123,7 +123,7 @@ def test_four_used_tethers_at_the_mean_stretch_of_the_design_give_about_350_poun
 
 @pytest.mark.parametrize(("table", "tether"), CASES)
 def test_six_tethers_give_about_500_pounds_within_the_scatter(table, tether):
-    six = assemble(equal_tethers(tether_of(table, tether), 6))
+    six = _assemble(_equal_tethers(tether_of(table, tether), 6))
     tension, spread = at_stretch(six, 1.0)
     # used tethers within one standard uncertainty, new ones within two: they are the stiffer ones
     assert abs(tension - 500) < (1 if tether == "used" else 2) * spread
@@ -147,15 +147,15 @@ def test_the_stated_tensions_are_between_the_lowest_and_the_highest_row(n_tether
 
 @pytest.mark.parametrize("table", [5, 6])
 def test_one_used_tether_gives_85_pounds_within_the_scatter(table):
-    tension, spread = at_stretch(assemble([tether_of(table, "used")]), 1.0)
+    tension, spread = at_stretch(_assemble([tether_of(table, "used")]), 1.0)
     assert abs(tension - 85) < spread
 
 
 @pytest.mark.parametrize("table", [5, 6])
 def test_currents_and_waves_stay_within_the_stretch_of_the_tests(table):
     """400 to 800 lbf on four tethers: 120 to 225 %, above the usual 150 and below slip at 300 %."""
-    four = assemble(equal_tethers(tether_of(table, "used"), 4))
-    point = working_point(four, 600 * LBF, 200 * LBF, rated_break_strength=800 * LBF)
+    four = _assemble(_equal_tethers(tether_of(table, "used"), 4))
+    point = _working_point(four, 600 * LBF, 200 * LBF, rated_break_strength=800 * LBF)
     low, high = np.interp(LBF * np.array([400, 800]), four.tension, four.tether_strain[0])
     assert 1.1 < low < 1.35
     assert 2.0 < high < 2.3
@@ -168,7 +168,7 @@ def test_currents_and_waves_stay_within_the_stretch_of_the_tests(table):
 @pytest.mark.parametrize("table", [5, 6])
 def test_splices_put_back_lengthen_a_short_tether_less_than_its_rubber(table):
     """A tether of Table 3 at 102 to 103 % of its rubber is 21.75 ft from thimble to thimble."""
-    one = assemble([tether_of(table, "used")])
+    one = _assemble([tether_of(table, "used")])
     length = np.interp(1.034, one.tether_strain[0], one.total_length) / FOOT
     assert length == pytest.approx(21.75, abs=0.05)  # the tape's hundredth is a tenth of a point
     assert one.slack_length / FOOT == pytest.approx([12.26])
@@ -181,19 +181,19 @@ def test_100_percent_of_the_length_with_splices_is_more_of_the_rubber(table):
     The rubber is then at 110 %, a short tether's of Table 3 at 133 %: 350 lbf stay in the scatter.
     """
     tether = tether_of(table, "used", total_length=10.0)
-    four = assemble(equal_tethers(tether, 4), [SeriesPart("bridles and swivel", 1.0)])
+    four = _assemble(_equal_tethers(tether, 4), [SeriesPart("bridles and swivel", 1.0)])
     rubber = np.interp(21.0, four.total_length, four.tether_strain[0])
     assert rubber == pytest.approx(1.102, abs=0.002)
     spread = np.interp(21.0, four.total_length, four.standard_uncertainty)
     assert abs(four.tension_at(21.0) - 350 * LBF) < spread
-    short = assemble(equal_tethers(tether_of(table, "used"), 4))
+    short = _assemble(_equal_tethers(tether_of(table, "used"), 4))
     stretch = np.interp(2 * 12.26 * FOOT, short.total_length, short.tether_strain[0])
     assert stretch == pytest.approx(1.333, abs=0.005)
 
 
 def test_tolerances_of_a_percent_move_the_load_of_a_tether_by_a_few_percent():
     tether = tether_of(5, "used", total_length=10.0)
-    found = worst_sharing(tether, 4, 350 * LBF, free_length=8.8, tolerance=0.01)
+    found = _worst_sharing(tether, 4, 350 * LBF, free_length=8.8, tolerance=0.01)
     assert 1.0 < found.greatest_load / found.equal_load < 1.05
     assert 0.95 < found.least_load / found.equal_load < 1.0
     assert found.tension_at_slack < 0.1 * 350 * LBF

@@ -10,10 +10,10 @@ from scipy import integrate, optimize
 from reduction.prediction.hose_prediction import zhang_example as zhang2015
 from reduction.prediction.morison import find_extremes, immerse_hose, wave_load
 from reduction.prediction.wave_theory import (
+    _wave_number,
     airy_wave,
     describe_wave,
     stokes_wave,
-    wave_number,
     wave_period_of,
 )
 
@@ -302,7 +302,7 @@ def test_which_of_the_contradicting_length_and_period_is_kept_decides_four_per_c
     number = optimize.brentq(
         lambda k: (2 * np.pi / 3.57) ** 2 - 9.80665 * k * np.tanh(6 * k), 0.1, 1.0, xtol=1e-15
     )
-    assert float(wave_number(3.57, 6.0)) == pytest.approx(number, rel=1e-13)
+    assert float(_wave_number(3.57, 6.0)) == pytest.approx(number, rel=1e-13)
     potential = airy_potential(1.25, 3.57, number, 6.0)
     own = [
         own_load_range(

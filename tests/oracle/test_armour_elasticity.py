@@ -10,7 +10,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from reduction.prediction.armour import ArmourDesign, layer_stiffness, predict_armour
+from reduction.prediction.armour import ArmourDesign, _layer_stiffness, predict_armour
 
 POISSON_RATIO, WIRE, DEGREE = 0.3, 1.0, 4
 SLENDER = 40.0  # helix radius over wire radius
@@ -109,7 +109,7 @@ def test_layer_stiffness_agrees_with_the_elastic_body(degrees):
     def energy(one, other):
         return np.einsum("ijq,ijq,q->", stress(one), other, body.volume) / body.cosine
 
-    layer = layer_stiffness(rod(degrees))
+    layer = _layer_stiffness(rod(degrees))
     pairs = (
         (layer.tension_per_strain, energy(stretched, stretched)),
         (layer.torque_per_strain, energy(stretched, twisted)),

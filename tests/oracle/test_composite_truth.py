@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reduction.lines.composite import composite_curve
+from reduction.lines.composite import _composite_curve
 from reduction.lines.curve_pieces import CompositeRule, CurvePiece, pieces_of_branches
 from reduction.record.settings import CycleSettings, ModulusSettings, PhaseSettings
 from reduction.stages.cycles.cycle_search import find_cycles
@@ -85,7 +85,7 @@ def both(specimen, branch, **rule):
                     test, "cyclic", branch, piece.strain, load, piece.random_standard_uncertainty
                 )
             )
-    return [composite_curve(one, rule=CompositeRule(**rule)) for one in (pieces, truths)]
+    return [_composite_curve(one, rule=CompositeRule(**rule)) for one in (pieces, truths)]
 
 
 @pytest.mark.parametrize("specimen", [0, 1])

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.batch.reduce_tests import reduce_survey
+from reduction.batch.reduce_tests import _reduce_survey
 from reduction.batch.survey import survey_log
 from reduction.batch.test_history import fit_strain_models
 from reduction.campaign.load import load_campaign
@@ -66,7 +66,7 @@ def reduced(campaign, name):
     if errors:
         raise next(iter(errors.values()))
     return [
-        reduce_survey(
+        _reduce_survey(
             loaded, survey, [models[survey.plan.id, one] for one in survey.plan.specimens], None, ""
         )
         for survey in surveys

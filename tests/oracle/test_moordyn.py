@@ -13,7 +13,7 @@ from export_lines import constant, growing, line, syrope
 from export_readers import moordyn_sections, moordyn_table
 
 from reduction.cli.curves import deployed_line
-from reduction.cli.export import with_syrope
+from reduction.cli.export import _with_syrope
 from reduction.lines.composite import compose
 from reduction.lines.curve_pieces import CompositeRule
 from reduction.lines.deck_formats import export_line
@@ -260,7 +260,7 @@ def test_a_syrope_of_a_published_line_starts_at_its_mean_tension(tmp_path, shape
     levels = {"frequency": 0.3, "mean_tension": 5978.4, "tension_amplitude": 2419.8}
     source = published_sources()["polyester-double-braid-0.5in-new"]
     made = line_from_lookup(source, levels=levels, linear_density=0.1)
-    made = with_syrope(made, shape, "8 kN", form="syrope")
+    made = _with_syrope(made, shape, "8 kN", form="syrope")
     write(tmp_path, moordyn_files(made, "deck", form="syrope"))
     start = made.syrope.initial_strain
     tension = at_rest(

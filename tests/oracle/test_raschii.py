@@ -12,11 +12,11 @@ from measured_logs import LOGS
 from raschii import AiryWave, FentonWave, StokesWave, check_breaking_criteria
 
 from reduction.prediction.wave_theory import (
+    _wave_number,
     airy_wave,
     breaking_height,
     particle_motion,
     stokes_wave,
-    wave_number,
     wave_period_of,
 )
 
@@ -66,7 +66,7 @@ def test_periods_are_those_of_raschii_to_first_order(height, depth, length):
     assert float(wave_period_of(2 * np.pi / length, depth, gravity=GRAVITY)) == pytest.approx(
         wave.period, rel=1e-13
     )
-    back = wave_number(wave.period, depth, gravity=GRAVITY)
+    back = _wave_number(wave.period, depth, gravity=GRAVITY)
     assert 2 * np.pi / float(back) == pytest.approx(length, rel=1e-13)
 
 

@@ -14,7 +14,7 @@ from reduction.record.measurement import Specimen, SpliceMarks
 from reduction.record.settings import StrainSettings
 from reduction.stages.strain.strain_fit import fit_strain_model
 from reduction.stages.strain.strain_model import strain_by_model
-from reduction.uncertainty.error_field import error_field, splice_method_error
+from reduction.uncertainty.error_field import _splice_method_error, error_field
 
 FREE, SPLICES = 2.55, 1.19
 HOLDS = np.array([0.0, 0.75, 1.0, 1.25])
@@ -54,7 +54,7 @@ def test_the_error_of_strain_is_what_the_law_of_tension_says_at_every_sample(met
     position = FREE * (1 + strain) + splices(tension)
     model = model_by(method)
     read = strain_by_model(model, position=position, tension=tension)
-    error, _, _ = splice_method_error(model, strain=read, tension=tension)
+    error, _, _ = _splice_method_error(model, strain=read, tension=tension)
     assert error == pytest.approx(read - strain, abs=2e-6)
 
 
@@ -74,19 +74,19 @@ def test_the_energy_of_a_loop_is_wrong_by_its_divergence(method):
 def test_the_slope_over_tension_is_that_of_the_error():
     model = model_by("marks")
     above, below, at = (
-        splice_method_error(model, strain=1.0, tension=force) for force in (481.0, 479.0, 480.0)
+        _splice_method_error(model, strain=1.0, tension=force) for force in (481.0, 479.0, 480.0)
     )
     assert at[2] == pytest.approx((above[0] - below[0]) / 2, rel=1e-9)
 
 
 def test_a_law_of_tension_knows_its_splices():
     model = replace(model_by("marks"), splice_law={})
-    assert splice_method_error(model, strain=1.0, tension=480.0) is None
-    assert splice_method_error(model_by("tension-driven"), strain=1.0, tension=480.0) is None
+    assert _splice_method_error(model, strain=1.0, tension=480.0) is None
+    assert _splice_method_error(model_by("tension-driven"), strain=1.0, tension=480.0) is None
 
 
 def test_a_slack_specimen_has_no_slope_over_tension():
-    assert splice_method_error(model_by("marks"), strain=0.0, tension=0.0)[2] == 0
+    assert _splice_method_error(model_by("marks"), strain=0.0, tension=0.0)[2] == 0
 
 
 def test_marks_without_a_tension_have_no_law():

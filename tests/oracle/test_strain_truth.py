@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reduction.campaign.specimens import read_marks
+from reduction.campaign.specimens import _read_marks
 from reduction.record.measurement import Specimen
 from reduction.record.settings import StrainSettings
 from reduction.stages.standstills import Standstills
@@ -43,7 +43,7 @@ def stands(time, position):
 
 @pytest.fixture(scope="module")
 def campaign():
-    marks = read_marks(RAW / "marks.csv")
+    marks = _read_marks(RAW / "marks.csv")
     tension = {name: np.full(len(marks[name].test), np.nan) for name in SPECIMENS}
     for test in TESTS:
         log = pd.read_csv(RAW / f"{test}.csv", comment="#")

@@ -11,7 +11,7 @@ from reduction.archive.open import open_archive
 from reduction.archive.uncertainty_budget import budget_from_archive
 from reduction.batch.run_campaign import run_campaign
 from reduction.campaign.load import load_campaign
-from reduction.lines.archive_source import line_source_of_test
+from reduction.lines.archive_source import _line_source_of_test
 from reduction.lines.line_lookup import look_up
 from reduction.lines.line_search import compare_values
 
@@ -57,7 +57,10 @@ def reduced(folder, *, gain=0.0, readings=None):
 def difference(archive, strain=1.0):
     new, used = (
         look_up(
-            line_source_of_test(archive, name), "tangent_modulus", strain=strain, branch="ascending"
+            _line_source_of_test(archive, name),
+            "tangent_modulus",
+            strain=strain,
+            branch="ascending",
         )
         for name in ("new", "used")
     )
@@ -122,7 +125,7 @@ def test_a_look_up_and_a_budget_read_a_strain_alike(stated):
     bins = stated["strain_bin"].to_numpy()
     strain = float(bins[40] + 0.3 * (bins[41] - bins[40]))
     value = look_up(
-        line_source_of_test(stated, "new"), "tangent_modulus", strain=strain, branch="ascending"
+        _line_source_of_test(stated, "new"), "tangent_modulus", strain=strain, branch="ascending"
     )
     budget = budget_from_archive(
         stated, "tangent_modulus",

@@ -12,10 +12,10 @@ from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reduction.archive.csv_columns import csv_field, csv_lines, csv_text, number_texts, texts_of
-from reduction.archive.csv_tables import Curve, envelope_rows
+from reduction.archive.csv_columns import _csv_field, _csv_lines, _number_texts, _texts_of, csv_text
+from reduction.archive.csv_tables import _Curve, _envelope_rows
 from reduction.archive.schema import SCHEMA
-from reduction.archive.test_dataset import row_account
+from reduction.archive.test_dataset import _row_account
 from reduction.archive.variables import pad
 from reduction.record.measurement import Record
 
@@ -24,21 +24,21 @@ TEXT = st.text(st.characters(codec="utf-8", exclude_characters="\x00"), max_size
 
 @given(st.lists(st.floats(allow_nan=False), min_size=1))
 def test_every_float_comes_back_from_a_table(numbers):
-    fields = texts_of(np.array(numbers), SCHEMA["tension"])
-    rows = csv.reader(io.StringIO(csv_lines([fields, fields]), newline=""))
+    fields = _texts_of(np.array(numbers), SCHEMA["tension"])
+    rows = csv.reader(io.StringIO(_csv_lines([fields, fields]), newline=""))
     assert [float(row[0]) for row in rows] == numbers
 
 
 @given(st.lists(st.floats(allow_nan=False), min_size=1))
 def test_a_number_is_written_as_python_writes_it(numbers):
-    assert number_texts(np.array(numbers)) == [repr(number) for number in numbers]
+    assert _number_texts(np.array(numbers)) == [repr(number) for number in numbers]
 
 
 @given(st.lists(TEXT, min_size=1, max_size=5))
 def test_a_text_is_the_same_field_in_columns_and_in_rows(labels):
-    columns = [[csv_field(label) for label in labels], ["1"] * len(labels)]
+    columns = [[_csv_field(label) for label in labels], ["1"] * len(labels)]
     header = csv_text(["x", "y"], ())
-    assert header + csv_lines(columns) == csv_text(["x", "y"], [[label, 1] for label in labels])
+    assert header + _csv_lines(columns) == csv_text(["x", "y"], [[label, 1] for label in labels])
 
 
 @given(st.lists(TEXT, min_size=1, max_size=5))
@@ -86,7 +86,7 @@ def test_the_account_counts_every_flag_of_every_row(flags):
         quality_flag=np.array([flags], dtype=np.uint16),
         crosshead_position_quality_flag=np.zeros(n_samples, dtype=np.uint16),
     )
-    counts = row_account(record)["n_flagged"]
+    counts = _row_account(record)["n_flagged"]
     assert counts[0].sum() == 0
     assert counts[1].sum() == sum(flag.bit_count() for flag in flags)
 
@@ -100,7 +100,7 @@ def test_the_account_counts_every_flag_of_every_row(flags):
 )
 def test_no_test_of_equal_bins_lies_outside_the_envelope(tests):
     curves = [
-        Curve(
+        _Curve(
             test=f"T-{number}",
             specimen="new",
             branch="ascending",
@@ -112,7 +112,7 @@ def test_no_test_of_equal_bins_lies_outside_the_envelope(tests):
         )
         for number, (start, moduli) in enumerate(tests)
     ]
-    rows = {round(row[2], 6): row for row in envelope_rows(curves)}
+    rows = {round(row[2], 6): row for row in _envelope_rows(curves)}
     for curve in curves:
         for strain, modulus in zip(curve.strain, curve.modulus, strict=True):
             row = rows[round(strain, 6)]

@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from reduction.lines.assembly import (
     SeriesPart,
-    assemble,
-    equal_tethers,
-    unequal_tethers,
-    working_point,
+    _assemble,
+    _equal_tethers,
+    _unequal_tethers,
+    _working_point,
 )
 
 lengths = st.lists(st.floats(2.0, 3.0), min_size=1, max_size=6)
@@ -25,7 +25,7 @@ parts = st.lists(
 @settings(max_examples=examples(80), deadline=None)
 @given(lengths, parts, st.booleans())
 def test_loads_add_up_and_length_and_tension_are_inverse(free, in_line, soft):
-    assembly = assemble(unequal_tethers(spring() if soft else RUBBER, free), in_line)
+    assembly = _assemble(_unequal_tethers(spring() if soft else RUBBER, free), in_line)
     assert (np.diff(assembly.total_length) > 0).all()
     assert (np.diff(assembly.tension) > 0).all()
     np.testing.assert_allclose(assembly.tether_tension.sum(axis=0), assembly.tension, rtol=1e-12)
@@ -42,8 +42,8 @@ def test_loads_add_up_and_length_and_tension_are_inverse(free, in_line, soft):
 @settings(max_examples=examples(40), deadline=None)
 @given(st.integers(1, 12), st.floats(0.05, 0.9))
 def test_equal_tethers_are_one_tether_times_their_number(n_tethers, share):
-    one, many = assemble([RUBBER]), assemble(equal_tethers(RUBBER, n_tethers))
+    one, many = _assemble([RUBBER]), _assemble(_equal_tethers(RUBBER, n_tethers))
     tension = share * one.tension[-1]
     np.testing.assert_allclose(many.length_at(n_tethers * tension), one.length_at(tension))
-    point = working_point(many, n_tethers * tension, 0.5 * n_tethers * tension * (1 - share))
+    point = _working_point(many, n_tethers * tension, 0.5 * n_tethers * tension * (1 - share))
     np.testing.assert_allclose(point.load_share, 1 / n_tethers)

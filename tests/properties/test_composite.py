@@ -5,7 +5,7 @@ from examples import examples
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from reduction.lines.composite import composite_curve
+from reduction.lines.composite import _composite_curve
 from reduction.lines.curve_pieces import CompositeRule, CurvePiece
 
 KINDS = ("cyclic", "static", "first-loading")
@@ -53,7 +53,7 @@ def short(low, high):
 @settings(max_examples=examples(150), deadline=None)
 @given(st.lists(a_piece(), min_size=1, max_size=5), rules)
 def test_it_rises_strictly_from_zero_and_every_interval_has_its_flags(pieces, rule):
-    curve = composite_curve(pieces, rule=rule)
+    curve = _composite_curve(pieces, rule=rule)
     assert curve.strain[0] == curve.tension[0] == 0
     assert (np.diff(curve.strain) > 0).all()
     assert (np.diff(curve.tension) > 0).all()
@@ -72,7 +72,7 @@ def test_it_rises_strictly_from_zero_and_every_interval_has_its_flags(pieces, ru
 @settings(max_examples=examples(80), deadline=None)
 @given(st.lists(a_piece(kinds=("cyclic",)), min_size=1, max_size=4))
 def test_a_gap_is_where_no_piece_reaches(pieces):
-    curve = composite_curve(pieces)
+    curve = _composite_curve(pieces)
     middle = (curve.strain[1:] + curve.strain[:-1]) / 2
     reached = np.any(
         [(middle > one.strain[0]) & (middle < one.strain[-1]) for one in pieces], axis=0
@@ -83,7 +83,7 @@ def test_a_gap_is_where_no_piece_reaches(pieces):
 @settings(max_examples=examples(60), deadline=None)
 @given(a_piece(kinds=("cyclic",)), rules)
 def test_it_does_not_depend_on_how_often_a_piece_is_given(piece, rule):
-    once, twice = composite_curve([piece], rule=rule), composite_curve([piece, piece], rule=rule)
+    once, twice = _composite_curve([piece], rule=rule), _composite_curve([piece, piece], rule=rule)
     np.testing.assert_allclose(once.tension, twice.tension, rtol=1e-9)
 
 
@@ -97,7 +97,7 @@ def test_tension_in_another_unit_is_the_same_curve(pieces, unit):
         )
         for one in pieces
     ]  # fmt: skip
-    one, two = composite_curve(pieces), composite_curve(other)
+    one, two = _composite_curve(pieces), _composite_curve(other)
     np.testing.assert_allclose(two.tension, unit * one.tension, rtol=1e-6)
 
 
@@ -106,5 +106,5 @@ def test_tension_in_another_unit_is_the_same_curve(pieces, unit):
 def test_one_piece_that_rises_is_unchanged(piece, rule):
     if (np.diff(piece.tension) <= 1e-3).any():
         return
-    curve = composite_curve([piece], rule=rule)
+    curve = _composite_curve([piece], rule=rule)
     assert not curve.is_moved.any()

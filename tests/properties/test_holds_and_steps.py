@@ -7,12 +7,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from reduction.stages.holds.hold_start import find_ramp
-from reduction.stages.holds.prony_series import prony_tension, ramp_factor
+from reduction.stages.holds.prony_series import _ramp_factor, prony_tension
 from reduction.stages.holds.relaxation import logarithmic_blocks, rate_per_decade, relaxation_drop
 from reduction.stages.moduli.elastomer_laws import fit_elastomers, hyperelastic_stress
 from reduction.stages.moduli.secant_modulus import slope_per_decade
-from reduction.stages.moduli.slack_length import slack_position
-from reduction.stages.moduli.splice_slip import find_steps, ramp_of
+from reduction.stages.moduli.slack_length import _slack_position
+from reduction.stages.moduli.splice_slip import _ramp_of, find_steps
 
 positive = st.floats(1e-3, 1e3)
 
@@ -25,7 +25,7 @@ def test_a_drop_does_not_depend_on_the_unit_of_tension(initial, final, unit):
 
 @given(st.lists(st.floats(0.1, 1e4), min_size=1, max_size=4), st.floats(0, 1e3))
 def test_a_ramp_leaves_between_nothing_and_all_of_a_term(times, duration):
-    factor = ramp_factor(times, ramp_duration=duration)
+    factor = _ramp_factor(times, ramp_duration=duration)
     assert np.all((factor > 0) & (factor <= 1))
 
 
@@ -70,7 +70,7 @@ def test_the_centre_of_a_ramp_lies_in_it_and_moves_with_the_clock(rate, stroke, 
 @given(st.integers(0, 2**32 - 1), st.floats(1e-3, 1e3), st.floats(-1e3, 1e3))
 def test_steps_do_not_depend_on_unit_and_zero_of_the_series(seed, unit, zero):
     rng = np.random.default_rng(seed)
-    series = 0.3 * rng.standard_normal(300) - 2 * ramp_of(300, onset=150, extent=3)
+    series = 0.3 * rng.standard_normal(300) - 2 * _ramp_of(300, onset=150, extent=3)
     one = find_steps(series, false_alarm=1e-3)
     other = find_steps(unit * series + zero * unit, false_alarm=1e-3)
     assert [step.onset for step in other] == [step.onset for step in one]
@@ -82,7 +82,7 @@ def test_steps_do_not_depend_on_unit_and_zero_of_the_series(seed, unit, zero):
 @given(st.integers(0, 2**32 - 1))
 def test_a_mirrored_series_has_mirrored_steps(seed):
     rng = np.random.default_rng(seed)
-    series = 0.3 * rng.standard_normal(300) - 2 * ramp_of(300, onset=150, extent=3)
+    series = 0.3 * rng.standard_normal(300) - 2 * _ramp_of(300, onset=150, extent=3)
     one, other = (find_steps(sign * series, false_alarm=1e-3) for sign in (1, -1))
     assert [step.onset for step in other] == [step.onset for step in one]
     assert [step.size for step in other] == pytest.approx([-step.size for step in one])
@@ -99,7 +99,7 @@ def test_a_line_in_the_logarithm_gives_its_slope(slope, level, first):
 @given(st.floats(0, 5), st.floats(10, 500), st.floats(1, 20))
 def test_a_slack_crossing_is_where_the_line_is(start, stiffness, slack):
     place = start + np.linspace(0, 6 * slack / stiffness, 200)
-    crossing, _, _ = slack_position(place, stiffness * (place - start), slack_tension=slack)
+    crossing, _, _ = _slack_position(place, stiffness * (place - start), slack_tension=slack)
     assert crossing == pytest.approx(start + slack / stiffness, abs=1e-9)
 
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from reduction.readers.delimited import read_delimited
 from reduction.readers.layout import Layout
-from reduction.readers.record_in_si import on_common_time, to_record
-from reduction.readers.sample_flags import constant_runs, time_faults
+from reduction.readers.record_in_si import _on_common_time, to_record
+from reduction.readers.sample_flags import _constant_runs, _time_faults
 from reduction.record.settings import QualitySettings
 
 NUMBERS = st.floats(-1e9, 1e9, allow_nan=False, allow_subnormal=False)
@@ -99,7 +99,7 @@ def test_units_change_nothing_but_the_last_digit(tmp_path, rows, feet, pounds):
     minimum=st.integers(2, 12),
 )
 def test_runs_cover_exactly_the_samples_that_repeat(values, minimum):
-    mask = constant_runs(values, minimum).mask(values)
+    mask = _constant_runs(values, minimum).mask(values)
     edges = np.r_[0, np.flatnonzero(np.diff(values)) + 1, values.size]
     expected = np.zeros(values.size, dtype=bool)
     for start, stop in pairwise(edges):
@@ -110,7 +110,7 @@ def test_runs_cover_exactly_the_samples_that_repeat(values, minimum):
 @given(st.lists(st.floats(0, 100), min_size=2, max_size=100).map(np.array))
 def test_backward_samples_are_those_not_above_all_before_them(time):
     expected = np.r_[False, time[1:] <= np.maximum.accumulate(time)[:-1]]
-    timing = time_faults(time, gap_factor=3.5, rate_tolerance=0.2)
+    timing = _time_faults(time, gap_factor=3.5, rate_tolerance=0.2)
     assert np.array_equal(timing.backward, expected)
     assert not np.any(timing.gap & timing.backward)
 
@@ -125,7 +125,7 @@ def test_a_straight_line_survives_resampling(slope, offset, rate, lag):
     slow = np.arange(0, 20, 1.0) + lag
     fast = np.arange(0, 22, 1.0 / rate)
     values = {"crosshead_position": slope * fast + offset, "tension.1": slow}
-    result = on_common_time(fast, values, {"tension.1": slow}, gap_factor=3.5)
+    result = _on_common_time(fast, values, {"tension.1": slow}, gap_factor=3.5)
     found = result.values["crosshead_position"]
     known = np.isfinite(found)
     assert known.sum() >= 19

@@ -6,11 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reduction.stages.line.line_model import (
+    _storage_and_loss,
     apparent_spring_constant,
     hysteresis_energy,
     identify_by_amplitude,
     identify_by_fundamental,
-    storage_and_loss,
 )
 
 SPRING = st.floats(1e3, 1e6)
@@ -42,7 +42,7 @@ def test_a_line_of_positive_parameters_is_never_refused_and_comes_back(
     rest, spring, time, frequency
 ):
     line = line_of(rest, spring, time, frequency)
-    stored, lost = storage_and_loss(**line)
+    stored, lost = _storage_and_loss(**line)
     found = identify_by_amplitude(
         apparent_spring_constant=apparent_spring_constant(**line),
         hysteresis_energy=hysteresis_energy(tension_amplitude=400.0, **line),
@@ -65,7 +65,7 @@ def test_the_size_of_the_cycles_and_the_unit_of_force_change_nothing(
     rest, spring, time, frequency, scale
 ):
     line = line_of(rest, spring, time, frequency)
-    stored, lost = storage_and_loss(**line)
+    stored, lost = _storage_and_loss(**line)
     one = identify_by_fundamental(
         storage_spring_constant=stored, loss_spring_constant=lost, frequency=frequency,
         quasi_static_spring_constant=rest,

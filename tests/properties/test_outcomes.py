@@ -11,7 +11,7 @@ from examples import examples
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from reduction.campaign.outcome_results import read_results
+from reduction.campaign.outcome_results import _read_results
 from reduction.experiments.life_statistics import fit_life
 from reduction.experiments.outcome_groups import fatigue_rows, strength_rows
 from reduction.experiments.outcomes import Outcome
@@ -125,7 +125,7 @@ def test_what_is_written_is_read(rows):
     with TemporaryDirectory() as folder:
         path = Path(folder) / "results.csv"
         path.write_text(text.getvalue(), encoding="utf-8")
-        read = read_results(path)
+        read = _read_results(path)
     assert len(read) == len(rows)
     for one, other in zip(read, rows, strict=True):
         for name in ("quantity", "line", "condition", "place", "is_valid", "is_suspended", "note"):

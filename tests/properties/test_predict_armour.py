@@ -9,12 +9,12 @@ from wire_energy import wire_energy
 from reduction.prediction.armour import (
     ARMOUR_THEORIES,
     ArmourDesign,
-    fill_factor,
-    layer_stiffness,
+    _fill_factor,
+    _layer_stiffness,
+    _wire_gap,
+    _wire_stress,
+    _yield_strain,
     predict_armour,
-    wire_gap,
-    wire_stress,
-    yield_strain,
 )
 
 designs = st.builds(
@@ -92,7 +92,7 @@ def test_exact_and_intermediate_meet_at_small_strain(design):
 
 @given(designs)
 def test_stiffness_is_that_of_the_conjugate_rod(design):
-    layer = layer_stiffness(design)
+    layer = _layer_stiffness(design)
     wire = predict_armour(design, 1e-8, theory="conjugate")
     assert design.n_wires * wire.tension[0] == pytest.approx(
         1e-8 * layer.tension_per_strain, rel=1e-6
@@ -106,13 +106,13 @@ def test_stiffness_is_that_of_the_conjugate_rod(design):
 @given(designs, st.floats(1e-4, 5e-3), st.sampled_from(["axial", "normal", "von-mises"]))
 def test_stress_at_the_yield_strain_is_the_yield_stress(design, share, criterion):
     limit = share * design.elastic_modulus
-    strain = yield_strain(design, limit, criterion=criterion)
+    strain = _yield_strain(design, limit, criterion=criterion)
     wire = predict_armour(design, strain, theory="conjugate")
-    assert wire_stress(wire, criterion=criterion)[0] == pytest.approx(limit, rel=1e-9)
+    assert _wire_stress(wire, criterion=criterion)[0] == pytest.approx(limit, rel=1e-9)
 
 
 @given(designs)
 def test_wires_that_fit_take_no_more_than_the_circumference(design):
     """A chord is shorter than its arc: the gap is at most what the unrolled cylinder leaves."""
-    if wire_gap(design) >= 0 and design.n_wires > 1:
-        assert fill_factor(design) <= 1
+    if _wire_gap(design) >= 0 and design.n_wires > 1:
+        assert _fill_factor(design) <= 1

@@ -10,11 +10,11 @@ from reduction.stages.strain.splice_marks import (
     fit_splice_ratio,
 )
 from reduction.stages.strain.strain_model import (
+    _marked_line_strain,
+    _splice_ratio_strain,
+    _tension_driven_strain,
     free_length_fraction,
     free_length_strain,
-    marked_line_strain,
-    splice_ratio_strain,
-    tension_driven_strain,
 )
 from reduction.stages.strain.stress import constant_volume_diameter, nominal_stress
 
@@ -58,7 +58,7 @@ def test_splices_of_a_constant_ratio_are_found_and_inverted(strain, free, splice
         relaxed_splice_length=splice,
         reading_uncertainty=0.0,
     ).values[0]
-    back = splice_ratio_strain(
+    back = _splice_ratio_strain(
         free_length + splice_length,
         relaxed_free_length=free,
         relaxed_splice_length=splice,
@@ -74,7 +74,7 @@ def test_with_splices_of_a_constant_ratio_line_and_ratio_agree(strain, free, spl
     position = free_length + splice * (1 + ratio * strain)
     assume(np.ptp(position) > 1e-3 * position.max())
     line = fit_free_length_line(free_length, position, reading_uncertainty=0.0).values
-    back = marked_line_strain(
+    back = _marked_line_strain(
         position,
         free_length_intercept=line[0],
         free_length_slope=line[1],
@@ -113,7 +113,7 @@ def test_tension_driven_strain_inverts_its_own_geometry(strain, force, complianc
         "splice_exponent": exponent,
     }
     position = 2.5 * (1 + strain) + 1.2 * (1 + compliance * force**exponent)
-    found = tension_driven_strain(position, force, **law)
+    found = _tension_driven_strain(position, force, **law)
     assert np.isclose(found, strain, rtol=1e-9, atol=1e-9 * (1 + position))
 
 

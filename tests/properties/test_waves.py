@@ -7,19 +7,19 @@ from hypothesis import strategies as st
 
 from reduction.prediction.morison import (
     ImmersedSection,
+    _immersion_depth_of,
     find_extremes,
-    immersion_depth_of,
     wave_load,
 )
 from reduction.prediction.wave_theory import (
     STANDARD_GRAVITY,
+    _group_velocity,
+    _wave_number,
     airy_wave,
     breaking_height,
     describe_wave,
-    group_velocity,
     particle_motion,
     stokes_wave,
-    wave_number,
     wave_period_of,
 )
 from reduction.record.errors import DataError
@@ -30,10 +30,10 @@ shares = st.floats(0.02, 0.95)
 
 @given(periods, depths, st.floats(-0.99, 30.0))
 def test_a_wave_number_fits_its_period_over_any_current_that_lets_it_through(period, depth, share):
-    still = float(wave_number(period, depth))
-    current = share * float(group_velocity(still, depth))
+    still = float(_wave_number(period, depth))
+    current = share * float(_group_velocity(still, depth))
     try:
-        number = float(wave_number(period, depth, current_velocity=current))
+        number = float(_wave_number(period, depth, current_velocity=current))
     except DataError:
         # half the group velocity stops a wave over deep water, all of it over shallow water
         assert share < -0.499
@@ -52,14 +52,14 @@ def test_a_wave_number_fits_its_period_over_any_current_that_lets_it_through(per
 @given(st.floats(0.0, 1.0), st.floats(0.01, 10.0))
 def test_the_depth_of_a_segment_gives_its_area(share, diameter):
     area = share * np.pi * diameter**2 / 4
-    depth = float(immersion_depth_of(area, diameter))
+    depth = float(_immersion_depth_of(area, diameter))
     assert 0 <= depth <= diameter
     r = diameter / 2
     half_angle = 2 * np.arctan2(np.sqrt(depth), np.sqrt(diameter - depth))
     chord = np.sqrt(depth * (diameter - depth))
     assert half_angle * r**2 - (r - depth) * chord == pytest.approx(area, abs=1e-14 * r**2)
     # the rest is the segment of the other side
-    rest = float(immersion_depth_of(np.pi * diameter**2 / 4 - area, diameter))
+    rest = float(_immersion_depth_of(np.pi * diameter**2 / 4 - area, diameter))
     assert depth + rest == pytest.approx(diameter, rel=1e-9)
 
 
@@ -70,7 +70,7 @@ def test_the_depth_of_a_segment_gives_its_area(share, diameter):
 def test_no_sample_of_a_load_goes_beyond_its_extremes(
     period, depth, share, place, make, current, diameter
 ):
-    number = float(wave_number(period, depth))
+    number = float(_wave_number(period, depth))
     height = share * float(breaking_height(number, depth))
     wave = make(
         wave_height=height, wave_period=period, water_depth=depth,
@@ -93,7 +93,7 @@ def test_no_sample_of_a_load_goes_beyond_its_extremes(
 def test_a_crest_to_trough_is_the_height_and_time_turned_back_turns_the_vertical(
     period, depth, share, make
 ):
-    number = float(wave_number(period, depth))
+    number = float(_wave_number(period, depth))
     height = share * float(breaking_height(number, depth))
     wave = make(wave_height=height, wave_period=period, water_depth=depth, elevation=0.0)
     motion = particle_motion(wave, [0.0, period / 2, 0.3 * period, -0.3 * period])
@@ -105,7 +105,7 @@ def test_a_crest_to_trough_is_the_height_and_time_turned_back_turns_the_vertical
 @given(periods, depths, st.floats(0.01, 3.0))
 def test_a_description_flags_exactly_what_a_prediction_refuses(period, depth, share):
     assume(abs(share - 1) > 1e-9)
-    number = float(wave_number(period, depth))
+    number = float(_wave_number(period, depth))
     height = share * float(breaking_height(number, depth))
     sea = {"wave_height": height, "wave_period": period, "water_depth": depth}
     described = describe_wave(**sea)

@@ -29,8 +29,8 @@ CAMPAIGN, LAYOUTS = (
     (DOCS / name).read_text(encoding="utf-8") for name in ("campaign.md", "layouts.md")
 )
 SECTIONS = (
-    model.CampaignFile, model.CampaignSection, model.SpecimenSection, model.StrainSection,
-    model.FilePiece, model.Defaults, model.TestSection, model.StepSection,
+    model.CampaignFile, model._CampaignSection, model.SpecimenSection, model._StrainSection,
+    model._FilePiece, model.Defaults, model.TestSection, model.StepSection,
     model.ExperimentSection,
 )  # fmt: skip
 

@@ -5,16 +5,16 @@ import tomllib
 from pathlib import Path
 
 from reduction.archive import write as laboratory
-from reduction.campaign.model import ReportSection
+from reduction.campaign.model import _ReportSection
 
 PAGE = (Path(__file__).parents[2] / "docs" / "client-report.md").read_text(encoding="utf-8")
-SCHEMA = ReportSection.model_json_schema()
+SCHEMA = _ReportSection.model_json_schema()
 SECTIONS = [SCHEMA, *SCHEMA["$defs"].values()]
 
 
 def test_the_example_can_be_read():
     (example,) = re.findall(r"```toml\n(.*?)```", PAGE, re.S)
-    found = ReportSection.model_validate(tomllib.loads(example)["report"])
+    found = _ReportSection.model_validate(tomllib.loads(example)["report"])
     assert found.issued == "2026-03-05" and found.limits[0].upper == "1.2 MPa"
 
 

@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 from reduction.campaign.assembly_spec import (
-    AssemblyKeys,
-    CurveKeys,
-    PartKeys,
-    SpliceKeys,
-    WorkingKeys,
+    _AssemblyKeys,
+    _CurveKeys,
+    _PartKeys,
+    _SpliceKeys,
+    _WorkingKeys,
     load_assembly_case,
 )
 from reduction.cli.curves import deployed_line
@@ -21,7 +21,7 @@ LBF = 4.4482216152605
 
 
 def test_every_key_is_explained():
-    models = (AssemblyKeys, CurveKeys, PartKeys, SpliceKeys, WorkingKeys)
+    models = (_AssemblyKeys, _CurveKeys, _PartKeys, _SpliceKeys, _WorkingKeys)
     named = {name for one in models for name in one.model_fields}
     assert not {name for name in named if f"`{name}`" not in PAGE} - {
         "curve",

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from reduction.campaign.experiment_plans import ExperimentKeys, ResponseKeys, SpecFile
+from reduction.campaign.experiment_plans import _ExperimentKeys, _ResponseKeys, _SpecFile
 from reduction.cli.main import app
 
 PAGE = (Path(__file__).parents[2] / "docs" / "experiments.md").read_text(encoding="utf-8")
@@ -62,6 +62,6 @@ def test_the_screening_plans_twelve_runs_with_six_dummies(folder):
 
 
 def test_every_key_is_explained():
-    known = {*ExperimentKeys.model_fields, *ResponseKeys.model_fields}
+    known = {*_ExperimentKeys.model_fields, *_ResponseKeys.model_fields}
     assert not {key for key in known if f"| `{key}` |" not in PAGE}
-    assert not {key for key in SpecFile.model_fields if f"[{key}]" not in PAGE}
+    assert not {key for key in _SpecFile.model_fields if f"[{key}]" not in PAGE}

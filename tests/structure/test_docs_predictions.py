@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from reduction.campaign import model as hosemodel
-from reduction.campaign.armour_spec import ArmourKeys, ArmourLayerKeys, load_armour_case
+from reduction.campaign.armour_spec import _ArmourKeys, _ArmourLayerKeys, load_armour_case
 from reduction.campaign.hose_plans import load_hose
-from reduction.campaign.wave_spec import WaveLoadKeys, load_wave_case
+from reduction.campaign.wave_spec import _WaveLoadKeys, load_wave_case
 
 PAGE = (Path(__file__).parents[2] / "docs" / "predictions.md").read_text(encoding="utf-8")
 BLOCKS = [body for _, body in re.findall(r"^```(toml)\n(.*?)^```$", PAGE, re.M | re.S)]
@@ -47,7 +47,7 @@ def test_the_armour_that_is_shown_can_be_predicted(tmp_path):
 @pytest.mark.parametrize("section", ["wave_load", "armour"])
 def test_defaults_are_told_where_they_are_explained(section):
     """Each value that stands for a missing one is on the page; 0 and none are told in words."""
-    models = {"wave_load": (WaveLoadKeys,), "armour": (ArmourKeys, ArmourLayerKeys)}[section]
+    models = {"wave_load": (_WaveLoadKeys,), "armour": (_ArmourKeys, _ArmourLayerKeys)}[section]
     rows = [line for line in PAGE.splitlines() if line.startswith("| `")]
     for one in models:
         for name, field in one.model_fields.items():
@@ -66,8 +66,8 @@ def test_the_comparison_that_is_shown_is_valid():
 def test_every_key_is_explained():
     models = (
         hosemodel.HoseSection, hosemodel.LayerSection, hosemodel.CordSection,
-        hosemodel.ComparisonSection, hosemodel.TargetSection, WaveLoadKeys, ArmourKeys,
-        ArmourLayerKeys,
+        hosemodel.ComparisonSection, hosemodel._TargetSection, _WaveLoadKeys, _ArmourKeys,
+        _ArmourLayerKeys,
     )  # fmt: skip
     named = {name for one in models for name in one.model_fields} - {"cord"}
     assert not {name for name in named if f"`{name}`" not in PAGE}

@@ -16,7 +16,7 @@ from reduction.record.measurement import Quality, Record, Source, Specimen, Step
 from reduction.stages.channel_lag import LagEstimate
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.holds.relaxation import HoldResult
-from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair, static_stiffness
+from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair, _static_stiffness
 from reduction.stages.line.line_product import LineParameters
 from reduction.stages.line.rope_programme import (
     BeddingIn,
@@ -450,7 +450,7 @@ def make_rope_step(rng):
         "cycles": np.array([60, 4000]), "failed": np.array([True, False]), "how": ("fell", "sound"),
     }  # fmt: skip
     parts[TensilePull] |= {"is_break": np.array([True, False]), "how": ("fell", "stopped")}
-    found = static_stiffness(
+    found = _static_stiffness(
         np.arange(1.0, 2000.0), np.full(1999, 300.0), 0.1 + 0.001 * np.log10(np.arange(1.0, 2000.0)),
         low_tension=100.0, low_strain=0.05, reference_time=100.0,
     )  # fmt: skip

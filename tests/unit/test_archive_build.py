@@ -8,7 +8,7 @@ import pytest
 
 from reduction.archive.dataset_builder import build_dataset
 from reduction.archive.schema import SCHEMA
-from reduction.archive.write import write_netcdf
+from reduction.archive.write import _write_netcdf
 
 # 65,536 doubles are half a megabyte: a few milliseconds to read, and 1,526 chunks in 1e8 samples
 LARGEST = 65536
@@ -59,7 +59,7 @@ def test_a_quantised_channel_is_stored_without_the_filter_that_would_make_it_lar
     sizes = {}
     for shuffle in (True, False):
         dataset["tension"].encoding["shuffle"] = shuffle
-        write_netcdf(dataset, tmp_path / "tried.nc")
+        _write_netcdf(dataset, tmp_path / "tried.nc")
         sizes[shuffle] = (tmp_path / "tried.nc").stat().st_size
     found = build_dataset({"tension": np.stack([tension, tension])}, SCHEMA, attributes={})
     assert found["tension"].encoding["shuffle"] is (sizes[True] < sizes[False])

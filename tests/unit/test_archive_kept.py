@@ -17,13 +17,14 @@ from reduction.archive.open import open_archive
 from reduction.archive.test_dataset import kept_samples, stored_cycles, to_dataset
 from reduction.archive.write import write_archive
 from reduction.record.notes import severity_of
-from reduction.record.settings import ArchiveSettings, ModulusSettings, ReductionSettings
+from reduction.record.settings import ModulusSettings, ReductionSettings, _ArchiveSettings
 from reduction.stages.moduli.local_regression import select_cycles
 
 
 def wanted(samples=None, longest=4000, selected=8):
     return ReductionSettings(
-        archive=ArchiveSettings(samples, longest), modulus=ModulusSettings(selected_cycles=selected)
+        archive=_ArchiveSettings(samples, longest),
+        modulus=ModulusSettings(selected_cycles=selected),
     )
 
 

@@ -7,14 +7,14 @@ from scipy import stats
 
 from reduction.archive.open import open_archive
 from reduction.archive.surfaces_dataset import surfaces_of
-from reduction.cli.lookup import lines_of
+from reduction.cli.lookup import _lines_of
 from reduction.experiments.designs import box_behnken
 from reduction.experiments.surface_points import evaluate_surfaces
 from reduction.lines.archive_source import (
     CURVES,
-    line_source_of_experiment,
-    line_source_of_test,
-    specimens_of,
+    _line_source_of_experiment,
+    _line_source_of_test,
+    _specimens_of,
 )
 from reduction.lines.line_lookup import look_up
 from reduction.record.errors import ArchiveError, DataError
@@ -34,7 +34,7 @@ def surfaces(folder):
 
 
 def test_a_surface_is_looked_up_as_it_was_fitted(surfaces):
-    line = line_source_of_experiment(surfaces, "nylon")
+    line = _line_source_of_experiment(surfaces, "nylon")
     fitted = surfaces_of(surfaces, "nylon", ["apparent_spring_constant"])
     centre, half = (fitted.low + fitted.high) / 2, (fitted.high - fitted.low) / 2
     points = centre + half * np.array([[0, 0, 0], [1, 0, -1], [-1, 1, 0.5]])
@@ -61,7 +61,7 @@ def test_a_surface_is_looked_up_as_it_was_fitted(surfaces):
 
 
 def test_every_level_of_the_plan_is_tested_and_a_corner_is_not(surfaces):
-    line = line_source_of_experiment(surfaces, "nylon")
+    line = _line_source_of_experiment(surfaces, "nylon")
     (surface,) = (one for name, one in line.surfaces.items() if name == "relaxation_time")
     centre, half = (surface.high + surface.low) / 2, (surface.high - surface.low) / 2
     edges = centre + half * box_behnken(3).coded
@@ -73,7 +73,7 @@ def test_every_level_of_the_plan_is_tested_and_a_corner_is_not(surfaces):
 
 
 def test_a_response_that_was_asked_for_on_a_scale_is_read_from_that_scale(surfaces):
-    line = line_source_of_experiment(surfaces, "nylon")
+    line = _line_source_of_experiment(surfaces, "nylon")
     energy = line.surfaces["hysteresis_energy"]
     assert energy.exponent == 0
     assert any("log_hysteresis_energy" in note for note in energy.notes)
@@ -81,7 +81,7 @@ def test_a_response_that_was_asked_for_on_a_scale_is_read_from_that_scale(surfac
 
 
 def test_tensions_come_as_shares_of_the_break_strength(surfaces):
-    line = line_source_of_experiment(surfaces, "nylon")
+    line = _line_source_of_experiment(surfaces, "nylon")
     found = look_up(
         line, "relaxation_time", frequency=0.3,
         mean_tension=0.21 * line.rated_break_strength,
@@ -95,7 +95,7 @@ def test_curves_of_a_test_are_by_branch(folder):
     path = sorted(folder.glob("R*.nc"))[0]
     with open_archive(path) as archive:
         name = str(archive["specimen"].to_numpy()[0])
-        line = line_source_of_test(archive, name)
+        line = _line_source_of_test(archive, name)
         at = archive["strain_bin"].to_numpy()
         moduli = archive["branch_tension"].to_numpy()[0]
     seen = np.isfinite(moduli[1])
@@ -106,11 +106,11 @@ def test_curves_of_a_test_are_by_branch(folder):
         pytest.raises(ArchiveError, match="has no such specimen; found other"),
         open_archive(path) as archive,
     ):
-        line_source_of_test(archive, "other")
+        _line_source_of_test(archive, "other")
 
 
 def test_a_slow_pull_gives_rest_stiffness_and_strain_over_tension(folder):
-    (line,) = lines_of(str(folder / "Q01.nc"))
+    (line,) = _lines_of(str(folder / "Q01.nc"))
     assert line.quantities == ("quasi_static_spring_constant", "strain")
     with open_archive(folder / "Q01.nc") as archive:
         grid = archive["tension_grid"].to_numpy()
@@ -143,7 +143,7 @@ def test_a_slow_pull_gives_rest_stiffness_and_strain_over_tension(folder):
 
 
 def test_the_line_of_an_experiment_is_of_its_specimens(folder):
-    line = lines_of(str(folder / "surfaces.nc"))[0]
+    line = _lines_of(str(folder / "surfaces.nc"))[0]
     assert (line.kind, line.material) == ("rope", "nylon (synthetic)")
     assert (line.construction, line.condition) == ("double braid", "new, wet")
     assert line.diameter == pytest.approx(0.0127)
@@ -151,18 +151,18 @@ def test_the_line_of_an_experiment_is_of_its_specimens(folder):
 
 
 def test_nothing_is_said_of_what_specimens_differ_in(surfaces):
-    (name,) = specimens_of(surfaces, "nylon")
+    (name,) = _specimens_of(surfaces, "nylon")
     several = surfaces.copy(deep=True)
     several["run_specimen"][0, :3] = "other"
     known = {
         name: {"material": "nylon", "condition": "new", "diameter": 0.0127},
         "other": {"material": "nylon", "condition": "used", "diameter": 0.0130},
     }
-    line = line_source_of_experiment(several, "nylon", specimens=known)
+    line = _line_source_of_experiment(several, "nylon", specimens=known)
     assert (line.material, line.condition, line.construction) == ("nylon", "", "")
     assert np.isnan(line.diameter)
     # of one specimen nothing is known
-    alone = line_source_of_experiment(several, "nylon", specimens={name: known[name]})
+    alone = _line_source_of_experiment(several, "nylon", specimens={name: known[name]})
     assert alone.material == ""
 
 
@@ -178,20 +178,20 @@ def test_specimens_of_an_experiment_are_sought_in_the_archives_of_all_tests(
         test = test.assign_coords(specimen=[name])
         test["specimen_condition"] = ("specimen", [condition])
         test.to_netcdf(tmp_path / f"R0{place + 1}.nc", engine="netcdf4")
-    (line,) = lines_of(str(tmp_path / "surfaces.nc"))
+    (line,) = _lines_of(str(tmp_path / "surfaces.nc"))
     assert line.material == "nylon (synthetic)"
     assert line.condition == ""
 
 
 def test_surfaces_of_tethers_refuse_zero_tension(folder, tmp_path):
     """A synthetic campaign, whose specimen is called a tether."""
-    rope = lines_of(str(folder / "surfaces.nc"))[0]
+    rope = _lines_of(str(folder / "surfaces.nc"))[0]
     shutil.copy(folder / "surfaces.nc", tmp_path)
     with open_archive(folder / "R01.nc") as archive:
         tests = archive.load()
     tests["specimen_kind"] = ("specimen", ["rubber tether"])
     tests.to_netcdf(tmp_path / "R01.nc", engine="netcdf4")
-    tether = lines_of(str(tmp_path / "surfaces.nc"))[0]
+    tether = _lines_of(str(tmp_path / "surfaces.nc"))[0]
     assert tether.is_tether
     lowest = 0.12 * rope.rated_break_strength
     at_zero = {"frequency": 0.3, "mean_tension": lowest, "tension_amplitude": lowest}
@@ -209,14 +209,14 @@ def test_surfaces_of_tethers_refuse_zero_tension(folder, tmp_path):
 
 def test_what_has_no_surface_is_refused(surfaces):
     with pytest.raises(ArchiveError, match="no such experiment"):
-        line_source_of_experiment(surfaces, "polyester")
+        _line_source_of_experiment(surfaces, "polyester")
     shares = surfaces.copy()
     shares["factor_unit"] = (shares["factor_unit"].dims, np.array([["Hz", "1", "1"]]))
     strengths = shares["run_rated_break_strength"].to_numpy().copy()
     strengths[0, 0] *= 2
     shares["run_rated_break_strength"] = (shares["run_rated_break_strength"].dims, strengths)
     with pytest.raises(ArchiveError, match="levels of mean_tension .* are no N"):
-        line_source_of_experiment(shares, "nylon")
+        _line_source_of_experiment(shares, "nylon")
 
 
 def test_a_pull_that_was_refused_and_a_test_without_a_curve_give_no_line(folder):
@@ -229,7 +229,7 @@ def test_a_pull_that_was_refused_and_a_test_without_a_curve_give_no_line(folder)
         with pytest.raises(
             ArchiveError, match="has no curve; needed a cyclic test, or a slow pull"
         ):
-            line_source_of_test(one, name)
+            _line_source_of_test(one, name)
 
 
 def test_an_archive_without_a_curve_is_refused_by_its_name(folder, tmp_path):
@@ -238,7 +238,7 @@ def test_an_archive_without_a_curve_is_refused_by_its_name(folder, tmp_path):
     path = tmp_path / "bare.nc"
     bare.to_netcdf(path, engine="netcdf4")
     with pytest.raises(ArchiveError, match=r"nothing that can be looked up; found .*bare\.nc"):
-        lines_of(str(path))
+        _lines_of(str(path))
 
 
 def test_bins_without_a_cycle_between_others_are_no_part_of_the_range(folder):
@@ -248,7 +248,7 @@ def test_bins_without_a_cycle_between_others_are_no_part_of_the_range(folder):
     at = test["strain_bin"].to_numpy()
     seen = np.flatnonzero(np.isfinite(test["tangent_modulus"].to_numpy()[0, 0]))
     test["tangent_modulus"][0, 0, seen[2:5]] = np.nan
-    line = line_source_of_test(test, name)
+    line = _line_source_of_test(test, name)
     with pytest.raises(DataError, match="nothing between"):
         look_up(line, "tangent_modulus", strain=at[seen[3]], branch="ascending")
     ends = at[seen[[1, 5]]]
@@ -263,7 +263,7 @@ def test_bins_without_a_cycle_between_others_are_no_part_of_the_range(folder):
 def test_the_interval_of_a_curve_is_students_over_its_cycles(folder):
     with open_archive(folder / "R01.nc") as archive:
         test = archive.load()
-    line = line_source_of_test(test, str(test["specimen"].to_numpy()[0]))
+    line = _line_source_of_test(test, str(test["specimen"].to_numpy()[0]))
     place = np.flatnonzero(np.isfinite(test["tangent_modulus"].to_numpy()[0, 0]))[3]
     count = int(test["tangent_modulus_count"].to_numpy()[0, 0, place])
     spread = float(test["tangent_modulus_standard_uncertainty"].to_numpy()[0, 0, place])

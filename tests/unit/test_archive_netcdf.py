@@ -7,8 +7,8 @@ from long_records import long_test
 
 from reduction.archive import write as netcdf
 from reduction.archive.test_dataset import to_dataset
-from reduction.archive.write import write_netcdf
-from reduction.record.samples import ColumnWriter, empty_like, is_on_disk
+from reduction.archive.write import _write_netcdf
+from reduction.record.samples import ColumnWriter, _is_on_disk, empty_like
 
 
 def opened(path):
@@ -17,7 +17,7 @@ def opened(path):
 
 def test_xarray_reads_the_same_as_from_a_file_of_its_own(any_test, tmp_path):
     dataset = to_dataset(any_test, version="1.2.3", command="reduction run")
-    write_netcdf(dataset, tmp_path / "ours.nc")
+    _write_netcdf(dataset, tmp_path / "ours.nc")
     for variable in dataset.variables.values():
         variable.encoding["fletcher32"] = variable.ndim > 0 or variable.dtype.kind == "U"
     dataset.to_netcdf(tmp_path / "theirs.nc", format="NETCDF4", engine="netcdf4")
@@ -35,7 +35,7 @@ def test_xarray_reads_the_same_as_from_a_file_of_its_own(any_test, tmp_path):
 @pytest.mark.parametrize("on_disk", [False, True])
 def test_a_series_in_blocks_and_from_disk_is_the_same_bytes(on_disk, tmp_path, monkeypatch):
     dataset = to_dataset(long_test(300), version="1.2.3", command="reduction run")
-    write_netcdf(dataset, tmp_path / "whole.nc")
+    _write_netcdf(dataset, tmp_path / "whole.nc")
     if on_disk:
         column = ColumnWriter(tmp_path)
         column.append(np.zeros(1 << 18))
@@ -44,10 +44,10 @@ def test_a_series_in_blocks_and_from_disk_is_the_same_bytes(on_disk, tmp_path, m
             values = dataset[name].values
             scratch = empty_like(beside, shape=(1 << 18,))[: values.size].reshape(values.shape)
             scratch[...] = values
-            assert is_on_disk(scratch)
+            assert _is_on_disk(scratch)
             dataset[name].variable.data = scratch
     monkeypatch.setattr(netcdf, "_BLOCK", 1000)
-    write_netcdf(dataset, tmp_path / "blocks.nc")
+    _write_netcdf(dataset, tmp_path / "blocks.nc")
     with opened(tmp_path / "whole.nc") as whole, opened(tmp_path / "blocks.nc") as blocks:
         xr.testing.assert_identical(whole.load(), blocks.load())
 
@@ -55,7 +55,7 @@ def test_a_series_in_blocks_and_from_disk_is_the_same_bytes(on_disk, tmp_path, m
 def test_texts_beyond_ascii_and_empty_ones_come_back(tmp_path):
     labels = xr.Variable(("label",), np.array(["größe", "", "m²"]))
     empty = xr.Variable(("label",), np.array(["", "", ""]))
-    write_netcdf(xr.Dataset({"word": labels, "nothing": empty}), tmp_path / "texts.nc")
+    _write_netcdf(xr.Dataset({"word": labels, "nothing": empty}), tmp_path / "texts.nc")
     with opened(tmp_path / "texts.nc") as found:
         assert found["word"].values.astype(str).tolist() == ["größe", "", "m²"]
         assert found["nothing"].values.astype(str).tolist() == ["", "", ""]

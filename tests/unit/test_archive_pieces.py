@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.lines.archive_pieces import pieces_of_test, source_of_tests, specimens_of
+from reduction.lines.archive_pieces import _pieces_of_test, source_of_tests, specimens_of
 from reduction.lines.composite import compose, used_of
 from reduction.lines.curve_pieces import CompositeRule
 from reduction.record.errors import DataError, SettingsError
@@ -77,7 +77,7 @@ def pull(n=3):
     ("branch", "slope"), [("ascending", 110), ("descending", 90), ("mean", 100)]
 )
 def test_a_test_with_cycles_gives_its_branch_and_its_first_rise(branch, slope):
-    found = pieces_of_test(cyclic(), "new", branch=branch, name="T-1")
+    found = _pieces_of_test(cyclic(), "new", branch=branch, name="T-1")
     assert found[0].tension == pytest.approx(slope * BINS)
     assert [one.kind for one in found] == ["cyclic"] + (branch != "descending") * ["first-loading"]
     for rise in found[1:]:
@@ -86,11 +86,11 @@ def test_a_test_with_cycles_gives_its_branch_and_its_first_rise(branch, slope):
 
 
 def test_a_slow_pull_is_static_and_its_first_rise_is_not_taken_twice():
-    (found,) = pieces_of_test(pull(), "new", branch="mean", name="Q")
+    (found,) = _pieces_of_test(pull(), "new", branch="mean", name="Q")
     assert (found.kind, found.branch) == ("static", "ascending")
     assert found.tension == pytest.approx([100, 200, 300])
     assert found.random_standard_uncertainty == pytest.approx([1.0] * 3)
-    assert pieces_of_test(pull(), "new", branch="descending", name="Q") == ()
+    assert _pieces_of_test(pull(), "new", branch="descending", name="Q") == ()
 
 
 def weights(branch):
@@ -143,7 +143,7 @@ def test_both_branches_of_a_test_share_the_gain_of_its_cell_and_not_its_scatter(
     found = with_cell(
         plain, "branch_tension", np.stack([0.1 * load, lag]), np.full(load.shape, 0.4)
     )
-    pieces = pieces_of_test(found, "new", branch="mean", name="T-1")
+    pieces = _pieces_of_test(found, "new", branch="mean", name="T-1")
     mean, first = pieces
     assert [(one.source, one.of) for one in mean.component] == [
         ("tension_gain", "cell A"), ("lag", "cell A"),
@@ -166,7 +166,7 @@ def test_a_slow_pull_and_weights_bring_what_they_share():
         np.full(strain.shape, 1e-5),
         ["tension_gain"],
     )
-    (piece,) = pieces_of_test(found, "new", branch="mean", name="Q")
+    (piece,) = _pieces_of_test(found, "new", branch="mean", name="Q")
     assert piece.contribution == pytest.approx(0.01 * piece.tension[None])
     assert piece.random_standard_uncertainty == pytest.approx([0.1] * 3)
     plain = weights([1, 1, 1, 1, 2, 2])
@@ -175,25 +175,25 @@ def test_a_slow_pull_and_weights_bring_what_they_share():
         plain, "secant_modulus", np.stack([0.01 * slope, 0.05 * slope]), 0.002 * slope,
         ["tension_gain", "diameter"],
     )  # fmt: skip
-    (mean,) = pieces_of_test(found, "new", branch="mean", name="S")
+    (mean,) = _pieces_of_test(found, "new", branch="mean", name="S")
     assert [one.source for one in mean.component] == ["tension_gain"]
     assert mean.contribution == pytest.approx(0.01 * mean.tension[None])
 
 
 def test_weights_give_either_branch_and_the_mean_where_both_were_read():
     found = weights([1, 1, 1, 1, 2, 2])
-    (up,) = pieces_of_test(found, "new", branch="ascending", name="S")
+    (up,) = _pieces_of_test(found, "new", branch="ascending", name="S")
     assert (up.kind, up.strain.tolist()) == ("static", [0.5, 1.0, 1.5])
     assert up.tension == pytest.approx([50, 100, 150])
     assert up.random_standard_uncertainty == pytest.approx([0.5, 1.0, 1.5])
-    (mean,) = pieces_of_test(found, "new", branch="mean", name="S")
+    (mean,) = _pieces_of_test(found, "new", branch="mean", name="S")
     assert mean.branch == "mean"
     assert mean.tension == pytest.approx(90 * mean.strain)
     assert (mean.strain[0], mean.strain[-1]) == (0.5, 1.0)
 
 
 def test_weights_that_were_never_taken_off_stand_for_the_mean_by_their_own_name():
-    (only,) = pieces_of_test(weights([1, 1, 1, 1]), "new", branch="mean", name="S")
+    (only,) = _pieces_of_test(weights([1, 1, 1, 1]), "new", branch="mean", name="S")
     assert only.branch == "ascending"
 
 

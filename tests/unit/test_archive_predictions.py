@@ -25,7 +25,7 @@ from reduction.archive.open import open_archive
 from reduction.archive.schema import HOSE_STATES, PREDICTION_SCHEMA
 from reduction.archive.write import write_archive
 from reduction.prediction.cord_curve import CordCurve
-from reduction.prediction.hose_prediction import LayerResponse
+from reduction.prediction.hose_prediction import _LayerResponse
 from reduction.prediction.hose_product import HosePrediction
 from reduction.record.errors import ArchiveError
 
@@ -168,7 +168,7 @@ def test_both_layers_share_the_uncertainty_of_their_diameter():
 def test_layers_that_carry_no_load_stand_in_their_order(archive, hoses):
     assert archive["hose_layer_name"].values.tolist() == [["Kevlar", "conductors"], ["", ""]]
     assert archive["hose_layer_wrap_angle"].values[0].tolist() == [one.wrap_angle for one in LAYERS]
-    for name in LayerResponse.__dataclass_fields__.keys() - {"layer"}:
+    for name in _LayerResponse.__dataclass_fields__.keys() - {"layer"}:
         np.testing.assert_array_equal(
             archive[f"hose_layer_{name}"].values[0], [getattr(one, name) for one in hoses[0].layers]
         )

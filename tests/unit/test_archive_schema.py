@@ -27,10 +27,10 @@ def test_what_has_no_uncertainty_has_a_reason(is_stepwise):
 @pytest.mark.parametrize(
     "strain",
     [
-        methods.marked_line_strain,
-        methods.splice_ratio_strain,
-        tensiondriven.tension_driven_strain,
-        methods.gauge_length_strain,
+        methods._marked_line_strain,
+        methods._splice_ratio_strain,
+        tensiondriven._tension_driven_strain,
+        methods._gauge_length_strain,
         splice.free_length_strain,
     ],
 )

@@ -15,7 +15,7 @@ from reduction.experiments.experiment import SharedSurfaces
 from reduction.experiments.response_surfaces import fit_surfaces
 from reduction.experiments.stationary_point import canonical_analysis, ridge_path
 from reduction.experiments.surface_points import evaluate_surfaces
-from reduction.lines.archive_source import line_source_of_experiment
+from reduction.lines.archive_source import _line_source_of_experiment
 from reduction.lines.line_lookup import look_up
 from reduction.quantities.names import RESPONSES
 from reduction.record.contributions import Component, Contributions
@@ -386,7 +386,7 @@ def test_point_look_up_page_and_budget_say_one_interval(name):
     view = ExperimentView("k", dataset, 0)
     index = view.surfaces.response_names.index(name)
     low, high = interval_of_surfaces(view, view.surfaces, np.zeros((1, 3)))
-    line = line_source_of_experiment(dataset, "half-inch")
+    line = _line_source_of_experiment(dataset, "half-inch")
     centre = dict(zip(line.factor_names, (LOW + HIGH) / 2, strict=True))
     found = look_up(line, response, **centre)
     assert at["confidence_low"][0] == pytest.approx(float(found.surface_low), rel=1e-9)

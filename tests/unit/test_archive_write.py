@@ -65,7 +65,7 @@ def test_a_full_disk_is_an_archive_error_and_the_file_before_is_kept(bare_test, 
         part.write_bytes(b"half")
         raise RuntimeError("NetCDF: HDF error")
 
-    monkeypatch.setattr("reduction.archive.write.write_netcdf", full)
+    monkeypatch.setattr("reduction.archive.write._write_netcdf", full)
     with pytest.raises(ArchiveError, match=r"bare.nc cannot be written; found NetCDF: HDF error"):
         write_archive(dataset, path)
     assert path.read_bytes() == before

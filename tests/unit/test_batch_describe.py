@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.batch.reuse import settings_json
+from reduction.batch.reuse import _settings_json
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import TestPlan
 from reduction.record.contributions import InstrumentErrors, StatedErrors
@@ -41,7 +41,7 @@ def settings(*, tape=TAPE, model=MODEL, of_pull=MODEL, load_cell="A"):
     )  # fmt: skip
     pull = SimpleNamespace(strain_coefficient=np.zeros(4), tension_low=1.0, tension_high=2.0)
     origin = PullOrigin(InstrumentErrors("new"), of_pull)
-    return settings_json(campaign, Survey(plan), [model], None, [pull], [origin])
+    return _settings_json(campaign, Survey(plan), [model], None, [pull], [origin])
 
 
 CELLS = replace(MODEL, mark_load_cell=("A", "B"))

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from reduction.batch import run_lock as module
-from reduction.batch.run_lock import LOCK_NAME, RunLock, run_lock, run_named
+from reduction.batch.run_lock import LOCK_NAME, RunLock, _run_named, run_lock
 from reduction.record.errors import ArchiveError
 
 ROOT = Path(__file__).parents[2]
@@ -55,7 +55,7 @@ def names(folder):
 def test_a_lock_says_who_holds_it_since_when_and_with_what_command(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "argv", ["/usr/bin/reduction", "run", "my campaign.toml"])
     with run_lock(tmp_path) as lock:
-        found = run_named(tmp_path)
+        found = _run_named(tmp_path)
         assert found.startswith("'reduction run '\"'\"'my campaign.toml") or found.startswith(
             "'reduction run 'my campaign.toml'', process"
         )
@@ -67,7 +67,7 @@ def test_a_lock_says_who_holds_it_since_when_and_with_what_command(tmp_path, mon
 def test_an_address_in_the_command_keeps_no_password(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "argv", ["reduction", "run", "https://ann:secret@host/c.toml?s=abcd"])
     with run_lock(tmp_path):
-        found = run_named(tmp_path)
+        found = _run_named(tmp_path)
     assert "https://host/c.toml" in found and "secret" not in found and "abcd" not in found
 
 
@@ -76,19 +76,19 @@ def test_the_file_stays_and_names_nobody_when_the_run_has_ended(tmp_path):
     folder = tmp_path / "processed" / "a"
     with run_lock(folder):
         before = (folder / LOCK_NAME).stat().st_ino
-    assert names(folder) == [LOCK_NAME] and run_named(folder) == ""
+    assert names(folder) == [LOCK_NAME] and _run_named(folder) == ""
     with run_lock(folder):
         assert (folder / LOCK_NAME).stat().st_ino == before
 
 
 def test_a_folder_that_was_never_worked_on_names_nobody(tmp_path):
-    assert run_named(tmp_path) == run_named(tmp_path / "nowhere") == ""
+    assert _run_named(tmp_path) == _run_named(tmp_path / "nowhere") == ""
 
 
 def test_a_lock_is_given_back_after_an_error(tmp_path):
     with pytest.raises(KeyboardInterrupt), run_lock(tmp_path):
         raise KeyboardInterrupt
-    assert run_named(tmp_path) == ""
+    assert _run_named(tmp_path) == ""
     with run_lock(tmp_path):
         pass
 
@@ -113,10 +113,10 @@ def test_the_lock_of_a_process_that_is_no_more_is_free_and_its_parts_are_removed
     (pid,) = process.stdout.read().split()
     # its output ends before it does; it is a zombie then, until it is waited for
     os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
-    assert f"process {pid} on" in run_named(tmp_path)  # it was killed at work
+    assert f"process {pid} on" in _run_named(tmp_path)  # it was killed at work
     with run_lock(tmp_path):
         assert names(tmp_path) == [LOCK_NAME]
-        assert f"process {os.getpid()} on" in run_named(tmp_path)
+        assert f"process {os.getpid()} on" in _run_named(tmp_path)
     process.communicate()
 
 
@@ -133,7 +133,7 @@ def test_of_many_runs_at_once_none_works_beside_another(tmp_path):
     processes = [started(CONTENDER, tmp_path) for _ in range(6)]
     said = [process.communicate()[0].strip() for process in processes]
     assert set(said) <= {"held", "refused"} and "held" in said
-    assert names(tmp_path) == [LOCK_NAME] and run_named(tmp_path) == ""
+    assert names(tmp_path) == [LOCK_NAME] and _run_named(tmp_path) == ""
 
 
 def test_a_process_that_is_started_meanwhile_does_not_hold_the_lock(tmp_path):
@@ -216,7 +216,7 @@ def test_a_lock_that_could_not_be_written_holds_nothing_and_names_nobody(
             run_lock(tmp_path),
         ):
             pass
-    assert run_named(tmp_path) == ""
+    assert _run_named(tmp_path) == ""
     with run_lock(tmp_path) as lock:
         lock.confirm()
 
@@ -239,14 +239,14 @@ def test_what_another_run_began_is_left_to_it(tmp_path):
         lock.path.write_text("'reduction run', process 1 on another machine")
         (tmp_path / ".T-1.nc.8-a2b9.part").touch()
     assert (tmp_path / ".T-1.nc.8-a2b9.part").exists()
-    assert run_named(tmp_path) == "'reduction run', process 1 on another machine"
+    assert _run_named(tmp_path) == "'reduction run', process 1 on another machine"
 
 
 def test_a_lock_is_given_back_where_the_folder_cannot_be_looked_through(tmp_path, monkeypatch):
     with monkeypatch.context() as disk:
         with run_lock(tmp_path):
             disk.setattr(Path, "rglob", refused)
-        assert run_named(tmp_path) == ""
+        assert _run_named(tmp_path) == ""
 
 
 def test_a_disk_that_keeps_no_locks_is_told_and_the_file_left_as_it_is(tmp_path, monkeypatch):
@@ -260,4 +260,4 @@ def test_a_disk_that_keeps_no_locks_is_told_and_the_file_left_as_it_is(tmp_path,
         run_lock(tmp_path),
     ):
         pass
-    assert run_named(tmp_path) == "of a run on another machine"
+    assert _run_named(tmp_path) == "of a run on another machine"

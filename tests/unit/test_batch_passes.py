@@ -15,7 +15,7 @@ from reduction.batch.run_lock import RunLock, run_lock
 from reduction.batch.slow_pulls import fit_pulls
 from reduction.batch.survey import FirstPass, survey_campaign, with_record
 from reduction.batch.test_history import fit_strain_models
-from reduction.batch.workers import Ended, local_workers
+from reduction.batch.workers import _Ended, local_workers
 from reduction.campaign.load import load_campaign
 from reduction.record.errors import ArchiveError, WorkerError
 
@@ -31,9 +31,9 @@ def lossy(lost):
     def work_on(function, tasks, **options):
         for task in tasks:
             if task.test == lost:
-                yield Ended(task.test, None, WorkerError("lost with all hands"))
+                yield _Ended(task.test, None, WorkerError("lost with all hands"))
             else:
-                yield Ended(task.test, function(*task.arguments), worker="w:1")
+                yield _Ended(task.test, function(*task.arguments), worker="w:1")
 
     return work_on
 
@@ -124,7 +124,7 @@ def reduced(campaign, folder, *, lock, progress=None, basis=None, errors=None):
 
 
 def test_a_test_that_is_lost_in_the_second_pass_is_a_failed_row(campaign, tmp_path, monkeypatch):
-    monkeypatch.setattr(secondpass, "bring_up_to_date", lambda *a, **b: ("reduced", "well"))
+    monkeypatch.setattr(secondpass, "_bring_up_to_date", lambda *a, **b: ("reduced", "well"))
     monkeypatch.setattr(secondpass, "work_on", lossy("T02.b"))
     progress = Told()
     with run_lock(tmp_path) as lock:
@@ -142,7 +142,7 @@ def test_a_test_that_is_lost_in_the_second_pass_is_a_failed_row(campaign, tmp_pa
 
 
 def test_a_defect_in_what_one_test_rests_on_fails_that_test_alone(campaign, tmp_path, monkeypatch):
-    monkeypatch.setattr(secondpass, "bring_up_to_date", lambda *a, **b: ("reduced", "well"))
+    monkeypatch.setattr(secondpass, "_bring_up_to_date", lambda *a, **b: ("reduced", "well"))
 
     def basis(survey):
         if survey.plan.id == "T04":
@@ -169,13 +169,13 @@ def test_nothing_is_written_where_the_lock_went_while_a_test_was_reduced(
     """What is left of a run that was ended reduces to its end, and keeps it to itself."""
     lock = RunLock(tmp_path / "run.lock", "token")
     monkeypatch.setattr(secondpass.RunLock, "confirm", lambda self: None)
-    whole = secondpass.bring_up_to_date
+    whole = secondpass._bring_up_to_date
 
     def slow(*arguments, before_writing, **options):
         monkeypatch.undo()
         return whole(*arguments, before_writing=lock.confirm, **options)
 
-    monkeypatch.setattr(secondpass, "bring_up_to_date", slow)
+    monkeypatch.setattr(secondpass, "_bring_up_to_date", slow)
     first = survey_campaign(campaign)
     models, _ = fit_strain_models(campaign, first.surveys)
     rows = reduce_campaign(

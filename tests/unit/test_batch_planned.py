@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from reduction.batch.campaign_status import TestStatus
-from reduction.batch.experiment_product import experiments_found, same_logs
+from reduction.batch.experiment_product import _same_logs, experiments_found
 from reduction.batch.slow_pulls import pull_tests
 from reduction.campaign.plan import Campaign, ExperimentPlan, TestPlan
 from reduction.experiments.designs import FactorLevels
@@ -79,5 +79,5 @@ def test_steps_of_one_log_are_no_copies():
     level = (0.0, 0.0)
     planned = plan(**{"P-7.one": level, "P-7.two": level, "P-8.one": level, "R": level, "S": level})
     sums = {"P-7.one": "a", "P-7.two": "a", "P-8.one": "b", "R": "b", "S": ""}
-    (note,) = same_logs(planned, sums)
+    (note,) = _same_logs(planned, sums)
     assert note.startswith("P-8 and R have the same log, byte for byte")

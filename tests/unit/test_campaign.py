@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from reduction.campaign.load import load_campaign
-from reduction.campaign.specimens import read_marks
+from reduction.campaign.specimens import _read_marks
 from reduction.record.errors import DataError, LogError, SettingsError
 
 ROOT = Path(__file__).parents[2]
@@ -432,7 +432,7 @@ def test_marks_of_all_tests_are_pooled_by_specimen(folder):
 def test_the_suffix_of_a_marks_column_is_its_unit(tmp_path, suffix, metre):
     path = tmp_path / "marks.csv"
     path.write_text(MARKS.replace("_ft", f"_{suffix}"))
-    assert read_marks(path)["a"].near_toe == pytest.approx([2 * metre])
+    assert _read_marks(path)["a"].near_toe == pytest.approx([2 * metre])
 
 
 @pytest.mark.parametrize(
@@ -453,14 +453,14 @@ def test_marks_that_cannot_be_used_are_named(tmp_path, text, message):
     path = tmp_path / "marks.csv"
     path.write_text(text)
     with pytest.raises(LogError, match=message):
-        read_marks(path)
+        _read_marks(path)
 
 
 def test_a_mark_row_out_of_order_is_refused(tmp_path):
     path = tmp_path / "marks.csv"
     path.write_text(MARKS.replace("2,10,12", "10,2,12"))
     with pytest.raises(DataError, match="contradict themselves, first test T, hold slack"):
-        read_marks(path)
+        _read_marks(path)
 
 
 def test_marks_of_an_unknown_specimen_or_test_are_refused(folder):

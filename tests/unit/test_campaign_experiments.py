@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from reduction.campaign.experiment_plans import agree_on_pulls, parse_factor, plan_experiment
+from reduction.campaign.experiment_plans import _parse_factor, agree_on_pulls, plan_experiment
 from reduction.campaign.load import load_campaign
 from reduction.campaign.model import ExperimentSection
 from reduction.campaign.plan import StepPlan, TestPlan
@@ -64,7 +64,7 @@ def plan(**changed):
     ],
 )
 def test_levels_are_read_with_their_units(name, levels, low, high, basis):
-    found = parse_factor(name, levels)
+    found = _parse_factor(name, levels)
     assert (found.low, found.high) == pytest.approx((low, high), rel=1e-6)
     assert (found.name, found.basis) == (name, basis)
 
@@ -80,7 +80,7 @@ def test_levels_are_read_with_their_units(name, levels, low, high, basis):
 )
 def test_levels_that_cannot_be_are_refused(name, levels, message):
     with pytest.raises(SettingsError, match=message):
-        parse_factor(name, levels)
+        _parse_factor(name, levels)
 
 
 def test_runs_and_pulls_are_named_as_their_products_are():

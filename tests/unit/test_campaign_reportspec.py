@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from reduction.archive.write import Instrument, Item
-from reduction.campaign.model import ReportSection, report_details
+from reduction.campaign.model import _ReportSection, report_details
 from reduction.record.errors import SettingsError
 
 PATH = Path("campaign.toml")
@@ -24,7 +24,7 @@ LIMIT = {"quantity": "tangent_modulus", "test": "T-1", "upper": "1 MPa"}
 
 def details(**section):
     return report_details(
-        PATH, ReportSection.model_validate(section), specimens=("new", "used"), tests=TESTS
+        PATH, _ReportSection.model_validate(section), specimens=("new", "used"), tests=TESTS
     )
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from reduction.campaign.outcome_results import read_results
+from reduction.campaign.outcome_results import _read_results
 from reduction.record.errors import LogError
 
 HEADER = "id,quantity,line,condition,exposure_years,value,unit,place,valid,run_out,note"
@@ -19,7 +19,7 @@ def write(tmp_path, *lines, header=HEADER):
 
 
 def read(tmp_path, *lines, header=HEADER):
-    return read_results(write(tmp_path, *lines, header=header))
+    return _read_results(write(tmp_path, *lines, header=header))
 
 
 def test_a_break_is_read_in_si(tmp_path):
@@ -171,9 +171,9 @@ def test_files_that_cannot_be_read_are_refused(tmp_path):
     path = tmp_path / "results.csv"
     path.write_bytes(b"quantity,value\n\xff")
     with pytest.raises(LogError, match="the table of results is not UTF-8 text"):
-        read_results(path)
+        _read_results(path)
     with pytest.raises(LogError, match="the table of results cannot be read; found No such file"):
-        read_results(tmp_path / "none.csv")
+        _read_results(tmp_path / "none.csv")
 
 
 def test_the_table_of_the_documents_is_read(tmp_path):

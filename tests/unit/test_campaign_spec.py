@@ -2,7 +2,7 @@
 
 import pytest
 
-from reduction.campaign.experiment_plans import load_spec, response_unit
+from reduction.campaign.experiment_plans import _response_unit, load_spec
 from reduction.record.errors import SettingsError
 
 LBF = 4.4482216152605
@@ -55,10 +55,10 @@ def test_sigma_is_a_share_or_in_a_unit(load, written, sigma):
 
 
 def test_units_of_quantities_are_spelt_as_in_products():
-    assert response_unit("hysteresis_energy", "lbf") == ("J m-1", pytest.approx(LBF), 0.0)
-    assert response_unit("life", "") == ("", 1.0, 0.0)
+    assert _response_unit("hysteresis_energy", "lbf") == ("J m-1", pytest.approx(LBF), 0.0)
+    assert _response_unit("life", "") == ("", 1.0, 0.0)
     with pytest.raises(SettingsError, match="unit 'lbf' is not a unit of relaxation_time"):
-        response_unit("relaxation_time", "lbf")
+        _response_unit("relaxation_time", "lbf")
 
 
 @pytest.mark.parametrize(

@@ -21,17 +21,17 @@ from reduction.batch.catalogue import (
     FILE_NAME,
     LEFT_OUT,
     Query,
+    _entry_of,
+    _kept_cycles,
+    _shown_path,
     answer,
     campaigns_below,
     condition_of,
-    entry_of,
-    kept_cycles,
     load_catalogue,
     meaning_of,
     needed_quantities,
     quantities_there,
     rebuild,
-    shown_path,
     unit_of,
     write_answer,
     write_catalogue,
@@ -385,7 +385,7 @@ def test_a_netcdf_file_whose_parts_are_not_those_of_an_archive_is_named(tmp_path
         odd.createVariable("mean_strain", "f8", ("specimen", "cycle"))[:] = 1.0
         odd.createVariable("strain_amplitude", "f8", ("specimen", "reading"))[:] = 1.0
     with pytest.raises(ArchiveError, match="odd.nc is not made as an archive is; found "):
-        entry_of(path)
+        _entry_of(path)
 
 
 @pytest.mark.parametrize(
@@ -398,7 +398,7 @@ def test_a_campaign_of_any_name_is_found(archives, tmp_path, name):
 
 
 def test_a_name_that_is_no_text_is_shown_by_its_bytes():
-    assert shown_path(os.fsdecode(b"one/\xff.nc")) == "one/\\xff.nc"
+    assert _shown_path(os.fsdecode(b"one/\xff.nc")) == "one/\\xff.nc"
 
 
 def test_a_name_that_is_no_text_is_kept(archives, tmp_path):
@@ -474,9 +474,9 @@ def test_the_file_of_a_campaign_can_be_read_by_itself(folder, rich_test):
 
 
 def test_cycles_that_are_kept_end_with_the_last():
-    assert (kept_cycles(1) + 1).tolist() == [1]
-    assert (kept_cycles(10) + 1).tolist() == [1, 2, 5, 10]
-    assert len(kept_cycles(1_000_000)) == 19
+    assert (_kept_cycles(1) + 1).tolist() == [1]
+    assert (_kept_cycles(10) + 1).tolist() == [1, 2, 5, 10]
+    assert len(_kept_cycles(1_000_000)) == 19
 
 
 def test_a_table_is_written_with_units(index, tmp_path):
@@ -526,9 +526,9 @@ def test_of_many_cycles_those_that_are_not_kept_are_not_read(tmp_path):
     )
     path = tmp_path / "long.nc"
     data.to_netcdf(path, engine="netcdf4")
-    entry_of(path)  # what stays is made before it is measured
+    _entry_of(path)  # what stays is made before it is measured
     tracemalloc.start()
-    entry = entry_of(path)
+    entry = _entry_of(path)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < len(names) * numbers.nbytes

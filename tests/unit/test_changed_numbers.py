@@ -7,11 +7,11 @@ import pytest
 
 from reduction.archive.product_differences import (
     Change,
-    kind_of,
-    pair_by_name,
-    rows_by_labels,
-    shifts_between,
-    worst_change,
+    _kind_of,
+    _pair_by_name,
+    _rows_by_labels,
+    _shifts_between,
+    _worst_change,
 )
 
 NAN = math.nan
@@ -19,7 +19,7 @@ NAN = math.nan
 
 def flags(before, after, uncertainty, **more):
     given = None if uncertainty is None else np.array([uncertainty])
-    changed, moved, shift = shifts_between(np.array([before]), np.array([after]), given, **more)
+    changed, moved, shift = _shifts_between(np.array([before]), np.array([after]), given, **more)
     return bool(changed[0]), bool(moved[0]), float(shift[0])
 
 
@@ -57,8 +57,8 @@ def test_the_shift_has_the_sign_of_the_change():
 
 def test_beside_a_large_number_of_the_same_variable_dust_is_no_change():
     before, after = np.array([1e6, 1e-9]), np.array([1e6, 3e-9])
-    assert not shifts_between(before, after, None)[0].any()
-    assert shifts_between(before, after, None, is_exact=True)[0].tolist() == [False, True]
+    assert not _shifts_between(before, after, None)[0].any()
+    assert _shifts_between(before, after, None, is_exact=True)[0].tolist() == [False, True]
 
 
 def test_exact_takes_the_last_bit_and_no_missing_number_for_another():
@@ -68,12 +68,12 @@ def test_exact_takes_the_last_bit_and_no_missing_number_for_another():
     assert flags(NAN, NAN, 1.0, is_exact=True)[:2] == (False, False)
     assert flags(NAN, 1.0, 1.0, is_exact=True)[:2] == (True, True)
     large = np.array([2**60]), np.array([2**60 + 1])  # one number as floats
-    assert shifts_between(*large, None, is_exact=True)[0].all()
+    assert _shifts_between(*large, None, is_exact=True)[0].all()
 
 
 def worst(before, after, uncertainty=None, *, name="x", is_read=False, is_exact=False):
-    kind = kind_of(name, has_uncertainty=uncertainty is not None)
-    return worst_change(
+    kind = _kind_of(name, has_uncertainty=uncertainty is not None)
+    return _worst_change(
         Change("a.nc", name, kind), np.array(before), np.array(after),
         None if uncertainty is None else np.array(uncertainty),
         lambda at: {"place": str(at)}, is_exact=is_exact, is_read=is_read,
@@ -117,23 +117,23 @@ def test_a_number_without_uncertainty_moves_where_it_is_read():
 def test_an_uncertainty_is_held_against_itself():
     found = worst([2.0, 2.0], [2.9, 3.1], [2.0, 2.0], name="x_standard_uncertainty")
     assert (found.kind, found.n_moved) == ("uncertainty", 1)
-    assert kind_of("x_random_standard_uncertainty", has_uncertainty=True) == "number"
+    assert _kind_of("x_random_standard_uncertainty", has_uncertainty=True) == "number"
 
 
 def test_names_that_stand_in_several_groups_go_by_the_ends_of_their_paths():
-    pairs = pair_by_name(["/a/n", "/b/n", "/m"], ["/old/b/n", "/old/a/n", "/c/n"])
+    pairs = _pair_by_name(["/a/n", "/b/n", "/m"], ["/old/b/n", "/old/a/n", "/c/n"])
     assert pairs == {"/a/n": "/old/a/n", "/b/n": "/old/b/n"}
-    assert pair_by_name(["/n"], ["/deep/er/n", "/deep/n"]) == {"/n": "/deep/n"}
+    assert _pair_by_name(["/n"], ["/deep/er/n", "/deep/n"]) == {"/n": "/deep/n"}
 
 
 def test_rows_of_one_label_go_in_their_order():
-    rows = rows_by_labels([np.array(["a", "b", "a"])], [np.array(["a", "a", "a", "b"])])
+    rows = _rows_by_labels([np.array(["a", "b", "a"])], [np.array(["a", "a", "a", "b"])])
     assert [places.tolist() for places in rows.places] == [[0, 1, 2], [0, 3, 1]]
     assert (rows.removed, rows.added) == ([], ["a"])
 
 
 def test_the_last_bit_of_a_bin_makes_no_other_bin():
     before = np.array([0.815, 0.825])
-    rows = rows_by_labels([before], [np.nextafter(before, 1)])
+    rows = _rows_by_labels([before], [np.nextafter(before, 1)])
     assert [places.tolist() for places in rows.places] == [[0, 1], [0, 1]]
     assert rows.words(1) == ["0.825"]

@@ -2,13 +2,13 @@
 
 import pytest
 
-from reduction.cli.export import stated_hydrodynamics
+from reduction.cli.export import _stated_hydrodynamics
 from reduction.lines.export_line import CYLINDER
 from reduction.record.errors import SettingsError
 
 
 def test_both_stand_in_place_of_the_assumed_cylinder():
-    found = stated_hydrodynamics("1.6, 0.02", "0.9,0.1", "towed in 2019")["hydrodynamics"]
+    found = _stated_hydrodynamics("1.6, 0.02", "0.9,0.1", "towed in 2019")["hydrodynamics"]
     assert (found.normal_drag, found.axial_drag) == (1.6, 0.02)
     assert (found.normal_added_mass, found.axial_added_mass) == (0.9, 0.1)
     assert found.source == "stated at the export, towed in 2019"
@@ -16,14 +16,14 @@ def test_both_stand_in_place_of_the_assumed_cylinder():
 
 
 def test_what_is_not_stated_stays_assumed_and_says_so():
-    drag = stated_hydrodynamics("1.6, 0.02", None, "towed")["hydrodynamics"]
+    drag = _stated_hydrodynamics("1.6, 0.02", None, "towed")["hydrodynamics"]
     assert drag.normal_added_mass == CYLINDER.normal_added_mass
     assert drag.source.startswith("drag stated at the export, towed; added mass assumed, not")
-    mass = stated_hydrodynamics(None, "0.9, 0", None)["hydrodynamics"]
+    mass = _stated_hydrodynamics(None, "0.9, 0", None)["hydrodynamics"]
     assert mass.normal_drag == CYLINDER.normal_drag
     assert mass.source.startswith("drag assumed, not measured")
     assert mass.source.endswith("added mass stated at the export, without a source")
-    assert stated_hydrodynamics(None, None, None) == {}
+    assert _stated_hydrodynamics(None, None, None) == {}
 
 
 @pytest.mark.parametrize(
@@ -39,4 +39,4 @@ def test_what_is_not_stated_stays_assumed_and_says_so():
 )
 def test_what_is_no_pair_of_coefficients_is_refused(given, message):
     with pytest.raises(SettingsError, match=message):
-        stated_hydrodynamics(*given)
+        _stated_hydrodynamics(*given)

@@ -8,7 +8,7 @@ from rich.progress import Progress
 
 from reduction.batch.campaign_status import TestStatus
 from reduction.cli.output import CommandOutput
-from reduction.cli.progress import CampaignProgress, campaign_progress
+from reduction.cli.progress import _CampaignProgress, campaign_progress
 
 
 def row(test, status="reduced", worker=""):
@@ -16,7 +16,7 @@ def row(test, status="reduced", worker=""):
 
 
 def test_each_test_has_a_line_with_its_number_time_and_worker(capsys):
-    progress = CampaignProgress()
+    progress = _CampaignProgress()
     progress.stage("survey", 12)
     progress.begun("T-1")
     progress.ended("T-1")
@@ -44,7 +44,7 @@ def test_a_terminal_has_a_bar_below_the_lines():
     text = io.StringIO()
     console = Console(file=text, force_terminal=True, width=80)
     with Progress(console=console, auto_refresh=False) as bar:
-        progress = CampaignProgress(bar)
+        progress = _CampaignProgress(bar)
         progress.stage("reduce", 3)
         progress.begun("[red]")
         task = bar.tasks[0]

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from export_lines import constant, line
 
-from reduction.cli.export import with_syrope
+from reduction.cli.export import _with_syrope
 from reduction.lines.export_dynamics import Viscoelasticity
 from reduction.record.errors import SettingsError
 
@@ -15,8 +15,8 @@ PART = Viscoelasticity(
 
 def test_working_curves_are_stated_and_the_rest_is_of_the_three_parameters():
     one = line(viscoelasticity=PART, linear_density=0.5)
-    assert with_syrope(one, None, None, form="table") is one
-    made = with_syrope(one, "quadratic, 0.2, 0.5", "400 N", form="syrope")
+    assert _with_syrope(one, None, None, form="table") is one
+    made = _with_syrope(one, "quadratic, 0.2, 0.5", "400 N", form="syrope")
     found = made.syrope
     assert (found.form, found.k1, found.k2) == ("QUADRATIC", 0.2, 0.5)
     assert (found.mean_tension, found.greatest_mean_tension) == (300.0, 400.0)
@@ -25,7 +25,7 @@ def test_working_curves_are_stated_and_the_rest_is_of_the_three_parameters():
     # a tenth of critical for segments of 2 m
     assert found.fast_damping == pytest.approx(0.2 * np.sqrt(2300 * 0.5))
     assert "stated at the export" in made.sources[-1]
-    assert with_syrope(one, "LINEAR, 0.2", "400 N", form="syrope").syrope.k2 == 0
+    assert _with_syrope(one, "LINEAR, 0.2", "400 N", form="syrope").syrope.k2 == 0
 
 
 @pytest.mark.parametrize(
@@ -43,14 +43,14 @@ def test_working_curves_are_stated_and_the_rest_is_of_the_three_parameters():
 )
 def test_what_does_not_make_a_syrope_is_refused(curve, tension, form, message):
     with pytest.raises(SettingsError, match=message):
-        with_syrope(line(viscoelasticity=PART), curve, tension, form=form)
+        _with_syrope(line(viscoelasticity=PART), curve, tension, form=form)
 
 
 def test_a_line_without_dynamics_or_mass_is_refused():
     with pytest.raises(SettingsError, match="needs the dynamics"):
-        with_syrope(line(), "LINEAR, 0.2", "400 N", form="syrope")
+        _with_syrope(line(), "LINEAR, 0.2", "400 N", form="syrope")
     with pytest.raises(SettingsError, match="linear density"):
-        with_syrope(
+        _with_syrope(
             line(viscoelasticity=constant(mean_tension=300.0), linear_density=np.nan),
             "LINEAR, 0.2", "400 N", form="syrope",
         )  # fmt: skip

@@ -9,12 +9,12 @@ from scipy.stats import binom, chi2
 from reduction.prediction.comparison_error import autocorrelation_length
 from reduction.prediction.hose_comparison import (
     CALIBRATED,
-    calibrate_hose,
-    cord_curve_error,
-    identify_directions,
-    parameter_bounds,
-    plausible_error,
-    trial_tension,
+    _calibrate_hose,
+    _cord_curve_error,
+    _identify_directions,
+    _parameter_bounds,
+    _plausible_error,
+    _trial_tension,
 )
 from reduction.prediction.hose_prediction import hose_comparison as fitproblem
 from reduction.prediction.measured_curve import constant_errors, measured_curve
@@ -56,7 +56,7 @@ def cyclic(truth, rng, *, scatter=0.003, noise=30.0, load_cell=0.0, n_cycles=10)
 )
 def test_each_number_alone_comes_back(name, wrong, tolerance):
     test = pull(TRUTH, noise=5, seed=1)
-    found = calibrate_hose(TRUTH.but(**{name: wrong}).design(), test, [name])
+    found = _calibrate_hose(TRUTH.but(**{name: wrong}).design(), test, [name])
     assert found.value[0] == pytest.approx(getattr(TRUTH, name), abs=tolerance)
     assert found.low[0] < getattr(TRUTH, name) < found.high[0]
     assert found.identifiability.is_identified and not found.is_at_bound[0]
@@ -67,7 +67,7 @@ def test_each_number_alone_comes_back(name, wrong, tolerance):
 def test_modulus_and_angle_of_a_good_curve_are_told_apart_without_a_warning():
     wrong = TRUTH.but(wrap_angle=np.radians(65.5), rubber_modulus=1.1e6).design()
     test = cyclic(TRUTH, np.random.default_rng(2))
-    found = calibrate_hose(wrong, test, ["wrap_angle", "rubber_modulus"])
+    found = _calibrate_hose(wrong, test, ["wrap_angle", "rubber_modulus"])
     assert found.identifiability.is_identified and found.identifiability.words == ""
     assert not any("apart" in text for text in found.notes)
     assert found.low[0] < TRUTH.wrap_angle < found.high[0]
@@ -92,10 +92,10 @@ def test_modulus_and_angle_are_told_apart_and_angle_scale_and_dead_length_are_no
     strain = np.linspace(0, 3, 3001)
     top = strain[np.argmax(truth.cord_stretch(1 + strain) > 1 + cord_strain)] * 0.97
     test = pull(truth, top=top, noise=10, seed=3)
-    pair = calibrate_hose(truth.design(), test, ["wrap_angle", "rubber_modulus"])
+    pair = _calibrate_hose(truth.design(), test, ["wrap_angle", "rubber_modulus"])
     assert pair.identifiability.is_identified
     three = ["wrap_angle", "cord_load_scale", "dead_length_share"]
-    found = calibrate_hose(truth.design(), test, three)
+    found = _calibrate_hose(truth.design(), test, three)
     assert not found.identifiability.is_identified
     told = next(text for text in found.notes if "cannot tell" in text)
     assert "wrap_angle and cord_load_scale and dead_length_share apart" in told
@@ -104,7 +104,7 @@ def test_modulus_and_angle_are_told_apart_and_angle_scale_and_dead_length_are_no
 def test_the_direction_that_is_not_seen_hardly_changes_the_curve():
     test = pull(TRUTH, noise=5, seed=4)
     names = ["wrap_angle", "cord_load_scale", "dead_length_share"]
-    found = calibrate_hose(TRUTH.design(), test, names)
+    found = _calibrate_hose(TRUTH.design(), test, names)
     step = found.identifiability.direction
     moved = Truth(
         wrap_angle=found.value[0] + step[0],
@@ -116,16 +116,16 @@ def test_the_direction_that_is_not_seen_hardly_changes_the_curve():
     change = moved.tension(strain) - here.tension(strain)
     relative = np.sqrt(np.mean(change**2) / np.mean(here.tension(strain) ** 2))
     assert relative == pytest.approx(found.identifiability.least_change, rel=0.25)
-    sizes = np.abs(step) / [plausible_error(name, 1.0) for name in names]
+    sizes = np.abs(step) / [_plausible_error(name, 1.0) for name in names]
     assert np.linalg.norm(sizes) == pytest.approx(1, rel=1e-6)
 
 
 def test_a_scale_of_cords_that_were_never_taut_is_not_shown():
     test = pull(TRUTH, top=0.5, noise=5, seed=5)
-    found = calibrate_hose(TRUTH.design(), test, ["rubber_modulus", "cord_load_scale"])
+    found = _calibrate_hose(TRUTH.design(), test, ["rubber_modulus", "cord_load_scale"])
     assert not found.identifiability.is_identified
     assert "cord_load_scale +10.0 %" in found.identifiability.words
-    alone = calibrate_hose(TRUTH.design(), test, ["cord_load_scale"])
+    alone = _calibrate_hose(TRUTH.design(), test, ["cord_load_scale"])
     assert any("does not show cord_load_scale" in text for text in alone.notes)
     assert any("not determined" in text for text in alone.notes)
 
@@ -146,7 +146,7 @@ def test_intervals_hold_the_truth_in_19_of_20_draws(names, options, n_draws):
     truth = np.array([getattr(TRUTH, name) for name in names])
     hits = []
     for _ in range(n_draws):
-        found = calibrate_hose(TRUTH.design(), cyclic(TRUTH, rng, **options), names)
+        found = _calibrate_hose(TRUTH.design(), cyclic(TRUTH, rng, **options), names)
         hits.append((found.low <= truth) & (truth <= found.high))
     share = np.mean(hits, axis=0)
     # of 20 draws fewer hold it in one of a thousand seeds
@@ -177,7 +177,7 @@ def test_intervals_hold_the_truth_where_load_and_strain_are_both_off(pulled, noi
     hits, ratios = [], []
     for _ in range(n_draws):
         test = offset_record(rng, pulled=pulled, noise=noise, strain_offset=2e-3, tension_offset=60)
-        found = calibrate_hose(TRUTH.design(), test, names)
+        found = _calibrate_hose(TRUTH.design(), test, names)
         hits.append((found.low <= truth) & (truth <= found.high))
         ratios.append((found.value - truth) / found.standard_uncertainty)
     # 19 of 20; less than this in one of a thousand seeds
@@ -195,7 +195,7 @@ def test_a_strain_that_is_off_by_its_uncertainty_is_not_taken_for_an_angle(error
         strain + error * 2e-3, TRUTH.tension(strain) + rng.normal(0, 20, strain.size),
         loading="static", shared=constant_errors(tension_offset=60, strain_offset=2e-3),
     )  # fmt: skip
-    found = calibrate_hose(TRUTH.design(), test, ["wrap_angle", "rubber_modulus"])
+    found = _calibrate_hose(TRUTH.design(), test, ["wrap_angle", "rubber_modulus"])
     truth = np.array([TRUTH.wrap_angle, TRUTH.rubber_modulus])
     assert np.all(np.abs(found.value - truth) < 1.5 * found.standard_uncertainty)
     assert found.shared_error[0] == "strain_offset"
@@ -204,7 +204,7 @@ def test_a_strain_that_is_off_by_its_uncertainty_is_not_taken_for_an_angle(error
 def test_what_the_curve_does_not_show_has_no_narrow_interval():
     test = pull(TRUTH, noise=5, seed=4)
     names = ["wrap_angle", "cord_load_scale", "dead_length_share"]
-    found = calibrate_hose(TRUTH.design(), test, names)
+    found = _calibrate_hose(TRUTH.design(), test, names)
     assert not found.identifiability.is_identified
     # a step of one plausible error is less than an error of the model would do
     least = np.abs(found.identifiability.direction)
@@ -213,13 +213,13 @@ def test_what_the_curve_does_not_show_has_no_narrow_interval():
     # 0.001 degrees is what the noise alone would say
     assert not found.high[0] - found.low[0] < np.radians(0.5)
     assert np.isfinite(found.value).all()
-    pair = calibrate_hose(TRUTH.design(), test, names[:1])
+    pair = _calibrate_hose(TRUTH.design(), test, names[:1])
     assert not pair.identifiability.open_covariance.any()
 
 
 def test_a_number_of_which_nothing_is_seen_has_no_interval():
     test = pull(TRUTH, top=0.4, noise=5, seed=5)
-    found = calibrate_hose(TRUTH.design(), test, ["cord_load_scale"])
+    found = _calibrate_hose(TRUTH.design(), test, ["cord_load_scale"])
     assert np.isnan([found.low[0], found.high[0], found.standard_uncertainty[0]]).all()
     assert np.isfinite(found.value[0])
     assert any("not determined" in text for text in found.notes)
@@ -230,7 +230,7 @@ def test_what_a_table_of_a_cord_leaves_open_is_the_difference_of_two_curves_thro
     at = np.linspace(0, 0.22, 2001)
     spline = CubicSpline(CORD_STRAIN, CORD_LOAD)(at)
     monotone = PchipInterpolator(CORD_STRAIN, CORD_LOAD)(at)
-    error = cord_curve_error(design, strain)
+    error = _cord_curve_error(design, strain)
     # cords carry nothing below the pick-up; at it the load is the same, zero
     assert not error[strain < TRUTH.pick_up_strain() - 0.01].any()
     stretch = 1 + strain / (1 - TRUTH.dead_length_share)
@@ -247,8 +247,8 @@ def test_what_a_table_of_a_cord_leaves_open_is_the_difference_of_two_curves_thro
 def test_a_model_that_is_wrong_has_wide_intervals_that_hold_the_truth():
     # one percent of error along the curve, as smooth as a wrong law: noise alone is 1 N
     test = pull(TRUTH, noise=5, seed=7, bend=0.01)
-    found = calibrate_hose(TRUTH.design(), test, ["wrap_angle", "rubber_modulus"])
-    good = calibrate_hose(
+    found = _calibrate_hose(TRUTH.design(), test, ["wrap_angle", "rubber_modulus"])
+    good = _calibrate_hose(
         TRUTH.design(), pull(TRUTH, noise=5, seed=7), ["wrap_angle", "rubber_modulus"]
     )
     assert found.model_error > 5 * max(good.model_error, 1.0)
@@ -260,9 +260,9 @@ def test_a_model_that_is_wrong_has_wide_intervals_that_hold_the_truth():
 
 
 def test_a_load_cell_that_may_be_off_widens_what_it_can_imitate():
-    exact = calibrate_hose(TRUTH.design(), pull(TRUTH, noise=5, seed=8), ["rubber_modulus"])
+    exact = _calibrate_hose(TRUTH.design(), pull(TRUTH, noise=5, seed=8), ["rubber_modulus"])
     test = pull(TRUTH, noise=5, seed=8, tension_gain=0.02)
-    unsure = calibrate_hose(TRUTH.design(), test, ["rubber_modulus"])
+    unsure = _calibrate_hose(TRUTH.design(), test, ["rubber_modulus"])
     assert unsure.standard_uncertainty[0] > 3 * exact.standard_uncertainty[0]
     assert unsure.shared_error == ("tension_gain", "cord curve between its points")
     # fitted errors are the same as generalised least squares with the whole covariance
@@ -279,9 +279,9 @@ def test_a_load_cell_that_may_be_off_widens_what_it_can_imitate():
 
 def test_numbers_that_are_not_fitted_are_uncertain_too():
     test = pull(TRUTH, noise=5, seed=9)
-    alone = calibrate_hose(TRUTH.design(), test, ["dead_length_share"])
+    alone = _calibrate_hose(TRUTH.design(), test, ["dead_length_share"])
     known = {"rubber_modulus": 0.05 * TRUTH.rubber_modulus, "dead_length_share": 0.001}
-    found = calibrate_hose(TRUTH.design(), test, ["dead_length_share"], standard_uncertainty=known)
+    found = _calibrate_hose(TRUTH.design(), test, ["dead_length_share"], standard_uncertainty=known)
     assert found.standard_uncertainty[0] > 1.5 * alone.standard_uncertainty[0]
     assert "rubber_modulus" in found.shared_error
     assert "dead_length_share" not in found.shared_error  # it does not hold itself back
@@ -289,7 +289,7 @@ def test_numbers_that_are_not_fitted_are_uncertain_too():
 
 def test_a_number_far_from_what_was_stated_is_noted():
     test = pull(TRUTH, noise=5, seed=10)
-    found = calibrate_hose(
+    found = _calibrate_hose(
         TRUTH.but(wrap_angle=np.radians(66)).design(), test, ["wrap_angle"],
         standard_uncertainty={"wrap_angle": np.radians(0.5)},
     )  # fmt: skip
@@ -299,13 +299,13 @@ def test_a_number_far_from_what_was_stated_is_noted():
 def test_an_instrument_that_would_have_to_be_far_off_is_noted():
     test = pull(TRUTH, noise=5, seed=11, tension_gain=0.002)
     wrong = TRUTH.but(dead_length_share=0.0, cord_load_scale=1.0, rubber_modulus=1.3e6)
-    found = calibrate_hose(wrong.design(), test, ["dead_length_share"])
+    found = _calibrate_hose(wrong.design(), test, ["dead_length_share"])
     assert any(text.startswith("tension_gain would have to be") for text in found.notes)
 
 
 def test_a_fit_that_is_stopped_at_a_bound_says_so():
     test = pull(TRUTH, noise=5, seed=12)
-    found = calibrate_hose(
+    found = _calibrate_hose(
         TRUTH.but(rubber_modulus=1.0e6).design(), test, ["rubber_modulus"],
         bounds={"rubber_modulus": (0.8e6, 1.2e6)},
     )  # fmt: skip
@@ -315,7 +315,7 @@ def test_a_fit_that_is_stopped_at_a_bound_says_so():
 
 def test_a_hose_without_dead_length_lies_at_the_bound():
     test = pull(Truth(), noise=5, seed=13)
-    found = calibrate_hose(Truth(dead_length_share=0.1).design(), test, ["dead_length_share"])
+    found = _calibrate_hose(Truth(dead_length_share=0.1).design(), test, ["dead_length_share"])
     assert found.value[0] < 0.001
 
 
@@ -324,7 +324,7 @@ def test_trial_hoses_that_would_break_do_not_stop_the_fit():
     strain = np.linspace(0, 3, 3001)
     top = strain[np.argmax(TRUTH.cord_stretch(1 + strain / 0.96) > 1.21)]
     test = pull(TRUTH, top=top, noise=10, seed=14)
-    found = calibrate_hose(
+    found = _calibrate_hose(
         TRUTH.but(wrap_angle=np.radians(61.0)).design(), test, ["wrap_angle", "rubber_modulus"]
     )
     assert found.value[0] == pytest.approx(TRUTH.wrap_angle, abs=np.radians(0.05))
@@ -334,14 +334,14 @@ def test_trial_hoses_that_would_break_do_not_stop_the_fit():
 def test_strains_beyond_the_break_of_the_fitted_hose_are_noted():
     softer = TRUTH.but(cord_strain_scale=1.2)
     test = pull(softer, top=1.48, noise=10, seed=15)
-    found = calibrate_hose(TRUTH.design(), test, ["rubber_modulus"])
+    found = _calibrate_hose(TRUTH.design(), test, ["rubber_modulus"])
     assert any("cords of the fitted hose are broken at" in text for text in found.notes)
 
 
 def test_a_curve_goes_on_along_its_tangent_where_cords_are_broken():
     names, value = ["wrap_angle"], np.array([[TRUTH.wrap_angle]])
     strain = np.arange(1.0, 1.8, 0.001)
-    tension = trial_tension(TRUTH.design(), names, value, strain)[0]
+    tension = _trial_tension(TRUTH.design(), names, value, strain)[0]
     assert np.isfinite(tension).all()
     broken = np.isnan(TRUTH.tension(strain))
     assert broken.any() and not broken.all()
@@ -356,7 +356,7 @@ def test_fitted_modulus_and_scale_trade_as_their_correlation_says():
     rng = np.random.default_rng(16)
     names = ("rubber_modulus", "cord_load_scale")
     fits = [
-        calibrate_hose(TRUTH.design(), pull(TRUTH, noise=40, seed=k), names)
+        _calibrate_hose(TRUTH.design(), pull(TRUTH, noise=40, seed=k), names)
         for k in rng.integers(0, 10_000, 60)
     ]
     values = np.array([one.value for one in fits])
@@ -386,17 +386,17 @@ def test_residuals_that_err_together_count_as_few_points():
 def test_what_shared_errors_imitate_is_not_seen():
     strain = np.linspace(0, 1, 50)
     slope = np.column_stack([strain])
-    plain = identify_directions(
+    plain = _identify_directions(
         slope, tension=1 + 0 * strain, names=["cord_load_scale"], plausible=[0.1], value=[1.0],
         contribution=np.zeros((0, 50)), misfit=0.0,
     )  # fmt: skip
     assert plain.is_identified and plain.least_change == pytest.approx(0.0582, abs=1e-3)
-    hidden = identify_directions(
+    hidden = _identify_directions(
         slope, tension=1 + 0 * strain, names=["cord_load_scale"], plausible=[0.1], value=[1.0],
         contribution=strain[None, :], misfit=0.0,
     )  # fmt: skip
     assert not hidden.is_identified
-    poor = identify_directions(
+    poor = _identify_directions(
         slope, tension=1 + 0 * strain, names=["cord_load_scale"], plausible=[0.1], value=[1.0],
         contribution=np.zeros((0, 50)), misfit=0.07,
     )  # fmt: skip
@@ -404,7 +404,7 @@ def test_what_shared_errors_imitate_is_not_seen():
 
 
 def test_a_number_without_effect_has_no_collinearity():
-    found = identify_directions(
+    found = _identify_directions(
         np.zeros((5, 1)), tension=np.ones(5), names=["cord_load_scale"], plausible=[0.1],
         value=[1.0], contribution=np.zeros((0, 5)), misfit=0.0,
     )  # fmt: skip
@@ -412,10 +412,10 @@ def test_a_number_without_effect_has_no_collinearity():
 
 
 def test_bounds_of_each_number():
-    assert np.degrees(parameter_bounds("wrap_angle", np.radians(64))) == pytest.approx([54, 74])
-    assert np.degrees(parameter_bounds("wrap_angle", np.radians(85)))[1] == pytest.approx(89)
-    assert parameter_bounds("dead_length_share", 0.0) == (0.0, 0.5)
-    assert parameter_bounds("rubber_modulus", 1e6) == pytest.approx((2e5, 5e6))
+    assert np.degrees(_parameter_bounds("wrap_angle", np.radians(64))) == pytest.approx([54, 74])
+    assert np.degrees(_parameter_bounds("wrap_angle", np.radians(85)))[1] == pytest.approx(89)
+    assert _parameter_bounds("dead_length_share", 0.0) == (0.0, 0.5)
+    assert _parameter_bounds("rubber_modulus", 1e6) == pytest.approx((2e5, 5e6))
     assert len(CALIBRATED) == 5
 
 
@@ -423,27 +423,27 @@ def test_bad_input_is_refused(monkeypatch):
     test = pull(TRUTH, noise=5)
     design = TRUTH.design()
     with pytest.raises(SettingsError, match="what to calibrate cannot be read; found nothing"):
-        calibrate_hose(design, test, [])
+        _calibrate_hose(design, test, [])
     with pytest.raises(SettingsError, match="what to calibrate cannot be read; found wrap_angle"):
-        calibrate_hose(design, test, ["wrap_angle", "wrap_angle"])
+        _calibrate_hose(design, test, ["wrap_angle", "wrap_angle"])
     with pytest.raises(SettingsError, match="no such number of a hose; found colour"):
-        calibrate_hose(design, test, ["colour"])
+        _calibrate_hose(design, test, ["colour"])
     with pytest.raises(SettingsError, match="'outer_diameter' cannot be calibrated"):
-        calibrate_hose(design, test, ["outer_diameter"])
+        _calibrate_hose(design, test, ["outer_diameter"])
     with pytest.raises(SettingsError, match="rubber_modulus has no size to start"):
-        calibrate_hose(TRUTH.design(rubber_modulus=0.0), test, ["rubber_modulus"])
+        _calibrate_hose(TRUTH.design(rubber_modulus=0.0), test, ["rubber_modulus"])
     with pytest.raises(SettingsError, match="bounds of wrap_angle leave nothing"):
-        calibrate_hose(design, test, ["wrap_angle"], bounds={"wrap_angle": (1.1, 1.1)})
+        _calibrate_hose(design, test, ["wrap_angle"], bounds={"wrap_angle": (1.1, 1.1)})
     with pytest.raises(SettingsError, match="a comparison is of one hose"):
-        calibrate_hose(TRUTH.design(rubber_modulus=np.array([1e6, 2e6])), test, ["wrap_angle"])
+        _calibrate_hose(TRUTH.design(rubber_modulus=np.array([1e6, 2e6])), test, ["wrap_angle"])
     with pytest.raises(SettingsError, match="uncertainty of wrap_angle cannot be used"):
-        calibrate_hose(design, test, ["rubber_modulus"], standard_uncertainty={"wrap_angle": -1})
+        _calibrate_hose(design, test, ["rubber_modulus"], standard_uncertainty={"wrap_angle": -1})
     with pytest.raises(SettingsError, match="no such number of a hose; found colour"):
-        calibrate_hose(design, test, ["rubber_modulus"], standard_uncertainty={"colour": 1})
+        _calibrate_hose(design, test, ["rubber_modulus"], standard_uncertainty={"colour": 1})
     with pytest.raises(DataError, match="too few strains were measured to calibrate 1 numbers"):
-        calibrate_hose(design, pull(TRUTH, top=0.01, n=5), ["wrap_angle"])
+        _calibrate_hose(design, pull(TRUTH, top=0.01, n=5), ["wrap_angle"])
     with pytest.raises(DataError, match="sensitivities do not pair up"):
-        identify_directions(
+        _identify_directions(
             [[1.0]], tension=[1.0, 2.0], names=["cord_load_scale"], plausible=[0.1],
             value=[1.0], contribution=np.zeros((0, 2)), misfit=0.0,
         )  # fmt: skip
@@ -453,4 +453,4 @@ def test_bad_input_is_refused(monkeypatch):
 
     monkeypatch.setattr(fitproblem.scipy.optimize, "least_squares", lambda *_, **__: Unfinished)
     with pytest.raises(FitError, match="the calibration did not come to an end; found 100 trials"):
-        calibrate_hose(design, test, ["wrap_angle"])
+        _calibrate_hose(design, test, ["wrap_angle"])

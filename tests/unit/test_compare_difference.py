@@ -3,11 +3,11 @@ import pytest
 from measured_hoses import Truth
 
 from reduction.prediction.comparison_error import (
+    _strain_at_tension,
     cycle_differences,
     difference_of,
     energy_difference,
     event_differences,
-    strain_at_tension,
 )
 from reduction.prediction.measured_curve import constant_errors, measured_curve
 from reduction.record.errors import DataError
@@ -59,10 +59,10 @@ def test_a_test_of_no_tension_has_no_relative_rms():
 
 
 def test_strain_at_a_tension_is_between_its_neighbours():
-    assert strain_at_tension([0, 1, 2], [0.0, 10.0, 40.0], 25.0) == pytest.approx(1.5)
-    assert strain_at_tension([0, 1, 2], [5.0, 10.0, 40.0], 5.0) == 0
-    assert np.isnan(strain_at_tension([0, 1, 2], [5.0, 10.0, 40.0], 4.0))
-    assert np.isnan(strain_at_tension([0, 1, 2], [5.0, 10.0, np.nan], 20.0))
+    assert _strain_at_tension([0, 1, 2], [0.0, 10.0, 40.0], 25.0) == pytest.approx(1.5)
+    assert _strain_at_tension([0, 1, 2], [5.0, 10.0, 40.0], 5.0) == 0
+    assert np.isnan(_strain_at_tension([0, 1, 2], [5.0, 10.0, 40.0], 4.0))
+    assert np.isnan(_strain_at_tension([0, 1, 2], [5.0, 10.0, np.nan], 20.0))
 
 
 def test_energy_of_a_loop_is_its_width_times_its_length():

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from measured_hoses import Truth
 
-from reduction.prediction.hose_comparison import compare_hose
+from reduction.prediction.hose_comparison import _compare_hose
 from reduction.prediction.hose_tension import find_events
 from reduction.prediction.measured_curve import constant_errors, measured_curve
 from reduction.record.errors import SettingsError
@@ -23,7 +23,7 @@ def cyclic(top=1.1, loading="static", n_cycles=5):
 
 
 def test_a_right_prediction_lies_between_the_branches_and_agrees():
-    found = compare_hose(
+    found = _compare_hose(
         TRUTH.design(), cyclic(), standard_uncertainty={"wrap_angle": np.radians(0.3)}
     )
     assert set(found.differences) == {"ascending", "descending", "midline"}
@@ -39,7 +39,7 @@ def test_a_right_prediction_lies_between_the_branches_and_agrees():
 
 def test_a_softer_hose_is_called_different_and_its_modulus_is_found():
     wrong = TRUTH.but(rubber_modulus=1.2 * TRUTH.rubber_modulus).design()
-    found = compare_hose(wrong, cyclic(), calibrate=["rubber_modulus"])
+    found = _compare_hose(wrong, cyclic(), calibrate=["rubber_modulus"])
     assert not found.validation.agrees and "above the test" in found.validation.verdict
     assert found.calibration.low[0] < TRUTH.rubber_modulus < found.calibration.high[0]
 
@@ -47,18 +47,18 @@ def test_a_softer_hose_is_called_different_and_its_modulus_is_found():
 def test_a_dynamic_test_against_a_static_cord_is_noted():
     assert any(
         "is dynamic" in text
-        for text in compare_hose(TRUTH.design(), cyclic(loading="dynamic")).notes
+        for text in _compare_hose(TRUTH.design(), cyclic(loading="dynamic")).notes
     )
-    assert not any("is dynamic" in text for text in compare_hose(TRUTH.design(), cyclic()).notes)
+    assert not any("is dynamic" in text for text in _compare_hose(TRUTH.design(), cyclic()).notes)
 
 
 def test_what_the_test_did_not_reach_and_what_the_prediction_does_not_is_noted():
-    short = compare_hose(TRUTH.design(), cyclic(top=0.7))
+    short = _compare_hose(TRUTH.design(), cyclic(top=0.7))
     assert any(text.endswith("before the predicted working load") for text in short.notes)
     strong = TRUTH.but(cord_strain_scale=1.2)
     strain = np.linspace(0, 1.5, 800)
     test = measured_curve(strain, strong.tension(strain), loading="static")
-    beyond = compare_hose(TRUTH.design(), test)
+    beyond = _compare_hose(TRUTH.design(), test)
     assert any("predicted broken at" in text for text in beyond.notes)
     assert beyond.judged == "ascending"
 
@@ -73,7 +73,7 @@ def test_a_working_load_beyond_the_last_bin_is_reached():
     test = measured_curve(strain, factor * TRUTH.tension(strain), loading="static")
     last = test.strain[np.isfinite(test.branch_tension[0])][-1]
     assert last < top - 0.002 < test.end_strain
-    found = compare_hose(design, test)
+    found = _compare_hose(design, test)
     assert found.events[1].measured_strain == pytest.approx(top - 0.002, abs=1e-4)
     assert not any("before the predicted working load" in text for text in found.notes)
 
@@ -81,14 +81,14 @@ def test_a_working_load_beyond_the_last_bin_is_reached():
 def test_no_tension_is_made_up_where_the_prediction_has_its_kink():
     strain = np.linspace(0, 1, 2001)
     test = measured_curve(strain, 1e-9 * strain, loading="static")
-    pick_up = compare_hose(TRUTH.design(), test).events[0]
+    pick_up = _compare_hose(TRUTH.design(), test).events[0]
     assert 0 <= pick_up.measured_tension <= 1e-9
 
 
 def test_where_the_cords_of_a_test_pick_up_does_not_hang_on_the_prediction():
     test = cyclic()
     designs = [TRUTH.design(), TRUTH.but(wrap_angle=np.radians(67)).design()]
-    found = [compare_hose(design, test) for design in designs]
+    found = [_compare_hose(design, test) for design in designs]
     places = [one.measured_pick_up_strain for one in found]
     assert places[0] == places[1]
     assert abs(places[0] - TRUTH.pick_up_strain()) < 3 * (
@@ -96,7 +96,7 @@ def test_where_the_cords_of_a_test_pick_up_does_not_hang_on_the_prediction():
     )
     of_events = [one.events[0].measured_strain for one in found]
     assert abs(of_events[0] - of_events[1]) > 0.1
-    short = compare_hose(TRUTH.design(), cyclic(top=0.4))
+    short = _compare_hose(TRUTH.design(), cyclic(top=0.4))
     assert np.isnan(short.measured_pick_up_strain)
     assert any(text.startswith("where the cords of the test pick up is") for text in short.notes)
 
@@ -104,4 +104,4 @@ def test_where_the_cords_of_a_test_pick_up_does_not_hang_on_the_prediction():
 def test_many_designs_are_refused():
     many = TRUTH.design(rubber_modulus=np.array([1e6, 2e6]))
     with pytest.raises(SettingsError, match="a comparison is of one hose"):
-        compare_hose(many, cyclic())
+        _compare_hose(many, cyclic())

@@ -6,14 +6,14 @@ from measured_hoses import Truth
 
 from reduction.prediction.measured_curve import (
     MeasuredCurve,
-    Reading,
-    branch_scatter,
+    _branch_scatter,
+    _fill_cells,
+    _Reading,
+    _select_samples,
+    _shared_scatter,
+    _tension_at_centres,
     constant_errors,
-    fill_cells,
     measured_curve,
-    select_samples,
-    shared_scatter,
-    tension_at_centres,
 )
 from reduction.record.errors import DataError, SettingsError
 
@@ -165,19 +165,21 @@ def test_what_cycles_share_is_kept_apart_from_what_they_do_not():
 
 def test_cycles_without_common_scatter_have_no_common_error():
     rng = np.random.default_rng(12)
-    found = [shared_scatter(rng.normal(0, 1, (8, 80)), np.zeros(80))[0].shape[0] for _ in range(50)]
+    found = [
+        _shared_scatter(rng.normal(0, 1, (8, 80)), np.zeros(80))[0].shape[0] for _ in range(50)
+    ]
     assert np.mean(np.array(found) > 0) < 0.2
 
 
 def test_one_cycle_has_no_common_scatter():
-    parts, rest = shared_scatter(np.ones((1, 30)), np.ones(30))
+    parts, rest = _shared_scatter(np.ones((1, 30)), np.ones(30))
     assert parts.shape == (0, 30) and rest.shape == (1, 30)
 
 
 def test_scatter_of_two_cycles_is_pooled_over_the_branch():
     rng = np.random.default_rng(13)
     cycles = rng.normal(0, 6, (2, 1, 200))
-    _, variance = branch_scatter(cycles, np.zeros((2, 1, 200)))
+    _, variance = _branch_scatter(cycles, np.zeros((2, 1, 200)))
     assert np.sqrt(variance).min() > 0.8 * 6 / np.sqrt(2)
     assert np.sqrt(variance.mean()) == pytest.approx(6 / np.sqrt(2), rel=0.15)
 
@@ -229,8 +231,8 @@ def test_a_million_samples_take_less_than_two_seconds():
 def test_end_bins_are_not_extrapolated():
     # samples of the last bin lie at its far edge, and none beyond
     strain = np.array([0.10, 0.20, 0.26, 0.27])
-    cells, centre = fill_cells(strain, strain, row=np.zeros(4, int), n_rows=1, step=0.1)
-    tension = tension_at_centres(cells)
+    cells, centre = _fill_cells(strain, strain, row=np.zeros(4, int), n_rows=1, step=0.1)
+    tension = _tension_at_centres(cells)
     assert centre == pytest.approx([0.1, 0.2, 0.3])
     assert np.isfinite(tension[0]).tolist() == [True, True, False]
 
@@ -306,11 +308,11 @@ def test_no_tension_lies_beyond_the_samples_that_it_is_read_from():
     slack = 0.05 * np.ptp(tension)
     assert curve.branch_tension[0][seen].min() >= -slack
     assert curve.branch_tension[0][seen].max() <= tension.max() + slack
-    cells, _ = fill_cells(
+    cells, _ = _fill_cells(
         np.array([0.06, 0.1, 0.14, 0.2, 0.3]), np.array([0.0, 0.0, 0.0, 0.0, 1000.0]),
         row=np.zeros(5, int), n_rows=1, step=0.1,
     )  # fmt: skip
-    assert tension_at_centres(cells)[0, 0] >= -50  # 5 % of the range of what is beside it
+    assert _tension_at_centres(cells)[0, 0] >= -50  # 5 % of the range of what is beside it
 
 
 def test_bad_input_is_refused():
@@ -352,12 +354,12 @@ def test_a_measured_curve_checks_its_shapes():
             one, np.zeros((1, 2, 3)), np.zeros((1, 2, 3), int), np.ones(1, int), np.zeros((2, 4)),
             np.zeros((2, 3)), one, one, np.zeros((0, 3)), (), np.zeros((0, 3, 3)), np.zeros((0, 3)),
             "static",
-            Reading(np.zeros(201), np.zeros((3, 121))),
+            _Reading(np.zeros(201), np.zeros((3, 121))),
         )  # fmt: skip
 
 
 def test_rows_are_ascending_then_descending():
-    found = select_samples(
+    found = _select_samples(
         [0.1, 0.2, 0.1], [1.0, 2.0, 1.0], cycle_number=[2, 2, 2], branch=[1, 1, 2],
         break_in_cycles=0,
     )  # fmt: skip

@@ -4,11 +4,11 @@ from measured_hoses import Truth
 
 from reduction.prediction.comparison_error import (
     N_DRAWS,
-    probability_words,
+    _probability_words,
     validate_curve,
     verdict_words,
 )
-from reduction.prediction.hose_comparison import input_draws
+from reduction.prediction.hose_comparison import _input_draws
 from reduction.prediction.hose_tension import predict_hose
 from reduction.prediction.measured_curve import constant_errors, measured_curve
 from reduction.record.errors import DataError
@@ -124,7 +124,7 @@ def test_a_reader_in_pounds_gets_pounds():
     ("probability", "words"), [(0.0153, "1.5 %"), (4e-137, "below 0.1 %"), (0.0, "below 0.1 %")]
 )
 def test_probabilities_are_no_finer_than_the_draws(probability, words):
-    assert probability_words(probability) == words
+    assert _probability_words(probability) == words
 
 
 def test_a_difference_where_no_stated_error_can_be_is_noted():
@@ -152,7 +152,7 @@ def test_a_right_prediction_is_called_wrong_in_one_of_twenty():
         )  # fmt: skip
         found = validate_curve(
             predict_hose(guess, test.strain).tension, test,
-            input_error=input_draws(guess, known, test.strain, n_draws=600),
+            input_error=_input_draws(guess, known, test.strain, n_draws=600),
         )  # fmt: skip
         agrees.append(found.agrees)
         exceeds.append(found.chi_square_probability < 0.05)
@@ -167,7 +167,7 @@ def test_the_same_input_gives_the_same_answer():
     answers = {
         validate_curve(
             truth.tension(test.strain) * 1.01, test,
-            input_error=input_draws(truth.design(), known, test.strain, n_draws=N_DRAWS),
+            input_error=_input_draws(truth.design(), known, test.strain, n_draws=N_DRAWS),
         ).coverage_factor
         for _ in range(2)
     }  # fmt: skip

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from reduction.stages.cycles.cycle_pairing import without_stands
+from reduction.stages.cycles.cycle_pairing import _without_stands
 
 STROKES = [2.0, 4, 2, 4, 2]
 
 
 def moved(values, nodes):
-    return without_stands(
+    return _without_stands(
         np.array(values), np.array(nodes), first=0, last=len(values) - 1, tolerance=0.1
     ).tolist()
 

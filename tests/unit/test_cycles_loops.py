@@ -8,13 +8,13 @@ from hypothesis import strategies as st
 from reduction.record.errors import DataError
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.loop_energy import (
+    _sums_over_cycles,
     cycle_basis,
     fundamental,
     loop_energy,
     mean_drift,
     part_means,
     reading_noise,
-    sums_over_cycles,
 )
 from reduction.stages.cycles.loops import close_loops
 
@@ -146,12 +146,12 @@ def test_a_short_series_is_refused():
 def test_no_cycles_give_no_energy():
     none = np.array([], dtype=int)
     assert loop_energy([1.0, 2.0, 3.0], [0.0, 1.0, 2.0], none, none)[0].size == 0
-    assert sums_over_cycles(np.ones(3), none, none).size == 0
+    assert _sums_over_cycles(np.ones(3), none, none).size == 0
 
 
 def test_cycles_apart_do_not_take_samples_from_the_gap():
     values = np.array([1.0, 1, 1, 100, 100, 2, 2, 2])
-    assert sums_over_cycles(values, np.array([0, 5]), np.array([3, 8])).tolist() == [3.0, 6.0]
+    assert _sums_over_cycles(values, np.array([0, 5]), np.array([3, 8])).tolist() == [3.0, 6.0]
 
 
 def test_fundamental_on_uneven_times():

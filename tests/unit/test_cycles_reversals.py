@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.cycles.reversals import find_reversals, first_pass, typical_range
+from reduction.stages.cycles.reversals import _typical_range, find_reversals, first_pass
 
 
 def sequential(values, band):
@@ -126,9 +126,9 @@ def test_a_table_is_no_series():
 
 
 def test_typical_range_is_that_of_the_cycles_and_not_of_the_way_to_them():
-    assert typical_range([0, 12, 7, 12, 7, 12, 7, 12, 0]) == 5
+    assert _typical_range([0, 12, 7, 12, 7, 12, 7, 12, 0]) == 5
     with pytest.raises(DataError, match="no half cycle; found 1 reversals; needed 2 or more"):
-        typical_range([3.0])
+        _typical_range([3.0])
 
 
 def test_band_is_a_tenth_of_the_stroke_above_small_noise_and_the_noise_above_large():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import SettingsError
-from reduction.stages.cycles.cycle_search import constant_rate_span, stroke_span
+from reduction.stages.cycles.cycle_search import _constant_rate_span, _stroke_span
 
 
 def soft_triangle(n_cycles, *, rate=10.0, half=5.0, speed=0.2, turn=0.5, noise=0.0):
@@ -21,7 +21,7 @@ def soft_triangle(n_cycles, *, rate=10.0, half=5.0, speed=0.2, turn=0.5, noise=0
 
 
 def span(time, position, first, last, noise=0.0, threshold=0.97):
-    return constant_rate_span(time, position, first, last, noise=noise, trim_threshold=threshold)
+    return _constant_rate_span(time, position, first, last, noise=noise, trim_threshold=threshold)
 
 
 def test_what_is_kept_is_what_moves_at_the_plateau_rate():
@@ -121,10 +121,10 @@ def test_a_threshold_that_is_no_share_is_refused(threshold):
 
 def test_stroke_span_keeps_the_middle_nine_tenths():
     position = np.concatenate([np.arange(0, 101.0), np.arange(99.0, -1, -1)])
-    begin, end = stroke_span(position, np.array([0, 100]), np.array([100, 200]))
+    begin, end = _stroke_span(position, np.array([0, 100]), np.array([100, 200]))
     assert (begin.tolist(), end.tolist()) == ([5, 105], [95, 195])
 
 
 def test_stroke_span_of_a_branch_without_stroke_is_empty():
-    begin, end = stroke_span(np.ones(5), np.array([0]), np.array([4]))
+    begin, end = _stroke_span(np.ones(5), np.array([0]), np.array([4]))
     assert end[0] < begin[0]

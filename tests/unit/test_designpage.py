@@ -14,13 +14,13 @@ from manytests import write_many
 from reduction.archive.open import reading
 from reduction.batch import run_campaign as batch_run
 from reduction.campaign.load import load_campaign
-from reduction.cli.campaigns import refresh_design_page
+from reduction.cli.campaigns import _refresh_design_page
 from reduction.cli.output import CommandOutput
 from reduction.lines.archive_source import lines_of_archive
 from reduction.lines.published_source import published_sources
 from reduction.pages import design_values as made
 from reduction.pages import design_values as read
-from reduction.pages.design_values import json_text, line_data
+from reduction.pages.design_values import _json_text, _line_data
 from reduction.record.errors import ArchiveError
 
 DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
@@ -65,7 +65,7 @@ def write(opened):
 
 def test_numbers_keep_every_bit(products):
     (line,) = lines_of_archive(products / "many" / "T01.nc")
-    kept = json.loads(json.dumps(line_data(line)))
+    kept = json.loads(json.dumps(_line_data(line)))
     for curve, own in zip(line.curves, kept["curves"], strict=True):
         for name in ("at", "value", "standard_uncertainty", "contribution"):
             assert np.array(own[name]).tobytes() == getattr(curve, name).tobytes()
@@ -73,7 +73,7 @@ def test_numbers_keep_every_bit(products):
             np.inf if one[3] == "inf" else one[3] for one in own["component"]
         ] == [one.degrees_of_freedom for one in curve.component]  # fmt: skip
     for line in published_sources().values():
-        kept = json.loads(json.dumps(line_data(line)))
+        kept = json.loads(json.dumps(_line_data(line)))
         for name, surface in line.surfaces.items():
             own = kept["surfaces"][name]
             assert np.array(own["coefficient"]).tobytes() == surface.coefficient.tobytes()
@@ -162,8 +162,8 @@ def test_what_has_no_room_is_told_and_not_read(processed, tmp_path, monkeypatch,
     shutil.copytree(processed / "many", processed / "newer")
     for path in (processed / "newer").glob("*.nc"):
         path.touch()
-    before = read.read_campaigns(processed, room=made.MOST_BYTES)
-    sizes = [len(json_text(one)) for one in before[1].files.values()]
+    before = read._read_campaigns(processed, room=made.MOST_BYTES)
+    sizes = [len(_json_text(one)) for one in before[1].files.values()]
     opened.clear()
     monkeypatch.setattr(made, "MOST_BYTES", sizes[0] + sizes[1] + 100)
     found = data_of(write(processed, tmp_path))
@@ -181,14 +181,14 @@ def test_every_script_is_on_the_page_once():
 
 
 def test_a_full_page_is_below_three_megabytes():
-    assert len(made.render_design_page().encode()) + made.MOST_BYTES < 3_000_000
+    assert len(made._render_design_page().encode()) + made.MOST_BYTES < 3_000_000
 
 
 def test_no_page_is_made_of_copies(processed, tmp_path):
     output = CommandOutput(quiet=True, names={str(processed): "s3://bucket/processed"})
-    assert refresh_design_page(processed, tmp_path, output) is None
+    assert _refresh_design_page(processed, tmp_path, output) is None
     output = CommandOutput(quiet=True)
-    assert refresh_design_page(processed, tmp_path, output) == str(tmp_path / made.PAGE_NAME)
+    assert _refresh_design_page(processed, tmp_path, output) == str(tmp_path / made.PAGE_NAME)
 
 
 def test_a_disk_that_refuses_is_told(processed, tmp_path):

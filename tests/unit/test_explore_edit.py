@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from reduction.pages.explorer_campaign import edited, value_at
+from reduction.pages.explorer_campaign import _edited, _value_at
 from reduction.record.errors import SettingsError
 
 TEXT = '''# about the campaign
@@ -72,45 +72,45 @@ def lines_changed(before, after):
     ],
 )  # fmt: skip
 def test_one_key_moves_and_every_other_line_stays(path, value, changed):
-    made = edited(TEXT, {path: value})
+    made = _edited(TEXT, {path: value})
     assert lines_changed(TEXT, made) == sorted(changed)
-    assert value_at(tomllib.loads(made), path) == value
+    assert _value_at(tomllib.loads(made), path) == value
 
 
 def test_a_new_line_stands_with_its_test_and_not_below_the_comment_of_the_next():
-    made = edited(TEXT, {("tests", "T-1", "order"): 1})
+    made = _edited(TEXT, {("tests", "T-1", "order"): 1})
     assert "n_cycles = 10      # ten\norder = 1\n\n# about T-2\n" in made
 
 
 def test_an_inline_table_is_changed_within_its_line():
     text = '[tests.T]\nstrain = { marks = "m.csv" }  # tape\n'
-    made = edited(text, {("tests", "T", "strain", "method"): "marks"})
+    made = _edited(text, {("tests", "T", "strain", "method"): "marks"})
     assert made == '[tests.T]\nstrain = { marks = "m.csv", method = "marks" }  # tape\n'
     both = {("tests", "T", "strain", "method"): None, ("tests", "T", "strain", "marks"): None}
-    assert edited(made, both) == "[tests.T]\n"
+    assert _edited(made, both) == "[tests.T]\n"
 
 
 def test_all_tests_on_one_line_are_changed_within_it():
     text = 'tests = { T = { file = "a" } }  # all\n[campaign]\nid = "x"\n'
-    made = edited(text, {("tests", "U", "strain"): {"method": "marks"}})
+    made = _edited(text, {("tests", "U", "strain"): {"method": "marks"}})
     line = 'tests = { T = { file = "a" }, U = { strain = { method = "marks" } } }  # all'
     assert made == text.replace(text.splitlines()[0], line)
 
 
 def test_line_ends_of_the_file_are_kept():
     text = '[tests.T]\r\nfile = "a"\r\n'
-    made = edited(text, {("tests", "T", "order"): 1, ("tests", "U", "order"): 2})
+    made = _edited(text, {("tests", "T", "order"): 1, ("tests", "U", "order"): 2})
     assert made == text + "order = 1\r\n\r\n[tests.U]\r\norder = 2\r\n"
 
 
 def test_a_file_without_a_last_line_end_gets_one():
-    assert edited('[tests.T]\nfile = "a"', {("tests", "T", "order"): 1}) == (
+    assert _edited('[tests.T]\nfile = "a"', {("tests", "T", "order"): 1}) == (
         '[tests.T]\nfile = "a"\norder = 1\n'
     )
 
 
 def test_dotted_keys_of_a_test_at_the_top_of_a_table_are_found():
-    made = edited('[tests]\nT.file = "a"\n"U V".file = "b"\n', {("tests", "U V", "order"): 2})
+    made = _edited('[tests]\nT.file = "a"\n"U V".file = "b"\n', {("tests", "U V", "order"): 2})
     assert made == '[tests]\nT.file = "a"\n"U V".file = "b"\n"U V".order = 2\n'
 
 
@@ -120,7 +120,7 @@ def test_dotted_keys_of_a_test_at_the_top_of_a_table_are_found():
 )
 def test_a_table_with_a_header_is_taken_out_or_written_on_one_line(value, made):
     text = '[tests.T]\nfile = "a"\n[tests.T.strain]\nmarks = "m.csv"\n'
-    assert edited(text, {("tests", "T", "strain"): value}) == f'[tests.T]\nfile = "a"\n{made}'
+    assert _edited(text, {("tests", "T", "strain"): value}) == f'[tests.T]\nfile = "a"\n{made}'
 
 
 @pytest.mark.parametrize(
@@ -141,7 +141,7 @@ def test_what_would_be_read_as_something_else_is_refused_with_the_line_to_write(
     with pytest.raises(
         SettingsError, match=r"not changed here; needed the line .* by hand"
     ) as told:
-        edited(text, {path: value})
+        _edited(text, {path: value})
     assert line in str(told.value)
 
 
@@ -152,8 +152,8 @@ def test_what_would_be_read_as_something_else_is_refused_with_the_line_to_write(
 def test_a_value_is_read_as_it_was_meant(value):
     path = ("tests", "T", "key")
     for text in ("[tests.T]\n", "", "[tests.T]\nkey = 0.1  # as it was\n"):
-        made = edited(text, {path: value})
-        assert value_at(tomllib.loads(made), path) == value
+        made = _edited(text, {path: value})
+        assert _value_at(tomllib.loads(made), path) == value
         assert ("# as it was" in text) == ("# as it was" in made)
 
 
@@ -165,7 +165,7 @@ def test_a_key_of_every_test_of_the_project_is_set_and_left_out_again():
             continue
         for test in document["tests"]:
             key = ("tests", test, "reduction", "holds", "maximum_terms")
-            made = edited(text, {key: 2})
+            made = _edited(text, {key: 2})
             (line,) = lines_changed(text, made)
             assert line.endswith("maximum_terms = 2"), (path, line)
-            assert edited(made, {key: None}) == text
+            assert _edited(made, {key: None}) == text

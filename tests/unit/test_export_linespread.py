@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from export_sources import LEVELS, REST, SPRING, TIME, loop, source, surface
 
-from reduction.lines.export_dynamics import half_widths, line_dynamics
+from reduction.lines.export_dynamics import _half_widths, line_dynamics
 from reduction.lines.line_lookup import look_up
 from reduction.lines.lookup_product import LineCurve
 from reduction.record.contributions import Component
@@ -32,7 +32,7 @@ def line(values, rows, sigma=0.0):
 
 def found_half_widths(one):
     values = [look_up(one, name, **LEVELS) for name in NAMES]
-    return half_widths(identified(*(found.value for found in values)), *values)
+    return _half_widths(identified(*(found.value for found in values)), *values)
 
 
 def identified(rest, apparent, energy):

@@ -11,7 +11,7 @@ from predicted_hoses import dataset, predicted
 
 from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.write import write_archive
-from reduction.lines.composite import PieceSource, composite_curve
+from reduction.lines.composite import PieceSource, _composite_curve
 from reduction.lines.curve_pieces import CurvePiece
 from reduction.lines.deck_formats import export_line
 from reduction.lines.export_line import CurveSpread
@@ -117,7 +117,7 @@ def test_an_archive_that_keeps_no_parts_gives_the_whole_and_a_note(archive):
 def test_a_composite_is_exported_with_what_its_table_has():
     at = np.linspace(0.1, 0.5, 5)
     piece = CurvePiece("T-1", "cyclic", "ascending", at, 100 * at, 0.5 * at, (CELL,), 2 * at[None])
-    curve = composite_curve([piece])
+    curve = _composite_curve([piece])
     source = PieceSource(
         "new", "ascending", (piece,), None, sources=("made",), piece_sources=("made",)
     )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.holds.relaxation import creep_rate, tension_variation
+from reduction.stages.holds.relaxation import _tension_variation, creep_rate
 
 TIME = np.arange(1.0, 2001.0)
 STRAIN = 1 + 0.03 * np.log10(TIME)
@@ -26,7 +26,7 @@ def test_tension_that_is_not_constant_is_refused():
 
 def test_no_tension_is_refused():
     with pytest.raises(DataError, match="creep under no tension; found 0 N"):
-        tension_variation(TIME, np.zeros(TIME.size))
+        _tension_variation(TIME, np.zeros(TIME.size))
 
 
 def test_a_hold_too_short_is_refused():

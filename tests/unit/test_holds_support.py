@@ -8,7 +8,7 @@ import pytest
 from reduction.record.errors import DataError
 from reduction.record.settings import HoldSettings
 from reduction.stages.holds.hold_start import Ramp
-from reduction.stages.holds.reduce_holds import Hold, hold_ends, reasons_against
+from reduction.stages.holds.reduce_holds import Hold, _hold_ends, _reasons_against
 
 TIME = np.arange(0.0, 180.0, 0.1)
 RELAXING = 350 + 50 * np.exp(-TIME / 40)
@@ -31,7 +31,7 @@ def hold(tension=RELAXING, *, time=TIME, position=None, ramp=RAMP, noise=0.3):
 
 
 def reasons(one):
-    return reasons_against(one, hold_ends(one), HoldSettings())
+    return _reasons_against(one, _hold_ends(one), HoldSettings())
 
 
 def test_nothing_speaks_against_a_sound_hold():
@@ -110,7 +110,7 @@ def test_the_drop_carries_the_noise_of_both_ends():
     for _ in range(200):
         one = hold(np.full(TIME.size, 400.0), noise=0.0)
         one.tension[:] += rng.standard_normal(TIME.size)
-        drops.append(hold_ends(one))
+        drops.append(_hold_ends(one))
     found = np.array([one.drop for one in drops])
     stated = np.mean([one.drop_uncertainty for one in drops])
     assert stated == pytest.approx(found.std(), rel=0.2)
@@ -124,7 +124,7 @@ def test_the_drop_of_a_deep_relaxation_carries_the_start_by_what_is_left():
     for _ in range(300):
         one = hold(level, noise=0.0)
         one.tension[:] += rng.standard_normal(TIME.size)
-        ends.append(hold_ends(one))
+        ends.append(_hold_ends(one))
     found = np.array([one.drop for one in ends])
     stated = np.mean([one.drop_uncertainty for one in ends])
     assert stated == pytest.approx(found.std(), rel=0.15)
@@ -134,11 +134,11 @@ def test_the_first_stretch_is_a_tenth_of_the_ramp_where_that_is_longer():
     # ten samples a second: 0.5 % of 179.9 s is less than nine of them, a tenth of 40 s is 40
     for ramp, n_initial in ((None, 8), (RAMP, 8), (replace(RAMP, duration=40.0), 40)):
         one = hold(ramp=ramp)
-        hold_ends(one)
+        _hold_ends(one)
         assert f"the mean of the first {n_initial}, " in one.notes[0]
 
 
 def test_a_hold_without_samples_is_refused():
     empty = Hold(*[np.empty(0)] * 4, 0.0, None, 0.01)
     with pytest.raises(DataError, match="no noise can be read"):
-        hold_ends(empty)
+        _hold_ends(empty)

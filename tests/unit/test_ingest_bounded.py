@@ -21,7 +21,7 @@ from reduction.readers.bounded_reader import bounded
 from reduction.readers.layout import Layout, Parts, Watch
 from reduction.readers.read_log import read_log
 from reduction.record.errors import LogError
-from reduction.record.samples import is_on_disk
+from reduction.record.samples import _is_on_disk
 from reduction.record.settings import Limits
 
 SHORT = Limits(time=1.0)
@@ -77,7 +77,7 @@ def test_a_reader_that_breaks_is_told_and_the_next_file_is_read(path, reader, ca
 
 
 def test_a_reader_that_hangs_is_ended(path):
-    module.end_reader()
+    module._end_reader()
     begin = time.monotonic()
     with pytest.raises(
         LogError, match=r"the file takes too long to read; .*needed 1 s at most"
@@ -125,7 +125,7 @@ def test_columns_on_disk_are_taken_over(path, tmp_path):
     parts.folder.mkdir()
     log = read_log(path, LAYOUT, name="log", parts=parts)
     assert not list(parts.folder.iterdir())
-    assert all(is_on_disk(column) for column in log.columns.values())
+    assert all(_is_on_disk(column) for column in log.columns.values())
     np.testing.assert_array_equal(log.columns["tension.1"], np.arange(1000.0) ** 2)
     log.columns["tension.1"][0] = 1.0  # its own from now on
     with pytest.raises(LogError, match="SIGSEGV"):

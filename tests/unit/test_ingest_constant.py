@@ -5,11 +5,11 @@ import pytest
 
 from reduction.readers import sample_flags as constant
 from reduction.readers.sample_flags import (
-    constant_runs,
-    find_saturated,
-    find_stuck,
-    find_stuck_position,
-    moves,
+    _constant_runs,
+    _find_saturated,
+    _find_stuck,
+    _find_stuck_position,
+    _moves,
 )
 
 RANDOM = np.random.default_rng(20051010)
@@ -49,27 +49,27 @@ def brute(values, minimum):
 def test_runs_are_those_that_a_plain_search_finds(minimum, seed):
     source = np.random.default_rng(seed)
     values = np.repeat(source.integers(0, 3, 300), source.integers(1, 120, 300)).astype(float)
-    runs = constant_runs(values, minimum)
+    runs = _constant_runs(values, minimum)
     assert list(zip(runs.start.tolist(), runs.stop.tolist(), strict=True)) == brute(values, minimum)
     assert runs.mask(values).sum() == sum(stop - start for start, stop in brute(values, minimum))
 
 
 def test_a_series_shorter_than_a_run_has_none():
-    assert constant_runs(np.ones(10), 50).start.size == 0
-    assert not constant_runs(np.ones(10), 50).mask(np.ones(10)).any()
+    assert _constant_runs(np.ones(10), 50).start.size == 0
+    assert not _constant_runs(np.ones(10), 50).mask(np.ones(10)).any()
 
 
 def test_a_noisy_hold_does_not_move_and_a_ramp_does():
     position = np.concatenate([np.full(500, 20.0), np.linspace(20, 25, 500)])
     position += RANDOM.normal(0, 0.004, 1000)
     load = np.repeat(np.arange(10.0), 100)
-    assert moves(position, constant_runs(load, 50)).tolist() == [False] * 5 + [True] * 5
+    assert _moves(position, _constant_runs(load, 50)).tolist() == [False] * 5 + [True] * 5
 
 
 def test_a_channel_that_repeats_a_value_while_the_crosshead_moves_is_stuck():
     load = triangle(50, 120) + RANDOM.normal(0, 0.3, TIME.size)
     load[730:830] = load[730]
-    assert loops(find_stuck(load, POSITION, samples=50)) == [(730, 830)]
+    assert loops(_find_stuck(load, POSITION, samples=50)) == [(730, 830)]
 
 
 def test_a_hold_is_not_stuck_however_even_its_load():
@@ -77,29 +77,29 @@ def test_a_hold_is_not_stuck_however_even_its_load():
     load = np.concatenate(
         [triangle(50, 120)[:300], np.full(1000, 80.0), triangle(50, 120)[300:1000]]
     )
-    assert not find_stuck(load, position, samples=50).any()
+    assert not _find_stuck(load, position, samples=50).any()
 
 
 def test_a_slack_specimen_that_reads_zero_while_the_crosshead_moves_is_not_stuck():
     load = np.maximum(triangle(-100, 120), 0.0)
     assert (load == 0).sum() > 500
-    assert not find_stuck(load, POSITION, samples=50).any()
-    assert not find_saturated(load, POSITION).any()
+    assert not _find_stuck(load, POSITION, samples=50).any()
+    assert not _find_saturated(load, POSITION).any()
 
 
 def test_a_load_that_falls_to_zero_at_once_is_stuck():
     load = np.maximum(triangle(-100, 120), 0.0)
     load[1065:1130] = 0.0  # at 43 N, a cable comes loose
-    assert loops(find_stuck(load, POSITION, samples=50)) == [(1065, 1130)]
+    assert loops(_find_stuck(load, POSITION, samples=50)) == [(1065, 1130)]
 
 
 def test_a_dead_channel_is_stuck_throughout():
-    assert find_stuck(np.zeros(TIME.size), POSITION, samples=50).all()
+    assert _find_stuck(np.zeros(TIME.size), POSITION, samples=50).all()
 
 
 def test_a_clipped_channel_is_saturated_at_each_peak():
     load = np.minimum(quantised(triangle(50, 120), 0.244), 100.04)
-    found = find_saturated(load, POSITION)
+    found = _find_saturated(load, POSITION)
     assert np.array_equal(found, load == load.max())
     assert found.sum() > 500
 
@@ -107,46 +107,46 @@ def test_a_clipped_channel_is_saturated_at_each_peak():
 def test_a_channel_clipped_in_compression_is_saturated():
     load = np.maximum(triangle(-120, 120), -100.0)
     whole = slice(50, -50)  # at the ends a trough is cut in half
-    assert np.array_equal(find_saturated(load, POSITION)[whole], (load == -100.0)[whole])
+    assert np.array_equal(_find_saturated(load, POSITION)[whole], (load == -100.0)[whole])
 
 
 @pytest.mark.parametrize("step", [0.244, 1.0, 3.0])
 @pytest.mark.parametrize("shape", ["triangle", "sine"])
 def test_quantised_peaks_are_not_saturated(shape, step):
     wave = triangle(50, 120) if shape == "triangle" else 85 + 35 * np.sin(2 * np.pi * TIME / 20)
-    assert not find_saturated(quantised(wave, step), POSITION).any()
-    assert not find_stuck(quantised(wave, step), POSITION, samples=50).any()
+    assert not _find_saturated(quantised(wave, step), POSITION).any()
+    assert not _find_stuck(quantised(wave, step), POSITION, samples=50).any()
 
 
 def test_a_hold_at_the_greatest_load_is_not_saturated():
     ramp = np.linspace(20, 25, 100)
     position = np.concatenate([ramp, np.full(500, 25.0), ramp[::-1]])
     load = np.concatenate([np.linspace(0, 400, 100), np.full(500, 400.0), np.linspace(380, 0, 100)])
-    assert not find_saturated(load, position).any()
+    assert not _find_saturated(load, position).any()
 
 
 def test_a_position_that_stands_still_while_the_load_cycles_is_stuck():
     load = np.vstack([triangle(50, 120), triangle(60, 130)]) + RANDOM.normal(0, 0.3, (2, TIME.size))
     position = POSITION.copy()
     position[700:1130] = position[700]
-    assert loops(find_stuck_position(position, load, samples=50)) == [(700, 1130)]
+    assert loops(_find_stuck_position(position, load, samples=50)) == [(700, 1130)]
 
 
 def test_relaxation_in_a_hold_does_not_make_position_stuck():
     time = np.arange(0, 3600, 1.0)
     load = (400 - 20 * np.log1p(time) + RANDOM.normal(0, 0.25, time.size))[np.newaxis]
-    assert not find_stuck_position(np.full(time.size, 38.37), load, samples=50).any()
+    assert not _find_stuck_position(np.full(time.size, 38.37), load, samples=50).any()
     overnight = quantised(68 + RANDOM.normal(0, 0.25, time.size), 0.244)[np.newaxis]
-    assert not find_stuck_position(np.full(time.size, 21.75), overnight, samples=50).any()
+    assert not _find_stuck_position(np.full(time.size, 21.75), overnight, samples=50).any()
 
 
 def test_missing_loads_do_not_upset_the_search():
     load = triangle(50, 120)
     load[730:830] = load[730]
     load[5] = np.nan
-    assert loops(find_stuck(load, POSITION, samples=50)) == [(730, 830)]
-    assert not find_saturated(load, POSITION).any()
-    assert not find_stuck_position(POSITION, load[np.newaxis], samples=50).any()
+    assert loops(_find_stuck(load, POSITION, samples=50)) == [(730, 830)]
+    assert not _find_saturated(load, POSITION).any()
+    assert not _find_stuck_position(POSITION, load[np.newaxis], samples=50).any()
 
 
 @pytest.mark.parametrize("n_together", [1, 3, 1 << 10])
@@ -158,7 +158,7 @@ def test_runs_are_those_told_value_by_value(monkeypatch, n_together, minimum):
     values[random.integers(0, values.size, 20)] = np.nan
     edges = np.flatnonzero(np.diff(values, prepend=np.nan, append=np.nan) != 0)
     long = np.diff(edges) >= minimum
-    runs = constant_runs(values, minimum)
+    runs = _constant_runs(values, minimum)
     np.testing.assert_array_equal(runs.start, edges[:-1][long])
     np.testing.assert_array_equal(runs.stop, edges[1:][long])
 
@@ -166,7 +166,7 @@ def test_runs_are_those_told_value_by_value(monkeypatch, n_together, minimum):
 def test_very_many_runs_take_no_memory_for_each():
     values = np.repeat(np.arange(20_000.0) % 7, 60)
     tracemalloc.start()
-    runs = constant_runs(values, 50)
+    runs = _constant_runs(values, 50)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert runs.start.size == 20_000

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from reduction.readers.sample_flags import find_excursions, find_spikes, noise_of, usual_step
+from reduction.readers.sample_flags import _find_excursions, _find_spikes, _noise_of, _usual_step
 
 TIME = np.arange(0, 200, 0.1)
 NOISE = np.random.default_rng(20051010).normal(0, 0.3, TIME.size)
@@ -10,7 +10,7 @@ COURSE = 20 + np.where(TIME < 160, 100 - 100 * np.abs((TIME / 20) % 1 - 0.5) * 2
 
 
 def off(values, factor=12.0):
-    return np.flatnonzero(find_spikes(values, noise=noise_of(values)[0], factor=factor)).tolist()
+    return np.flatnonzero(_find_spikes(values, noise=_noise_of(values)[0], factor=factor)).tolist()
 
 
 @pytest.mark.parametrize("length", [2, 3, 5, 10])
@@ -83,11 +83,11 @@ def test_a_missing_sample_beside_an_excursion_leaves_it_alone():
 
 
 def test_no_jump_is_no_excursion():
-    assert find_excursions(COURSE, np.empty(0, dtype=np.intp), limit=1.0).size == 0
+    assert _find_excursions(COURSE, np.empty(0, dtype=np.intp), limit=1.0).size == 0
 
 
 def test_the_usual_step_passes_over_two_large_ones():
     values = np.arange(20.0)
     values[12:] += 50
     values[14:] += 50
-    assert usual_step(values, np.array([9]), np.array([9])) == pytest.approx([1.0])
+    assert _usual_step(values, np.array([9]), np.array([9])) == pytest.approx([1.0])

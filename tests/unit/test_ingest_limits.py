@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from reduction.campaign.load import load_campaign
-from reduction.campaign.model import LimitsSection, stated_limits
+from reduction.campaign.model import _LimitsSection, stated_limits
 from reduction.readers.layout import Layout, Watch
 from reduction.readers.raw_log import hash_source
 from reduction.readers.read_log import read_log
@@ -66,7 +66,7 @@ def test_a_campaign_without_limits_has_the_defaults(tmp_path):
 
 
 def test_limits_are_read_in_their_units(tmp_path):
-    section = LimitsSection(
+    section = _LimitsSection(
         file_size="2 TB", unpacked_size="1.5 GiB", line_length="20 MB", columns=50, time="90 min"
     )
     assert stated_limits(tmp_path, section) == Limits(
@@ -99,7 +99,7 @@ def test_limits_are_read_in_their_units(tmp_path):
 )
 def test_a_limit_that_nobody_can_mean_is_refused(tmp_path, key, value, words):
     with pytest.raises(SettingsError) as caught:
-        stated_limits(tmp_path / "campaign.toml", LimitsSection(**{key: value}))
+        stated_limits(tmp_path / "campaign.toml", _LimitsSection(**{key: value}))
     assert f"campaign.toml: limits.{key}: " in str(caught.value)
     assert words in str(caught.value)
 

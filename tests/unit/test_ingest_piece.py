@@ -6,7 +6,7 @@ import pytest
 from reduction.readers import record_in_si as piece
 from reduction.readers.layout import Layout
 from reduction.readers.raw_log import RawLog
-from reduction.readers.record_in_si import to_piece
+from reduction.readers.record_in_si import _to_piece
 from reduction.record.errors import DataError
 from reduction.record.measurement import Source
 from reduction.record.measurement import samples as blocks
@@ -25,7 +25,7 @@ def read(time):
     log = RawLog(
         source=Source("T-1.csv", "0" * 64, 1), columns=columns, first_row=2, n_rows_read=time.size
     )
-    return to_piece(log, LAYOUT, gap_factor=5.0)
+    return _to_piece(log, LAYOUT, gap_factor=5.0)
 
 
 def test_a_clock_that_slips_again_and_again_is_gone_over_once(monkeypatch):

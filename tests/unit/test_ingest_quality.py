@@ -2,12 +2,12 @@ import numpy as np
 import pytest
 
 from reduction.readers.sample_flags import (
+    _find_missing,
+    _find_outside_range,
+    _find_spikes,
+    _noise_of,
+    _time_faults,
     account_rows,
-    find_missing,
-    find_outside_range,
-    find_spikes,
-    noise_of,
-    time_faults,
 )
 from reduction.record.measurement import Quality, Record
 
@@ -22,22 +22,22 @@ def triangle(time, period=20.0, low=0.0, high=100.0):
 
 
 def faults(time):
-    return time_faults(np.asarray(time, float), gap_factor=3.5, rate_tolerance=0.2)
+    return _time_faults(np.asarray(time, float), gap_factor=3.5, rate_tolerance=0.2)
 
 
 def spikes(values, factor=12.0):
-    return np.flatnonzero(find_spikes(values, noise=noise_of(values)[0], factor=factor))
+    return np.flatnonzero(_find_spikes(values, noise=_noise_of(values)[0], factor=factor))
 
 
 def test_missing_values_are_those_that_are_nan():
     values = np.array([1.0, np.nan, 3.0])
-    assert find_missing(values).tolist() == [False, True, False]
-    assert not find_missing(np.array([1e300, 1e300])).any()
+    assert _find_missing(values).tolist() == [False, True, False]
+    assert not _find_missing(np.array([1e300, 1e300])).any()
 
 
 def test_values_outside_the_verified_range_are_both_too_low_and_too_high():
     values = np.array([-1.0, 0.0, 5.0, 10.0, 11.0, np.nan])
-    assert find_outside_range(values, 0.0, 10.0).tolist() == [
+    assert _find_outside_range(values, 0.0, 10.0).tolist() == [
         True,
         False,
         False,
@@ -45,7 +45,7 @@ def test_values_outside_the_verified_range_are_both_too_low_and_too_high():
         True,
         False,
     ]
-    assert not find_outside_range(values[1:4], 0.0, 10.0).any()
+    assert not _find_outside_range(values[1:4], 0.0, 10.0).any()
 
 
 def test_an_even_time_axis_has_no_fault():
@@ -116,25 +116,25 @@ def test_an_uneven_rate_is_counted_with_its_extremes():
 
 def test_noise_is_that_which_was_put_in():
     values = triangle(CLOCK) + RANDOM.normal(0, 0.5, CLOCK.size)
-    noise, _ = noise_of(values)
+    noise, _ = _noise_of(values)
     assert noise == pytest.approx(0.5, rel=0.1)
 
 
 def test_noise_of_a_long_series_is_found_from_parts_of_it():
     values = np.tile(triangle(CLOCK), 100) + RANDOM.normal(0, 0.5, 100 * CLOCK.size)
-    assert noise_of(values)[0] == pytest.approx(0.5, rel=0.1)
+    assert _noise_of(values)[0] == pytest.approx(0.5, rel=0.1)
 
 
 def test_noise_is_never_below_what_the_printed_step_makes():
     values = np.round(triangle(CLOCK, period=200.0) / 0.244) * 0.244
-    noise, step = noise_of(values)
+    noise, step = _noise_of(values)
     assert step == pytest.approx(0.244)
     assert noise >= 0.244 / np.sqrt(12)
 
 
 def test_a_constant_series_has_no_noise_and_no_spike():
-    assert noise_of(np.ones(100)) == (0.0, 0.0)
-    assert not find_spikes(np.ones(100), noise=0.0, factor=12.0).any()
+    assert _noise_of(np.ones(100)) == (0.0, 0.0)
+    assert not _find_spikes(np.ones(100), noise=0.0, factor=12.0).any()
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.3])

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from reduction.readers.record_in_si import on_common_time
+from reduction.readers.record_in_si import _on_common_time
 from reduction.record.errors import DataError
 
 FAST, SLOW = np.arange(0, 10, 0.01), np.arange(0, 10, 0.1)
@@ -12,12 +12,12 @@ def common(shared, values, own):
     values = {key: np.asarray(series, float) for key, series in values.items()}
     own = {key: np.asarray(series, float) for key, series in own.items()}
     shared = None if shared is None else np.asarray(shared, float)
-    return on_common_time(shared, values, own, gap_factor=3.5)
+    return _on_common_time(shared, values, own, gap_factor=3.5)
 
 
 def test_one_time_axis_is_handed_on_untouched():
     position = 2 * FAST
-    result = on_common_time(FAST, {"crosshead_position": position}, {}, gap_factor=3.5)
+    result = _on_common_time(FAST, {"crosshead_position": position}, {}, gap_factor=3.5)
     assert result.time is FAST and result.values["crosshead_position"] is position
     assert result.resampled == frozenset() and result.notes == ()
 

@@ -1,11 +1,11 @@
 import numpy as np
 
-from reduction.readers.sample_flags import bridge_stamps
+from reduction.readers.sample_flags import _bridge_stamps
 
 
 def bridged(time):
     time = np.array(time, float)
-    return bridge_stamps(time, np.isnan(time)).tolist()
+    return _bridge_stamps(time, np.isnan(time)).tolist()
 
 
 def test_stamps_between_and_beyond_those_that_are_there_go_on_evenly():
@@ -18,4 +18,4 @@ def test_one_stamp_alone_tells_no_step():
 
 def test_a_time_that_is_whole_is_handed_back():
     time = np.arange(3.0)
-    assert bridge_stamps(time, np.zeros(3, dtype=bool)) is time
+    assert _bridge_stamps(time, np.zeros(3, dtype=bool)) is time

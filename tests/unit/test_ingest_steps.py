@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from reduction.readers.sample_flags import find_lone_steps, flag_record, noise_of
+from reduction.readers.sample_flags import _find_lone_steps, _noise_of, flag_record
 from reduction.record.measurement import Record
 from reduction.record.settings import QualitySettings
 
@@ -14,7 +14,7 @@ POSITION = 6.0 + 0.1 * WAVE + RANDOM.normal(0, POSITION_NOISE, TIME.size)
 
 
 def steps(tension, position=POSITION, noise=TENSION_NOISE):
-    return find_lone_steps(
+    return _find_lone_steps(
         tension, position[np.newaxis], noise=noise, factor=12.0,
         noise_beside=np.array([POSITION_NOISE]),
     ).tolist()  # fmt: skip
@@ -75,7 +75,7 @@ def test_a_step_counts_from_twelve_times_the_noise_and_a_twentieth_of_the_range(
 def test_coarse_samples_of_waves_step_nowhere(every):
     square = np.where(np.arange(400) % 8 < 4, 0.0, 1.0)
     for values in (TENSION[::every], np.round(TENSION[::every], -1)):
-        assert steps(values, POSITION[::every], noise_of(values)[0]) == []
+        assert steps(values, POSITION[::every], _noise_of(values)[0]) == []
     assert steps(100 * square, square) == []
 
 

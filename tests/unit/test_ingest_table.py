@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from reduction.readers.columns import (
-    CheckedColumn,
     ColumnTable,
     Wanted,
+    _CheckedColumn,
     matrix_table,
     read_columns,
     row_parts,
@@ -43,7 +43,7 @@ def table(**columns):
 
 def to_floats(path, wanted, values, layout):
     """A column of one part."""
-    column = CheckedColumn(path, wanted, layout, None)
+    column = _CheckedColumn(path, wanted, layout, None)
     column.add(values)
     return column.finish()
 

@@ -3,12 +3,12 @@ import pytest
 
 from reduction.record.errors import DataError
 from reduction.stages.line.line_model import (
+    _storage_and_loss,
     apparent_spring_constant,
     hysteresis_energy,
     identify_by_amplitude,
     identify_by_fundamental,
     reasons_in_words,
-    storage_and_loss,
 )
 from reduction.stages.line.line_product import REASONS
 
@@ -66,7 +66,7 @@ def test_storage_and_loss_give_the_line_too():
         "relaxation_time": [2.0, 0.1],
         "frequency": [[0.1], [0.5]],
     }
-    stored, lost = storage_and_loss(**line)
+    stored, lost = _storage_and_loss(**line)
     found = identify_by_fundamental(
         storage_spring_constant=stored,
         loss_spring_constant=lost,

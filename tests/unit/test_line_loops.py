@@ -4,7 +4,7 @@ import pytest
 from reduction.record.errors import DataError
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.loops import close_loops
-from reduction.stages.line.line_model import apparent_spring_constant, storage_and_loss
+from reduction.stages.line.line_model import _storage_and_loss, apparent_spring_constant
 from reduction.stages.line.line_of_loops import identify_cycles, identify_run
 
 REST, SPRING, TIME, FREQUENCY = 1.2e4, 1.8e4, 2.0, 0.3
@@ -26,7 +26,7 @@ def series(n_cycles, per_cycle=100, noise=0.0, seed=0, waveform="sinusoidal", am
     strain, tension = 0.1, 2000.0
     for order in orders:
         size = amplitude * (1 if waveform == "sinusoidal" else 8 / np.pi**2 / order**2)
-        stored, lost = storage_and_loss(frequency=order * FREQUENCY, **LINE)
+        stored, lost = _storage_and_loss(frequency=order * FREQUENCY, **LINE)
         angle = 2 * np.pi * order * turn
         strain = strain - size * np.cos(angle)
         tension = tension - size * (stored * np.cos(angle) - lost * np.sin(angle))
@@ -184,7 +184,7 @@ def test_a_slack_line_is_noted():
 
 def test_an_uncertain_rest_spring_is_noted():
     rest = REST * 2.2
-    stored, _ = storage_and_loss(frequency=FREQUENCY, **LINE)
+    stored, _ = _storage_and_loss(frequency=FREQUENCY, **LINE)
     assert rest < stored < apparent_spring_constant(frequency=FREQUENCY, **LINE)
     line = identify_cycles(
         loops_of(*series(4)),

@@ -3,10 +3,10 @@ import pytest
 
 from reduction.record.errors import DataError
 from reduction.stages.line.line_model import (
+    _storage_and_loss,
     apparent_spring_constant,
     dashpot_coefficient,
     hysteresis_energy,
-    storage_and_loss,
 )
 
 LINE = {
@@ -58,7 +58,7 @@ def test_the_closed_form_of_the_energy_has_pi_and_the_square_of_the_rest_spring(
 
 
 def test_storage_and_loss_are_the_complex_spring_constant():
-    stored, lost = storage_and_loss(frequency=0.3, **LINE)
+    stored, lost = _storage_and_loss(frequency=0.3, **LINE)
     k0, k1, tau = LINE.values()
     turn = 2j * np.pi * 0.3 * tau
     whole = k0 + k1 * turn / (1 + turn)
@@ -71,7 +71,7 @@ def test_a_missing_input_gives_a_missing_number():
 
 
 def test_shapes_broadcast():
-    stored, lost = storage_and_loss(
+    stored, lost = _storage_and_loss(
         frequency=np.ones((3, 1)), **{**LINE, "relaxation_time": [1, 2]}
     )
     assert stored.shape == lost.shape == (3, 2)
@@ -80,7 +80,7 @@ def test_shapes_broadcast():
 @pytest.mark.parametrize("name", [*LINE, "frequency"])
 def test_a_negative_input_is_refused_by_name(name):
     with pytest.raises(DataError, match=f"1 of 2 values of {name.replace('_', ' ')} are negative"):
-        storage_and_loss(**{"frequency": 0.3, **LINE, name: [1.0, -2.0]})
+        _storage_and_loss(**{"frequency": 0.3, **LINE, name: [1.0, -2.0]})
 
 
 def test_a_negative_amplitude_is_refused():

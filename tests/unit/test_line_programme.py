@@ -4,7 +4,7 @@ import pytest
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.stages.cycles.cycle_product import Loops
 from reduction.stages.holds.relaxation import HoldResult
-from reduction.stages.line.hold_pairs import creep_of_hold, static_stiffness
+from reduction.stages.line.hold_pairs import _static_stiffness, creep_of_hold
 from reduction.stages.line.line_product import mean_of_rows, one_a_specimen
 from reduction.stages.line.rope_programme import (
     cycles_to_failure,
@@ -189,7 +189,7 @@ LOW = {"low_tension": 100.0, "low_strain": 0.05, "reference_time": 600.0}
 
 class TestStatic:
     def test_a_line_in_the_logarithm_of_time_comes_back(self):
-        found = static_stiffness(*upper_hold(), **LOW, rated_break_strength=1000.0)
+        found = _static_stiffness(*upper_hold(), **LOW, rated_break_strength=1000.0)
         expected = 4000 - 100 * np.log10(600)
         assert found.stiffness_at_reference == pytest.approx(expected, rel=1e-5)
         assert found.slope_per_decade == pytest.approx(-100, rel=1e-3)
@@ -198,7 +198,7 @@ class TestStatic:
         assert found.notes == ()
 
     def test_stated_uncertainties_are_the_scatter_of_holds_with_noise(self):
-        found = [static_stiffness(*upper_hold(seed), **LOW) for seed in range(200)]
+        found = [_static_stiffness(*upper_hold(seed), **LOW) for seed in range(200)]
         for value, stated in (
             ("slope_per_decade", "slope_per_decade_standard_uncertainty"),
             ("stiffness_at_reference", "stiffness_at_reference_standard_uncertainty"),
@@ -214,35 +214,35 @@ class TestStatic:
         t, load, strain = upper_hold()
         at = np.array([0, 9, 59, 179, 599, 3599])
         tension = np.append(load[at], np.nan)
-        found = static_stiffness(
+        found = _static_stiffness(
             np.append(t[at], 7200.0), tension, np.append(strain[at], np.nan), **LOW
         )
         assert found.slope_per_decade == pytest.approx(-100, rel=1e-6)
         assert found.elapsed.size == 6
 
     def test_the_first_three_ramp_times_are_left_out(self):
-        found = static_stiffness(*upper_hold(), **LOW, ramp_duration=10.0)
+        found = _static_stiffness(*upper_hold(), **LOW, ramp_duration=10.0)
         assert found.elapsed[0] >= 30
 
     def test_a_reference_time_beyond_the_hold_is_noted(self):
-        found = static_stiffness(*upper_hold(), **{**LOW, "reference_time": 1e5})
+        found = _static_stiffness(*upper_hold(), **{**LOW, "reference_time": 1e5})
         assert found.notes[0].startswith("the stiffness at 100000 s is read off the line beyond")
         assert found.stiffness_at_reference == pytest.approx(3500, rel=1e-3)
 
     def test_a_short_hold_is_refused(self):
         t, load, strain = upper_hold()
         with pytest.raises(FitError, match="found 3 readings after 3 ramp times"):
-            static_stiffness(t[:3], load[:3], strain[:3], **LOW)
+            _static_stiffness(t[:3], load[:3], strain[:3], **LOW)
         with pytest.raises(
             FitError, match=r"points over 0\.\d\d decades; needed 4 points over 0.5"
         ):
-            static_stiffness(t[999:2000], load[999:2000], strain[999:2000], **LOW)
+            _static_stiffness(t[999:2000], load[999:2000], strain[999:2000], **LOW)
 
     def test_an_upper_hold_that_is_not_above_is_refused(self):
         with pytest.raises(
             DataError, match="the upper hold is not above the lower one; found least"
         ):
-            static_stiffness(*upper_hold(), **{**LOW, "low_tension": 400.0})
+            _static_stiffness(*upper_hold(), **{**LOW, "low_tension": 400.0})
 
     @pytest.mark.parametrize(
         ("changed", "message"),
@@ -253,7 +253,7 @@ class TestStatic:
     )
     def test_settings_that_cannot_be_are_refused(self, changed, message):
         with pytest.raises(SettingsError, match=message):
-            static_stiffness(*upper_hold(), **{**LOW, **changed})
+            _static_stiffness(*upper_hold(), **{**LOW, **changed})
 
 
 def hold(kind="creep", rate=0.002, refusals=()):

@@ -6,11 +6,11 @@ from hypothesis import strategies as st
 from reduction.record.errors import DataError, FitError
 from reduction.stages.cycles.cycle_product import Loops
 from reduction.stages.line.slow_pull import (
-    find_loading,
+    _find_loading,
+    _greatest_fall,
+    _positive_range,
+    _printed_form,
     fit_pull,
-    greatest_fall,
-    positive_range,
-    printed_form,
     quasi_static_of_run,
     quasi_static_spring_constant,
     slope_of_cubic,
@@ -42,39 +42,39 @@ class TestLoading:
         load = np.concatenate(
             [np.full(50, 2.0), np.linspace(2, 1000, 500), np.linspace(1000, 0, 80)]
         )
-        rows = find_loading(load, load / 1e4)
+        rows = _find_loading(load, load / 1e4)
         assert 49 <= rows[0] <= 53 and rows[-1] in (549, 550)
 
     def test_cycles_that_come_back_to_slack_are_no_part_of_the_pull(self):
         turn = np.linspace(0, 6 * np.pi, 600)
         load = np.concatenate([300 * (1 - np.cos(turn)), np.linspace(0, 2000, 400)])
-        rows = find_loading(load, load / 1e4)
+        rows = _find_loading(load, load / 1e4)
         assert 595 <= rows[0] <= 605
 
     def test_it_counts_from_the_reference_tension(self):
         load = np.linspace(0, 1000, 1001)
-        rows = find_loading(load, load / 1e4, reference_tension=100.0)
+        rows = _find_loading(load, load / 1e4, reference_tension=100.0)
         assert (rows[0], rows[-1]) == (100, 1000)
 
     def test_a_record_that_begins_above_the_reference_is_used_whole(self):
         load = np.linspace(50, 1000, 500)
-        rows = find_loading(load, load / 1e4, reference_tension=20.0)
+        rows = _find_loading(load, load / 1e4, reference_tension=20.0)
         assert (rows[0], rows.size) == (0, 500)
 
     def test_missing_readings_are_passed_over(self):
         load = np.linspace(0, 1000, 500)
         strain = load / 1e4
         load[100:110], strain[200] = np.nan, np.nan
-        rows = find_loading(load, strain)
+        rows = _find_loading(load, strain)
         assert not set(rows) & {*range(100, 110), 200}
 
     def test_noise_at_slack_does_not_begin_the_pull(self):
         rng = np.random.default_rng(2)
         load = np.concatenate([np.zeros(3000), np.linspace(0, 1000, 2000)]) + rng.normal(0, 2, 5000)
-        assert 3000 <= find_loading(load, np.arange(5000.0))[0] <= 3060
+        assert 3000 <= _find_loading(load, np.arange(5000.0))[0] <= 3060
 
     def test_a_fall_is_from_the_greatest_so_far(self):
-        assert greatest_fall([1.0, 5.0, 2.0, 6.0, 5.5]) == 3.0
+        assert _greatest_fall([1.0, 5.0, 2.0, 6.0, 5.5]) == 3.0
 
     @pytest.mark.parametrize(
         ("load", "reference", "message"),
@@ -90,11 +90,11 @@ class TestLoading:
     )  # fmt: skip
     def test_what_is_no_pull_is_refused(self, load, reference, message):
         with pytest.raises(DataError, match=message):
-            find_loading(load, load / 1e3, reference_tension=reference)
+            _find_loading(load, load / 1e3, reference_tension=reference)
 
     def test_series_that_do_not_pair_up_are_refused(self):
         with pytest.raises(DataError, match="do not pair up"):
-            find_loading([1.0, 2.0], [1.0])
+            _find_loading([1.0, 2.0], [1.0])
 
 
 class TestCubic:
@@ -123,11 +123,11 @@ class TestCubic:
         ],
     )
     def test_the_longest_rising_part(self, coefficient, expected):
-        assert positive_range(np.array(coefficient, dtype=float)) == pytest.approx(expected)
+        assert _positive_range(np.array(coefficient, dtype=float)) == pytest.approx(expected)
 
     def test_the_printed_form_of_a_curve_that_it_can_hold_is_exact(self):
         # strain with slope 1/K_0 for constant K_0
-        fit, deviation = printed_form(
+        fit, deviation = _printed_form(
             np.array([0.1, 0.05, 0, 0]), low=0, high=1000, centre=500, half=500
         )
         assert fit == pytest.approx([1e4, 0, 0, 0], abs=1e-7) and deviation < 1e-12

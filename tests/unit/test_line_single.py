@@ -5,10 +5,10 @@ from scipy import stats
 from reduction.record.errors import DataError, SettingsError
 from reduction.stages.line.line_model import (
     VERDICTS,
+    _power_of_frequency,
+    _storage_and_loss,
     check_single_time,
     identify_by_fundamental,
-    power_of_frequency,
-    storage_and_loss,
 )
 
 FREQUENCY = np.array([0.1, 0.1, 0.3, 0.3, 0.5, 0.5])
@@ -17,7 +17,7 @@ FREQUENCY = np.array([0.1, 0.1, 0.3, 0.3, 0.5, 0.5])
 def test_exponent_and_uncertainty_are_those_of_a_regression():
     rng = np.random.default_rng(3)
     values = 4 * FREQUENCY**-0.6 * np.exp(rng.normal(0, 0.1, 6))
-    exponent, uncertainty, left = power_of_frequency(FREQUENCY, values)
+    exponent, uncertainty, left = _power_of_frequency(FREQUENCY, values)
     other = stats.linregress(np.log(FREQUENCY), np.log(values))
     assert exponent == pytest.approx(other.slope)
     assert uncertainty == pytest.approx(other.stderr)
@@ -31,7 +31,7 @@ def test_groups_are_a_regression_with_one_intercept_each():
     design = np.column_stack([group == "low", group == "high", np.log(FREQUENCY)]).astype(float)
     beta, rest, *_ = np.linalg.lstsq(design, np.log(values), rcond=None)
     covariance = rest[0] / 3 * np.linalg.inv(design.T @ design)
-    exponent, uncertainty, left = power_of_frequency(FREQUENCY, values, group=group)
+    exponent, uncertainty, left = _power_of_frequency(FREQUENCY, values, group=group)
     assert (exponent, uncertainty) == pytest.approx((beta[2], np.sqrt(covariance[2, 2])))
     assert left == 3
 
@@ -42,11 +42,11 @@ def test_many_lines_at_once_are_each_alone_also_with_runs_missing():
     values[1, 2, 0] = np.nan
     values[0, 0, 5] = -1
     group = [1, 2, 1, 2, 1, 2]
-    exponent, uncertainty, left = power_of_frequency(FREQUENCY, values, group=group)
+    exponent, uncertainty, left = _power_of_frequency(FREQUENCY, values, group=group)
     assert exponent.shape == uncertainty.shape == left.shape == (4, 3)
     for index in np.ndindex(4, 3):
         kept = values[index] > 0
-        one = power_of_frequency(FREQUENCY[kept], values[index][kept], group=np.array(group)[kept])
+        one = _power_of_frequency(FREQUENCY[kept], values[index][kept], group=np.array(group)[kept])
         assert exponent[index] == pytest.approx(float(one[0]))
         assert uncertainty[index] == pytest.approx(float(one[1]))
         assert left[index] == one[2]
@@ -85,7 +85,7 @@ def test_a_constant_loss_angle_is_seen_as_one_over_frequency_by_way_of_the_inver
 
 
 def test_a_line_of_three_parameters_passes_its_own_check():
-    stored, lost = storage_and_loss(
+    stored, lost = _storage_and_loss(
         quasi_static_spring_constant=1.2e4,
         dissipation_spring_constant=1.8e4,
         relaxation_time=2.0,
@@ -152,12 +152,12 @@ def test_a_line_without_any_time_decides_nothing():
 )
 def test_runs_that_do_not_fit_are_refused(arguments, message):
     with pytest.raises(DataError, match=message):
-        power_of_frequency(*arguments)
+        _power_of_frequency(*arguments)
 
 
 def test_groups_and_confidence_are_checked():
     with pytest.raises(DataError, match="groups of equal loads do not fit the runs"):
-        power_of_frequency([0.1, 0.2], [1.0, 2.0], group=[1])
+        _power_of_frequency([0.1, 0.2], [1.0, 2.0], group=[1])
     with pytest.raises(SettingsError, match="a confidence is a share; found 95"):
         check_single_time([0.1, 0.2], [1.0, 2.0], [0.1, 0.1], confidence=95)
     with pytest.raises(SettingsError, match="a tolerance of the exponent; found 0.5"):

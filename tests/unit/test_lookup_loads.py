@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.lines.line_lookup import loads_of_line, look_up
+from reduction.lines.line_lookup import _loads_of_line, look_up
 from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
 from reduction.lines.published_source import published_sources
 from reduction.record.errors import DataError
@@ -71,14 +71,14 @@ def test_a_tether_that_reaches_zero_tension_is_refused():
 def test_a_rope_may_go_slack_and_has_the_rule_for_it():
     found = look_up(ROPE, "tangent_modulus", strain=0.2, branch="descending")
     assert found.peak_tension == 0
-    loads = loads_of_line(
+    loads = _loads_of_line(
         ROPE, {"mean_tension": np.array([150.0, 180.0]), "tension_amplitude": np.array(150.0)}, (2,)
     )
     # 300 N of 1,000 N from zero is allowed; 330 N from 30 N is always loaded
     assert loads.is_slack.tolist() == [True, False]
     assert not loads.is_above_rule.any()
     above = {"mean_tension": np.array(151.0), "tension_amplitude": np.array(151.0)}
-    assert loads_of_line(ROPE, above, ()).is_above_rule
+    assert _loads_of_line(ROPE, above, ()).is_above_rule
 
 
 def test_the_rule_of_fibres_is_not_that_of_rubber():

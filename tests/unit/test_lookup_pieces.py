@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.lines.composite import composite_curve
+from reduction.lines.composite import _composite_curve
 from reduction.lines.curve_pieces import CurvePiece, piece_of_steps, pieces_of_branches
 from reduction.record.contributions import Component, Contributions, InstrumentErrors
 from reduction.record.errors import DataError, SettingsError
@@ -50,7 +50,7 @@ def test_static_branches_of_table_4_leave_the_row_out_that_contradicts_itself():
 
 
 def test_the_static_test_alone_gives_85_pounds_at_a_stretch_of_100_percent_within_3_percent():
-    curve = composite_curve([piece_of_steps(table_4(), name="1997")])
+    curve = _composite_curve([piece_of_steps(table_4(), name="1997")])
     assert curve.tension_at(1.0) / LBF == pytest.approx(85, rel=0.03)  # sec. 2.3.2 prints 85
 
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from reduction.lines.assembly import StatedSplices, deployed_model, stated_model
+from reduction.lines.assembly import StatedSplices, _deployed_model, stated_model
 from reduction.record.errors import DataError, SettingsError
 from reduction.stages.strain.strain_model import StrainModel, position_by_model
 
@@ -47,17 +47,17 @@ def test_a_tether_has_a_length():
 def test_a_displacement_becomes_a_length_where_there_are_no_splices():
     tested = StrainModel("T", "gauge-length", {"reference_position": 0.3, "gauge_length": 2.0})
     for free, expected in ((None, 4.0), (5.0, 10.0)):
-        model = deployed_model(tested, free)
+        model = _deployed_model(tested, free)
         assert position_by_model(model, strain=1.0, tension=0.0) == pytest.approx(expected)
 
 
 def test_a_tested_tether_is_deployed_as_it_was_tested():
     tested = StrainModel("T", "marks", {"relaxed_free_length": 2.5})
-    assert deployed_model(tested, None) is tested
+    assert _deployed_model(tested, None) is tested
     with pytest.raises(DataError, match="holds for the length that was tested"):
-        deployed_model(tested, 5.0)
+        _deployed_model(tested, 5.0)
 
 
 def test_an_extensometer_knows_no_splices():
     with pytest.raises(DataError, match="extensometer, which knows no splices"):
-        deployed_model(StrainModel("T", "extensometer"), np.float64(5.0))
+        _deployed_model(StrainModel("T", "extensometer"), np.float64(5.0))

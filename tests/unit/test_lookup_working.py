@@ -4,18 +4,18 @@ from assemblies import RUBBER, spring
 
 from reduction.lines.assembly import (
     SeriesPart,
-    assemble,
-    equal_tethers,
-    unequal_tethers,
-    working_point,
-    worst_sharing,
+    _assemble,
+    _equal_tethers,
+    _unequal_tethers,
+    _working_point,
+    _worst_sharing,
 )
 from reduction.record.errors import DataError, SettingsError
 
 
 def test_springs_have_the_stiffness_of_hooke_at_every_amplitude():
-    assembly = assemble(equal_tethers(spring(2.0), 4), [SeriesPart("wire", 2.0, 4000.0)])
-    point = working_point(assembly, [200.0, 400.0], [0.0, 100.0], rated_break_strength=500.0)
+    assembly = _assemble(_equal_tethers(spring(2.0), 4), [SeriesPart("wire", 2.0, 4000.0)])
+    point = _working_point(assembly, [200.0, 400.0], [0.0, 100.0], rated_break_strength=500.0)
     stiffness = 1 / (2.0 / 400 + 2.0 / 4000)
     assert point.stiffness == pytest.approx([stiffness] * 2, rel=1e-4)
     assert point.apparent_spring_constant == pytest.approx([4 * stiffness] * 2, rel=1e-4)
@@ -30,48 +30,48 @@ def test_springs_have_the_stiffness_of_hooke_at_every_amplitude():
 
 
 def test_the_stiffness_of_rubber_is_the_secant_over_the_cycle():
-    assembly = assemble(equal_tethers(RUBBER, 4))
-    point = working_point(assembly, 2400.0, 800.0)
+    assembly = _assemble(_equal_tethers(RUBBER, 4))
+    point = _working_point(assembly, 2400.0, 800.0)
     low, high = assembly.length_at([1600.0, 3200.0])
     assert point.stiffness == pytest.approx(1600 / (high - low))
-    tangent = working_point(assembly, 2400.0)
-    near = working_point(assembly, 2400.0, 30.0)
+    tangent = _working_point(assembly, 2400.0)
+    near = _working_point(assembly, 2400.0, 30.0)
     assert tangent.stiffness == pytest.approx(near.stiffness, rel=0.01)
 
 
 def test_strains_that_were_not_tested_are_flagged():
-    assembly = assemble([spring(low=0.5)])
-    found = working_point(assembly, [40.0, 100.0, 100.0], [0.0, 0.0, 60.0])
+    assembly = _assemble([spring(low=0.5)])
+    found = _working_point(assembly, [40.0, 100.0, 100.0], [0.0, 0.0, 60.0])
     assert found.is_tested.tolist() == [False, True, False]
 
 
 def test_zero_tension_is_an_error():
-    assembly = assemble(equal_tethers(spring(), 4))
+    assembly = _assemble(_equal_tethers(spring(), 4))
     with pytest.raises(DataError, match="tether 1 of 4 goes slack.*above 0 N"):
-        working_point(assembly, 300.0, 300.0)
+        _working_point(assembly, 300.0, 300.0)
     with pytest.raises(DataError, match="goes slack"):
-        working_point(assembly, [300.0, 0.0])
+        _working_point(assembly, [300.0, 0.0])
     with pytest.raises(DataError, match="amplitudes are above their mean"):
-        working_point(assembly, 300.0, 301.0)
+        _working_point(assembly, 300.0, 301.0)
 
 
 def test_the_longest_tether_goes_slack_while_the_assembly_is_taut():
-    assembly = assemble(unequal_tethers(spring(), [1.0, 1.2, 1.0]))
+    assembly = _assemble(_unequal_tethers(spring(), [1.0, 1.2, 1.0]))
     slack = 2 * 100 * 0.2  # the two others at 1.2 m
     with pytest.raises(DataError, match=f"tether 2 of 3 goes slack.*above {slack:g} N"):
-        working_point(assembly, 100.0, 65.0)
-    found = working_point(assembly, 100.0, 55.0)
+        _working_point(assembly, 100.0, 65.0)
+    found = _working_point(assembly, 100.0, 55.0)
     assert found.minimum_tether_tension[1] == pytest.approx(100 * (found.minimum_length / 1.2 - 1))
 
 
 def test_a_peak_beyond_the_curves_is_an_error():
     with pytest.raises(DataError, match="beyond the curves of the assembly"):
-        working_point(assemble([spring()]), 200.0, 60.0)
+        _working_point(_assemble([spring()]), 200.0, 60.0)
 
 
 def test_one_short_tether_of_four_takes_the_tension_that_springs_say():
     """F = 100 (L / l - 1): the length follows from the sum, the loads from the length."""
-    found = worst_sharing(spring(), 4, 400.0, free_length=1.0, tolerance=0.05)
+    found = _worst_sharing(spring(), 4, 400.0, free_length=1.0, tolerance=0.05)
     for sign, load in ((-1, found.greatest_load), (1, found.least_load)):
         lengths = np.array([1 + sign * 0.05, *3 * [1 - sign * 0.05]])
         length = (400 / 100 + 4) / (1 / lengths).sum()
@@ -83,7 +83,7 @@ def test_one_short_tether_of_four_takes_the_tension_that_springs_say():
 
 def test_parts_in_line_do_not_change_how_tethers_share():
     one, other = (
-        worst_sharing(RUBBER, 4, 1500.0, free_length=5.0, tolerance=0.02, parts=parts)
+        _worst_sharing(RUBBER, 4, 1500.0, free_length=5.0, tolerance=0.02, parts=parts)
         for parts in ((), (SeriesPart("wire", 50.0, 1e5),))
     )
     assert one.greatest_load == pytest.approx(other.greatest_load, rel=1e-9)
@@ -91,10 +91,10 @@ def test_parts_in_line_do_not_change_how_tethers_share():
 
 def test_no_other_lengths_within_the_tolerance_load_a_tether_more():
     rng = np.random.default_rng(11)
-    worst = worst_sharing(RUBBER, 4, 1500.0, free_length=5.0, tolerance=0.03)
+    worst = _worst_sharing(RUBBER, 4, 1500.0, free_length=5.0, tolerance=0.03)
     for _ in range(20):
         lengths = 5.0 * (1 + rng.uniform(-0.03, 0.03, 4))
-        loads = assemble(unequal_tethers(RUBBER, lengths)).loads_at(1500.0)
+        loads = _assemble(_unequal_tethers(RUBBER, lengths)).loads_at(1500.0)
         assert loads.max() <= worst.greatest_load
         assert loads.min() >= worst.least_load
         assert loads.sum() == pytest.approx(1500.0)
@@ -103,10 +103,10 @@ def test_no_other_lengths_within_the_tolerance_load_a_tether_more():
 def test_sharing_that_makes_no_sense_is_refused():
     given = {"free_length": 1.0, "tolerance": 0.01}
     with pytest.raises(SettingsError, match="one tether shares with no other"):
-        worst_sharing(spring(), 1, 100.0, **given)
+        _worst_sharing(spring(), 1, 100.0, **given)
     with pytest.raises(SettingsError, match="tolerance is a share of the length"):
-        worst_sharing(spring(), 2, 100.0, free_length=1.0, tolerance=1.0)
+        _worst_sharing(spring(), 2, 100.0, free_length=1.0, tolerance=1.0)
     with pytest.raises(DataError, match="without tension shares nothing"):
-        worst_sharing(spring(), 2, [100.0, 0.0], **given)
+        _worst_sharing(spring(), 2, [100.0, 0.0], **given)
     with pytest.raises(DataError, match="beyond the curves of the assembly"):
-        worst_sharing(spring(), 2, 1000.0, **given)
+        _worst_sharing(spring(), 2, 1000.0, **given)

@@ -6,10 +6,10 @@ import pytest
 from reduction.record.errors import DataError
 from reduction.stages.moduli.elastomer_laws import (
     LAWS,
+    _ogden_columns,
+    _ogden_slopes,
+    _polynomial_columns,
     hyperelastic_stress,
-    ogden_columns,
-    ogden_slopes,
-    polynomial_columns,
 )
 
 EXAMPLE = {
@@ -106,28 +106,28 @@ def test_an_impossible_stretch_is_refused():
 
 def test_an_unknown_deformation_is_refused():
     with pytest.raises(DataError, match="no such deformation; found torsion"):
-        polynomial_columns([1.0], law="yeoh", deformation="torsion")
+        _polynomial_columns([1.0], law="yeoh", deformation="torsion")
     with pytest.raises(DataError, match="no such deformation; found torsion"):
-        ogden_columns(np.ones(1), np.ones(1), deformation="torsion")
+        _ogden_columns(np.ones(1), np.ones(1), deformation="torsion")
 
 
 def test_an_unknown_law_is_refused():
     with pytest.raises(DataError, match="not a law in the invariants; found gent"):
-        polynomial_columns([1.0], law="gent")
+        _polynomial_columns([1.0], law="gent")
 
 
 @pytest.mark.parametrize("deformation", list(INITIAL))
 def test_ogden_slopes_are_the_derivatives_of_the_columns(deformation):
     stretch, exponents, step = np.linspace(0.5, 3.0, 9), np.array([-3.0, 0.0, 1.3, 6.0]), 1e-6
     up, down = (
-        ogden_columns(stretch, exponents + side, deformation=deformation) for side in (step, -step)
+        _ogden_columns(stretch, exponents + side, deformation=deformation) for side in (step, -step)
     )
-    slopes = ogden_slopes(stretch, exponents, deformation=deformation)
+    slopes = _ogden_slopes(stretch, exponents, deformation=deformation)
     np.testing.assert_allclose(slopes, (up - down) / (2 * step), rtol=1e-7, atol=1e-8)
 
 
 def test_several_sets_of_exponents_are_one_call():
     stretch, sets = np.linspace(1.0, 3.0, 5), np.array([[1.3, 5.0], [-2.0, 2.0]])
-    for of in (ogden_columns, ogden_slopes):
+    for of in (_ogden_columns, _ogden_slopes):
         together = of(stretch, sets[:, None, :])
         np.testing.assert_array_equal(together, [of(stretch, one) for one in sets])

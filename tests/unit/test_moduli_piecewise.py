@@ -9,14 +9,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from reduction.record.errors import DataError
-from reduction.stages.moduli.segments import fit_piecewise_lines
+from reduction.stages.moduli.segments import _fit_piecewise_lines
 
 X = 0.8 + 0.01 * np.arange(45)
 
 
 def lines_of(x, y, sigma=None, maximum_segments=4):
     sigma = np.ones_like(x) if sigma is None else sigma
-    return fit_piecewise_lines(x, y, standard_uncertainty=sigma, maximum_segments=maximum_segments)
+    return _fit_piecewise_lines(x, y, standard_uncertainty=sigma, maximum_segments=maximum_segments)
 
 
 @pytest.mark.parametrize(

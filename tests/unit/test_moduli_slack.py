@@ -5,8 +5,8 @@ import pytest
 
 from reduction.record.errors import DataError
 from reduction.stages.moduli.slack_length import (
+    _slack_position,
     slack_crossings,
-    slack_position,
     slack_strain_at_unloading,
 )
 
@@ -124,12 +124,14 @@ def test_set_after_rest_is_the_shift_between_two_first_crossings():
 
 
 def test_a_falling_line_has_no_crossing():
-    crossing, _, _ = slack_position(UP[:50], np.linspace(12, 4, 50), slack_tension=SLACK)
+    crossing, _, _ = _slack_position(UP[:50], np.linspace(12, 4, 50), slack_tension=SLACK)
     assert np.isnan(crossing)
 
 
 def test_three_samples_give_a_crossing_without_uncertainty():
-    crossing, uncertainty, _ = slack_position([0.0, 0.1, 0.2], [5.0, 7.0, 9.0], slack_tension=SLACK)
+    crossing, uncertainty, _ = _slack_position(
+        [0.0, 0.1, 0.2], [5.0, 7.0, 9.0], slack_tension=SLACK
+    )
     assert crossing == pytest.approx(-0.05)
     assert np.isnan(uncertainty)
 

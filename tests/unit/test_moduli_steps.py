@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from reduction.record.errors import DataError
-from reduction.stages.moduli.splice_slip import find_steps, ramp_of
+from reduction.stages.moduli.splice_slip import _ramp_of, find_steps
 
 NOISE = 0.3
 
@@ -85,7 +85,7 @@ def test_a_change_of_slope_is_not_a_step():
 def test_a_step_is_dated_and_sized(extent, size):
     rng = np.random.default_rng(7)
     for onset in (100, 333, 500):
-        series = background(rng, 600) + size * ramp_of(600, onset=onset, extent=extent)
+        series = background(rng, 600) + size * _ramp_of(600, onset=onset, extent=extent)
         steps = find_steps(series + NOISE * white(rng, 600), false_alarm=1e-3)
         assert len(steps) == 1
         assert abs(steps[0].onset - onset) <= max(3, extent // 2)
@@ -97,7 +97,7 @@ def test_a_step_is_dated_and_sized(extent, size):
 @pytest.mark.nightly
 def test_the_stated_range_of_an_onset_holds_it_nineteen_times_of_twenty():
     rng = np.random.default_rng(15)
-    step = -0.7 * ramp_of(300, onset=150, extent=1)
+    step = -0.7 * _ramp_of(300, onset=150, extent=1)
     found = [find_steps(step + NOISE * white(rng, 300), false_alarm=1e-3) for _ in range(120)]
     ranges = np.array([(one[0].onset_low, one[0].onset_high) for one in found if len(one) == 1])
     assert len(ranges) > 50
@@ -110,7 +110,7 @@ def test_several_steps_come_in_order():
     onsets = [120, 260, 700]
     series = background(rng, 1000) + NOISE * white(rng, 1000)
     for onset in onsets:
-        series = series - 2 * ramp_of(1000, onset=onset, extent=4)
+        series = series - 2 * _ramp_of(1000, onset=onset, extent=4)
     found = [step.onset for step in find_steps(series, false_alarm=1e-3)]
     np.testing.assert_allclose(found, onsets, atol=4)
 
@@ -127,7 +127,7 @@ def test_the_recovery_after_a_step_is_not_a_step():
 @pytest.mark.parametrize(("back", "found"), [(1.2, [-1]), (2.0, [-1, 1])])
 def test_a_change_back_by_more_than_half_is_a_step_of_its_own(back, found):
     rng = np.random.default_rng(9)
-    series = -3 * ramp_of(600, onset=300, extent=1) + back * ramp_of(600, onset=330, extent=1)
+    series = -3 * _ramp_of(600, onset=300, extent=1) + back * _ramp_of(600, onset=330, extent=1)
     steps = find_steps(series + 0.1 * white(rng, 600), false_alarm=1e-3)
     assert [np.sign(step.size) for step in steps] == found
 
@@ -141,7 +141,7 @@ def test_a_single_wild_sample_is_not_a_step():
 
 def test_an_uneven_step_is_one_step():
     rng = np.random.default_rng(12)
-    series = -2 * ramp_of(500, onset=200, extent=6) - 1.5 * ramp_of(500, onset=206, extent=20)
+    series = -2 * _ramp_of(500, onset=200, extent=6) - 1.5 * _ramp_of(500, onset=206, extent=20)
     steps = find_steps(series + 0.05 * white(rng, 500), false_alarm=1e-3)
     assert len(steps) == 1
     assert steps[0].onset == pytest.approx(200, abs=6)
@@ -169,4 +169,4 @@ def test_a_missing_value_is_refused():
 
 def test_a_step_without_extent_is_refused():
     with pytest.raises(DataError, match="a step has no extent; found 0"):
-        ramp_of(10, onset=3, extent=0)
+        _ramp_of(10, onset=3, extent=0)

@@ -7,7 +7,7 @@ import pytest
 
 from reduction.record.errors import DataError
 from reduction.stages.cycles.cycle_product import Loops
-from reduction.stages.moduli.secant_modulus import change_of_ends, fit_peak_trend, slope_per_decade
+from reduction.stages.moduli.secant_modulus import _change_of_ends, fit_peak_trend, slope_per_decade
 
 
 def loops_of(values, spring=None):
@@ -55,7 +55,7 @@ def test_change_is_last_over_first():
 def test_the_uncertainty_of_the_change_is_the_scatter_of_repeated_tests(n_cycles):
     rng = np.random.default_rng(4)
     decay = 700 - 20 * np.log10(10 + np.arange(n_cycles))
-    change, uncertainty = change_of_ends(decay + 3 * rng.standard_normal((3000, n_cycles)))
+    change, uncertainty = _change_of_ends(decay + 3 * rng.standard_normal((3000, n_cycles)))
     ends = 1 if n_cycles == 10 else 10
     expected = decay[-ends:].mean() / decay[:ends].mean() - 1
     assert change.mean() == pytest.approx(expected, abs=3e-4)
@@ -64,15 +64,15 @@ def test_the_uncertainty_of_the_change_is_the_scatter_of_repeated_tests(n_cycles
 
 
 def test_two_cycles_have_a_change_and_no_scatter():
-    change, uncertainty = change_of_ends([[100.0, 95.0], [100.0, np.nan]])
+    change, uncertainty = _change_of_ends([[100.0, 95.0], [100.0, np.nan]])
     assert change[0] == pytest.approx(-0.05)
     assert np.isnan(change[1])
     assert np.isnan(uncertainty).all()
 
 
 def test_a_missing_cycle_in_the_middle_leaves_its_neighbours_out_of_the_scatter():
-    _, whole = change_of_ends([[100.0, 101, 100, 101, 100]])
-    _, holed = change_of_ends([[100.0, 101, np.nan, 101, 100]])
+    _, whole = _change_of_ends([[100.0, 101, 100, 101, 100]])
+    _, holed = _change_of_ends([[100.0, 101, np.nan, 101, 100]])
     assert holed == pytest.approx(whole)
 
 

@@ -43,7 +43,7 @@ def checkout(tmp_path):
 
 def test_a_revision_is_unpacked_and_the_checkout_left_alone(checkout, tmp_path):
     (checkout / "reduction" / "__init__.py").write_text("of now\n")
-    source = otherversion.export_revision(checkout, "old", tmp_path)
+    source = otherversion._export_revision(checkout, "old", tmp_path)
     assert (source / "reduction" / "__init__.py").read_text() == '__version__ = "old"\n'
     assert (checkout / "reduction" / "__init__.py").read_text() == "of now\n"
     assert not (checkout / ".git" / "worktrees").exists()
@@ -52,27 +52,27 @@ def test_a_revision_is_unpacked_and_the_checkout_left_alone(checkout, tmp_path):
 @pytest.mark.parametrize("revision", ["none", "--all", "", "old:reduction"])
 def test_a_revision_that_there_is_not_is_refused(checkout, tmp_path, revision):
     with pytest.raises(SettingsError, match="no such revision; found"):
-        otherversion.export_revision(checkout, revision, tmp_path)
+        otherversion._export_revision(checkout, revision, tmp_path)
 
 
 def test_a_package_that_is_in_no_checkout_has_no_revisions(checkout, tmp_path):
-    assert otherversion.find_checkout(checkout) == checkout
+    assert otherversion._find_checkout(checkout) == checkout
     for folder in (tmp_path, checkout / "environment" / "site-packages"):
         folder.mkdir(parents=True, exist_ok=True)
         with pytest.raises(SettingsError, match="--against needs the git checkout"):
-            otherversion.find_checkout(folder)
+            otherversion._find_checkout(folder)
 
 
 def test_without_git_it_is_said_what_is_missing(monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(SettingsError, match="git cannot be started"):
-        otherversion.find_checkout(tmp_path)
+        otherversion._find_checkout(tmp_path)
 
 
 def test_what_pip_says_is_handed_on(tmp_path):
     (tmp_path / "source").mkdir()
     with pytest.raises(SettingsError, match="revision old cannot be installed; found ") as refused:
-        otherversion.install(tmp_path / "source", tmp_path, "old")
+        otherversion._install(tmp_path / "source", tmp_path, "old")
     assert "pyproject.toml' found. pip needs the net" in str(refused.value)
     versions = (tmp_path / "versions.txt").read_text().splitlines()
     assert any(one.startswith("numpy==") for one in versions)
@@ -93,13 +93,13 @@ def installed(checkout, monkeypatch):
     original, runs_from = otherversion._run, checkout.parent / "scratch" / "source"
     monkeypatch.setattr(otherversion.reduction, "__file__", str(checkout / "reduction" / "x"))
     monkeypatch.setattr(otherversion, "_run", run)
-    monkeypatch.setattr(otherversion, "install", lambda *given: Path("python"))
+    monkeypatch.setattr(otherversion, "_install", lambda *given: Path("python"))
     return checkout.parent / "scratch"
 
 
 def test_the_campaign_is_run_by_the_revision(installed):
     installed.mkdir()
-    made = otherversion.run_revision("old", Path("c.toml"), installed, CommandOutput(quiet=True))
+    made = otherversion._run_revision("old", Path("c.toml"), installed, CommandOutput(quiet=True))
     assert made == installed / "processed" / "stub"
     said = (made / "said.txt").read_text()
     assert said.startswith("old run c.toml --processed ") and said.endswith(" --quiet")
@@ -112,4 +112,4 @@ def test_a_revision_that_cannot_read_the_campaign_says_why(installed, checkout):
     )
     git(checkout, "commit", "-qam", "refuses")
     with pytest.raises(SettingsError, match="HEAD makes nothing of c.toml; found .*no key x"):
-        otherversion.run_revision("HEAD", Path("c.toml"), installed, CommandOutput(quiet=True))
+        otherversion._run_revision("HEAD", Path("c.toml"), installed, CommandOutput(quiet=True))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.experiments import life_statistics as censored
-from reduction.experiments.life_statistics import fit_censored, scatter_quantile
+from reduction.experiments.life_statistics import _scatter_quantile, fit_censored
 from reduction.record.errors import DataError, FitError
 
 ONES = np.ones((4, 1))
@@ -66,11 +66,11 @@ def test_a_column_that_lower_bounds_alone_have_is_refused():
 @pytest.mark.parametrize("share", [0.0, 1.0, -0.1, float("nan")])
 def test_a_share_outside_its_range_is_refused(share):
     with pytest.raises(DataError, match="a share is not between 0 and 1; found"):
-        scatter_quantile(share, scatter="normal")
+        _scatter_quantile(share, scatter="normal")
 
 
 def test_median_of_the_normal_scatter_is_zero():
-    assert scatter_quantile(0.5, scatter="normal") == 0
+    assert _scatter_quantile(0.5, scatter="normal") == 0
 
 
 def test_a_search_that_is_cut_short_is_no_answer(monkeypatch):

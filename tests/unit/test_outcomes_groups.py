@@ -5,9 +5,9 @@ import math
 import pytest
 
 from reduction.experiments.outcome_groups import (
+    _group_outcomes,
+    _reference_of,
     complete_from_specimens,
-    group_outcomes,
-    reference_of,
 )
 from reduction.experiments.outcomes import Outcome
 from reduction.record.errors import DataError
@@ -26,7 +26,7 @@ def test_every_row_of_the_quantity_has_a_place_and_no_other():
         strength(line="A"),
         strength(math.nan, line="A", is_valid=False),
     ]
-    grouped = group_outcomes(rows, "tensile_strength")
+    grouped = _group_outcomes(rows, "tensile_strength")
     assert grouped.group.tolist() == [0, 0, 1, 1]
     assert grouped.use.tolist() == [0, 1, 0, 2]
     assert [group.diameter for group in grouped.groups] == [0.0127, None]
@@ -35,30 +35,35 @@ def test_every_row_of_the_quantity_has_a_place_and_no_other():
 
 def test_a_value_that_cannot_be_is_refused_by_its_row():
     with pytest.raises(DataError, match="row 7 has no tensile_strength to be used; found nan"):
-        group_outcomes([strength(math.nan, row=7)], "tensile_strength")
+        _group_outcomes([strength(math.nan, row=7)], "tensile_strength")
 
 
 def references(*conditions, **facts):
     rows = [strength(condition=condition, **facts) for condition in conditions]
-    return reference_of(group_outcomes(rows, "tensile_strength").groups).tolist()
+    return _reference_of(_group_outcomes(rows, "tensile_strength").groups).tolist()
 
 
 def test_each_line_is_held_against_its_own_new_condition():
     assert references("new", "worn", "4 years") == [-1, 0, 0]
     rows = [strength(line=line, condition=c) for line in "AB" for c in ("worn", "new")]
-    assert reference_of(group_outcomes(rows, "tensile_strength").groups).tolist() == [1, -1, 3, -1]
+    assert _reference_of(_group_outcomes(rows, "tensile_strength").groups).tolist() == [
+        1,
+        -1,
+        3,
+        -1,
+    ]
 
 
 def test_no_reference_or_two_of_them_is_none():
     assert references("worn", "4 years") == [-1, -1]
     rows = [strength(condition="new", exposure=e) for e in (0.0, 0.1)]
     rows.append(strength(condition="worn"))
-    assert reference_of(group_outcomes(rows, "tensile_strength").groups).tolist() == [-1, -1, -1]
+    assert _reference_of(_group_outcomes(rows, "tensile_strength").groups).tolist() == [-1, -1, -1]
 
 
 def test_a_reference_without_a_name_is_refused():
     with pytest.raises(DataError, match="no reference is named; needed a word"):
-        reference_of([], reference_condition="")
+        _reference_of([], reference_condition="")
 
 
 SHEET = Specimen(

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from reduction.experiments.life_statistics import fit_life, ratio_of_lives, runout_bound
+from reduction.experiments.life_statistics import _runout_bound, fit_life, ratio_of_lives
 from reduction.record.errors import DataError, FitError
 
 
@@ -33,10 +33,10 @@ def test_runouts_alone_give_a_lower_bound_without_a_law():
 
 def test_bound_of_runouts_needs_the_more_the_smaller_the_share():
     # 0.9^36 is the first below 0.025
-    assert math.isnan(runout_bound([1e5] * 35, failed_share=0.1))
-    assert runout_bound([1e5] * 36, failed_share=0.1) == 1e5
+    assert math.isnan(_runout_bound([1e5] * 35, failed_share=0.1))
+    assert _runout_bound([1e5] * 36, failed_share=0.1) == 1e5
     # six of seven passed 1.5: that is enough
-    assert runout_bound([1, 1.5, 2, 3, 4, 5, 6]) == 1.5
+    assert _runout_bound([1, 1.5, 2, 3, 4, 5, 6]) == 1.5
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.pipeline.cyclic_test import compare_specimens
+from reduction.pipeline.cyclic_test import _compare_specimens
 from reduction.record.measurement import Specimen
 from reduction.stages.moduli.modulus_product import ModulusCurves
 from reduction.stages.reduced_test import History
@@ -37,13 +37,13 @@ def history(strain, cycles):
 
 
 def remarks(first, other, past):
-    (ratio,) = compare_specimens(curves(1e6, 1e6), (first, other), past)
+    (ratio,) = _compare_specimens(curves(1e6, 1e6), (first, other), past)
     return [note for note in ratio.notes if note.startswith("b over a: ")]
 
 
 def test_three_specimens_give_two_ratios_over_the_first():
     three = tuple(Specimen(name) for name in "abc")
-    found = compare_specimens(curves(1e6, 2e6, 0.5e6), three, history([1.0] * 3, [10.0] * 3))
+    found = _compare_specimens(curves(1e6, 2e6, 0.5e6), three, history([1.0] * 3, [10.0] * 3))
     assert [(one.numerator, one.denominator) for one in found] == [("b", "a"), ("c", "a")]
     assert [float(one.ratio[0, 0]) for one in found] == pytest.approx([2.0, 0.5])
     assert found[1].notes[-1].startswith("c over a: two specimens in one test")
@@ -66,7 +66,7 @@ def test_unequal_flexing_is_named_and_softening_is_said_of_rubber_alone():
 
 
 def test_one_specimen_is_compared_with_nothing():
-    assert compare_specimens(curves(1e6), (Specimen("a"),), None) == []
+    assert _compare_specimens(curves(1e6), (Specimen("a"),), None) == []
 
 
 def test_equal_histories_leave_only_the_word_on_two_pieces():

@@ -8,14 +8,14 @@ import pytest
 from reduction.pipeline.located_test import Located
 from reduction.pipeline.test_extremes import (
     Extremes,
-    Samples,
+    _Samples,
     extremes_of_readings,
     extremes_of_test,
     greatest_strain,
     growth_of_slack_length,
 )
 from reduction.record.measurement import Record, StepReadings
-from reduction.stages.standstills import describe_standstills
+from reduction.stages.standstills import _describe_standstills
 from reduction.stages.strain.strain_model import StrainModel
 
 POSITION = np.array([3.0, 3.5, 4.0, 4.002, 4.0, 3.5, np.nan])
@@ -36,7 +36,7 @@ def located(position=POSITION, tension=TENSION, **told):
         n_rows_read=n_samples,
         **told,
     )
-    stand = describe_standstills(
+    stand = _describe_standstills(
         record.time, position, tension, nothing, nothing,
         position_tolerance=0.01, slack_tension=2.0,
     )  # fmt: skip
@@ -90,7 +90,8 @@ def test_a_stepwise_test_went_as_far_as_its_greatest_reading():
 def test_without_a_length_or_a_rise_there_is_no_growth(told):
     position = np.linspace(2, 4, 401)
     rise = Extremes(
-        first_rise={"a": Samples(position, 100 * np.clip(position - 3, 0, None))}, slack_tension=5.0
+        first_rise={"a": _Samples(position, 100 * np.clip(position - 3, 0, None))},
+        slack_tension=5.0,
     )
     assert growth_of_slack_length(rise, rise, "a", free_length=3.0) == (
         0.0, pytest.approx(0.0), 0.0,
@@ -104,7 +105,7 @@ def test_a_softer_specimen_grows_with_the_tension_that_counts_as_slack():
 
     def rise(stiffness, slack_tension=5.0):
         load = stiffness * np.clip(position - 3, 0, None)
-        return Extremes(first_rise={"a": Samples(position, load)}, slack_tension=slack_tension)
+        return Extremes(first_rise={"a": _Samples(position, load)}, slack_tension=slack_tension)
 
     growth, _, slope = growth_of_slack_length(rise(100.0), rise(50.0), "a", free_length=3.0)
     more, _, _ = growth_of_slack_length(rise(100.0, 6.0), rise(50.0, 6.0), "a", free_length=3.0)
@@ -114,6 +115,6 @@ def test_a_softer_specimen_grows_with_the_tension_that_counts_as_slack():
 
 def test_a_crossing_through_two_samples_has_no_growth():
     rise = Extremes(
-        first_rise={"a": Samples(np.array([2.0, 4.0]), np.array([0.0, 100.0]))}, slack_tension=5.0
+        first_rise={"a": _Samples(np.array([2.0, 4.0]), np.array([0.0, 100.0]))}, slack_tension=5.0
     )
     assert np.isnan(growth_of_slack_length(rise, rise, "a", free_length=3.0)).all()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.archive.test_dataset import sample_values
+from reduction.archive.test_dataset import _sample_values
 from reduction.pipeline.located_test import locate
 from reduction.pipeline.reduce_test import reduce_test
 from reduction.record.measurement import Quality, Record, Specimen
@@ -58,21 +58,21 @@ def test_stress_is_tension_over_the_area_at_zero_tension(pulled):
     area = np.pi * DIAMETER**2 / 4
     usable = np.arange(pulled.record.n_samples) != SPIKE
     expected = pulled.record.tension[0, usable] / area
-    stress = sample_values(pulled, pulled.record)["nominal_stress"]
+    stress = _sample_values(pulled, pulled.record)["nominal_stress"]
     np.testing.assert_allclose(stress[0, usable], expected, rtol=1e-12)
     np.testing.assert_allclose(pulled.nominal_stress_standard_uncertainty, [2.0 / area])
 
 
 def test_a_spike_stays_in_the_record_and_gives_no_stress(pulled):
     assert pulled.record.tension[0, SPIKE] == 5000
-    stress = sample_values(pulled, pulled.record)["nominal_stress"]
+    stress = _sample_values(pulled, pulled.record)["nominal_stress"]
     assert np.isnan(stress[0, SPIKE])
     assert np.nanmax(stress) < 0.5e6
 
 
 def test_a_rope_without_a_diameter_has_no_stress():
     found = reduced(Specimen("cord", kind="rope"))
-    assert "nominal_stress" not in sample_values(found, found.record)
+    assert "nominal_stress" not in _sample_values(found, found.record)
     assert found.nominal_stress_standard_uncertainty is None
 
 
@@ -99,5 +99,5 @@ def test_the_cubic_of_a_hose_stands_where_it_fits():
 
 def test_a_hose_without_a_diameter_has_tensions_and_no_stress():
     hose = reduced(Specimen("cord", kind="stretch hose"))
-    assert "nominal_stress" not in sample_values(hose, hose.record) and hose.pulls[0] is not None
+    assert "nominal_stress" not in _sample_values(hose, hose.record) and hose.pulls[0] is not None
     assert any("no diameter is stated" in note for note in hose.notes)

@@ -9,7 +9,7 @@ from reduction.record.contributions import Component, Contributions, InstrumentE
 from reduction.stages.moduli.modulus_product import Ratio
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.uncertainty.propagation import with_shared_interval
-from reduction.uncertainty.shared_contributions import of_slips, with_shared_steps
+from reduction.uncertainty.shared_contributions import _of_slips, with_shared_steps
 from reduction.uncertainty.shared_curves import of_ratios, with_shared_ratios
 
 MODEL = StrainModel("new", "gauge-length", {"reference_position": 2.0, "gauge_length": 2.0})
@@ -71,7 +71,7 @@ def test_a_slip_scales_with_the_cell_and_its_length_with_the_scale_of_position(r
         for name in ("new", "used")
     ]
     test = replace(rich_test, strain_models=(MODEL, replace(MODEL, specimen="used")))
-    (found,) = of_slips(test, errors)
+    (found,) = _of_slips(test, errors)
     step = found.values["slip_tension_step"]
     by_source = {one.source: row for row, one in enumerate(found.component)}
     assert step[by_source["tension_gain"]] == pytest.approx(0.01 * test.slips.slip_tension_step)
@@ -79,7 +79,7 @@ def test_a_slip_scales_with_the_cell_and_its_length_with_the_scale_of_position(r
     length = found.values["slip_length"]
     assert length[by_source["position_gain"]] == pytest.approx(0.002 * test.slips.slip_length)
     assert not length[by_source["tension_gain"]].any()
-    assert of_slips(replace(rich_test, slips=None), errors) == []
+    assert _of_slips(replace(rich_test, slips=None), errors) == []
 
 
 def test_a_stepwise_test_has_the_gauge_length_and_the_diameter_in_its_moduli(stepwise_test):

@@ -5,9 +5,9 @@ import pytest
 
 from reduction.prediction.armour import (
     ArmourDesign,
-    predict_intermediate,
-    predict_large,
-    predict_small,
+    _predict_intermediate,
+    _predict_large,
+    _predict_small,
 )
 
 STRAIN = np.array([1e-3])
@@ -20,7 +20,7 @@ def unit(degrees, poisson_ratio=0.0):
 
 def test_intermediate_angles_at_30_degrees():
     """sin = 1/2, cos^2 = 3/4, E I = 1/4, r = 10."""
-    wire = predict_intermediate(unit(30.0), STRAIN)
+    wire = _predict_intermediate(unit(30.0), STRAIN)
     root = np.sqrt(3.0)
     assert wire.wire_strain == pytest.approx(0.75e-3)
     assert wire.angle_change == pytest.approx(-root / 4 * 1e-3)
@@ -35,14 +35,14 @@ def test_intermediate_angles_at_30_degrees():
 def test_small_angles_differ_from_intermediate_by_the_second_order():
     for strain in (1e-3, 1e-4):
         small, linear = (
-            one(unit(20.0), np.array([strain])) for one in (predict_small, predict_intermediate)
+            one(unit(20.0), np.array([strain])) for one in (_predict_small, _predict_intermediate)
         )
         assert small.angle_change / linear.angle_change - 1 == pytest.approx(0.0, abs=strain)
         assert small.angle_change / linear.angle_change - 1 != pytest.approx(0.0, abs=strain / 10)
 
 
 def test_small_angles_have_no_answer_where_the_cosine_passes_one():
-    wire = predict_small(unit(5.0), np.array([1e-3, 0.9]))
+    wire = _predict_small(unit(5.0), np.array([1e-3, 0.9]))
     assert np.isnan(wire.angle_change).tolist() == [False, True]
     assert np.isnan(wire.bending_moment).tolist() == [False, True]
     assert np.isfinite(wire.axial_force).all()
@@ -50,7 +50,7 @@ def test_small_angles_have_no_answer_where_the_cosine_passes_one():
 
 def test_spring_is_that_of_a_close_coil():
     """f = G J eps / (r^2 tan): G J = 1/4, r = 10, tan 45 = 1."""
-    spring = predict_large(unit(45.0), STRAIN)
+    spring = _predict_large(unit(45.0), STRAIN)
     assert spring.tension == pytest.approx(0.25e-5)
     assert spring.torsion_moment == pytest.approx(0.25e-4 / np.sqrt(2))
     assert spring.bending_moment == pytest.approx(-0.25e-4 / np.sqrt(2))
@@ -59,6 +59,6 @@ def test_spring_is_that_of_a_close_coil():
 
 
 def test_spring_and_conjugate_rod_have_one_torsion_towards_90_degrees():
-    spring = predict_large(unit(89.0, 0.3), STRAIN)
-    rod = predict_intermediate(unit(89.0, 0.3), STRAIN)
+    spring = _predict_large(unit(89.0, 0.3), STRAIN)
+    rod = _predict_intermediate(unit(89.0, 0.3), STRAIN)
     assert spring.torsion_moment == pytest.approx(rod.torsion_moment, rel=2e-3)

@@ -6,10 +6,10 @@ import pytest
 from reduction.prediction.armour import (
     ARMOUR_QUANTITIES,
     ArmourDesign,
-    angles_of_use,
+    _angles_of_use,
+    _thinning_loss,
     predict_armour,
     theory_errors,
-    thinning_loss,
 )
 from reduction.record.errors import DataError, SettingsError
 
@@ -45,7 +45,7 @@ def test_without_strain_there_is_no_error():
 
 def test_moments_of_the_report_leave_out_torsion_that_a_rod_with_energy_has():
     """Linear: H over GJ is s^3 c, not s c (s^2 - c^2); 77 deg is where they part by 5 %."""
-    use = angles_of_use(DESIGN, 1e-6, tolerance=0.05, reference="conjugate")
+    use = _angles_of_use(DESIGN, 1e-6, tolerance=0.05, reference="conjugate")
     place = ARMOUR_QUANTITIES.index("torsion_moment")
     sine, cosine = np.sin(np.radians(DEGREES)), np.cos(np.radians(DEGREES))
     error = sine * cosine**3 / np.hypot(2 * (sine * cosine) ** 2, sine**3 * cosine)
@@ -54,7 +54,7 @@ def test_moments_of_the_report_leave_out_torsion_that_a_rod_with_energy_has():
 
 
 def test_statement_gives_every_run_of_angles():
-    use = angles_of_use(DESIGN, 1e-3, tolerance=0.02)
+    use = _angles_of_use(DESIGN, 1e-3, tolerance=0.02)
     assert len(use.statement) == 12
     assert use.statement[4] == "intermediate angles: axial_force within 2 % of exact at 5-85 deg"
     assert use.statement[8] == "large angles: axial_force within 2 % of exact nowhere"
@@ -66,7 +66,7 @@ def test_statement_gives_every_run_of_angles():
 
 def test_thinning_is_the_first_order_of_a_helix_that_sinks():
     """(1 + zeta)^2 = (1 + eps)^2 cos^2 + (1 - nu zeta R2 / r)^2 sin^2, solved for small eps."""
-    loss, strain = thinning_loss(DESIGN), 1e-7
+    loss, strain = _thinning_loss(DESIGN), 1e-7
     sine2, cosine2 = np.sin(np.radians(DEGREES)) ** 2, np.cos(np.radians(DEGREES)) ** 2
     wire_strain = (1 - loss) * strain * cosine2
     left = 2 * wire_strain
@@ -78,10 +78,10 @@ def test_bad_settings_are_refused():
     with pytest.raises(SettingsError, match="no theory is held against this; found 'small'"):
         theory_errors(DESIGN, 1e-3, reference="small")
     with pytest.raises(SettingsError, match="tolerance is not above zero"):
-        angles_of_use(DESIGN, 1e-3, tolerance=0.0)
+        _angles_of_use(DESIGN, 1e-3, tolerance=0.0)
     falling = ArmourDesign(np.radians([50.0, 20.0]), 2.5e-3, 25e-3, 210e9)
     with pytest.raises(DataError, match="winding_angle are not above the one before"):
-        angles_of_use(falling, 1e-3, tolerance=0.02)
+        _angles_of_use(falling, 1e-3, tolerance=0.02)
     wires = ArmourDesign(np.radians([20.0, 50.0]), np.array([[1e-3], [2e-3]]), 25e-3, 210e9)
     with pytest.raises(SettingsError, match="the design is not a series of winding angles"):
-        angles_of_use(wires, 1e-3, tolerance=0.02)
+        _angles_of_use(wires, 1e-3, tolerance=0.02)

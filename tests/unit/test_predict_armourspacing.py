@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.prediction.armour import ArmourDesign, fill_factor, wire_gap
+from reduction.prediction.armour import ArmourDesign, _fill_factor, _wire_gap
 
 
 def layer(degrees, n_wires, wire_radius=1.0, core_radius=9.0):
@@ -22,21 +22,21 @@ def distance(degrees, n_wires, radius):
 @pytest.mark.parametrize("n_wires", [1, 2, 3, 12, 60])
 def test_gap_is_that_of_the_nearest_points(degrees, n_wires):
     expected = distance(degrees, n_wires, 10.0) - 2.0
-    assert wire_gap(layer(degrees, n_wires)) == pytest.approx(expected, abs=1e-6)
+    assert _wire_gap(layer(degrees, n_wires)) == pytest.approx(expected, abs=1e-6)
 
 
 def test_gap_of_straight_wires_is_a_chord():
-    gap = wire_gap(layer(1e-6, np.array([3, 10, 31, 32])))
+    gap = _wire_gap(layer(1e-6, np.array([3, 10, 31, 32])))
     chord = 20 * np.sin(np.pi / np.array([3, 10, 31, 32])) - 2
     assert gap == pytest.approx(chord, abs=1e-9)
     assert (gap > 0).tolist() == [True, True, True, False]
 
 
 def test_fill_factor_is_the_share_of_the_circumference():
-    assert fill_factor(layer(60.0, 10)) == pytest.approx(10 * 2 / (2 * np.pi * 10 * 0.5))
+    assert _fill_factor(layer(60.0, 10)) == pytest.approx(10 * 2 / (2 * np.pi * 10 * 0.5))
 
 
 def test_a_full_circumference_does_not_fit_since_the_cylinder_is_round():
     full = layer(np.degrees(np.arccos(12 / (10 * np.pi))), 12)
-    assert fill_factor(full) == pytest.approx(1.0)
-    assert wire_gap(full) < 0
+    assert _fill_factor(full) == pytest.approx(1.0)
+    assert _wire_gap(full) < 0

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.prediction.wave_theory import breaking_height, refuse_breaking
+from reduction.prediction.wave_theory import _refuse_breaking, breaking_height
 from reduction.record.errors import DataError
 
 
@@ -21,9 +21,9 @@ def test_the_lower_limit_holds():
 
 def test_a_wave_at_the_limit_passes_and_one_above_is_refused():
     greatest = float(breaking_height(0.3, 3.0))
-    refuse_breaking(wave_height=greatest, wave_number=0.3, water_depth=3.0)
+    _refuse_breaking(wave_height=greatest, wave_number=0.3, water_depth=3.0)
     with pytest.raises(DataError, match="a wave 20.94 m long breaks before it is this high"):
-        refuse_breaking(wave_height=1.0001 * greatest, wave_number=0.3, water_depth=3.0)
+        _refuse_breaking(wave_height=1.0001 * greatest, wave_number=0.3, water_depth=3.0)
 
 
 def test_numbers_are_positive():

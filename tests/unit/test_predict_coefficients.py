@@ -7,10 +7,10 @@ from reduction.prediction.morison import (
     CODE_OF_HYDROLOGY,
     GREATEST_DIAMETER_TO_LENGTH,
     PUBLISHED_COEFFICIENTS,
-    drag_to_inertia,
+    _drag_to_inertia,
+    _keulegan_carpenter_number,
+    _reynolds_number,
     flow_regime,
-    keulegan_carpenter_number,
-    reynolds_number,
 )
 from reduction.prediction.wave_theory import airy_wave, particle_motion, stokes_wave
 from reduction.record.errors import DataError
@@ -36,13 +36,13 @@ def test_drag_over_inertia_is_that_of_the_two_terms():
     speed, period, diameter, density = 1.3, 4.0, 0.2, 1025.0
     drag = 0.5 * 1.2 * density * diameter * speed**2
     inertia = 2.0 * density * np.pi * diameter**2 / 4 * speed * 2 * np.pi / period
-    number = keulegan_carpenter_number(speed, period, diameter)
+    number = _keulegan_carpenter_number(speed, period, diameter)
     assert number == pytest.approx(1.3 * 4 / 0.2)
-    assert drag_to_inertia(number) == pytest.approx(drag / inertia, rel=1e-13)
+    assert _drag_to_inertia(number) == pytest.approx(drag / inertia, rel=1e-13)
 
 
 def test_reynolds_number_takes_the_magnitude():
-    assert reynolds_number(-1.0, 0.1, kinematic_viscosity=1e-6) == pytest.approx(1e5)
+    assert _reynolds_number(-1.0, 0.1, kinematic_viscosity=1e-6) == pytest.approx(1e5)
 
 
 @pytest.mark.parametrize("make", [airy_wave, stokes_wave])
@@ -67,10 +67,10 @@ def test_greatest_velocity_is_that_of_a_fine_sweep(make, current):
 
 def test_numbers_that_are_none_are_refused():
     with pytest.raises(DataError, match="greatest_velocity"):
-        keulegan_carpenter_number(np.nan, 3.0, 0.1)
+        _keulegan_carpenter_number(np.nan, 3.0, 0.1)
     with pytest.raises(DataError, match="outer_diameter"):
-        reynolds_number(1.0, 0.0)
+        _reynolds_number(1.0, 0.0)
     with pytest.raises(DataError, match="kinematic_viscosity"):
-        reynolds_number(1.0, 0.1, kinematic_viscosity=0.0)
+        _reynolds_number(1.0, 0.1, kinematic_viscosity=0.0)
     with pytest.raises(DataError, match="inertia_coefficient"):
-        drag_to_inertia(10.0, inertia_coefficient=0.0)
+        _drag_to_inertia(10.0, inertia_coefficient=0.0)

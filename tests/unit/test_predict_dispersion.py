@@ -6,8 +6,8 @@ import pytest
 from reduction.prediction.hose_prediction import wave_theory as dispersion
 from reduction.prediction.wave_theory import (
     STANDARD_GRAVITY,
-    group_velocity,
-    wave_number,
+    _group_velocity,
+    _wave_number,
     wave_period_of,
 )
 from reduction.record.errors import DataError, FitError
@@ -21,13 +21,13 @@ def residual(number, period, depth, current=0.0):
 def test_the_root_is_exact_from_a_ripple_to_a_tide():
     period = np.geomspace(0.1, 1e5, 400)[:, None]
     depth = np.geomspace(0.01, 1e4, 300)
-    number = wave_number(period, depth)
+    number = _wave_number(period, depth)
     assert number.shape == (400, 300)
     assert np.max(np.abs(residual(number, period, depth))) < 1e-14
 
 
 def test_limits_of_deep_and_shallow_water():
-    deep, shallow = wave_number(5.0, 1e4), wave_number(1e4, 0.5)
+    deep, shallow = _wave_number(5.0, 1e4), _wave_number(1e4, 0.5)
     assert deep == pytest.approx((2 * np.pi / 5) ** 2 / STANDARD_GRAVITY, rel=1e-14)
     assert shallow == pytest.approx(2 * np.pi / 1e4 / np.sqrt(STANDARD_GRAVITY * 0.5), rel=1e-7)
 
@@ -35,17 +35,17 @@ def test_limits_of_deep_and_shallow_water():
 @pytest.mark.parametrize("current", [-1.2, -0.5, 0.3, 2.0, 15.0])
 def test_a_current_shifts_the_frequency(current):
     period = np.array([8.0, 12.0, 30.0])
-    number = wave_number(period, 10.0, current_velocity=current)
+    number = _wave_number(period, 10.0, current_velocity=current)
     assert np.max(np.abs(residual(number, period, 10.0, current))) < 1e-13
     # shorter against the current, longer with it, and energy still goes forward
-    assert np.all((number > wave_number(period, 10.0)) == (current < 0))
-    assert np.all(group_velocity(number, 10.0) + current > 0)
+    assert np.all((number > _wave_number(period, 10.0)) == (current < 0))
+    assert np.all(_group_velocity(number, 10.0) + current > 0)
 
 
 def test_no_current_is_the_limit_of_a_small_one():
-    still = wave_number(6.0, 4.0)
+    still = _wave_number(6.0, 4.0)
     for small in (1e-12, -1e-12):
-        assert wave_number(6.0, 4.0, current_velocity=small) == pytest.approx(
+        assert _wave_number(6.0, 4.0, current_velocity=small) == pytest.approx(
             float(still), rel=1e-11
         )
 
@@ -54,23 +54,23 @@ def test_over_deep_water_the_waves_end_at_a_quarter_of_their_speed():
     # U = -g / (4 omega): the closed form of blocking; length is then a quarter of the still one
     period = 4.0
     limit = STANDARD_GRAVITY * period / (8 * np.pi)
-    number = wave_number(period, 1e3, current_velocity=-limit * (1 - 1e-9))
-    assert number / wave_number(period, 1e3) == pytest.approx(4.0, rel=1e-3)
+    number = _wave_number(period, 1e3, current_velocity=-limit * (1 - 1e-9))
+    assert number / _wave_number(period, 1e3) == pytest.approx(4.0, rel=1e-3)
     with pytest.raises(DataError, match="the opposing current stops 1 of 1 waves"):
-        wave_number(period, 1e3, current_velocity=-limit * (1 + 1e-9))
+        _wave_number(period, 1e3, current_velocity=-limit * (1 + 1e-9))
 
 
 def test_a_blocked_wave_among_others_is_named():
     with pytest.raises(
         DataError, match="stops 1 of 3 waves, first at index 1; found a current of -9"
     ):
-        wave_number(4.0, 10.0, current_velocity=[0.0, -9.0, 1.0])
+        _wave_number(4.0, 10.0, current_velocity=[0.0, -9.0, 1.0])
 
 
 def test_period_is_the_inverse():
     period = np.array([2.0, 3.57, 9.0])[:, None]
     depth, current = np.array([1.0, 6.0, 80.0]), 0.4
-    number = wave_number(period, depth, current_velocity=current)
+    number = _wave_number(period, depth, current_velocity=current)
     back = wave_period_of(number, depth, current_velocity=current)
     assert back == pytest.approx(np.broadcast_to(period, back.shape), rel=1e-13)
 
@@ -88,8 +88,8 @@ def test_group_velocity_is_the_derivative_of_the_frequency():
 
     step = 1e-4 * number
     slope = (frequency(number + step) - frequency(number - step)) / (2 * step)
-    assert group_velocity(number, depth) == pytest.approx(slope, rel=1e-7)
-    assert np.isfinite(group_velocity(1e4, 1e4))
+    assert _group_velocity(number, depth) == pytest.approx(slope, rel=1e-7)
+    assert np.isfinite(_group_velocity(1e4, 1e4))
 
 
 @pytest.mark.parametrize(("period", "current"), [(5.0, 0.0), (5.0, 1.0)])
@@ -106,14 +106,14 @@ def test_a_search_that_does_not_end_says_so(monkeypatch, period, current):
 
         monkeypatch.setattr(dispersion, "_still_water", ended)
     with pytest.raises(FitError, match="the wave number was not found"):
-        wave_number(period, 6.0, current_velocity=current)
+        _wave_number(period, 6.0, current_velocity=current)
 
 
 @pytest.mark.parametrize("bad", [0.0, -1.0, np.nan, np.inf])
 def test_periods_and_depths_are_positive_numbers(bad):
     with pytest.raises(DataError, match="wave_period"):
-        wave_number(bad, 3.0)
+        _wave_number(bad, 3.0)
     with pytest.raises(DataError, match="water_depth"):
-        wave_number(3.0, [1.0, bad])
+        _wave_number(3.0, [1.0, bad])
     with pytest.raises(DataError, match="wave_number"):
         wave_period_of(bad, 3.0)

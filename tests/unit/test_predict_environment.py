@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.prediction.morison import ImmersedSection, wave_load
-from reduction.prediction.wave_load import anchor_force, current_load, wind_load
+from reduction.prediction.wave_load import _anchor_force, _current_load, _wind_load
 from reduction.prediction.wave_theory import airy_wave
 from reduction.record.errors import DataError
 
@@ -18,9 +18,9 @@ def sweep(current=0.0):
 
 
 def test_wind_and_current_are_drag_on_their_own_part_of_the_hose():
-    wind = wind_load(HOSE, wind_velocity=-12.0, wind_drag_coefficient=1.1, air_density=1.25)
+    wind = _wind_load(HOSE, wind_velocity=-12.0, wind_drag_coefficient=1.1, air_density=1.25)
     assert float(wind) == pytest.approx(-0.5 * 1.25 * 1.1 * (0.114 - 0.0951) * 144)
-    current = current_load(HOSE, current_velocity=-0.8, drag_coefficient=0.9, water_density=1000.0)
+    current = _current_load(HOSE, current_velocity=-0.8, drag_coefficient=0.9, water_density=1000.0)
     assert float(current) == pytest.approx(-0.5 * 1000 * 0.9 * 0.0951 * 0.64)
 
 
@@ -28,7 +28,9 @@ def test_wind_and_current_are_drag_on_their_own_part_of_the_hose():
     ("current", "wind"), [(0.5, 10.0), (-0.5, -10.0), (0.4, -30.0), (0.0, 0.0)]
 )
 def test_force_against_a_sweep(current, wind):
-    force = anchor_force(WAVE, HOSE, hose_length=50.0, current_velocity=current, wind_velocity=wind)
+    force = _anchor_force(
+        WAVE, HOSE, hose_length=50.0, current_velocity=current, wind_velocity=wind
+    )
     air = 0.5 * 1.225 * 1.2 * (0.114 - 0.0951) * wind * abs(wind)
     water = 0.5 * 1025 * 1.2 * 0.0951 * current * abs(current)
 
@@ -46,17 +48,19 @@ def test_force_against_a_sweep(current, wind):
 
 
 def test_the_sum_is_too_low_with_a_following_current_by_the_cross_term():
-    force = anchor_force(WAVE, HOSE, hose_length=1.0, current_velocity=0.5)
+    force = _anchor_force(WAVE, HOSE, hose_length=1.0, current_velocity=0.5)
     assert float(force.combined) > 1.3 * float(force.separate)
     # with drag alone the cross term is 2 u U
-    drag = anchor_force(WAVE, HOSE, hose_length=1.0, current_velocity=0.5, inertia_coefficient=1e-9)
+    drag = _anchor_force(
+        WAVE, HOSE, hose_length=1.0, current_velocity=0.5, inertia_coefficient=1e-9
+    )
     u = float(WAVE.horizontal_velocity[0])
     cross = 0.5 * 1025 * 1.2 * 0.0951 * 2 * u * 0.5
     assert float(drag.combined - drag.separate) == pytest.approx(cross, rel=1e-9)
 
 
 def test_without_wind_and_current_both_are_the_wave():
-    force = anchor_force(WAVE, HOSE, hose_length=3.0)
+    force = _anchor_force(WAVE, HOSE, hose_length=3.0)
     assert float(force.combined) == pytest.approx(float(force.wave), rel=1e-15)
     assert float(force.difference) == 0
 
@@ -65,7 +69,7 @@ def test_many_hoses_at_once():
     many = ImmersedSection(
         np.array([0.114, 0.2]), np.array([0.0091, 0.02]), np.array([0.0951, 0.12])
     )
-    force = anchor_force(WAVE, many, hose_length=10.0, current_velocity=0.2, wind_velocity=5.0)
+    force = _anchor_force(WAVE, many, hose_length=10.0, current_velocity=0.2, wind_velocity=5.0)
     assert force.combined.shape == force.difference.shape == force.wind.shape == (2,)
 
 
@@ -81,4 +85,4 @@ def test_many_hoses_at_once():
 )
 def test_numbers_that_are_none_are_refused(change, message):
     with pytest.raises(DataError, match=message):
-        anchor_force(WAVE, HOSE, **{"hose_length": 1.0, **change})
+        _anchor_force(WAVE, HOSE, **{"hose_length": 1.0, **change})

@@ -5,9 +5,9 @@ import pytest
 
 from reduction.prediction.morison import (
     ImmersedSection,
+    _load_range,
     find_extremes,
     immerse_hose,
-    load_range,
     wave_load,
 )
 from reduction.prediction.wave_theory import airy_wave, cosine_series, sine_series, stokes_wave
@@ -20,7 +20,7 @@ U, A = np.array([1.0]), np.array([1.0])
 
 
 def linear_range(drag, inertia):
-    return load_range(
+    return _load_range(
         cosine_series(U), sine_series(A), drag=drag, inertia=inertia,
         wave_number=1.0, angular_frequency=1.0,
     )  # fmt: skip

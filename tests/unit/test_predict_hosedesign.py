@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from reduction.prediction.cord_curve import CordCurve
-from reduction.prediction.hose_design import design_angle, design_diameters, design_fabric
+from reduction.prediction.hose_design import _design_angle, _design_diameters, _design_fabric
 from reduction.prediction.hose_product import HoseDesign
 from reduction.prediction.hose_tension import find_events
 from reduction.record.errors import SettingsError
@@ -37,14 +37,14 @@ LAWS = ("neo-hookean", "linear", "linear-current", "hencky")
 
 @pytest.mark.parametrize("law", LAWS)
 def test_the_angle_gives_the_wanted_stretch(law):
-    design = design_angle(dataclasses.replace(LIKE, rubber_law=law), strain=STRAIN)
+    design = _design_angle(dataclasses.replace(LIKE, rubber_law=law), strain=STRAIN)
     assert find_events(design).working.strain == pytest.approx(STRAIN, rel=1e-12)
     assert design.cords_per_length == LIKE.cords_per_length
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_the_fabric_gives_stretch_and_load(law):
-    design = design_fabric(
+    design = _design_fabric(
         dataclasses.replace(LIKE, rubber_law=law), strain=STRAIN[:4], tension=TENSION
     )
     found = find_events(design).working
@@ -56,7 +56,7 @@ def test_the_fabric_gives_stretch_and_load(law):
 
 @pytest.mark.parametrize("law", LAWS)
 def test_the_diameters_give_stretch_and_load_within_the_same_wall(law):
-    design = design_diameters(
+    design = _design_diameters(
         dataclasses.replace(LIKE, rubber_law=law), strain=STRAIN, tension=TENSION
     )
     found = find_events(design).working
@@ -72,8 +72,8 @@ def test_the_diameters_give_stretch_and_load_within_the_same_wall(law):
 def test_a_hose_is_designed_back_to_itself():
     events = find_events(LIKE).working
     for design in (
-        design_fabric(LIKE, strain=events.strain, tension=events.tension),
-        design_diameters(LIKE, strain=events.strain, tension=events.tension),
+        _design_fabric(LIKE, strain=events.strain, tension=events.tension),
+        _design_diameters(LIKE, strain=events.strain, tension=events.tension),
     ):
         assert design.wrap_angle == pytest.approx(LIKE.wrap_angle, rel=1e-12)
         assert design.cords_per_length == pytest.approx(LIKE.cords_per_length, rel=1e-10)
@@ -83,14 +83,14 @@ def test_a_hose_is_designed_back_to_itself():
 
 def test_a_list_of_hoses_that_it_is_like_goes_with_a_list_of_wishes():
     likes = dataclasses.replace(LIKE, rubber_modulus=np.array([1.0, 1.4, 2.0]) * 1e6)
-    design = design_fabric(likes, strain=[0.5, 0.79, 1.0], tension=[13e3, 13e3, 14e3])
+    design = _design_fabric(likes, strain=[0.5, 0.79, 1.0], tension=[13e3, 13e3, 14e3])
     assert find_events(design).working.tension == pytest.approx([13e3, 13e3, 14e3], rel=1e-10)
 
 
 def test_the_dead_length_costs_angle():
     # 79 % of the whole is 79/0.93 = 84.9 % of what stretches
-    with_ends = design_angle(LIKE, strain=0.79)
-    without = design_angle(dataclasses.replace(LIKE, dead_length_share=0.0), strain=0.79 / 0.93)
+    with_ends = _design_angle(LIKE, strain=0.79)
+    without = _design_angle(dataclasses.replace(LIKE, dead_length_share=0.0), strain=0.79 / 0.93)
     assert with_ends.wrap_angle == pytest.approx(without.wrap_angle, rel=1e-12)
 
 
@@ -100,15 +100,15 @@ HARD = dataclasses.replace(LIKE, minimum_inner_diameter=2.0 * INCH)
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: design_angle(LIKE, strain=0.0), "wanted strain is none; found 0 in SI; needed above zero"),
-        (lambda: design_angle(LIKE, strain=[0.5, np.nan]), "wanted strain of 1 of 2 designs is none"),
-        (lambda: design_angle(LIKE, strain=[0.5, 0.02]), "wanted strain of 1 of 2 designs has no wrap angle; found 0.02 in SI; needed above 0.1"),
-        (lambda: design_fabric(LIKE, strain=0.5, tension=-1.0), "wanted tension is none"),
-        (lambda: design_fabric(LIKE, strain=1.3, tension=[2e3, 2e4]), "wanted tension of 1 of 2 designs is below that of the rubber alone; found 2000"),
-        (lambda: design_fabric(LIKE, strain=1.3, tension=1e5), "needs more cords than find room in two layers; found 100000"),
-        (lambda: design_diameters(LIKE, strain=1.3, tension=1e3), "leaves no bore within such a wall; found 1000"),
-        (lambda: design_diameters(LIKE, strain=1.3, tension=0.0), "wanted tension is none"),
-        (lambda: design_fabric(HARD, strain=1.3, tension=14e3), "wanted inner_diameter at the working load is below its limit; found 0.045"),
+        (lambda: _design_angle(LIKE, strain=0.0), "wanted strain is none; found 0 in SI; needed above zero"),
+        (lambda: _design_angle(LIKE, strain=[0.5, np.nan]), "wanted strain of 1 of 2 designs is none"),
+        (lambda: _design_angle(LIKE, strain=[0.5, 0.02]), "wanted strain of 1 of 2 designs has no wrap angle; found 0.02 in SI; needed above 0.1"),
+        (lambda: _design_fabric(LIKE, strain=0.5, tension=-1.0), "wanted tension is none"),
+        (lambda: _design_fabric(LIKE, strain=1.3, tension=[2e3, 2e4]), "wanted tension of 1 of 2 designs is below that of the rubber alone; found 2000"),
+        (lambda: _design_fabric(LIKE, strain=1.3, tension=1e5), "needs more cords than find room in two layers; found 100000"),
+        (lambda: _design_diameters(LIKE, strain=1.3, tension=1e3), "leaves no bore within such a wall; found 1000"),
+        (lambda: _design_diameters(LIKE, strain=1.3, tension=0.0), "wanted tension is none"),
+        (lambda: _design_fabric(HARD, strain=1.3, tension=14e3), "wanted inner_diameter at the working load is below its limit; found 0.045"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_built_is_refused(call, message):
@@ -116,7 +116,7 @@ def test_what_cannot_be_built_is_refused(call, message):
         call()
 
 
-@pytest.mark.parametrize(("design", "strain"), [(design_fabric, 1.3), (design_diameters, 1.3)])
+@pytest.mark.parametrize(("design", "strain"), [(_design_fabric, 1.3), (_design_diameters, 1.3)])
 def test_the_load_that_is_needed_is_the_one_that_will_do(design, strain):
     with pytest.raises(SettingsError) as refused:
         design(LIKE, strain=strain, tension=1e3)

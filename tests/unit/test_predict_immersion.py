@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from reduction.prediction.hose_prediction import morison as immersion
-from reduction.prediction.morison import ImmersedSection, immerse_hose, immersion_depth_of
+from reduction.prediction.morison import ImmersedSection, _immersion_depth_of, immerse_hose
 from reduction.record.errors import DataError, FitError
 
 HOSE = {
@@ -71,12 +71,12 @@ def test_depth_is_exact_to_the_last_digits_over_twenty_decades_of_area():
         for one in map(Decimal, map(float, angles)):
             area.append(float((one - sine(one)) / 8))
             depth.append(float(sine(one / 4) ** 2))
-    assert immersion_depth_of(area, 1.0) == pytest.approx(depth, rel=2e-15)
+    assert _immersion_depth_of(area, 1.0) == pytest.approx(depth, rel=2e-15)
 
 
 def test_ends_and_middle():
     area = np.pi / 4 * np.array([0.0, 0.5, 1.0])
-    assert immersion_depth_of(area, 1.0) == pytest.approx([0.0, 0.5, 1.0], abs=1e-15)
+    assert _immersion_depth_of(area, 1.0) == pytest.approx([0.0, 0.5, 1.0], abs=1e-15)
     neutral = immerse_hose(**{**HOSE, "wall_density": 1025.0, "content_density": 1025.0})
     assert float(neutral.immersion_depth) == pytest.approx(0.114)
     assert float(neutral.submerged_width) == pytest.approx(0.114)
@@ -128,13 +128,13 @@ def test_no_hose(change, message):
 @pytest.mark.parametrize("area", [-1e-6, 0.8])
 def test_no_segment(area):
     with pytest.raises(DataError, match="no segment of the circle is this large"):
-        immersion_depth_of(area, 1.0)
+        _immersion_depth_of(area, 1.0)
 
 
 def test_a_search_that_does_not_end_says_so(monkeypatch):
     monkeypatch.setattr(immersion, "_MOST_STEPS", 1)
     with pytest.raises(FitError, match="the immersion depth was not found"):
-        immersion_depth_of(0.1, 1.0)
+        _immersion_depth_of(0.1, 1.0)
 
 
 def test_a_section_by_hand_is_read_only():

@@ -2,7 +2,7 @@
 
 import pytest
 
-from reduction.prediction.wave_theory import printed_theory, theory_by_depth
+from reduction.prediction.wave_theory import _printed_theory, _theory_by_depth
 from reduction.record.errors import DataError
 
 
@@ -15,7 +15,7 @@ from reduction.record.errors import DataError
     ],
 )  # fmt: skip
 def test_depth_names_the_theory(relative_depth, theory):
-    assert theory_by_depth(relative_depth) == theory
+    assert _theory_by_depth(relative_depth) == theory
 
 
 @pytest.mark.parametrize(
@@ -26,17 +26,17 @@ def test_depth_names_the_theory(relative_depth, theory):
     ],
 )  # fmt: skip
 def test_the_letter_of_the_table(relative_depth, steepness, theory):
-    assert printed_theory(relative_depth, steepness) == theory
+    assert _printed_theory(relative_depth, steepness) == theory
 
 
 def test_no_wave_that_stands_is_in_the_printed_row_of_stokes():
     # 0.142 is the steepest wave on any depth, and the row begins at 0.2
     for relative_depth in (0.11, 0.13, 0.15, 0.17, 0.19):
-        assert printed_theory(relative_depth, 0.142) == "none"
+        assert _printed_theory(relative_depth, 0.142) == "none"
 
 
 def test_ratios_are_positive():
     with pytest.raises(DataError, match="relative_depth"):
-        theory_by_depth(0.0)
+        _theory_by_depth(0.0)
     with pytest.raises(DataError, match="steepness"):
-        printed_theory(0.3, -0.1)
+        _printed_theory(0.3, -0.1)

@@ -5,10 +5,10 @@ import pytest
 
 from reduction.prediction.wave_theory import (
     STANDARD_GRAVITY,
+    _wave_number,
     airy_wave,
     particle_motion,
     stokes_wave,
-    wave_number,
     wave_period_of,
 )
 from reduction.record.errors import DataError
@@ -39,7 +39,7 @@ def slope(f, h=1e-3):
 def test_velocities_are_the_gradient_of_the_potential_and_accelerations_their_rate(
     make, order, elevation
 ):
-    number = float(wave_number(SEA["wave_period"], SEA["water_depth"]))
+    number = float(_wave_number(SEA["wave_period"], SEA["water_depth"]))
     wave = make(**SEA, elevation=elevation)
     given = {
         "height": 1.25, "period": 3.57, "depth": 3.0, "number": number, "order": order,
@@ -88,7 +88,7 @@ def test_nothing_goes_through_the_bed(make):
 def test_what_the_surface_conditions_leave_falls_with_the_order_after_the_theory(make, order):
     """Kinematic condition, and Bernoulli's with its constant, on the moving surface itself."""
     depth, period = 3.0, 3.0
-    number = float(wave_number(period, depth))
+    number = float(_wave_number(period, depth))
     omega = 2 * np.pi / period
     x = np.linspace(0.0, 2 * np.pi / number, 61)
     left = []

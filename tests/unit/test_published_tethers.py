@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.published.published_tethers import (
-    name_of_segment,
+    _name_of_segment,
     published_static_test,
     published_tethers,
 )
@@ -116,4 +116,4 @@ def test_a_test_without_segments_is_refused():
 
 def test_a_row_of_another_table_is_no_segment():
     with pytest.raises(DataError, match="a row is no segment"):
-        name_of_segment("static test, 51 lb")
+        _name_of_segment("static test, 51 lb")

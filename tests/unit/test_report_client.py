@@ -8,13 +8,13 @@ import pytest
 
 from reduction.archive.open import open_archive
 from reduction.archive.write import (
-    Authorised,
     Client,
     Instrument,
     Item,
     Laboratory,
     Limit,
     ReportDetails,
+    _Authorised,
     keep_details,
 )
 from reduction.report import client_report as clientfigures
@@ -111,7 +111,7 @@ def test_what_is_stated_stands_under_its_label(client, rich_test):
         number="17", revision=2, amendment="table added", issued="today", received="May",
         tested="June", method="P-12", deviations="none", sampling="by the client",
         environment="23 °C", opinions="it may serve on",
-        authorised=Authorised(by="A. Person", function="head", on="5 June"),
+        authorised=_Authorised(by="A. Person", function="head", on="5 June"),
         laboratory=Laboratory(name="Lab", address="1 Street", location="the quay"),
         client=Client(name="Buoy", order="4711"),
         items={"new": filled(Item, "tag 1", "a tether", "wet", "4 May")},
@@ -160,7 +160,7 @@ def test_texts_of_the_laboratory_are_text_on_the_page_and_in_the_margins(client,
     details = filled(
         ReportDetails, NASTY, 1, *[NASTY] * 9, decision_rule="guard band",
         laboratory=filled(Laboratory, *[NASTY] * 5), client=filled(Client, *[NASTY] * 4),
-        authorised=Authorised(by=NASTY), instruments=(Instrument(name=NASTY),),
+        authorised=_Authorised(by=NASTY), instruments=(Instrument(name=NASTY),),
         items={"new": filled(Item, *[NASTY] * 4), NASTY: Item()},
         limits=(limit(1.0, source=NASTY),),
     )  # fmt: skip

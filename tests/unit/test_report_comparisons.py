@@ -21,9 +21,9 @@ from compared_hoses import (
 from reduction.archive.write import write_archive
 from reduction.report.campaign_page import write_report
 from reduction.report.campaign_sections import (
-    comparison_findings,
-    comparison_tiles,
-    make_comparison_section,
+    _comparison_findings,
+    _comparison_tiles,
+    _make_comparison_section,
 )
 from reduction.report.figures.hose_figures import (
     draw_all_comparisons,
@@ -126,7 +126,7 @@ def test_the_table_of_all_has_the_numbers_of_the_judged_curve():
 
 def test_no_comparison_is_no_table_and_no_tile():
     assert verdict_table([]) is None
-    assert comparison_tiles([]) == []
+    assert _comparison_tiles([]) == []
 
 
 def test_the_test_and_the_prediction_are_drawn_at_their_strains():
@@ -233,7 +233,7 @@ def test_what_is_not_judged_has_no_band_and_no_ratio():
 
 
 def _sentences(named, heading):
-    section = make_comparison_section(view(named))
+    section = _make_comparison_section(view(named))
     (part,) = [one for one in section.parts if one.heading == heading]
     return " ".join((*part.sentences, *part.warnings))
 
@@ -363,7 +363,7 @@ def test_a_number_that_was_stopped_says_so_and_one_without_an_interval_has_none(
     assert column(table, "number")[0] == "scale of the cords' load [1]"
     assert column(table, "at a bound") == ["yes", "no"]
     assert column(table, "95 % interval") == [NOT_GIVEN, "0.90 to 1.10"]
-    warned = {one.text for one in comparison_findings(one) if one.severity == "warning"}
+    warned = {one.text for one in _comparison_findings(one) if one.severity == "warning"}
     assert "cord_load_scale was stopped at a bound" in warned
 
 
@@ -381,20 +381,20 @@ def test_correlations_are_a_square_with_the_index_below():
 
 
 def test_what_differs_is_a_warning_at_the_top():
-    findings = comparison_findings(view(differing()))
+    findings = _comparison_findings(view(differing()))
     assert findings[0].severity == "warning"
     assert findings[0].tests == ("comparison apart",)
     assert findings[0].text == f"The prediction {differing().comparison.validation.verdict}."
-    assert not [one for one in comparison_findings(view(agreeing())) if one.severity == "warning"]
+    assert not [one for one in _comparison_findings(view(agreeing())) if one.severity == "warning"]
 
 
 def test_a_fit_that_cannot_tell_its_numbers_apart_is_a_warning_once():
-    findings = [one.text for one in comparison_findings(view(trading()))]
+    findings = [one.text for one in _comparison_findings(view(trading()))]
     said = trading().comparison.calibration.identifiability.words
     (text,) = [one for one in findings if said in one]
     assert text.startswith("The curve does not tell the fitted numbers apart")
     assert all(name in text for name in NOT_APART)
-    warnings = [one for one in comparison_findings(view(trading())) if one.severity == "warning"]
+    warnings = [one for one in _comparison_findings(view(trading())) if one.severity == "warning"]
     assert text in {one.text for one in warnings}
     assert "does not tell the fitted numbers apart" in _sentences(trading(), "Calibration")
     assert "tells these numbers apart" in _sentences(agreeing(), "Calibration")
@@ -404,29 +404,29 @@ def test_a_fit_that_cannot_tell_its_numbers_apart_is_a_warning_once():
     ("changes", "begins"), [(LITTLE, "Agrees within U, 9 N"), (NOT_JUDGED, "Not judged: neither")]
 )
 def test_agreement_that_says_little_is_a_note(changes, begins):
-    first = comparison_findings(view(judged_as(agreeing(), **changes)))[0]
+    first = _comparison_findings(view(judged_as(agreeing(), **changes)))[0]
     assert first.severity == "note" and first.text.startswith(begins)
 
 
 def test_tiles_count_the_comparisons_and_those_that_differ():
-    tiles = comparison_tiles(views())
+    tiles = _comparison_tiles(views())
     assert [(one.number, one.words, one.is_bad) for one in tiles] == [
         ("3", "comparisons", False), ("1", "differs", True),
     ]  # fmt: skip
     assert tiles[1].target == "comparison-1"
-    two = comparison_tiles(views(differing(), replace(differing(), name="too")))
+    two = _comparison_tiles(views(differing(), replace(differing(), name="too")))
     assert two[1].words == "differ"
-    (tile,) = comparison_tiles(views(agreeing()))
+    (tile,) = _comparison_tiles(views(agreeing()))
     assert tile.words == "comparison"
 
 
 def test_a_section_has_its_parts_and_no_empty_one():
-    headings = [one.heading for one in make_comparison_section(view(trading())).parts]
+    headings = [one.heading for one in _make_comparison_section(view(trading())).parts]
     assert headings == [
         "Measured and predicted tension", "Comparison error", "Cycle by cycle", "Energy",
         "Calibration",
     ]  # fmt: skip
-    section = make_comparison_section(view(differing()))
+    section = _make_comparison_section(view(differing()))
     assert [one.heading for one in section.parts] == [
         "Measured and predicted tension", "Comparison error", "Energy",
     ]  # fmt: skip

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from reduction.report.campaign_summary import brief
-from reduction.report.test_section import MOST, cycle_links
+from reduction.report.test_section import MOST, _cycle_links
 from reduction.report.test_view import TestView
 
 
@@ -24,19 +24,19 @@ def view_of(start, frequency, **more):
 
 
 def test_a_cycle_lasts_from_its_start_for_one_period():
-    found = cycle_links(view_of([100.0, 110.0, 135.0], [0.1, 0.04, 0.2]))
+    found = _cycle_links(view_of([100.0, 110.0, 135.0], [0.1, 0.04, 0.2]))
     assert found.count == 3
     np.testing.assert_allclose(found.end - found.start, [10, 25, 5])
 
 
 def test_a_cycle_that_one_specimen_did_not_see_is_timed_by_the_other():
-    found = cycle_links(view_of([[0.0, np.nan], [0.0, 4.0]], [[0.25, np.nan], [0.25, 0.25]]))
+    found = _cycle_links(view_of([[0.0, np.nan], [0.0, 4.0]], [[0.25, np.nan], [0.25, 0.25]]))
     np.testing.assert_array_equal(found.start, [0.0, 4.0])
     np.testing.assert_array_equal(found.end, [4.0, 8.0])
 
 
 def test_a_cycle_whose_time_nobody_knows_has_none_on_the_page():
-    found = cycle_links(view_of([0.0, np.nan, 8.0], [0.25, 0.25, np.nan]))
+    found = _cycle_links(view_of([0.0, np.nan, 8.0], [0.25, 0.25, np.nan]))
     assert json.loads(found.json()) == {
         "count": 3, "start": [0.0, None, 8.0], "end": [4.0, None, None],
     }  # fmt: skip
@@ -48,13 +48,13 @@ def test_a_cycle_whose_time_nobody_knows_has_none_on_the_page():
     TestView("test-0", xr.Dataset()),
 ])  # fmt: skip
 def test_without_two_cycles_or_their_times_there_is_nothing_to_choose(view):
-    assert cycle_links(view) is None
+    assert _cycle_links(view) is None
 
 
 def test_of_very_many_cycles_the_first_the_last_and_those_with_a_curve_are_listed():
     n_cycles = 100_000
     drawn = [1.0, 54_321.0, 99_999.0]
-    found = cycle_links(
+    found = _cycle_links(
         view_of(10.0 * np.arange(n_cycles), np.full(n_cycles, 0.1), selected_cycle=("kept", drawn))
     )
     assert found.count == n_cycles

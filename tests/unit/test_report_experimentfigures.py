@@ -11,7 +11,7 @@ from experiments import screening_experiment, surface_experiment
 
 from reduction.experiments.response_surfaces import fit_surfaces
 from reduction.experiments.surface_points import evaluate_surfaces
-from reduction.report.campaign_sections import make_experiment_section
+from reduction.report.campaign_sections import _make_experiment_section
 from reduction.report.figures.stiffness_figures import draw_derived, draw_forms, draw_single_time
 from reduction.report.figures.surface_figures import (
     draw_checks,
@@ -53,7 +53,7 @@ def lawful():
 @pytest.mark.slow
 def test_every_figure_is_one_that_plotly_takes_and_says_it_is_synthetic(index, units):
     view = view_of(*EVERYTHING, index=index, units=units)
-    figures = list(figures_of(make_experiment_section(view, {}).parts))
+    figures = list(figures_of(_make_experiment_section(view, {}).parts))
     assert len(figures) >= 4
     assert len({figure.key for figure in figures}) == len(figures)
     for figure in figures:
@@ -67,7 +67,7 @@ def test_every_figure_is_one_that_plotly_takes_and_says_it_is_synthetic(index, u
 
 def test_data_that_are_measured_are_not_called_synthetic():
     view = view_of(surface_experiment(), synthetic="no")
-    section = make_experiment_section(view, {})
+    section = _make_experiment_section(view, {})
     tables = [table for part in section.parts for table in part.tables]
     assert not any(figure.synthetic for figure in figures_of(section.parts))
     assert not any("SYNTHETIC" in table.caption for table in tables)
@@ -180,7 +180,9 @@ def test_a_response_without_a_surface_has_a_reason_and_no_figure():
     view = view_of(
         replace(result, runs=replace(runs, response=few), surfaces=surfaces, shared=None)
     )
-    (part,) = [p for p in make_experiment_section(view, {}).parts if p.heading == "Relaxation time"]
+    (part,) = [
+        p for p in _make_experiment_section(view, {}).parts if p.heading == "Relaxation time"
+    ]
     assert part.figures == ()
     assert part.sentences == ("No surface: fewer runs with a value than terms.",)
 

@@ -26,7 +26,7 @@ from reduction.archive.write import write_archive
 from reduction.prediction.cord_curve import CordCurve
 from reduction.record.errors import ArchiveError
 from reduction.report.campaign_page import write_report
-from reduction.report.campaign_sections import hose_findings, hose_tiles, make_hose_section
+from reduction.report.campaign_sections import _hose_findings, _hose_tiles, _make_hose_section
 from reduction.report.figures.hose_figures import (
     draw_all_hoses,
     draw_budget,
@@ -36,13 +36,13 @@ from reduction.report.figures.hose_figures import (
     draw_tension,
 )
 from reduction.report.prediction_tables import (
+    _plus_minus_of_hoses,
     answer_of_hoses,
     cord_table,
     hose_curve_table,
     hose_design_table,
     hose_event_table,
     layer_table,
-    plus_minus_of_hoses,
 )
 from reduction.report.product_views import view_hoses
 from reduction.report.text_style import NOT_GIVEN
@@ -109,7 +109,7 @@ def test_a_state_of_the_cords_is_a_bit_at_each_strain():
 @pytest.mark.parametrize("hose", [predicted, bare])
 def test_every_figure_is_one_that_plotly_takes_and_says_it_is_synthetic(hose, units):
     (one,) = views(hose(), units=units, synthetic="yes")
-    figures = figures_of(make_hose_section(one))
+    figures = figures_of(_make_hose_section(one))
     assert len({figure.key for figure in figures}) == len(figures) >= 3
     for figure in figures:
         go.Figure(json.loads(figure.json()))
@@ -122,7 +122,7 @@ def test_every_figure_is_one_that_plotly_takes_and_says_it_is_synthetic(hose, un
 
 
 def test_a_prediction_that_is_not_of_made_up_numbers_is_not_called_synthetic():
-    section = make_hose_section(view())
+    section = _make_hose_section(view())
     assert not any(figure.synthetic for figure in figures_of(section))
     assert not any("SYNTHETIC" in table.caption for table in tables_of(section))
     assert any("no hose was pulled" in text for text in section.parts[0].sentences)
@@ -176,7 +176,7 @@ def test_without_uncertainty_there_is_neither_band_nor_word_of_it():
     for figure in (*draw_tension(one), *draw_pressure(one)):
         assert "95 % band" not in traces(figure) and "95 %" not in figure.caption
     assert draw_budget(one) == []
-    assert plus_minus_of_hoses([one]) == [
+    assert _plus_minus_of_hoses([one]) == [
         "No number of the construction has a stated uncertainty, so none is given."
     ]
 
@@ -187,7 +187,7 @@ def test_below_the_neutral_angle_nothing_is_shaded_and_no_slack_is_spoken_of():
     assert "shapes" not in figure.layout and "Grey" not in figure.caption
     assert not {"cords slackest", "cords pick up"} & traces(figure).keys()
     assert [event.name for event in one.events.values()] == ["pick_up", "working", "cord_break"]
-    assert "no slack zone" in make_hose_section(one).parts[0].sentences[0]
+    assert "no slack zone" in _make_hose_section(one).parts[0].sentences[0]
 
 
 def test_events_beyond_the_last_strain_are_in_the_table_and_not_in_the_figure():
@@ -390,29 +390,29 @@ def test_the_curve_has_some_points_with_first_and_last():
 
 def test_doubts_are_warnings_on_top_and_the_rest_notes():
     one = view(greatest_strain=2.4, cord_diameter=0.00075)
-    found = {finding.text[:24]: finding.severity for finding in hose_findings(one)}
+    found = {finding.text[:24]: finding.severity for finding in _hose_findings(one)}
     assert found["layer Kevlar is stretche"] == "warning"
     assert found["layer Kevlar: no angle k"] == "warning"
     assert found["neighbouring cords touch"] == "warning"
     assert found["the cords are broken fro"] == "refusal"
     (plain,) = views(bare())
-    assert {finding.severity for finding in hose_findings(plain)} == {"note"}
-    assert {finding.tests for finding in hose_findings(plain)} == {("hose stiff",)}
-    assert len(make_hose_section(one).parts[0].warnings) == 3
+    assert {finding.severity for finding in _hose_findings(plain)} == {"note"}
+    assert {finding.tests for finding in _hose_findings(plain)} == {("hose stiff",)}
+    assert len(_make_hose_section(one).parts[0].warnings) == 3
 
 
 def test_a_little_known_working_load_is_a_warning():
     one = view(uncertain={"rubber_modulus": 7e5}, layers=())
-    assert [finding.severity for finding in hose_findings(one)] == ["warning"]
+    assert [finding.severity for finding in _hose_findings(one)] == ["warning"]
 
 
 def test_tiles_count_hoses_and_give_the_load_of_one_alone():
     one, other = views(predicted(), bare())
-    assert [tile.words for tile in hose_tiles([one, other])] == ["predicted hoses"]
-    first, load = hose_tiles([one])
+    assert [tile.words for tile in _hose_tiles([one, other])] == ["predicted hoses"]
+    first, load = _hose_tiles([one])
     assert first.words == "predicted hose"
     assert load.number == f"{working_tension(68):,.0f} N"
-    assert hose_tiles([]) == []
+    assert _hose_tiles([]) == []
 
 
 @pytest.fixture

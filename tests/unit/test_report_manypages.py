@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from reduction.report.campaign_page import over_pages, write_pages
+from reduction.report.campaign_page import _over_pages, _write_pages
 from reduction.report.page_template import Page, RenderedSection
 
 CONTENT = Page(
@@ -25,7 +25,7 @@ def links(page):
 
 
 def test_what_has_room_on_one_page_stays_there(tmp_path):
-    page = write_pages(CONTENT, sections(3), tmp_path)
+    page = _write_pages(CONTENT, sections(3), tmp_path)
     assert [one.name for one in tmp_path.iterdir()] == ["index.html"]
     text = page.read_text()
     assert all(f"<p id=test-{n}>" in text for n in range(3))
@@ -33,7 +33,7 @@ def test_what_has_room_on_one_page_stays_there(tmp_path):
 
 
 def test_every_section_is_on_one_page_and_the_contents_lead_to_it(tmp_path):
-    page = write_pages(CONTENT, sections(5), tmp_path, most=250)
+    page = _write_pages(CONTENT, sections(5), tmp_path, most=250)
     names = ["tests-01.html", "tests-02.html", "tests-03.html"]
     assert sorted(one.name for one in tmp_path.iterdir()) == ["index.html", *names]
     assert "<p id=test-" not in page.read_text()
@@ -45,7 +45,7 @@ def test_every_section_is_on_one_page_and_the_contents_lead_to_it(tmp_path):
 
 
 def test_a_page_beside_leads_back_and_says_what_it_is(tmp_path):
-    write_pages(CONTENT, sections(3), tmp_path, most=250)
+    _write_pages(CONTENT, sections(3), tmp_path, most=250)
     text = (tmp_path / "tests-02.html").read_text()
     assert '<a class="home" href="index.html">many</a>' in text
     assert "<h1>Many &lt;tests&gt;: T&lt;2&gt;</h1>" in text
@@ -55,20 +55,20 @@ def test_a_page_beside_leads_back_and_says_what_it_is(tmp_path):
 def test_a_section_that_is_longer_than_a_page_has_one_of_its_own():
     given = sections(3)
     given[1] = RenderedSection("test-1", "long", 900 * "x")
-    assert [[one.title for one in page] for page in over_pages(given, most=250)] == [
+    assert [[one.title for one in page] for page in _over_pages(given, most=250)] == [
         ["T<0>"], ["long"], ["T<2>"],
     ]  # fmt: skip
 
 
 @pytest.mark.parametrize("n_sections", [0, 1])
 def test_few_sections_are_one_page(n_sections):
-    assert [len(page) for page in over_pages(sections(n_sections), most=1)] == [n_sections]
+    assert [len(page) for page in _over_pages(sections(n_sections), most=1)] == [n_sections]
 
 
 def test_pages_of_an_earlier_run_are_taken_away(tmp_path):
-    write_pages(CONTENT, sections(5), tmp_path, most=250)
+    _write_pages(CONTENT, sections(5), tmp_path, most=250)
     (tmp_path / "tests-of-mine.txt").write_text("kept")
-    write_pages(CONTENT, sections(3), tmp_path, most=250)
+    _write_pages(CONTENT, sections(3), tmp_path, most=250)
     assert sorted(one.name for one in tmp_path.iterdir()) == [
         "index.html", "tests-01.html", "tests-02.html", "tests-of-mine.txt",
     ]  # fmt: skip
@@ -77,7 +77,7 @@ def test_pages_of_an_earlier_run_are_taken_away(tmp_path):
 def test_a_page_of_somebody_else_is_not_taken_away(tmp_path):
     for name in ("tests-of-mine.html", "tests-1.html", "mytests-02.html", "tests-07.html"):
         (tmp_path / name).write_text("kept")
-    write_pages(CONTENT, sections(1), tmp_path)
+    _write_pages(CONTENT, sections(1), tmp_path)
     # seven of two digits is a name that is given here
     assert sorted(one.name for one in tmp_path.iterdir()) == [
         "index.html", "mytests-02.html", "tests-1.html", "tests-of-mine.html",
@@ -87,8 +87,8 @@ def test_a_page_of_somebody_else_is_not_taken_away(tmp_path):
 def test_sections_that_have_room_together_but_not_beside_the_rest_stand_on_a_page_of_their_own(
     tmp_path,
 ):
-    alone = write_pages(CONTENT, [], tmp_path / "alone").stat().st_size
-    page = write_pages(CONTENT, sections(3), tmp_path / "r", most_in_all=alone + 250)
+    alone = _write_pages(CONTENT, [], tmp_path / "alone").stat().st_size
+    page = _write_pages(CONTENT, sections(3), tmp_path / "r", most_in_all=alone + 250)
     names = sorted(one.name for one in page.parent.iterdir())
     assert names == ["index.html", "tests-01.html"]
     assert "<p id=test-" not in page.read_text()
@@ -96,5 +96,5 @@ def test_sections_that_have_room_together_but_not_beside_the_rest_stand_on_a_pag
     text = (page.parent / "tests-01.html").read_text()
     assert all(f"<p id=test-{n}>" in text for n in range(3))
     # nothing is gained where there is no section to move
-    assert write_pages(CONTENT, [], tmp_path / "none", most_in_all=1).exists()
+    assert _write_pages(CONTENT, [], tmp_path / "none", most_in_all=1).exists()
     assert not (tmp_path / "none" / "tests-01.html").exists()

@@ -9,7 +9,7 @@ from reduction.experiments.outcome_groups import Group
 from reduction.experiments.outcomes import Outcome
 from reduction.record.measurement import Origin, Source, Step
 from reduction.report.campaign_page import write_report
-from reduction.report.campaign_sections import make_outcome_section
+from reduction.report.campaign_sections import _make_outcome_section
 from reduction.report.figures.outcome_figures import draw_exposure, draw_lives
 from reduction.report.outcome_tables import (
     exposure_table,
@@ -153,10 +153,10 @@ def test_names_say_in_what_groups_differ():
 
 
 def test_parts_without_data_are_left_out():
-    section = make_outcome_section(view(BREAKS[:2]))
+    section = _make_outcome_section(view(BREAKS[:2]))
     assert [part.heading for part in section.parts] == ["Strength"]
     assert section.subtitle == "2 outcomes without a log: 2 used as values"
-    everything = make_outcome_section(
+    everything = _make_outcome_section(
         view([*BREAKS, SPLICE, *CYCLES, Outcome("abrasion_cycles", 7e3)])
     )
     assert [part.heading for part in everything.parts] == [

@@ -8,7 +8,7 @@ import pytest
 from long_records import cycles_of, long_test
 
 from reduction.archive.test_dataset import kept_samples, stored_cycles, to_dataset
-from reduction.record.settings import ArchiveSettings, ModulusSettings, ReductionSettings
+from reduction.record.settings import ModulusSettings, ReductionSettings, _ArchiveSettings
 from reduction.report.figure_data import with_gaps
 from reduction.report.figures.cycle_figures import draw_loops
 from reduction.report.figures.record_figures import draw_record, draw_tension_position
@@ -17,7 +17,7 @@ from reduction.report.test_view import TestView
 
 def view_of(test, samples="selected", longest=10**6):
     chosen = ReductionSettings(
-        archive=ArchiveSettings(samples, longest), modulus=ModulusSettings(selected_cycles=8)
+        archive=_ArchiveSettings(samples, longest), modulus=ModulusSettings(selected_cycles=8)
     )
     kept = kept_samples(test, chosen)
     return TestView("test-0", to_dataset(test, version="1", command="run", kept=kept))

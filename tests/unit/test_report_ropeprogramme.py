@@ -13,7 +13,7 @@ from reduction.archive.write import write_archive
 from reduction.record.contributions import Component
 from reduction.record.measurement import Origin, Source, Step
 from reduction.report.campaign_page import write_report
-from reduction.report.campaign_sections import make_rope_section, rope_tiles
+from reduction.report.campaign_sections import _make_rope_section, _rope_tiles
 from reduction.report.figures.hold_figures import draw_creep, draw_held_pairs, draw_stiffness
 from reduction.report.outcome_tables import (
     answer_of_ropes,
@@ -121,7 +121,7 @@ def test_a_rope_has_its_steps_in_order_and_those_without_an_archive_are_left_out
     first, second = ropes
     assert [test.id for test in first.tests] == ["D", "Q"]
     assert second.tests == ()
-    assert "D, Q" in make_rope_section(first).subtitle
+    assert "D, Q" in _make_rope_section(first).subtitle
 
 
 def test_every_property_is_a_row_and_a_missing_one_has_its_reason(ropes):
@@ -135,7 +135,7 @@ def test_every_property_is_a_row_and_a_missing_one_has_its_reason(ropes):
     assert by_name["polymer strain"][1] == "30,000"
     assert by_name["construction strain"][5] == NOT_GIVEN
     assert table.remarks[0] == "original stiffness, B: of the first cycle"
-    part = make_rope_section(ropes[0]).parts[0]
+    part = _make_rope_section(ropes[0]).parts[0]
     assert part.refusals == ("construction strain: no step beds the rope in",)
 
 
@@ -144,8 +144,8 @@ def test_the_answer_has_a_row_a_rope(ropes):
     assert rows[0][:4] == ["R-1", "300,000 ± 590", "500,000 ± 120", "1,000,000 to 1,300,000"]
     assert set(rows[1][1:]) == {NOT_GIVEN}
     assert answer_of_ropes([]) is None
-    assert rope_tiles([]) == []
-    assert rope_tiles(ropes)[0].number == "2"
+    assert _rope_tiles([]) == []
+    assert _rope_tiles(ropes)[0].number == "2"
 
 
 def test_tables_of_steps_are_of_this_rope_alone(ropes):

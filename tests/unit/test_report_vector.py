@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from reduction.report.figure_data import axis, band, line, make_figure, named_axis
-from reduction.report.svg_figure import axis_of, can_be_drawn, round_ticks, vector_of
+from reduction.report.svg_figure import _axis_of, _round_ticks, can_be_drawn, vector_of
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -50,9 +50,9 @@ def test_a_point_stands_where_the_ticks_beside_it_say():
 
 
 def test_ticks_are_round_numbers_inside_the_axis():
-    assert round_ticks(0.0, 2.0, 6) == [0.0, 0.5, 1.0, 1.5, 2.0]
-    assert round_ticks(-1.2e6, 3.1e6, 5) == [-1e6, 0.0, 1e6, 2e6, 3e6]
-    assert round_ticks(0.0011, 0.0032, 5) == [0.0015, 0.002, 0.0025, 0.003]
+    assert _round_ticks(0.0, 2.0, 6) == [0.0, 0.5, 1.0, 1.5, 2.0]
+    assert _round_ticks(-1.2e6, 3.1e6, 5) == [-1e6, 0.0, 1e6, 2e6, 3e6]
+    assert _round_ticks(0.0011, 0.0032, 5) == [0.0015, 0.002, 0.0025, 0.003]
 
 
 @pytest.mark.parametrize(
@@ -66,7 +66,7 @@ def test_ticks_are_round_numbers_inside_the_axis():
     ],
 )
 def test_the_ends_of_an_axis(values, layout, ends):
-    found = axis_of(layout, values, first=0, last=1, most=5)
+    found = _axis_of(layout, values, first=0, last=1, most=5)
     assert (found.low, found.high) == pytest.approx(ends)
 
 

@@ -5,9 +5,9 @@ import pytest
 
 from reduction.published import wang_2022 as armour_equations
 from reduction.published.printed_cells import table_of
-from reduction.published.wang_2022 import armour, equation_answers, response
+from reduction.published.wang_2022 import _armour, _equation_answers, _response
 
-ANSWERS = equation_answers()
+ANSWERS = _equation_answers()
 
 
 @pytest.mark.parametrize("key", ANSWERS, ids=lambda key: " ".join(key))
@@ -21,12 +21,12 @@ def test_answers_are_those_of_the_corrected_page(key):
 
 def test_no_answer_depends_on_the_radius_that_is_not_given(monkeypatch):
     monkeypatch.setattr(armour_equations, "_HELIX", 80e-3)
-    for key, other in equation_answers().items():
+    for key, other in _equation_answers().items():
         assert other.value == pytest.approx(ANSWERS[key].value, rel=1e-9)
 
 
 def test_response_is_one_number_an_angle():
-    stress = response(np.array([20.0, 45.0]), "axial_stress") / 1e6
+    stress = _response(np.array([20.0, 45.0]), "axial_stress") / 1e6
     # 210 MPa times the squared cosine
     assert stress == pytest.approx([185.43, 105.0], abs=0.005)
-    assert float(armour(20.0, wire=3e-3).helix_radius) == pytest.approx(27.5e-3)
+    assert float(_armour(20.0, wire=3e-3).helix_radius) == pytest.approx(27.5e-3)

@@ -8,7 +8,7 @@ import pytest
 from reproduced import whole
 
 from reduction.published.cg_cells import Pages, number, rounding
-from reduction.published.cg_d_39_80 import item_of, items_of
+from reduction.published.cg_d_39_80 import _item_of, _items_of
 from reduction.published.printed_cells import cells_of, errata_of, number_of
 from reduction.published.reproduced_item import agree, beside, judge, not_testable
 from reduction.record.errors import DataError
@@ -134,7 +134,7 @@ def test_a_wrong_digit_of_a_reproduced_number_is_noticed():
             continue
         wrong = replace(item.cell, printed=other_leading_digit(item.cell.printed))
         pages.by_key[wrong.key] = wrong
-        found = item_of(wrong, pages)
+        found = _item_of(wrong, pages)
         pages.by_key[wrong.key] = item.cell
         if found.verdict == "reproduced":
             missed.append((item.cell.key, item.cell.printed, wrong.printed))
@@ -158,7 +158,7 @@ def test_a_wrong_number_in_words_is_noticed():
         if item.verdict != "reproduced" or " ".join(words) == item.cell.printed:
             continue
         wrong = replace(item.cell, printed=" ".join(words))
-        assert item_of(wrong, pages).verdict == "unexplained", item.cell.key
+        assert _item_of(wrong, pages).verdict == "unexplained", item.cell.key
         changed.append(item.cell.printed)
     assert sorted(changed) == [
         "five", "nine", "one", "one-and-a-half", "twelve", "twice", "twice", "two samples each",
@@ -170,7 +170,7 @@ def test_one_wrong_digit_is_unexplained_in_the_whole():
     cells = [
         replace(cell, printed="6.318") if cell.key == ("3", row, column) else cell for cell in CELLS
     ]
-    wrong = [item.cell.key for item in items_of(cells) if item.verdict == "unexplained"]
+    wrong = [item.cell.key for item in _items_of(cells) if item.verdict == "unexplained"]
     # the other print and the number that the text repeats disagree with it now
     assert wrong == [("3", row, column), ("5", row, column), ("sec 4.4.1", row, column)]
 

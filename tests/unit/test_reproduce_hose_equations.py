@@ -3,9 +3,9 @@
 import pytest
 
 from reduction.published.printed_cells import table_of
-from reduction.published.whoi_2004_06 import equation_answers
+from reduction.published.whoi_2004_06 import _equation_answers
 
-ANSWERS = equation_answers()
+ANSWERS = _equation_answers()
 REPORT = "WHOI-2004-06"
 
 

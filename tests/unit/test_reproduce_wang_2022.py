@@ -6,7 +6,7 @@ import pytest
 from misprinted import verdicts_of_misprints
 
 from reduction.published.printed_cells import cells_of, errata_of
-from reduction.published.wang_2022 import answers, items
+from reduction.published.wang_2022 import _answers, items
 
 ITEMS = items()
 BY_KEY = {item.cell.key: item for item in ITEMS}
@@ -29,7 +29,7 @@ def test_each_erratum_is_shown_by_a_cell():
 
 
 def test_a_changed_digit_is_found():
-    verdicts = verdicts_of_misprints("Wang-2022", answers())
+    verdicts = verdicts_of_misprints("Wang-2022", _answers())
     assert {key for key, verdict in verdicts.items() if verdict != "unexplained"} == set()
     # two limits, and the words of one ratio, hold no digit that could be changed
     assert len(verdicts) == 27

@@ -3,9 +3,9 @@
 import pytest
 
 from reduction.published.printed_cells import table_of
-from reduction.published.zhang_2015 import equation_answers
+from reduction.published.zhang_2015 import _equation_answers
 
-ANSWERS = equation_answers()
+ANSWERS = _equation_answers()
 SPEED = ("eq 14", "wave number k", "divisor of 2 pi")
 
 

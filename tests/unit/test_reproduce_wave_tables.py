@@ -9,9 +9,9 @@ import pytest
 from reduction.prediction.morison import wave_load
 from reduction.prediction.zhang_example import printed_airy_wave, printed_section
 from reduction.published.printed_cells import cells_of, number_of
-from reduction.published.zhang_2015 import table_answers
+from reduction.published.zhang_2015 import _table_answers
 
-ANSWERS = table_answers()
+ANSWERS = _table_answers()
 CELLS = [cell for cell in cells_of("Zhang-2015") if cell.table == "7"]
 HALF_A_HUNDREDTH = 0.005 * (1 + 1e-9)
 

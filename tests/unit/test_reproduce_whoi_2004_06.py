@@ -6,7 +6,7 @@ import pytest
 from misprinted import verdicts_of_misprints
 
 from reduction.published.printed_cells import cells_of, errata_of
-from reduction.published.whoi_2004_06 import answers, items
+from reduction.published.whoi_2004_06 import _answers, items
 
 ITEMS = items()
 BY_KEY = {item.cell.key: item for item in ITEMS}
@@ -44,7 +44,7 @@ def test_each_erratum_is_shown_by_a_cell():
 
 
 def test_a_changed_digit_is_found():
-    verdicts = verdicts_of_misprints("WHOI-2004-06", answers())
+    verdicts = verdicts_of_misprints("WHOI-2004-06", _answers())
     assert {key for key, verdict in verdicts.items() if verdict != "unexplained"} == set()
     assert len(verdicts) == 33
 

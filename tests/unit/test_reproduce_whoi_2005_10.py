@@ -15,11 +15,11 @@ import pytest
 
 from reduction.published.printed_cells import cells_of, errata_of
 from reduction.published.whoi_2005_10 import (
-    areas_of_tables,
+    _areas_of_tables,
+    _items_of,
+    _rows_of,
+    _static_gauge_length,
     items,
-    items_of,
-    rows_of,
-    static_gauge_length,
 )
 
 REPORT = "WHOI-2005-10"
@@ -46,7 +46,7 @@ def cells(table):
 
 def verdict(cell, text):
     changed = [replace(one, printed=text) if one is cell else one for one in CELLS]
-    return next(one for one in items_of(changed) if one.cell.key == cell.key).verdict
+    return next(one for one in _items_of(changed) if one.cell.key == cell.key).verdict
 
 
 def test_no_cell_is_left_out_and_none_is_unexplained():
@@ -95,7 +95,7 @@ def test_open_numbers_of_table_5_are_the_copied_rows_and_of_table_6_the_row_that
 
 
 def test_each_table_was_made_on_one_area_for_each_tether():
-    areas = areas_of_tables(cells("5"), cells("6"))
+    areas = _areas_of_tables(cells("5"), cells("6"))
     # diameters of 1.04 and .94 in, half a hundredth of an inch either way
     assert all(0.8413 < area < 0.8577 for area in areas["new"])
     assert all(0.6866 < area < 0.7014 for area in areas["used"])
@@ -104,7 +104,7 @@ def test_each_table_was_made_on_one_area_for_each_tether():
 
 
 def test_one_gauge_length_gives_every_elongation_of_table_4():
-    low, high = static_gauge_length(rows_of(cells("4")))
+    low, high = _static_gauge_length(_rows_of(cells("4")))
     assert low == pytest.approx(16.88 / 2.755, abs=1e-9)  # 163 lb
     assert high == pytest.approx(17.38 / 2.835, abs=1e-9)  # 97 lb, going down
     assert low < 6.13 < high and not low < 6.125 < high
@@ -157,7 +157,7 @@ def test_strains_of_table_5_end_where_the_interpolated_stretch_does():
         else one
         for one in CELLS
     ]
-    (item,) = (one for one in items_of(changed) if one.cell.key == key)
+    (item,) = (one for one in _items_of(changed) if one.cell.key == key)
     assert item.verdict == "unexplained"
 
 

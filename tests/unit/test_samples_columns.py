@@ -7,8 +7,8 @@ from reduction.record.measurement import samples as blocks
 from reduction.record.measurement import samples as scratch
 from reduction.record.samples import (
     ColumnWriter,
+    _is_on_disk,
     chosen,
-    is_on_disk,
     mean_of,
     median_step_reaches,
     shifted,
@@ -40,7 +40,7 @@ def test_chosen_samples_are_those_of_a_mask_and_lie_beside_the_series(tmp_path, 
                     np.testing.assert_array_equal(one, wanted)
                     assert one.dtype == wanted.dtype
                     if wanted.size not in (0, n_samples):
-                        assert is_on_disk(one) == is_on_disk(source)
+                        assert _is_on_disk(one) == _is_on_disk(source)
 
 
 def test_where_all_samples_are_chosen_nothing_is_copied():

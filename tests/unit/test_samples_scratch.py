@@ -10,9 +10,9 @@ from reduction.record.errors import DataError
 from reduction.record.measurement import samples as scratch
 from reduction.record.samples import (
     ColumnWriter,
+    _is_on_disk,
     empty_like,
     give_back,
-    is_on_disk,
     scratch_folder,
 )
 
@@ -30,7 +30,7 @@ def test_a_column_is_the_same_in_memory_and_on_disk(tmp_path, kind, sizes):
         assert writer.size == expected.size
         column = writer.finish()
         np.testing.assert_array_equal(column, expected)
-        assert (column.dtype, is_on_disk(column)) == (kind, bool(folder and expected.size))
+        assert (column.dtype, _is_on_disk(column)) == (kind, bool(folder and expected.size))
     assert list(tmp_path.iterdir()) == []
 
 

@@ -6,24 +6,24 @@ import pytest
 from reduction.record.errors import DataError
 from reduction.stages.strain.strain_model import (
     StrainModel,
+    _gauge_length_strain,
+    _marked_line_strain,
+    _splice_ratio_strain,
+    _tension_driven_strain,
     extrapolated,
     free_length_strain,
-    gauge_length_strain,
-    marked_line_strain,
-    splice_ratio_strain,
     strain_by_model,
     strain_sensitivity_of,
-    tension_driven_strain,
 )
 
 POSITION, TENSION = np.array([5.9, 6.6, 7.3]), np.array([380.0, 480.0, 590.0])
 OF_POSITION = {
     "marks": (
-        marked_line_strain,
+        _marked_line_strain,
         {"free_length_intercept": -0.8, "free_length_slope": 0.9, "relaxed_free_length": 2.55},
     ),
     "strain-ratio": (
-        splice_ratio_strain,
+        _splice_ratio_strain,
         {
             "relaxed_free_length": 2.55,
             "relaxed_splice_length": 1.18,
@@ -34,7 +34,7 @@ OF_POSITION = {
         free_length_strain,
         {"free_fraction": 0.777, "relaxed_free_length": 2.55},
     ),
-    "gauge-length": (gauge_length_strain, {"reference_position": 3.7, "gauge_length": 2.5}),
+    "gauge-length": (_gauge_length_strain, {"reference_position": 3.7, "gauge_length": 2.5}),
 }
 LAW = {
     "relaxed_free_length": 2.55,
@@ -56,7 +56,7 @@ def test_each_method_of_position_is_evaluated_by_its_own_formula(method):
 
 def test_tension_driven_uses_the_tension():
     found = strain_by_model(TENSION_DRIVEN, position=POSITION, tension=TENSION)
-    np.testing.assert_array_equal(found, tension_driven_strain(POSITION, TENSION, **LAW))
+    np.testing.assert_array_equal(found, _tension_driven_strain(POSITION, TENSION, **LAW))
 
 
 def test_a_block_of_a_log_gives_what_the_whole_log_gives():

@@ -5,7 +5,7 @@ import pytest
 from statsmodels.regression.linear_model import GLS
 from statsmodels.regression.mixed_linear_model import MixedLM
 
-from reduction.experiments.block_effects import block_columns, fit_random_intercept
+from reduction.experiments.block_effects import _fit_random_intercept, block_columns
 from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
 from reduction.record.errors import DataError
 
@@ -25,7 +25,7 @@ def responses():
 
 
 def test_random_blocks_are_those_of_statsmodels(responses):
-    found = fit_random_intercept(MATRIX, responses, block=BLOCK)
+    found = _fit_random_intercept(MATRIX, responses, block=BLOCK)
     for row, response in enumerate(responses):
         has = np.isfinite(response)
         with warnings.catch_warnings():
@@ -55,7 +55,7 @@ def test_balanced_blocks_have_the_variance_of_the_analysis_of_variance():
     values = (
         MATRIX @ np.ones(10) + rng.normal(0, 1.0, (1, 4))[:, BLOCK] + rng.normal(0, 0.2, (1, 60))
     )
-    found = fit_random_intercept(MATRIX, values, block=BLOCK)
+    found = _fit_random_intercept(MATRIX, values, block=BLOCK)
     means = values.reshape(4, 15).mean(axis=1)
     between = 15 * np.var(means, ddof=1)
     free = values[0] - means[BLOCK]
@@ -70,7 +70,7 @@ def test_blocks_closer_together_than_the_scatter_have_no_variance():
     rng = np.random.default_rng(2)
     values = rng.normal(size=(1, 15))[:, np.arange(60) % 15] + 0.01 * rng.normal(size=(1, 60))
     values += np.tile([0.5, -0.5], 30)  # scatter within, the same in each block
-    found = fit_random_intercept(np.ones((60, 1)), values, block=BLOCK)
+    found = _fit_random_intercept(np.ones((60, 1)), values, block=BLOCK)
     assert found.at_boundary.tolist() == [True]
     assert found.standard_deviation[0] == 0.0
     np.testing.assert_allclose(found.effect, 0.0)
@@ -79,7 +79,7 @@ def test_blocks_closer_together_than_the_scatter_have_no_variance():
 def test_a_factor_that_moves_between_blocks_alone_is_judged_between_them():
     diameter = np.array([-1.0, -1.0, 1.0, 1.0])[BLOCK]
     values = np.random.default_rng(3).normal(size=(1, 60))
-    found = fit_random_intercept(
+    found = _fit_random_intercept(
         np.column_stack([np.ones(60), diameter, RUNS[:, 0]]), values, block=BLOCK
     )
     assert found.is_between.tolist() == [True, True, False]
@@ -89,7 +89,7 @@ def test_a_factor_that_moves_between_blocks_alone_is_judged_between_them():
 def test_too_few_runs_give_nothing():
     values = np.full((1, 60), np.nan)
     values[0, :10] = 1.0
-    found = fit_random_intercept(MATRIX, values, block=BLOCK)
+    found = _fit_random_intercept(MATRIX, values, block=BLOCK)
     assert np.isnan(found.coefficient).all() and np.isnan(found.sigma).all()
 
 
@@ -109,4 +109,4 @@ def test_one_block_is_refused():
 
 def test_blocks_that_do_not_pair_up_are_refused(responses):
     with pytest.raises(DataError, match="the blocks do not pair up with the runs; found 3 blocks"):
-        fit_random_intercept(MATRIX, responses, block=BLOCK[:3])
+        _fit_random_intercept(MATRIX, responses, block=BLOCK[:3])

@@ -4,7 +4,7 @@ from scipy.optimize import minimize
 
 from reduction.experiments.designs import model_matrix, quadratic_exponents
 from reduction.experiments.fit_results import STATIONARY_KINDS, STATIONARY_REASONS
-from reduction.experiments.stationary_point import canonical_analysis, curvature, ridge_path
+from reduction.experiments.stationary_point import _curvature, canonical_analysis, ridge_path
 from reduction.record.errors import SettingsError
 
 EXPONENTS = quadratic_exponents(3)
@@ -75,7 +75,7 @@ def test_uncertainties_are_those_of_repeated_experiments():
 
 
 def test_curvature_gives_the_surface_back():
-    slope, form = curvature([TREB], EXPONENTS)
+    slope, form = _curvature([TREB], EXPONENTS)
     point = np.array([0.3, -0.6, 0.9])
     height = TREB[0] + point @ slope[0] + point @ form[0] @ point
     assert height == pytest.approx(model_matrix(point, EXPONENTS) @ TREB, rel=1e-14)
@@ -99,7 +99,7 @@ def test_ridge_points_are_those_a_search_on_the_sphere_finds(direction, radius):
     assert path.value[0, 0] == pytest.approx(sign * best, rel=1e-8)
     assert np.linalg.norm(path.coded[0, 0]) == pytest.approx(radius, rel=1e-12)
     # the slope of the surface lies along the radius, twice the multiplier long
-    slope, form = curvature([TREB], EXPONENTS)
+    slope, form = _curvature([TREB], EXPONENTS)
     gradient = slope[0] + 2 * form[0] @ path.coded[0, 0]
     np.testing.assert_allclose(
         gradient, 2 * path.multiplier[0, 0] * path.coded[0, 0], rtol=1e-6, atol=1e-7

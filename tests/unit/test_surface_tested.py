@@ -6,10 +6,10 @@ import pytest
 from reduction.experiments.designs import box_behnken
 from reduction.experiments.response_surfaces import fit_surfaces
 from reduction.experiments.surface_points import (
+    _levels_tested,
     evaluate_surfaces,
     greatest_leverage,
     is_within_levels,
-    levels_tested,
 )
 
 PLAN = box_behnken(3).coded
@@ -29,8 +29,8 @@ def surfaces(coded, other=None):
 def test_a_run_that_went_elsewhere_leaves_its_plan_untested():
     reached = np.array([[0.9, 0.0], [0.6, -1.0]])
     plan = np.array([[1.0, 0.0], [1.0, -1.0]])
-    assert levels_tested(reached, plan).tolist() == [*reached.tolist(), [1.0, 0.0]]
-    assert levels_tested(reached, np.full((2, 2), np.nan)).tolist() == reached.tolist()
+    assert _levels_tested(reached, plan).tolist() == [*reached.tolist(), [1.0, 0.0]]
+    assert _levels_tested(reached, np.full((2, 2), np.nan)).tolist() == reached.tolist()
 
 
 def test_levels_of_the_plan_that_were_nearly_reached_are_not_above_the_leverage_of_the_runs():

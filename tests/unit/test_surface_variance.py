@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents, term_names
-from reduction.experiments.run_sheet import covariance_factor, find_confounded, variance_factor
+from reduction.experiments.run_sheet import _find_confounded, covariance_factor, variance_factor
 from reduction.record.errors import DataError, FitError
 
 EXPONENTS = quadratic_exponents(3)
@@ -39,11 +39,11 @@ def test_a_singular_design_names_what_it_confounds():
 
 
 def test_a_column_of_noughts_is_named():
-    assert find_confounded([[1.0, 0.0], [1.0, 0.0]], ["mean", "f"]) == ("f is zero in every run",)
+    assert _find_confounded([[1.0, 0.0], [1.0, 0.0]], ["mean", "f"]) == ("f is zero in every run",)
     with pytest.raises(FitError, match="f is zero in every run"):
         covariance_factor([[1.0, 0.0], [1.0, 0.0]], names=["mean", "f"])
 
 
 def test_names_that_do_not_pair_up_are_refused():
     with pytest.raises(DataError, match="names do not pair up with the columns"):
-        find_confounded(MATRIX, ["mean"])
+        _find_confounded(MATRIX, ["mean"])

@@ -7,9 +7,9 @@ import pytest
 import xarray as xr
 from experiments import ABOUT, screening_experiment, surface_experiment
 
-from reduction.archive.csv_columns import csv_lines, table_blocks
+from reduction.archive.csv_columns import _csv_lines, table_blocks
 from reduction.archive.csv_definitions import EXPERIMENT_TABLES, TABLES
-from reduction.archive.csv_tables import by_response, write_tables
+from reduction.archive.csv_tables import _by_response, write_tables
 from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.open import open_archive
 from reduction.archive.surfaces_dataset import surfaces_to_dataset
@@ -21,7 +21,7 @@ PER_CYCLE = ("mean_tension", "tension_amplitude", "loss_factor", "hysteresis_ene
 def text_of(archive, table, block_rows):
     blocks = list(table_blocks(archive, table, block_rows=block_rows))
     assert all(0 < len(block[0]) <= block_rows for block in blocks)
-    return "".join(map(csv_lines, blocks))
+    return "".join(map(_csv_lines, blocks))
 
 
 @pytest.mark.parametrize("block_rows", [1, 2, 3, 7, 40])
@@ -39,7 +39,7 @@ def test_tables_of_tests_are_the_same_for_blocks_of_any_size(archives, block_row
 @pytest.mark.parametrize("block_rows", [1, 5, 64])
 def test_tables_of_experiments_are_the_same_for_blocks_of_any_size(block_rows):
     results = [surface_experiment(), screening_experiment()]
-    dataset = by_response(surfaces_to_dataset(results, origin=ABOUT))
+    dataset = _by_response(surfaces_to_dataset(results, origin=ABOUT))
     for table in EXPERIMENT_TABLES:
         assert text_of(dataset, table, block_rows) == text_of(dataset, table, 10**9), table.name
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.archive.csv_columns import Column, csv_lines, csv_text, texts_of, uncertainty_of
+from reduction.archive.csv_columns import Column, _csv_lines, _texts_of, csv_text, uncertainty_of
 from reduction.archive.schema import SCHEMA
 from reduction.archive.variables import label
 
@@ -26,24 +26,24 @@ def test_a_number_comes_back_from_its_digits_exactly():
 
 
 def test_what_is_not_known_is_an_empty_field():
-    assert texts_of(np.array([1.5, np.nan]), SCHEMA["tension"]) == ["1.5", ""]
+    assert _texts_of(np.array([1.5, np.nan]), SCHEMA["tension"]) == ["1.5", ""]
 
 
 def test_a_count_is_written_without_a_point():
-    assert texts_of(np.array([3], dtype=np.int32), SCHEMA["cycle"]) == ["3"]
+    assert _texts_of(np.array([3], dtype=np.int32), SCHEMA["cycle"]) == ["3"]
 
 
 def test_flags_are_written_in_words():
-    assert texts_of(np.array([1, 2, 7]), SCHEMA["branch"]) == ["ascending", "descending", "7"]
-    assert texts_of(np.array([0, 33]), SCHEMA["quality_flag"]) == ["", "missing spike"]
+    assert _texts_of(np.array([1, 2, 7]), SCHEMA["branch"]) == ["ascending", "descending", "7"]
+    assert _texts_of(np.array([0, 33]), SCHEMA["quality_flag"]) == ["", "missing spike"]
 
 
 def test_columns_of_fields_are_the_lines_of_a_table_of_cells():
     labels = ["=1+1", 'a "b", c', "d\ne", "f\rg", "", " h", "größe", "'i"]
     rows = [[label, 0.1 * place, None] for place, label in enumerate(labels)]
-    numbers = texts_of(np.array([row[1] for row in rows]), SCHEMA["tension"])
-    columns = [texts_of(np.array(labels), label("test")[0]), numbers, [""] * len(rows)]
-    assert csv_text(["a", "b", "c"], rows) == "a,b,c\r\n" + csv_lines(columns)
+    numbers = _texts_of(np.array([row[1] for row in rows]), SCHEMA["tension"])
+    columns = [_texts_of(np.array(labels), label("test")[0]), numbers, [""] * len(rows)]
+    assert csv_text(["a", "b", "c"], rows) == "a,b,c\r\n" + _csv_lines(columns)
 
 
 @pytest.mark.parametrize("start", ["=", "+", "-", "@", "\t", "\r"])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.archive.csv_columns import number_texts
+from reduction.archive.csv_columns import _number_texts
 
 RNG = np.random.default_rng(20)
 SIZES = 10.0 ** np.arange(-8, 20)
@@ -22,9 +22,9 @@ NUMBERS = {
 @pytest.mark.parametrize("name", NUMBERS)
 def test_a_number_is_written_as_python_writes_it(name):
     numbers = NUMBERS[name][~np.isnan(NUMBERS[name])]
-    assert number_texts(numbers) == [repr(number) for number in numbers.tolist()]
+    assert _number_texts(numbers) == [repr(number) for number in numbers.tolist()]
 
 
 def test_nan_is_an_empty_text_and_a_short_real_keeps_its_own_number():
-    assert number_texts(np.array([np.nan, 1.5])) == ["", "1.5"]
-    assert number_texts(np.array([0.1], dtype=np.float32)) == [repr(float(np.float32(0.1)))]
+    assert _number_texts(np.array([np.nan, 1.5])) == ["", "1.5"]
+    assert _number_texts(np.array([0.1], dtype=np.float32)) == [repr(float(np.float32(0.1)))]

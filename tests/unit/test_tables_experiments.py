@@ -6,7 +6,7 @@ from experiments import ABOUT, UNITS, screening_experiment, surface_experiment
 from table_cells import table_rows
 
 from reduction.archive.csv_definitions import EXPERIMENT_TABLES
-from reduction.archive.csv_tables import by_response
+from reduction.archive.csv_tables import _by_response
 from reduction.archive.schema import SURFACE_SCHEMA
 from reduction.archive.surfaces_dataset import surfaces_to_dataset
 from reduction.experiments.stationary_point import ridge_path
@@ -23,7 +23,7 @@ BY_NAME = {table.name: table for table in EXPERIMENT_TABLES}
 
 @pytest.fixture(scope="module")
 def dataset():
-    return by_response(surfaces_to_dataset([ONE, TWO, SCREENING, BROKEN], origin=ABOUT))
+    return _by_response(surfaces_to_dataset([ONE, TWO, SCREENING, BROKEN], origin=ABOUT))
 
 
 def rows_of(dataset, name):
@@ -241,7 +241,7 @@ def test_a_check_of_a_single_time_is_one_row(dataset):
 
 
 def test_an_archive_without_surfaces_fills_only_what_it_has():
-    dataset = by_response(surfaces_to_dataset([SCREENING], origin=ABOUT))
+    dataset = _by_response(surfaces_to_dataset([SCREENING], origin=ABOUT))
     filled = {table.name for table in EXPERIMENT_TABLES if table_rows(dataset, table)}
     assert filled == {
         "experiments", "factors", "runs", "run_levels", "run_responses", "screening", "aliases",

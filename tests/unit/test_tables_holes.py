@@ -3,8 +3,8 @@
 from reduction.archive.csv_columns import (
     SYNTHETIC,
     Column,
+    _lonely_numbers,
     column_descriptions,
-    lonely_numbers,
     uncertainty_of,
 )
 from reduction.archive.variables import measured
@@ -13,8 +13,8 @@ from reduction.archive.variables import measured
 def test_an_empty_cell_beside_a_number_has_a_reason_and_a_full_column_needs_none():
     diameter = Column("diameter", measured("diameter", ("specimen",))[0])
     columns = [diameter, uncertainty_of(diameter), SYNTHETIC]
-    holed = lonely_numbers(columns, [["0.02", "0.02"], ["", "1e-4"], ["no", "no"]])
-    full = lonely_numbers(columns, [["", "0.02"], ["", "1e-4"], ["no", "no"]])
+    holed = _lonely_numbers(columns, [["0.02", "0.02"], ["", "1e-4"], ["no", "no"]])
+    full = _lonely_numbers(columns, [["", "0.02"], ["", "1e-4"], ["no", "no"]])
     assert (holed, full) == ({1}, set())
     (_, of_holed, _) = column_descriptions(columns, holed)
     assert of_holed[-1] == (

@@ -5,7 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.archive.csv_tables import STATIC_DYNAMIC_COLUMNS, Curve, Slope, static_dynamic_rows
+from reduction.archive.csv_tables import (
+    STATIC_DYNAMIC_COLUMNS,
+    _Curve,
+    _Slope,
+    _static_dynamic_rows,
+)
 from reduction.record.contributions import Component, Contributions
 
 
@@ -14,16 +19,16 @@ def curve(branch="ascending", gap=None):
     modulus = 1e6 * strain
     if gap is not None:
         modulus[gap] = np.nan
-    return Curve("T-2", "new", branch, "yes", strain, 0.1, modulus, 0.02 * modulus)
+    return _Curve("T-2", "new", branch, "yes", strain, 0.1, modulus, 0.02 * modulus)
 
 
 def slope(strain, branch="ascending", modulus=5e5):
-    return Slope("static", "short", branch, "no", strain, modulus, 0.01 * modulus)
+    return _Slope("static", "short", branch, "no", strain, modulus, 0.01 * modulus)
 
 
 def rows_of_table(slopes, curves):
     names = [column.name for column in STATIC_DYNAMIC_COLUMNS]
-    found = static_dynamic_rows(slopes, curves)
+    found = _static_dynamic_rows(slopes, curves)
     return [dict(zip(names, row, strict=True)) for row in found]
 
 
@@ -49,7 +54,7 @@ def test_outside_the_curve_and_in_a_gap_of_it_there_is_no_row():
 
 
 def test_without_stepwise_or_cyclic_tests_there_is_no_table():
-    assert static_dynamic_rows([], [curve()]) == static_dynamic_rows([slope(1.0)], []) == []
+    assert _static_dynamic_rows([], [curve()]) == _static_dynamic_rows([slope(1.0)], []) == []
 
 
 CELL, TAPE, DIAMETER = (
@@ -84,7 +89,7 @@ def test_what_static_and_dynamic_share_cancels_and_the_rest_does_not():
 
 
 def test_a_slope_without_an_uncertainty_leaves_that_of_the_ratio_empty():
-    bare = Slope("static", "short", "ascending", "no", 0.8, 5e5, float("nan"))
+    bare = _Slope("static", "short", "ascending", "no", 0.8, 5e5, float("nan"))
     (row,) = rows_of_table([bare], [curve()])
     assert row["static_dynamic_ratio"] == pytest.approx(0.625)
     assert row["interval_modulus_standard_uncertainty"] is None

@@ -5,8 +5,8 @@ import pytest
 from scipy.optimize import curve_fit
 
 from reduction.record.contributions import Component, InstrumentErrors
-from reduction.stages.strain.strain_model import StrainModel, tension_driven_strain
-from reduction.uncertainty.error_field import load_parts
+from reduction.stages.strain.strain_model import StrainModel, _tension_driven_strain
+from reduction.uncertainty.error_field import _load_parts
 
 FREE, SPLICES, COMPLIANCE, EXPONENT = 2.55, 1.18, 0.0012, 0.86
 MARKS = np.array([0.7, 200.0, 420.0, 600.0, 900.0])  # the first while it was slack
@@ -44,7 +44,7 @@ def refitted(strain, is_wrong, source, size, exponent):
     position = FREE * (1 + strain) + SPLICES * (1 + known["splice_compliance"] * POINTS**exponent)
 
     def at(points):
-        return tension_driven_strain(
+        return _tension_driven_strain(
             position, points, relaxed_free_length=FREE, relaxed_splice_length=SPLICES,
             splice_compliance=factor / 500**power, splice_exponent=power,
         )  # fmt: skip
@@ -59,7 +59,7 @@ def test_each_cell_moves_the_points_that_it_logged_and_the_law_by_its_marks(
     cells, source, exponent
 ):
     errors = InstrumentErrors("new", tension_instrument="A", **SIZE)
-    found = dict(load_parts(errors, model(cells, exponent), POINTS))
+    found = dict(_load_parts(errors, model(cells, exponent), POINTS))
     strain = np.array([0.4, 0.9, 1.2])
     for cell in dict.fromkeys(("A", *cells)):
         of_cell = np.array([one == cell for one in cells])
@@ -77,7 +77,7 @@ def test_each_cell_moves_the_points_that_it_logged_and_the_law_by_its_marks(
 
 def test_a_cell_that_read_no_mark_of_the_law_and_no_sample_is_in_nothing():
     cells = ("C", "A", "A", "A", "A")  # C read the slack specimen, which is no mark of the law
-    parts = load_parts(
+    parts = _load_parts(
         InstrumentErrors("new", tension_instrument="A", **SIZE), model(cells), POINTS
     )
     assert {one.of for one, _ in parts} == {"A"}
@@ -85,8 +85,8 @@ def test_a_cell_that_read_no_mark_of_the_law_and_no_sample_is_in_nothing():
 
 def test_a_mark_of_which_no_cell_is_known_was_read_by_that_of_the_samples():
     errors = InstrumentErrors("new", tension_instrument="A", **SIZE)
-    unknown = dict(load_parts(errors, model(("A", "", "B", "", "A")), POINTS))
-    named = dict(load_parts(errors, model(("A", "A", "B", "A", "A")), POINTS))
+    unknown = dict(_load_parts(errors, model(("A", "", "B", "", "A")), POINTS))
+    named = dict(_load_parts(errors, model(("A", "A", "B", "A", "A")), POINTS))
     assert set(unknown) == set(named)
     assert {one.of for one in unknown} == {"A", "B"}
     for one, rows in named.items():
@@ -98,6 +98,6 @@ def test_a_method_that_knows_no_tension_has_the_cell_of_the_samples_alone():
         "new", "marks", {}, mark_hold=("min",), mark_tension=np.array([300.0]),
         mark_load_cell=("B",),
     )  # fmt: skip
-    parts = load_parts(InstrumentErrors("new", tension_instrument="A", **SIZE), line, POINTS)
+    parts = _load_parts(InstrumentErrors("new", tension_instrument="A", **SIZE), line, POINTS)
     assert {one.of for one, _ in parts} == {"A"}
     assert all(not rows[1].any() for _, rows in parts)

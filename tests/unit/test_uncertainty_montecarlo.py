@@ -6,7 +6,7 @@ from scipy import stats
 
 from reduction.record.errors import DataError
 from reduction.stages.line.line_model import AMPLITUDE_INPUTS, FUNDAMENTAL_INPUTS
-from reduction.uncertainty.monte_carlo import N_DRAWS, draw_line
+from reduction.uncertainty.monte_carlo import N_DRAWS, _draw_line
 
 STORED, LOST, RATE, REST = 3e4, 4e3, 0.3, 2e4
 TURN = 2 * np.pi * RATE
@@ -23,7 +23,7 @@ def drawn(values=FUNDAMENTAL, *, random=None, shared=(), freedom=9.0, reading="f
     if random is not None:
         covariance[0] = random
     rows = np.array(shared, dtype=float).reshape(-1, 1, n_inputs)
-    return draw_line(
+    return _draw_line(
         values, reading=reading, covariance=covariance, degrees_of_freedom=[freedom],
         contribution=rows,
     )  # fmt: skip
@@ -119,7 +119,7 @@ def test_amplitude_and_area_are_drawn_too():
 
 def test_equal_inputs_give_equal_draws_and_specimens_do_not_touch_each_other():
     one = drawn(shared=[0, 0, 0, 0.05])
-    two = draw_line(
+    two = _draw_line(
         {name: value * 2 for name, value in FUNDAMENTAL.items()}, reading="fundamental",
         covariance=np.zeros((2, 4, 4)), degrees_of_freedom=[9.0, 9.0],
         contribution=np.array([[[0, 0, 0, np.nan], [0, 0, 0, 0.05]]]),
@@ -136,7 +136,7 @@ def test_a_line_that_has_no_solution_itself_is_not_drawn():
 
 def test_uncertainties_of_another_shape_are_refused():
     with pytest.raises(DataError, match="uncertainties do not fit the inputs of the line"):
-        draw_line(
+        _draw_line(
             FUNDAMENTAL, reading="fundamental", covariance=np.zeros((1, 3, 3)),
             degrees_of_freedom=[9.0], contribution=np.zeros((1, 1, 4)),
         )  # fmt: skip

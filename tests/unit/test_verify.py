@@ -10,7 +10,7 @@ import pytest
 from documentedcampaign import ROOT, copied, run
 
 from reduction.batch.campaign_status import Silent
-from reduction.batch.verification import Finding, Kind, verify_campaign
+from reduction.batch.verification import Kind, _Finding, verify_campaign
 from reduction.campaign.load import load_campaign
 
 NAME = "two-tethers"
@@ -192,11 +192,11 @@ def test_an_archive_that_is_closed_to_this_user_is_a_finding(place, without_tabl
 
 
 def test_a_finding_is_one_line_in_the_form_of_errors():
-    assert str(Finding("T-1.nc", "damaged", "it is cut", "a", "b", "Look.")) == (
+    assert str(_Finding("T-1.nc", "damaged", "it is cut", "a", "b", "Look.")) == (
         "T-1.nc: it is cut; found a; needed b. Look."
     )
     assert (
-        str(Finding("T-1.nc", "damaged", "it is cut"))
+        str(_Finding("T-1.nc", "damaged", "it is cut"))
         == "T-1.nc: it is cut. Run the campaign again."
     )
 

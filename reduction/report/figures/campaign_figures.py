@@ -111,12 +111,9 @@ def _compared(view: TestView) -> list[tuple[str, str]]:
 
 
 def _ratio_axis(data: Sequence[Trace]) -> dict[str, Any]:
-    """Return the axis: all ratios, and four fifths of the interval ends.
-
-    Where few cycles reach, an interval may be so wide that it would hide the rest.
-    """
+    """Return the axis: all ratios, and four fifths of the interval ends."""
     title = "ratio of moduli [1]"
-    lines, ends = heights(data)
+    lines, ends = _heights(data)
     if not lines:
         return axis(title)
     usual = np.quantile(ends, [0.1, 0.9]) if ends else np.ones(2)
@@ -125,7 +122,7 @@ def _ratio_axis(data: Sequence[Trace]) -> dict[str, Any]:
     return axis(title, range=plain_numbers(np.array([low - room, high + room])))
 
 
-def heights(data: Sequence[Trace]) -> tuple[list[float], list[float]]:
+def _heights(data: Sequence[Trace]) -> tuple[list[float], list[float]]:
     """Return what the lines of a figure reach, and the edges of its bands."""
     lines = [y for trace in data if "fill" not in trace for y in trace["y"] if y is not None]
     ends = [y for trace in data if "fill" in trace for y in trace["y"] if y is not None]
@@ -180,7 +177,7 @@ def draw_parts(tests: Sequence[TestView]) -> list[Figure]:
                         f" what the long test changed. {_about_bands(parts)}",
                         data, synthetic=any_synthetic(parts), height=400,
                         xaxis=axis("strain [%]"),
-                        yaxis=_modulus_axis(data, whole_units(parts)),
+                        yaxis=_modulus_axis(data, _whole_units(parts)),
                     )
                 )  # fmt: skip
     return found
@@ -227,7 +224,7 @@ def draw_static_dynamic(tests: Sequence[TestView]) -> list[Figure]:
     return [figure for figure in found if figure.has_data]
 
 
-def whole_units(tests: Sequence[TestView]) -> UnitSystem:
+def _whole_units(tests: Sequence[TestView]) -> UnitSystem:
     """Return the unit system of the page."""
     return tests[0].units if tests else "si"
 
@@ -296,7 +293,7 @@ def _about_bands(tests: Sequence[TestView]) -> str:
 def _modulus_axis(data: Sequence[Trace], units: UnitSystem) -> dict[str, Any]:
     """Return the axis: from zero to all curves, and to nearly all of their bands."""
     title = shown("stress", units).label("tangent modulus")
-    lines, ends = heights(data)
+    lines, ends = _heights(data)
     if not lines:
         return axis(title)
     top = max(*lines, float(np.quantile(ends, 0.97)) if ends else 0.0)
@@ -311,11 +308,7 @@ _MOST_NAMES = 60
 
 
 def draw_specimens_together(tests: Sequence[TestView]) -> list[Figure]:
-    """Draw the modulus of every cyclic test, a colour a specimen, over the envelope of each.
-
-    A long test and the logs that repeat parts of it stand in figures of their own, and are in this
-    one where there is no other.
-    """
+    """Draw the modulus of every cyclic test, a colour a specimen, over the envelope of each."""
     curved = [view for view in tests if "tangent_modulus" in view.data]
     own = [view for view in curved if view.kind == "cyclic" and not view.attribute("part_of")]
     chosen = own or curved

@@ -62,7 +62,7 @@ def strain_axis(**more: Any) -> dict[str, Any]:
     return axis("strain of the hose [%]", **more)
 
 
-def interval(
+def _interval(
     strain: Floats, values: Floats, spread: Floats, factor: float, of_colour: str = NET
 ) -> Trace:
     """Return the band of 95 %; broken where nothing is known."""
@@ -73,13 +73,13 @@ def interval(
     )  # fmt: skip
 
 
-def is_drawn(view: HoseView, event: OneEvent) -> bool:
+def _is_drawn(view: HoseView, event: OneEvent) -> bool:
     """Return whether an event lies on the curve; pick-up at rest is no event."""
     is_at_rest = event.name == "pick_up" and not view.is_slack_at_first
     return event.strain <= view.array("strain")[-1] * (1 + 1e-9) and not is_at_rest
 
 
-def event_marks(view: HoseView, quantity: str, unit: Shown) -> list[Trace]:
+def _event_marks(view: HoseView, quantity: str, unit: Shown) -> list[Trace]:
     """Return a mark with its words for each event; the slackest point is the bottom of a bowl."""
     lowest = "bottom center" if quantity == "cord_strain" else "top center"
     return [
@@ -92,11 +92,11 @@ def event_marks(view: HoseView, quantity: str, unit: Shown) -> list[Trace]:
             "marker": {"symbol": EVENT_SYMBOLS[event.name], "size": 10, "color": NET},
         }
         for event in view.events.values()
-        if is_drawn(view, event)
+        if _is_drawn(view, event)
     ]  # fmt: skip
 
 
-def slack_zone(view: HoseView) -> dict[str, Any]:
+def _slack_zone(view: HoseView) -> dict[str, Any]:
     """Return the shade where the rubber alone carries."""
     if not view.is_slack_at_first:
         return {}
@@ -117,7 +117,7 @@ def slack_zone(view: HoseView) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def kept_figure(figure: Figure) -> list[Figure]:
+def _kept_figure(figure: Figure) -> list[Figure]:
     """Return a figure, or nothing where it is empty."""
     return [figure] if figure.has_data else []
 
@@ -167,8 +167,8 @@ def draw_chart(view: HoseView) -> list[Figure]:
                  name=f"cord strain where {_WHERE[event.name]}", colour=CORDS, dash=dash,
                  width=1.2)
         )  # fmt: skip
-    data += event_marks(view, "cord_strain", Shown("%", 100.0))
-    return kept_figure(
+    data += _event_marks(view, "cord_strain", Shown("%", 100.0))
+    return _kept_figure(
         make_figure(
             f"{view.key}-chart", f"Cord strain over hose strain, hose {view.name}",
             "Each line is a wrap angle, given at its end in degrees from the axis, with the dead"
@@ -264,7 +264,7 @@ def draw_tension(view: HoseView) -> list[Figure]:
     cords = np.where(tension == 0, 0.0, tension * view.array("cord_share"))
     data: list[Trace] = []
     if view.sources:
-        data.append(interval(strain, tension, spread, force.factor))
+        data.append(_interval(strain, tension, spread, force.factor))
     data += [
         line(strain, force.factor * tension, name="net tension", colour=NET, width=2.6),
         line(strain, force.factor * cords, name="cords, less the end cap", colour=CORDS,
@@ -278,18 +278,18 @@ def draw_tension(view: HoseView) -> list[Figure]:
             line(np.array([0.0, at, at]), np.array([load, load, 0.0]), name="safe working load",
                  colour=GREY, dash="dashdot", width=1.4)
         )  # fmt: skip
-    data += event_marks(view, "tension", force)
+    data += _event_marks(view, "tension", force)
     about = f"Shaded blue: 95 % band ({_FACTOR}, at held strain){_KINK}. "
     about = about if view.sources else ""
     grey = " Grey: cords slack, the rubber alone carries." if view.is_slack_at_first else ""
-    return kept_figure(
+    return _kept_figure(
         make_figure(
             f"{view.key}-tension", f"Predicted tension, hose {view.name}",
             f"{about}The safe working load is that of the hose where a cord has its working share"
             f" of its break load.{grey}{_STATIC}",
             data, synthetic=view.is_synthetic, height=460, is_wide=True,
             xaxis=strain_axis(), yaxis=axis(force.label("tension"), rangemode="tozero"),
-            **slack_zone(view),
+            **_slack_zone(view),
         )
     )  # fmt: skip
 
@@ -301,18 +301,18 @@ def draw_pressure(view: HoseView) -> list[Figure]:
     spread = view.array_like("fill_pressure_standard_uncertainty", pressure)
     data: list[Trace] = []
     if view.sources:
-        data.append(interval(strain, pressure, spread, unit.factor))
+        data.append(_interval(strain, pressure, spread, unit.factor))
     data.append(line(strain, unit.factor * pressure, name="fill pressure", colour=NET, width=2.4))
-    data += [mark for mark in event_marks(view, "fill_pressure", unit) if mark["name"] != SLACKEST]
+    data += [mark for mark in _event_marks(view, "fill_pressure", unit) if mark["name"] != SLACKEST]
     about = f" Shaded blue: 95 % band ({_FACTOR}){_KINK}." if view.sources else ""
-    return kept_figure(
+    return _kept_figure(
         make_figure(
             f"{view.key}-pressure", f"Predicted fill pressure, hose {view.name}",
             "In the bore, above the pressure outside: what the cords squeeze out of the water of a"
             f" closed hose; none while they are slack, and none in an open hose.{about}",
             data, synthetic=view.is_synthetic, height=400,
             xaxis=strain_axis(), yaxis=axis(unit.label("fill pressure"), rangemode="tozero"),
-            **slack_zone(view),
+            **_slack_zone(view),
         )
     )  # fmt: skip
 
@@ -328,7 +328,7 @@ def draw_budget(view: HoseView) -> list[Figure]:
         return []
     names, share = _largest(view.sources, 100 * variance[:, kept] / total[kept])
     strain = percent(view)[kept]
-    return kept_figure(
+    return _kept_figure(
         make_figure(
             f"{view.key}-budget", f"Where the uncertainty of tension comes from, hose {view.name}",
             "Share of each uncertain number in the variance of the tension at held strain. Sources"
@@ -368,7 +368,7 @@ def draw_all_hoses(views: Sequence[HoseView]) -> list[Figure]:
         name = f"{view.name}, {DEGREES.factor * view.wrap_angle:.4g} deg"
         if view.sources:
             spread = view.array_like("tension_standard_uncertainty", tension)
-            data.append(interval(strain, tension, spread, force.factor, colour(index)))
+            data.append(_interval(strain, tension, spread, force.factor, colour(index)))
         data.append(
             line(strain, force.factor * tension, name=name, colour=colour(index), width=2.2,
                  dash=_DASHES[index // len(COLOURS) % len(_DASHES)])
@@ -377,7 +377,7 @@ def draw_all_hoses(views: Sequence[HoseView]) -> list[Figure]:
         shown_events = [
             (index, view.events[name])
             for index, view in enumerate(views)
-            if is_drawn(view, view.events[name])
+            if _is_drawn(view, view.events[name])
         ]
         if shown_events:
             data.append(
@@ -396,7 +396,7 @@ def draw_all_hoses(views: Sequence[HoseView]) -> list[Figure]:
     about = f" Shaded: 95 % band ({_FACTOR}), where uncertainties are stated." if any(
         view.sources for view in views
     ) else ""  # fmt: skip
-    return kept_figure(
+    return _kept_figure(
         make_figure(
             "hoses-tension", "Predicted tension of all hoses",
             f"Net tension against strain of the whole length, events marked.{about}"
@@ -572,10 +572,7 @@ def draw_cycle_bias(view: ComparisonView) -> list[Figure]:
 
 
 def draw_all_comparisons(views: Sequence[ComparisonView]) -> list[Figure]:
-    """Draw the relative difference of each comparison in one figure; nothing for one alone.
-
-    Comparisons of one test with one hose, calibrated in several ways, are one line.
-    """
+    """Draw the relative difference of each comparison in one figure; nothing for one alone."""
     if len(views) < 2:
         return []
     groups: dict[tuple[str, ...], list[ComparisonView]] = {}

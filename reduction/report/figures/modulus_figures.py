@@ -33,11 +33,7 @@ BRANCH_COLOURS = {"ascending": COLOURS[0], "descending": COLOURS[1]}
 
 
 def draw_moduli(view: TestView) -> list[Figure]:
-    """Draw one figure a specimen: mean with bands, trimmed ends and first loading beside.
-
-    The inner band is what scatter alone leaves open, the outer one all that is known; least and
-    greatest cycle are drawn by a click on their entry in the legend.
-    """
+    """Draw one figure a specimen: mean with bands, trimmed ends and first loading beside."""
     strain, modulus = view.array("strain_bin"), view.array("tangent_modulus")
     if strain is None or modulus is None:
         return []
@@ -192,11 +188,7 @@ def _first_loading(
 
 
 def _modulus_axis(mean: Floats, upper: Floats, in_stress: Shown) -> dict[str, object]:
-    """Return one axis for all specimens, scaled to what is trusted.
-
-    An end that was trimmed away may run off the top, and so may the band of a bin that few
-    cycles reach.
-    """
+    """Return one axis for all specimens, scaled to what is trusted."""
     title = in_stress.label("tangent modulus")
     if not np.isfinite(mean).any():
         return axis(title)

@@ -60,7 +60,7 @@ MOVING = (PHASE_VALUES["approach"], PHASE_VALUES["cycling"])
 COMMON_FLAGS = ("not_constant_rate", "resampled", "extrapolated")
 
 
-def position_of(view: TestView) -> tuple[str, Floats] | None:
+def _position_of(view: TestView) -> tuple[str, Floats] | None:
     """Return what the crosshead channel is called and its values."""
     for name, words in (
         ("crosshead_position", "crosshead position"),
@@ -85,7 +85,7 @@ def draw_record(view: TestView) -> list[Figure]:
     data: list[Trace] = []
     # a line through so many cycles is a block of colour that hides the specimen behind it
     is_dense = view.is_whole and view.n_cycles > DENSE
-    position = position_of(view)
+    position = _position_of(view)
     if position is not None:
         words, values = position
         length = shown("length", view.units)
@@ -168,7 +168,7 @@ def _series(
 
 def draw_tension_position(view: TestView) -> list[Figure]:
     """Draw tension against position; of a long test some whole cycles, and the rest thinned."""
-    time, tension, position = view.array("time"), view.array("tension"), position_of(view)
+    time, tension, position = view.array("time"), view.array("tension"), _position_of(view)
     if time is None or tension is None or position is None:
         return []
     phase = view.array("phase")
@@ -336,10 +336,7 @@ class _Marks:
 
 
 def draw_splices(view: TestView) -> list[Figure]:
-    """Draw one figure a specimen with marks: length of its splices, and what the method misses.
-
-    Both against what the method goes by: tension, or crosshead position.
-    """
+    """Draw one figure a specimen with marks: length of its splices, and what the method misses."""
     methods = view.texts("strain_method")
     if "mark_position" not in view.data or not methods:
         return []
@@ -494,7 +491,7 @@ def _reach(view: TestView, place: int, *, is_by_tension: bool) -> Floats:
         tension = view.array("tension")
         values = np.zeros(0) if tension is None else tension[place]
     else:
-        position = position_of(view)
+        position = _position_of(view)
         values = np.zeros(0) if position is None else position[1]
     known = values[np.isfinite(values)]
     return known.max(initial=-np.inf, keepdims=True) if known.size else known

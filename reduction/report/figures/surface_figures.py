@@ -85,7 +85,7 @@ def draw_surface(
             f"{view.key}-{name}-surface", title,
             f"Surface of the {words} over {in_words(view.factors[planes.across[0]])} and"
             f" {in_words(view.factors[planes.across[1]])}, {in_words(held)} held in the middle of"
-            f" its range{scale_words(name)}. Points: the runs made at this {in_words(held)}, lines"
+            f" its range{_scale_words(name)}. Points: the runs made at this {in_words(held)}, lines"
             " their distance from the surface. Turn it with the pointer; the same values"
             " stand in the contours, whose SVG is lines throughout.",
             data, synthetic=view.is_synthetic, height=430,
@@ -148,7 +148,7 @@ def draw_contours(
         found.append(
             make_figure(
                 f"{view.key}-{name}-contour-{place}", f"{view.name}: {words} at {at}",
-                f"Contours of the {words}{scale_words(name)} at {at}. Points: the runs made there."
+                f"Contours of the {words}{_scale_words(name)} at {at}. Points: the runs made there."
                 f"{says}",
                 data, synthetic=view.is_synthetic, height=380, annotations=labels,
                 xaxis=axis(view.factor_label(planes.across[0])),
@@ -171,7 +171,7 @@ def _at(view: ExperimentView, place: int, level: float) -> str:
     return f"{number_text(level, 3)} {view.factor_units[place].unit}"
 
 
-def scale_words(name: str) -> str:
+def _scale_words(name: str) -> str:
     """Say on what scale a surface was fitted where it was not the response itself."""
     if name == base_response(name):
         return ""
@@ -253,10 +253,7 @@ def _points_on_plane(
 
 
 def _thin_region(x: Floats, y: Floats, ratio: Floats) -> Trace:
-    """Return a grey veil with a dashed edge where the leverage is above that of every run.
-
-    Plotly fills what does not meet a constraint.
-    """
+    """Return a grey veil with a dashed edge where the leverage is above that of every run."""
     return {
         "type": "contour", "name": "runs say little", "showlegend": False, "showscale": False,
         "x": plain_numbers(x), "y": plain_numbers(y),
@@ -305,7 +302,7 @@ def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> l
     return [
         make_figure(
             f"{view.key}-{name}-cube", f"{view.name}: {words} on the cube",
-            f"Value of the surface of the {words}{scale_words(name)} at corners, edges and centre"
+            f"Value of the surface of the {words}{_scale_words(name)} at corners, edges and centre"
             f" [{shown.unit}]: to the right {ends[0]}, upward {ends[1]}, away {ends[2]}. Open"
             " markers: the runs say less there than at the worst of them. A value ends at the"
             " second digit of half its 95 % interval.",

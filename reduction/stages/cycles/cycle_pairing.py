@@ -40,33 +40,10 @@ _DWELL_RATIO = 2.0
 Indices = NDArray[np.intp]
 
 
-def dwells_of_cycles(
+def _dwells_of_cycles(
     values: Floats, reversals: Indices, standstills: Standstills, *, band: float
 ) -> tuple[Indices, Bools]:
     """Tell dwells at the peaks or valleys of cycles from standstills that end cycling.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        Control channel; NaN where missing. [m] or [N]
-    reversals : ndarray of int, shape (n_reversals,)
-        From `reduction.stages.cycles.reversals.find_reversals`. [1]
-    standstills : Standstills
-        Of the record. [SI]
-    band : float
-        With which the reversals were found. [m] or [N]
-
-    Returns
-    -------
-    at : ndarray of int, shape (n_standstills,)
-        Place among the reversals at which each standstill is, -1 where at none. [1]
-    is_dwell : ndarray of bool, shape (n_standstills,)
-        Whether it is a dwell of cycles. [1]
-
-    Raises
-    ------
-    IndexError
-        If a reversal is not a sample of the values.
 
     Notes
     -----
@@ -86,7 +63,7 @@ def dwells_of_cycles(
     >>> position = np.interp(time, knots, levels)
     >>> stand = find_standstills(time, position, [100 * position], settings=PhaseSettings())
     >>> reversals = np.searchsorted(time, [8, 12, 16, 20, 24, 28, 32.75])
-    >>> dwells_of_cycles(position, reversals, stand, band=0.5)
+    >>> _dwells_of_cycles(position, reversals, stand, band=0.5)
     (array([0, 1, 3, 5]), array([False,  True,  True,  True]))
     """
     at = np.full(standstills.n_standstills, -1, dtype=np.intp)
@@ -145,7 +122,7 @@ Edge = Literal["reversal", "standstill", "record"]  # a gap is an end of the rec
 
 
 @dataclass(frozen=True)
-class Run:
+class _Run:
     """Extremes that follow each other, and whether the record or the movement ends at them."""
 
     nodes: Indices
@@ -153,31 +130,12 @@ class Run:
     ends_at: Edge
 
 
-def gaps_of_record(time: Floats, values: Floats, *, longest: float) -> tuple[Indices, Indices]:
+def _gaps_of_record(time: Floats, values: Floats, *, longest: float) -> tuple[Indices, Indices]:
     """Samples before and after every step of time longer than allowed, missing samples left out.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n_samples,)
-        Elapsed time. [s]
-    values : ndarray, shape (n_samples,)
-        Control channel; NaN where missing. [m] or [N]
-    longest : float
-        Step that is no gap yet. [s]
-
-    Returns
-    -------
-    before, after : ndarray of int, shape (n_gaps,)
-        Samples that are there. [1]
-
-    Raises
-    ------
-    IndexError
-        If the values are longer than time.
 
     Examples
     --------
-    >>> gaps_of_record(np.arange(6.0), np.array([0.0, 1, np.nan, np.nan, 4, 5]), longest=2.0)
+    >>> _gaps_of_record(np.arange(6.0), np.array([0.0, 1, np.nan, np.nan, 4, 5]), longest=2.0)
     (array([1]), array([4]))
     """
     before, after = [], []
@@ -191,39 +149,15 @@ def gaps_of_record(time: Floats, values: Floats, *, longest: float) -> tuple[Ind
     return np.concatenate(before), np.concatenate(after)
 
 
-def runs_that_cycle(
+def _runs_that_cycle(
     values: Floats,
     reversals: Indices,
     breaks: tuple[Indices, Indices],
     *,
     n_standstills: int,
     band: float,
-) -> list[Run]:
+) -> list[_Run]:
     """Runs in which two half cycles in a row have similar ranges, in order of time.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        Control channel; NaN where missing. [m] or [N]
-    reversals : ndarray of int, shape (n_reversals,)
-        From `reduction.stages.cycles.reversals.find_reversals`. [1]
-    breaks : tuple of two ndarray of int, shape (n_breaks,)
-        First and last sample of each standstill, then samples before and after each gap. [1]
-    n_standstills : int
-        How many of the breaks are standstills. [1]
-    band : float
-        With which the reversals were found. [m] or [N]
-
-    Returns
-    -------
-    runs : list of Run
-        The edge of a break is an extreme where a movement begins there; a stretch between
-        breaks is parted at moves from one level to another, and a move ends both parts.
-
-    Raises
-    ------
-    IndexError
-        If a reversal or a break is not a sample of the values.
 
     Examples
     --------
@@ -231,7 +165,7 @@ def runs_that_cycle(
 
     >>> values = np.array([0.0, 2, 0, 2, 0, 1, 3])
     >>> gap = np.array([4]), np.array([5])
-    >>> for run in runs_that_cycle(values, np.arange(1, 4), gap, n_standstills=0, band=0.5):
+    >>> for run in _runs_that_cycle(values, np.arange(1, 4), gap, n_standstills=0, band=0.5):
     ...     print(run.nodes, run.begins_at, run.ends_at)
     [0 1 2 3 4] record record
     """
@@ -249,7 +183,7 @@ def _stretches(
     breaks: tuple[Indices, Indices],
     n_standstills: int,
     band: float,
-) -> list[Run]:
+) -> list[_Run]:
     """Extremes of each stretch between breaks, of which the standstills are first.
 
     The edge of a break is one where a movement begins there.
@@ -276,7 +210,7 @@ def _stretches(
             if _is_standing(values, nodes, begin, ceil(near)):
                 edge = "standstill"
             found.append(
-                Run(
+                _Run(
                     nodes,
                     edge if nodes[0] - begin <= near else "reversal",
                     edges[place + 1] if end - nodes[-1] <= near else "reversal",
@@ -307,7 +241,7 @@ def _is_standing(values: Floats, nodes: Indices, begin: int, n_steps: int) -> bo
     return bool(abs(moved) < _STANDING * abs(values[nodes[1]] - values[nodes[0]]))
 
 
-def _parts(values: Floats, run: Run) -> list[Run]:
+def _parts(values: Floats, run: _Run) -> list[_Run]:
     """A stretch, parted at moves from one level to another; the move ends both parts."""
     nodes = run.nodes
     ranges = np.abs(np.diff(take_samples(values, nodes)))
@@ -315,7 +249,7 @@ def _parts(values: Floats, run: Run) -> list[Run]:
     begins = np.concatenate([[0], moves])
     ends = np.concatenate([moves + 2, [nodes.size]])
     return [
-        Run(
+        _Run(
             nodes[begin:end].copy(),
             run.begins_at if begin == 0 else "reversal",
             run.ends_at if end == nodes.size else "reversal",
@@ -344,7 +278,7 @@ _STEPS_READ = 64  # looked at first, then twice as many
 
 
 @dataclass(frozen=True)
-class FittedRun:
+class _FittedRun:
     """Extremes of a run with its ends fitted, and samples near which an end was changed.
 
     ``cut`` ran on beyond its neighbour's level, ``short`` fell short of it, ``paced`` kept
@@ -357,31 +291,10 @@ class FittedRun:
     paced: tuple[int, ...] = ()
 
 
-def without_stands(
+def _without_stands(
     values: Floats, nodes: Indices, *, first: int, last: int, tolerance: float
 ) -> Indices:
     """Extremes of a run, its first and last where the movement begins and where it ends.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        Control channel; NaN where missing. [m] or [N]
-    nodes : ndarray of int, shape (n_nodes,)
-        Extremes that follow each other, at samples that are there. [1]
-    first, last : int
-        Samples between which the signal is the run's. [1]
-    tolerance : float
-        Range in which the signal stands. [m] or [N]
-
-    Returns
-    -------
-    nodes : ndarray of int, shape (n_nodes,)
-        The first one no earlier, the last one no later. [1]
-
-    Raises
-    ------
-    IndexError
-        If an extreme is not a sample of the values.
 
     Notes
     -----
@@ -397,7 +310,7 @@ def without_stands(
     Three samples of waiting at the valley before two strokes.
 
     >>> values = np.array([2.0, 2, 2, 2, 4, 2, 4, 2])
-    >>> without_stands(values, np.array([0, 4, 5, 6, 7]), first=0, last=7, tolerance=0.1)
+    >>> _without_stands(values, np.array([0, 4, 5, 6, 7]), first=0, last=7, tolerance=0.1)
     array([3, 4, 5, 6, 7])
     """
     moved = nodes.copy()
@@ -446,58 +359,33 @@ def _steps_still(values: Floats, turn: int, far: int, tolerance: float) -> int:
     return last
 
 
-def fit_ends(
+def _fit_ends(
     time: Floats,
     values: Floats,
-    run: Run,
+    run: _Run,
     *,
     is_sinusoidal: bool,
     still: float,
     tolerance: float,
-) -> FittedRun:
+) -> _FittedRun:
     """Fit the ends of a run that cycles.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n_samples,)
-        Elapsed time. [s]
-    values : ndarray, shape (n_samples,)
-        Control channel; NaN where missing. [m] or [N]
-    run : Run
-        From `reduction.stages.cycles.cycle_pairing.runs_that_cycle`. [1]
-    is_sinusoidal : bool
-        Whether every half cycle takes the same time.
-    still : float
-        Tolerance of a standstill, by which an end at one may be short. [m] or [N]
-    tolerance : float
-        Range that noise alone may span in the control channel. [m] or [N]
-
-    Returns
-    -------
-    fitted : FittedRun
-        The extremes that are left. [1]
-
-    Raises
-    ------
-    IndexError
-        If an extreme is not a sample of the values.
 
     Notes
     -----
     The rules are those of `reduction.stages.cycles.cycle_pairing.find_half_cycles`; where the
-    movement begins and ends, `without_stands` says.
+    movement begins and ends, `_without_stands` says.
 
     Examples
     --------
     From slack at 0; the first half cycle is cut where it passes the valley.
 
     >>> values = np.array([0.0, 1, 2, 3, 2, 3, 2])
-    >>> fit_ends(np.arange(7.0), values, Run(np.array([0, 3, 4, 5, 6]), "record", "record"),
+    >>> _fit_ends(np.arange(7.0), values, _Run(np.array([0, 3, 4, 5, 6]), "record", "record"),
     ...     is_sinusoidal=False, still=0.1, tolerance=0.1)
     FittedRun(nodes=array([2, 3, 4, 5, 6]), cut=(3,), short=(), paced=())
     """
     moving = partial(
-        without_stands,
+        _without_stands,
         values,
         first=int(run.nodes[0]),
         last=int(run.nodes[-1]),
@@ -538,7 +426,7 @@ def fit_ends(
     # cycles run from valley to valley: a half cycle before the first valley is in none of them
     valley = slice(*_valleys(values, nodes))
     nodes[valley] = moving(nodes[valley])
-    return FittedRun(nodes, tuple(cut), tuple(short), tuple(paced))
+    return _FittedRun(nodes, tuple(cut), tuple(short), tuple(paced))
 
 
 def _valleys(values: Floats, nodes: Indices) -> tuple[int, int]:
@@ -579,7 +467,7 @@ _GAP_STEPS = 3.5  # median time steps
 
 
 @dataclass(frozen=True)
-class HalfCycles:
+class _HalfCycles:
     """Half cycles in order of time, shape (n_half_cycles,) each.
 
     ``first`` and ``last`` are samples, both inside, and ``run`` counts runs of half cycles
@@ -609,7 +497,7 @@ def find_half_cycles(
     *,
     band: float,
     is_sinusoidal: bool = False,
-) -> HalfCycles:
+) -> _HalfCycles:
     """Keep the half cycles of runs that cycle, ends cut or left out.
 
     Parameters
@@ -657,7 +545,7 @@ def find_half_cycles(
     ends at its mean has moved half a range there.
     In a sinusoidal test an end that ran on, or takes 25 % more or less time, is left out.
     A wait at an end, too short for a standstill, is no part of the half cycle there
-    (`reduction.stages.cycles.cycle_pairing.without_stands`).
+    (`reduction.stages.cycles.cycle_pairing._without_stands`).
 
     Examples
     --------
@@ -674,9 +562,9 @@ def find_half_cycles(
     [2 3 5 6] [3 5 6 7] [ True False  True False]
     """
     half_duration = float(np.median(np.diff(take_samples(time, reversals))))
-    at, is_dwell = dwells_of_cycles(values, reversals, standstills, band=band)
+    at, is_dwell = _dwells_of_cycles(values, reversals, standstills, band=band)
     longest = max(_GAP_SHARE * half_duration, _GAP_STEPS * median_step(time))
-    gap_before, gap_after = gaps_of_record(time, values, longest=longest)
+    gap_before, gap_after = _gaps_of_record(time, values, longest=longest)
     breaks = (
         np.concatenate([standstills.first[~is_dwell], gap_before]),
         np.concatenate([standstills.last[~is_dwell], gap_after]),
@@ -686,8 +574,8 @@ def find_half_cycles(
     tolerance = standstills.position_tolerance if still is None else still
     noise = noise_range(values)
     runs = [
-        fit_ends(time, values, run, is_sinusoidal=is_sinusoidal, still=tolerance, tolerance=noise)
-        for run in runs_that_cycle(
+        _fit_ends(time, values, run, is_sinusoidal=is_sinusoidal, still=tolerance, tolerance=noise)
+        for run in _runs_that_cycle(
             values, reversals, breaks, n_standstills=int(np.sum(~is_dwell)), band=band
         )
     ]
@@ -711,7 +599,7 @@ def find_half_cycles(
     dwell = reversals[at[is_dwell]]
     first = _replaced(first, dwell, standstills.last[is_dwell])
     last = _replaced(last, dwell, standstills.first[is_dwell])
-    return HalfCycles(
+    return _HalfCycles(
         first=first,
         last=last,
         rises=rises,
@@ -729,7 +617,7 @@ _SETTLING = 0.3  # for the first of a run, in which a machine settles
 _STEADY = 0.5  # share of the step of a valley by which the one beside it goes on
 
 
-def whole_cycles(values: Floats, halves: HalfCycles) -> tuple[Indices, Indices, Indices]:
+def whole_cycles(values: Floats, halves: _HalfCycles) -> tuple[Indices, Indices, Indices]:
     """Branches of the cycles, and the first samples of those that are no cycle.
 
     Parameters
@@ -767,7 +655,7 @@ def whole_cycles(values: Floats, halves: HalfCycles) -> tuple[Indices, Indices, 
 
     >>> values = np.array([-1.0, 1, -1, 1, -1, 0.5, -0.5, 0.5, -0.5])
     >>> place = np.arange(8)
-    >>> halves = HalfCycles(place, place + 1, place % 2 == 0, np.zeros(8, dtype=int), ())
+    >>> halves = _HalfCycles(place, place + 1, place % 2 == 0, np.zeros(8, dtype=int), ())
     >>> first, last, left_out = whole_cycles(values, halves)
     >>> print(first[:, 0], last[:, 1], left_out)
     [0 2 6] [2 4 8] [4]

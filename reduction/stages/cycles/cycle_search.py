@@ -96,7 +96,7 @@ def _steps_until(
     return found
 
 
-def constant_rate_span(
+def _constant_rate_span(
     time: Floats,
     values: Floats,
     branch_first: Indices,
@@ -106,34 +106,6 @@ def constant_rate_span(
     trim_threshold: float,
 ) -> tuple[Indices, Indices, Floats]:
     r"""First and last sample of the trimmed part of each branch, and the plateau rate.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n_samples,)
-        Elapsed time. [s]
-    values : ndarray, shape (n_samples,)
-        Control channel; NaN where missing. [m] or [N]
-    branch_first : ndarray of int, shape (n_branches,)
-        First sample of each branch. [1]
-    branch_last : ndarray of int, shape (n_branches,)
-        Last sample of each branch, inside. [1]
-    noise : float
-        Standard deviation of the control channel. [m] or [N]
-    trim_threshold : float
-        Share of the plateau that a rate must have. [1]
-
-    Returns
-    -------
-    first, last : ndarray of int, shape (n_branches,)
-        Ends of the trimmed part, both inside; ``last`` is before ``first`` where no part
-        of a branch has the rate. [1]
-    plateau_rate : ndarray, shape (n_branches,)
-        Median of 33 rates spread over the branch, positive. [m s-1] or [N s-1]
-
-    Raises
-    ------
-    SettingsError
-        If the threshold is not above 0 and at most 1.
 
     Notes
     -----
@@ -150,7 +122,7 @@ def constant_rate_span(
     One slow sample at each end.
 
     >>> values = np.array([0.0, 0.2, 1.2, 2.2, 3.2, 4.2, 5.2, 5.4])
-    >>> constant_rate_span(
+    >>> _constant_rate_span(
     ...     np.arange(8.0), values, np.array([0]), np.array([7]), noise=0.0, trim_threshold=0.97)
     (array([1]), array([6]), array([1.]))
     """
@@ -177,34 +149,15 @@ def constant_rate_span(
     return first, last, plateau
 
 
-def plateau_rates(
+def _plateau_rates(
     time: Floats, values: Floats, branch_first: Indices, branch_last: Indices, *, noise: float
 ) -> Floats:
-    """Plateau rate of each branch, without its ends: parameters as in `constant_rate_span`.
-
-    Parameters
-    ----------
-    time, values : ndarray, shape (n_samples,)
-        Elapsed time and control channel. [s], [m] or [N]
-    branch_first, branch_last : ndarray of int, shape (n_branches,)
-        Ends of each branch, both inside. [1]
-    noise : float
-        Standard deviation of the control channel. [m] or [N]
-
-    Returns
-    -------
-    plateau_rate : ndarray, shape (n_branches,)
-        Median of 33 rates spread over the branch, positive. [m s-1] or [N s-1]
-
-    Raises
-    ------
-    IndexError
-        If an end is not a sample of the values.
+    """Plateau rate of each branch, without its ends: parameters as in `_constant_rate_span`.
 
     Examples
     --------
     >>> values = np.array([0.0, 0.2, 1.2, 2.2, 3.2, 4.2, 5.2, 5.4])
-    >>> plateau_rates(np.arange(8.0), values, np.array([0]), np.array([7]), noise=0.0)
+    >>> _plateau_rates(np.arange(8.0), values, np.array([0]), np.array([7]), noise=0.0)
     array([1.])
     """
     return _plateau(time, values, branch_first, branch_last, noise)[0]
@@ -258,30 +211,10 @@ def _median(rates: Floats) -> Floats:
     return median
 
 
-def stroke_span(
+def _stroke_span(
     values: Floats, branch_first: Indices, branch_last: Indices
 ) -> tuple[Indices, Indices]:
     """First and last sample of the middle 90 % of the stroke of each branch.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        Control channel; NaN where missing. [m] or [N]
-    branch_first : ndarray of int, shape (n_branches,)
-        First sample of each branch. [1]
-    branch_last : ndarray of int, shape (n_branches,)
-        Last sample of each branch, inside. [1]
-
-    Returns
-    -------
-    first, last : ndarray of int, shape (n_branches,)
-        Ends of the middle part, both inside; ``last`` before ``first`` where no sample
-        is in it. [1]
-
-    Raises
-    ------
-    IndexError
-        If an end is not a sample of the values.
 
     Notes
     -----
@@ -291,7 +224,7 @@ def stroke_span(
     Examples
     --------
     >>> values = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 21))
-    >>> stroke_span(values, np.array([0]), np.array([20]))
+    >>> _stroke_span(values, np.array([0]), np.array([20]))
     (array([3]), array([17]))
     """
     begin, end = take_samples(values, branch_first), take_samples(values, branch_last)
@@ -432,17 +365,17 @@ def _trimmed(
 ) -> tuple[Indices, Indices, Floats, list[str]]:
     noise = estimate_noise(values)[0]
     if settings.waveform != "triangular":
-        first, last = stroke_span(values, branch_first, branch_last)
+        first, last = _stroke_span(values, branch_first, branch_last)
         return (
             first,
             last,
-            plateau_rates(time, values, branch_first, branch_last, noise=noise),
+            _plateau_rates(time, values, branch_first, branch_last, noise=noise),
             [
                 f"a {settings.waveform} waveform has no plateau of rate: the trimmed branches "
                 "leave out 5 % of the stroke at each end"
             ],
         )
-    first, last, rate = constant_rate_span(
+    first, last, rate = _constant_rate_span(
         time,
         values,
         branch_first,
@@ -510,7 +443,7 @@ def find_cycles(
     is of one amplitude and the other of the next is left out (`whole_cycles`). At a dwell the
     branches end where the crosshead arrives and begin where it leaves. A sample that two
     branches or cycles share is labelled with the later cycle and the earlier branch of a
-    cycle. Constant rate: `constant_rate_span`; without a triangular waveform `stroke_span`.
+    cycle. Constant rate: `_constant_rate_span`; without a triangular waveform `_stroke_span`.
 
     Examples
     --------

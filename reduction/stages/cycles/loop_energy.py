@@ -54,29 +54,12 @@ from reduction.record.measurement import Bools, Floats, Integers, read_only_arra
 _EIGHTH_ORDER = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
 
 
-def sums_over_cycles(values: Floats, first: Integers, last: Integers) -> Floats:
+def _sums_over_cycles(values: Floats, first: Integers, last: Integers) -> Floats:
     """Sum of a series over the samples from ``first`` up to, not with, ``last``.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        Any series, without NaN. [any]
-    first, last : ndarray of int, shape (n_cycles,)
-        Samples; ``first < last``, and cycles do not overlap. [1]
-
-    Returns
-    -------
-    sums : ndarray, shape (n_cycles,)
-        In the unit of the series. [any]
-
-    Raises
-    ------
-    IndexError
-        If a sample lies outside the series.
 
     Examples
     --------
-    >>> sums_over_cycles(np.arange(6.0), np.array([0, 3]), np.array([3, 5]))
+    >>> _sums_over_cycles(np.arange(6.0), np.array([0, 3]), np.array([3, 5]))
     array([3., 7.])
     """
     if first.size == 0:
@@ -185,17 +168,17 @@ def loop_energy(
         step = _smooth_steps(stretch, first, last)
         work = force * step
         # the ends of a cycle count half, as in any trapezoid
-        energy = sums_over_cycles(work, first, last) + (work[last] - work[first]) / 2
-        travel = sums_over_cycles(step, first, last) + (step[last] - step[first]) / 2
+        energy = _sums_over_cycles(work, first, last) + (work[last] - work[first]) / 2
+        travel = _sums_over_cycles(step, first, last) + (step[last] - step[first]) / 2
         energy -= closing * travel
     else:
         step = np.diff(stretch)
         work = force[1:] + force[:-1]
         work *= step
-        energy = sums_over_cycles(work, first, last) / 2
+        energy = _sums_over_cycles(work, first, last) / 2
         energy -= closing * (stretch[last] - stretch[first])
     np.multiply(step, step, out=step)
-    return energy, np.sqrt(sums_over_cycles(step, first, last))
+    return energy, np.sqrt(_sums_over_cycles(step, first, last))
 
 
 def without_drift(
@@ -344,7 +327,7 @@ def bridge_gaps(values: Floats, first: Integers, last: Integers) -> tuple[Floats
     if not missing.any():
         return values, np.zeros(first.size, dtype=bool)
     present = np.flatnonzero(~missing)
-    lost = sums_over_cycles(missing.astype(np.float64), first, last)
+    lost = _sums_over_cycles(missing.astype(np.float64), first, last)
     too_many = lost > _MISSING_SHARE * (last - first)
     if present.size == 0:
         return np.zeros_like(values), np.ones(first.size, dtype=bool)
@@ -361,23 +344,8 @@ _STEP = 2 * np.pi / _PLACES
 _COSINE, _SINE = np.cos(_STEP * np.arange(_PLACES)), np.sin(_STEP * np.arange(_PLACES))
 
 
-def cosine_and_sine(phase: Floats) -> tuple[Floats, Floats]:
+def _cosine_and_sine(phase: Floats) -> tuple[Floats, Floats]:
     """Cosine and sine of many angles, in half the time of `numpy.cos` and `numpy.sin` or less.
-
-    Parameters
-    ----------
-    phase : ndarray, shape (n_samples,)
-        Angles of some turns. [rad]
-
-    Returns
-    -------
-    cosine, sine : ndarray, shape (n_samples,)
-        To 7e-16 within a turn; NaN where the angle is. [1]
-
-    Raises
-    ------
-    TypeError
-        If the angles are not real numbers.
 
     Notes
     -----
@@ -386,7 +354,7 @@ def cosine_and_sine(phase: Floats) -> tuple[Floats, Floats]:
 
     Examples
     --------
-    >>> cosine, sine = cosine_and_sine(np.array([0.0, np.pi / 6]))
+    >>> cosine, sine = _cosine_and_sine(np.array([0.0, np.pi / 6]))
     >>> print(cosine[0], sine[1].round(15))
     1.0 0.5
     """
@@ -500,18 +468,18 @@ def cycle_basis(
     share, cosine, sine = np.zeros_like(time), np.zeros_like(time), np.zeros_like(time)
     rate = np.repeat(np.column_stack([1 / duration, nothing]).ravel(), lengths)
     np.multiply(rate, weight[begin:], out=share[begin:])
-    bare = cosine_and_sine(phase)
+    bare = _cosine_and_sine(phase)
     np.multiply(bare[0], share[begin:], out=cosine[begin:])
     np.multiply(bare[1], share[begin:], out=sine[begin:])
     end_share = (time[last] - time[last - 1]) / duration
     end_phase = turn_rate * duration
     end = end_share * np.cos(end_phase), end_share * np.sin(end_phase)
     gram = np.empty((first.size, 3, 3))
-    gram[:, 0, 0] = sums_over_cycles(share, first, last) + end_share
+    gram[:, 0, 0] = _sums_over_cycles(share, first, last) + end_share
     for row, (weighted, at_end) in enumerate(zip((cosine, sine), end, strict=True), start=1):
-        gram[:, 0, row] = gram[:, row, 0] = sums_over_cycles(weighted, first, last) + at_end
+        gram[:, 0, row] = gram[:, row, 0] = _sums_over_cycles(weighted, first, last) + at_end
         products = weighted[begin:] * bare[0]
-        gram[:, row, 1] = gram[:, 1, row] = sums_over_cycles(
+        gram[:, row, 1] = gram[:, 1, row] = _sums_over_cycles(
             products, first - begin, last - begin
         ) + at_end * np.cos(end_phase)
     gram[:, 2, 2] = gram[:, 0, 0] - gram[:, 1, 1]
@@ -647,7 +615,7 @@ def fundamental(values: Floats, basis: CycleBasis) -> tuple[Floats, Floats, Floa
     first, last = basis.first, basis.last
     sums = np.stack(
         [
-            sums_over_cycles(values * weights, first, last) + values[last] * at_end
+            _sums_over_cycles(values * weights, first, last) + values[last] * at_end
             for weights, at_end in (
                 (basis.share, basis.end_share),
                 (basis.cosine, basis.end_cosine),
@@ -694,8 +662,8 @@ def part_means(values: Floats, basis: CycleBasis, middles: Integers) -> Floats:
     ends = (first, *middles, last)
     means = []
     for start, stop in pairwise(ends):
-        total = sums_over_cycles(weighted, start, stop)
-        weight = sums_over_cycles(share, start, stop)
+        total = _sums_over_cycles(weighted, start, stop)
+        weight = _sums_over_cycles(share, start, stop)
         if stop is last:
             total += values[last] * basis.end_share
             weight += basis.end_share

@@ -60,7 +60,7 @@ MEASURED = (
 """What is summed over the samples of a cycle, in this order."""
 
 
-def quantities_of_cycles(
+def _quantities_of_cycles(
     measured: Floats,
     cycles: Cycles,
     ends: Floats,
@@ -70,31 +70,6 @@ def quantities_of_cycles(
     strain_noise: float,
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
     """Quantities of each cycle of one specimen, and their standard uncertainties.
-
-    Parameters
-    ----------
-    measured : ndarray, shape (n_measured, n_cycles)
-        What only the samples tell, in the order of `MEASURED`. [SI unit of each row]
-    cycles : Cycles
-        For the number of samples of each.
-    ends : ndarray, shape (4, n_cycles)
-        Times of the first sample, of the middles of rise and fall, and of the last one. [s]
-    waveform : {"triangular", "sinusoidal", "other"}
-        A sine has the amplitude of its fundamental, any other wave half its range.
-    noise : float
-        Standard deviation of one reading of tension. [N]
-    strain_noise : float
-        Standard deviation of one reading of strain. [1]
-
-    Returns
-    -------
-    values, uncertainty : dict of str to ndarray, shape (n_cycles,)
-        By field of `Loops`; the uncertainty is type A, from noise and sampling alone. [SI]
-
-    Raises
-    ------
-    ValueError
-        If ``measured`` has another number of rows than `MEASURED`.
 
     Notes
     -----
@@ -112,7 +87,7 @@ def quantities_of_cycles(
     ...     one, one + 100, pair, pair + 50, np.ones((1, 2)), np.zeros(101, np.int32),
     ...     np.zeros(101, np.int8), np.zeros(101, bool), 0.1,
     ... )
-    >>> values, _ = quantities_of_cycles(
+    >>> values, _ = _quantities_of_cycles(
     ...     measured, cycles, np.array([[0.0], [2.5], [7.5], [10.0]]),
     ...     waveform="triangular", noise=1.0, strain_noise=0.0,
     ... )
@@ -217,20 +192,8 @@ def _missed_turn(amplitude: Floats, n_samples: Floats) -> Floats:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class SlopeReadings:
-    """Slope of each loop by three readings; every array has the shape of the loops.
-
-    Parameters
-    ----------
-    amplitude_ratio : ndarray
-        Tension amplitude over strain amplitude: the reading used as K_ap. [N]
-    between_strain_extremes : ndarray
-        Slope of the line between the points of greatest and least strain. [N]
-    between_tension_extremes : ndarray
-        Slope of the line between the points of greatest and least tension. [N]
-    relative_spread : ndarray
-        Distance of the outer two readings over the amplitude ratio. [1]
-    """
+class _SlopeReadings:
+    """Slope of each loop by three readings; every array has the shape of the loops."""
 
     amplitude_ratio: Floats
     between_strain_extremes: Floats
@@ -238,7 +201,7 @@ class SlopeReadings:
     relative_spread: Floats
 
 
-def slope_readings(apparent_spring_constant: ArrayLike, loss_factor: ArrayLike) -> SlopeReadings:
+def slope_readings(apparent_spring_constant: ArrayLike, loss_factor: ArrayLike) -> _SlopeReadings:
     r"""Slope of an elliptical loop by amplitudes and by the two pairs of its extremes.
 
     .. math:: |K| \cos\delta, \quad |K|, \quad |K| / \cos\delta, \qquad
@@ -290,7 +253,7 @@ def slope_readings(apparent_spring_constant: ArrayLike, loss_factor: ArrayLike) 
             hint="Check the signs of tension and position.",
         )
     secant = np.sqrt(1 + tangent**2)
-    return SlopeReadings(slope + 0.0, slope / secant, slope * secant, secant - 1 / secant)
+    return _SlopeReadings(slope + 0.0, slope / secant, slope * secant, secant - 1 / secant)
 
 
 # samples reduced at a time: near the cache, yet long enough for threads to pay
@@ -444,7 +407,7 @@ def close_loops(
         name: empty_like(tension, shape=shape) for name in _FIELDS if name != "cycle_start_time"
     }
     for index, (force, stretch) in enumerate(zip(tension, strain, strict=True)):
-        values, errors = quantities_of_cycles(
+        values, errors = _quantities_of_cycles(
             measured[index],
             cycles,
             ends,

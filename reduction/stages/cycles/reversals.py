@@ -169,23 +169,8 @@ def find_reversals(values: ArrayLike, *, band: float) -> NDArray[np.intp]:
     return points
 
 
-def typical_range(values: ArrayLike) -> float:
+def _typical_range(values: ArrayLike) -> float:
     """Range of a half cycle of typical size: half of all travel is in larger ones.
-
-    Parameters
-    ----------
-    values : array_like, shape (n_reversals,)
-        Levels of successive reversals. [any unit]
-
-    Returns
-    -------
-    typical_range : float
-        Median of the ranges, each weighted by itself. [unit of the values]
-
-    Raises
-    ------
-    DataError
-        If there are fewer than two levels.
 
     Notes
     -----
@@ -196,7 +181,7 @@ def typical_range(values: ArrayLike) -> float:
     --------
     A move of 12 in and out, and five cycles of 5.
 
-    >>> typical_range([0, 12] + [7, 12] * 5 + [0])
+    >>> _typical_range([0, 12] + [7, 12] * 5 + [0])
     5.0
     """
     levels = np.asarray(values, dtype=np.float64)
@@ -249,7 +234,7 @@ def first_pass(values: ArrayLike) -> tuple[NDArray[np.intp], float]:
     reversals, band = find_reversals(values, band=noise), noise
     while reversals.size > 1:
         levels = take_samples(values, reversals)
-        wider = _BAND_SHARE * typical_range(levels)
+        wider = _BAND_SHARE * _typical_range(levels)
         if wider <= band:
             break
         # dropping with the smaller band first changes nothing

@@ -30,27 +30,10 @@ from reduction.stages.moduli.least_squares import SeparableFit, fit_separable, l
 SMALLEST_RATIO = 1e-12
 
 
-def ramp_factor(relaxation_time: ArrayLike, *, ramp_duration: float) -> Floats:
+def _ramp_factor(relaxation_time: ArrayLike, *, ramp_duration: float) -> Floats:
     r"""Share of a Prony term that is left at the end of a constant-rate ramp.
 
     .. math:: \frac{1 - e^{-t_r/\tau}}{t_r/\tau}
-
-    Parameters
-    ----------
-    relaxation_time : array_like, shape (...)
-        :math:`\tau`. [s]
-    ramp_duration : float
-        :math:`t_r`; 0 for a step. [s]
-
-    Returns
-    -------
-    factor : ndarray, shape (...)
-        1 for a step or a slow term. [1]
-
-    Raises
-    ------
-    DataError
-        If the duration is negative, or a time is not positive.
 
     Notes
     -----
@@ -60,7 +43,7 @@ def ramp_factor(relaxation_time: ArrayLike, *, ramp_duration: float) -> Floats:
 
     Examples
     --------
-    >>> print(ramp_factor([1.0, 100.0], ramp_duration=2.0).round(4))
+    >>> print(_ramp_factor([1.0, 100.0], ramp_duration=2.0).round(4))
     [0.4323 0.9901]
     """
     if ramp_duration < 0:
@@ -110,34 +93,17 @@ def prony_tension(
     [400.   352.59]
     """
     times = as_positive("relaxation_time", relaxation_time)
-    size = np.asarray(tension, dtype=np.float64) * ramp_factor(times, ramp_duration=ramp_duration)
-    decay = exponentials(np.asarray(elapsed, dtype=np.float64), times)
+    size = np.asarray(tension, dtype=np.float64) * _ramp_factor(times, ramp_duration=ramp_duration)
+    decay = _exponentials(np.asarray(elapsed, dtype=np.float64), times)
     return long_time_tension + decay @ size
 
 
-def exponentials(elapsed: Floats, relaxation_time: Floats) -> Floats:
+def _exponentials(elapsed: Floats, relaxation_time: Floats) -> Floats:
     r"""Columns :math:`e^{-t/\tau_i}` of a Prony series.
-
-    Parameters
-    ----------
-    elapsed : ndarray, shape (n_samples,)
-        Time. [s]
-    relaxation_time : ndarray, shape (n_terms,) or (..., 1, n_terms)
-        Times of the terms, or several sets of them. [s]
-
-    Returns
-    -------
-    columns : ndarray, shape (..., n_samples, n_terms)
-        1 at time zero. [1]
-
-    Raises
-    ------
-    ValueError
-        If the times are not one-dimensional.
 
     Examples
     --------
-    >>> print(exponentials(np.array([0.0, 1.0]), np.array([1.0])).round(3).ravel())
+    >>> print(_exponentials(np.array([0.0, 1.0]), np.array([1.0])).round(3).ravel())
     [1.    0.368]
     """
     columns: Floats = np.exp(-elapsed[:, None] / relaxation_time)
@@ -190,7 +156,7 @@ def _starts(
 ) -> Floats:
     """Best sets of times of a coarse grid, terms positive; found from one Gram matrix."""
     root = np.sqrt(weights)[:, None]
-    columns = np.column_stack([np.ones_like(elapsed), exponentials(elapsed, grid)]) * root
+    columns = np.column_stack([np.ones_like(elapsed), _exponentials(elapsed, grid)]) * root
     target = tension * root[:, 0]
     gram, product = columns.T @ columns, columns.T @ target
     sets = np.array(list(combinations(range(1, grid.size + 1), n_terms)))
@@ -300,7 +266,7 @@ def fit_prony(
     def basis(log_times: Floats) -> tuple[Floats, Floats]:
         # A search that strays stays finite.
         times = np.exp(np.clip(log_times, -LARGEST_LOG, LARGEST_LOG))[:, None, :]
-        decay = exponentials(time, times)
+        decay = _exponentials(time, times)
         level = np.ones((len(log_times), time.size, 1))
         return np.concatenate([level, decay], axis=2), decay * (time[:, None] / times)
 
@@ -359,7 +325,7 @@ def _reported(fit: SeparableFit, ramp_duration: float, criterion: str) -> PronyF
     times = np.exp(log_times)
     index = np.concatenate([[0], 1 + order, 1 + n_terms + order])
     covariance = fit.covariance[np.ix_(index, index)] * lag_one_inflation(fit.residual)
-    factor = ramp_factor(times, ramp_duration=ramp_duration)
+    factor = _ramp_factor(times, ramp_duration=ramp_duration)
     size = fit.amplitude[1 + order] / factor
     ratio = ramp_duration / times
     # d(ln factor) / d(ln time): 0 for a step, 1 for terms much shorter than the ramp.

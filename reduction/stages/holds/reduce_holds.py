@@ -121,18 +121,8 @@ class Hold:
 
 
 @dataclass(frozen=True)
-class Ends:
-    """Tension at both ends of a hold, and the share lost.
-
-    Parameters
-    ----------
-    initial, final : float
-        Means of short stretches. [N]
-    drop, drop_uncertainty : float
-        Share lost and its standard uncertainty (type A). [1]
-    initial_uncertainty, final_uncertainty : float
-        Of the two means (type A). [N]
-    """
+class _Ends:
+    """Tension at both ends of a hold, and the share lost."""
 
     initial: float
     final: float
@@ -142,23 +132,8 @@ class Ends:
     final_uncertainty: float
 
 
-def hold_ends(hold: Hold) -> Ends:
+def _hold_ends(hold: Hold) -> _Ends:
     """Tension at both ends of a hold; the stretches are named in its notes.
-
-    Parameters
-    ----------
-    hold : Hold
-        Three samples or more.
-
-    Returns
-    -------
-    ends : Ends
-        Means and drop.
-
-    Raises
-    ------
-    DataError
-        If there are fewer than two samples.
 
     Notes
     -----
@@ -172,7 +147,7 @@ def hold_ends(hold: Hold) -> Ends:
     >>> t = np.linspace(0, 180, 361)
     >>> load = np.where(t < 2, 400.0, 325.0)
     >>> hold = Hold(t, 0 * t, load, 2.75 + 0 * t, 0.0, None, 0.01)
-    >>> round(hold_ends(hold).drop, 4)
+    >>> round(_hold_ends(hold).drop, 4)
     0.1875
     """
     step = hold.duration / max(1, hold.time.size - 1)
@@ -188,7 +163,7 @@ def hold_ends(hold: Hold) -> Ends:
     drop = float(relaxation_drop(initial, final))
     uncertainty = float(np.hypot(u_final, (1 - drop) * u_initial) / initial)
     known = uncertainty if drop == drop else np.nan
-    return Ends(initial, final, drop, known, u_initial, u_final)
+    return _Ends(initial, final, drop, known, u_initial, u_final)
 
 
 def _step_reason(hold: Hold) -> str | None:
@@ -221,7 +196,7 @@ def _longest_step(time: Floats) -> float:
     )
 
 
-def _motion_reason(hold: Hold, ends: Ends) -> str | None:
+def _motion_reason(hold: Hold, ends: _Ends) -> str | None:
     """Name a motion of the crosshead that is worth more than a tenth of the drop."""
     n_samples = max(3, int(FINAL_SHARE * hold.time.size))
     before, u_before = end_mean(hold.position, n_samples=n_samples, at_end=False)
@@ -240,27 +215,8 @@ def _motion_reason(hold: Hold, ends: Ends) -> str | None:
     return f"the crosshead moves by {motion:.2g} m in the hold{worth}" if moved else None
 
 
-def reasons_against(hold: Hold, ends: Ends, settings: HoldSettings) -> list[str]:
+def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[str]:
     """Everything that speaks against relaxation numbers from a hold.
-
-    Parameters
-    ----------
-    hold : Hold
-        The samples.
-    ends : Ends
-        From `hold_ends`.
-    settings : HoldSettings
-        Shortest duration.
-
-    Returns
-    -------
-    reasons : list of str
-        Empty where nothing speaks against it.
-
-    Raises
-    ------
-    DataError
-        If the samples hold a value that is not finite.
 
     Notes
     -----
@@ -273,7 +229,7 @@ def reasons_against(hold: Hold, ends: Ends, settings: HoldSettings) -> list[str]
     --------
     >>> t = np.linspace(0, 10, 101)
     >>> hold = Hold(t, 0 * t, 400 - t, 1 + 0 * t, 0.0, None, 0.01)
-    >>> reasons_against(hold, hold_ends(hold), HoldSettings())
+    >>> _reasons_against(hold, _hold_ends(hold), HoldSettings())
     ['the hold is too short: 10 s; 30 s or more are needed']
     """
     reasons = []
@@ -424,7 +380,7 @@ def select_hold(
 _EMPTY = np.empty(0)
 
 
-def _rate(hold: Hold, ends: Ends) -> Rate | None:
+def _rate(hold: Hold, ends: _Ends) -> Rate | None:
     """Share of tension lost per decade, or None with a refusal."""
     if hold.ramp is None:
         hold.refusals.append(
@@ -450,7 +406,7 @@ def _rate(hold: Hold, ends: Ends) -> Rate | None:
     return Rate(-slope.value, slope.standard_uncertainty, slope.elapsed_low, slope.elapsed_high)
 
 
-def _prony(hold: Hold, ends: Ends, settings: HoldSettings) -> PronyFit | None:
+def _prony(hold: Hold, ends: _Ends, settings: HoldSettings) -> PronyFit | None:
     """Prony series, or None with a refusal."""
     if ends.drop < SIGNIFICANT * ends.drop_uncertainty:
         hold.refusals.append(
@@ -536,16 +492,16 @@ def _result(
     rate: Rate | None = None
     prony: PronyFit | None = None
     tension_at = strain_at = (nothing, nothing)
-    ends = Ends(*(np.nan,) * 6)
+    ends = _Ends(*(np.nan,) * 6)
     times_known, known = chosen(lambda part: np.isfinite(hold.strain[part]), hold.time, hold.strain)
     if hold.time.size < 3:
         hold.refusals.append(f"everything: {hold.time.size} samples in the hold")
     else:
-        ends = hold_ends(hold)
+        ends = _hold_ends(hold)
         tension_at = value_at_times(shifted(hold.time, hold.start_time), hold.tension, times)
         if known.size > 1:
             strain_at = value_at_times(shifted(times_known, hold.start_time), known, times)
-        reasons = reasons_against(hold, ends, settings) if kind == "relaxation" else []
+        reasons = _reasons_against(hold, ends, settings) if kind == "relaxation" else []
         hold.refusals.extend(f"drop, rate per decade, Prony series: {one}" for one in reasons)
         if kind == "creep":
             rate = _creep(hold)

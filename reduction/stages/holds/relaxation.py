@@ -160,18 +160,8 @@ LARGEST_WEIGHT = 64.0
 
 @dataclass(frozen=True)
 @read_only_arrays
-class Blocks:
-    """Block means of a series, shape (n_blocks,) each.
-
-    Parameters
-    ----------
-    elapsed : ndarray
-        Mean time of the block. [s]
-    value : ndarray
-        Mean of the series. [unit of the series]
-    count : ndarray
-        Samples in the block. [1]
-    """
+class _Blocks:
+    """Block means of a series, shape (n_blocks,) each."""
 
     elapsed: Floats
     value: Floats
@@ -189,7 +179,7 @@ class Blocks:
 
 def logarithmic_blocks(
     elapsed: ArrayLike, values: ArrayLike, *, per_decade: int = BLOCKS_PER_DECADE
-) -> Blocks:
+) -> _Blocks:
     """Means over blocks of equal length in the logarithm of time.
 
     Parameters
@@ -242,7 +232,7 @@ def logarithmic_blocks(
         np.add.at(sums[1], here, np.add.reduceat(series[part], first))
         np.add.at(sums[2], here, count)
     elapsed_sum, value_sum, count = sums[:, sums[2] > 0]
-    return Blocks(elapsed_sum / count, value_sum / count, count)
+    return _Blocks(elapsed_sum / count, value_sum / count, count)
 
 
 RAMP_TIMES_LEFT_OUT = 3.0
@@ -345,7 +335,7 @@ def end_mean(values: ArrayLike, *, n_samples: int, at_end: bool) -> tuple[float,
     return mean_of(stretch), float(np.sqrt(variance))
 
 
-def rate_per_decade(blocks: Blocks, *, ramp_duration: float) -> Rate:
+def rate_per_decade(blocks: _Blocks, *, ramp_duration: float) -> Rate:
     r"""Change of a series per decade of time, by regression on block means.
 
     Parameters
@@ -471,30 +461,12 @@ def _on_line(time: Floats, series: Floats, wanted: float, *, noise: float) -> tu
 TENSION_TOLERANCE = 0.01
 
 
-def tension_variation(time: ArrayLike, tension: ArrayLike) -> float:
+def _tension_variation(time: ArrayLike, tension: ArrayLike) -> float:
     """Largest departure of tension from its mean over a hold, as a share of the mean.
-
-    Parameters
-    ----------
-    time : array_like, shape (n_samples,)
-        Time from the centre of the ramp, increasing and positive. [s]
-    tension : array_like, shape (n_samples,)
-        Tension. [N]
-
-    Returns
-    -------
-    variation : float
-        Of means over twenty blocks a decade, so that noise of single samples does not
-        count but drift does. [1]
-
-    Raises
-    ------
-    DataError
-        If the mean tension is not positive, or the time does not increase from above zero.
 
     Examples
     --------
-    >>> print(tension_variation([1.0, 10.0, 100.0], [100.0, 102.0, 98.0]))
+    >>> print(_tension_variation([1.0, 10.0, 100.0], [100.0, 102.0, 98.0]))
     0.02
     """
     blocks = logarithmic_blocks(time, tension, per_decade=20)
@@ -544,7 +516,7 @@ def creep_rate(
     """
     seconds = as_increasing("time", time)
     seconds, stretch, load = as_same_shape(time=seconds, strain=strain, tension=tension)
-    variation = tension_variation(seconds, load)
+    variation = _tension_variation(seconds, load)
     if variation > TENSION_TOLERANCE:
         raise DataError(
             f"tension is not constant: it strays {variation:.1%} from its mean",

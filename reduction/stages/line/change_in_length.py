@@ -291,25 +291,8 @@ def _together(contribution: Floats, random: float) -> float:
     return float(np.sqrt(np.sum(contribution**2) + random**2))
 
 
-def construction_strain(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
+def _construction_strain(steps: Sequence[StepOfProgramme], before: str) -> ChangeInLength:
     """Strain that bedding-in left at equal tension, on the first rise and in the cycles.
-
-    Parameters
-    ----------
-    steps : sequence of StepOfProgramme
-        In the order in which they were done.
-    before : str
-        What was before the first of them, in words; empty of a new rope.
-
-    Returns
-    -------
-    strain : ChangeInLength
-        NaN with a reason where the steps do not support it. [1]
-
-    Raises
-    ------
-    ValueError
-        Never by itself.
 
     Notes
     -----
@@ -320,11 +303,11 @@ def construction_strain(steps: Sequence[StepOfProgramme], before: str) -> Change
 
     Examples
     --------
-    >>> print(construction_strain([], "").reason)
+    >>> print(_construction_strain([], "").reason)
     no step beds the rope in
     """
     absent = ChangeInLength("construction strain")
-    place = bedded_in(steps)
+    place = _bedded_in(steps)
     if place is None:
         return replace(absent, reason="no step beds the rope in")
     one = steps[place]
@@ -358,23 +341,8 @@ def construction_strain(steps: Sequence[StepOfProgramme], before: str) -> Change
     )
 
 
-def bedded_in(steps: Sequence[StepOfProgramme]) -> int | None:
+def _bedded_in(steps: Sequence[StepOfProgramme]) -> int | None:
     """Place of the first step that beds the rope in.
-
-    Parameters
-    ----------
-    steps : sequence of StepOfProgramme
-        In the order in which they were done.
-
-    Returns
-    -------
-    place : int or None
-        None where none does. [1]
-
-    Raises
-    ------
-    ValueError
-        Never by itself.
 
     Notes
     -----
@@ -382,7 +350,7 @@ def bedded_in(steps: Sequence[StepOfProgramme]) -> int | None:
 
     Examples
     --------
-    >>> print(bedded_in([StepOfProgramme("Q", 600.0)]))
+    >>> print(_bedded_in([StepOfProgramme("Q", 600.0)]))
     None
     """
     return next((place for place, one in enumerate(steps) if one.bedding is not None), None)
@@ -484,7 +452,7 @@ def change_in_length(
         _original(steps, before),
         *_static(steps),
         *_dynamic(steps),
-        construction_strain(steps, before),
+        _construction_strain(steps, before),
         *_polymer(steps),
         *_working(steps, is_ordered),
     )
@@ -613,7 +581,7 @@ def _polymer(steps: Sequence[StepOfProgramme]) -> tuple[ChangeInLength, ...]:
 
 def _working(steps: Sequence[StepOfProgramme], is_ordered: bool) -> tuple[ChangeInLength, ...]:
     absent = ChangeInLength("working strain")
-    place = bedded_in(steps)
+    place = _bedded_in(steps)
     if place is None:
         return (replace(absent, reason="no step beds the rope in: construction would be in it"),)
     if not is_ordered:

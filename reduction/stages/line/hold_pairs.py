@@ -50,28 +50,8 @@ _SHORTEST_SPAN = 0.5
 
 @dataclass(frozen=True)
 @read_only_arrays
-class StaticStiffness:
-    """Secant between two held tensions against time.
-
-    Parameters
-    ----------
-    elapsed, stiffness : ndarray, shape (n_points,)
-        Time since the load was put on, and the secant then. [s], [N]
-    reference_time : float
-        Time at which ``stiffness_at_reference`` stands. [s]
-    stiffness_at_reference, stiffness_at_reference_standard_uncertainty : float
-        By the fit. [N]
-    slope_per_decade, slope_per_decade_standard_uncertainty : float
-        Change of the stiffness in a tenfold time. [N]
-    slope_low, slope_high : float
-        Interval of the slope. [N]
-    stiffness_over_strength, slope_per_decade_over_strength : float
-        Over the rated break strength. [1]
-    confidence : float
-        Of the interval. [1]
-    notes : tuple of str
-        A reference time that the hold does not reach.
-    """
+class _StaticStiffness:
+    """Secant between two held tensions against time."""
 
     elapsed: Floats
     stiffness: Floats
@@ -122,7 +102,7 @@ class CreepOfHold:
     tension_standard_uncertainty: float = float("nan")
 
 
-def static_stiffness(
+def _static_stiffness(
     elapsed: ArrayLike,
     tension: ArrayLike,
     strain: ArrayLike,
@@ -133,44 +113,10 @@ def static_stiffness(
     ramp_duration: float = 0.0,
     rated_break_strength: float = float("nan"),
     confidence: float = 0.95,
-) -> StaticStiffness:
+) -> _StaticStiffness:
     r"""Secant stiffness from the end of a lower hold into an upper hold, against log time.
 
     .. math:: K_s(t) = K_{ref} + b \log_{10}(t / t_{ref})
-
-    Parameters
-    ----------
-    elapsed : array_like, shape (n_samples,)
-        Time since the centre of the ramp to the upper hold, rising and positive. [s]
-    tension, strain : array_like, shape (n_samples,)
-        Of the upper hold, as samples or as values at stated times; NaN is left out. [N], [1]
-    low_tension : float
-        At the end of the lower hold. [N]
-    low_strain : float
-        At the end of the lower hold. [1]
-    reference_time : float
-        Time at which the stiffness is wanted. [s]
-    ramp_duration : float, optional
-        Duration of the ramp; the first three of them are left out. [s]
-    rated_break_strength : float, optional
-        NaN where not stated. [N]
-    confidence : float, optional
-        Of the interval of the slope. [1]
-
-    Returns
-    -------
-    stiffness : StaticStiffness
-        Line in the logarithm of time with its uncertainty (type A).
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up, time does not rise from above zero, or the upper hold
-        is not above the lower one in tension and strain.
-    FitError
-        If fewer than four points, or less than half a decade of time, are left.
-    SettingsError
-        If the confidence is not between 0 and 1, or the reference time is not positive.
 
     Notes
     -----
@@ -182,7 +128,7 @@ def static_stiffness(
     --------
     >>> t = np.arange(1.0, 1001.0)
     >>> strain = 0.05 + 200 / (4000 - 100 * np.log10(t))
-    >>> found = static_stiffness(t, np.full(1000, 300.0), strain,
+    >>> found = _static_stiffness(t, np.full(1000, 300.0), strain,
     ...     low_tension=100.0, low_strain=0.05, reference_time=100.0)
     >>> print(round(found.stiffness_at_reference), round(found.slope_per_decade))
     3800 -100
@@ -235,7 +181,7 @@ def static_stiffness(
     u_slope = float(np.sqrt(variance / power))
     width = float(stdtrit(x.size - 2, (1 + confidence) / 2)) * u_slope
     reaches = clock[0] <= reference_time <= clock[-1]
-    return StaticStiffness(
+    return _StaticStiffness(
         elapsed=blocks.elapsed,
         stiffness=y,
         reference_time=reference_time,
@@ -349,7 +295,7 @@ class HeldPair:
     high_hold: int
     low_tension: float
     high_tension: float
-    stiffness: StaticStiffness | None
+    stiffness: _StaticStiffness | None
     reason: str = ""
     low_tension_standard_uncertainty: float = float("nan")
     high_tension_standard_uncertainty: float = float("nan")
@@ -361,7 +307,9 @@ def _end_of(values: Floats) -> tuple[float, float]:
     return end_mean(values, n_samples=max(3, int(_FINAL_SHARE * values.size)), at_end=True)
 
 
-def _stiffness(low: Hold, high: Hold, *, strength: float, reference_time: float) -> StaticStiffness:
+def _stiffness(
+    low: Hold, high: Hold, *, strength: float, reference_time: float
+) -> _StaticStiffness:
     """Line in the logarithm of time, with what is not known of the end of the lower hold."""
     if high.ramp is None:
         raise DataError(
@@ -374,7 +322,7 @@ def _stiffness(low: Hold, high: Hold, *, strength: float, reference_time: float)
     (tension, u_tension), (strain, u_strain) = _end_of(low.tension), _end_of(known)
     since = high.since_centre
     later = int(np.searchsorted(since, 0.0, side="right"))
-    found = static_stiffness(
+    found = _static_stiffness(
         since[later:],
         high.tension[later:],
         high.strain[later:],

@@ -159,7 +159,7 @@ def dashpot_coefficient(
     return product
 
 
-def storage_and_loss(
+def _storage_and_loss(
     *,
     quasi_static_spring_constant: ArrayLike,
     dissipation_spring_constant: ArrayLike,
@@ -170,27 +170,6 @@ def storage_and_loss(
 
     .. math:: E' = K_0 + K_1 \frac{x^2}{1 + x^2}, \qquad E'' = K_1 \frac{x}{1 + x^2}
 
-    Parameters
-    ----------
-    quasi_static_spring_constant : array_like, shape (...)
-        :math:`K_0` at the mean tension. [N]
-    dissipation_spring_constant : array_like, shape (...)
-        :math:`K_1`. [N]
-    relaxation_time : array_like, shape (...)
-        :math:`\tau`. [s]
-    frequency : array_like, shape (...)
-        :math:`f`, cycles in a second. [Hz]
-
-    Returns
-    -------
-    storage_spring_constant, loss_spring_constant : ndarray, shape (...)
-        Tension in phase and in quadrature with strain, per unit strain. [N]
-
-    Raises
-    ------
-    DataError
-        If an input is negative.
-
     Notes
     -----
     Source: [1]_, eq. 1, whose modulus they are.  Small motions about a mean tension; the
@@ -200,7 +179,7 @@ def storage_and_loss(
     --------
     Far above and far below the frequency of relaxation the line is a spring (eqs. 2, 3).
 
-    >>> stored, _ = storage_and_loss(quasi_static_spring_constant=1.2,
+    >>> stored, _ = _storage_and_loss(quasi_static_spring_constant=1.2,
     ...     dissipation_spring_constant=1.8, relaxation_time=1.0, frequency=[0.0, 1e6])
     >>> print(stored.round(6))
     [1.2 3. ]
@@ -258,7 +237,7 @@ def apparent_spring_constant(
     ...     dissipation_spring_constant=4.353, relaxation_time=4.007, frequency=0.3).round(3))
     6.318
     """
-    stored, lost = storage_and_loss(
+    stored, lost = _storage_and_loss(
         quasi_static_spring_constant=quasi_static_spring_constant,
         dissipation_spring_constant=dissipation_spring_constant,
         relaxation_time=relaxation_time,
@@ -316,7 +295,7 @@ def hysteresis_energy(
     ...     tension_amplitude=561.0).round(3))
     1.403
     """
-    stored, lost = storage_and_loss(
+    stored, lost = _storage_and_loss(
         quasi_static_spring_constant=quasi_static_spring_constant,
         dissipation_spring_constant=dissipation_spring_constant,
         relaxation_time=relaxation_time,
@@ -496,27 +475,12 @@ def reasons_in_words(reason: ArrayLike) -> tuple[str, ...]:
     )
 
 
-def fault_of_loop(measured: list[Floats]) -> NDArray[np.int8]:
+def _fault_of_loop(measured: list[Floats]) -> NDArray[np.int8]:
     """Code of a loop with a quantity missing or not positive.
-
-    Parameters
-    ----------
-    measured : list of ndarray, shape (...) each
-        What the loop was measured to be. [SI]
-
-    Returns
-    -------
-    fault : ndarray of int8, shape (...)
-        0, or a key of `reduction.stages.line.line_product.REASONS`. [1]
-
-    Raises
-    ------
-    ValueError
-        If the arrays do not broadcast.
 
     Examples
     --------
-    >>> fault_of_loop([np.array([1.0, np.nan, 2.0]), np.array([1.0, 1.0, -1.0])])
+    >>> _fault_of_loop([np.array([1.0, np.nan, 2.0]), np.array([1.0, 1.0, -1.0])])
     array([0, 3, 4], dtype=int8)
     """
     missing = np.logical_or.reduce([np.isnan(one) for one in measured])
@@ -525,31 +489,14 @@ def fault_of_loop(measured: list[Floats]) -> NDArray[np.int8]:
     return np.select([missing, ~sound], [_MISSING, NOT_POSITIVE], default=0).astype(np.int8)
 
 
-def relative_uncertainties(
+def _relative_uncertainties(
     values: Mapping[str, Floats], standard_uncertainty: Mapping[str, ArrayLike] | None
 ) -> Floats:
     """Relative standard uncertainties of the inputs of a line.
 
-    Parameters
-    ----------
-    values : mapping of str to ndarray, shape (...) each
-        The inputs by name. [SI]
-    standard_uncertainty : mapping of str to array_like, or None
-        By the same names. [the input's]
-
-    Returns
-    -------
-    relative : ndarray, shape (n_inputs, ...)
-        NaN where not stated. [1]
-
-    Raises
-    ------
-    DataError
-        If an uncertainty is given for no input.
-
     Examples
     --------
-    >>> relative_uncertainties({"frequency": np.array([0.5, 0.25])}, {"frequency": 0.01})
+    >>> _relative_uncertainties({"frequency": np.array([0.5, 0.25])}, {"frequency": 0.01})
     array([[0.02, 0.04]])
     """
     stated = standard_uncertainty or {}
@@ -566,7 +513,7 @@ def relative_uncertainties(
     return np.abs(relative)
 
 
-def line_of_loop(
+def _line_of_loop(
     stored: Floats,
     lost: Floats,
     inputs: Mapping[str, Floats],
@@ -579,33 +526,6 @@ def line_of_loop(
 ) -> LineParameters:
     """Give the parameters of a line, their uncertainties, and reasons where there are none.
 
-    Parameters
-    ----------
-    stored, lost : ndarray, shape (...)
-        E' and E'' of the loop; NaN where it has a fault. [N]
-    inputs : mapping of str to ndarray, shape (...) each
-        With ``quasi_static_spring_constant``, the last one, and ``frequency``. [N], [Hz]
-    fault : ndarray of int8, shape (...)
-        0, or why the loop gives nothing, a key of `reduction.stages.line.line_product.REASONS`. [1]
-    sensitivities : callable
-        From E', E'' and K_0 to relative change of each output by each input.
-    relative : ndarray, shape (n_inputs, ...)
-        Relative standard uncertainties. [1]
-    correlation : array_like, shape (...)
-        Of the errors of the first and the third input. [1]
-    reading : str
-        How the loop was read.
-
-    Returns
-    -------
-    parameters : LineParameters
-        NaN with a reason where refused. [N], [s], [N s]
-
-    Raises
-    ------
-    KeyError
-        If an input is missing.
-
     Notes
     -----
     One root with K_1 and x positive where E' > K_0, and none elsewhere.
@@ -613,7 +533,7 @@ def line_of_loop(
     Examples
     --------
     >>> from reduction.stages.line.line_model import line_sensitivities
-    >>> line = line_of_loop(
+    >>> line = _line_of_loop(
     ...     np.array(2.7), np.array(0.6),
     ...     {"frequency": np.array(0.3), "quasi_static_spring_constant": np.array(1.2)},
     ...     fault=np.array(0, np.int8), sensitivities=line_sensitivities,
@@ -764,7 +684,7 @@ def identify_by_amplitude(
         quasi_static_spring_constant=quasi_static_spring_constant,
     )
     apparent, energy, amplitude, rate = (inputs[name] for name in AMPLITUDE_INPUTS[:4])
-    bad = fault_of_loop([apparent, energy, amplitude, rate])
+    bad = _fault_of_loop([apparent, energy, amplitude, rate])
     sound = np.where(bad == 0, apparent, np.nan)
     with np.errstate(all="ignore"):
         lost = energy * sound**2 / (np.pi * amplitude**2)
@@ -773,13 +693,13 @@ def identify_by_amplitude(
         bad = np.where((bad == 0) & ~(lost > 0), np.int8(NOT_POSITIVE), bad)
         lost = np.where(bad == 0, lost, np.nan)
         stored = np.sqrt((sound - lost) * (sound + lost))
-    return line_of_loop(
+    return _line_of_loop(
         stored,
         lost,
         inputs,
         fault=bad,
         sensitivities=amplitude_sensitivities,
-        relative=relative_uncertainties(inputs, standard_uncertainty),
+        relative=_relative_uncertainties(inputs, standard_uncertainty),
         correlation=correlation,
         reading="amplitude",
     )
@@ -836,15 +756,15 @@ def identify_by_fundamental(
         frequency=frequency,
         quasi_static_spring_constant=quasi_static_spring_constant,
     )
-    bad = fault_of_loop([inputs[name] for name in FUNDAMENTAL_INPUTS[:3]])
+    bad = _fault_of_loop([inputs[name] for name in FUNDAMENTAL_INPUTS[:3]])
     stored, lost = (np.where(bad == 0, inputs[name], np.nan) for name in FUNDAMENTAL_INPUTS[:2])
-    return line_of_loop(
+    return _line_of_loop(
         stored,
         lost,
         inputs,
         fault=bad,
         sensitivities=line_sensitivities,
-        relative=relative_uncertainties(inputs, standard_uncertainty),
+        relative=_relative_uncertainties(inputs, standard_uncertainty),
         correlation=0.0,
         reading="fundamental",
     )
@@ -921,7 +841,7 @@ def _membership(group: ArrayLike | None, n_runs: int) -> Floats:
     return member
 
 
-def power_of_frequency(
+def _power_of_frequency(
     frequency: ArrayLike,
     values: ArrayLike,
     *,
@@ -932,29 +852,6 @@ def power_of_frequency(
 
     .. math:: \ln y = a_g + m \ln f
 
-    Parameters
-    ----------
-    frequency : array_like, shape (n_runs,)
-        Of each run. [Hz]
-    values : array_like, shape (..., n_runs)
-        Positive; a run that is NaN or not positive is left out. [any]
-    group : array_like, shape (n_runs,), optional
-        Label of the loads of each run; left out, all runs have equal loads. [1]
-    relative_standard_uncertainty : array_like, shape (..., n_runs), optional
-        Of the values; used where the runs leave no degree of freedom. [1]
-
-    Returns
-    -------
-    exponent, standard_uncertainty : ndarray, shape (...)
-        NaN where no group has two frequencies, or nothing says how uncertain it is. [1]
-    degrees_of_freedom : ndarray of int, shape (...)
-        Runs less groups less one; 0 where none is left. [1]
-
-    Raises
-    ------
-    DataError
-        If a frequency is not positive, or shapes do not fit.
-
     Notes
     -----
     The check that [6]_ did not make on its runs.  Runs count alike: from the third run on,
@@ -962,7 +859,7 @@ def power_of_frequency(
 
     Examples
     --------
-    >>> m, _, dof = power_of_frequency([0.1, 0.3, 0.5], [10.0, 30.0, 50.0])
+    >>> m, _, dof = _power_of_frequency([0.1, 0.3, 0.5], [10.0, 30.0, 50.0])
     >>> print(m.round(6), dof)
     1.0 1
     """
@@ -1076,13 +973,13 @@ def check_single_time(
         raise SettingsError(
             "a tolerance of the exponent", found=f"{tolerance:g}", needed="0 to 0.5"
         )
-    slope, uncertainty, left = power_of_frequency(
+    slope, uncertainty, left = _power_of_frequency(
         frequency,
         relaxation_time,
         group=group,
         relative_standard_uncertainty=relative_standard_uncertainty,
     )
-    loss_slope, loss_uncertainty, loss_left = power_of_frequency(
+    loss_slope, loss_uncertainty, loss_left = _power_of_frequency(
         frequency, loss_factor, group=group
     )
     exponent = -slope

@@ -68,58 +68,22 @@ _FOOT = 0.005
 _FEWEST_SAMPLES = 8
 
 
-def greatest_fall(tension: ArrayLike) -> float:
+def _greatest_fall(tension: ArrayLike) -> float:
     """Largest fall of a series below what it had reached before.
-
-    Parameters
-    ----------
-    tension : array_like, shape (n_samples,)
-        Without NaN. [N]
-
-    Returns
-    -------
-    fall : float
-        Zero for a series that never falls. [N]
-
-    Raises
-    ------
-    ValueError
-        If the series is empty.
 
     Examples
     --------
-    >>> greatest_fall([0.0, 3.0, 2.5, 4.0])
+    >>> _greatest_fall([0.0, 3.0, 2.5, 4.0])
     0.5
     """
     series = np.asarray(tension, dtype=np.float64)
     return float((np.maximum.accumulate(series) - series).max())
 
 
-def find_loading(
+def _find_loading(
     tension: ArrayLike, strain: ArrayLike, *, reference_tension: float | None = None
 ) -> Integers:
     """Samples of the loading part of a slow pull.
-
-    Parameters
-    ----------
-    tension : array_like, shape (n_samples,)
-        NaN where missing. [N]
-    strain : array_like, shape (n_samples,)
-        NaN where missing. [1]
-    reference_tension : float, optional
-        Tension from which the pull counts; left out, the first rise out of the lowest
-        tension before the peak. [N]
-
-    Returns
-    -------
-    samples : ndarray of int, shape (n_loading,)
-        Rows with both readings, from the last one at or below the start to the peak. [1]
-
-    Raises
-    ------
-    DataError
-        If the series differ in shape, tension never rises above the start, or fewer than
-        eight readings lie between the start and the peak.
 
     Notes
     -----
@@ -132,7 +96,7 @@ def find_loading(
     Examples
     --------
     >>> tension = np.concatenate([np.zeros(5), np.arange(1, 21.0), [3.0, 0.0]])
-    >>> print(find_loading(tension, tension / 100)[[0, -1]])
+    >>> print(_find_loading(tension, tension / 100)[[0, -1]])
     [ 4 24]
     """
     load, stretch = as_same_shape(tension=tension, strain=strain)
@@ -226,7 +190,7 @@ _BEYOND_NOISE = 3.0
 
 
 @dataclass(frozen=True)
-class PullBlocks:
+class _PullBlocks:
     """Means over equal steps of tension, shape (n_blocks,) each.
 
     ``powers`` (n_blocks, 7) are means of the powers of u, the tension scaled to -1 to 1.
@@ -238,27 +202,8 @@ class PullBlocks:
     powers: Floats
 
 
-def block_means(time: Floats, strain: Floats, tension: Floats) -> PullBlocks:
+def _block_means(time: Floats, strain: Floats, tension: Floats) -> _PullBlocks:
     """Means over equal steps of the greatest tension so far.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n_samples,)
-        Elapsed time. [s]
-    strain : ndarray, shape (n_samples,)
-        [1]
-    tension : ndarray, shape (n_samples,)
-        Of the loading part; it rises as a whole. [N]
-
-    Returns
-    -------
-    blocks : PullBlocks
-        Steps without a reading are left out.
-
-    Raises
-    ------
-    IndexError
-        If there is no sample.
 
     Notes
     -----
@@ -268,7 +213,7 @@ def block_means(time: Floats, strain: Floats, tension: Floats) -> PullBlocks:
     Examples
     --------
     >>> load = np.linspace(0.0, 2000.0, 400)
-    >>> blocks = block_means(np.arange(400.0), 1e-4 * load, load)
+    >>> blocks = _block_means(np.arange(400.0), 1e-4 * load, load)
     >>> print(blocks.time.size, blocks.tension[[0, -1]].round(1))
     100 [   7.5 1992.5]
     """
@@ -289,28 +234,11 @@ def block_means(time: Floats, strain: Floats, tension: Floats) -> PullBlocks:
     for power in range(_DEGREE_BEYOND + 1):
         powers[:, power] = mean(current)
         current *= scaled
-    return PullBlocks(mean(time), mean(strain), mean(tension), powers)
+    return _PullBlocks(mean(time), mean(strain), mean(tension), powers)
 
 
-def covariance_of_blocks(powers: Floats, residual: Floats) -> Floats:
+def _covariance_of_blocks(powers: Floats, residual: Floats) -> Floats:
     """Covariance of least squares with unequal and correlated errors.
-
-    Parameters
-    ----------
-    powers : ndarray, shape (n_blocks, n_coefficients)
-        Columns of the fit. [1]
-    residual : ndarray, shape (n_blocks,)
-        What the fit leaves. [1]
-
-    Returns
-    -------
-    covariance : ndarray, shape (n_coefficients, n_coefficients)
-        Sandwich, leverage taken off, widened by the likeness of neighbours. [1]
-
-    Raises
-    ------
-    LinAlgError
-        If the columns are not independent.
 
     Notes
     -----
@@ -321,7 +249,7 @@ def covariance_of_blocks(powers: Floats, residual: Floats) -> Floats:
     The variance of a mean of 100 independent readings.
 
     >>> residual = np.random.default_rng(0).normal(0, 1.0, 100)
-    >>> print(covariance_of_blocks(np.ones((100, 1)), residual).round(2))
+    >>> print(_covariance_of_blocks(np.ones((100, 1)), residual).round(2))
     [[0.01]]
     """
     inverse = np.linalg.inv(powers.T @ powers)
@@ -331,27 +259,8 @@ def covariance_of_blocks(powers: Floats, residual: Floats) -> Floats:
     return covariance
 
 
-def misfit_of_cubic(blocks: PullBlocks, cubic: Floats, covariance: Floats) -> tuple[float, float]:
+def _misfit_of_cubic(blocks: _PullBlocks, cubic: Floats, covariance: Floats) -> tuple[float, float]:
     """Root mean square of what a cubic misses of strain and of its slope in u.
-
-    Parameters
-    ----------
-    blocks : PullBlocks
-        To which it was fitted.
-    cubic : ndarray, shape (4,)
-        Coefficients of 1, u, u^2, u^3. [1]
-    covariance : ndarray, shape (4, 4)
-        From `covariance_of_blocks`. [1]
-
-    Returns
-    -------
-    strain_misfit, slope_misfit : float
-        0 where noise explains it, or there are too few blocks to tell. [1]
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not fit together.
 
     Notes
     -----
@@ -362,16 +271,16 @@ def misfit_of_cubic(blocks: PullBlocks, cubic: Floats, covariance: Floats) -> tu
     A cubic through a cubic misses nothing.
 
     >>> load = np.linspace(0.0, 2000.0, 400)
-    >>> blocks = block_means(np.arange(400.0), 1e-4 * load, load)
+    >>> blocks = _block_means(np.arange(400.0), 1e-4 * load, load)
     >>> cubic = np.linalg.lstsq(blocks.powers[:, :4], blocks.strain)[0]
-    >>> strain_misfit, _ = misfit_of_cubic(blocks, cubic, np.zeros((4, 4)))
+    >>> strain_misfit, _ = _misfit_of_cubic(blocks, cubic, np.zeros((4, 4)))
     >>> round(strain_misfit, 9)
     0.0
     """
     if blocks.strain.size < _FEWEST_BLOCKS_BEYOND:
         return 0.0, 0.0
     beyond, *_ = np.linalg.lstsq(blocks.powers, blocks.strain, rcond=None)
-    spread = covariance_of_blocks(blocks.powers, blocks.strain - blocks.powers @ beyond)
+    spread = _covariance_of_blocks(blocks.powers, blocks.strain - blocks.powers @ beyond)
     degree = np.arange(_DEGREE_BEYOND + 1)
     # a polynomial of high degree is loose at its ends
     at = np.linspace(-0.9, 0.9, 61)[:, None]
@@ -385,30 +294,13 @@ def misfit_of_cubic(blocks: PullBlocks, cubic: Floats, covariance: Floats) -> tu
     return missed[0], missed[1]
 
 
-def rates_of_pull(blocks: PullBlocks) -> tuple[float, float, float, float]:
+def _rates_of_pull(blocks: _PullBlocks) -> tuple[float, float, float, float]:
     """Mean, slowest and fastest strain rate, and the mean rate of tension.
-
-    Parameters
-    ----------
-    blocks : PullBlocks
-        Of the loading part.
-
-    Returns
-    -------
-    mean, slowest, fastest : float
-        Of strain, over all and over quarters of the tension. [s-1]
-    tension_rate : float
-        Mean. [N s-1]
-
-    Raises
-    ------
-    DataError
-        If time does not rise.
 
     Examples
     --------
     >>> load = np.linspace(0.0, 2000.0, 401)
-    >>> rates = rates_of_pull(block_means(np.arange(401.0), 1e-4 * load, load))
+    >>> rates = _rates_of_pull(_block_means(np.arange(401.0), 1e-4 * load, load))
     >>> print(np.round(rates, 5))
     [5.e-04 5.e-04 5.e-04 5.e+00]
     """
@@ -474,23 +366,8 @@ def slope_of_cubic(tension: ArrayLike, coefficient: ArrayLike) -> Floats:
     return inverse
 
 
-def positive_range(coefficient: Floats) -> tuple[float, float]:
+def _positive_range(coefficient: Floats) -> tuple[float, float]:
     """Longest part of -1 to 1 in which the slope of a cubic of u is positive.
-
-    Parameters
-    ----------
-    coefficient : ndarray, shape (4,)
-        Of 1, u, u^2, u^3. [1]
-
-    Returns
-    -------
-    low, high : float
-        Both 0 where the slope is positive nowhere. [1]
-
-    Raises
-    ------
-    IndexError
-        If there are fewer than four coefficients.
 
     Notes
     -----
@@ -498,7 +375,7 @@ def positive_range(coefficient: Floats) -> tuple[float, float]:
 
     Examples
     --------
-    >>> positive_range(np.array([0.0, 0.5, -0.5, 0.0]))
+    >>> _positive_range(np.array([0.0, 0.5, -0.5, 0.0]))
     (-1.0, 0.5)
     """
     roots = np.roots(coefficient[:0:-1] * np.array([3, 2, 1]))
@@ -513,33 +390,12 @@ def positive_range(coefficient: Floats) -> tuple[float, float]:
     return best
 
 
-def printed_form(
+def _printed_form(
     coefficient: Floats, *, low: float, high: float, centre: float, half: float
 ) -> tuple[Floats, float]:
     r"""K_0 as a cubic of tension, by least squares to the slope of a cubic of strain.
 
     .. math:: K_0 \approx A + B T + C T^2 + D T^3
-
-    Parameters
-    ----------
-    coefficient : ndarray, shape (4,)
-        Of strain, in powers of u = (T - centre)/half. [1]
-    low, high : float
-        Range of tension to fit. [N]
-    centre, half : float
-        Scale of u. [N]
-
-    Returns
-    -------
-    polynomial : ndarray, shape (4,)
-        A, B, C, D. [N N-k]
-    deviation : float
-        Greatest distance from the slope, as a share of it. [1]
-
-    Raises
-    ------
-    ValueError
-        If the slope is positive nowhere in the range.
 
     Notes
     -----
@@ -548,7 +404,7 @@ def printed_form(
 
     Examples
     --------
-    >>> fit, deviation = printed_form(
+    >>> fit, deviation = _printed_form(
     ...     np.array([0.0, 0.025, 0.0, 0.0]), low=0.0, high=2000.0, centre=1000.0, half=1000.0)
     >>> print(fit.round(3) + 0.0, round(deviation, 9))
     [40000. 0. 0. 0.] 0.0
@@ -696,13 +552,13 @@ def fit_pull(
     [ 1.389 -3.906  3.795]
     """
     clock, stretch, load = as_same_shape(time=time, strain=strain, tension=tension)
-    rows: Integers = find_loading(load, stretch, reference_tension=reference_tension)
+    rows: Integers = _find_loading(load, stretch, reference_tension=reference_tension)
     rows = rows[np.isfinite(clock[rows])]
     clock, stretch, load = clock[rows], stretch[rows], load[rows]
     low, high = float(load[0]), float(load.max())
-    blocks = block_means(clock, stretch, load)
+    blocks = _block_means(clock, stretch, load)
     # falls of single readings are noise
-    fall = max(greatest_fall(load) - _NOISE_FACTOR * reading_noise(load), 0.0) / (high - low)
+    fall = max(_greatest_fall(load) - _NOISE_FACTOR * reading_noise(load), 0.0) / (high - low)
     if fall > _FALL_REFUSED:
         raise DataError(
             f"tension falls by {fall:.0%} of its rise on the way to the peak",
@@ -720,9 +576,9 @@ def fit_pull(
     solution, *_ = np.linalg.lstsq(powers, blocks.strain, rcond=None)
     coefficient = solution.astype(np.float64)
     residual = blocks.strain - powers @ coefficient
-    covariance = covariance_of_blocks(powers, residual)
-    strain_misfit, slope_misfit = misfit_of_cubic(blocks, coefficient, covariance)
-    start, stop = positive_range(coefficient)
+    covariance = _covariance_of_blocks(powers, residual)
+    strain_misfit, slope_misfit = _misfit_of_cubic(blocks, coefficient, covariance)
+    start, stop = _positive_range(coefficient)
     if stop - start < 2 * _SHORTEST_RANGE:
         raise FitError(
             "the load-strain cubic does not rise",
@@ -732,10 +588,10 @@ def fit_pull(
         )
     centre, half = (low + high) / 2, (high - low) / 2
     use = (centre + half * start, centre + half * stop)
-    polynomial, deviation = printed_form(
+    polynomial, deviation = _printed_form(
         coefficient, low=use[0], high=use[1], centre=centre, half=half
     )
-    rates = rates_of_pull(blocks)
+    rates = _rates_of_pull(blocks)
     length = np.nan if reference_length is None else reference_length
     begins = np.nan
     if reference_tension is not None:

@@ -59,7 +59,7 @@ def _checked(stretch_ratio: ArrayLike, deformation: Deformation) -> Floats:
     return as_positive("stretch_ratio", stretch_ratio)
 
 
-def polynomial_columns(
+def _polynomial_columns(
     stretch_ratio: ArrayLike, *, law: Law, deformation: Deformation = "uniaxial"
 ) -> Floats:
     r"""Nominal stress per unit of each modulus of a law in the invariants.
@@ -71,25 +71,6 @@ def polynomial_columns(
     with q the power of the lateral stretch (-1/2, -2, -1) and m = 1/lambda, lambda
     squared and 1 in uniaxial, equibiaxial and pure-shear deformation.
 
-    Parameters
-    ----------
-    stretch_ratio : array_like, shape (n_samples,)
-        1 + strain. [1]
-    law : str
-        ``neo-hookean``, ``mooney-rivlin`` or ``yeoh``.
-    deformation : str, optional
-        ``uniaxial``, ``equibiaxial`` or ``pure-shear``.
-
-    Returns
-    -------
-    columns : ndarray, shape (n_samples, n_parameters)
-        In the order of `PARAMETERS`. [1]
-
-    Raises
-    ------
-    DataError
-        If a stretch ratio is not positive, or the law or deformation is unknown.
-
     Notes
     -----
     Neo-Hookean: W = G/2 (I1 - 3).  Mooney-Rivlin: W = c10 (I1 - 3) + c01 (I2 - 3).  Yeoh
@@ -98,7 +79,7 @@ def polynomial_columns(
 
     Examples
     --------
-    >>> print(polynomial_columns([2.0], law="neo-hookean"))
+    >>> print(_polynomial_columns([2.0], law="neo-hookean"))
     [[1.75]]
     """
     stretch = _checked(stretch_ratio, deformation)
@@ -122,31 +103,12 @@ def polynomial_columns(
     raise DataError("not a law in the invariants", found=str(law), needed="one of the first three")
 
 
-def ogden_columns(
+def _ogden_columns(
     stretch_ratio: Floats, exponents: Floats, *, deformation: Deformation = "uniaxial"
 ) -> Floats:
     r"""Nominal stress per unit of each modulus of Ogden's law.
 
     .. math:: P = \sum_i \mu_i (\lambda^{\alpha_i - 1} - \lambda^{q \alpha_i - 1})
-
-    Parameters
-    ----------
-    stretch_ratio : ndarray, shape (n_samples,)
-        1 + strain. [1]
-    exponents : ndarray, shape (n_terms,) or (..., 1, n_terms)
-        :math:`\alpha_i`, or several sets of them. [1]
-    deformation : str, optional
-        ``uniaxial``, ``equibiaxial`` or ``pure-shear``.
-
-    Returns
-    -------
-    columns : ndarray, shape (..., n_samples, n_terms)
-        One a term. [1]
-
-    Raises
-    ------
-    DataError
-        If a stretch ratio is not positive, or the deformation is unknown.
 
     Notes
     -----
@@ -158,7 +120,7 @@ def ogden_columns(
     --------
     Exponent 2 is the neo-Hookean law.
 
-    >>> print(ogden_columns(np.array([2.0]), np.array([2.0])))
+    >>> print(_ogden_columns(np.array([2.0]), np.array([2.0])))
     [[1.75]]
     """
     log = np.log(_checked(stretch_ratio, deformation))[:, None]
@@ -168,31 +130,16 @@ def ogden_columns(
     return columns
 
 
-def ogden_slopes(
+def _ogden_slopes(
     stretch_ratio: Floats, exponents: Floats, *, deformation: Deformation = "uniaxial"
 ) -> Floats:
     r"""Derivatives of the columns of Ogden's law, each by its own exponent.
 
     .. math:: \ln\lambda \, (\lambda^{\alpha_i - 1} - q \lambda^{q \alpha_i - 1})
 
-    Parameters
-    ----------
-    stretch_ratio, exponents, deformation
-        As for `ogden_columns`. [1], [1]
-
-    Returns
-    -------
-    slopes : ndarray, shape (..., n_samples, n_terms)
-        One a term. [1]
-
-    Raises
-    ------
-    DataError
-        If a stretch ratio is not positive, or the deformation is unknown.
-
     Examples
     --------
-    >>> print(ogden_slopes(np.array([2.0]), np.array([2.0])).round(4))
+    >>> print(_ogden_slopes(np.array([2.0]), np.array([2.0])).round(4))
     [[1.4729]]
     """
     log = np.log(_checked(stretch_ratio, deformation))[:, None]
@@ -241,8 +188,8 @@ def hyperelastic_stress(
     stretch = 1 + np.atleast_1d(np.asarray(strain, dtype=np.float64))
     values = np.array([parameters[name] for name in PARAMETERS[law]])
     if law == "ogden-2":
-        return np.asarray(ogden_columns(stretch, values[2:], deformation=deformation) @ values[:2])
-    return np.asarray(polynomial_columns(stretch, law=law, deformation=deformation) @ values)
+        return np.asarray(_ogden_columns(stretch, values[2:], deformation=deformation) @ values[:2])
+    return np.asarray(_polynomial_columns(stretch, law=law, deformation=deformation) @ values)
 
 
 GRID_POINTS = 200
@@ -339,27 +286,8 @@ def mooney_plot(strain: ArrayLike, stress: ArrayLike) -> tuple[Floats, Floats]:
     return 1 / (1 + x), y / (2 * (stretch - stretch**-2))
 
 
-def is_stable(*, law: Law, parameters: dict[str, float], strain_high: float) -> bool:
+def _is_stable(*, law: Law, parameters: dict[str, float], strain_high: float) -> bool:
     """Whether nominal stress keeps rising with strain in three deformations.
-
-    Parameters
-    ----------
-    law : str
-        One of `LAWS`.
-    parameters : dict of str to float
-        By the names of `PARAMETERS`. [Pa], [1]
-    strain_high : float
-        Upper end of the range; it begins at zero. [1]
-
-    Returns
-    -------
-    stable : bool
-        True where it rises in uniaxial, equibiaxial and pure-shear deformation.
-
-    Raises
-    ------
-    DataError
-        If the range is not positive.
 
     Notes
     -----
@@ -368,7 +296,7 @@ def is_stable(*, law: Law, parameters: dict[str, float], strain_high: float) -> 
 
     Examples
     --------
-    >>> is_stable(law="mooney-rivlin", parameters={"c10": 2e5, "c01": -5e4}, strain_high=2.0)
+    >>> _is_stable(law="mooney-rivlin", parameters={"c10": 2e5, "c01": -5e4}, strain_high=2.0)
     False
     """
     if not strain_high > 0:
@@ -395,8 +323,8 @@ def _fit(law: Law, strain: Floats, stress: Floats) -> tuple[Floats, Floats, Floa
         stretch = 1 + strain
         fit = fit_separable(
             lambda exponents: (
-                ogden_columns(stretch, exponents[:, None, :]),
-                ogden_slopes(stretch, exponents[:, None, :]),
+                _ogden_columns(stretch, exponents[:, None, :]),
+                _ogden_slopes(stretch, exponents[:, None, :]),
             ),
             stress,
             starts=list(combinations(STARTING_EXPONENTS, 2)),
@@ -405,7 +333,7 @@ def _fit(law: Law, strain: Floats, stress: Floats) -> tuple[Floats, Floats, Floa
         index = np.concatenate([order, 2 + order])
         values = np.concatenate([fit.amplitude, fit.shape])[index]
         return values, fit.covariance[np.ix_(index, index)], fit.residual
-    columns = polynomial_columns(1 + strain, law=law)
+    columns = _polynomial_columns(1 + strain, law=law)
     scale = np.linalg.norm(columns, axis=0)
     values = np.linalg.lstsq(columns / scale, stress)[0] / scale
     residual = stress - columns @ values
@@ -500,7 +428,7 @@ def fit_elastomers(
         vague = [name for name, u in zip(names, spread, strict=True) if u > abs(parameters[name])]
         if vague:
             notes.append(f"not told from zero: {', '.join(vague)}")
-        stable = is_stable(law=law, parameters=parameters, strain_high=float(x[-1]))
+        stable = _is_stable(law=law, parameters=parameters, strain_high=float(x[-1]))
         if not stable:
             notes.append(
                 "the fitted law is not stable: below a strain of "

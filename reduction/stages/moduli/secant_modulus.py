@@ -52,29 +52,10 @@ from reduction.stages.moduli.modulus_product import (
 from reduction.stages.moduli.tangent_modulus import pair_specimens
 
 
-def secant_modulus(strain: ArrayLike, tension: ArrayLike, *, area: ArrayLike) -> Floats:
+def _secant_modulus(strain: ArrayLike, tension: ArrayLike, *, area: ArrayLike) -> Floats:
     r"""Stress over strain, from the unstretched state.
 
     .. math:: E = \frac{F}{A \varepsilon}
-
-    Parameters
-    ----------
-    strain : array_like, shape (...)
-        Nominal strain. [1]
-    tension : array_like, shape (...)
-        Tension at it. [N]
-    area : array_like, shape (...)
-        Cross-sectional area at zero tension. [m2]
-
-    Returns
-    -------
-    modulus : ndarray, shape (...)
-        Secant modulus. [Pa]
-
-    Raises
-    ------
-    DataError
-        If an area is not positive.
 
     Notes
     -----
@@ -84,7 +65,7 @@ def secant_modulus(strain: ArrayLike, tension: ArrayLike, *, area: ArrayLike) ->
     --------
     The design value of sec. 2.3 of [1]_, 85 lbf at 100 %, on a diameter of 1.04 in: 100 psi.
 
-    >>> print((secant_modulus(1.0, 378.1, area=5.4805e-4) / 6894.757).round(0))
+    >>> print((_secant_modulus(1.0, 378.1, area=5.4805e-4) / 6894.757).round(0))
     100.0
     """
     areas = as_positive("area", area)
@@ -219,7 +200,7 @@ def end_moduli(
     strain_end = np.where(strain_end == strain_begin, np.nan, strain_end)
     section = areas[:, None]
     strain_at_peak = take_samples(strains, peak)
-    secant = secant_modulus(strain_at_peak, take_samples(tensions, peak), area=section)
+    secant = _secant_modulus(strain_at_peak, take_samples(tensions, peak), area=section)
     chord = chord_modulus(
         strain_begin, strain_end, tension_begin, tension_end, area=section[..., None]
     )
@@ -649,27 +630,8 @@ def cycles_at_an_end(n_cycles: int) -> int:
     return min(max(n_cycles // 10, 1), 10)
 
 
-def change_of_ends(values: ArrayLike) -> tuple[Floats, Floats]:
+def _change_of_ends(values: ArrayLike) -> tuple[Floats, Floats]:
     r"""Mean of the last tenth of the cycles over that of the first, minus one.
-
-    Parameters
-    ----------
-    values : array_like, shape (n_series, n_cycles)
-        One value a cycle. [any unit]
-
-    Returns
-    -------
-    change : ndarray, shape (n_series,)
-        Of up to a tenth of the cycles at each end, at least one and at most ten; NaN where one
-        of them is missing. [1]
-    change_standard_uncertainty : ndarray, shape (n_series,)
-        From the scatter of neighbouring cycles (type A); NaN where fewer than two pairs of
-        neighbours are known. [1]
-
-    Raises
-    ------
-    ValueError
-        If the values are not numbers in rows of one length.
 
     Notes
     -----
@@ -682,7 +644,7 @@ def change_of_ends(values: ArrayLike) -> tuple[Floats, Floats]:
     --------
     Ten cycles that lose 5 %, and whose neighbours differ by 1 N:
 
-    >>> change, uncertainty = change_of_ends([[100, 98, 97, 96, 96, 95, 96, 95, 96, 95]])
+    >>> change, uncertainty = _change_of_ends([[100, 98, 97, 96, 96, 95, 96, 95, 96, 95]])
     >>> print(change.round(3), uncertainty.round(3))
     [-0.05] [0.011]
     """
@@ -724,7 +686,7 @@ def fit_peak_trend(loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0) -
     -----
     Source: [1]_, sec. 4.1 ("the maximum peak can be seen to still decreasing with time");
     the straight line in the logarithm is [4]_.  The dynamic modulus is the apparent spring
-    constant over the area.  The change from first to last cycle is that of `change_of_ends`,
+    constant over the area.  The change from first to last cycle is that of `_change_of_ends`,
     and counts from the first cycle whatever the break-in.
 
     Examples
@@ -746,7 +708,7 @@ def fit_peak_trend(loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0) -
     peak_slope, peak_uncertainty = slope_per_decade(peaks[:, start:], first_cycle=start + 1)
     modulus = np.atleast_2d(loops.apparent_spring_constant) / areas[:, None]
     modulus_slope, modulus_uncertainty = slope_per_decade(modulus[:, start:], first_cycle=start + 1)
-    change, change_uncertainty = change_of_ends(peaks)
+    change, change_uncertainty = _change_of_ends(peaks)
     return PeakTrend(
         peak_tension_per_decade=peak_slope,
         peak_tension_per_decade_standard_uncertainty=peak_uncertainty,

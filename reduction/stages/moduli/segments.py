@@ -33,21 +33,8 @@ _MOST_CANDIDATES = 48  # of breakpoints; all their combinations are tried
 
 @dataclass(frozen=True)
 @read_only_arrays
-class PiecewiseLine:
-    """Best continuous line of a number of segments.
-
-    Parameters
-    ----------
-    knot : ndarray, shape (n_segments + 1,)
-        Ends and breakpoints. [SI]
-    ordinate : ndarray, shape (n_segments + 1,)
-        Value of the line at them. [SI]
-    covariance : ndarray, shape (n_segments + 1, n_segments + 1)
-        Of the ordinates, for points of the given uncertainty and the breakpoints
-        as found. [SI]
-    chi_square : float
-        Sum of squared residuals over their uncertainty. [1]
-    """
+class _PiecewiseLine:
+    """Best continuous line of a number of segments."""
 
     knot: Floats
     ordinate: Floats
@@ -143,47 +130,23 @@ def _search(pairs: _Pairs, maximum_segments: int) -> list[Integers]:
     return found
 
 
-def _solve(x: Floats, y: Floats, weight: Floats, knots: Floats) -> PiecewiseLine:
+def _solve(x: Floats, y: Floats, weight: Floats, knots: Floats) -> _PiecewiseLine:
     # hat functions: interpolation of each unit ordinate
     hats = np.stack([np.interp(x, knots, unit) for unit in np.eye(knots.size)])
     covariance: Floats = np.linalg.inv((hats * weight) @ hats.T).astype(np.float64)
     ordinate = covariance @ (hats * weight) @ y
     chi_square = float(np.sum(weight * (y - ordinate @ hats) ** 2))
-    return PiecewiseLine(knots, ordinate, covariance, chi_square)
+    return _PiecewiseLine(knots, ordinate, covariance, chi_square)
 
 
-def fit_piecewise_lines(
+def _fit_piecewise_lines(
     abscissa: ArrayLike,
     ordinate: ArrayLike,
     *,
     standard_uncertainty: ArrayLike,
     maximum_segments: int,
-) -> tuple[PiecewiseLine, ...]:
-    r"""Best continuous piecewise line of one, two, ... segments.
-
-    Parameters
-    ----------
-    abscissa : array_like, shape (n_points,)
-        Increasing, such as strain. [SI]
-    ordinate : array_like, shape (n_points,)
-        Such as tension. [SI]
-    standard_uncertainty : array_like, shape (n_points,)
-        Of the ordinates; the weights are its inverse square. [SI]
-    maximum_segments : int
-        Largest number of segments tried. [1]
-
-    Returns
-    -------
-    lines : tuple of PiecewiseLine
-        Element k has k + 1 segments; fewer than ``maximum_segments`` where the points
-        do not hold them. [SI]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up or are not finite, the abscissa does not increase,
-        an uncertainty is not positive, there are fewer than 3 points, or
-        ``maximum_segments`` is below 1.
+) -> tuple[_PiecewiseLine, ...]:
+    """Best continuous piecewise line of one, two, ... segments.
 
     Notes
     -----
@@ -204,7 +167,7 @@ def fit_piecewise_lines(
     >>> import numpy as np
     >>> x = np.arange(0.0, 2.0, 0.1) + 0.05
     >>> y = np.interp(x, [0.0, 1.2, 2.0], [0.0, 120.0, 360.0])
-    >>> one, two = fit_piecewise_lines(
+    >>> one, two = _fit_piecewise_lines(
     ...     x, y, standard_uncertainty=np.ones(20), maximum_segments=2
     ... )
     >>> print(two.knot.round(3), (np.diff(two.ordinate) / np.diff(two.knot)).round(6))
@@ -238,7 +201,7 @@ _FEWEST_BINS = 6  # two shortest segments
 _FEWEST_CYCLES = 4  # with a curve of their own, for a scatter
 
 
-def _choose(lines: tuple[PiecewiseLine, ...], n_points: int) -> PiecewiseLine:
+def _choose(lines: tuple[_PiecewiseLine, ...], n_points: int) -> _PiecewiseLine:
     """Fewest segments whose rms distance is within the tolerance they were weighted with."""
     for line in lines:
         if line.chi_square <= n_points:
@@ -275,7 +238,7 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
     Printed source: Tables 5 and 6 of [1]_, where neighbouring segments meet and
     E is the chord of each; how [1]_ chose their limits it does not say.
 
-    The line is the best continuous one (`fit_piecewise_lines`), all bins alike, and E the
+    The line is the best continuous one (`_fit_piecewise_lines`), all bins alike, and E the
     chord of the line. *Number of segments:* the fewest whose root-mean-square distance from
     the mean branch is within ``segment_tolerance`` of the branch's range of tension (1 %),
     and the branch's own roughness from bin to bin (root sum of squares). A smooth curve has no true
@@ -359,7 +322,7 @@ def _segment_columns(
     # roughness from bin to bin: a drift of the whole branch from cycle to cycle bends no line
     rough = float(np.sqrt(np.mean(np.diff(tension, n=2) ** 2) / 6))
     tolerance = settings.segment_tolerance * (float(np.ptp(tension)) or 1.0)
-    lines = fit_piecewise_lines(
+    lines = _fit_piecewise_lines(
         strain,
         tension,
         standard_uncertainty=np.full(strain.size, np.hypot(tolerance, rough)),

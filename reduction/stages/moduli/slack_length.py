@@ -26,21 +26,8 @@ REACH = 4.0
 
 @dataclass(frozen=True)
 @read_only_arrays
-class SlackCrossings:
-    """Where a record first becomes taut and last goes slack; arrays have shape (2,).
-
-    Parameters
-    ----------
-    position, standard_uncertainty : ndarray
-        First rise and last fall through the slack tension, and scatter about their lines; NaN
-        where the record does not show it. [m]
-    compliance : ndarray
-        Of the specimen there: by how much a crossing moves with the tension that counts. [m N-1]
-    rate : ndarray
-        Of position there, with its sign; NaN where no time is given. [m s-1]
-    reason : str
-        Why one is missing; empty where none is.
-    """
+class _SlackCrossings:
+    """Where a record first becomes taut and last goes slack; arrays have shape (2,)."""
 
     position: Floats
     standard_uncertainty: Floats
@@ -73,34 +60,10 @@ class SlackStrain:
     remarks: tuple[str, ...]
 
 
-def slack_position(
+def _slack_position(
     position: ArrayLike, tension: ArrayLike, *, slack_tension: float
 ) -> tuple[float, float, float]:
     """Position at which tension crosses the slack tension on one loading or unloading.
-
-    Parameters
-    ----------
-    position : array_like, shape (n_samples,)
-        Crosshead position over the crossing. [m]
-    tension : array_like, shape (n_samples,)
-        Tension, from about zero to a few times the slack tension or back. [N]
-    slack_tension : float
-        The tension that counts as slack. [N]
-
-    Returns
-    -------
-    crossing : float
-        By a straight line through the samples between one and four times the slack
-        tension; NaN where there are fewer than three or they do not rise with position. [m]
-    crossing_standard_uncertainty : float
-        From the scatter about the line; NaN for three samples. [m]
-    compliance : float
-        Slope of the line. [m N-1]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up or the slack tension is not positive.
 
     Notes
     -----
@@ -110,7 +73,7 @@ def slack_position(
     Examples
     --------
     >>> x = np.linspace(0, 1, 101)
-    >>> crossing, _, _ = slack_position(x, 100 * np.clip(x - 0.2, 0, None), slack_tension=5.0)
+    >>> crossing, _, _ = _slack_position(x, 100 * np.clip(x - 0.2, 0, None), slack_tension=5.0)
     >>> round(crossing, 6)
     0.25
     """
@@ -139,7 +102,7 @@ def slack_crossings(
     *,
     slack_tension: float,
     time: ArrayLike | None = None,
-) -> SlackCrossings:
+) -> _SlackCrossings:
     """Positions at which a record first becomes taut and last goes slack.
 
     Parameters
@@ -190,7 +153,9 @@ def slack_crossings(
         find(is_taut, 0, load.size, load, place) for find in (first_sample, last_sample)
     )
     if taut_first is None or taut_last is None:
-        return SlackCrossings(crossing, uncertainty, compliance, rate, "the specimen is never taut")
+        return _SlackCrossings(
+            crossing, uncertainty, compliance, rate, "the specimen is never taut"
+        )
     before = last_sample(is_slack, 0, taut_first, load, place)
     after = first_sample(is_slack, taut_last, load.size, load, place)
     reasons = []
@@ -204,14 +169,14 @@ def slack_crossings(
         part = slice(begin, end + 1)
         known = np.isfinite(place[part]) & np.isfinite(load[part])
         way, pull = place[part][known], load[part][known]
-        crossing[side], uncertainty[side], compliance[side] = slack_position(
+        crossing[side], uncertainty[side], compliance[side] = _slack_position(
             way, pull, slack_tension=slack_tension
         )
         if clock is not None:
             rate[side] = _rate(clock[part][known], way)
     if not reasons and not np.isfinite(crossing).all():
         reasons.append("too few samples where the specimen goes slack")
-    return SlackCrossings(crossing, uncertainty, compliance, rate, "; ".join(reasons))
+    return _SlackCrossings(crossing, uncertainty, compliance, rate, "; ".join(reasons))
 
 
 def _rate(time: Floats, position: Floats) -> float:

@@ -111,20 +111,8 @@ MAD_TO_SIGMA = 1.4826
 
 
 @dataclass(frozen=True)
-class Candidate:
-    """The strongest response of a scan.
-
-    Parameters
-    ----------
-    score : float
-        Size over its standard deviation where no step is. [1]
-    inflation : float
-        What coloured noise was taken to add to that deviation. [1]
-    onset : int
-        Index of the first sample that has changed.
-    window, extent : int
-        Samples on each side, and over which the step develops. [1]
-    """
+class _Candidate:
+    """The strongest response of a scan."""
 
     score: float
     inflation: float
@@ -133,27 +121,8 @@ class Candidate:
     extent: int
 
 
-def ramp_of(n_samples: int, *, onset: ArrayLike, extent: ArrayLike) -> Floats:
+def _ramp_of(n_samples: int, *, onset: ArrayLike, extent: ArrayLike) -> Floats:
     """Unit step that develops linearly: 0 before the onset, 1 from the end of the extent.
-
-    Parameters
-    ----------
-    n_samples : int
-        Length of the series. [1]
-    onset : array_like of int, shape (...)
-        First sample that has changed. [1]
-    extent : array_like of int, shape (...)
-        Samples over which it develops. [1]
-
-    Returns
-    -------
-    ramp : ndarray, shape (..., n_samples)
-        Share of the step that has happened. [1]
-
-    Raises
-    ------
-    DataError
-        If an extent is not positive.
 
     Notes
     -----
@@ -161,7 +130,7 @@ def ramp_of(n_samples: int, *, onset: ArrayLike, extent: ArrayLike) -> Floats:
 
     Examples
     --------
-    >>> ramp_of(6, onset=2, extent=2)
+    >>> _ramp_of(6, onset=2, extent=2)
     array([0. , 0. , 0.5, 1. , 1. , 1. ])
     """
     width = np.asarray(extent, dtype=np.float64)[..., None]
@@ -177,7 +146,7 @@ def _parabola(n_samples: int) -> Floats:
     return np.linalg.qr(np.stack([np.ones_like(x), x, x * x], axis=1))[0]
 
 
-def without_parabola(rows: Floats) -> Floats:
+def _without_parabola(rows: Floats) -> Floats:
     """Rows less the parabola that fits each best."""
     base = _parabola(rows.shape[-1])
     # einsum, not matrix products: their last digits depend on the number of threads
@@ -186,40 +155,20 @@ def without_parabola(rows: Floats) -> Floats:
     return level
 
 
-def fit_ramps(level: Floats, *, onset: Integers, extent: Integers) -> tuple[Floats, Floats]:
+def _fit_ramps(level: Floats, *, onset: Integers, extent: Integers) -> tuple[Floats, Floats]:
     r"""Least squares of a ramp and a parabola on a series, for many ramps and without making them.
 
     .. math:: g = r \cdot y, \qquad s = r \cdot r - \sum_j (p_j \cdot r)^2
 
-    with r the ramp of `ramp_of`, y the series and p an orthonormal basis of the parabolas.  A
+    with r the ramp of `_ramp_of`, y the series and p an orthonormal basis of the parabolas.  A
     product with a ramp of onset o and extent w is that of a slope from o on and of ones from its
     end on, :math:`\frac{1}{w} \sum_{i=o}^{o+w-1} (i - o + 1) c_i + \sum_{i \ge o+w} c_i`, which are
     differences of running sums of :math:`c_i` and :math:`i c_i`.
 
-    Parameters
-    ----------
-    level : ndarray, shape (n_samples,)
-        Series, the parabola that fits it taken out. [any unit]
-    onset, extent : ndarray of int, shape (n_ramps,)
-        Of the ramps, each of which ends within the series. [1]
-
-    Returns
-    -------
-    product : ndarray, shape (n_ramps,)
-        Of each ramp with the series; over the power it is the size of the step, and its square over
-        the power what the step takes from the sum of squares. [unit of the series]
-    power : ndarray, shape (n_ramps,)
-        Sum of squares of the ramp less the parabola that fits it best. [1]
-
-    Raises
-    ------
-    IndexError
-        If a ramp does not end within the series.
-
     Examples
     --------
-    >>> level = without_parabola(3.0 * ramp_of(40, onset=15, extent=4))
-    >>> product, power = fit_ramps(level, onset=np.array([15]), extent=np.array([4]))
+    >>> level = _without_parabola(3.0 * _ramp_of(40, onset=15, extent=4))
+    >>> product, power = _fit_ramps(level, onset=np.array([15]), extent=np.array([4]))
     >>> print((product / power).round(6))
     [3.]
     """
@@ -231,8 +180,8 @@ def fit_ramps(level: Floats, *, onset: Integers, extent: Integers) -> tuple[Floa
     return products[:, 0], squares - np.sum(products[:, 1:] ** 2, axis=1)
 
 
-def fit_kinks(level: Floats, *, onset: Integers) -> tuple[Floats, Floats]:
-    """As `fit_ramps`, of changes of slope that begin after an onset and go on to the end."""
+def _fit_kinks(level: Floats, *, onset: Integers) -> tuple[Floats, Floats]:
+    """As `_fit_ramps`, of changes of slope that begin after an onset and go on to the end."""
     ones, slopes = _sums_from(level)
     products = slopes[onset] - onset[:, None] * ones[onset]
     last = (level.size - 1 - onset).astype(np.float64)
@@ -251,7 +200,7 @@ def _sums_from(level: Floats) -> tuple[Floats, Floats]:
     return ones, slopes
 
 
-def without_background(values: Floats, ramps: Floats | None = None) -> Floats:
+def _without_background(values: Floats, ramps: Floats | None = None) -> Floats:
     """Series less what creep and softening look like over the whole of it.
 
     Only a smooth function of log-like form is taken out, so a step remains a step; known
@@ -269,7 +218,7 @@ def without_background(values: Floats, ramps: Floats | None = None) -> Floats:
     return residual
 
 
-def neighbour_noise(values: Floats) -> float:
+def _neighbour_noise(values: Floats) -> float:
     """Standard deviation of the noise, from neighbours; steps and wild samples left out."""
     squares = np.sort(np.diff(values) ** 2)
     kept = squares[: max(1, int(np.ceil(0.98 * squares.size)))]
@@ -277,13 +226,13 @@ def neighbour_noise(values: Floats) -> float:
     return float(np.sqrt(kept.mean() / 2 / 0.87))
 
 
-def without_outliers(values: Floats) -> Floats:
+def _without_outliers(values: Floats) -> Floats:
     """Replace single wild samples by the running median of five, which keeps every edge."""
     padded = np.pad(values, 2, mode="edge")
     median = np.median(np.lib.stride_tricks.sliding_window_view(padded, 5), axis=-1)
     distance = np.abs(values - median)
     # The median alone would take a rounded series for free of noise.
-    spread = max(MAD_TO_SIGMA * float(np.median(distance)), neighbour_noise(values))
+    spread = max(MAD_TO_SIGMA * float(np.median(distance)), _neighbour_noise(values))
     return np.where(distance > 6 * spread, median, values)
 
 
@@ -302,7 +251,7 @@ def _windows(n_samples: int) -> list[tuple[int, int]]:
 @cache
 def _kernel(window: int, extent: int) -> Floats:
     """Weights that give the size of a step in the middle of a window, blind to a parabola."""
-    ramp = without_parabola(ramp_of(2 * window + extent, onset=window, extent=extent))
+    ramp = _without_parabola(_ramp_of(2 * window + extent, onset=window, extent=extent))
     kernel: Floats = ramp / np.sum(ramp * ramp)
     kernel.flags.writeable = False
     return kernel
@@ -320,38 +269,17 @@ def _colour(size: Floats, onset: Integers, white: float, reach: int) -> float | 
     return MAD_TO_SIGMA * float(np.median(np.abs(rest))) / white
 
 
-def noise_memory(residual: Floats) -> float:
+def _noise_memory(residual: Floats) -> float:
     """Spread of a long mean of autoregressive noise over what its differences suggest."""
     power = max(float(residual @ residual), np.finfo(float).tiny)
     lag_one = min(0.95, max(0.0, float(residual[1:] @ residual[:-1]) / power))
     return float(np.sqrt(1 + lag_one) / (1 - lag_one))
 
 
-def strongest_response(
+def _strongest_response(
     values: Floats, *, noise: float, allowed: Bools
-) -> tuple[Candidate | None, int]:
+) -> tuple[_Candidate | None, int]:
     """Strongest response over every window, extent and onset, and how many were tried.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        Series, its smooth background taken out. [any unit]
-    noise : float
-        Standard deviation of single samples. [unit of the series]
-    allowed : ndarray of bool, shape (n_samples,)
-        Where an onset may lie. [1]
-
-    Returns
-    -------
-    candidate : Candidate or None
-        None where no onset is allowed.
-    tried : int
-        Number of windows, extents and onsets. [1]
-
-    Raises
-    ------
-    ValueError
-        If the series is shorter than a window.
 
     Notes
     -----
@@ -361,11 +289,11 @@ def strongest_response(
     Examples
     --------
     >>> series = 1.0 * (np.arange(200) >= 120)
-    >>> found, _ = strongest_response(series, noise=0.1, allowed=np.ones(200, dtype=bool))
+    >>> found, _ = _strongest_response(series, noise=0.1, allowed=np.ones(200, dtype=bool))
     >>> found.onset, found.extent
     (120, 1)
     """
-    best: Candidate | None = None
+    best: _Candidate | None = None
     tried = 0
     inflation = 1.0
     length = scipy.fft.next_fast_len(max(1, values.size), real=True)
@@ -390,31 +318,13 @@ def strongest_response(
         top = int(np.argmax(np.abs(size)))
         score = float(size[top]) / (white * assumed)
         if best is None or abs(score) > abs(best.score):
-            best = Candidate(score, assumed, int(onset[top]), window, extent)
+            best = _Candidate(score, assumed, int(onset[top]), window, extent)
     return best, tried
 
 
 @dataclass(frozen=True)
-class Step:
-    """One step of a series.
-
-    Parameters
-    ----------
-    onset : int
-        Index of the first sample that has changed.
-    extent : int
-        Samples over which the step develops; 1 for an abrupt one. [1]
-    onset_low, onset_high : int
-        95 % range of the onset.
-    end_high : int
-        Latest sample, at 95 %, at which the step is still developing.
-    size : float
-        Change of level. [unit of the series]
-    size_standard_uncertainty : float
-        Of the size. [unit of the series]
-    score : float
-        Size over its standard deviation where no step is. [1]
-    """
+class _Step:
+    """One step of a series."""
 
     onset: int
     extent: int
@@ -431,45 +341,22 @@ class Step:
         return self.onset + self.extent - 1
 
 
-def step_sizes(values: ArrayLike, steps: tuple[Step, ...]) -> tuple[Floats, Floats]:
+def _step_sizes(values: ArrayLike, steps: tuple[_Step, ...]) -> tuple[Floats, Floats]:
     """Size of known steps in another series of the same length.
-
-    Parameters
-    ----------
-    values : array_like, shape (n_samples,)
-        The other series, for example peak tension where the steps were found in the
-        level of whole branches. [any unit]
-    steps : tuple of Step
-        Onsets and extents. [1]
-
-    Returns
-    -------
-    size : ndarray, shape (n_steps,)
-        Least squares with a parabola and every step nearby, over 64 samples (or twice
-        the extent) on each side, the background of the whole series taken out first.
-        [unit of the series]
-    size_standard_uncertainty : ndarray, shape (n_steps,)
-        From the residuals, and from the share by which the shape of the step is uncertain.
-        [unit of the series]
-
-    Raises
-    ------
-    DataError
-        If a value is not finite.
 
     Examples
     --------
-    >>> step = Step(50, 1, 50, 50, 50, 1.0, 0.0, 0.0)
-    >>> size, _ = step_sizes(3.0 * (np.arange(100) >= 50), (step,))
+    >>> step = _Step(50, 1, 50, 50, 50, 1.0, 0.0, 0.0)
+    >>> size, _ = _step_sizes(3.0 * (np.arange(100) >= 50), (step,))
     >>> print(size.round(6))
     [3.]
     """
     series = as_finite("values", values)
     sizes = np.full((2, len(steps)), np.nan)
     if steps:
-        series = without_background(
+        series = _without_background(
             series,
-            ramp_of(
+            _ramp_of(
                 series.size,
                 onset=[step.onset for step in steps],
                 extent=[step.extent for step in steps],
@@ -479,12 +366,12 @@ def step_sizes(values: ArrayLike, steps: tuple[Step, ...]) -> tuple[Floats, Floa
         reach = max(64, 2 * step.extent)
         first, last = max(0, step.onset - reach), min(series.size, step.onset + step.extent + reach)
         ramps = [
-            ramp_of(series.size, onset=other.onset, extent=other.extent)[first:last]
+            _ramp_of(series.size, onset=other.onset, extent=other.extent)[first:last]
             for other in (step, *(other for other in steps if other is not step))
         ]
         columns = np.stack([row for row in ramps if np.ptp(row) > 0])
-        basis = without_parabola(columns)
-        local = without_parabola(series[first:last])
+        basis = _without_parabola(columns)
+        local = _without_parabola(series[first:last])
         # einsum, not matrix products: their last digits depend on the number of threads
         gram = np.linalg.pinv(np.einsum("ij,kj->ik", basis, basis))
         found = gram @ np.einsum("ij,j->i", basis, local)
@@ -498,13 +385,13 @@ def step_sizes(values: ArrayLike, steps: tuple[Step, ...]) -> tuple[Floats, Floa
 MOST_STEPS = 30
 
 
-def _refine(values: Floats, candidate: Candidate, sigma: float) -> tuple[Step, bool]:
+def _refine(values: Floats, candidate: _Candidate, sigma: float) -> tuple[_Step, bool]:
     """Onset and extent by least squares around a candidate; False where a kink does as well."""
     reach = 2 * max(candidate.window, candidate.extent)
     first = max(0, candidate.onset - reach, candidate.onset // 2)
     last = min(values.size, candidate.onset + candidate.extent + reach)
     n_local = last - first
-    local = without_parabola(values[first:last])
+    local = _without_parabola(values[first:last])
     widest = max(4, min(2 * candidate.window, n_local // 3))
     onsets = np.arange(
         max(2, candidate.onset - first - candidate.window),
@@ -514,16 +401,16 @@ def _refine(values: Floats, candidate: Candidate, sigma: float) -> tuple[Step, b
     onset, extent = (grid.ravel() for grid in np.meshgrid(onsets, extents, indexing="ij"))
     inside = onset + extent <= n_local - 2
     onset, extent = onset[inside], extent[inside]
-    product, power = fit_ramps(local, onset=onset, extent=extent)
+    product, power = _fit_ramps(local, onset=onset, extent=extent)
     gain, sizes = product**2 / power, product / power
     best = int(np.argmax(gain))
     variance = max(sigma**2, (float(local @ local) - float(gain[best])) / max(1, n_local - 6))
     near = gain >= gain[best] - variance * float(chdtri(2, 0.05))
 
-    kink, kink_power = fit_kinks(local, onset=onsets)
+    kink, kink_power = _fit_kinks(local, onset=onsets)
     kink_gain = float(np.max(kink**2 / kink_power))
     is_step = float(gain[best]) - kink_gain > variance * 10 and extent[best] < widest
-    step = Step(
+    step = _Step(
         onset=int(onset[best]) + first,
         extent=int(extent[best]),
         onset_low=int(onset[near].min()) + first,
@@ -539,7 +426,7 @@ def _refine(values: Floats, candidate: Candidate, sigma: float) -> tuple[Step, b
     return step, bool(is_step)
 
 
-def _is_recovery(step: Step, earlier: list[Step], reach: int) -> bool:
+def _is_recovery(step: _Step, earlier: list[_Step], reach: int) -> bool:
     """Return whether a change belongs to a larger, opposite step just before it.
 
     A viscoelastic specimen that has been let out a little recovers part of the loss.
@@ -552,16 +439,16 @@ def _is_recovery(step: Step, earlier: list[Step], reach: int) -> bool:
     )
 
 
-def _joined(steps: list[Step]) -> tuple[Step, ...]:
+def _joined(steps: list[_Step]) -> tuple[_Step, ...]:
     """Join steps of one sign that touch: parts of one step that does not develop evenly."""
-    joined: list[Step] = []
+    joined: list[_Step] = []
     for step in sorted(steps, key=lambda step: step.onset):
         last = joined[-1] if joined else None
         if last is None or last.size * step.size < 0 or step.onset > last.end + last.extent:
             joined.append(step)
             continue
         larger = max(last, step, key=lambda part: abs(part.size))
-        joined[-1] = Step(
+        joined[-1] = _Step(
             # A part much smaller than the other belongs to the shape and does not date it.
             onset=last.onset if abs(last.size) > 0.2 * abs(larger.size) else step.onset,
             extent=max(last.end, step.end) - last.onset + 1,
@@ -575,7 +462,7 @@ def _joined(steps: list[Step]) -> tuple[Step, ...]:
     return tuple(joined)
 
 
-def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[Step, ...]:
+def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[_Step, ...]:
     """Steps of a series that neither drift, creep nor softening explains, in order.
 
     The likelihood ratio of a step of extent w against none, in a window of h samples
@@ -619,10 +506,10 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[Step, ...]:
 
     Examples
     --------
-    >>> from reduction.stages.moduli.splice_slip import ramp_of
+    >>> from reduction.stages.moduli.splice_slip import _ramp_of
     >>> rng = np.random.default_rng(1)
     >>> series = np.log(np.arange(1, 401)) + 0.05 * rng.standard_normal(400)
-    >>> series -= 0.3 * ramp_of(400, onset=250, extent=10)
+    >>> series -= 0.3 * _ramp_of(400, onset=250, extent=10)
     >>> [(abs(s.onset - 250) < 10, round(s.size, 1)) for s in find_steps(series, false_alarm=1e-3)]
     [(True, -0.3)]
     """
@@ -637,26 +524,28 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[Step, ...]:
             found=f"{series.size} samples",
             needed=f"{3 * SHORTEST_WINDOW}",
         )
-    remaining = without_outliers(series)
-    sigma = max(neighbour_noise(remaining), 1e-9 * float(np.ptp(remaining)))
+    remaining = _without_outliers(series)
+    sigma = max(_neighbour_noise(remaining), 1e-9 * float(np.ptp(remaining)))
     if sigma == 0:
         return ()
     _, quantum = sample_noise(series)
     smallest = 1.5 * quantum if quantum > sigma else 0.0
     allowed = np.ones(series.size, dtype=bool)
-    steps: list[Step] = []
+    steps: list[_Step] = []
     explained = 0
     while len(steps) + explained < MOST_STEPS:
-        candidate, tried = strongest_response(
-            without_background(remaining), noise=sigma, allowed=allowed
+        candidate, tried = _strongest_response(
+            _without_background(remaining), noise=sigma, allowed=allowed
         )
         threshold = -float(ndtri(false_alarm / (2 * max(1, tried))))
         if candidate is None or abs(candidate.score) < threshold:
             break
-        guess = ramp_of(series.size, onset=[candidate.onset], extent=[candidate.extent])
-        step, is_step = _refine(without_background(remaining, guess), candidate, sigma)
-        without = remaining - step.size * ramp_of(series.size, onset=step.onset, extent=step.extent)
-        memory = noise_memory(without_background(without))
+        guess = _ramp_of(series.size, onset=[candidate.onset], extent=[candidate.extent])
+        step, is_step = _refine(_without_background(remaining, guess), candidate, sigma)
+        without = remaining - step.size * _ramp_of(
+            series.size, onset=step.onset, extent=step.extent
+        )
+        memory = _noise_memory(_without_background(without))
         if abs(candidate.score) * min(1.0, candidate.inflation / memory) < threshold:
             is_step = False
         if not is_step:
@@ -671,7 +560,7 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[Step, ...]:
                 steps.append(step)
         allowed[max(0, blocked[0]) : blocked[1] + 1] = False
     joined = _joined(steps)
-    sizes = zip(joined, *step_sizes(without_outliers(series), joined), strict=True)
+    sizes = zip(joined, *_step_sizes(_without_outliers(series), joined), strict=True)
     return tuple(
         replace(step, size=float(size), size_standard_uncertainty=float(uncertainty))
         for step, size, uncertainty in sizes
@@ -686,17 +575,17 @@ def _filled(series: Floats) -> Floats:
     return np.interp(np.arange(series.size), known, series[known])
 
 
-def _creep_per_cycle(series: Floats, steps: tuple[Step, ...]) -> float:
+def _creep_per_cycle(series: Floats, steps: tuple[_Step, ...]) -> float:
     """Slope of the last half of the series, steps taken out."""
     n_samples = series.size
     half = slice(n_samples // 2, n_samples)
     columns = [np.ones(n_samples), np.arange(n_samples) / n_samples]
-    columns += [ramp_of(n_samples, onset=step.onset, extent=step.extent) for step in steps]
+    columns += [_ramp_of(n_samples, onset=step.onset, extent=step.extent) for step in steps]
     basis = np.stack(columns, axis=1)[half]
     return float(np.linalg.lstsq(basis, series[half])[0][1] / n_samples)
 
 
-def _remarks(name: str, steps: tuple[Step, ...], sizes: Floats) -> list[str]:
+def _remarks(name: str, steps: tuple[_Step, ...], sizes: Floats) -> list[str]:
     rises = [str(step.onset + 1) for step, size in zip(steps, sizes, strict=True) if size > 0]
     if not rises:
         return []
@@ -776,7 +665,7 @@ def find_slips(
     n_cycles = peaks.shape[1]
     notes: list[str] = []
     names: list[str] = []
-    steps: list[Step] = []
+    steps: list[_Step] = []
     sizes, lengths = [np.empty((2, 0))], [np.empty((2, 0))]
     creep = np.full(len(specimens), np.nan)
     if n_cycles < settings.minimum_cycles:
@@ -790,7 +679,7 @@ def find_slips(
             continue
         found = find_steps(_filled(level[row]), false_alarm=settings.false_alarm)
         peak = _filled(peaks[row])
-        size = np.stack(step_sizes(peak, found))
+        size = np.stack(_step_sizes(peak, found))
         creep[row] = _creep_per_cycle(peak, found)
         notes += _remarks(name, found, size[0])
         names += [name] * len(found)
@@ -813,7 +702,7 @@ def find_slips(
     )
 
 
-def _shared_steps(names: list[str], steps: list[Step]) -> list[str]:
+def _shared_steps(names: list[str], steps: list[_Step]) -> list[str]:
     """Note steps of two specimens in the same cycles: more likely the machine than the splices."""
     shared = {
         step.onset + 1

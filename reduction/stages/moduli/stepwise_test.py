@@ -35,29 +35,10 @@ _MAD_TO_DEVIATION = 1.4826
 _MEDIAN_TO_MEAN = sqrt(pi / 2)
 
 
-def recover_gauge_length(length: ArrayLike, printed_strain: ArrayLike) -> tuple[float, float]:
+def _recover_gauge_length(length: ArrayLike, printed_strain: ArrayLike) -> tuple[float, float]:
     r"""Gauge length that readings of length and elongation imply.
 
     .. math:: g = \operatorname{median}\; \ell_i / (1 + \varepsilon_i)
-
-    Parameters
-    ----------
-    length : array_like, shape (n_steps,)
-        Between the gauge marks. [m]
-    printed_strain : array_like, shape (n_steps,)
-        Elongation as recorded; NaN where not recorded. [1]
-
-    Returns
-    -------
-    gauge_length : float
-        Median over the rows, which a single misread row does not move. [m]
-    standard_uncertainty : float
-        Of the median, from the scatter of the rows (type A). [m]
-
-    Raises
-    ------
-    DataError
-        If no row has both readings, or one is impossible.
 
     Notes
     -----
@@ -69,7 +50,7 @@ def recover_gauge_length(length: ArrayLike, printed_strain: ArrayLike) -> tuple[
     --------
     Three rows of Table 4 of [1]_, in inches:
 
-    >>> gauge, _ = recover_gauge_length([9.31, 12.95, 18.00], [0.52, 1.11, 1.94])
+    >>> gauge, _ = _recover_gauge_length([9.31, 12.95, 18.00], [0.52, 1.11, 1.94])
     >>> print(round(gauge, 3))
     6.125
     """
@@ -88,36 +69,16 @@ def recover_gauge_length(length: ArrayLike, printed_strain: ArrayLike) -> tuple[
     return median, _MEDIAN_TO_MEAN * deviation / sqrt(gauge.size)
 
 
-def find_inconsistent_readings(
+def _find_inconsistent_readings(
     length: ArrayLike, printed_strain: ArrayLike, *, gauge_length: float
 ) -> Bools:
     """Rows whose length and recorded elongation disagree.
-
-    Parameters
-    ----------
-    length : array_like, shape (n_steps,)
-        Between the gauge marks. [m]
-    printed_strain : array_like, shape (n_steps,)
-        Elongation as recorded; NaN where not recorded. [1]
-    gauge_length : float
-        At zero tension. [m]
-
-    Returns
-    -------
-    is_inconsistent : ndarray of bool, shape (n_steps,)
-        True beyond five robust standard deviations of all rows and one per cent of
-        elongation, the last digit recorded; False where nothing was recorded. [1]
-
-    Raises
-    ------
-    DataError
-        If ``gauge_length`` is not positive.
 
     Examples
     --------
     1325 in Table 4 of [1]_: 16.38 in is 167 %, recorded is 151 %.
 
-    >>> print(find_inconsistent_readings(
+    >>> print(_find_inconsistent_readings(
     ...     [17.38, 16.38, 11.68], [1.84, 1.51, 0.91], gauge_length=6.125))
     [False  True False]
     """
@@ -129,28 +90,12 @@ def find_inconsistent_readings(
     return np.nan_to_num(difference) > max(_INCONSISTENT * usual, STRAIN_DIGIT)
 
 
-def step_branches(tension: ArrayLike) -> Integers:
+def _step_branches(tension: ArrayLike) -> Integers:
     """Branch of each step of a stepwise test.
-
-    Parameters
-    ----------
-    tension : array_like, shape (n_steps,)
-        Weights in the order they were hung. [N]
-
-    Returns
-    -------
-    branch : ndarray of int, shape (n_steps,)
-        1 where the weight had been raised, 2 where it had been lowered; a repeated
-        weight keeps its branch, and the first step has that of the second. [1]
-
-    Raises
-    ------
-    DataError
-        If the weights never change.
 
     Examples
     --------
-    >>> print(step_branches([51.0, 74.0, 97.0, 97.0, 74.0]))
+    >>> print(_step_branches([51.0, 74.0, 97.0, 97.0, 74.0]))
     [1 1 1 1 2]
     """
     change = np.sign(np.diff(as_finite("tension", tension)))
@@ -168,7 +113,7 @@ def step_branches(tension: ArrayLike) -> Integers:
     return np.where(rising, _ASCENDING, _DESCENDING)
 
 
-def interval_slopes(
+def _interval_slopes(
     tension: ArrayLike,
     strain: ArrayLike,
     *,
@@ -179,33 +124,6 @@ def interval_slopes(
     r"""Modulus between each reading and the next.
 
     .. math:: E = \frac{\Delta F}{A\,\Delta\varepsilon}
-
-    Parameters
-    ----------
-    tension : array_like, shape (n_steps,)
-        Weight hung. [N]
-    strain : array_like, shape (n_steps,)
-        Of the gauge length. [1]
-    area : float
-        At zero tension. [m2]
-    tension_uncertainty : float
-        Standard uncertainty of one weight. [N]
-    strain_uncertainty : float
-        Standard uncertainty of one strain, from reading the length. [1]
-
-    Returns
-    -------
-    interval_strain : ndarray, shape (n_steps - 1,)
-        Middle of the interval. [1]
-    modulus : ndarray, shape (n_steps - 1,)
-        NaN where strain does not change. [Pa]
-    standard_uncertainty : ndarray, shape (n_steps - 1,)
-        From the readings; not of area or gauge length, which all share. [Pa]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up or ``area`` is not positive.
 
     Notes
     -----
@@ -218,7 +136,7 @@ def interval_slopes(
     --------
     0945 to 0955 in Table 4 of [1]_, on a diameter of 1 in: 87 psi.
 
-    >>> _, modulus, _ = interval_slopes(
+    >>> _, modulus, _ = _interval_slopes(
     ...     np.array([51, 74]) * 4.4482216, [0.52, 0.858], area=np.pi * 0.0127**2)
     >>> print((modulus / 6894.757).round(0))
     [87.]
@@ -344,7 +262,7 @@ def _inconsistency_note(
         closer = abs(line(corrected) - eye[row]) < abs(line(length[row]) - eye[row])
         text += f" (the eye-to-eye length speaks for the {'elongation' if closer else 'length'})"
     strain = np.where(np.arange(length.size) == row, printed[row], length / gauge - 1)
-    modulus = interval_slopes(readings.tension, strain, area=area)[1]
+    modulus = _interval_slopes(readings.tension, strain, area=area)[1]
     beside = [f"{modulus[i] / 1e6:.2f}" for i in (row - 1, row) if 0 <= i < modulus.size]
     return f"{text}, and the intervals beside it would be {' and '.join(beside)} MPa"
 
@@ -352,10 +270,10 @@ def _inconsistency_note(
 def _gauge(readings: StepReadings, stated: float | None) -> tuple[float, float, Bools]:
     """Gauge length, its uncertainty, and the readings that contradict it."""
     if np.isfinite(readings.printed_strain).any() or stated is None:
-        gauge, uncertainty = recover_gauge_length(readings.length, readings.printed_strain)
+        gauge, uncertainty = _recover_gauge_length(readings.length, readings.printed_strain)
     else:
         gauge, uncertainty = stated, float("nan")
-    is_inconsistent = find_inconsistent_readings(
+    is_inconsistent = _find_inconsistent_readings(
         readings.length, readings.printed_strain, gauge_length=gauge
     )
     return gauge, uncertainty, is_inconsistent
@@ -449,7 +367,7 @@ def reduce_stepwise(
             "a stepwise test needs two steps", found=f"{length.size}", needed="two or more"
         )
     as_positive("area", area)
-    branch = step_branches(readings.tension)
+    branch = _step_branches(readings.tension)
     gauge, gauge_uncertainty, is_inconsistent = _gauge(readings, stated_gauge_length)
     strain = length / gauge - 1
     growth, weight_change = np.diff(length), np.diff(readings.tension)
@@ -467,7 +385,7 @@ def reduce_stepwise(
             f"elongation, {1e3 * reading:.2f} mm, is taken for it"
         )
     weight = readings.tension_standard_uncertainty
-    interval_strain, modulus, uncertainty = interval_slopes(
+    interval_strain, modulus, uncertainty = _interval_slopes(
         readings.tension,
         strain,
         area=area,

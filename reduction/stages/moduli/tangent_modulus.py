@@ -42,7 +42,7 @@ _PART = 1 << 18  # samples of a block of which sums are taken together
 
 
 @dataclass(frozen=True)
-class SpecimenCurves:
+class _SpecimenCurves:
     """What one specimen gives in a block: statistics (2, n_bins) [N] and selected curves."""
 
     trimmed: RunningStatistics
@@ -52,9 +52,9 @@ class SpecimenCurves:
     selected_variance: Floats
     n_outside: int
 
-    def __add__(self, later: SpecimenCurves) -> SpecimenCurves:
+    def __add__(self, later: _SpecimenCurves) -> _SpecimenCurves:
         """Both blocks together, in the order of the record."""
-        return SpecimenCurves(
+        return _SpecimenCurves(
             self.trimmed + later.trimmed,
             self.untrimmed + later.untrimmed,
             self.tension + later.tension,
@@ -128,7 +128,7 @@ def _reduce_block(
     weight: Floats,
     n_break_in: int,
     chosen: Integers,
-) -> SpecimenCurves:
+) -> _SpecimenCurves:
     """Curves of one block and specimen; its first ``n_break_in`` groups are in no mean."""
     n_groups = weight.size
     shape = (2, n_groups, 2, grid.n_bins)
@@ -144,7 +144,7 @@ def _reduce_block(
             weight=weight[n_break_in:],
         )
 
-    return SpecimenCurves(
+    return _SpecimenCurves(
         trimmed=statistics(slope, slope_variance, 0),
         untrimmed=statistics(slope, slope_variance, 1),
         tension=statistics(fits.tension, fits.tension_variance, 0),
@@ -154,7 +154,7 @@ def _reduce_block(
     )
 
 
-def reduce_specimens(
+def _reduce_specimens(
     strain: Floats,
     tension: Floats,
     *,
@@ -163,12 +163,12 @@ def reduce_specimens(
     grid: StrainGrid,
     minimum_count: int,
     selected: Integers,
-) -> list[SpecimenCurves]:
+) -> list[_SpecimenCurves]:
     """Return the curves of each specimen of a record over all its blocks."""
     references = [_tension_reference(row, cycles) for row in tension]
     sizes = np.diff(np.append(groups.first, cycles.n_cycles)).astype(np.float64)
 
-    def reduce_block(block: tuple[int, int, slice]) -> list[SpecimenCurves]:
+    def reduce_block(block: tuple[int, int, slice]) -> list[_SpecimenCurves]:
         start, stop, _ = block
         found = _block_moments(
             strain, tension, cycles=cycles, groups=groups, block=block, references=references,
@@ -312,7 +312,7 @@ def tangent_curves(
     groups = CycleGroups.of(n_cycles, break_in_cycles, grid.cycles_pooled)
     numbers = select_cycles(n_cycles, longest=settings.selected_cycles)
     selected = np.unique(groups.of_cycle[numbers])
-    specimens = reduce_specimens(
+    specimens = _reduce_specimens(
         strain,
         tension,
         cycles=cycles,
@@ -368,7 +368,7 @@ def _notes(
     grid: StrainGrid,
     groups: CycleGroups,
     break_in_cycles: int,
-    specimens: Sequence[SpecimenCurves],
+    specimens: Sequence[_SpecimenCurves],
 ) -> list[str]:
     notes = [f"tangent modulus by local regression in a window of {grid.window:g} of strain"]
     if break_in_cycles:

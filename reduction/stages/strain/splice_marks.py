@@ -51,53 +51,20 @@ _CONFIDENCE = 0.975  # of one side of a 95 % interval
 
 
 @dataclass(frozen=True)
-class RowScatter:
-    """What one row of a fit is good for.
-
-    Parameters
-    ----------
-    variance : float
-        Of one row. [SI]
-    widening : float
-        Root of ``variance`` over the stated one: the Birge ratio where the residuals are too
-        large, else 1. [1]
-    note : str
-        What a reader has to know; empty where the tape explains the scatter.
-    """
+class _RowScatter:
+    """What one row of a fit is good for."""
 
     variance: float
     widening: float = 1.0
     note: str = ""
 
 
-def row_scatter(
+def _row_scatter(
     stated: float, residual: ArrayLike, design: ArrayLike, shared: ArrayLike | None = None
-) -> RowScatter:
+) -> _RowScatter:
     r"""Variance of one row: the stated one, unless the residuals refute it.
 
     .. math:: \chi^2 = z^T V^{-1} z, \quad z = Q^T r, \quad V = \sigma^2 I + Q^T G^T G Q
-
-    Parameters
-    ----------
-    stated : float
-        Variance of one row by the tape, :math:`\sigma^2`; 0 where nothing is stated. [SI]
-    residual : array_like, shape (n_marks,)
-        Of a least squares fit, :math:`r`. [SI]
-    design : array_like, shape (n_values, n_marks)
-        Change of a row with each coefficient of the fit. [SI]
-    shared : array_like, shape (n_errors, n_marks), optional
-        Change of the residual by one standard uncertainty of what all rows share, :math:`G`: the
-        relaxed length, which the fit holds. [SI]
-
-    Returns
-    -------
-    scatter : RowScatter
-        [SI]
-
-    Raises
-    ------
-    DataError
-        If the residuals and the design do not pair up.
 
     Notes
     -----
@@ -119,9 +86,9 @@ def row_scatter(
     Three marks about a mean, good to 1; then the same marks good to 0.2:
 
     >>> marks = np.array([1.0, -1.0, 0.0])
-    >>> print(row_scatter(1.0, marks, np.ones((1, 3))).variance)
+    >>> print(_row_scatter(1.0, marks, np.ones((1, 3))).variance)
     1.0
-    >>> wide = row_scatter(0.04, marks, np.ones((1, 3)))
+    >>> wide = _row_scatter(0.04, marks, np.ones((1, 3)))
     >>> print(round(wide.variance, 3), round(wide.widening, 2))
     1.0 5.0
     """
@@ -136,7 +103,7 @@ def row_scatter(
     if not stated > 0:
         return _unstated(left, spare)
     if spare <= 0:
-        return RowScatter(stated)
+        return _RowScatter(stated)
     free = np.linalg.qr(columns.T, mode="complete")[0][:, columns.shape[0] :]
     common = np.zeros((1, left.size)) if shared is None else np.atleast_2d(shared)
     common = common @ free
@@ -145,9 +112,9 @@ def row_scatter(
     chi_square = float(away @ np.linalg.solve(covariance, away))
     chance = float(chdtrc(spare, chi_square))
     if chance >= LEVEL:
-        return RowScatter(stated)
+        return _RowScatter(stated)
     ratio = float(np.sqrt(chi_square / spare))
-    return RowScatter(
+    return _RowScatter(
         stated * ratio**2,
         ratio,
         f"scatter {ratio:.1f} times as much as the tape explains (chi-square {chi_square:.3g} of "
@@ -156,13 +123,13 @@ def row_scatter(
     )
 
 
-def _unstated(residual: Floats, spare: int) -> RowScatter:
+def _unstated(residual: Floats, spare: int) -> _RowScatter:
     if spare <= 0:
-        return RowScatter(
+        return _RowScatter(
             0.0, note="have no stated reading error and none to spare: they count as exact"
         )
     factor = float(stdtrit(spare, _CONFIDENCE) / ndtri(_CONFIDENCE))
-    return RowScatter(
+    return _RowScatter(
         float(residual @ residual) / spare * factor**2,
         note="have no stated reading error: their scatter is taken, with "
         f"{spare} degree{'s' if spare > 1 else ''} of freedom",
@@ -226,7 +193,7 @@ def relaxed_lengths(
     The mean over tests, and not each test's own row: a reading is good to 0.01 ft
     ([3]_, Table 3), which is 0.12 % of the free length, and that would enter every
     strain and modulus of the test.  Rows that scatter more than the tape explains widen both
-    lengths, as `reduction.stages.strain.splice_marks.row_scatter` has it: a permanent set from
+    lengths, as `reduction.stages.strain.splice_marks._row_scatter` has it: a permanent set from
     test to test does that, and a tape that is read worse than its last digit.
 
     Examples
@@ -248,7 +215,7 @@ def relaxed_lengths(
     mean = rows.mean(axis=1)
     # uncorrelated: one tape made both lengths, and one scatter is judged
     apart = np.linalg.solve(np.linalg.cholesky(_OF_READINGS), rows - mean[:, None])
-    scatter = row_scatter(
+    scatter = _row_scatter(
         reading_uncertainty**2, apart.ravel(), np.kron(np.eye(2), np.ones((1, n_slack)))
     )
     return RelaxedLengths(mean, scatter.variance * _OF_READINGS / n_slack, scatter.note)
@@ -536,7 +503,7 @@ def fit_free_length_line(
     slope = line_slope(length, free)
     intercept = float(free.mean()) - slope * centre
     residual = intercept + slope * length - free
-    scatter = row_scatter(
+    scatter = _row_scatter(
         reading_uncertainty**2 * (2 + slope**2), residual, np.stack([np.ones_like(length), length])
     )
     covariance = scatter.variance * np.array(
@@ -627,7 +594,7 @@ def fit_splice_ratio(
     of_toe = ratio / relaxed_free_length + 1 / relaxed_splice_length
     slope = np.stack([-ratio * free_stretch / relaxed_free_length,
                       splice_stretch / relaxed_splice_length])  # fmt: skip
-    scatter = row_scatter(
+    scatter = _row_scatter(
         reading_uncertainty**2 * (2 * of_toe**2 + relaxed_splice_length**-2),
         residual,
         x[None],
@@ -710,7 +677,7 @@ def fit_splice_law(
     -----
     Rows have equal weight: each splice length is three readings of one tape, and its stated
     error is taken unless the residuals refute it
-    (`reduction.stages.strain.splice_marks.row_scatter`).  The
+    (`reduction.stages.strain.splice_marks._row_scatter`).  The
     compliance is linear and solved for; the exponent is found by a bounded search
     in one dimension, so that there is no starting value to depend on, and followed from there to
     its last digits.
@@ -777,7 +744,7 @@ def fit_splice_law(
     inverse = np.linalg.inv(design @ design.T)
     residual = relaxed_splice_length * strain_residual
     stretch = 1 + at_reference * power
-    scatter = row_scatter(
+    scatter = _row_scatter(
         3 * reading_uncertainty**2, residual, design, relaxed_standard_uncertainty * stretch
     )
     covariance, sensitivity = np.zeros((2, 2)), np.zeros(2)

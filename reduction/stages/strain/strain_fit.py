@@ -439,7 +439,7 @@ def _on_left_out(
     return notes
 
 
-def remarks_on(
+def _remarks_on(
     model: StrainModel,
     marks: SpliceMarks,
     test_id: str,
@@ -449,29 +449,6 @@ def remarks_on(
 ) -> tuple[str, ...]:
     """Remarks on a model fitted to marks.
 
-    Parameters
-    ----------
-    model : StrainModel
-        With its marks and residuals.
-    marks : SpliceMarks
-        All marks of the specimen.
-    test_id : str
-        Test to which the model will be applied.
-    at_start : StrainModel, optional
-        The same fit with the tension at the start of each hold.
-    failed_tests : sequence of str
-        Tests whose log could not be read, so that their marks have no tension. [1]
-
-    Returns
-    -------
-    notes : tuple of str
-        One plain sentence each; empty where there is nothing to say. [1]
-
-    Raises
-    ------
-    DataError
-        Never by itself.
-
     Examples
     --------
     >>> model = StrainModel(
@@ -480,7 +457,7 @@ def remarks_on(
     ...     mark_strain_residual=np.array([0.001]), strain_slope_ratio=0.873)
     >>> marks = SpliceMarks("new", ("T-1",), ("min",), np.array([0.7]), np.array([5.2]),
     ...                     np.array([5.9]))
-    >>> print(remarks_on(model, marks, "T-1")[0][24:])
+    >>> print(_remarks_on(model, marks, "T-1")[0][24:])
     the method of WHOI-2005-10, would read moduli over these marks 14.5 % high against marks
     """
     is_stretched = np.array([hold != "slack" for hold in model.mark_hold], dtype=bool)
@@ -721,5 +698,5 @@ def fit_strain_model(
         at_start = fit_to_marks("tension-driven", early)
     # a method that was asked for and needs no tension loses nothing with a log
     lost = failed_tests if stated in (None, "tension-driven") else ()
-    remarks = remarks_on(model, readings.marks, test_id, at_start=at_start, failed_tests=lost)
+    remarks = _remarks_on(model, readings.marks, test_id, at_start=at_start, failed_tests=lost)
     return replace(model, notes=(*notes, *model.notes, *remarks))

@@ -302,7 +302,7 @@ def splice_strain(
     return np.exp(work, out=work)
 
 
-def tension_driven_strain(
+def _tension_driven_strain(
     position: ArrayLike,
     tension: ArrayLike,
     *,
@@ -314,32 +314,6 @@ def tension_driven_strain(
     r"""Strain where the splices strain by the tension they carry.
 
     .. math:: \varepsilon = \frac{p - \ell_s (1 + c F^n)}{\ell_0} - 1
-
-    Parameters
-    ----------
-    position : array_like, shape (...)
-        Thimble-to-thimble length :math:`p`. [m]
-    tension : array_like, shape (...)
-        :math:`F` at the same samples; below zero counts as zero. [N]
-    relaxed_free_length : float
-        Splice toe to splice toe on the slack specimen, :math:`\ell_0`. [m]
-    relaxed_splice_length : float
-        Both splices together on the slack specimen, :math:`\ell_s`. [m]
-    splice_compliance : float
-        :math:`c`; its unit goes with the exponent. [N**-n]
-    splice_exponent : float
-        :math:`n`. [1]
-
-    Returns
-    -------
-    strain : ndarray, shape (...)
-        Nominal strain of the free length. [1]
-
-    Raises
-    ------
-    DataError
-        If position and tension differ in shape, or a coefficient or relaxed
-        length is not positive.
 
     Notes
     -----
@@ -355,7 +329,7 @@ def tension_driven_strain(
     --------
     Slack is zero strain; a rigid splice would give 103 % where a soft one gives 95 %.
 
-    >>> strain = tension_driven_strain(
+    >>> strain = _tension_driven_strain(
     ...     [3.74, 6.35],
     ...     [0.0, 450.0],
     ...     relaxed_free_length=2.55,
@@ -379,7 +353,7 @@ def tension_driven_strain(
     return strain
 
 
-def marked_line_strain(
+def _marked_line_strain(
     position: ArrayLike,
     *,
     free_length_intercept: float,
@@ -389,27 +363,6 @@ def marked_line_strain(
     r"""Strain by a straight line of free length on position.
 
     .. math:: \varepsilon = \frac{a + b\,p}{\ell_0} - 1
-
-    Parameters
-    ----------
-    position : array_like, shape (...)
-        Thimble-to-thimble length :math:`p`. [m]
-    free_length_intercept : float
-        :math:`a`, from `reduction.stages.strain.splice_marks.fit_free_length_line`. [m]
-    free_length_slope : float
-        :math:`b`, from the same fit. [1]
-    relaxed_free_length : float
-        Splice toe to splice toe on the slack specimen, :math:`\ell_0`. [m]
-
-    Returns
-    -------
-    strain : ndarray, shape (...)
-        Nominal strain of the free length. [1]
-
-    Raises
-    ------
-    DataError
-        If ``relaxed_free_length`` is not positive.
 
     Notes
     -----
@@ -421,7 +374,7 @@ def marked_line_strain(
     --------
     Table 3 of [1]_, new tether, in feet; the tape gives 76.6, 102.3 and 127.1 %.
 
-    >>> strain = marked_line_strain(
+    >>> strain = _marked_line_strain(
     ...     [19.37, 21.75, 24.12],
     ...     free_length_intercept=-2.4395,
     ...     free_length_slope=0.89054,
@@ -435,7 +388,7 @@ def marked_line_strain(
     return np.add(strain, free_length_intercept / relaxed_free_length - 1.0)
 
 
-def splice_ratio_strain(
+def _splice_ratio_strain(
     position: ArrayLike,
     *,
     relaxed_free_length: float,
@@ -445,28 +398,6 @@ def splice_ratio_strain(
     r"""Strain where the splices strain by a constant share of what the free length does.
 
     .. math:: \varepsilon = \frac{p - \ell_0 - \ell_s}{\ell_0 + \rho\,\ell_s}
-
-    Parameters
-    ----------
-    position : array_like, shape (...)
-        Thimble-to-thimble length :math:`p`. [m]
-    relaxed_free_length : float
-        Splice toe to splice toe on the slack specimen, :math:`\ell_0`. [m]
-    relaxed_splice_length : float
-        Both splices together on the slack specimen, :math:`\ell_s`. [m]
-    splice_strain_ratio : float
-        :math:`\rho`, splice strain over free strain. [1]
-
-    Returns
-    -------
-    strain : ndarray, shape (...)
-        Nominal strain of the free length. [1]
-
-    Raises
-    ------
-    DataError
-        If a relaxed length is not positive, or ``splice_strain_ratio`` is
-        negative beyond a rigid splice (:math:`\ell_0 + \rho \ell_s \le 0`).
 
     Notes
     -----
@@ -478,7 +409,7 @@ def splice_ratio_strain(
     --------
     Table 3 of [1]_, used tether, in feet; the tape gives 77.3, 103.4 and 128.9 %.
 
-    >>> strain = splice_ratio_strain(
+    >>> strain = _splice_ratio_strain(
     ...     [19.37, 21.75, 24.12],
     ...     relaxed_free_length=8.34,
     ...     relaxed_splice_length=3.92,
@@ -495,32 +426,12 @@ def splice_ratio_strain(
     return np.subtract(strain, (relaxed_free_length + relaxed_splice_length) / effective_length)
 
 
-def gauge_length_strain(
+def _gauge_length_strain(
     position: ArrayLike, *, reference_position: float, gauge_length: float
 ) -> Floats:
     r"""Strain of a specimen without splices.
 
     .. math:: \varepsilon = \frac{p - p_0}{g}
-
-    Parameters
-    ----------
-    position : array_like, shape (...)
-        Length or displacement :math:`p`. [m]
-    reference_position : float
-        The same channel at zero strain, :math:`p_0`: zero for a displacement
-        that starts at slack. [m]
-    gauge_length : float
-        Length that stretches, at zero strain, :math:`g`. [m]
-
-    Returns
-    -------
-    strain : ndarray, shape (...)
-        Nominal strain. [1]
-
-    Raises
-    ------
-    DataError
-        If ``gauge_length`` is not positive or ``reference_position`` is not finite.
 
     Notes
     -----
@@ -532,7 +443,7 @@ def gauge_length_strain(
     --------
     Table 4 of [1]_ at 0945: 9.31 in on a gauge length of 6.125 in is 52 %.
 
-    >>> print(gauge_length_strain(9.31, reference_position=6.125, gauge_length=6.125).round(2))
+    >>> print(_gauge_length_strain(9.31, reference_position=6.125, gauge_length=6.125).round(2))
     0.52
     """
     as_positive("gauge_length", gauge_length)
@@ -542,10 +453,10 @@ def gauge_length_strain(
 
 
 _OF_POSITION: dict[StrainMethod, Callable[..., Floats]] = {
-    "marks": marked_line_strain,
-    "strain-ratio": splice_ratio_strain,
+    "marks": _marked_line_strain,
+    "strain-ratio": _splice_ratio_strain,
     "constant-fraction": free_length_strain,
-    "gauge-length": gauge_length_strain,
+    "gauge-length": _gauge_length_strain,
 }
 
 # a crosshead that returns to its marks passes them by its own resolution; not an extrapolation
@@ -606,7 +517,7 @@ def strain_by_model(
             )
         return np.asarray(measured_strain, dtype=np.float64)
     if model.method == "tension-driven":
-        return tension_driven_strain(position, tension, **model.coefficients)
+        return _tension_driven_strain(position, tension, **model.coefficients)
     return _OF_POSITION[model.method](position, **model.coefficients)
 
 
