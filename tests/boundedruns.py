@@ -169,7 +169,7 @@ def _child(asked, cwd, environment):
         traceback.print_exc()
     finally:
         if "reduction.readers.bounded_reader" in sys.modules:
-            sys.modules["reduction.readers.bounded_reader"].end_reader()  # its memory counts too
+            sys.modules["reduction.readers.bounded_reader"]._end_reader()  # its memory counts too
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)

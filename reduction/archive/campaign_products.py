@@ -473,7 +473,6 @@ OUTCOME_SCHEMA: dict[str, Variable] = {
         flag("outcome_is_suspended", _ALONG_OUTCOMES, NO_YES),
     )
 }
-
 """Every variable that an archive of outcomes may have."""
 
 

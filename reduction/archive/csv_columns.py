@@ -46,7 +46,6 @@ from reduction.record.measurement import Bools, Floats
 from reduction.record.plain_text import safe_cell
 
 _LOW, _HIGH = 1e-4, 1e9
-
 """Between these Arrow, which is three times as fast, and Python write a number alike."""
 
 
@@ -182,7 +181,6 @@ Product = Literal[
 ]
 
 Variables = Mapping[str, xr.Variable]
-
 """By name, as those of an archive."""
 
 TEST = Column("test", label("test")[0])
@@ -273,7 +271,6 @@ def _column(name: str, variable: Variable) -> Column:
 
 
 BLOCK_ROWS = 1 << 12
-
 """Rows of a block: three megabytes of text where a table is as wide as that of the cycles. [1]"""
 
 
@@ -373,7 +370,6 @@ _COLUMNS = {
 OUTCOME_TABLES: dict[str, tuple[GroupColumn | Column, ...]] = {
     name: (*map(GroupColumn, columns), SYNTHETIC) for name, columns in _COLUMNS.items()
 }
-
 """Columns of each table, the word on synthetic data last."""
 
 

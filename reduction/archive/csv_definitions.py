@@ -16,7 +16,6 @@ ERROR = (
     "uncertainty_source", "uncertainty_source_of", "uncertainty_source_number",
     "uncertainty_source_degrees_of_freedom",
 )  # fmt: skip
-
 """Columns that say which error a row is of."""
 
 _FILES = {
@@ -380,7 +379,6 @@ HOLD_TABLES = (
 )
 
 RUN = ("run_name", "run_specimen")
-
 """Columns that say which run a row is of."""
 
 
@@ -836,7 +834,6 @@ RUBBER_TABLES = (
         ("modulus_ratio",),
     ),
 )
-
 """Of tests with a machine."""
 
 STEPWISE_TABLES = (
@@ -870,7 +867,6 @@ STEPWISE_TABLES = (
         product="stepwise test",
     ),
 )
-
 """Of tests with weights that were hung by hand."""
 
 STIFFNESS_TABLES = (

@@ -24,7 +24,6 @@ from reduction.record.samples import let_go
 from reduction.stages.reduced_test import ReducedTest
 
 SCHEMA_VERSION = "1"
-
 """Changes when a name, dimension or meaning changes; additions leave it as it is."""
 
 _COMPRESSED_FROM = 4096  # values; below it a chunk and its index cost more than they save

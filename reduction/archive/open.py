@@ -25,15 +25,12 @@ from reduction.archive.variables import Variable
 from reduction.record.errors import ArchiveError, SettingsError
 
 Chunks = int | Mapping[str, int | Literal["auto"] | tuple[int, ...]]
-
 """Values of a chunk, or by dimension, as `xarray.open_dataset` takes them."""
 
 Opener = Callable[[Path], AbstractContextManager[xr.Dataset]]
-
 """How a step opens an archive for a block: as `reading` does."""
 
 _CACHE = 1 << 20
-
 """Bytes of each variable that the library keeps as they are read: two chunks of an archive. Its own
 64 MB hold all that was ever read of a test, beside what is made of it."""
 
@@ -342,7 +339,6 @@ def _open_in_chunks(path: Path, chunks: Chunks) -> xr.Dataset:
 
 
 OF_CAMPAIGN = ("surfaces", "predictions", "comparisons", "outcomes", "change_in_length")
-
 """Archives of a whole campaign, by their file names; no test may be called so."""
 
 

@@ -24,15 +24,12 @@ from reduction.archive.open import archives_in
 from reduction.record.errors import ArchiveError, DataError, SettingsError
 
 MOVED = 0.5
-
 """Shift above which an answer has moved, in standard uncertainties."""
 
 RELATIVE = 1e-9
-
 """Relative change above which a number has changed; below it is the rounding of another sum."""
 
 _OF_LARGEST = 1e-12
-
 """The same over the largest number of a variable, for those that are nothing beside it."""
 
 _UNCERTAINTY, _RANDOM = "_standard_uncertainty", "_random_standard_uncertainty"
@@ -312,15 +309,12 @@ def _counted(labels: Iterable[str]) -> list[tuple[str, int]]:
 _LABELS = frozenset(
     "specimen test name law hold number numerator denominator source of cycle clock run".split()
 )
-
 """Last words of variables that say which row it is, where no coordinate of a dimension does."""
 
 _GRIDS = frozenset("bin grid level time radius".split())
-
 """Last words of columns whose numbers are chosen and not measured."""
 
 _RUNNING = frozenset(["hold", "uncertainty_component"])
-
 """Columns that number the rows of a file, and shift where a specimen is added."""
 
 _APART = ("history", "software_version")
@@ -737,6 +731,8 @@ def _compare_attributes(
         for key in [*left, *(key for key in right if key not in left)]:
             one_side, other_side = left.get(key), right.get(key)
             if repr(one_side) == repr(other_side):
+                continue
+            if key == "values_sha256":  # what the values say themselves
                 continue
             if key == "history":
                 one_side, other_side = (

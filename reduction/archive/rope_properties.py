@@ -83,7 +83,6 @@ PROPERTY_SCHEMA: dict[str, Variable] = {
         ),
     )
 }
-
 """Every variable that an archive of change-in-length properties may have."""
 
 
@@ -162,7 +161,6 @@ def _on_axis(
 _HELD = ("quasi-static stiffness", "creep")
 
 CHANGES_LENGTH = ("bedding-in", "dynamic stiffness", *_HELD)
-
 """Steps that a change-in-length property can come from."""
 
 _RANDOM = "_random_standard_uncertainty"

@@ -97,7 +97,6 @@ COEFFICIENTS = {
     "reference_position": "reference_position",
     "gauge_length": "strain_gauge_length",
 }
-
 """Coefficient of a strain method to its name here, along ``specimen``.
 
 They differ where the name has another meaning in a product.
@@ -436,11 +435,9 @@ COMPARISON_SCHEMA: dict[str, Variable] = {
         label("note", ("note",)),
     )
 }
-
 """Every variable that an archive of comparisons may have."""
 
 HOSE_STATES = {"slack": 1, "broken": 2, "jammed": 4, "bore_too_small": 8}
-
 """Masks: cords carry nothing, are broken, touch; the bore is below its limit."""
 
 _H = ("hose",)
@@ -541,7 +538,6 @@ PREDICTION_SCHEMA: dict[str, Variable] = {
         label("note", ("note",)),
     )
 }
-
 """Every variable that an archive of predictions may have."""
 
 _STATIONARY_FLAGS = {name or "none": code for code, name in STATIONARY_KINDS.items()}
@@ -553,7 +549,6 @@ LEVELS = "a property of the levels"
 NOT_EVALUATED = "not evaluated by this version"
 
 FROM_SURFACE = "from the surface: see its covariance"
-
 """Why a variable has no uncertainty beside it, of a response and of its experiment."""
 
 _BASIS = "a direction: see the covariance of the coefficients"

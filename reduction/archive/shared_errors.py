@@ -35,7 +35,6 @@ from reduction.record.samples import beside, let_go
 COMPONENT = "uncertainty_component"
 
 FREEDOM = "uncertainty_source_degrees_of_freedom"
-
 """Of each shared error; there where one of them is from a few readings."""
 
 _S = ("specimen",)
@@ -108,7 +107,6 @@ SHARED: dict[str, tuple[str, ...]] = {
     "elastomer_exponent": ("elastomer_parameter",),
     "modulus_ratio": ("comparison", "branch_name", "ratio_strain_bin"),
 }
-
 """Quantities whose contributions are kept, with their dimensions."""
 
 SHARED_OF_CHANNELS: dict[str, tuple[str, ...]] = {
@@ -116,11 +114,9 @@ SHARED_OF_CHANNELS: dict[str, tuple[str, ...]] = {
     "crosshead_displacement": (),
     **dict.fromkeys(("tension", "strain", "nominal_stress"), _S),
 }
-
 """Channels: one contribution for all samples of a specimen, with its dimensions."""
 
 SHARED_OF_STEPS: dict[str, tuple[str, ...]] = {"secant_modulus": ("step",)}
-
 """Of a stepwise test alone: in a record it is of each cycle."""
 
 # the curve of one cycle has the shared error of the mean
@@ -279,7 +275,6 @@ def _fault(name: str, value: object, needed: str) -> ArchiveError:
 _OF_STRAIN = frozenset(
     {"position_gain", "position_offset", "strain_calibration", "strain_gain", "splice_method"}
 )
-
 """Sources that move a point of the curve along the axis of strain alone."""
 
 # the curve, the modulus that its errors of strain were carried with, and the axis of both
@@ -292,7 +287,6 @@ _OF_ALL_SAMPLES = (
     "tension_gain", "tension_offset", "position_gain", "position_offset", "lag", "strain_gain",
     "stiffness",
 )  # fmt: skip
-
 """What may be stated of a test that is in its curve: not the noise of a reading."""
 
 _NO_CURVE = (

@@ -377,7 +377,6 @@ _SINGLE_TIME = {
     "confidence": "confidence",
     "tolerance": "tolerance",
 }
-
 """Field of the check to name after ``single_time_``."""
 
 
@@ -745,7 +744,6 @@ _LABEL_OF_DIM = {
     "anova_row": "anova_source",
     "block": "block_name",
 }
-
 """Text that says how far an experiment fills a dimension."""
 
 

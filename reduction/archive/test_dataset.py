@@ -222,7 +222,6 @@ def _note_values(test: ReducedTest) -> Values:
 
 
 _SHARE = 8
-
 """Of a longer record than is stored whole, this part of it at most for cycles, and for the rest."""
 
 

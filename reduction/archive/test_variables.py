@@ -443,7 +443,6 @@ LINE_REFUSALS = {
     "loss_reaches_apparent": 5,
     "storage_not_above_quasi_static": 6,
 }
-
 """Meanings of the codes of `reduction.stages.line.line_product.REASONS`, as a flag has them."""
 
 _LINE = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
@@ -867,7 +866,6 @@ STEPWISE: dict[str, Variable] = {
         ),
     )
 }
-
 """Names that stand along ``step`` in a stepwise test."""
 
 

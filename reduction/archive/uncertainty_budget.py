@@ -242,7 +242,6 @@ _CALLED = {"branch_name": "branch", "strain_bin": "strain", "first_loading_strai
            "ratio_strain_bin": "strain", "tension_grid": "tension"}  # fmt: skip
 
 ON_AN_AXIS = ("strain_bin", "first_loading_strain_bin", "ratio_strain_bin", "tension_grid")
-
 """Dimensions along which a number is read between the points, on straight lines."""
 
 _ROUNDING = 1e-9

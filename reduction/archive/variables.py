@@ -51,11 +51,9 @@ TWO_METHODS = "two methods on the same marks: what they get wrong they share"
 SEE_PER_DECADE = "from a part of the cycles; peak_tension_per_decade has one, from all of them"
 
 NO_YES = {"no": 0, "yes": 1}
-
 """Meanings of a flag that answers a question."""
 
 Values = dict[str, NDArray[Any]]
-
 """Name of the schema to array; dimensions and attributes are the schema's business."""
 
 
@@ -103,7 +101,6 @@ SUFFIXES = {
     "_maximum": ("greatest over the cycles: {}", "f8", "bound: greatest value seen"),
     "_scatter": ("standard deviation over the cycles: {}", "f8", "is itself a measure of spread"),
 }
-
 """Suffix: its long name, type, and why it has no uncertainty of its own."""
 
 

@@ -12,6 +12,7 @@ References
 from __future__ import annotations
 
 import datetime
+import hashlib
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -52,13 +53,28 @@ def _write_netcdf(dataset: xr.Dataset, path: Path) -> None:
             (_defined(file, str(name), variable), variable.values)
             for name, variable in dataset.variables.items()
         ]
+        written = hashlib.sha256()
         for place, values in todo:
-            if values.dtype.kind == "U":
-                place[...] = _characters(values)
-            else:
-                for part in _parts(values):
-                    place[part] = values[part]
-                let_go(values)
+            letters = _characters(values) if values.dtype.kind == "U" else values
+            written.update(place.name.encode())
+            for part in _parts(letters.shape, letters):
+                place[part] = letters[part]
+                written.update(letters[part].tobytes())
+            let_go(values)
+        file.setncattr("values_sha256", written.hexdigest())
+
+
+def values_sha256(path: Path) -> str:
+    """Sum of the names and values of all variables, as a file holds them now."""
+    found = hashlib.sha256()
+    with netCDF4.Dataset(path) as file:
+        file.set_auto_maskandscale(False)
+        file.set_auto_chartostring(False)
+        for name, variable in file.variables.items():
+            found.update(name.encode())
+            for part in _parts(variable.shape):
+                found.update(np.asarray(variable[part]).tobytes())
+    return found.hexdigest()
 
 
 def _defined(file: netCDF4.Dataset, name: str, variable: xr.Variable) -> netCDF4.Variable[Any]:
@@ -98,13 +114,14 @@ def _characters(values: NDArray[np.str_]) -> NDArray[np.bytes_]:
     return np.ascontiguousarray(letters).view("S1").reshape(*values.shape, letters.dtype.itemsize)
 
 
-def _parts(values: NDArray[Any]) -> Iterator[tuple[Any, ...]]:
-    """Blocks of a series, or all of what is short."""
-    if not values.ndim or values.shape[-1] <= _BLOCK:
+def _parts(shape: tuple[int, ...], *arrays: NDArray[Any]) -> Iterator[tuple[Any, ...]]:
+    """Blocks of each series in the order of its values, or all of what is short."""
+    if not shape or shape[-1] <= _BLOCK:
         yield (...,)
         return
-    for part in sample_blocks(values.shape[-1], values, size=_BLOCK):
-        yield (..., part)
+    for row in np.ndindex(shape[:-1]):
+        for part in sample_blocks(shape[-1], *arrays, size=_BLOCK):
+            yield (*row, part)
 
 
 def write_archive(dataset: xr.Dataset, path: Path) -> None:
@@ -175,7 +192,6 @@ def _as_text(value: object) -> object:
 
 
 Date = Annotated[ReportText, BeforeValidator(_as_text)]
-
 """A date of TOML, or text: ``2026-03-05``, ``"2 to 5 March 2026"``."""
 
 

@@ -33,7 +33,6 @@ TEXTS: Final = (
     "specimen_kind", "specimen_material", "specimen_construction", "specimen_condition",
     "synthetic", "archive",
 )  # fmt: skip
-
 """What is said of a test in words."""
 
 NUMBERS: Final = (
@@ -41,21 +40,17 @@ NUMBERS: Final = (
     "test_mean_strain", "test_strain_amplitude", "least_strain", "greatest_strain", "diameter",
     "rated_break_strength",
 )  # fmt: skip
-
 """What is said of a test in numbers, SI."""
 
 CONDITIONS: Final = (*TEXTS[:-2], *NUMBERS, *TEXTS[-2:])
-
 """Columns of a table of tests, in order."""
 
 NUMBER: Final = ("quantity", "value", "standard_uncertainty")
-
 """Columns of a number; a row of a test has none."""
 
 LEFT_OUT: Final = frozenset(
     {"sample", "selected_cycle", "bound", "uncertainty_component", "uncertainty_source"}
 )
-
 """Dimensions that stay in the archives: samples, curves by cycle, parts of uncertainties."""
 
 

@@ -106,7 +106,6 @@ def _step_plan(plan: TestPlan, step: StepPlan, place: int) -> TestPlan:
 
 
 Reader = Callable[..., tuple[Record, tuple[Source, ...]]]
-
 """Gives the record of a log, as `reduction.readers.read_log.read_record` does."""
 
 

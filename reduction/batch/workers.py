@@ -27,7 +27,6 @@ from reduction.record.errors import ReductionError, SettingsError, WorkerError
 Result = TypeVar("Result")
 
 PATIENCE = 60.0
-
 """How long a run waits for a test to end before it looks whether workers are left. [s]."""
 
 _AGAIN = "Products that were finished are kept; run again to go on."

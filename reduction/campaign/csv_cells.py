@@ -16,7 +16,6 @@ from reduction.record.measurement import Floats
 from reduction.record.plain_text import cut
 
 CODED = "coded"
-
 """In the place of a unit: the column holds coded levels."""
 
 _HEADER = re.compile(r"^(.*?)\s*(?:\[([^\]]*)\])?$")

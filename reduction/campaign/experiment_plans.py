@@ -26,7 +26,6 @@ from reduction.record.errors import DataError, LogError, SettingsError
 from reduction.record.measurement import Floats, Specimen, read_only_arrays
 
 NEED_PULL = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
-
 """Responses that rest on the quasi-static spring constant."""
 
 _DIMENSIONS: dict[str, Dimension] = {
@@ -405,7 +404,6 @@ def load_spec(path: Path) -> ExperimentSpec:
 _SHARE_UNIT = re.compile(r"%\s*(RBS|MBS|MBL|of mean)")
 
 _OFF_PLAN = 1.0
-
 """Coded distance of the mean of all runs from the centre of the plan, beyond which the
 levels are in another unit than the plan."""
 

@@ -36,7 +36,6 @@ _DIMENSIONS: dict[str, Dimension] = {
     "cord_strain_scale": "number",
     "dead_length": "length",
 }
-
 """Keys that may have a standard uncertainty."""
 
 _MOST_CORD_STRAIN = 1.0

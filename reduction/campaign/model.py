@@ -126,11 +126,9 @@ def _refused(reader: TableReader, key: str, problem: str, found: str, needed: st
 
 
 _HALF = 0.5
-
 """Relative errors beyond this are no first-order ones: nothing that is carried would hold."""
 
 _OF_DIAMETER = 0.2
-
 """Of a diameter: 40 % of its area, and of every stress and modulus."""
 
 _GREATEST_OF: dict[Dimension, tuple[float, str]] = {
@@ -158,7 +156,6 @@ class _StatedLimits(_UncertaintySection):
 
 
 Stated = Number | _Expanded | _StatedLimits
-
 """A plain value is a standard uncertainty."""
 
 
@@ -387,7 +384,6 @@ Calibrated = Literal[
     "cord_strain_scale",
     "dead_length_share",
 ]
-
 """What a comparison may fit; diameters and cords are measured, not fitted."""
 
 
@@ -656,7 +652,6 @@ Response = Literal[
     "loss_factor",
     "dashpot_coefficient",
 ]
-
 """What a surface may be fitted to; the first four are those of CG-D-39-80."""
 
 Text = Annotated[str, StringConstraints(max_length=2000)]

@@ -289,7 +289,6 @@ def _open_questions(folder: Path, table: dict[str, Any]) -> list[str]:
 DEVICE = re.compile(
     r"(con|prn|aux|nul|conin\$|conout\$|com[0-9¹²³]|lpt[0-9¹²³]) *(\..*)?", re.IGNORECASE
 )
-
 """Names that are devices of Windows in every folder, whatever stands behind their point."""
 
 
@@ -393,7 +392,6 @@ def _tables(text: str) -> dict[str, Any]:
 
 
 Number = str | Annotated[float, Strict()]
-
 """A number of TOML or text with a unit; true and false are neither."""
 
 _GREATEST = 1e15

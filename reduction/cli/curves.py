@@ -138,7 +138,6 @@ def _specimen(datasets: Sequence[xr.Dataset], sources: Sequence[str], specimen: 
 _ROWS = 24
 
 _SHOWN = 1e-3
-
 """Share of the tension above which a row says that it was moved."""
 
 PAGE = "page"
@@ -361,7 +360,6 @@ def _state_document(state: WorkingState) -> dict[str, Any]:
 _ASSEMBLY_ROWS = 16
 
 _KNOWN = float(coverage_factor(np.inf))
-
 """Coverage factor of a curve of many tests, whose degrees of freedom are not counted. [1]"""
 
 

@@ -125,7 +125,6 @@ def _last_line(said: bytes) -> str:
 
 
 _ROWS = 20
-
 """Rows of a table; the others are counted, and stand in the answer of ``--json``."""
 
 _ORDER = ("answer", "uncertainty", "number")

@@ -607,7 +607,6 @@ def _show_effects(
 
 
 _NEAR_A_LEVEL = 0.1
-
 """Coded distance from -1 or 1 at which a level of a screening is still that level."""
 
 

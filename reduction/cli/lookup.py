@@ -152,7 +152,6 @@ _DIMENSIONS: dict[str, Dimension] = {
 _ROUNDING = 1e-12
 
 MOST_POINTS = 100_000
-
 """Of a grid: what a table of text, or one JSON object, can reasonably hold."""
 
 

@@ -33,7 +33,6 @@ from reduction.record.errors import ArchiveError, ReductionError, SettingsError,
 from reduction.record.plain_text import visible, without_secrets
 
 NOTHING = "-"
-
 """What stands in an empty cell, so that every line has as many columns."""
 
 

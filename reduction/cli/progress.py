@@ -28,7 +28,6 @@ _WORDS = {
     "survey": "reading", "reduce": "reducing", "tables": "writing tables",
     "report": "writing the report",
 }  # fmt: skip
-
 """Stages of a run, in words for a person."""
 
 

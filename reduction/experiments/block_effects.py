@@ -37,7 +37,6 @@ from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 
 _LARGEST = 6.0
-
 """Decimal logarithm of the largest ratio of variances that is searched."""
 
 _GRID = 49

@@ -55,7 +55,6 @@ from reduction.stages.line.line_model import (
 _OFF_SCREENING = 0.1
 
 _WRONG_HALF = 0.5
-
 """Coded distance from which a level of a screening is no more that of its column."""
 
 _OF_ORDER = ("pure-error-excludes-drift", "order-confounded")
@@ -213,7 +212,6 @@ def _sheet(
 
 
 REFUSALS = (DataError, FitError, SettingsError)
-
 """What makes a part of an experiment a note in place of a result."""
 
 

@@ -196,7 +196,6 @@ FIT_REASONS: dict[int, str] = {
     5: "the residuals are rounding: the surface passes through every run",
     6: "the runs with a value do not outnumber the terms: no exponent can be found",
 }
-
 """1, 2 and 6: no surface.  3: a surface without uncertainty.  4 and 5: without tests of it."""
 
 

@@ -58,15 +58,12 @@ from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers
 
 _ROUNDING = 1e-12
-
 """Residuals smaller than this share of the response are rounding of the arithmetic."""
 
 _HUGE = 1e150
-
 """Numbers beyond it cannot be squared."""
 
 _FIXES_A_TERM = 1 - 1e-9
-
 """Leverage from which a run is fitted by itself alone."""
 
 
@@ -433,7 +430,6 @@ def _positive_or_nan(values: Floats) -> Floats:
 
 
 _LEVEL_ROUNDING = 1e-9
-
 """Coded levels closer than this are one level: rounding of the change of units."""
 
 

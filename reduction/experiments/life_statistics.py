@@ -276,7 +276,6 @@ SCATTER_OF: dict[LifeDistribution, Scatter] = {
     "lognormal": "normal",
     "weibull": "smallest_extreme_value",
 }
-
 """Scatter of ln N."""
 
 
@@ -442,7 +441,6 @@ def ratio_of_lives(
 
 
 LEVEL_WIDTH = 0.01
-
 """Peak loads no further apart, in rated break strengths, are one level: a machine does not
 reach the same load twice."""
 

@@ -434,7 +434,6 @@ STRENGTH_COLUMNS: tuple[OutcomeColumn, ...] = (
     *_of_strength("tensile_strength", "N", "tensile strength"),
     *_of_strength("strain_at_failure", "1", "strain at failure"),
 )
-
 """Columns of ``tables/strength.csv``, one row a group."""
 
 EXPOSURE_COLUMNS: tuple[OutcomeColumn, ...] = (
@@ -457,7 +456,6 @@ EXPOSURE_COLUMNS: tuple[OutcomeColumn, ...] = (
     OutcomeColumn("unused_count", "count", "tests without an exposure or a value", "is a count"),
     OutcomeColumn("exposure_reason", "", "why there is no line", "is a word"),
 )  # fmt: skip
-
 """Columns of ``tables/exposure.csv``, one row a line broken at several exposures."""
 
 FATIGUE_COLUMNS: tuple[OutcomeColumn, ...] = (
@@ -484,7 +482,6 @@ FATIGUE_COLUMNS: tuple[OutcomeColumn, ...] = (
     OutcomeColumn("life_distribution", "", "law of the lives", "is a label"),
     OutcomeColumn("life_reason", "", "why there is no median life", "is a word"),
 )  # fmt: skip
-
 """Columns of ``tables/fatigue.csv``, one row a group and level of peak load."""
 
 LOAD_LIFE_COLUMNS: tuple[OutcomeColumn, ...] = (
@@ -507,7 +504,6 @@ LOAD_LIFE_COLUMNS: tuple[OutcomeColumn, ...] = (
     OutcomeColumn("life_distribution", "", "law of the lives", "is a label"),
     OutcomeColumn("life_reason", "", "why there is no line", "is a word"),
 )  # fmt: skip
-
 """Columns of ``tables/load_life.csv``, one row a group tested at several loads."""
 
 Row = dict[str, float | int | str]

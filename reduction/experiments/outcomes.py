@@ -30,7 +30,6 @@ OutcomeQuantity = Literal[
 Place = Literal["free", "splice_toe", "splice", "thimble", "grip", "not_stated"]
 
 IN_THE_TERMINATION = ("splice", "thimble", "grip")
-
 """Places where the termination broke and not the line: its own strength is at least the value."""
 
 REASONS: dict[int, str] = {
@@ -43,7 +42,6 @@ REASONS: dict[int, str] = {
     6: "one failure does not tell the deviation of lives",
     7: "the failures have no deviation",
 }
-
 """Why a number is NaN."""
 
 

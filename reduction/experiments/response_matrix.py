@@ -22,7 +22,6 @@ from scipy.special import betainc
 from reduction.record.measurement import Bools, Floats, Integers
 
 _PIECE = 200_000
-
 """Multiplications in one call of the linear algebra library: below it stays in one thread."""
 
 
@@ -85,11 +84,9 @@ def highest_of_each(
 
 
 _CLOSED = 60
-
 """Degrees of freedom up to which the closed form of p is the quicker one."""
 
 _KEEPS_DIGITS = 1e-2
-
 """A p above this is 1 less a sum without loss of digits that count."""
 
 

@@ -62,7 +62,6 @@ from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers
 
 _STILL = 1e-6
-
 """Coded range below which a factor does not move."""
 
 
@@ -126,15 +125,12 @@ def _require_motion(coded: Floats, factor_names: Sequence[str]) -> None:
 
 
 _STRAY = 0.1
-
 """Coded distance beyond the levels of the plan, or short of them, that is worth a word."""
 
 _ALONE = 0.99
-
 """Leverage from which a run has hardly a residual."""
 
 _ILL = 30.0
-
 """Condition number of columns of the model matrix above which terms lean on each other."""
 
 
@@ -261,7 +257,6 @@ def _error_terms(blocks: BlockEffects) -> str:
 
 
 _SEQUENCE = {"linear": "first order", "interaction": "interactions", "square": "squares"}
-
 """Order of the sources in the analysis of variance, that of R's rsm."""
 
 

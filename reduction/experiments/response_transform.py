@@ -182,7 +182,6 @@ def retransformed_mean(values: ArrayLike, exponent: ArrayLike, *, sigma: ArrayLi
 
 
 LIMITS = (-2.0, 2.0)
-
 """Exponents that are searched."""
 
 _GRID = 81

@@ -461,7 +461,6 @@ def find_cautions(
 
 
 ON_PLAN = 0.3
-
 """Coded distance from the plan of a run that a machine with poor control still meets. [1]."""
 
 
@@ -528,7 +527,6 @@ def smallest_effect(design: Design, *, sigma: ArrayLike, significance: float = 0
 
 
 _SINGULAR = 1e-9
-
 """Smallest over largest singular value, columns of equal length, below which terms are one."""
 
 

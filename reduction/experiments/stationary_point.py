@@ -68,11 +68,9 @@ def canonical_slopes(
 
 
 _FLAT = 1e-10
-
 """Smallest over largest curvature below which a direction has none."""
 
 _HALVINGS = 100
-
 """Bisection steps of the multiplier: below the last digit of a double."""
 
 

@@ -394,7 +394,6 @@ def share_lost_per_year(
 
 
 VALUE, LOWER_BOUND, EXCLUDED = 0, 1, 2
-
 """What a value says of the line: itself, that it is at least this, nothing."""
 
 

@@ -45,11 +45,9 @@ from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
 ABOVE_LEVERAGE = 1 + 1e-9
-
 """Leverage of a point over the greatest of a tested one beyond which the runs say less. [1]."""
 
 _EDGE = 1e-9
-
 """Rounding of the change of units, by which a point on the edge may lie outside."""
 
 

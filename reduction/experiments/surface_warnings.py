@@ -117,7 +117,6 @@ def drift_over_order(surfaces: ResponseSurfaces, order: ArrayLike) -> Drift:
 
 
 _DRIFTS = 0.05
-
 """A p below this is worth a word."""
 
 

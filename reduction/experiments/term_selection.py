@@ -27,7 +27,6 @@ from reduction.record.errors import SettingsError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 
 _MOST = 50_000
-
 """Subsets that are looked at before the search is refused."""
 
 

@@ -107,7 +107,6 @@ def _steps(dataset: xr.Dataset, random: Floats) -> StepwiseResult:
 
 
 _SAME = 1e-6
-
 """Relative difference of two diameters that are one."""
 
 

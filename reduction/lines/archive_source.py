@@ -42,7 +42,6 @@ _OVER_TENSION = {
 _Parts = dict[str, Any]  # fields of `LineCurve` that say how well it is known
 
 CURVES = (*_OVER_STRAIN, *_OVER_TENSION)
-
 """Variables of a reduced test that are looked up as curves."""
 
 
@@ -140,7 +139,6 @@ def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
 
 
 _SCALES = ("log_", "box_cox_", "")
-
 """A surface on a scale that was asked for stands before the one of the quantity itself."""
 
 _TEXTS = {
@@ -153,7 +151,6 @@ _TEXTS = {
 _NUMBERS = ("diameter", "linear_density", "wet_linear_density")
 
 Facts = Mapping[str, str | float]
-
 """Fields of `LineSource` that a specimen states, by name."""
 
 

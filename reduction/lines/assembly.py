@@ -244,7 +244,6 @@ _N_NODES = 400
 _OF_CELL = ("tension_gain", "tension_offset")
 
 _APART = 1e-9
-
 """Share of the range of lengths that two nodes are apart."""
 
 
@@ -635,7 +634,6 @@ def _worst_sharing(
 
 
 _SPAN = 0.05
-
 """Share of a length to each side over which a secant is taken where no amplitude is stated."""
 
 

@@ -48,7 +48,6 @@ FORMS: dict[str, tuple[str, ...]] = {
     "orcaflex": (),
     "abaqus": (),
 }
-
 """What a format can be told, the first where nothing is said."""
 
 _WITH_OTHERS: dict[str, Callable[..., dict[str, str]]] = {

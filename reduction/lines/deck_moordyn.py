@@ -226,11 +226,9 @@ def _steps(mass: float, stiffness: float, damping: float, apart: float) -> tuple
 MoorDynForm = Literal["table", "static-dynamic", "load-dependent", "syrope"]
 
 MOST_POINTS = 30
-
 """Rows that a table of MoorDyn may have. [1]"""
 
 NUMERICAL_DAMPING = -1.0
-
 """Internal damping where none was measured, as MoorDyn takes it: share of critical. [1]"""
 
 _FAST_SHARE = 0.1

@@ -60,7 +60,6 @@ from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats, read_only_arrays
 
 ABAQUS_POINTS = 200
-
 """Rows of a table. [1]"""
 
 
@@ -99,7 +98,6 @@ def _name(line: ExportLine) -> str:
 
 
 ORCAFLEX_POINTS = 100
-
 """Rows of a table. [1]"""
 
 _PER_KILO = 1e-3
@@ -272,7 +270,6 @@ def _fitted(
 WhoiCableForm = Literal["expression", "table"]
 
 CABLE_POINTS = 100
-
 """Pairs of a table. [1]"""
 
 _GRAVITY = 9.80665

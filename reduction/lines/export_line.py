@@ -122,11 +122,9 @@ class CurveSpread:
 
 
 SEA_WATER = 1025.0
-
 """Density that turns a wet mass into a displaced volume. [kg m-3]"""
 
 FIBRE_DENSITY = {"nylon": 1140.0, "polyester": 1380.0}
-
 """By material; specific gravity of [1]_. [kg m-3]"""
 
 
@@ -324,11 +322,9 @@ def start_against(
 
 
 LIFT = 1e-6
-
 """Share of the greatest tension that is added over the curve where it does not rise. [1]"""
 
 LEAST_SHARE = 1e-3
-
 """Tension, over the greatest, below which an error counts as if it were that much. [1]"""
 
 _HALVINGS = 56

@@ -40,7 +40,6 @@ from reduction.record.plain_text import safe_cell
 CONTRIBUTION = "tension_uncertainty_contribution"
 
 SIGNED = "what one standard uncertainty of each shared error adds to the tension"
-
 """What stands where a format has a place for contributions."""
 
 
@@ -247,7 +246,6 @@ def _markdown(table: ValueTable, units: UnitSystem) -> str:
 
 
 TENSIONS = ("mean_tension", "tension_amplitude", "tension")
-
 """Levels that are shares of a break strength as well."""
 
 _OF_SUFFIX = {

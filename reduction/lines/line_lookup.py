@@ -78,15 +78,12 @@ from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
 LOADED_SHARE = 0.6
-
 """Greatest share of the break strength for a line that is always loaded. [1]"""
 
 SLACK_SHARE = 0.3
-
 """The same for a line that goes slack. [1]"""
 
 LEAST_SHARE = 0.03
-
 """Least tension over the break strength with which a line was found to keep its strength. [1]"""
 
 _SLACK = 1e-9

@@ -48,7 +48,6 @@ from reduction.record.errors import SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
 DIAMETER_TOLERANCE = 0.03
-
 """Share within which two diameters are one size: 13 mm stands for 1/2 in, 2.4 % apart. [1]"""
 
 _ROUNDING = 1e-9
@@ -135,7 +134,6 @@ _RANDOM_OF: dict[tuple[End, End], str] = {
     ("surface_low", "surface_high"): "random_standard_uncertainty",
     ("low", "high"): "run_standard_uncertainty",
 }
-
 """What is of a value alone in an interval, where that is known."""
 
 

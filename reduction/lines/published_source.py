@@ -66,7 +66,6 @@ from reduction.stages.line.slow_pull import slope_of_cubic
 from reduction.stages.strain.strain_fit import PooledMarks, fit_to_marks
 
 OF_CUBIC = {"quasi_static_strain": "strain"}
-
 """Names of cubics that are looked up by another one."""
 
 _REST = "quasi_static_spring_constant"
@@ -202,7 +201,6 @@ _FREEDOM = 5.0
 _FIRST = "ten cycles"
 
 _FEWEST = 2.0
-
 """Lines of a surface, where a table says how many: two to four. [1]"""
 
 _DESIGN = box_behnken(3).coded
@@ -400,7 +398,6 @@ def _of_segments(
 
 
 _TO_THE_POUND = scale_to_si("lbf", "force")[0] / np.sqrt(12)
-
 """Standard uncertainty of a load that is printed to the pound. [N]"""
 
 

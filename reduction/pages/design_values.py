@@ -196,7 +196,6 @@ def _errata_told(lines: Iterable[LineSource]) -> dict[str, list[str]]:
 _SURFACES = "surfaces"
 
 _STATUS = "status.csv"
-
 """That every run leaves beside its archives."""
 
 # what a file that was damaged, or made by hand, may end in
@@ -334,19 +333,16 @@ def _lines(path: Path, opener: Opener) -> list[dict[str, Any]]:
 PAGE_NAME = "design-values.html"
 
 MOST_BYTES = 2_500_000
-
 """Of the lines of campaigns on one page; of the rest it says how many archives there are."""
 
 _REPORT = "index.html"
 
 _FORMAT = 2
-
 """Of what one page keeps for the next."""
 
 _TIMES = 3
 
 _SHARES = np.append(1e-12, np.arange(1, 33) / 32)
-
 """Inverse degrees of freedom at which the page has the factor of an interval; the first is none."""
 
 _SCRIPTS = (

@@ -51,7 +51,6 @@ Group = Literal[
     "Slips",
     "Flags",
 ]
-
 """Headings, in the order of the page."""
 
 _CYCLIC = ("cyclic", "fatigue", "snap", "bedding-in")
@@ -187,7 +186,6 @@ Keys = tuple[str | int, ...]
 Value = bool | int | float | str | list[Any] | dict[str, Any]
 
 _NAMED = 2
-
 """Keys of a header that is added where a table is not there, as in ``[tests.T-1]``."""
 
 

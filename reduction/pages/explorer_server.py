@@ -30,15 +30,12 @@ from reduction.record.errors import ReductionError, SettingsError
 HOST = "127.0.0.1"
 
 MOST_BYTES = 64_000
-
 """Longest body of a request. [1]"""
 
 PATIENCE = 10.0
-
 """How long a part of a request may take to arrive, and an answer to be taken. [s]"""
 
 DEADLINE = 30.0
-
 """How long a whole request may take to arrive; each connection is of one. [s]"""
 
 MOST_AT_ONCE = 24
@@ -68,7 +65,6 @@ _HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY",
 }
-
 """Of every answer: nothing is kept, framed, guessed or told to others."""
 
 Reply = tuple[int, str, bytes]

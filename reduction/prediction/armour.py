@@ -126,7 +126,6 @@ ARMOUR_THEORIES: tuple[ArmourTheory, ...] = (
     "exact",
     "conjugate",
 )
-
 """In the order of tables: three of the report, the rod they simplify, the rod of an energy."""
 
 
@@ -624,7 +623,6 @@ def predict_armour(
 
 
 ARMOUR_QUANTITIES = ("axial_force", "shear_force", "bending_moment", "torsion_moment")
-
 """The stresses go with the axial force and the moments, and have their errors."""
 
 Reference = Literal["exact", "conjugate"]

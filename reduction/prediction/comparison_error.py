@@ -960,7 +960,6 @@ def plausibility_of_working_strain(
 
 
 LEAST_PROBABILITY = 0.05
-
 """Below this the shape of a difference is not one that the stated errors make."""
 
 _SMALLEST = 1e-3  # four thousand draws do not tell smaller ones apart
@@ -1046,7 +1045,6 @@ def verdict_words(validation: _Validation, *, unit: str = "N", factor: float = 1
 
 
 N_DRAWS = 4000
-
 """Draws of all errors that a verdict rests on: 5 % of them are 200."""
 
 _PROBABILITY = 0.95

@@ -88,7 +88,6 @@ class CordCurve:
 
 
 FEW_KNOTS = 32
-
 """Up to here a comparison with every knot is quicker than a search."""
 
 
@@ -245,7 +244,6 @@ def evaluate_into(
 
 
 MOST_STEPS = 100
-
 """Of the inverse of a cord curve; some six are usual, and halving alone needs fifty-three."""
 
 

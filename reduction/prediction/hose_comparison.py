@@ -94,7 +94,6 @@ CALIBRATED = (
     "cord_strain_scale",
     "dead_length_share",
 )
-
 """Numbers that may be fitted; diameters and the number of cords are measured or counted."""
 
 _ANGLE = np.radians(1.0)
@@ -1095,7 +1094,6 @@ def _notes(
 _STATIC = ("quasi-static", "tensile")
 
 _WAY_BACK = 0.5
-
 """Share of the stroke that a way back has, to be a branch of its own."""
 
 

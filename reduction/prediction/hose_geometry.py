@@ -78,7 +78,6 @@ from reduction.record.measurement import Bools, Floats, read_only_arrays
 Core = Literal["isochoric", "rigid"]
 
 NEUTRAL_ANGLE = atan(sqrt(2.0))
-
 """54.7356 deg: wrapped at more, a cord goes slack as a water-filled hose stretches. [rad]."""
 
 

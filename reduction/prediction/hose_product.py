@@ -31,7 +31,6 @@ HOSE_PARAMETERS = (
     "cord_strain_scale",
     "dead_length_share",
 )
-
 """Numbers of a design that may be uncertain, or calibrated; a layer diameter stands for both."""
 
 

@@ -243,7 +243,6 @@ def loads_at(
 
 
 BLOCK = 131_072
-
 """Values a block: few enough for a cache, so many that threads seldom wait for the interpreter."""
 
 

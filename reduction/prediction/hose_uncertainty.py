@@ -30,7 +30,6 @@ from reduction.record.errors import SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
 WIDTH = 2.0
-
 """Standard uncertainties on either side of a kink within which a line through it is not trusted."""
 
 

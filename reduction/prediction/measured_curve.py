@@ -50,7 +50,6 @@ BRANCHES: tuple[CurveName, CurveName] = ("ascending", "descending")
 CURVES: tuple[CurveName, ...] = (*BRANCHES, "midline")
 
 NODES_A_BIN = 40
-
 """Steps of the strains between two bin centres at which a prediction is read."""
 
 

@@ -293,11 +293,9 @@ def _refuse(bad: Bools, problem: str, values: Floats, needed: str) -> None:
 
 
 SEAWATER_VISCOSITY = 1.1892e-6
-
 """Kinematic, of standard seawater at 15 deg C ([3]_). [m2 s-1]"""
 
 GREATEST_DIAMETER_TO_LENGTH = 0.2
-
 """Above it a cylinder changes the wave, and Morison's equation does not hold ([1]_, sec. 2). [1]"""
 
 
@@ -332,7 +330,6 @@ PUBLISHED_COEFFICIENTS = (
         "Agerschou and Edens (1965)",
     ),
 )  # fmt: skip
-
 """Table 2 of [1]_; none is for a cylinder that floats."""
 
 CODE_OF_HYDROLOGY = _PublishedCoefficients(
@@ -340,7 +337,6 @@ CODE_OF_HYDROLOGY = _PublishedCoefficients(
     "settled for the sea area of China; used in all examples of the paper",
     "Code of Hydrology for Sea Harbour (1998)",
 )  # fmt: skip
-
 """Eq. (12) of [1]_: the default of a wave load."""
 
 
@@ -507,7 +503,6 @@ def flow_regime(
 VerticalWidth = Literal["submerged", "immersion depth"]
 
 SEAWATER_DENSITY = 1025.0
-
 """Table 3 of [1]_. [kg m-3]"""
 
 

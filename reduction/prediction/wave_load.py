@@ -53,7 +53,6 @@ from reduction.record.arrays import as_finite, as_positive
 from reduction.record.measurement import Floats, read_only_arrays
 
 AIR_DENSITY = 1.225
-
 """At sea level, 15 deg C ([2]_). [kg m-3]"""
 
 
@@ -200,7 +199,6 @@ def _larger_sum(steady: Floats, maximum: Floats, minimum: Floats) -> Floats:
 
 
 _LINEAR = 0.6
-
 """Share of the breaking height above which the neglected terms are no small ones."""
 
 

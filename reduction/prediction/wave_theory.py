@@ -104,7 +104,6 @@ from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Floats, read_only_arrays
 
 STANDARD_GRAVITY = 9.80665
-
 """Standard acceleration of free fall. [m s-2]"""
 
 _STEP = 1e-14  # last Newton step over the root, at most
@@ -332,11 +331,9 @@ def _check_wave_length(
 
 
 GREATEST_STEEPNESS = 0.142
-
 """Height over length of the steepest wave on deep water (Miche). [1]"""
 
 GREATEST_HEIGHT_TO_DEPTH = 0.78
-
 """Height over depth of the highest solitary wave (McCowan). [1]"""
 
 
@@ -962,7 +959,6 @@ def _printed_theory(relative_depth: float, steepness: float) -> PrintedTheory:
 
 
 GREATEST_URSELL_NUMBER = 8 * pi**2 / 3
-
 """Where Stokes' second order has a secondary crest over shallow water. [1]"""
 
 _SECONDARY_CREST = 0.25

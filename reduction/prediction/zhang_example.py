@@ -24,15 +24,12 @@ from reduction.record.errors import SettingsError
 PrintedLoad = Literal["classic", "improved"]
 
 DRAG_COEFFICIENT = 1.2
-
 """Eq. (12). [1]"""
 
 INERTIA_COEFFICIENT = 2.0
-
 """Eq. (12). [1]"""
 
 WATER_DENSITY = 1030.0
-
 """Of Tables 5-7; Table 3 prints 1.025 g/cm3, which is used for the immersion. [kg m-3]"""
 
 _WAVE_HEIGHT = 1.25  # m, Table 4

@@ -16,11 +16,9 @@ from reduction.record.measurement import Floats
 from reduction.stages.line.slow_pull import slope_of_cubic
 
 POLYNOMIAL_SCALES = np.array([1e4, 1.0, 1e-3, 1e-7])
-
 """Of A, B, C, D of Tables 6 and 7: to pounds."""
 
 CUBIC_SCALES = np.array([1e-4, 1e-4, 1e-8, 1e-12])
-
 """Of A, B, C, D of Tables 8 and 9: strain, and pounds."""
 
 
@@ -82,7 +80,6 @@ class Pages:
 
 
 Check = Callable[[Cell, Pages], Item]
-
 """Verdict on one claim of the text among all cells."""
 
 
@@ -143,7 +140,6 @@ CENTRE_LINES: dict[str, tuple[str, float, float]] = {
     NYLON_BRAIDS[2]: ("6", 5376, 2520),
     NYLON_BRAIDS[3]: ("6", 5376, 2520),
 }
-
 """Table of K_0, mean tension and amplitude at the centre [lb]; slope where K_0 has no row."""
 
 

@@ -54,7 +54,6 @@ SETTING = "a setting of the tests"
 
 PRINTED_IN = {"sec 4.3": "sec 4.4.2", "sec 4.4.2": "sec 4.3", "sec 6.3.1": "App G",
               "App G": "sec 6.3.1"}  # fmt: skip
-
 """Where a setting stands again."""
 
 
@@ -221,7 +220,6 @@ CLAIMS_OF_SETTINGS: dict[str, Check] = {
     "table of the screening design": always("Table 1 is of the nylon braids; see its erratum"),
     "section of the tensile strengths": always("there is no section 4.6; see its erratum"),
 }
-
 """By the column of the claim."""
 
 STRENGTH_OF_SPEED = {
@@ -347,7 +345,6 @@ CLAIMS_OF_PULLS: dict[str, Check] = {
     "quasi_static_strain ratio high": _strain_of_materials,
     "quasi_static_strain at 30 %RBS": _strain,
 }
-
 """By the column of the claim."""
 
 CYCLES = "abrasion_cycles"
@@ -526,7 +523,6 @@ CLAIMS_OF_TESTS: dict[str, Check] = {
     "relaxation_time mean": always("the runs of the screening are not printed"),
     "H over greatest H": always("the runs of the screening are not printed"),
 }
-
 """By the column of the claim."""
 
 CLAIMS_OF_TESTS |= {
@@ -742,5 +738,4 @@ CLAIMS_OF_STIFFNESS: dict[str, Check] = {
     TIME: _times,
     f"{TIME} passes the F test": _fails,
 }
-
 """By the column of the claim."""

@@ -14,7 +14,6 @@ from reduction.record.errors import DataError
 ReportId = Literal["WHOI-2004-06", "Zhang-2015", "WHOI-2005-10", "CG-D-39-80", "Wang-2022"]
 
 Confidence = Literal["", "certain", "high", "open"]
-
 """Of a correction; open: the page is wrong or doubtful, and nothing says what is right."""
 
 _NUMBER = re.compile(r"[-+]?(?:\d[\d,]*\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")

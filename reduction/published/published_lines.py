@@ -510,11 +510,9 @@ def published_lines() -> tuple[PublishedLine, ...]:
 
 
 _LARGEST_OF_ITS_OWN = 0.026
-
 """Lines above an inch were loaded in shares of the strength of the one of an inch. [m]"""
 
 _SAME_STRENGTH = 1.0
-
 """Difference of two strengths that are one. [N]"""
 
 

@@ -23,7 +23,6 @@ from reduction.published.reproduced_item import Item, Verdict
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 Counts = dict[str, int]
-
 """``cells``, then one number a verdict."""
 
 _ITEMS: Mapping[ReportId, Callable[[], list[Item]]] = {

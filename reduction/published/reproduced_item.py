@@ -271,7 +271,6 @@ def judge_word(cell: Cell, recomputed: float, how: str, *, step: float = 1.0) ->
 _ROUND_OFF = 1e-9
 
 Key = tuple[str, str, str]
-
 """Table, row and column of a cell."""
 
 
@@ -301,7 +300,6 @@ class Answer:
 
 
 Answers = dict[Key, Answer | str]
-
 """By cell; a text says why nothing in the report determines it."""
 
 

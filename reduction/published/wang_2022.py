@@ -27,7 +27,6 @@ from reduction.published.reproduced_item import Answer, Answers, Item, items_fro
 from reduction.record.measurement import Floats
 
 ELASTIC_MODULUS, POISSON_RATIO = 210_000e6, 0.3
-
 """Table 1; the modulus in [Pa]."""
 
 _WIRE, _STRAIN = 2.5e-3, 1e-3  # sections 4.1 and 4.2
@@ -218,7 +217,6 @@ _AXIAL, _SHEAR, _BENDING_CLAIM, _TORSION_CLAIM = (
 _UMBILICAL, _PIPE, _HOSE = "umbilical", "flexible pipe", "cryogenic hose"
 
 _NAMED = {_UMBILICAL: (20.0, 0.36, 50.51), _PIPE: (30.0, 0.62, 67.62), _HOSE: (80.0, 0.72, 8.44)}
-
 """Angle [deg], increase of the normal stress and decrease of the shear stress [%]."""
 
 _FINE = np.arange(10.0, 80.001, 0.02)

@@ -40,19 +40,15 @@ from reduction.published.reproduced_item import Answer, Answers, Item, items_fro
 from reduction.record.measurement import Floats
 
 LENGTH, PERIOD, SPEED, HEIGHT = 20.0, 3.57, 5.6, 1.25
-
 """Table 4. [m], [s], [m/s], [m]."""
 
 NUMBER, FREQUENCY = 2 * pi / LENGTH, 2 * pi / PERIOD
-
 """Of the wave in space [rad/m], and in time [rad/s]; Table 4 prints 1.93 for the latter."""
 
 DEPTH = 6.0
-
 """Of the example of the Airy theory. [m]."""
 
 GRAVITY = 9.8
-
 """Not printed. [m/s2]."""
 
 
@@ -256,7 +252,6 @@ _HOSE = {
     "wall_density": 1.25,
     "content_density": 0.83,
 }
-
 """Table 3, in millimetres and g/cm3."""
 
 _SYMBOLS = {

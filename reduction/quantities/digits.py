@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import isfinite
 
 _LOW, _HIGH, _HIGHEST = 1e-4, 1e7, 1e9
-
 """Where a number has no power of ten; to the third where it ends by its uncertainty."""
 
 _MOST_PLACES = 12

@@ -828,13 +828,11 @@ RESPONSES = (
     "loss_factor",
     "dashpot_coefficient",
 )
-
 """What a response surface can be of."""
 
 SCALES = {"log_": "logarithm of {}", "box_cox_": "Box-Cox transform of {}"}
 
 SURFACE_NAMES = (*RESPONSES, *(f"{scale}{name}" for scale in SCALES for name in RESPONSES))
-
 """Names of surfaces: of a response, or of its transform, which has no unit."""
 
 RESPONSE_PATTERNS = (
@@ -1210,7 +1208,6 @@ SINGLE_QUANTITIES = {
         *OF_COMPARISONS, *OF_CATALOGUE,
     )
 }  # fmt: skip
-
 """Names that stand for themselves."""
 
 
@@ -1241,7 +1238,6 @@ def _of_responses() -> Iterator[_Quantity]:
 
 
 QUANTITIES = SINGLE_QUANTITIES | {row.name: row for row in _of_responses()}
-
 """Every name that may stand in a product or a table."""
 
 

@@ -82,7 +82,6 @@ OF_MATLAB_ALONE = (
     "A table or timetable can be read by MATLAB alone: save it as a struct of columns, "
     "table2struct(T, 'ToScalar', true)."
 )
-
 """What to do about an object of one of MATLAB's own classes."""
 
 _COMPLEX = "complex numbers"

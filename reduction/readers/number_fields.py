@@ -209,7 +209,6 @@ def _second_look(
 
 
 AT_A_TIME = 2
-
 """Parts whose numbers are read together. [1]."""
 
 _WORKERS = 4

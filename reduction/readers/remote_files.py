@@ -21,11 +21,9 @@ PACKAGES = {
     "s3": "s3fs", "gs": "gcsfs", "gcs": "gcsfs", "abfs": "adlfs", "az": "adlfs",
     "http": "aiohttp", "https": "aiohttp", "sftp": "paramiko",
 }  # fmt: skip
-
 """Beginnings of addresses that are fetched, and the package that speaks to each."""
 
 Fault = Callable[..., ReductionError]
-
 """An error of a place and a problem: `LogError`, or `product_fault`."""
 
 # what tells two states of a file apart, as far as a file system says it; the surest first

@@ -585,7 +585,6 @@ _LONGEST_NAME = 1000
 _PART = 1 << 20  # rows that are loaded at a time
 
 Candidate = tuple[dict[str, object], ColumnTable]
-
 """Layout settings and the table that they read."""
 
 

@@ -29,7 +29,6 @@ from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats, Integers, read_only_arrays
 
 LINE_METHODS = {"not_given": 0, "linear": 1, "monte_carlo": 2}
-
 """How the uncertainty of a line was found, by its code in `LineSpread`."""
 
 
@@ -191,7 +190,6 @@ class LineSpread:
 CONFIDENCE = 0.95
 
 _FEWEST, _MANY = 1.0, 1e9
-
 """Degrees of freedom below which none are counted, and above which Student's is the normal."""
 
 

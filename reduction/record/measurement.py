@@ -46,7 +46,6 @@ class Quality(IntFlag):
 
 # of the width of a flag, lest a sum with it is wider
 UNUSABLE = np.uint16(Quality.MISSING | Quality.SATURATED | Quality.STUCK | Quality.SPIKE)
-
 """Flags of samples that no number may rest on."""
 
 

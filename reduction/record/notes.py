@@ -13,7 +13,6 @@ from typing import Literal
 Severity = Literal["doubt", "refusal", "note", "method"]
 
 SEVERITIES: tuple[Severity, ...] = ("doubt", "refusal", "note", "method")
-
 """Most serious first."""
 
 # what was done, as it is done in every test of its kind: no reason to look again

@@ -300,7 +300,6 @@ def _no_space(folder: Path, n_bytes: int, why: str | None) -> DataError:
 
 
 BLOCK = 1 << 16
-
 """Samples of a block, which stay in the cache. [1]."""
 
 _SPAN = 1 << 20  # samples of a stretch; each one touched may bring 2 MB of its file into memory
@@ -458,7 +457,6 @@ def join_columns(parts: Sequence[NDArray[Any]]) -> NDArray[Any]:
 
 
 Where = Callable[[slice], NDArray[np.bool_]]
-
 """Of a slice of samples: for which of them it is true."""
 
 

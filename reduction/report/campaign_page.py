@@ -53,17 +53,14 @@ from reduction.report.test_view import (
 )
 
 MOST_BYTES = 9_000_000
-
 """Of the sections on a page: with the program that draws (4.9 MB) it stays below 15 MB. [1]"""
 
 MOST_IN_ALL = 14_500_000
-
 """Of a page with all that stands on it. [1]"""
 
 _NAME = "tests-{:02}.html"
 
 _OWN = re.compile(r"tests-\d{2,}\.html")
-
 """Names that are given here: a page of somebody else beside them stays."""
 
 

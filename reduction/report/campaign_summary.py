@@ -49,7 +49,6 @@ _NO_TEST = (
 )
 
 _MOST_NAMES = 200
-
 """Characters of the list of specimens under the title."""
 
 # an archive counts the holds of each specimen apart, the page goes by time

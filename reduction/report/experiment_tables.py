@@ -74,11 +74,9 @@ _OF_RUNS = "scatter of the runs about the surface"
 _ONE_LINE = "that one line was tested"
 
 NOT_OF_RUNS = "what all runs share: calibration, gauge length, the one line that was tested"
-
 """What no scatter of runs has in it."""
 
 _LARGE = 1e9
-
 """From here on a column of squares has powers of ten in every row, not in some."""
 
 _ON_SCALE = {"log": ", by its logarithm", "box-cox": ", by its Box-Cox transform"}

@@ -27,7 +27,6 @@ _DIGITS = 6
 _TITLE_LENGTH = 60
 
 _SMALLEST_EVEN, _LARGEST_EVEN = 1e-7, 1e22
-
 """Between these the power of ten that leaves up to 12 digits before the point is exact."""
 
 
@@ -210,7 +209,6 @@ def make_figure(
 
 
 POINTS = 2000
-
 """Most points of one trace; a screen has fewer columns than that."""
 
 

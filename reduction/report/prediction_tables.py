@@ -40,7 +40,6 @@ from reduction.report.text_style import (
 )
 
 _ROWS = 24
-
 """Of the curve of a hose on the page, about; the archive has them all."""
 
 _K = factor_words([NORMAL])

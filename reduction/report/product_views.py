@@ -41,7 +41,6 @@ SOURCE_WORDS = {
     "cord_strain_scale": "strain of the cord curve",
     "dead_length_share": "share of dead length",
 }
-
 """What a number of a design is called where its name does not say it."""
 
 
@@ -378,7 +377,6 @@ FORM_WORDS = {
     "mean-load": "mean load",
     "quadratic": "quadratic surface",
 }
-
 """Names of the forms of stiffness on the page."""
 
 _STRAINS = ("mean_strain", "strain_amplitude")

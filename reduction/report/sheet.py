@@ -41,7 +41,6 @@ from reduction.report.text_style import (
 Unit = Kind | Shown | None
 
 Source = str | Iterable[Any]
-
 """Name of a variable, or what stands in the rows."""
 
 

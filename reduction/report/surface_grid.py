@@ -21,17 +21,14 @@ from reduction.report.text_style import in_order
 from reduction.uncertainty.surface_errors import with_shared_at_points
 
 POINTS = 31
-
 """Points along each side of a plane: finer is not seen, and makes the page heavy."""
 
 HELD = (-1.0, 0.0, 1.0)
-
 """Coded levels of the held factor, one plane each. [1]"""
 
 _MOST_POINTS = 20000
 
 _NEAR = 0.5
-
 """A run belongs to a plane where its held factor is nearer to it than to the next one. [1]"""
 
 

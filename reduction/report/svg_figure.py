@@ -262,7 +262,6 @@ _LEGEND_ROW, _LEGEND_KEY, _LETTER = 15.0, 34.0, 5.9
 _FEWEST_LETTERS = 4
 
 _BEYOND = 10.0
-
 """By how much the title of an axis may be longer than the axis."""
 
 _TICK_SPACE = (74.0, 34.0)

@@ -48,7 +48,6 @@ from reduction.report.test_view import TestView
 from reduction.report.text_style import Table
 
 MOST = 4000
-
 """Most cycles of a test that a reader can choose from; a page has to stay small."""
 
 _DIGITS = 9

@@ -45,7 +45,6 @@ from reduction.stages.line.line_product import REASONS
 from reduction.stages.moduli.local_regression import curve_at
 
 STEPS = (0.25, 0.05, 0.01)
-
 """Strain from row to row: the first that a test of the campaign reaches; a rope is stiff. [1]"""
 
 _MEANS: tuple[tuple[str, str, Unit], ...] = (

@@ -43,7 +43,6 @@ from reduction.report.text_style import (
 )
 
 OF_NO_TEST = "of_no_test"
-
 """Status of an archive that status.csv has no row for: the campaign has no such test now."""
 
 _REACHED = ("mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude")
@@ -322,7 +321,6 @@ DRAWN = (
 )
 
 MANY = np.inf
-
 """Degrees of freedom of a regression on hundreds of samples, and of what is taken as known."""
 
 _CYCLES = "scatter between cycles, noise, regression"
@@ -368,7 +366,6 @@ def expand(
 
 
 NORMAL = float(expand(1.0).factor)
-
 """Coverage factor of what is taken as known, or has hundreds of samples behind it. [1]"""
 
 

@@ -41,7 +41,6 @@ Kind = Literal[
     "time", "length", "small length", "tension", "strain", "stress", "energy", "area", "frequency",
     "number",
 ]  # fmt: skip
-
 """What an axis or a column shows; a diameter is a small length and is not shown in feet."""
 
 _SI_UNIT: dict[Kind, str] = {
@@ -233,7 +232,6 @@ _LEAST_PROBABILITY = 1e-4
 _MISSING = 1e-3
 
 _NOISE = 1e-12
-
 """A sum of numbers of order one that ought to vanish ends at 1e-16 or so, in percent at 1e-14."""
 
 
@@ -496,7 +494,6 @@ _UNKNOWN = (_GREY, "x")
 FROM_READINGS = frozenset(
     {"strain_calibration", "splice_method", "quasi_static_fit", "gauge_length"}
 )
-
 """Sources that follow from readings of the tests, not from what is stated of the instruments."""
 
 _MEANINGS = {

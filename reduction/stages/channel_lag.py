@@ -47,7 +47,6 @@ LAG_REFUSALS = {
     "turns_not_sharp": 3,
     "early_as_damping_makes_it": 4,
 }
-
 """Why there is no lag, by its code in `LagEstimate`."""
 
 _SHARE = 0.45  # of a ramp, on either side of a turn

@@ -31,7 +31,6 @@ from reduction.record.contributions import (
 _ROUNDING = 1e-9
 
 RANDOM = "random"
-
 """Source of what is not shared: scatter, noise, regression."""
 
 

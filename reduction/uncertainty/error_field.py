@@ -66,11 +66,9 @@ from reduction.stages.strain.strain_model import (
 ROWS = (
     "tension", "strain", "tension_slope", "strain_slope", "strain_slope_over_tension",
 )  # fmt: skip
-
 """Arrays of one error, in the order of the first axis of `_field_rows`."""
 
 FieldPart = tuple[Component, Floats]
-
 """An error and its rows."""
 
 _STEP = 1e-4  # of the strain 1, and of the tension: for the slopes of the field

@@ -55,11 +55,9 @@ from reduction.stages.line.line_product import LineParameters
 from reduction.stages.reduced_test import ReducedTest
 
 PARAMETERS = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
-
 """K_1, tau and N = K_1 tau, in the order of the arrays of `_LineDraws`."""
 
 N_DRAWS = 20_000
-
 """Draws: a standard deviation is then known to 0.5 %."""
 
 _SEED = 20080

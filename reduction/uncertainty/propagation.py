@@ -808,7 +808,6 @@ def line_contributions(
 
 
 _LAG_SHAPE = {"sinusoidal": 2 * np.pi**2, "triangular": 16.0, "other": 16.0}
-
 """Integral of tension rate over strain, by f T_a eps_a: of a sine, and of straight ramps."""
 
 

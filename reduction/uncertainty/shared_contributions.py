@@ -87,7 +87,6 @@ _DYNAMIC = {
     "dynamic_mean_tension": "mean_tension",
     "dynamic_tension_amplitude": "tension_amplitude",
 }
-
 """Means over the last cycles of a step, and the quantity of a cycle that they are of."""
 
 _OF_TREND = ("peak_tension", "apparent_spring_constant")

@@ -1,5 +1,3 @@
-import time
-
 import numpy as np
 import pytest
 from measured_hoses import Truth
@@ -218,14 +216,6 @@ def test_more_than_a_thousand_cycles_are_kept_as_means_of_consecutive_ones():
     k = np.searchsorted(curve.strain, 0.4999)
     assert curve.tension[1, 0, k] == pytest.approx(55, abs=0.5)  # cycles 4, 5, 6
     assert "pools 3 consecutive cycles" in curve.notes[0]
-
-
-def test_a_million_samples_take_less_than_two_seconds():
-    strain, branch, number = strokes(500, 2000)
-    tension = 100 * strain
-    start = time.perf_counter()
-    measured_curve(strain, tension, loading="static", cycle_number=number, branch=branch)
-    assert time.perf_counter() - start < 2
 
 
 def test_end_bins_are_not_extrapolated():

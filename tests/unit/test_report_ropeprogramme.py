@@ -197,13 +197,3 @@ def test_a_property_that_knows_its_instruments_says_so_and_has_the_factor_of_bot
     assert texts(property_table(view))[0][3] == "1,000,000 ± 1,800"
     assert property_table(view).remarks[-1].endswith("what all samples share: tension gain.")
     assert "load-cell calibration" in property_table(ropes[0]).remarks[-1]
-
-
-def test_an_archive_that_does_not_say_its_degrees_of_freedom_counts_as_of_many_samples():
-    older = dataset().drop_vars(
-        [f"property_{name}_degrees_of_freedom"
-         for name in ("stiffness", "stiffness_over_strength", "strain")]
-    )  # fmt: skip
-    first, _ = view_ropes(older, {}, "si")
-    by_name = [row[3] for row in texts(property_table(first)) if row[0] == "dynamic stiffness"]
-    assert by_name[0] == "1,000,000 ± 1,800"

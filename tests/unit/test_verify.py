@@ -98,8 +98,12 @@ def test_a_bit_that_is_turned_over_in_a_raw_file_is_found(place, at, without_tab
 def test_a_bit_that_is_turned_over_in_a_value_is_found(place, name, without_tables):
     path = place / "processed" / NAME / "T-1.nc"
     with h5py.File(path) as file:
-        chunk = file[name].id.get_chunk_info(0)
-    flip(path, (chunk.byte_offset + chunk.size // 2) / path.stat().st_size)
+        values = file[name].id
+        offset, size = values.get_offset(), values.get_storage_size()
+        if offset is None:  # in chunks
+            chunk = values.get_chunk_info(0)
+            offset, size = chunk.byte_offset, chunk.size
+    flip(path, (offset + size // 2) / path.stat().st_size)
     assert kinds(verified(place)) == [("T-1.nc", "damaged")]
 
 

@@ -15,7 +15,6 @@ from reduction.report.text_style import bar_look, is_hatched, source_words
 _HATCHED = " Hatched: of the same thing as the plain bar of that colour."
 
 _PER_LINE, _AROUND = 17, 110
-
 """Height of a line of the words of a bar, and of title and axis. [px]"""
 
 

@@ -40,7 +40,6 @@ from reduction.report.text_style import (
 )
 
 _CYCLES_OF = ", cycles "
-
 """Between specimen and cycles, in the name of what a ratio is of."""
 
 

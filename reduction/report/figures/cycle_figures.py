@@ -116,15 +116,12 @@ def _chord(strain: Floats, load: Floats) -> tuple[float, float]:
 
 
 LONG = 100
-
 """More cycles than this are drawn against the logarithm of their number."""
 
 _UNDER_LABELS = 0.85
-
 """Height of the axes where the steps of a splice are named above them."""
 
 _ROWS = (0.9, 0.97)
-
 """Heights of their names, so that two steps close together can be read."""
 
 _PANELS: tuple[tuple[str, str, Kind, tuple[tuple[str, str], ...]], ...] = (

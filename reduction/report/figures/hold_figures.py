@@ -30,7 +30,6 @@ from reduction.stages.holds.prony_series import prony_tension
 FIT_POINTS = 120
 
 _FIT = COLOURS[6]
-
 """Of a fit upon any colour, on white and on black."""
 
 

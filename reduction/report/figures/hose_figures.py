@@ -123,17 +123,14 @@ def _kept_figure(figure: Figure) -> list[Figure]:
 
 
 _FAMILY = (45.0, 50.0, float(np.degrees(NEUTRAL_ANGLE)), 58.0, 61.0, 64.0, 66.0, 68.0, 70.0, 72.0)
-
 """Wrap angles of the chart. [deg]"""
 
 _AS_OWN = 0.75
-
 """A line of the chart nearer than this to that of the hose is not drawn. [deg]"""
 
 _POINTS = 201
 
 _NEAR = 1.25
-
 """Cords within so many of their diameters of each other are worth a figure."""
 
 _WHERE = {"working": "the hose works", "cord_break": "it breaks"}
@@ -235,7 +232,6 @@ def _labelled(x: Floats, y: Floats, angle: float) -> Trace:
 
 
 _LEAST_SHARE = 2.0
-
 """A source that never has so much of the variance stands with the others. [%]"""
 
 _MOST_SOURCES = 6
@@ -412,7 +408,6 @@ _PREDICTED, _MEASURED, _CALIBRATED, _GREY = COLOURS[0], COLOURS[1], COLOURS[2], 
 _EVENT_SYMBOLS = {"pick_up": SYMBOLS[2], "working": SYMBOLS[0], "break": SYMBOLS[5]}
 
 _LEAST_TENSION = 0.05
-
 """Share of the greatest measured tension below which no difference is given relative to it."""
 
 _NEAR_THE_END = 0.8

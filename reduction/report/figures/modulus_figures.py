@@ -199,7 +199,6 @@ def _modulus_axis(mean: Floats, upper: Floats, in_stress: Shown) -> dict[str, ob
 FIT_POINTS = 60
 
 LEAST_STRAIN = 0.05
-
 """Below this the reduced stress is a small number over a small number. [1]"""
 
 _NAMES = {
@@ -281,7 +280,6 @@ def _parameters(view: TestView, fit: int) -> dict[str, float]:
 
 
 OF_STEPS = "scatter of the readings of length, and of weight where that is stated"
-
 """What a number of a stepwise test has for itself: there are readings and no cycles."""
 
 _TINTS = {"ascending": COLOURS[0], "descending": COLOURS[1]}

@@ -45,11 +45,9 @@ FLAG_POINTS = 400
 WHOLE_CYCLES = 8
 
 DENSE = 300
-
 """More cycles than this cannot be told apart on the width of a page."""
 
 LONG_RECORD = 7200.0
-
 """A longer record is shown in hours. [s]"""
 
 SECONDS_IN_AN_HOUR = 3600.0

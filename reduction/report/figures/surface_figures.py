@@ -41,7 +41,6 @@ from reduction.report.text_style import (
 )
 
 _SCALE = [[0.0, "#e4eef6"], [0.5, "#97c4e3"], [1.0, "#3a8fc8"]]
-
 """Light enough everywhere for dark labels upon it."""
 
 _INK, _GREY = "#1b1f23", "#8C8C8C"
@@ -266,7 +265,6 @@ def _thin_region(x: Floats, y: Floats, ratio: Floats) -> Trace:
 _CUBE_GREY = "#8C8C8C"
 
 _DEPTH = (0.46, 0.34)
-
 """By which the back of the cube is shifted right and up."""
 
 
@@ -457,7 +455,6 @@ def draw_pareto(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
 
 
 _WIDE = 50.0
-
 """Largest over critical |t| from which small terms need a logarithmic axis to be seen."""
 
 

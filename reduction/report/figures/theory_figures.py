@@ -51,13 +51,11 @@ _WORDS = {
 }
 
 _DRAWN: tuple[ArmourTheory, ...] = ("exact", "conjugate", "small", "intermediate", "large")
-
 """Those that nearly agree lie dashed on the exact one."""
 
 _MARGIN = 0.35
 
 _LEAST_ERROR, _MOST_ERROR = -3.0, 3.0
-
 """Powers of ten of a percent that are drawn."""
 
 _ABOUT = {

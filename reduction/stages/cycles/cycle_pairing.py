@@ -111,7 +111,6 @@ def _longest_row(true: Bools) -> Indices:
 
 
 DIFFERENT = 0.3
-
 """Share by which ranges of neighbouring half cycles may differ. [1]."""
 
 _STANDING = 0.04  # of a half cycle: movement in its first tenth of one that begins standing

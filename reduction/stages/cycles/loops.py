@@ -56,7 +56,6 @@ MEASURED = (
     "force_mean", "strain_cosine", "strain_sine", "strain_mean", "force_end", "strain_end",
     "force_rise", "force_turn", "force_fall", "strain_rise", "strain_turn", "strain_fall",
 )  # fmt: skip
-
 """What is summed over the samples of a cycle, in this order."""
 
 

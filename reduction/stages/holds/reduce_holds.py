@@ -254,7 +254,6 @@ def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[st
 
 
 _LOOKED_BACK = 1 << 16
-
 """Samples before a hold in which its ramp is looked for at first: many cycles may lie between two
 holds."""
 

@@ -55,17 +55,14 @@ PROPERTY_NAMES: tuple[PropertyName, ...] = (
     "polymer strain",
     "working strain",
 )
-
 """In the order of the abstract."""
 
 _NAN = float("nan")
 
 MANY = float("inf")
-
 """Degrees of freedom of a regression on many samples. [1]"""
 
 RISE_GAP = 1.5
-
 """Strains of a rise further apart than this, over the grid's spacing, have a gap between them."""
 
 

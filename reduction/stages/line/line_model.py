@@ -310,21 +310,18 @@ OUTPUTS = (
     "storage_spring_constant", "loss_spring_constant", "dissipation_spring_constant",
     "relaxation_time", "dashpot_coefficient",
 )  # fmt: skip
-
 """Rows of both matrices."""
 
 FUNDAMENTAL_INPUTS = (
     "storage_spring_constant", "loss_spring_constant", "frequency",
     "quasi_static_spring_constant",
 )  # fmt: skip
-
 """Columns of `line_sensitivities`."""
 
 AMPLITUDE_INPUTS = (
     "apparent_spring_constant", "hysteresis_energy", "tension_amplitude", "frequency",
     "quasi_static_spring_constant",
 )  # fmt: skip
-
 """Columns of `amplitude_sensitivities`."""
 
 

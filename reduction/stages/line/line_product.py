@@ -30,7 +30,6 @@ REASONS: dict[int, str] = {
     5: "the loop is too wide: the loss spring constant reaches the apparent one",
     6: "the storage spring constant does not exceed the quasi-static one",
 }
-
 """Why a line has no K_1 and tau; the first that holds, in the order 3, 4, 5, 1, 2, 6."""
 
 

@@ -132,7 +132,6 @@ def _find_loading(
 
 
 BREAK_SHARES = (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5)
-
 """Shares of the rated break strength at which the strain of a pull is given. [1]"""
 
 _GRID_STEPS = 40
@@ -177,7 +176,6 @@ def tension_grid(pulls: Sequence[SlowPull | None]) -> Floats:
 
 
 N_BLOCKS = 100
-
 """Steps of tension between the ends of a pull. [1]."""
 
 # degree that a load-strain curve may ask for beyond the cubic, and blocks that it needs

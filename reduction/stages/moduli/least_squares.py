@@ -38,15 +38,12 @@ from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
 Basis = Callable[[Floats], tuple[Floats, Floats]]
-
 """From shapes to columns, and to what each of the last columns changes by with its own shape."""
 
 NEAR = 1e-10
-
 """Steps of the search, relative to the shapes, at which it ends."""
 
 ALIKE = 1e-9
-
 """Sums of squares that differ by less, relatively, count as one."""
 
 FIRST_DAMPING = 1e-3

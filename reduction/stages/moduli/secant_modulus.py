@@ -330,7 +330,6 @@ def summarise_amplitude(
 _CONFIDENCE = 0.95
 
 _MANY = 1e9
-
 """Degrees of freedom of hundreds of samples."""
 
 _TYPE_A = (

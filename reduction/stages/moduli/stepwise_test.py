@@ -22,7 +22,6 @@ from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, StepReadings, read_only_arrays
 
 STRAIN_DIGIT = 0.01
-
 """A recorded elongation is a whole per cent; readings that differ by less agree. [1]"""
 
 _ASCENDING, _DESCENDING = 1, 2

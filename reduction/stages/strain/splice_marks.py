@@ -44,7 +44,6 @@ from reduction.record.measurement import Floats, SpliceMarks, read_only_arrays
 from reduction.stages.standstills import Standstills
 
 LEVEL = 0.005
-
 """Chance at which sound marks are taken to scatter too much. [1]"""
 
 _CONFIDENCE = 0.975  # of one side of a 95 % interval
@@ -621,12 +620,10 @@ def _root(covariance: Floats) -> Floats:
 
 
 EXPONENT_BOUNDS = (0.3, 1.9)
-
 """Exponents between which a splice law is looked for: a friction-locked splice
 stiffens with tension (below 1), one that beds in and then slides softens (above 1)."""
 
 HELD_EXPONENT = 1.0
-
 """Exponent where the marks do not fix one: splices that strain in proportion to tension."""
 
 _POLISHING_STEPS = 30

@@ -39,7 +39,6 @@ from reduction.stages.strain.splice_marks import (
 from reduction.stages.strain.strain_model import StrainModel, free_length_fraction, strain_by_model
 
 TENSION_SPAN = 2.0
-
 """Marks must span this factor in tension before an exponent is fitted to them. [1]"""
 
 # an exponent less certain than this says nothing that a straight line does not
