@@ -352,6 +352,20 @@ def archives_in(folder: Path) -> list[Path]:
     return [folder / name for name in sorted(names) if name.endswith(".nc")]
 
 
+def processed_folders(processed: Path) -> list[Path]:
+    """Folders with archives: the one that is given, or those in it."""
+    inside = sorted(processed.iterdir()) if processed.is_dir() else []
+    folders = [processed] if archives_in(processed) else [one for one in inside if one.is_dir()]
+    folders = [folder for folder in folders if archives_in(folder)]
+    if not folders:
+        raise ArchiveError(
+            f"{processed}: no archive was found",
+            needed="a folder processed/CAMPAIGN with *.nc in it",
+            hint="`reduction run CAMPAIGN.toml` makes one.",
+        )
+    return folders
+
+
 def archives_of_tests(folder: Path) -> list[Path]:
     """Archives of reduced tests in a folder, by name; `OSError` where the system refuses it."""
     return [path for path in archives_in(folder) if path.stem not in OF_CAMPAIGN]

@@ -18,7 +18,8 @@ from reduction.archive.uncertainty_budget import (
 )
 from reduction.archive.variables import stored
 from reduction.cli.lookup import name_of_quantity
-from reduction.cli.output import CommandOutput, plain, short, table_of
+from reduction.cli.output import CommandOutput
+from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.record.contributions import LINE_METHODS
 from reduction.record.errors import SettingsError

@@ -19,14 +19,14 @@ from rich.markup import escape
 from rich.table import Table
 
 from reduction.archive.atomic_write import whole_file
-from reduction.archive.open import Opener, read_once, reading
+from reduction.archive.open import Opener, processed_folders, read_once, reading
 from reduction.batch.campaign_status import PartStatus, TestStatus
 from reduction.batch.experiment_product import experiments_found
 from reduction.batch.other_products import results_found
 from reduction.batch.requested_products import check_campaign as check_tests
 from reduction.batch.run_campaign import run_campaign as run_tests
 from reduction.campaign.plan import Campaign
-from reduction.cli.output import CommandOutput, processed_folders
+from reduction.cli.output import CommandOutput
 from reduction.cli.progress import campaign_progress, chosen_workers
 from reduction.pages.design_values import PAGE_NAME, write_design_page
 from reduction.quantities.units import UnitSystem, display_unit

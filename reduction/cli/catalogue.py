@@ -24,7 +24,8 @@ from reduction.batch.catalogue import (
     unit_of,
     write_answer,
 )
-from reduction.cli.output import CommandOutput, plain, plain_table, short, table_of
+from reduction.cli.output import CommandOutput, plain_table
+from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.quantities.names import QUANTITIES
 from reduction.quantities.units import UnitSystem, display_unit
 

@@ -13,7 +13,8 @@ import xarray as xr
 from reduction.archive.open import archives_of_tests, failing_reads, open_archive
 from reduction.campaign.assembly_spec import AssemblyCase, load_assembly_case
 from reduction.campaign.toml_file import in_toml
-from reduction.cli.output import CommandOutput, plain, short, table_of
+from reduction.cli.output import CommandOutput
+from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.lines.archive_pieces import source_of_tests, specimens_of
 from reduction.lines.assembly import DeployedLine, WorkingState, deploy, stated_model
 from reduction.lines.composite import CompositeCurve, PieceSource, compose, used_of

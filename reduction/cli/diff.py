@@ -18,7 +18,8 @@ from rich.markup import escape
 
 import reduction
 from reduction.archive.product_differences import Change, Differences, differences_between
-from reduction.cli.output import CommandOutput, short, table_of, within
+from reduction.cli.output import CommandOutput
+from reduction.cli.printed_numbers import short, table_of, within
 from reduction.cli.progress import campaign_progress
 from reduction.cli.remote_paths import in_order
 from reduction.quantities.units import UnitSystem, display_unit

@@ -11,7 +11,8 @@ from rich.markup import escape
 from reduction.archive.csv_columns import csv_text
 from reduction.archive.write import write_whole
 from reduction.campaign.experiment_plans import ExperimentSpec, RunSeries, load_spec, read_runs
-from reduction.cli.output import CommandOutput, Shown, fitted_unit, plain, short, table_of
+from reduction.cli.output import CommandOutput
+from reduction.cli.printed_numbers import Shown, fitted_unit, plain, short, table_of
 from reduction.experiments.designs import Design, DesignKind, box_behnken, plackett_burman
 from reduction.experiments.fit_results import (
     FIT_REASONS,

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any, Literal, cast
 
 from reduction.cli.curves import deployed_line, is_of_pieces, piece_source, rule_of
-from reduction.cli.output import CommandOutput, plain
+from reduction.cli.output import CommandOutput
+from reduction.cli.printed_numbers import plain
 from reduction.lines.composite import compose
 from reduction.lines.deck_formats import closeness_of, export_line
 from reduction.lines.deck_moordyn import fast_damping, segment_length

@@ -11,7 +11,8 @@ from typing import Any, Literal, cast
 import numpy as np
 from rich.table import Table
 
-from reduction.cli.output import CommandOutput, as_given, plain, short, table_of, within
+from reduction.cli.output import CommandOutput
+from reduction.cli.printed_numbers import as_given, plain, short, table_of, within
 from reduction.lines.archive_source import archives_of_lines, lines_of_archive, told_apart
 from reduction.lines.deck_formats import export_table
 from reduction.lines.export_tables import (

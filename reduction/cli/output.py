@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json as json_module
-import math
 import os
 import sys
 import textwrap
@@ -11,25 +10,18 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any, TextIO
+from typing import TextIO
 
-import numpy as np
 import typer
-from numpy.typing import ArrayLike
 from rich.cells import cell_len
 from rich.console import Console
-from rich.markup import escape
 from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
-from reduction.archive.open import archives_in
 from reduction.cli.usage import grouped
-from reduction.quantities.digits import fixed_number, places_within, plain_number
-from reduction.quantities.units import UnitSystem, combined_unit, display_unit
 from reduction.readers.remote_files import in_words
-from reduction.record.errors import ArchiveError, ReductionError, SettingsError, refused_by_system
+from reduction.record.errors import ReductionError, SettingsError, refused_by_system
 from reduction.record.plain_text import visible, without_secrets
 
 NOTHING = "-"
@@ -240,89 +232,3 @@ def _say_defect(output: CommandOutput, error: Exception) -> None:
         "Set REDUCTION_DEBUG=1 to see where, and please report it."
     )
     output.raise_status(1)
-
-
-_LARGE, _HUGE = 1e5, 1e7
-
-
-def fitted_unit(unit: str, transform: str) -> str:
-    """Unit of the coefficients of a response; empty where none is stated."""
-    names = {"none": unit, "log": f"ln({unit})"}
-    return names.get(transform, f"Box-Cox({unit})") if unit else ""
-
-
-class Shown:
-    """Units of a response and of its factors, as they are shown."""
-
-    def __init__(
-        self, response: str, transform: str, factors: tuple[str, ...], system: UnitSystem
-    ) -> None:
-        # a logarithm has no unit that could be changed
-        self.unit, self.scale = display_unit(
-            fitted_unit(response, transform), system if transform == "none" else "si"
-        )
-        self._factors = [display_unit(unit, system) for unit in factors]
-
-    def of_term(self, powers: tuple[int, ...]) -> tuple[str, float]:
-        """Unit of an engineering coefficient and what it is multiplied with."""
-        units = [unit for unit, _ in self._factors]
-        scales = [scale for _, scale in self._factors]
-        scale = math.prod(one**power for one, power in zip(scales, powers, strict=True))
-        return combined_unit(self.unit, units, powers), self.scale / scale
-
-
-def plain(values: ArrayLike) -> Any:
-    """Numbers for JSON, nested as they are; None where there is no finite one."""
-    array = np.asarray(values)
-    if array.ndim:
-        return [plain(entry) for entry in array]
-    number = array.item()
-    return None if isinstance(number, float) and not math.isfinite(number) else number
-
-
-def short(value: float, digits: int = 5) -> str:
-    """A number for a table; a dash where there is none."""
-    return plain_number(value, digits) if math.isfinite(value) else "-"
-
-
-def as_given(value: float) -> str:
-    """A level for a table: of a large one no digit before the point is lost."""
-    return f"{value:.0f}" if _LARGE <= abs(value) < _HUGE else short(value)
-
-
-def within(value: float, *halves: float) -> str:
-    """A number that is known within half widths of intervals, to two digits of the narrowest.
-
-    Examples
-    --------
-    >>> within(280991.3, 2100.0), within(280991.3, float("nan"))
-    ('281000', '280990')
-    """
-    places = places_within(value, *halves) if math.isfinite(value) else None
-    return short(value) if places is None else fixed_number(value, places, mark="")
-
-
-def table_of(*headings: str, texts: int = 1, title: str | None = None) -> Table:
-    """An empty table whose first columns are text and whose others are numbers."""
-    table = Table(box=None, pad_edge=False, title=title, title_justify="left", title_style="bold")
-    for number, heading in enumerate(headings):
-        # where there is little room names are broken, and numbers never
-        if number < texts:
-            table.add_column(escape(heading), overflow="fold")
-        else:
-            table.add_column(escape(heading), justify="right", no_wrap=True)
-    return table
-
-
-def processed_folders(processed: Path) -> list[Path]:
-    """Folders with archives: the one that is given, or those in it."""
-    inside = sorted(processed.iterdir()) if processed.is_dir() else []
-    folders = [processed] if archives_in(processed) else [one for one in inside if one.is_dir()]
-    folders = [folder for folder in folders if archives_in(folder)]
-    if not folders:
-        raise ArchiveError(
-            f"{processed}: no archive was found",
-            needed="a folder processed/CAMPAIGN with *.nc in it",
-            hint="`reduction run CAMPAIGN.toml` makes one.",
-        )
-    return folders

@@ -18,7 +18,8 @@ from reduction.campaign.armour_spec import load_armour_case
 from reduction.campaign.hose_plans import load_hose, target_of
 from reduction.campaign.plan import ComparisonPlan
 from reduction.campaign.wave_spec import load_wave_case
-from reduction.cli.output import CommandOutput, plain, short, table_of
+from reduction.cli.output import CommandOutput
+from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.prediction.armour import PredictedArmour, predict_armour_case
 from reduction.prediction.comparison_error import Calibration, verdict_words
 from reduction.prediction.hose_design import DesignedHose, design_hoses

@@ -9,7 +9,8 @@ from typing import Any
 from rich.markup import escape
 
 from reduction.archive.write import write_whole
-from reduction.cli.output import CommandOutput, plain, table_of
+from reduction.cli.output import CommandOutput
+from reduction.cli.printed_numbers import plain, table_of
 from reduction.published.printed_cells import REPORTS, ReportId
 from reduction.published.reproduce_page import (
     VERDICTS,

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import asdict
 from pathlib import Path
 
+from reduction.archive.open import processed_folders
 from reduction.batch.verification import verify_campaign
 from reduction.campaign.load import find_campaign
-from reduction.cli.output import CommandOutput, processed_folders
+from reduction.cli.output import CommandOutput
 from reduction.cli.progress import campaign_progress
 from reduction.cli.remote_paths import campaign_at
 from reduction.record.errors import ArchiveError, SettingsError

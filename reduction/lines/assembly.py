@@ -322,12 +322,12 @@ def _assemble(tethers: Sequence[_Tether], parts: Sequence[SeriesPart] = ()) -> _
     --------
     Two tethers of 100 N per unit strain, 1 m of rubber each, and 0.5 m of bridle:
 
-    >>> from reduction.lines.composite import composite_curve
+    >>> from reduction.lines.composite import _composite_curve
     >>> from reduction.lines.curve_pieces import CurvePiece
     >>> from reduction.lines.assembly import _equal_tethers
     >>> from reduction.stages.strain.strain_model import StrainModel
     >>> at = np.linspace(0.1, 2.0, 20)
-    >>> curve = composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
+    >>> curve = _composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
     >>> model = StrainModel("T", "gauge-length", {"reference_position": 1.0, "gauge_length": 1.0})
     >>> two = _assemble(_equal_tethers(_Tether(curve, model), 2), [SeriesPart("bridle", 0.5)])
     >>> print(two.slack_length, two.tension_at([1.5, 2.5]).round(6))
@@ -494,11 +494,11 @@ def _working_point(
     --------
     One tether of 100 N per unit strain and 1 m, between 60 and 140 N:
 
-    >>> from reduction.lines.composite import composite_curve
+    >>> from reduction.lines.composite import _composite_curve
     >>> from reduction.lines.curve_pieces import CurvePiece
     >>> from reduction.stages.strain.strain_model import StrainModel
     >>> at = np.linspace(0.1, 2.0, 20)
-    >>> curve = composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
+    >>> curve = _composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
     >>> model = StrainModel("T", "gauge-length", {"reference_position": 1.0, "gauge_length": 1.0})
     >>> point = _working_point(_assemble([_Tether(curve, model)]), 100.0, 40.0)
     >>> print(point.total_length.round(6), point.apparent_spring_constant.round(6))
@@ -593,11 +593,11 @@ def _worst_sharing(
     --------
     Springs of 100 N per unit strain, 1 m within 1 %, at 100 N each:
 
-    >>> from reduction.lines.composite import composite_curve
+    >>> from reduction.lines.composite import _composite_curve
     >>> from reduction.lines.curve_pieces import CurvePiece
     >>> from reduction.stages.strain.strain_model import StrainModel
     >>> at = np.linspace(0.1, 2.0, 20)
-    >>> curve = composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
+    >>> curve = _composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
     >>> model = StrainModel("T", "gauge-length", {"reference_position": 1.0, "gauge_length": 1.0})
     >>> found = _worst_sharing(_Tether(curve, model), 2, 200.0, free_length=1.0, tolerance=0.01)
     >>> print(found.greatest_load.round(2), found.least_load.round(2))

@@ -13,7 +13,7 @@ from scipy import stats
 from reduction.batch import run_campaign as batch_run
 from reduction.campaign.load import load_campaign
 from reduction.cli.lookup import _lines_of
-from reduction.cli.output import as_given, within
+from reduction.cli.printed_numbers import as_given, within
 from reduction.cli.usage import grouped
 from reduction.lines.lookup_product import LineCurve, LineSource
 from reduction.pages.design_values import (

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy import integrate, optimize
 
-from reduction.prediction.hose_prediction import zhang_example as zhang2015
+from reduction.prediction import zhang_example as zhang2015
 from reduction.prediction.morison import find_extremes, immerse_hose, wave_load
 from reduction.prediction.wave_theory import (
     _wave_number,

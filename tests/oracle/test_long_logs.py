@@ -15,10 +15,10 @@ from reduction.batch.test_history import fit_strain_models
 from reduction.campaign.load import load_campaign
 from reduction.readers import sample_flags as constant
 from reduction.readers.layout import Parts
-from reduction.record.measurement import samples as blocks
-from reduction.record.measurement import samples as intervals
-from reduction.record.measurement import samples as scratch
-from reduction.record.measurement import samples as search
+from reduction.record import samples as blocks
+from reduction.record import samples as intervals
+from reduction.record import samples as scratch
+from reduction.record import samples as search
 from reduction.stages import standstills as still_blocks
 from reduction.stages.cycles import cycle_pairing as runs
 from reduction.stages.holds import hold_start as ramp
@@ -120,11 +120,11 @@ def on_disk(monkeypatch, tmp_path):
 @pytest.mark.parametrize(("campaign", "name", "part"), with_size(4_001, 100_000))
 def test_a_log_on_disk_gives_the_numbers_of_one_in_memory(on_disk, campaign, name, part):
     in_memory = reduced(campaign, name)
-    assert not any(scratch.is_on_disk(test.record.tension) for test in in_memory)
+    assert not any(scratch._is_on_disk(test.record.tension) for test in in_memory)
     on_disk(part)
     found = reduced(campaign, name)
-    assert all(scratch.is_on_disk(test.record.tension) for test in found)
-    assert all(scratch.is_on_disk(test.strain) for test in found)
+    assert all(scratch._is_on_disk(test.record.tension) for test in found)
+    assert all(scratch._is_on_disk(test.strain) for test in found)
     assert_same(found, in_memory)
 
 

@@ -206,7 +206,7 @@ TAKE = """
 import sys
 from pathlib import Path
 import numpy as np
-from reduction.archive.test_dataset import KeptSamples
+from reduction.archive.test_dataset import _KeptSamples
 from reduction.record.samples import ColumnWriter
 
 def memory(key):
@@ -217,7 +217,7 @@ writer = ColumnWriter(Path(sys.argv[1]))
 for _ in range(16):
     writer.append(np.zeros(1 << 20))
 series = writer.finish()
-kept = KeptSamples(np.arange(0, series.size, 500), "", "")
+kept = _KeptSamples(np.arange(0, series.size, 500), "", "")
 before = memory("VmHWM")
 assert kept.of(series).size == kept.index.size
 print(memory("VmHWM") - before)

@@ -7,7 +7,8 @@ import pytest
 from rich.console import Console
 
 from reduction.cli import output as output_module
-from reduction.cli.output import CommandOutput, table_of
+from reduction.cli.output import CommandOutput
+from reduction.cli.printed_numbers import table_of
 
 CELLS = ["a long name of a line", "1.2345e+05", "-9.8765e-12", "1.5e+05 to 1.6e+05"]
 

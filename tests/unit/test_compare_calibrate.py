@@ -6,6 +6,7 @@ from measured_hoses import CORD_LOAD, CORD_STRAIN, Truth
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.stats import binom, chi2
 
+from reduction.prediction import hose_comparison as fitproblem
 from reduction.prediction.comparison_error import autocorrelation_length
 from reduction.prediction.hose_comparison import (
     CALIBRATED,
@@ -16,7 +17,6 @@ from reduction.prediction.hose_comparison import (
     _plausible_error,
     _trial_tension,
 )
-from reduction.prediction.hose_prediction import hose_comparison as fitproblem
 from reduction.prediction.measured_curve import constant_errors, measured_curve
 from reduction.record.errors import DataError, FitError, SettingsError
 

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from reduction.cli.output import as_given, short, within
+from reduction.cli.printed_numbers import as_given, short, within
 from reduction.cli.usage import grouped
 from reduction.quantities.digits import fixed_number, places_of, places_within, plain_number
 

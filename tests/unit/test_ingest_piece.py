@@ -7,9 +7,9 @@ from reduction.readers import record_in_si as piece
 from reduction.readers.layout import Layout
 from reduction.readers.raw_log import RawLog
 from reduction.readers.record_in_si import _to_piece
+from reduction.record import samples as blocks
 from reduction.record.errors import DataError
 from reduction.record.measurement import Source
-from reduction.record.measurement import samples as blocks
 
 LAYOUT = Layout(
     format="delimited",

@@ -6,8 +6,8 @@ import pytest
 from reduction.readers.layout import Layout, Parts
 from reduction.readers.read_log import read_log
 from reduction.readers.text_rows import open_text
+from reduction.record import samples as scratch
 from reduction.record.errors import DataError, LogError
-from reduction.record.measurement import samples as scratch
 
 CHANNELS = {
     "time": {"column": "t", "unit": "s"},
@@ -168,7 +168,7 @@ def test_columns_of_a_long_log_lie_on_disk_and_those_of_a_short_one_do_not(tmp_p
     content = "t,F\n" + "0,1\n" * 1000
     for in_memory, on_disk in ((0, True), (1 << 20, False)):
         log = read(tmp_path, content, 512, in_memory)
-        assert [scratch.is_on_disk(values) for values in log.columns.values()] == [on_disk] * 2
+        assert [scratch._is_on_disk(values) for values in log.columns.values()] == [on_disk] * 2
 
 
 @pytest.mark.parametrize("content", ["t,F\n" + "0,1\n" * 200, "t,F\n" + "0,1\n\n" * 200])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.prediction.hose_prediction import wave_theory as dispersion
+from reduction.prediction import wave_theory as dispersion
 from reduction.prediction.wave_theory import (
     STANDARD_GRAVITY,
     _group_velocity,

@@ -3,13 +3,13 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
+from reduction.prediction import hose_tension as hose
 from reduction.prediction.cord_curve import CordCurve
-from reduction.prediction.hose_prediction import hose_tension as hose
 from reduction.prediction.hose_product import HoseDesign, HosePrediction
 from reduction.prediction.hose_tension import find_events, hose_energy, predict_hose
 from reduction.prediction.rubber_wall import rubber_tension
+from reduction.record import arrays as workers
 from reduction.record.errors import DataError
-from reduction.record.measurement import arrays as workers
 
 CORD = CordCurve(
     strain=np.array([0.0, 0.02, 0.06, 0.10, 0.15, 0.22]),

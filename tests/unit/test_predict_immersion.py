@@ -5,7 +5,7 @@ from decimal import Decimal, localcontext
 import numpy as np
 import pytest
 
-from reduction.prediction.hose_prediction import morison as immersion
+from reduction.prediction import morison as immersion
 from reduction.prediction.morison import ImmersedSection, _immersion_depth_of, immerse_hose
 from reduction.record.errors import DataError, FitError
 

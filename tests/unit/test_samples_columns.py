@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reduction.record.measurement import samples as blocks
-from reduction.record.measurement import samples as scratch
+from reduction.record import samples as blocks
+from reduction.record import samples as scratch
 from reduction.record.samples import (
     ColumnWriter,
     _is_on_disk,

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from reduction.record import samples as scratch
 from reduction.record.errors import DataError
-from reduction.record.measurement import samples as scratch
 from reduction.record.samples import (
     ColumnWriter,
     _is_on_disk,

@@ -8,8 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+from reduction.record import arrays as workers
 from reduction.record.arrays import run_blocks
-from reduction.record.measurement import arrays as workers
 from reduction.record.settings import ModulusSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.moduli.tangent_modulus import tangent_curves

@@ -381,7 +381,7 @@ def _fit_ends(
     >>> values = np.array([0.0, 1, 2, 3, 2, 3, 2])
     >>> _fit_ends(np.arange(7.0), values, _Run(np.array([0, 3, 4, 5, 6]), "record", "record"),
     ...     is_sinusoidal=False, still=0.1, tolerance=0.1)
-    FittedRun(nodes=array([2, 3, 4, 5, 6]), cut=(3,), short=(), paced=())
+    _FittedRun(nodes=array([2, 3, 4, 5, 6]), cut=(3,), short=(), paced=())
     """
     moving = partial(
         _without_stands,

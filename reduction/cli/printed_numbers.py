@@ -1,0 +1,85 @@
+"""Numbers as a command says them: null for what is not known, short text for a table."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from rich.markup import escape
+from rich.table import Table
+
+from reduction.quantities.digits import fixed_number, places_within, plain_number
+from reduction.quantities.units import UnitSystem, combined_unit, display_unit
+
+_LARGE, _HUGE = 1e5, 1e7
+
+
+def fitted_unit(unit: str, transform: str) -> str:
+    """Unit of the coefficients of a response; empty where none is stated."""
+    names = {"none": unit, "log": f"ln({unit})"}
+    return names.get(transform, f"Box-Cox({unit})") if unit else ""
+
+
+class Shown:
+    """Units of a response and of its factors, as they are shown."""
+
+    def __init__(
+        self, response: str, transform: str, factors: tuple[str, ...], system: UnitSystem
+    ) -> None:
+        # a logarithm has no unit that could be changed
+        self.unit, self.scale = display_unit(
+            fitted_unit(response, transform), system if transform == "none" else "si"
+        )
+        self._factors = [display_unit(unit, system) for unit in factors]
+
+    def of_term(self, powers: tuple[int, ...]) -> tuple[str, float]:
+        """Unit of an engineering coefficient and what it is multiplied with."""
+        units = [unit for unit, _ in self._factors]
+        scales = [scale for _, scale in self._factors]
+        scale = math.prod(one**power for one, power in zip(scales, powers, strict=True))
+        return combined_unit(self.unit, units, powers), self.scale / scale
+
+
+def plain(values: ArrayLike) -> Any:
+    """Numbers for JSON, nested as they are; None where there is no finite one."""
+    array = np.asarray(values)
+    if array.ndim:
+        return [plain(entry) for entry in array]
+    number = array.item()
+    return None if isinstance(number, float) and not math.isfinite(number) else number
+
+
+def short(value: float, digits: int = 5) -> str:
+    """A number for a table; a dash where there is none."""
+    return plain_number(value, digits) if math.isfinite(value) else "-"
+
+
+def as_given(value: float) -> str:
+    """A level for a table: of a large one no digit before the point is lost."""
+    return f"{value:.0f}" if _LARGE <= abs(value) < _HUGE else short(value)
+
+
+def within(value: float, *halves: float) -> str:
+    """A number that is known within half widths of intervals, to two digits of the narrowest.
+
+    Examples
+    --------
+    >>> within(280991.3, 2100.0), within(280991.3, float("nan"))
+    ('281000', '280990')
+    """
+    places = places_within(value, *halves) if math.isfinite(value) else None
+    return short(value) if places is None else fixed_number(value, places, mark="")
+
+
+def table_of(*headings: str, texts: int = 1, title: str | None = None) -> Table:
+    """An empty table whose first columns are text and whose others are numbers."""
+    table = Table(box=None, pad_edge=False, title=title, title_justify="left", title_style="bold")
+    for number, heading in enumerate(headings):
+        # where there is little room names are broken, and numbers never
+        if number < texts:
+            table.add_column(escape(heading), overflow="fold")
+        else:
+            table.add_column(escape(heading), justify="right", no_wrap=True)
+    return table
