@@ -26,7 +26,7 @@ from coverage_tethers import numbers_of, one_test
 from reduction.batch.reduce_tests import _reduce_survey
 from reduction.batch.reuse import basis_of
 from reduction.batch.survey import Survey, _read_test
-from reduction.batch.test_history import fit_strain_models, past_of
+from reduction.batch.test_history import earlier_tests_of, fit_strain_models
 from reduction.campaign.load import load_campaign
 from reduction.record.contributions import combined_standard_uncertainty
 from reduction.stages.reduced_test import ReducedTest
@@ -94,7 +94,7 @@ def t_1(draw: int) -> Numbers:
         ]  # fmt: skip
         surveys = [survey, *others]
         models, _ = fit_strain_models(campaign, surveys)
-        basis = basis_of(campaign, survey, past_of(surveys, models), pulls={})
+        basis = basis_of(campaign, survey, earlier_tests_of(surveys, models), pulls={})
         return dict(_numbers(_reduce_survey(campaign, survey, basis.models, None, "{}")))
 
 

@@ -19,7 +19,7 @@ from programs import sizes, synthetic_log
 
 from reduction.batch.reuse import basis_of, describe
 from reduction.batch.survey import _read_test, located_again
-from reduction.batch.test_history import fit_strain_models, instruments_of, past_of
+from reduction.batch.test_history import earlier_tests_of, fit_strain_models, instruments_of
 from reduction.campaign.load import load_campaign
 from reduction.pipeline.reduce_test import reduce_test
 from reduction.record.contributions import StatedErrors
@@ -37,7 +37,7 @@ def seconds(path: Path, *, propagated: bool) -> tuple[float, int]:
     surveys = [one for plan in campaign.tests.values() for one in _read_test(campaign, plan)]
     models, _ = fit_strain_models(campaign, surveys)
     (survey,) = surveys
-    basis = basis_of(campaign, survey, past_of(surveys, models), pulls={})
+    basis = basis_of(campaign, survey, earlier_tests_of(surveys, models), pulls={})
     test = reduce_test(
         located_again(campaign, survey),
         description=describe(campaign, survey),

@@ -27,7 +27,7 @@ from reduction.batch.reduce_tests import reduce_campaign
 from reduction.batch.reuse import basis_of
 from reduction.batch.run_lock import run_lock
 from reduction.batch.survey import survey_campaign
-from reduction.batch.test_history import fit_strain_models, past_of
+from reduction.batch.test_history import earlier_tests_of, fit_strain_models
 from reduction.batch.workers import Workers, local_workers
 from reduction.campaign.load import load_campaign
 from reduction.campaign.plan import Campaign
@@ -84,7 +84,9 @@ def reduce_all(campaign: Campaign, folder: Path, workers: Workers | None = None)
         models, errors = fit_strain_models(campaign, first.surveys)
         statuses = reduce_campaign(
             campaign, first, first.surveys, errors=errors, folder=folder, workers=workers,
-            basis=partial(basis_of, campaign, past=past_of(first.surveys, models), pulls={}),
+            basis=partial(
+                basis_of, campaign, past=earlier_tests_of(first.surveys, models), pulls={}
+            ),
             lock=lock, progress=Silent(), clock=time.perf_counter, force=True, command="benchmark",
         )  # fmt: skip
     bad = [one.message for one in statuses if one.status == "failed"]

@@ -13,7 +13,7 @@ from reduction.published.reproduce_page import (
     reproduce,
     touched_errata,
 )
-from reduction.published.reproduced_item import Item
+from reduction.published.reproduced_item import ReproducedItem
 
 __all__ = ["errata"]
 
@@ -46,7 +46,7 @@ def _plain(text: str) -> str:
     return re.sub(r"([\\`*_\[\]<>|$#~^])", r"\\\1", " ".join(text.split()))
 
 
-def _row(item: Item) -> str:
+def _row(item: ReproducedItem) -> str:
     cell = item.cell
     is_table = not cell.table.startswith(("sec", "eq", "abstract", "footnote"))
     unit = "" if cell.unit == "1" else cell.unit
@@ -77,7 +77,7 @@ def _entry(one: _TouchedErratum) -> list[str]:
     return lines
 
 
-def _section(report: ReportId, items: list[Item]) -> list[str]:
+def _section(report: ReportId, items: list[ReproducedItem]) -> list[str]:
     found = touched_errata(report, items)
     links = ", ".join(f"[{one.erratum.id}](#{one.erratum.id.lower()})" for one in found)
     lines = [

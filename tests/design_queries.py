@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from reduction.cli import lookup as command
-from reduction.cli.lookup import Wanted
+from reduction.cli.lookup import LookupRequest
 from reduction.quantities.units import display_unit
 from reduction.record.errors import ReductionError
 
@@ -43,7 +43,7 @@ def shown_by_command(question, lines, monkeypatch):
     """Row of the table, sentences, or the refusal, of `reduction lookup` for a question."""
     monkeypatch.setattr(command, "_lines_of", lambda source: lines)
     output = Told(question["system"])
-    wanted = Wanted(
+    wanted = LookupRequest(
         quantity=question["quantity"],
         levels={name: level_text(*given) for name, given in question["levels"].items()},
         name=question["name"],

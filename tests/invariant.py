@@ -25,7 +25,7 @@ from secondreduction import numbers_that_differ, readings_that_differ
 from reduction.batch.reduce_tests import dataset_of
 from reduction.batch.reuse import basis_of
 from reduction.batch.survey import _read_test
-from reduction.batch.test_history import fit_strain_models, past_of
+from reduction.batch.test_history import earlier_tests_of, fit_strain_models
 from reduction.campaign.load import load_campaign
 from reduction.record.errors import ReductionError
 
@@ -75,7 +75,7 @@ def _product(campaign):
     models, errors = fit_strain_models(campaign, [survey])
     if errors:
         return _refused(next(iter(errors.values())))
-    basis = basis_of(campaign, survey, past_of([survey], models), pulls={})
+    basis = basis_of(campaign, survey, earlier_tests_of([survey], models), pulls={})
     dataset, notes = dataset_of(campaign, survey, basis, command="")
     said = frozenset((stage, re.sub(r"[-+]?\d[\d.,e+-]*", "#", text)) for stage, text in notes)
     values = tuple(outcome.value for outcome in campaign.outcomes)

@@ -19,7 +19,7 @@ _NO_SUCH_CALL = (errno.EINVAL, errno.ENOTSUP, errno.ENOSYS)
 
 
 @contextmanager
-def whole_file(path: Path) -> Iterator[Path]:
+def atomic_file(path: Path) -> Iterator[Path]:
     """Give a temporary name beside ``path``; when the block ends well it becomes ``path``."""
     path.parent.mkdir(parents=True, exist_ok=True)
     # workers on two machines may have one number

@@ -34,7 +34,7 @@ from reduction.archive.variables import (
     texts,
 )
 from reduction.experiments.outcomes import Outcome, OutcomeQuantity, Place
-from reduction.prediction.comparison_error import Calibration, Comparison
+from reduction.prediction.comparison_error import Comparison, HoseCalibration
 from reduction.prediction.hose_prediction import PredictedHose
 from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseEvents
 from reduction.prediction.hose_tension import predict_hose
@@ -281,7 +281,7 @@ def _calibration_values(found: Sequence[Comparison]) -> Values:
     return values
 
 
-def _rows(fits: Sequence[Calibration | None], field: str) -> Floats:
+def _rows(fits: Sequence[HoseCalibration | None], field: str) -> Floats:
     return pad([() if fit is None else getattr(fit, field) for fit in fits])
 
 

@@ -29,7 +29,7 @@ from reduction.archive.schema import (
     schema_of,
 )
 from reduction.archive.variables import TEXT, Variable, count, label, measured, stated
-from reduction.archive.write import appended_whole
+from reduction.archive.write import append_atomically
 from reduction.experiments.outcome_groups import (
     EXPOSURE_COLUMNS,
     FATIGUE_COLUMNS,
@@ -73,7 +73,7 @@ _Label = TypeVar("_Label", int, str)
 
 
 @dataclass(frozen=True)
-class Column:
+class CsvColumn:
     """A column: name, what it holds, and the variable that its values come from."""
 
     name: str
@@ -93,11 +93,11 @@ class Column:
         return [self.header, unit, row.long_name, row.no_uncertainty]
 
 
-def uncertainty_of(column: Column) -> Column:
+def uncertainty_of(column: CsvColumn) -> CsvColumn:
     """Return the column that stands beside a measured one."""
     name = f"{column.name}_standard_uncertainty"
     source = f"{column.variable.name}_standard_uncertainty"
-    return Column(
+    return CsvColumn(
         name, Variable(source, column.variable.dims, "f8", no_uncertainty="is an uncertainty")
     )
 
@@ -183,9 +183,9 @@ Product = Literal[
 Variables = Mapping[str, xr.Variable]
 """By name, as those of an archive."""
 
-TEST = Column("test", label("test")[0])
+TEST = CsvColumn("test", label("test")[0])
 
-SYNTHETIC = Column("synthetic", label("synthetic")[0])
+SYNTHETIC = CsvColumn("synthetic", label("synthetic")[0])
 
 _OWN = {
     row.name: row
@@ -224,7 +224,7 @@ def _nothing(_: xr.Dataset) -> Variables:
 
 
 @dataclass(frozen=True)
-class Table:
+class CsvTable:
     """One file of tables: a row for each combination of the entries of ``dims``.
 
     Parameters
@@ -252,7 +252,7 @@ class Table:
     product: Product = "test"
 
     @cached_property
-    def columns(self) -> list[Column]:
+    def columns(self) -> list[CsvColumn]:
         """Every column, the test first and the word on synthetic data last."""
         schema = _SCHEMAS[self.product]
         columns = [TEST] if self.product in ("test", "stepwise test") else []
@@ -265,9 +265,9 @@ class Table:
         return [*columns, SYNTHETIC]
 
 
-def _column(name: str, variable: Variable) -> Column:
+def _column(name: str, variable: Variable) -> CsvColumn:
     # the axis is `branch_name`, since `branch` is a flag of the samples
-    return Column("branch" if name == "branch_name" else name, variable)
+    return CsvColumn("branch" if name == "branch_name" else name, variable)
 
 
 BLOCK_ROWS = 1 << 12
@@ -275,7 +275,7 @@ BLOCK_ROWS = 1 << 12
 
 
 def table_blocks(
-    archive: xr.Dataset, table: Table, *, block_rows: int = BLOCK_ROWS
+    archive: xr.Dataset, table: CsvTable, *, block_rows: int = BLOCK_ROWS
 ) -> Iterator[list[list[str]]]:
     """Give the rows that an archive gives to a table; none where it lacks the subject."""
     needed = [name for name in table.needs if name in archive]
@@ -367,7 +367,7 @@ _COLUMNS = {
     "load_life": LOAD_LIFE_COLUMNS,
 }
 
-OUTCOME_TABLES: dict[str, tuple[GroupColumn | Column, ...]] = {
+OUTCOME_TABLES: dict[str, tuple[GroupColumn | CsvColumn, ...]] = {
     name: (*map(GroupColumn, columns), SYNTHETIC) for name, columns in _COLUMNS.items()
 }
 """Columns of each table, the word on synthetic data last."""
@@ -419,7 +419,7 @@ _UNKNOWN = "nothing is known of its scatter"
 
 
 def _lonely_numbers(
-    columns: Sequence[Column | GroupColumn], fields: Sequence[Sequence[str]]
+    columns: Sequence[CsvColumn | GroupColumn], fields: Sequence[Sequence[str]]
 ) -> set[int]:
     """Find the uncertainties that are empty where a number stands beside."""
     return {
@@ -433,7 +433,7 @@ def _lonely_numbers(
 
 
 def column_descriptions(
-    columns: Sequence[Column | GroupColumn], lonely: Collection[int] = ()
+    columns: Sequence[CsvColumn | GroupColumn], lonely: Collection[int] = ()
 ) -> Iterator[list[Cell]]:
     """Return the rows of columns.csv of one table."""
     quantities = dict(_uncertainties(columns))
@@ -444,7 +444,7 @@ def column_descriptions(
         yield [*about, reason]
 
 
-def _uncertainties(columns: Sequence[Column | GroupColumn]) -> Iterator[tuple[int, str]]:
+def _uncertainties(columns: Sequence[CsvColumn | GroupColumn]) -> Iterator[tuple[int, str]]:
     """Places of the uncertainties, and of which quantity each is."""
     names = [column.header.partition(" [")[0] for column in columns]
     for place, (name, own) in enumerate(pairwise(names), start=1):
@@ -466,7 +466,7 @@ class TableFile:
     """
 
     def __init__(
-        self, path: Path, columns: Sequence[Column | GroupColumn], whole: ExitStack
+        self, path: Path, columns: Sequence[CsvColumn | GroupColumn], whole: ExitStack
     ) -> None:
         """Begin a table without rows."""
         self.path = path
@@ -485,7 +485,7 @@ class TableFile:
         if not fields or not fields[0]:
             return
         if self._append is None:
-            self._append = self._whole.enter_context(appended_whole(self.path))
+            self._append = self._whole.enter_context(append_atomically(self.path))
             self._append(csv_text([column.header for column in self.columns], ()))
         self._append(_csv_lines(fields))
         self.lonely |= _lonely_numbers(self.columns, fields)

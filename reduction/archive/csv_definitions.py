@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from reduction.archive.csv_columns import Table, Variables
+from reduction.archive.csv_columns import CsvTable, Variables
 from reduction.archive.schema import COEFFICIENTS, SCHEMA
 from reduction.archive.shared_errors import COMPONENT, SHARED, SHARED_OF_STEPS
 from reduction.archive.variables import SUFFIXES
@@ -51,13 +51,13 @@ _LABELS_OF = {
 }
 
 
-def _shared_table(name: str, dims: tuple[str, ...]) -> Table:
+def _shared_table(name: str, dims: tuple[str, ...]) -> CsvTable:
     rows = tuple(
         f"{quantity}_uncertainty_contribution"
         for quantity, own in (SHARED | SHARED_OF_STEPS).items()
         if own == dims
     )
-    return Table(
+    return CsvTable(
         name, (*dims, COMPONENT), (*_LABELS_OF.get(dims, ()), *ERROR, *rows), rows,
         product="stepwise test" if "step" in dims else "test",
     )  # fmt: skip
@@ -112,13 +112,13 @@ _IDENTITY = ("stroke_mean_modulus_difference", "tension_loss_modulus", "identity
 _TREND = ("peak_tension_per_decade", "dynamic_modulus_per_decade", "peak_tension_change")
 
 CHANGE_TABLES = (
-    Table(
+    CsvTable(
         "channel_lag",
         ("specimen",),
         ("channel_lag", "channel_lag_turns", "channel_lag_refusal"),
         ("channel_lag_refusal",),
     ),
-    Table(
+    CsvTable(
         "slips",
         ("slip",),
         (
@@ -131,15 +131,15 @@ CHANGE_TABLES = (
         ),
         ("slip_cycle",),
     ),
-    Table("identity", ("specimen", "cycle"), _IDENTITY, _IDENTITY),
-    Table(
+    CsvTable("identity", ("specimen", "cycle"), _IDENTITY, _IDENTITY),
+    CsvTable(
         "mean_identity",
         ("specimen",),
         ("mean_identity_residual", "n_cycles"),
         ("mean_identity_residual",),
         _cycle_count,
     ),
-    Table(
+    CsvTable(
         "history",
         ("specimen",),
         (
@@ -152,7 +152,7 @@ CHANGE_TABLES = (
         ),
         ("earlier_tests",),
     ),
-    Table(
+    CsvTable(
         "trend",
         ("specimen",),
         (*_TREND, "n_slips", "creep_per_cycle"),
@@ -163,8 +163,8 @@ CHANGE_TABLES = (
 
 def _comparison_table(
     name: str, dims: tuple[str, ...], variables: tuple[str, ...], needs: tuple[str, ...]
-) -> Table:
-    return Table(name, dims, variables, needs, product="comparisons")
+) -> CsvTable:
+    return CsvTable(name, dims, variables, needs, product="comparisons")
 
 
 _OF = ("comparison_test", "comparison_specimen", "comparison_hose", "comparison_loading")
@@ -291,7 +291,7 @@ _PER_CYCLE = tuple(
 )
 
 CURVE_TABLES = (
-    Table(
+    CsvTable(
         "moduli",
         ("specimen", "branch_name", "segment"),
         (
@@ -308,14 +308,14 @@ CURVE_TABLES = (
         ("segment_modulus",),
         _cycle_count,
     ),
-    Table(
+    CsvTable(
         "cycles",
         ("specimen", "cycle"),
         (*_PER_CYCLE, *(f"chord_modulus_{branch}" for branch in BRANCH_NAMES)),
         _PER_CYCLE,
         _chords_of_branches,
     ),
-    Table(
+    CsvTable(
         "tangent_modulus",
         ("specimen", "branch_name", "strain_bin"),
         (
@@ -333,7 +333,7 @@ CURVE_TABLES = (
         ("tangent_modulus", "tangent_modulus_untrimmed"),
         _edges_of_bins,
     ),
-    Table(
+    CsvTable(
         "first_loading",
         ("specimen", "branch_name", "first_loading_strain_bin"),
         ("tangent_modulus_first_loading", "branch_tension_first_loading"),
@@ -342,7 +342,7 @@ CURVE_TABLES = (
 )
 
 HOLD_TABLES = (
-    Table(
+    CsvTable(
         "relaxation",
         ("hold",),
         (
@@ -364,13 +364,13 @@ HOLD_TABLES = (
         ),
         ("hold",),
     ),
-    Table(
+    CsvTable(
         "relaxation_times",
         ("hold", "hold_time"),
         ("specimen=hold_specimen", "hold_number", "hold_kind", "tension_at_time", "strain_at_time"),
         ("tension_at_time", "strain_at_time"),
     ),
-    Table(
+    CsvTable(
         "prony",
         ("hold", "prony_term"),
         ("specimen=hold_specimen", "hold_number", "hold_kind", "prony_tension", "prony_time"),
@@ -384,15 +384,15 @@ RUN = ("run_name", "run_specimen")
 
 def _table_of_experiments(
     name: str, dims: tuple[str, ...], variables: tuple[str, ...], needs: tuple[str, ...]
-) -> Table:
+) -> CsvTable:
     """Return a table of a product of experiments."""
-    return Table(name, dims, variables, needs, product="experiments")
+    return CsvTable(name, dims, variables, needs, product="experiments")
 
 
 def _prediction_table(
     name: str, dims: tuple[str, ...], variables: tuple[str, ...], needs: tuple[str, ...]
-) -> Table:
-    return Table(name, dims, variables, needs, product="predictions")
+) -> CsvTable:
+    return CsvTable(name, dims, variables, needs, product="predictions")
 
 
 PREDICTION_TABLES = (
@@ -575,14 +575,14 @@ def _along_specimen(
 
 
 ROPE_TABLES = (
-    Table(
+    CsvTable(
         "rope_programme",
         ("specimen",),
         ("programme_step", *_BEDDING, *_DYNAMIC, *_STATIC, *_CREEP, *_LASTED, *_PULLED),
         ("programme_step",),
         _one_a_specimen,
     ),
-    Table(
+    CsvTable(
         "static_stiffness",
         ("held_pair",),
         (
@@ -594,13 +594,13 @@ ROPE_TABLES = (
         ),
         ("held_pair",),
     ),
-    Table(
+    CsvTable(
         "static_stiffness_times",
         ("held_pair", "held_pair_point"),
         ("specimen=held_pair_specimen", "static_elapsed_time", "static_stiffness_at_time"),
         ("static_stiffness_at_time",),
     ),
-    Table(
+    CsvTable(
         "creep",
         ("hold",),
         (
@@ -614,7 +614,7 @@ ROPE_TABLES = (
         ),
         ("creep_tension_over_strength",),
     ),
-    Table("tensile", ("specimen",), _PULLED, ("pull_peak_tension",)),
+    CsvTable("tensile", ("specimen",), _PULLED, ("pull_peak_tension",)),
 )
 
 _CONTRIBUTIONS = tuple(
@@ -623,7 +623,7 @@ _CONTRIBUTIONS = tuple(
 )
 
 PROPERTY_TABLES = (
-    Table(
+    CsvTable(
         "change_in_length",
         ("property",),
         (
@@ -641,7 +641,7 @@ PROPERTY_TABLES = (
         ("property",),
         product="properties",
     ),
-    Table(
+    CsvTable(
         "shared_errors_change_in_length",
         ("property", COMPONENT),
         (
@@ -657,7 +657,7 @@ PROPERTY_TABLES = (
 )
 
 RECORD_TABLES = (
-    Table(
+    CsvTable(
         "specimens",
         ("specimen",),
         (
@@ -675,7 +675,7 @@ RECORD_TABLES = (
         ),
         ("specimen_kind",),
     ),
-    Table(
+    CsvTable(
         "standstills",
         ("standstill", "specimen"),
         (
@@ -687,8 +687,8 @@ RECORD_TABLES = (
         ),
         ("standstill_start_time",),
     ),
-    Table("notes", ("note",), ("note_stage",), ("note",)),
-    Table(
+    CsvTable("notes", ("note",), ("note_stage",), ("note",)),
+    CsvTable(
         "rows",
         ("channel", "quality_mask"),
         ("n_rows_read", "n_rows_kept", "n_rows_stored", "n_flagged"),
@@ -697,7 +697,7 @@ RECORD_TABLES = (
 )
 
 SPLICE_TABLES = (
-    Table(
+    CsvTable(
         "splice",
         ("mark",),
         (
@@ -711,7 +711,7 @@ SPLICE_TABLES = (
         ),
         ("mark_test",),
     ),
-    Table(
+    CsvTable(
         "splice_coefficients",
         ("specimen",),
         (
@@ -761,26 +761,26 @@ _PULL = (
 )
 
 LINE_TABLES = (
-    Table("amplitude", ("specimen",), _AMPLITUDE, _AMPLITUDE),
-    Table(
+    CsvTable("amplitude", ("specimen",), _AMPLITUDE, _AMPLITUDE),
+    CsvTable(
         "line",
         ("specimen",),
         ("test_frequency", "test_mean_tension", "test_tension_amplitude", *_LINE),
         ("test_line_refusal",),
     ),
-    Table(
+    CsvTable(
         "slow_pull",
         ("specimen", "tension_grid"),
         ("quasi_static_spring_constant", "quasi_static_strain"),
         ("quasi_static_spring_constant", "quasi_static_strain"),
     ),
-    Table(
+    CsvTable(
         "slow_pull_cubic",
         ("specimen", "pull_term"),
         ("pull_strain_coefficient", "pull_spring_constant_coefficient", *_PULL),
         ("pull_strain_coefficient",),
     ),
-    Table(
+    CsvTable(
         "strain_at_break_share",
         ("specimen", "break_share"),
         ("strain_at_break_share",),
@@ -789,7 +789,7 @@ LINE_TABLES = (
 )
 
 RUBBER_TABLES = (
-    Table(
+    CsvTable(
         "elastomer",
         ("elastomer_parameter",),
         (
@@ -807,19 +807,19 @@ RUBBER_TABLES = (
         ("elastomer_parameter_name",),
         _fit_of_parameters,
     ),
-    Table(
+    CsvTable(
         "stress_at_strain",
         ("specimen", "strain_level"),
         ("stress_at_strain",),
         ("stress_at_strain",),
     ),
-    Table(
+    CsvTable(
         "slack_strain_at_unloading",
         ("specimen",),
         ("slack_strain_at_unloading",),
         ("slack_strain_at_unloading",),
     ),
-    Table(
+    CsvTable(
         "comparison",
         ("comparison", "branch_name", "ratio_strain_bin"),
         (
@@ -837,7 +837,7 @@ RUBBER_TABLES = (
 """Of tests with a machine."""
 
 STEPWISE_TABLES = (
-    Table(
+    CsvTable(
         "stepwise",
         ("step",),
         (
@@ -858,7 +858,7 @@ STEPWISE_TABLES = (
         _one_specimen,
         product="stepwise test",
     ),
-    Table(
+    CsvTable(
         "stepwise_moduli",
         ("interval",),
         ("specimen", "interval_branch", "interval_strain", "interval_modulus"),

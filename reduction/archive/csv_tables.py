@@ -20,9 +20,9 @@ from reduction.archive.csv_columns import (
     SYNTHETIC,
     TEST,
     Cell,
-    Column,
+    CsvColumn,
+    CsvTable,
     GroupColumn,
-    Table,
     TableFile,
     column_descriptions,
     outcome_table_rows,
@@ -50,14 +50,14 @@ from reduction.uncertainty.propagation import ratio_contributions
 _BIN = ("specimen", "branch_name", "strain_bin")
 
 ENVELOPE_COLUMNS = (
-    Column("specimen", SCHEMA["specimen"]),
-    Column("branch", SCHEMA["branch_name"]),
-    Column("strain_bin", SCHEMA["strain_bin"]),
-    *(Column(row.name, row) for row in measured("envelope_minimum", _BIN)),
-    Column("envelope_minimum_test", label("envelope_minimum_test")[0]),
-    *(Column(row.name, row) for row in measured("envelope_maximum", _BIN)),
-    Column("envelope_maximum_test", label("envelope_maximum_test")[0]),
-    Column("n_tests", count("n_tests", ())[0]),
+    CsvColumn("specimen", SCHEMA["specimen"]),
+    CsvColumn("branch", SCHEMA["branch_name"]),
+    CsvColumn("strain_bin", SCHEMA["strain_bin"]),
+    *(CsvColumn(row.name, row) for row in measured("envelope_minimum", _BIN)),
+    CsvColumn("envelope_minimum_test", label("envelope_minimum_test")[0]),
+    *(CsvColumn(row.name, row) for row in measured("envelope_maximum", _BIN)),
+    CsvColumn("envelope_maximum_test", label("envelope_maximum_test")[0]),
+    CsvColumn("n_tests", count("n_tests", ())[0]),
     SYNTHETIC,
 )
 
@@ -229,20 +229,22 @@ def _marked(present: NDArray[Any]) -> NDArray[Any]:
     return np.where(present, 1.0, np.nan)
 
 
-_STATIC, _DYNAMIC = (Column(name, SCHEMA[name]) for name in ("interval_modulus", "tangent_modulus"))
+_STATIC, _DYNAMIC = (
+    CsvColumn(name, SCHEMA[name]) for name in ("interval_modulus", "tangent_modulus")
+)
 
 STATIC_DYNAMIC_COLUMNS = (
-    Column("static_test", label("static_test")[0]),
-    Column("static_specimen", label("static_specimen")[0]),
+    CsvColumn("static_test", label("static_test")[0]),
+    CsvColumn("static_specimen", label("static_specimen")[0]),
     TEST,
-    Column("specimen", SCHEMA["specimen"]),
-    Column("branch", SCHEMA["branch_name"]),
-    Column("interval_strain", SCHEMA["interval_strain"]),
+    CsvColumn("specimen", SCHEMA["specimen"]),
+    CsvColumn("branch", SCHEMA["branch_name"]),
+    CsvColumn("interval_strain", SCHEMA["interval_strain"]),
     _STATIC,
     uncertainty_of(_STATIC),
     _DYNAMIC,
     uncertainty_of(_DYNAMIC),
-    *(Column(row.name, row) for row in measured("static_dynamic_ratio", ("interval",))),
+    *(CsvColumn(row.name, row) for row in measured("static_dynamic_ratio", ("interval",))),
     SYNTHETIC,
 )
 
@@ -344,7 +346,7 @@ _ALL = (
 )  # fmt: skip
 
 _ABOUT = tuple(
-    Column(name, label(name)[0])
+    CsvColumn(name, label(name)[0])
     for name in ("table", "column", "unit", "meaning", "no_uncertainty")
 )
 
@@ -361,7 +363,7 @@ def write_tables(
     opener: Opener = reading,
 ) -> list[Path]:
     """Write every table that the archives fill, and columns.csv, which explains them."""
-    columns: dict[str, Sequence[Column | GroupColumn]] = {
+    columns: dict[str, Sequence[CsvColumn | GroupColumn]] = {
         table.name: table.columns for table in _ALL
     }
     columns |= {"envelope": ENVELOPE_COLUMNS, "static_dynamic": STATIC_DYNAMIC_COLUMNS}
@@ -425,7 +427,7 @@ def _add_experiments(files: Mapping[str, TableFile], surfaces: Path | None, open
 
 
 def _add_as_it_is(
-    files: Mapping[str, TableFile], path: Path | None, tables: Sequence[Table], opener: Opener
+    files: Mapping[str, TableFile], path: Path | None, tables: Sequence[CsvTable], opener: Opener
 ) -> None:
     if path is None:
         return
@@ -442,6 +444,6 @@ def _add_outcomes(files: Mapping[str, TableFile], outcomes: Path | None, opener:
             files[name].add_rows(rows)
 
 
-def _add(file: TableFile, archive: xr.Dataset, table: Table) -> None:
+def _add(file: TableFile, archive: xr.Dataset, table: CsvTable) -> None:
     for fields in table_blocks(archive, table):
         file.add(fields)

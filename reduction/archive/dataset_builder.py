@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from reduction.archive.variables import Values, Variable
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Origin, Source, Step
-from reduction.record.samples import let_go
+from reduction.record.samples import release_pages
 from reduction.stages.reduced_test import ReducedTest
 
 SCHEMA_VERSION = "1"
@@ -81,7 +81,7 @@ def _variable(array: NDArray[Any], row: Variable, present: Values, auxiliary: st
         attrs=_attributes(row, present),
         encoding=_encoding(array, row, auxiliary),
     )
-    let_go(array)
+    release_pages(array)
     return made
 
 

@@ -30,7 +30,7 @@ from reduction.record.contributions import (
 )
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Bools, Floats
-from reduction.record.samples import beside, let_go
+from reduction.record.samples import like_storage, release_pages
 
 COMPONENT = "uncertainty_component"
 
@@ -229,8 +229,8 @@ def _combine(values: Values, name: str, rows: Floats) -> Floats:
     if key not in values:
         return np.full(np.shape(values.get(name, np.nan)), np.nan)
     random: Floats = values[key]
-    values[key] = beside(random, combined_standard_uncertainty(rows, random))
-    let_go(rows)
+    values[key] = like_storage(random, combined_standard_uncertainty(rows, random))
+    release_pages(rows)
     return random
 
 

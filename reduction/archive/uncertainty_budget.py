@@ -352,12 +352,14 @@ def words_of(
         if one.ndim == 0 and str(one.values) not in ("", "nan"):
             text = str(one.values)
             found.append(
-                text if one.dtype.kind not in "fi" else f"{_told(name, dim)} {_meaning(one)}"
+                text
+                if one.dtype.kind not in "fi"
+                else f"{_place_in_words(name, dim)} {_meaning(one)}"
             )
     return _JOINED.get(dim, ", ").join(dict.fromkeys(found))
 
 
-def _told(name: str, dim: str) -> str:
+def _place_in_words(name: str, dim: str) -> str:
     return name.removeprefix(f"{dim}_").replace("_", " ")
 
 

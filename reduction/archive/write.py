@@ -33,9 +33,9 @@ from pydantic import (
     ValidationError,
 )
 
-from reduction.archive.atomic_write import remove_abandoned, take_away, whole_file
+from reduction.archive.atomic_write import atomic_file, remove_abandoned, take_away
 from reduction.record.errors import ArchiveError
-from reduction.record.samples import let_go, sample_blocks
+from reduction.record.samples import release_pages, sample_blocks
 from reduction.uncertainty.budget import DecisionRule
 
 _BLOCK = 1 << 20  # values of the last dimension at a time: whole chunks
@@ -60,7 +60,7 @@ def _write_netcdf(dataset: xr.Dataset, path: Path) -> None:
             for part in _parts(letters.shape, letters):
                 place[part] = letters[part]
                 written.update(letters[part].tobytes())
-            let_go(values)
+            release_pages(values)
         file.setncattr("values_sha256", written.hexdigest())
 
 
@@ -127,7 +127,7 @@ def _parts(shape: tuple[int, ...], *arrays: NDArray[Any]) -> Iterator[tuple[Any,
 def write_archive(dataset: xr.Dataset, path: Path) -> None:
     """Write a dataset of `reduction.archive.test_dataset.to_dataset` as one netCDF file."""
     try:
-        with whole_file(path) as part:
+        with atomic_file(path) as part:
             _write_netcdf(dataset, part)
     except ArchiveError:
         raise
@@ -135,19 +135,19 @@ def write_archive(dataset: xr.Dataset, path: Path) -> None:
         raise _not_written(path, error) from error
 
 
-def write_whole(path: Path, text: str) -> None:
+def write_text_atomically(path: Path, text: str) -> None:
     """Write a text file in UTF-8, line ends as they are in ``text``, whole or not at all."""
-    with appended_whole(path) as append:
+    with append_atomically(path) as append:
         append(text)
 
 
 @contextmanager
-def appended_whole(path: Path) -> Iterator[Callable[[str], None]]:
+def append_atomically(path: Path) -> Iterator[Callable[[str], None]]:
     """Give what adds text to a file that appears whole when the block ends well, or not at all."""
     is_in_block = False
     remove_abandoned(path)
     try:
-        with whole_file(path) as part:
+        with atomic_file(path) as part:
             is_in_block = True
             yield partial(_append, part, path)
             is_in_block = False
@@ -195,13 +195,13 @@ Date = Annotated[ReportText, BeforeValidator(_as_text)]
 """A date of TOML, or text: ``2026-03-05``, ``"2 to 5 March 2026"``."""
 
 
-class Section(BaseModel):
+class ReportSection(BaseModel):
     """A table of ``[report]``."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class Laboratory(Section):
+class Laboratory(ReportSection):
     """``[report.laboratory]``."""
 
     name: ReportText = ""
@@ -212,7 +212,7 @@ class Laboratory(Section):
     accreditation: ReportText = ""
 
 
-class Client(Section):
+class Client(ReportSection):
     """``[report.client]``."""
 
     name: ReportText = ""
@@ -221,7 +221,7 @@ class Client(Section):
     order: ReportText = ""
 
 
-class Item(Section):
+class ReportItem(ReportSection):
     """``[report.items.SPECIMEN]``: what came in."""
 
     identification: ReportText = ""
@@ -232,7 +232,7 @@ class Item(Section):
     received: Date = ""
 
 
-class _Authorised(Section):
+class _Authorised(ReportSection):
     """``[report.authorised]``."""
 
     by: ReportText = ""
@@ -240,7 +240,7 @@ class _Authorised(Section):
     on: Date = ""
 
 
-class Instrument(Section):
+class Instrument(ReportSection):
     """``[[report.instruments]]``: one instrument with its last calibration."""
 
     name: ReportText
@@ -251,7 +251,7 @@ class Instrument(Section):
     due: Date = ""
 
 
-class Limit(Section):
+class ReportLimit(ReportSection):
     """A limit that a number of a test is held against; at least one end is given.
 
     Parameters
@@ -279,7 +279,7 @@ class Limit(Section):
 AnyLimit = TypeVar("AnyLimit")
 
 
-class Statement(Section, Generic[AnyLimit]):
+class Statement(ReportSection, Generic[AnyLimit]):
     """``[report]``: every key may be left out; the report then says that it is not stated."""
 
     number: ReportText = ""
@@ -303,12 +303,12 @@ class Statement(Section, Generic[AnyLimit]):
     laboratory: Laboratory = Laboratory()
     client: Client = Client()
     authorised: _Authorised = _Authorised()
-    items: dict[str, Item] = Field(default_factory=dict)
+    items: dict[str, ReportItem] = Field(default_factory=dict)
     instruments: tuple[Instrument, ...] = ()
     limits: tuple[AnyLimit, ...] = ()
 
 
-class ReportDetails(Statement[Limit]):
+class ReportDetails(Statement[ReportLimit]):
     """What the laboratory states, with limits in SI."""
 
 
@@ -318,7 +318,7 @@ def keep_details(folder: Path, details: ReportDetails | None) -> None:
     if details is None:
         take_away(path)
         return
-    write_whole(path, details.model_dump_json(indent=1) + "\n")
+    write_text_atomically(path, details.model_dump_json(indent=1) + "\n")
 
 
 def read_details(folder: Path) -> ReportDetails | None:

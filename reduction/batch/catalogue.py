@@ -20,7 +20,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from reduction import __version__
-from reduction.archive.atomic_write import remove_abandoned, whole_file
+from reduction.archive.atomic_write import atomic_file, remove_abandoned
 from reduction.archive.open import OF_CAMPAIGN, Opener, archives_in, reading
 from reduction.quantities.names import QUANTITIES
 from reduction.quantities.units import DIMENSIONS, parse_quantity, scale_of_unit
@@ -374,7 +374,7 @@ _TESTS = pyarrow.schema(
 
 
 @dataclass(frozen=True)
-class Entry:
+class CatalogueEntry:
     """What a catalogue keeps of one archive.
 
     Parameters
@@ -441,7 +441,7 @@ def rebuild(folder: Path) -> dict[str, str]:
     return left_out
 
 
-def _write(entries: Sequence[Entry], path: Path) -> None:
+def _write(entries: Sequence[CatalogueEntry], path: Path) -> None:
     rows: list[dict[str, Any]] = []
     numbers = []
     for entry in entries:
@@ -462,7 +462,7 @@ def _write(entries: Sequence[Entry], path: Path) -> None:
     tests = pyarrow.concat_tables([schema.empty_table(), tests], promote_options="default")
     try:
         remove_abandoned(path)
-        with whole_file(path) as part:
+        with atomic_file(path) as part:
             # opened here: a path may be no text
             with (
                 part.open("wb") as file,
@@ -492,7 +492,7 @@ def _kept_cycles(n_cycles: int) -> NDArray[np.intp]:
     return np.array(sorted({n for n in numbers if n < n_cycles} | {n_cycles}), dtype=np.intp) - 1
 
 
-def _entry_of(path: Path, *, opener: Opener = reading) -> Entry:
+def _entry_of(path: Path, *, opener: Opener = reading) -> CatalogueEntry:
     """Read what a catalogue keeps of an archive; `ArchiveError` where it cannot be read."""
     with opener(path) as archive:
         attributes = archive.attrs
@@ -519,7 +519,7 @@ def _entry_of(path: Path, *, opener: Opener = reading) -> Entry:
             {name: _shown_path(one) if isinstance(one, str) else one for name, one in row.items()}
             for row in (whole, *of_specimens)
         ]
-        return Entry(rows, list(_blocks(archive, names)))
+        return CatalogueEntry(rows, list(_blocks(archive, names)))
 
 
 def _conditions(archive: xr.Dataset, place: int) -> dict[str, str | float]:
@@ -1005,7 +1005,7 @@ def write_answer(table: Any, path: Path) -> None:
     """
     check_ending(path)
     try:
-        with whole_file(path) as part:
+        with atomic_file(path) as part:
             if path.suffix.lower() == ".csv":
                 units = map(unit_of, table.column_names)
                 heads = [

@@ -18,7 +18,7 @@ from reduction.archive.surfaces_dataset import surfaces_to_dataset
 from reduction.archive.variables import stored
 from reduction.archive.write import write_archive
 from reduction.batch.campaign_status import PartStatus, TestStatus
-from reduction.batch.reuse import waiting_in_words
+from reduction.batch.reuse import outdated_in_words
 from reduction.batch.slow_pulls import pull_tests
 from reduction.campaign.plan import Campaign, ExperimentPlan
 from reduction.experiments.designs import FactorLevels, engineering_levels
@@ -238,7 +238,7 @@ def write_experiments(
     if not campaign.experiments:
         return []
     held = {
-        name: waiting_in_words(waiting, plan.runs) for name, plan in campaign.experiments.items()
+        name: outdated_in_words(waiting, plan.runs) for name, plan in campaign.experiments.items()
     }
 
     def archive_of(run: str) -> Path | None:

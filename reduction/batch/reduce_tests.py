@@ -13,7 +13,7 @@ from reduction import __version__
 from reduction.archive.test_dataset import kept_samples, to_dataset
 from reduction.archive.write import write_archive
 from reduction.batch.campaign_status import Progress, Status, TestStatus
-from reduction.batch.reuse import Basis, describe, standing_product
+from reduction.batch.reuse import Basis, describe, reusable_product
 from reduction.batch.run_lock import RunLock
 from reduction.batch.slow_pulls import pull_conditions
 from reduction.batch.survey import (
@@ -112,7 +112,7 @@ def _bring_up_to_date(
 ) -> tuple[Status, str]:
     """Write the archive of one test, unless one stands that is of the same logs and settings."""
     if not force:
-        notes = standing_product(path, survey, basis.settings, remarks=basis.remarks)
+        notes = reusable_product(path, survey, basis.settings, remarks=basis.remarks)
         if notes is not None:
             return "unchanged", note_message(notes)
     dataset, notes = dataset_of(campaign, survey, basis, command=command)

@@ -13,14 +13,14 @@ from reduction.batch.reuse import Basis, basis_of
 from reduction.batch.run_lock import RunLock
 from reduction.batch.slow_pulls import fit_pulls
 from reduction.batch.survey import FirstPass, Survey, status_row, survey_campaign
-from reduction.batch.test_history import fit_strain_models, past_of
+from reduction.batch.test_history import earlier_tests_of, fit_strain_models
 from reduction.batch.workers import Workers
 from reduction.campaign.plan import Campaign
 from reduction.record.errors import ReductionError, SettingsError
 from reduction.stages.strain.strain_model import StrainModel
 
 
-def parts_asked(campaign: Campaign) -> set[str]:
+def requested_parts(campaign: Campaign) -> set[str]:
     """Names of the archives of the whole campaign that its campaign.toml asks for."""
     asked = {
         "surfaces": bool(campaign.experiments),
@@ -31,15 +31,15 @@ def parts_asked(campaign: Campaign) -> set[str]:
     return {name for name, is_asked in asked.items() if is_asked}
 
 
-def products_asked(campaign: Campaign, folder: Path, *, has_lengths: bool) -> dict[str, Path]:
+def requested_products(campaign: Campaign, folder: Path, *, has_lengths: bool) -> dict[str, Path]:
     """Archives of the whole campaign that it asks for and that are there."""
-    asked = parts_asked(campaign) | ({"change_in_length"} if has_lengths else set())
+    asked = requested_parts(campaign) | ({"change_in_length"} if has_lengths else set())
     paths = {name: folder / f"{name}.nc" for name in OF_CAMPAIGN if name in asked}
     return {name: path for name, path in paths.items() if path.exists()}
 
 
 @dataclass(frozen=True)
-class Wanted:
+class ReductionInputs:
     """The tests after the first pass, and what the product of each rests on.
 
     ``errors`` are of tests whose log was read and that cannot be reduced all the same, ``failed``
@@ -52,32 +52,32 @@ class Wanted:
     basis: Callable[[Survey], Basis]
 
 
-def find_wanted(
+def find_reduction_inputs(
     campaign: Campaign,
     *,
     workers: Workers | None = None,
     lock: RunLock | None = None,
     progress: Progress,
-) -> Wanted:
+) -> ReductionInputs:
     """Read every log of a campaign, and fit what its tests share."""
     first = survey_campaign(campaign, workers=workers, lock=lock, progress=progress)
-    return wanted_of(campaign, first, workers=workers, progress=progress)
+    return reduction_inputs(campaign, first, workers=workers, progress=progress)
 
 
-def wanted_of(
+def reduction_inputs(
     campaign: Campaign,
     first: FirstPass,
     *,
     workers: Workers | None = None,
     progress: Progress,
-) -> Wanted:
+) -> ReductionInputs:
     """Fit what tests share whose logs are read."""
     models, errors = fit_strain_models(campaign, first.surveys)
     pulls, errors_of_pulls = fit_pulls(campaign, first, models, workers=workers, progress=progress)
     errors |= errors_of_pulls
     failed = [entry.plan.id for entry in first.surveys if entry.error or entry.plan.id in errors]
-    basis = partial(basis_of, campaign, past=past_of(first.surveys, models), pulls=pulls)
-    return Wanted(first, errors, tuple(failed), basis)
+    basis = partial(basis_of, campaign, past=earlier_tests_of(first.surveys, models), pulls=pulls)
+    return ReductionInputs(first, errors, tuple(failed), basis)
 
 
 def refuse_unknown_tests(campaign: Campaign, tests: Sequence[str]) -> None:

@@ -14,7 +14,7 @@ from reduction.archive.dataset_builder import key_of
 from reduction.archive.open import reading
 from reduction.batch.slow_pulls import origins_of, pull_tests, pulls_of
 from reduction.batch.survey import Survey
-from reduction.batch.test_history import Past, history_of, history_remarks, instruments_of
+from reduction.batch.test_history import EarlierTests, history_of, history_remarks, instruments_of
 from reduction.campaign.plan import Campaign
 from reduction.record.measurement import Floats
 from reduction.stages.line.line_product import SlowPull
@@ -161,7 +161,7 @@ class Basis:
 def basis_of(
     campaign: Campaign,
     survey: Survey,
-    past: Past,
+    past: EarlierTests,
     *,
     pulls: Mapping[tuple[str, str], SlowPull],
 ) -> Basis:
@@ -186,7 +186,7 @@ NOT_REDUCED = "not reduced yet from logs and settings as they stand now"
 _MANY = 4  # runs that are named one by one
 
 
-def standing_product(
+def reusable_product(
     path: Path, survey: Survey, settings: str, *, remarks: Sequence[str] = ()
 ) -> tuple[tuple[str, str], ...] | None:
     """Notes of the product of an earlier run that stands; None where it has to be made."""
@@ -217,7 +217,7 @@ def standing_product(
     return notes if set(remarks) <= {text for _, text in notes} else None
 
 
-def waiting_runs(
+def outdated_runs(
     folder: Path, surveys: Sequence[Survey], basis_of: Callable[[Survey], Basis]
 ) -> set[str]:
     """Runs that have to be reduced before their experiment is fitted."""
@@ -225,12 +225,12 @@ def waiting_runs(
     for survey in surveys:
         now = basis_of(survey)
         path = folder / f"{survey.plan.id}.nc"
-        if standing_product(path, survey, now.settings, remarks=now.remarks) is None:
+        if reusable_product(path, survey, now.settings, remarks=now.remarks) is None:
             waiting.add(survey.plan.id)
     return waiting
 
 
-def waiting_in_words(waiting: Collection[str], runs: Collection[str]) -> str:
+def outdated_in_words(waiting: Collection[str], runs: Collection[str]) -> str:
     """What has to be run before an experiment is fitted; empty where nothing has."""
     listed = [run for run in runs if run in waiting]
     if not listed:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from reduction.archive.csv_tables import write_tables
 from reduction.archive.open import OF_CAMPAIGN, Opener, archives_of_tests, read_once
-from reduction.archive.write import keep_details, write_whole
+from reduction.archive.write import keep_details, write_text_atomically
 from reduction.batch.campaign_status import (
     PartStatus,
     Progress,
@@ -25,12 +25,12 @@ from reduction.batch.other_products import tests_of_ropes, write_change_in_lengt
 from reduction.batch.prediction_product import write_comparisons, write_predictions
 from reduction.batch.reduce_tests import reduce_campaign
 from reduction.batch.requested_products import (
-    find_wanted,
-    products_asked,
+    find_reduction_inputs,
     refuse_unknown_tests,
+    requested_products,
     selected_surveys,
 )
-from reduction.batch.reuse import Basis, waiting_runs
+from reduction.batch.reuse import Basis, outdated_runs
 from reduction.batch.run_lock import RunLock, run_lock
 from reduction.batch.survey import Survey
 from reduction.batch.workers import Workers
@@ -157,7 +157,7 @@ def _run(
     progress: Progress,
     opener: Opener,
 ) -> _CampaignResult:
-    wanted = find_wanted(campaign, workers=workers, lock=lock, progress=progress)
+    wanted = find_reduction_inputs(campaign, workers=workers, lock=lock, progress=progress)
     first, basis = wanted.first, wanted.basis
     surveys = first.surveys
     chosen = selected_surveys(surveys, tests)
@@ -186,9 +186,9 @@ def _run(
     report, tables = None, []
     rows = _all_rows(folder / "status.csv", surveys, statuses)
     if statuses:
-        write_whole(folder / "status.csv", status_csv(rows))
+        write_text_atomically(folder / "status.csv", status_csv(rows))
     keep_details(folder, campaign.report)
-    products = products_asked(campaign, folder, has_lengths=parts.has_lengths)
+    products = requested_products(campaign, folder, has_lengths=parts.has_lengths)
     if archives or products:
         tables = write_tables(archives, folder / "tables", opener=opener, **products)
         write_catalogue([*archives, *products.values()], folder / FILE_NAME, opener=opener)
@@ -252,7 +252,7 @@ def _write_parts(
     compared = {plan.measured for plan in campaign.comparisons.values()}
     needed = runs | compared | tests_of_ropes(campaign, surveys)
     left_out = [entry for entry in surveys if entry.plan.id in needed - asked - failed]
-    waiting = waiting_runs(folder, left_out, basis)
+    waiting = outdated_runs(folder, left_out, basis)
     experiments = write_experiments(
         campaign,
         folder,

@@ -33,7 +33,7 @@ from reduction.stages.standstills import median_step
 from reduction.stages.strain.strain_fit import zero_strain_position
 
 
-def _found_in(located: Located) -> dict[str, Any]:
+def _log_summary(located: Located) -> dict[str, Any]:
     """Rate, gaps, standstills, flags and notes of a record, beside its rows and cycles."""
     record = located.record
     n_flagged = account_rows(record).n_flagged
@@ -209,7 +209,7 @@ def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Sur
         n_rows=record.n_samples,
         n_cycles=0 if located.cycles is None else located.cycles.n_cycles,
         extremes=extremes_of_test(located),
-        found=_found_in(located),
+        found=_log_summary(located),
     )
 
 

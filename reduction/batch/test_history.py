@@ -25,7 +25,7 @@ Place = tuple[int, int]
 
 
 @dataclass(frozen=True)
-class Past:
+class EarlierTests:
     """All tests of a campaign, in order.
 
     Each test asks what came before it, so that what can be answered once is.  ``placed`` holds
@@ -41,7 +41,7 @@ class Past:
     of_log: Mapping[str, Survey]
 
 
-def past_of(surveys: Sequence[Survey], models: Models) -> Past:
+def earlier_tests_of(surveys: Sequence[Survey], models: Models) -> EarlierTests:
     """Put the tests of a campaign in order."""
     placed: dict[str, list[tuple[Place, Survey]]] = {}
     strain: dict[tuple[str, str], float] = {}
@@ -56,7 +56,7 @@ def past_of(surveys: Sequence[Survey], models: Models) -> Past:
                 placed.setdefault(name, []).append(((plan.order, plan.step_place), entry))
     for before in placed.values():
         before.sort(key=itemgetter(0))
-    return Past(surveys, models, placed, strain, of_log)
+    return EarlierTests(surveys, models, placed, strain, of_log)
 
 
 def _set_after_rest(
@@ -70,18 +70,18 @@ def _set_after_rest(
     )
 
 
-def _whole(survey: Survey, past: Past) -> Survey:
+def _with_earlier_steps(survey: Survey, past: EarlierTests) -> Survey:
     """The test itself, or that of which it repeats a part."""
     return past.of_log.get(survey.plan.part_of or "", survey)
 
 
-def _place(survey: Survey, past: Past) -> Place | None:
+def _place(survey: Survey, past: EarlierTests) -> Place | None:
     """Place in the order of tests; a test that is a part of another has the place of that one."""
-    order = _whole(survey, past).plan.order
+    order = _with_earlier_steps(survey, past).plan.order
     return None if order is None else (order, survey.plan.step_place)
 
 
-def _earlier(survey: Survey, past: Past, name: str) -> list[Survey]:
+def _earlier(survey: Survey, past: EarlierTests, name: str) -> list[Survey]:
     """Tests of a specimen before a test, oldest first."""
     place = _place(survey, past)
     if place is None:
@@ -115,14 +115,14 @@ def _earlier_flex_cycles(
     return float((before or 0) + sum(flexed.values()))
 
 
-def history_of(survey: Survey, past: Past, campaign: Campaign) -> History | None:
+def history_of(survey: Survey, past: EarlierTests, campaign: Campaign) -> History | None:
     """Earlier maximum strain and tension and cumulative cycles of each specimen."""
     if _place(survey, past) is None:
         return None
     nothing = float("nan")
     tests: list[tuple[str, ...]] = []
     strain, tension, cycles, flex, left = [], [], [], [], []
-    own = _whole(survey, past)
+    own = _with_earlier_steps(survey, past)
     for name in survey.plan.specimens:
         earlier = _earlier(survey, past, name)
         tests.append(tuple(entry.plan.id for entry in earlier))
@@ -154,7 +154,7 @@ def _greatest(values: Sequence[float]) -> float:
     return float(np.max(values)) if values else float("nan")
 
 
-def history_remarks(survey: Survey, past: Past, campaign: Campaign) -> tuple[str, ...]:
+def history_remarks(survey: Survey, past: EarlierTests, campaign: Campaign) -> tuple[str, ...]:
     """What the campaign leaves open about the place of a test in its specimens' history."""
     plan = survey.plan
     remarks = (*_unknown(survey, past), *_unlogged(survey, past, campaign))
@@ -177,12 +177,12 @@ def history_remarks(survey: Survey, past: Past, campaign: Campaign) -> tuple[str
     return remarks
 
 
-def _unlogged(survey: Survey, past: Past, campaign: Campaign) -> tuple[str, ...]:
+def _unlogged(survey: Survey, past: EarlierTests, campaign: Campaign) -> tuple[str, ...]:
     """Earlier cycles of which the campaign has the number alone."""
     if _place(survey, past) is None:
         return ()
     remarks = []
-    own = _whole(survey, past)
+    own = _with_earlier_steps(survey, past)
     for name in survey.plan.specimens:
         before = campaign.specimens[name].earlier_cycles
         count = _unlogged_cycles(_earlier(survey, past, name), own, before)
@@ -194,7 +194,7 @@ def _unlogged(survey: Survey, past: Past, campaign: Campaign) -> tuple[str, ...]
     return tuple(remarks)
 
 
-def _unknown(survey: Survey, past: Past) -> tuple[str, ...]:
+def _unknown(survey: Survey, past: EarlierTests) -> tuple[str, ...]:
     """Earlier tests of which a number is lacking, and what has none for it here."""
     failed: dict[str, list[str]] = {}
     bare: dict[str, list[str]] = {}

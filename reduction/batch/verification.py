@@ -16,8 +16,13 @@ from reduction.archive.open import OF_CAMPAIGN, archives_in, read_once, reading
 from reduction.archive.write import values_sha256
 from reduction.batch.campaign_status import Progress
 from reduction.batch.experiment_product import settings_of_experiments
-from reduction.batch.requested_products import Wanted, find_wanted, parts_asked, products_asked
-from reduction.batch.reuse import standing_product
+from reduction.batch.requested_products import (
+    ReductionInputs,
+    find_reduction_inputs,
+    requested_parts,
+    requested_products,
+)
+from reduction.batch.reuse import reusable_product
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign
 from reduction.readers.raw_log import hash_source
@@ -91,14 +96,14 @@ def verify_campaign(campaign: Campaign, folder: Path, *, progress: Progress) -> 
     tests = _tests_of(campaign)
     findings += [
         _Finding(f"{name}.nc", "missing", "it is not there, and the campaign asks for it")
-        for name in (*tests, *sorted(parts_asked(campaign)))
+        for name in (*tests, *sorted(requested_parts(campaign)))
         if not (folder / f"{name}.nc").exists()
     ]
     progress.stage("verify tables", 0)
     n_tables = 0
     if len(attributes) == len(paths):  # of what cannot be read no tables can be made
         there = [folder / f"{name}.nc" for name in tests if name in attributes]
-        whole = products_asked(campaign, folder, has_lengths=True)
+        whole = requested_products(campaign, folder, has_lengths=True)
         n_tables, of_tables = _of_tables(folder, there, whole) if there or whole else (0, [])
         findings += of_tables
     remarks = (
@@ -191,7 +196,7 @@ def _of_settings(
     campaign: Campaign, folder: Path, archives: Mapping[str, Mapping[str, Any]], progress: Progress
 ) -> Iterator[_Finding]:
     """Archives that a run would make again from the same files: logs are read as a run does."""
-    wanted = find_wanted(campaign, progress=progress)
+    wanted = find_reduction_inputs(campaign, progress=progress)
     for survey in wanted.first.surveys:
         if survey.plan.id in archives:
             yield from _of_test(survey, wanted, folder, archives[survey.plan.id])
@@ -203,7 +208,7 @@ def _of_settings(
 
 
 def _of_test(
-    survey: Survey, wanted: Wanted, folder: Path, attributes: Mapping[str, Any]
+    survey: Survey, wanted: ReductionInputs, folder: Path, attributes: Mapping[str, Any]
 ) -> Iterator[_Finding]:
     product = f"{survey.plan.id}.nc"
     try:
@@ -214,7 +219,7 @@ def _of_test(
     except ReductionError as failure:
         yield _Finding(product, "settings", "the test cannot be reduced now", str(failure))
         return
-    stands = standing_product(folder / product, survey, basis.settings, remarks=basis.remarks)
+    stands = reusable_product(folder / product, survey, basis.settings, remarks=basis.remarks)
     if stands is None:
         told = list(_made_otherwise(product, attributes, basis.settings))
         yield from told or [_Finding(product, "settings", "a run would make it again")]

@@ -15,11 +15,11 @@ from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats
 
 
-class _Section(BaseModel):
+class _ArmourSection(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class _ArmourLayerKeys(_Section):
+class _ArmourLayerKeys(_ArmourSection):
     """``[[armour.layers]]``."""
 
     name: str = ""
@@ -38,7 +38,7 @@ class _ArmourLayerKeys(_Section):
     yield_stress: str | None = None
 
 
-class _ArmourKeys(_Section):
+class _ArmourKeys(_ArmourSection):
     """``[armour]``."""
 
     axial_strain: Number
@@ -48,7 +48,7 @@ class _ArmourKeys(_Section):
     layers: tuple[_ArmourLayerKeys, ...] = Field(min_length=1)
 
 
-class _ArmourFile(_Section):
+class _ArmourFile(_ArmourSection):
     """The whole of SPEC.toml."""
 
     armour: _ArmourKeys

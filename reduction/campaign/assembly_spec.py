@@ -17,11 +17,11 @@ from reduction.record.errors import SettingsError
 _MOST_TETHERS = 100
 
 
-class _Section(BaseModel):
+class _AssemblySection(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class _CurveKeys(_Section):
+class _CurveKeys(_AssemblySection):
     """``[assembly.curve]``: what `reduction composite` is told."""
 
     source: str | tuple[str, ...]
@@ -31,7 +31,7 @@ class _CurveKeys(_Section):
     precedence: tuple[PieceKind, ...] | None = None
 
 
-class _SpliceKeys(_Section):
+class _SpliceKeys(_AssemblySection):
     """``[assembly.splices]``; without it those of the tested tether."""
 
     length: str
@@ -45,7 +45,7 @@ class _SpliceKeys(_Section):
     """Of the tension, with ``strain``."""
 
 
-class _PartKeys(_Section):
+class _PartKeys(_AssemblySection):
     """``[[assembly.parts]]``: in line with the tethers."""
 
     name: str = ""
@@ -54,7 +54,7 @@ class _PartKeys(_Section):
     """Force per unit strain; rigid if nothing."""
 
 
-class _WorkingKeys(_Section):
+class _WorkingKeys(_AssemblySection):
     """``[[assembly.working]]``: one of tension, total length and strain."""
 
     tension: str | None = None
@@ -64,7 +64,7 @@ class _WorkingKeys(_Section):
     tension_amplitude: str = "0 N"
 
 
-class _AssemblyKeys(_Section):
+class _AssemblyKeys(_AssemblySection):
     """``[assembly]``."""
 
     n_tethers: int | None = Field(default=None, ge=1, le=_MOST_TETHERS)
@@ -84,7 +84,7 @@ class _AssemblyKeys(_Section):
     working: tuple[_WorkingKeys, ...] = ()
 
 
-class _AssemblyFile(_Section):
+class _AssemblyFile(_AssemblySection):
     """The whole of SPEC.toml."""
 
     assembly: _AssemblyKeys

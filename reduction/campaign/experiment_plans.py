@@ -194,11 +194,11 @@ ColumnName = Annotated[
 _UNIT = re.compile(r"^\s*[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*(.*?)\s*$")
 
 
-class _Section(BaseModel):
+class _ExperimentSection(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class _ExperimentKeys(_Section):
+class _ExperimentKeys(_ExperimentSection):
     """``[experiment]``."""
 
     kind: DesignKind | None = None
@@ -215,14 +215,14 @@ class _ExperimentKeys(_Section):
     specimens_as: Literal["blocks", "random"] = "blocks"
 
 
-class _ResponseKeys(_Section):
+class _ResponseKeys(_ExperimentSection):
     """``[responses.NAME]``."""
 
     unit: str = ""
     transform: Transform = "none"
 
 
-class _SpecFile(_Section):
+class _SpecFile(_ExperimentSection):
     """The whole of SPEC.toml."""
 
     experiment: _ExperimentKeys = _ExperimentKeys()

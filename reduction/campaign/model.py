@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints, field_vali
 
 from reduction.archive.open import OF_CAMPAIGN
 from reduction.archive.uncertainty_budget import parse_place
-from reduction.archive.write import Limit, ReportDetails, ReportText, Section, Statement
+from reduction.archive.write import ReportDetails, ReportLimit, ReportSection, ReportText, Statement
 from reduction.campaign.plan import TestPlan, product_of
 from reduction.campaign.toml_file import DEVICE, Number, TableReader, in_toml
 from reduction.prediction.hose_product import RubberLaw
@@ -292,7 +292,7 @@ def stated_errors(
     )
 
 
-class _LimitSection(Section):
+class _LimitSection(ReportSection):
     """``[[report.limits]]``: a number that is held against a limit."""
 
     quantity: ReportText
@@ -340,7 +340,9 @@ def report_details(
     )
 
 
-def _limit(path: Path, place: str, one: _LimitSection, tests: Mapping[str, TestPlan]) -> Limit:
+def _limit(
+    path: Path, place: str, one: _LimitSection, tests: Mapping[str, TestPlan]
+) -> ReportLimit:
     if one.quantity not in QUANTITIES:
         raise in_toml(
             path, f"{place}.quantity is not known", found=repr(one.quantity),
@@ -370,7 +372,7 @@ def _limit(path: Path, place: str, one: _LimitSection, tests: Mapping[str, TestP
             path, f"{place}: the lower limit is not below the upper one",
             found=f"{one.lower} and {one.upper}",
         )  # fmt: skip
-    return Limit(
+    return ReportLimit(
         quantity=one.quantity, test=product[0], at=at, lower=lower, upper=upper, source=one.source
     )
 
@@ -659,11 +661,11 @@ Text = Annotated[str, StringConstraints(max_length=2000)]
 _MOST = 999_999_999  # of what is counted: a netCDF integer holds it
 
 
-class _Section(BaseModel):
+class _SpecSection(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
-class _CampaignSection(_Section):
+class _CampaignSection(_SpecSection):
     """``[campaign]``: who, what and under which terms."""
 
     id: Identifier
@@ -682,7 +684,7 @@ class _CampaignSection(_Section):
     """A CSV with one row an outcome of which there is no log."""
 
 
-class SpecimenSection(_Section):
+class SpecimenSection(_SpecSection):
     """``[specimens.NAME]``: the specimen before its first test."""
 
     kind: Literal["rubber tether", "stretch hose", "rope", "wire", "elastomer"]
@@ -708,21 +710,21 @@ class SpecimenSection(_Section):
     note: Text = ""
 
 
-class _StrainSection(_Section):
+class _StrainSection(_SpecSection):
     """``strain = { method = "...", marks = "marks.csv" }``."""
 
     method: StrainMethod | None = None
     marks: Text = ""
 
 
-class _FilePiece(_Section):
+class _FilePiece(_SpecSection):
     """One file of a record in pieces."""
 
     file: Text
     layout: Identifier | None = None
 
 
-class _Kept(_Section):
+class _Kept(_SpecSection):
     """What a laboratory keeps about a test; goes into the product as written."""
 
     layout: Identifier | None = None
@@ -752,7 +754,7 @@ class Defaults(_Kept):
     kind: TestKind = "cyclic"
 
 
-class StepSection(_Section):
+class StepSection(_SpecSection):
     """``[[tests.ID.steps]]``: one step of a log that holds many."""
 
     model_config = ConfigDict(
@@ -811,7 +813,7 @@ class TestSection(_Kept):
         return value
 
 
-class ExperimentSection(_Section):
+class ExperimentSection(_SpecSection):
     """``[experiments.NAME]``: cyclic tests or steps that make one set of response surfaces."""
 
     kind: Literal["box-behnken", "plackett-burman"]
@@ -829,7 +831,7 @@ class ExperimentSection(_Section):
     """Beside the full surfaces, those with the terms that AICc keeps."""
 
 
-class CampaignFile(_Section):
+class CampaignFile(_SpecSection):
     """The whole of campaign.toml."""
 
     campaign: _CampaignSection

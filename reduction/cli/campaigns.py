@@ -18,7 +18,7 @@ from typing import Any, cast
 from rich.markup import escape
 from rich.table import Table
 
-from reduction.archive.atomic_write import whole_file
+from reduction.archive.atomic_write import atomic_file
 from reduction.archive.open import Opener, processed_folders, read_once, reading
 from reduction.batch.campaign_status import PartStatus, TestStatus
 from reduction.batch.experiment_product import experiments_found
@@ -123,7 +123,10 @@ def _find_browser() -> str:
 
 def _print_page(page: Path, pdf: Path, *, browser: str) -> None:
     """Print a page to PDF; the file appears whole or not at all."""
-    with tempfile.TemporaryDirectory(prefix="reduction-print-") as profile, whole_file(pdf) as part:
+    with (
+        tempfile.TemporaryDirectory(prefix="reduction-print-") as profile,
+        atomic_file(pdf) as part,
+    ):
         # a browser that is run by root refuses its own sandbox
         is_root = sys.platform != "win32" and os.geteuid() == 0
         printed = Path(profile) / "printed.pdf"

@@ -410,7 +410,7 @@ def deployed_line(path: Path) -> DeployedLine:
         deployed=deployed,
         source=used_of(source, curve),
         curve=curve,
-        splices=_splices_told(case, model),
+        splices=_splices_in_words(case, model),
         parts=case.parts,
     )
 
@@ -455,7 +455,7 @@ def _model(path: Path, case: AssemblyCase, source: PieceSource) -> StrainModel:
     return stated_model(case.splices, length, name=source.name)
 
 
-def _splices_told(case: AssemblyCase, model: StrainModel) -> str:
+def _splices_in_words(case: AssemblyCase, model: StrainModel) -> str:
     where = "stated" if case.splices is not None else f"as tested ({model.marks_from})"
     numbers = ", ".join(
         f"{name.replace('_', ' ')} {value:.4g}" for name, value in model.coefficients.items()

@@ -9,10 +9,10 @@ import numpy as np
 from rich.markup import escape
 
 from reduction.archive.csv_columns import csv_text
-from reduction.archive.write import write_whole
+from reduction.archive.write import write_text_atomically
 from reduction.campaign.experiment_plans import ExperimentSpec, RunSeries, load_spec, read_runs
 from reduction.cli.output import CommandOutput
-from reduction.cli.printed_numbers import Shown, fitted_unit, plain, short, table_of
+from reduction.cli.printed_numbers import ShownUnits, fitted_unit, plain, short, table_of
 from reduction.experiments.designs import Design, DesignKind, box_behnken, plackett_burman
 from reduction.experiments.fit_results import (
     FIT_REASONS,
@@ -67,7 +67,7 @@ def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, output: Command
     except ReductionError as error:
         raise _in_file(path, error) from error
     if out is not None:
-        write_whole(out, _csv(design, sheet, spec))
+        write_text_atomically(out, _csv(design, sheet, spec))
     units = cast("UnitSystem", output.units)
     _show_sheet(sheet, spec, output, units)
     for caution in cautions:
@@ -458,7 +458,7 @@ def _show_surfaces(
     """Each surface: its terms, its analysis of variance, its stationary point."""
     for index, name in enumerate(surfaces.response_names):
         transform = surfaces.transform[index]
-        shown = Shown(runs.response_units[index], transform, runs.factor_units, system)
+        shown = ShownUnits(runs.response_units[index], transform, runs.factor_units, system)
         power = f", Box-Cox exponent {surfaces.transform_exponent[index]:.3g}"
         unit = f" [{shown.unit}]" if shown.unit else f" ({transform})" * (transform != "none")
         output.say(f"{name}{unit}{power if transform == 'box-cox' else ''}")
@@ -501,7 +501,7 @@ def _show_terms(
 
 
 def _show_equation(
-    surfaces: ResponseSurfaces, index: int, shown: Shown, output: CommandOutput
+    surfaces: ResponseSurfaces, index: int, shown: ShownUnits, output: CommandOutput
 ) -> None:
     """The equation in the units of the factors, where they have any."""
     engineering = surfaces.coefficient_engineering[index]
@@ -544,7 +544,7 @@ def _show_anova(
 def _show_stationary(
     surfaces: ResponseSurfaces,
     index: int,
-    shown: Shown,
+    shown: ShownUnits,
     runs: RunSeries,
     output: CommandOutput,
     system: UnitSystem,

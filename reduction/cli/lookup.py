@@ -13,7 +13,7 @@ from rich.table import Table
 
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import as_given, plain, short, table_of, within
-from reduction.lines.archive_source import archives_of_lines, lines_of_archive, told_apart
+from reduction.lines.archive_source import archives_of_lines, lines_of_archive, with_unique_names
 from reduction.lines.deck_formats import export_table
 from reduction.lines.export_tables import (
     TENSIONS,
@@ -60,7 +60,9 @@ def _lines_of(source: str) -> list[LineSource]:
             )  # fmt: skip
         return lines
     if path.is_dir():
-        lines = told_apart([(one.stem, lines_of_archive(one)) for one in archives_of_lines(path)])
+        lines = with_unique_names(
+            [(one.stem, lines_of_archive(one)) for one in archives_of_lines(path)]
+        )
         if lines:
             return lines
     if _is_path(source):
@@ -157,7 +159,7 @@ MOST_POINTS = 100_000
 
 
 @dataclass(frozen=True)
-class Wanted:
+class LookupRequest:
     """What is to be looked up: options as they were given.
 
     ``levels`` are texts with units, by name; ``search`` what `find_lines` takes; ``name`` the line
@@ -193,7 +195,7 @@ def parsed_search(
 
 
 def _points_of(
-    wanted: Wanted, line: LineSource, *others: LineSource
+    wanted: LookupRequest, line: LineSource, *others: LineSource
 ) -> tuple[list[dict[str, Floats]], bool]:
     """Points at which lines are looked up, by level, and whether slack ones were left out."""
     lines = (line, *others)
@@ -232,7 +234,7 @@ def _points_of(
     return kept, not taut.all()
 
 
-def _filled(wanted: Wanted, lines: Sequence[LineSource]) -> dict[str, Floats]:
+def _filled(wanted: LookupRequest, lines: Sequence[LineSource]) -> dict[str, Floats]:
     """Low, centre and high of what was tested of all lines, by level; those that are given too."""
     ends = [_ends(wanted, line) for line in lines]
     filled = {}
@@ -251,7 +253,7 @@ def _filled(wanted: Wanted, lines: Sequence[LineSource]) -> dict[str, Floats]:
     return filled
 
 
-def _ends(wanted: Wanted, line: LineSource) -> dict[str, tuple[float, float]]:
+def _ends(wanted: LookupRequest, line: LineSource) -> dict[str, tuple[float, float]]:
     """Range of each variable that was tested; of a damping that of the spring in it."""
     is_dashpot = wanted.quantity == "dashpot_coefficient" and line.has_dashpot
     name = "dissipation_spring_constant" if is_dashpot else wanted.quantity
@@ -361,7 +363,7 @@ def _described(line: LineSource) -> dict[str, Any]:
     }
 
 
-def look_up_values(source: str, wanted: Wanted, *, output: CommandOutput) -> None:
+def look_up_values(source: str, wanted: LookupRequest, *, output: CommandOutput) -> None:
     """Print design values; several values of a level, parted by commas, make a grid."""
     form = None if wanted.out is None else format_of_file(wanted.out)
     line = _one_of(find_lines(_lines_of(source), **wanted.search), wanted.quantity, wanted.name)
@@ -572,7 +574,9 @@ def _document(
     }
 
 
-def look_up_against(source: str, other: str, wanted: Wanted, *, output: CommandOutput) -> None:
+def look_up_against(
+    source: str, other: str, wanted: LookupRequest, *, output: CommandOutput
+) -> None:
     """Print values of two lines, their difference and ratio, and whether the intervals allow it."""
     form = None if wanted.out is None else format_of_file(wanted.out)
     lines = _lines_of(source)

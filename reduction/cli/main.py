@@ -339,7 +339,7 @@ def lookup(
     """One design value with its interval, range check and source, or a table of them."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.lookup import (
-            Wanted,
+            LookupRequest,
             list_sources,
             look_up_against,
             look_up_values,
@@ -361,7 +361,7 @@ def lookup(
             "tension": tension,
             "strain": strain,
         }
-        wanted = Wanted(
+        wanted = LookupRequest(
             quantity=name_of_quantity(quantity),
             levels={name: text for name, text in levels.items() if text is not None},
             search=search,

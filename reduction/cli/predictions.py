@@ -12,7 +12,7 @@ import numpy as np
 from reduction.archive.campaign_products import NamedComparison
 from reduction.archive.csv_columns import Cell, csv_text
 from reduction.archive.csv_tables import write_tables
-from reduction.archive.write import write_whole
+from reduction.archive.write import write_text_atomically
 from reduction.batch.prediction_product import compare_archive, write_hoses, write_named
 from reduction.campaign.armour_spec import load_armour_case
 from reduction.campaign.hose_plans import load_hose, target_of
@@ -21,7 +21,7 @@ from reduction.campaign.wave_spec import load_wave_case
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.prediction.armour import PredictedArmour, predict_armour_case
-from reduction.prediction.comparison_error import Calibration, verdict_words
+from reduction.prediction.comparison_error import HoseCalibration, verdict_words
 from reduction.prediction.hose_design import DesignedHose, design_hoses
 from reduction.prediction.hose_prediction import HoseTarget, PredictedHose, predict_from_plan
 from reduction.prediction.hose_product import HoseEvent
@@ -312,8 +312,8 @@ def predict_cable(path: Path, *, out: Path | None, output: CommandOutput) -> Non
     _show_armour(found, output, units)
     if out is not None:
         wires, layers = out / "tables" / "armour_wires.csv", out / "tables" / "armour_layers.csv"
-        write_whole(wires, _wires_csv(found))
-        write_whole(layers, _layers_csv(found))
+        write_text_atomically(wires, _wires_csv(found))
+        write_text_atomically(layers, _layers_csv(found))
         page = write_armour_page(found, out, name=case.name, units=units)
         output.say(f"tables: {wires}, {layers}")
         output.say(f"figures: {page}")
@@ -475,7 +475,7 @@ def predict_wave(path: Path, *, out: Path | None, output: CommandOutput) -> None
     _show_wave_load(found, output, units)
     if out is not None:
         table = out / "tables" / "wave_load.csv"
-        write_whole(table, _csv(found))
+        write_text_atomically(table, _csv(found))
         page = write_wave_page(found, out, name=name, units=units)
         output.say(f"table: {table}")
         output.say(f"figures: {page}")
@@ -652,7 +652,7 @@ def _show_comparison(named: NamedComparison, output: CommandOutput, system: Unit
         output.say(f"note: {note}")
 
 
-def _show_calibration(fit: Calibration, output: CommandOutput, system: UnitSystem) -> None:
+def _show_calibration(fit: HoseCalibration, output: CommandOutput, system: UnitSystem) -> None:
     table = table_of("calibrated", "unit", "before", "after", "u", "95 % interval", texts=2)
     for place, name in enumerate(fit.parameter):
         unit, factor = _shown_unit(name, system)
@@ -745,7 +745,7 @@ def _comparison_document(named: NamedComparison) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _calibrated(fit: Calibration) -> dict[str, Any]:
+def _calibrated(fit: HoseCalibration) -> dict[str, Any]:
     return {
         "parameters": {
             name: {

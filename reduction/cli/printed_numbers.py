@@ -22,7 +22,7 @@ def fitted_unit(unit: str, transform: str) -> str:
     return names.get(transform, f"Box-Cox({unit})") if unit else ""
 
 
-class Shown:
+class ShownUnits:
     """Units of a response and of its factors, as they are shown."""
 
     def __init__(

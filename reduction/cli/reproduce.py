@@ -8,7 +8,7 @@ from typing import Any
 
 from rich.markup import escape
 
-from reduction.archive.write import write_whole
+from reduction.archive.write import write_text_atomically
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, table_of
 from reduction.published.printed_cells import REPORTS, ReportId
@@ -23,7 +23,7 @@ from reduction.published.reproduce_page import (
     reproduce,
     touched_errata,
 )
-from reduction.published.reproduced_item import Item
+from reduction.published.reproduced_item import ReproducedItem
 from reduction.record.errors import DataError, SettingsError
 
 UNEXPLAINED = DataError.exit_status
@@ -48,8 +48,8 @@ def reproduce_reports(report: str | None, *, out: Path | None, output: CommandOu
         _show_total(reports, output)
     if out is not None:
         page, table = out / "reproduce.html", out / "reproduce.csv"
-        write_whole(page, render_reproduction(reports))
-        write_whole(table, csv_of(item for items in reports.values() for item in items))
+        write_text_atomically(page, render_reproduction(reports))
+        write_text_atomically(table, csv_of(item for items in reports.values() for item in items))
         output.say(f"page: {page}")
         output.say(f"table: {table}")
     output.answer(_document(reports) | {"out": None if out is None else str(out)})
@@ -94,7 +94,7 @@ def _known(report: str) -> ReportId:
     )
 
 
-def _show(report: ReportId, items: Sequence[Item], output: CommandOutput) -> None:
+def _show(report: ReportId, items: Sequence[ReproducedItem], output: CommandOutput) -> None:
     table = _table(report)
     for name, counts in counts_by_table(items).items():
         table.add_row(escape(name), *_numbers(counts))
@@ -117,7 +117,9 @@ def _show(report: ReportId, items: Sequence[Item], output: CommandOutput) -> Non
     output.say("")
 
 
-def _show_total(reports: Mapping[ReportId, Sequence[Item]], output: CommandOutput) -> None:
+def _show_total(
+    reports: Mapping[ReportId, Sequence[ReproducedItem]], output: CommandOutput
+) -> None:
     table = _table("report")
     for report, items in reports.items():
         table.add_row(report, *_numbers(counts_of(items)))
@@ -135,7 +137,7 @@ def _numbers(counts: Counts) -> list[str]:
     return [f"{number:,}" for number in counts.values()]
 
 
-def _unexplained(item: Item) -> str:
+def _unexplained(item: ReproducedItem) -> str:
     cell = item.cell
     return (
         f"{cell.report}, table {cell.table}, {cell.row}, {cell.column}: printed number does not "
@@ -144,7 +146,7 @@ def _unexplained(item: Item) -> str:
     )
 
 
-def _document(reports: Mapping[ReportId, Sequence[Item]]) -> dict[str, Any]:
+def _document(reports: Mapping[ReportId, Sequence[ReproducedItem]]) -> dict[str, Any]:
     """What ``--json`` says; numbers are in the unit of the page, which is beside them."""
     return {
         "reports": {report: counts_of(items) for report, items in reports.items()},
@@ -160,11 +162,11 @@ def _document(reports: Mapping[ReportId, Sequence[Item]]) -> dict[str, Any]:
     }
 
 
-def _name(item: Item) -> str:
+def _name(item: ReproducedItem) -> str:
     return f"{item.cell.row} / {item.cell.column}"
 
 
-def _described(item: Item) -> dict[str, Any]:
+def _described(item: ReproducedItem) -> dict[str, Any]:
     cell = item.cell
     return {
         "report": cell.report,

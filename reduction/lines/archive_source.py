@@ -385,22 +385,22 @@ def lines_of_open_archive(
     return [_line_source_of_test(archive, name) for name in names]
 
 
-def told_apart(found: Sequence[tuple[str, Sequence[LineSource]]]) -> list[LineSource]:
+def with_unique_names(found: Sequence[tuple[str, Sequence[LineSource]]]) -> list[LineSource]:
     """Lines of a campaign by their files; a specimen that is in several is called TEST SPECIMEN.
 
     Examples
     --------
     >>> line = LineSource("new", "", "rubber", "", "", 0.025, 3e3)
-    >>> [one.name for one in told_apart([("T-1", [line]), ("T-2", [line])])]
+    >>> [one.name for one in with_unique_names([("T-1", [line]), ("T-2", [line])])]
     ['T-1 new', 'T-2 new']
     """
     lines = [line for _, own in found for line in own]
-    names = names_apart([(test, line.name) for test, own in found for line in own])
+    names = unique_names([(test, line.name) for test, own in found for line in own])
     return [replace(line, name=name) for line, name in zip(lines, names, strict=True)]
 
 
-def names_apart(named: Sequence[tuple[str, str]]) -> list[str]:
-    """Names of lines by their tests and specimens, as `told_apart` gives them."""
+def unique_names(named: Sequence[tuple[str, str]]) -> list[str]:
+    """Names of lines by their tests and specimens, as `with_unique_names` gives them."""
     count = Counter(name for _, name in named)
     return [f"{test} {name}" if count[name] > 1 else name for test, name in named]
 

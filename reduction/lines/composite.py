@@ -139,7 +139,7 @@ def _variance_apart(pieces: Sequence[CurvePiece], strain: Floats, tension: Float
     return np.asarray(((share - common[:, None]) ** 2).sum(axis=0) * tension**2)
 
 
-def _beside_loops(
+def _pulls_within_loops(
     pieces: Sequence[CurvePiece], strain: Floats, tension: Floats, known: Bools
 ) -> Floats:
     """Relative difference of first loadings to the kinds before them, over strain.
@@ -154,7 +154,7 @@ def _beside_loops(
     >>> load = np.array([110 * at, 90 * at])
     >>> pair = [CurvePiece("T", kind, "ascending", at, one, 0 * at)
     ...     for kind, one in zip(("cyclic", "first-loading"), load)]
-    >>> print(_beside_loops(pair, at, load, load > 0).round(6))
+    >>> print(_pulls_within_loops(pair, at, load, load > 0).round(6))
     [0.2 0.2]
     """
     own = np.array([one.kind == "first-loading" for one in pieces])
@@ -238,7 +238,7 @@ def _blend_pieces(
     apart = _variance_apart(pieces, strain, tension)
     simple = (fade * tension).sum(axis=0) / fade.sum(axis=0)
     between = _between_pieces(pieces, tension, variance, rows, fade > 0)
-    beside = _beside_loops(pieces, strain, tension, fade > 0)
+    beside = _pulls_within_loops(pieces, strain, tension, fade > 0)
     is_first = np.array([one.kind == "first-loading" for one in pieces])
     # of the kind of each piece: rises from slack differ by far more than cycles do
     own_kind = np.nan_to_num([between[one.kind] for one in pieces])[:, None]
@@ -380,7 +380,7 @@ _FAR = 2.0
 _LITTLE = 0.03
 
 
-def _doubt_of(blend: _Blend) -> str:
+def _quality_warning(blend: _Blend) -> str:
     """Where the curve is not among its pieces by its own uncertainty, in words.
 
     Notes
@@ -393,7 +393,7 @@ def _doubt_of(blend: _Blend) -> str:
     >>> at = np.array([0.5, 1.0])
     >>> pieces = [CurvePiece("T", "static", "ascending", at, load * at, 0 * at)
     ...     for load in (*[100] * 5, 200)]
-    >>> print(_doubt_of(_blend_pieces(pieces, taper=0.5, least_slope=0.5, n_points=3))[:42])
+    >>> print(_quality_warning(_blend_pieces(pieces, taper=0.5, least_slope=0.5, n_points=3))[:42])
     up to 2.24 standard uncertainties from a p
     """
     # near slack a little strain is any share of the tension
@@ -610,7 +610,7 @@ def _composite_curve(
     rows = np.pad(blend.contribution, ((0, 0), (1, 0)))
     is_gap = np.concatenate([[True], ~blend.is_covered])
     gaps = np.flatnonzero(is_gap)
-    doubt = _doubt(strain, tension, variance, gaps)
+    doubt = _rise_warning(strain, tension, variance, gaps)
 
     def with_middles(values: Floats, middle: Floats | float) -> Floats:
         return np.insert(values, gaps + 1, middle)
@@ -639,12 +639,12 @@ def _composite_curve(
         ),
         piece_names=tuple(one.name for one in used),
         piece_words=tuple(one.words for one in used),
-        doubt=_doubt_of(blend),
+        doubt=_quality_warning(blend),
         notes=_notes_of(used, rule, blend, moved),
     )
 
 
-def _doubt(strain: Floats, tension: Floats, variance: Floats, gaps: Integers) -> Floats:
+def _rise_warning(strain: Floats, tension: Floats, variance: Floats, gaps: Integers) -> Floats:
     """Variance in the middle of each gap: of its ends, and of what curvature may do."""
     steps = np.diff(strain)
     slopes = np.diff(tension) / steps

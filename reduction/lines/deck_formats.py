@@ -13,7 +13,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import get_args
 
-from reduction.archive.write import write_whole
+from reduction.archive.write import write_text_atomically
 from reduction.lines.deck_moordyn import (
     MOST_POINTS,
     MoorDynForm,
@@ -87,7 +87,7 @@ def export_line(
     beside = {path.with_name(name): text for name, text in files.items() if name}
     # what is named is there before what names it
     for place, text in {**beside, path: files[""]}.items():
-        write_whole(place, text)
+        write_text_atomically(place, text)
     return [*beside, path]
 
 
@@ -120,7 +120,7 @@ def export_table(table: ValueTable, to: str, path: Path, *, units: UnitSystem = 
     if to == "netcdf":
         write_netcdf(table, path)
     else:
-        write_whole(path, table_text_of(table, to, units=units))
+        write_text_atomically(path, table_text_of(table, to, units=units))
     return [path]
 
 

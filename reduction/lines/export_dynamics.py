@@ -366,7 +366,7 @@ def _against(part: Viscoelasticity, measured: Mapping[str, DesignValues], amplit
     return "; ".join(parts)
 
 
-def _doubts_of_identified(
+def _warnings_of_identified(
     line: LineParameters, half_widths: Mapping[str, Floats], energy: DesignValues
 ) -> list[str]:
     """Intervals in which there is no damping at all, or that are not known."""
@@ -388,7 +388,7 @@ def _doubts_of_identified(
     return said
 
 
-def _doubts_of_printed(time: DesignValues) -> list[str]:
+def _warnings_of_printed(time: DesignValues) -> list[str]:
     """The same of a tau that is a design value itself."""
     if not math.isfinite(float(time.surface_low)):
         return ["DOUBTFUL: how well the dashpot is known is not known: tau has no interval"]
@@ -554,13 +554,13 @@ def line_dynamics(
                     part, amplitude, half, is_exact=not np.isfinite(rest.surface_high)
                 ),
                 _said_printed(float(rest.value), printed, measured, frequency, amplitude),
-                *_doubts_of_identified(line, half, measured[_ENERGY]),
+                *_warnings_of_identified(line, half, measured[_ENERGY]),
             ]
         else:
             part = _instead(source, rest, measured, printed, levels, reason)
             notes = [
                 _said_instead(part, measured, amplitude, reason),
-                *_doubts_of_printed(printed[_TIME]),
+                *_warnings_of_printed(printed[_TIME]),
             ]
         notes += _over_frequency(source, part, levels)
     else:
@@ -568,7 +568,7 @@ def line_dynamics(
         part = _part(rest, spring, time, levels)
         notes = [
             "K_1 and tau are those of the source: it has no K_ap and H to hold them against",
-            *_doubts_of_printed(printed[_TIME]),
+            *_warnings_of_printed(printed[_TIME]),
         ]
     slope, growth = _growth(source, levels, part.fast_stiffness, is_identified=is_identified)
     every = (rest, *measured.values(), *printed.values())

@@ -24,7 +24,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from reduction import __version__
-from reduction.archive.atomic_write import whole_file
+from reduction.archive.atomic_write import atomic_file
 from reduction.archive.shared_errors import COMPONENT
 from reduction.lines.deck_moordyn import number
 from reduction.lines.export_line import CurveSpread, ExportLine, curve_from_zero, range_of
@@ -488,7 +488,7 @@ def write_netcdf(table: ValueTable, path: Path) -> None:
         if array.dtype.kind != "U"
     }
     try:
-        with whole_file(path) as part:
+        with atomic_file(path) as part:
             dataset.to_netcdf(part, format="NETCDF4", engine="netcdf4", encoding=encoding)
     except ArchiveError:
         raise

@@ -269,7 +269,7 @@ def _design_values(
     """
     notes = [*line.notes, *of.notes, *more]
     if words[0] or words[1]:
-        notes.append(_scatter_told(of, words))
+        notes.append(_scatter_note(of, words))
     elif isinstance(of, LineCurve):
         notes.append("no interval is given: the source states no scatter of this curve")
     if loads.is_above_rule.any():
@@ -309,7 +309,7 @@ def _design_values(
     )
 
 
-def _scatter_told(of: LineSurface | LineCurve, words: tuple[str, str]) -> str:
+def _scatter_note(of: LineSurface | LineCurve, words: tuple[str, str]) -> str:
     """What the intervals hold, and what they do not."""
     if isinstance(of, LineSurface) and np.isfinite(of.line_scatter):
         return (

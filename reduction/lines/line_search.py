@@ -267,7 +267,7 @@ def compare_values(first: DesignValues, second: DesignValues) -> LineDifference:
         is_test_different=_apart(low, high),
         is_kind_different=_apart(kind_low, kind_high),
         is_line_different=_apart(line_low, line_high),
-        notes=_told(first, second),
+        notes=_notes(first, second),
     )
 
 
@@ -302,7 +302,7 @@ def _root(*parts: Floats) -> Floats:
     return np.asarray(np.sqrt(sum(one**2 for one in parts)))
 
 
-def _told(first: DesignValues, second: DesignValues) -> tuple[str, ...]:
+def _notes(first: DesignValues, second: DesignValues) -> tuple[str, ...]:
     """Say how what both share was taken, or that it is not known."""
     without = [one for one in (first, second) if not one.component]
     if len(without) == 2:

@@ -51,13 +51,13 @@ from reduction.published.published_lines import (
     PublishedLine,
     PublishedSurface,
     is_documentation,
-    levels_told,
+    level_notes,
     line_scatter,
     own_strength,
     published_lines,
-    scatter_told,
+    scatter_notes,
+    strength_notes,
     strength_of,
-    strengths_told,
 )
 from reduction.published.published_tethers import PublishedTether, TetherSegment, published_tethers
 from reduction.quantities.units import scale_to_si
@@ -255,7 +255,7 @@ def _line(line: PublishedLine) -> LineSource:
         kind="rope",
         tensile_strength=strength,
         strength_of=strength_of(line),
-        notes=(*strengths_told(line), *told, *scatter_told(line), *levels_told(line)),
+        notes=(*strength_notes(line), *told, *scatter_notes(line), *level_notes(line)),
     )
 
 

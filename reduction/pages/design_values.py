@@ -20,9 +20,9 @@ from numpy.typing import ArrayLike
 
 from reduction import __version__
 from reduction.archive.open import Opener, reading
-from reduction.archive.write import write_whole
+from reduction.archive.write import write_text_atomically
 from reduction.experiments.surface_points import ABOVE_LEVERAGE
-from reduction.lines.archive_source import archives_of_lines, lines_of_open_archive, names_apart
+from reduction.lines.archive_source import archives_of_lines, lines_of_open_archive, unique_names
 from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
 from reduction.lines.published_source import published_sources
 from reduction.published.printed_cells import REPORTS, ReportId, cells_of, errata_of
@@ -174,7 +174,7 @@ def _pages(report: ReportId, table: str) -> str:
     return f"page{'s' if len(found) > 1 else ''} {', '.join(found)}"
 
 
-def _errata_told(lines: Iterable[LineSource]) -> dict[str, list[str]]:
+def _errata_notes(lines: Iterable[LineSource]) -> dict[str, list[str]]:
     """Place, print and correction, and evidence of every erratum that touches a line, by its id."""
     touching: set[str] = set()
     for line in lines:
@@ -214,7 +214,7 @@ class _CampaignLines:
     @property
     def names(self) -> list[str]:
         """Of the lines of all files, as a look-up in the folder calls them."""
-        return names_apart(
+        return unique_names(
             [(stem, line["name"]) for stem, one in self.files.items() for line in one["lines"]]
         )
 
@@ -389,7 +389,9 @@ def write_design_page(
             for one in campaigns:
                 for name, why in one.faults.items():
                     unreadable(processed / one.name / name, why)
-        write_whole(path, _render_design_page(campaigns, _reports_beside(reports, campaigns)))
+        write_text_atomically(
+            path, _render_design_page(campaigns, _reports_beside(reports, campaigns))
+        )
         if _state_of(processed) == state:
             break
         # another run ended meanwhile, and the page that it wrote may just have been replaced
@@ -444,7 +446,7 @@ def _constants() -> dict[str, Any]:
     return {
         "version": __version__,
         "published": published,
-        "errata": _errata_told(lines),
+        "errata": _errata_notes(lines),
         "quantities": {name: [one.unit, one.long_name] for name, one in known.items()},
         "symbols": dict(zip(_OF_LINES, _SYMBOLS, strict=False)),
         "shown": {

@@ -28,11 +28,15 @@ from tomlkit.container import Container
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import AoT, InlineTable, Item, Table
 
-from reduction.archive.atomic_write import whole_file
+from reduction.archive.atomic_write import atomic_file
 from reduction.batch.campaign_status import Progress, Silent
 from reduction.batch.reduce_tests import dataset_of
-from reduction.batch.requested_products import Wanted, find_wanted, wanted_of
-from reduction.batch.reuse import Basis, standing_product
+from reduction.batch.requested_products import (
+    ReductionInputs,
+    find_reduction_inputs,
+    reduction_inputs,
+)
+from reduction.batch.reuse import Basis, reusable_product
 from reduction.batch.survey import FirstPass, Survey, as_reduction_error, survey_log
 from reduction.campaign.load import load_campaign
 from reduction.campaign.model import dimension_of
@@ -473,7 +477,7 @@ class CampaignText:
             if not target.stat().st_mode & _WRITABLE:
                 # to be renamed over needs no leave of the file itself
                 raise PermissionError(errno.EACCES, "it is read-only")
-            with whole_file(target) as part:
+            with atomic_file(target) as part:
                 part.write_bytes(other.as_bytes())
                 shutil.copymode(target, part)
         except ArchiveError:
@@ -575,7 +579,7 @@ class Session:
         campaign = load_campaign(self.path, text=text.text)
         inputs = _inputs(text, campaign)
         stamps = tuple(map(_stamp, inputs))
-        now = find_wanted(campaign, progress=progress or Silent())
+        now = find_reduction_inputs(campaign, progress=progress or Silent())
         # all of it, or what was there before
         self.text, self.campaign, self.surveys = text, campaign, now.first.surveys
         self._inputs, self._stamps, self._settings = inputs, stamps, _settings(now)
@@ -628,7 +632,7 @@ class Session:
         seconds = time.perf_counter() - begun
         return _Made(replace(survey, located=None), dataset, said, seconds, is_standing, also)
 
-    def _surveyed(self, text: CampaignText, log: str) -> tuple[Campaign, Wanted]:
+    def _surveyed(self, text: CampaignText, log: str) -> tuple[Campaign, ReductionInputs]:
         """The campaign of a text, with one of its logs read again."""
         campaign = load_campaign(self.path, text=text.text)
         if list(campaign.tests) != list(self.campaign.tests):
@@ -638,11 +642,11 @@ class Session:
         surveys = [one for one in self.surveys if one.plan.log != log]
         surveys[place:place] = own
         first = FirstPass(surveys, {log: own})
-        return campaign, wanted_of(campaign, first, progress=Silent())
+        return campaign, reduction_inputs(campaign, first, progress=Silent())
 
     def _is_standing(self, survey: Survey, basis: Basis) -> bool:
         path = self._processed / f"{survey.plan.id}.nc"
-        found = standing_product(path, survey, basis.settings, remarks=basis.remarks)
+        found = reusable_product(path, survey, basis.settings, remarks=basis.remarks)
         return found is not None
 
     def save(self, text: CampaignText) -> None:
@@ -652,7 +656,7 @@ class Session:
         self.read_again()
 
 
-def _settings(now: Wanted) -> dict[str, str]:
+def _settings(now: ReductionInputs) -> dict[str, str]:
     """Every setting in force, by test; tests that failed have none."""
     sound = (one for one in now.first.surveys if one.plan.id not in now.failed)
     return {one.plan.id: now.basis(one).settings for one in sound}

@@ -107,7 +107,7 @@ def parts_of_cycles(
     break_in = settings.cycles.break_in_cycles
     loops = close_loops(record.time, tension, strain, cycles, waveform=settings.cycles.waveform)
     amplitude = summarise_amplitude(loops, area=area, break_in_cycles=break_in)
-    loops.let_go()
+    loops.release_pages()
     if np.isnan(area).any():
         # a rope without a diameter has spring constants alone
         return {"loops": loops, "amplitude": amplitude}
@@ -126,7 +126,7 @@ def parts_of_cycles(
         "amplitude": amplitude,
         "trend": fit_peak_trend(loops, area=area, break_in_cycles=break_in),
     }
-    loops.let_go()
+    loops.release_pages()
     ratios = _compare_specimens(curves, specimens, history)
     if cycles.n_cycles >= settings.slip.minimum_cycles:
         level, slope = cycle_tension_level(
@@ -152,7 +152,7 @@ def parts_of_cycles(
                 )
             )
     parts["ratios"] = tuple(ratios)
-    loops.let_go()
+    loops.release_pages()
     return parts
 
 

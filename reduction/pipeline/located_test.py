@@ -20,7 +20,7 @@ from reduction.record.measurement import (
     SpliceMarks,
     areas_of,
 )
-from reduction.record.samples import copied, empty_like, let_go, sample_blocks
+from reduction.record.samples import copied, empty_like, release_pages, sample_blocks
 from reduction.record.settings import ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import find_cycles
@@ -167,7 +167,7 @@ def flagged_record(located: Located, models: Sequence[StrainModel]) -> Record:
             uneven = (cycles.cycle_number[part] > 0) & ~cycles.is_constant_rate[part]
             flags[:, part][:, uneven] |= np.uint16(Quality.NOT_CONSTANT_RATE)
             of_position[part][uneven] |= np.uint16(Quality.NOT_CONSTANT_RATE)
-            let_go(cycles.cycle_number, cycles.is_constant_rate)
+            release_pages(cycles.cycle_number, cycles.is_constant_rate)
     return replace(record, quality_flag=flags, crosshead_position_quality_flag=of_position)
 
 

@@ -205,7 +205,7 @@ class Identifiability:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class Calibration:
+class HoseCalibration:
     """Numbers of a hose fitted to a measured curve; arrays have the shape (n_parameter,).
 
     Parameters
@@ -276,7 +276,7 @@ class Comparison:
     energy: _EnergyDifference
     cycles: _CycleDifference
     validation: _Validation
-    calibration: Calibration | None
+    calibration: HoseCalibration | None
     notes: tuple[str, ...]
     measured_pick_up_strain: float = float("nan")
     measured_pick_up_strain_standard_uncertainty: float = float("nan")

@@ -56,9 +56,9 @@ from scipy.special import stdtrit
 
 from reduction.prediction.comparison_error import (
     N_DRAWS,
-    Calibration,
     Comparison,
     EventDifference,
+    HoseCalibration,
     Identifiability,
     PickUp,
     autocorrelation_length,
@@ -725,7 +725,7 @@ def _calibrate_hose(
     *,
     standard_uncertainty: Mapping[str, float] | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
-) -> Calibration:
+) -> HoseCalibration:
     r"""Fit numbers of a hose to the judged curve of a test, with intervals that can be trusted.
 
     Least of
@@ -822,7 +822,7 @@ def _calibrate_hose(
     before, after = (
         difference_of(measured.strain, one, judged, curve=measured.judged) for one in predicted
     )
-    return Calibration(
+    return HoseCalibration(
         parameter=names,
         start=start,
         value=value,

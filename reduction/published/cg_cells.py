@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from reduction.published.printed_cells import Cell, number_of, printed_step
-from reduction.published.reproduced_item import Item, judge, not_testable
+from reduction.published.reproduced_item import ReproducedItem, judge, not_testable
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
 from reduction.stages.line.slow_pull import slope_of_cubic
@@ -79,7 +79,7 @@ class Pages:
         return float(tension ** np.arange(4) @ self.cubic(table, row))
 
 
-Check = Callable[[Cell, Pages], Item]
+Check = Callable[[Cell, Pages], ReproducedItem]
 """Verdict on one claim of the text among all cells."""
 
 
@@ -190,7 +190,7 @@ REPEATED = {
 }  # fmt: skip
 
 
-def item_of_level(cell: Cell, pages: Pages) -> Item:
+def item_of_level(cell: Cell, pages: Pages) -> ReproducedItem:
     """Verdict on a cell of Tables 1, 2 and A-1."""
     if cell.table == "A-1":
         return _screening(cell, pages)
@@ -212,7 +212,7 @@ def item_of_level(cell: Cell, pages: Pages) -> Item:
     return judge(cell, 100 * found / strength, f"range of Table {table} over {strength:g} lb")
 
 
-def _strength(cell: Cell, pages: Pages) -> Item:
+def _strength(cell: Cell, pages: Pages) -> ReproducedItem:
     """From the upper mean load; where two strengths are printed, the other one."""
     line = cell.row.rpartition(" | ")[0]
     if cell.erratum == "CG-15":
@@ -226,7 +226,7 @@ def _strength(cell: Cell, pages: Pages) -> Item:
     )  # fmt: skip
 
 
-def _screening(cell: Cell, pages: Pages) -> Item:
+def _screening(cell: Cell, pages: Pages) -> ReproducedItem:
     if cell.column in REPEATED:
         found = pages.printed("sec A-1", "screening", REPEATED[cell.column])
         return judge(cell, found, "the text of App. A")

@@ -40,9 +40,9 @@ from reduction.published.cg_surfaces import change_of_mean
 from reduction.published.cg_tests import change_of_table_10
 from reduction.published.printed_cells import Cell
 from reduction.published.reproduced_item import (
-    Item,
+    ReproducedItem,
     agree,
-    beside,
+    compared_item,
     judge,
     judge_round,
     judge_word,
@@ -57,7 +57,7 @@ PRINTED_IN = {"sec 4.3": "sec 4.4.2", "sec 4.4.2": "sec 4.3", "sec 6.3.1": "App 
 """Where a setting stands again."""
 
 
-def _design(cell: Cell, pages: Pages) -> Item:
+def _design(cell: Cell, pages: Pages) -> ReproducedItem:
     if cell.row == "screening":
         return judge_word(cell, plackett_burman(5).n_runs, "Plackett-Burman of five factors")
     full = cell.column == "runs of a full factorial"
@@ -67,7 +67,7 @@ def _design(cell: Cell, pages: Pages) -> Item:
     )
 
 
-def _exposed_samples(cell: Cell, pages: Pages) -> Item:
+def _exposed_samples(cell: Cell, pages: Pages) -> ReproducedItem:
     counts = {
         pages.printed("4", f"{PLAITED} | 1/2 in | {years}", f"{K_AP} number of lines")
         for years in ("4 years", "5 years")
@@ -75,7 +75,7 @@ def _exposed_samples(cell: Cell, pages: Pages) -> Item:
     return judge_word(cell, max(counts), "greater count of Table 4")
 
 
-def _samples(cell: Cell, pages: Pages) -> Item:
+def _samples(cell: Cell, pages: Pages) -> ReproducedItem:
     if cell.table == "sec 4.4.1":
         return _exposed_samples(cell, pages)
     if cell.table == "sec A-2.1":
@@ -96,7 +96,7 @@ def _samples(cell: Cell, pages: Pages) -> Item:
     return judge_word(cell, min(counts), "least count of Tables 4, 5, 12 and 13: three or four")
 
 
-def _levels(cell: Cell, pages: Pages) -> Item:
+def _levels(cell: Cell, pages: Pages) -> ReproducedItem:
     """Levels of the screening stand in Table A-1, those of the design in Table 1."""
     if cell.row == "screening":
         column = "duration high" if cell.column == "cycles" else cell.column
@@ -106,18 +106,18 @@ def _levels(cell: Cell, pages: Pages) -> Item:
     return not_testable(cell, SETTING)
 
 
-def _never_slack(cell: Cell, pages: Pages) -> Item:
+def _never_slack(cell: Cell, pages: Pages) -> ReproducedItem:
     return judge(cell, pages.printed("A-1", SCREEN, "duration high"), "Table A-1")
 
 
-def _period(cell: Cell, pages: Pages) -> Item:
+def _period(cell: Cell, pages: Pages) -> ReproducedItem:
     """The reciprocal of the other end of the frequencies, in words."""
     other = "high" if cell.column.endswith("low") else "low"
     period = 1 / pages.printed("A-1", SCREEN, f"frequency {other}")
     return judge_word(cell, period, "reciprocal of a frequency of Table A-1")
 
 
-def _confidence(cell: Cell, pages: Pages) -> Item:
+def _confidence(cell: Cell, pages: Pages) -> ReproducedItem:
     critical = pages.printed("3", NYLON_BRAIDS[0], f"{K_AP} F-crit")
     return judge(
         cell, 100 * float(fdtr(4, 10, critical)),
@@ -125,7 +125,7 @@ def _confidence(cell: Cell, pages: Pages) -> Item:
     )  # fmt: skip
 
 
-def _printed_again(cell: Cell, pages: Pages) -> Item:
+def _printed_again(cell: Cell, pages: Pages) -> ReproducedItem:
     table = PRINTED_IN[cell.table]
     row, column = {
         "weight of the sinker": ("field mooring", "weight of a sinker"),
@@ -134,12 +134,12 @@ def _printed_again(cell: Cell, pages: Pages) -> Item:
     return judge(cell, pages.printed(table, row, column), f"printed in {table} too")
 
 
-def _synthetic_line(cell: Cell, pages: Pages) -> Item:
+def _synthetic_line(cell: Cell, pages: Pages) -> ReproducedItem:
     table = "App H" if cell.table == "App G" else "App G"
     return judge(cell, pages.printed(table, cell.row, cell.column), f"printed in {table} too")
 
 
-def _scope(cell: Cell, pages: Pages) -> Item:
+def _scope(cell: Cell, pages: Pages) -> ReproducedItem:
     if cell.table == "App G":
         return not_testable(cell, "the depth of the field exposure is not printed")
     length, low, high = (
@@ -152,7 +152,7 @@ def _scope(cell: Cell, pages: Pages) -> Item:
     )  # fmt: skip
 
 
-def _example(cell: Cell, pages: Pages) -> Item:
+def _example(cell: Cell, pages: Pages) -> ReproducedItem:
     """The middle level of App. C is halfway between the others."""
     low, centre, high = (
         pages.printed("App C", "example", f"mean_tension {level}")
@@ -162,11 +162,11 @@ def _example(cell: Cell, pages: Pages) -> Item:
     return judge(cell, found[cell.column.split(" ")[-1]], "the other two levels")
 
 
-def _mean_tension(cell: Cell, pages: Pages) -> Item:
+def _mean_tension(cell: Cell, pages: Pages) -> ReproducedItem:
     return (_example if cell.table == "App C" else _levels)(cell, pages)
 
 
-def _coded(cell: Cell, pages: Pages) -> Item:
+def _coded(cell: Cell, pages: Pages) -> ReproducedItem:
     level = float(cell.column.split(" ")[-2])
     low, high = (
         pages.printed("App C", "example", f"mean_tension {end}") for end in ("low", "high")
@@ -176,7 +176,7 @@ def _coded(cell: Cell, pages: Pages) -> Item:
     return agree(cell, coded == printed, f"App. C with the levels {low:g} and {high:g} lb")
 
 
-def _stroke(cell: Cell, pages: Pages) -> Item:
+def _stroke(cell: Cell, pages: Pages) -> ReproducedItem:
     feet = cell.column != "stroke"
     other = pages.printed(
         "App B", "machine", "stroke" if feet else "stroke of the tensile cylinder"
@@ -184,7 +184,7 @@ def _stroke(cell: Cell, pages: Pages) -> Item:
     return judge(cell, other / 12 if feet else other * 12, "the other statement of App. B")
 
 
-def _hysteresis_figure(cell: Cell, pages: Pages) -> Item:
+def _hysteresis_figure(cell: Cell, pages: Pages) -> ReproducedItem:
     return judge(cell, 16.0, "list of figures: hysteresis is 16, snap loads are 19")
 
 
@@ -236,7 +236,7 @@ def _sizes_at(pages: Pages, tension: float) -> str:
     return min(found, key=lambda row: found[row])
 
 
-def _least_stiffness(cell: Cell, pages: Pages) -> Item:
+def _least_stiffness(cell: Cell, pages: Pages) -> ReproducedItem:
     tension = float(cell.column.split(" ")[-2])
     row = _sizes_at(pages, tension)
     return agree(
@@ -245,7 +245,7 @@ def _least_stiffness(cell: Cell, pages: Pages) -> Item:
     )  # fmt: skip
 
 
-def _rest_with_exposure(cell: Cell, pages: Pages) -> Item:
+def _rest_with_exposure(cell: Cell, pages: Pages) -> ReproducedItem:
     ratios = []
     for line, tensions in (
         (NYLON_BRAID, (768.0, 1344.0, 1920.0)),
@@ -261,7 +261,7 @@ def _rest_with_exposure(cell: Cell, pages: Pages) -> Item:
     )  # fmt: skip
 
 
-def _rest_of_polyester(cell: Cell, pages: Pages) -> Item:
+def _rest_of_polyester(cell: Cell, pages: Pages) -> ReproducedItem:
     if cell.column.endswith("low loads"):
         ratio = pages.polynomial("7", cell.row, 840.0) / pages.polynomial(
             "7", f"{POLYESTER_BRAID} | new", 840.0
@@ -294,7 +294,7 @@ def _strain_at_share(pages: Pages, line: str) -> float:
     return 100 * pages.strain("8", f"{line} | new", 0.3 * pages.printed(*STRENGTH_OF_SPEED[line]))
 
 
-def _strain(cell: Cell, pages: Pages) -> Item:
+def _strain(cell: Cell, pages: Pages) -> ReproducedItem:
     line = cell.row.rpartition(" | ")[0]
     strength = pages.printed(*STRENGTH_OF_SPEED[line])
     return judge(
@@ -303,7 +303,7 @@ def _strain(cell: Cell, pages: Pages) -> Item:
     )  # fmt: skip
 
 
-def _strain_of_materials(cell: Cell, pages: Pages) -> Item:
+def _strain_of_materials(cell: Cell, pages: Pages) -> ReproducedItem:
     ratios = sorted([
         _strain_at_share(pages, NYLON_PLAITED) / _strain_at_share(pages, POLYESTER_PLAITED),
         _strain_at_share(pages, NYLON_BRAID) / _strain_at_share(pages, POLYESTER_BRAID),
@@ -315,7 +315,7 @@ def _strain_of_materials(cell: Cell, pages: Pages) -> Item:
     )
 
 
-def _strain_of_sizes(cell: Cell, pages: Pages) -> Item:
+def _strain_of_sizes(cell: Cell, pages: Pages) -> ReproducedItem:
     ratios = []
     for share in (0.10, 0.15, 0.20, 0.25):
         small, large = (
@@ -330,7 +330,7 @@ def _strain_of_sizes(cell: Cell, pages: Pages) -> Item:
     )  # fmt: skip
 
 
-def _rest(cell: Cell, pages: Pages) -> Item:
+def _rest(cell: Cell, pages: Pages) -> ReproducedItem:
     one = cell.row == f"{POLYESTER_PLAITED} | 4 years"
     return _rest_of_polyester(cell, pages) if one else _rest_with_exposure(cell, pages)
 
@@ -360,7 +360,7 @@ def _changes(pages: Pages, quantity: str) -> list[float]:
     ]
 
 
-def _half(cell: Cell, pages: Pages) -> Item:
+def _half(cell: Cell, pages: Pages) -> ReproducedItem:
     """About 50 % for every line: the one that is farthest from it."""
     quantity = cell.column.partition(" ")[0]
     sizes = [abs(change) for change in _changes(pages, quantity)]
@@ -368,7 +368,7 @@ def _half(cell: Cell, pages: Pages) -> Item:
     return judge_round(cell, farthest, "the line of Table 10 that is farthest from it")
 
 
-def _linear(cell: Cell, pages: Pages) -> Item:
+def _linear(cell: Cell, pages: Pages) -> ReproducedItem:
     line = fit_exposure_trend(
         [0, 2, 3, 5],
         [
@@ -392,7 +392,7 @@ def _linear(cell: Cell, pages: Pages) -> Item:
     )  # fmt: skip
 
 
-def _wet(cell: Cell, pages: Pages) -> Item:
+def _wet(cell: Cell, pages: Pages) -> ReproducedItem:
     dry, wet = (
         pages.printed("A-3", f"{PLAITED} | 1/2 in | {state}", f"{STRENGTH} mean")
         for state in ("dry, not cycled", "wet, before cycling")
@@ -400,14 +400,14 @@ def _wet(cell: Cell, pages: Pages) -> Item:
     return judge(cell, 100 * (1 - wet / dry), "Table A-3")
 
 
-def _repeated(cell: Cell, pages: Pages) -> Item:
+def _repeated(cell: Cell, pages: Pages) -> ReproducedItem:
     """Numbers of Tables 10 and 21 that the text repeats."""
     if cell.column.endswith("change"):
         return judge(cell, abs(pages.printed("21", cell.row, cell.column)), "Table 21")
     return judge(cell, pages.printed("10", cell.row, cell.column), "Table 10")
 
 
-def _screened(cell: Cell, pages: Pages) -> Item:
+def _screened(cell: Cell, pages: Pages) -> ReproducedItem:
     """Peak and valley of the screening, from its levels."""
     high = pages.printed("A-1", SCREEN, "tension_amplitude high")
     if not cell.column.startswith("least"):
@@ -419,7 +419,7 @@ def _screened(cell: Cell, pages: Pages) -> Item:
     return judge(cell, least, "mean load less amplitude of Table A-1")
 
 
-def _significant(cell: Cell, pages: Pages) -> Item:
+def _significant(cell: Cell, pages: Pages) -> ReproducedItem:
     quantity = cell.column.partition(" ")[0]
     smallest = pages.value("A-2", SCREEN, f"{quantity} smallest significant effect")
     factors = ("frequency", "mean_tension", "tension_amplitude", "duration", "diameter")
@@ -434,7 +434,7 @@ def _significant(cell: Cell, pages: Pages) -> Item:
     )
 
 
-def _over_polypropylene(cell: Cell, pages: Pages) -> Item:
+def _over_polypropylene(cell: Cell, pages: Pages) -> ReproducedItem:
     material = cell.row.partition(" ")[0]
     ratios = [
         pages.value("20", f"{material} | {how} | 1/2 in | new", f"{CYCLES} mean")
@@ -449,7 +449,7 @@ def _over_polypropylene(cell: Cell, pages: Pages) -> Item:
     )  # fmt: skip
 
 
-def _over_polyester(cell: Cell, pages: Pages) -> Item:
+def _over_polyester(cell: Cell, pages: Pages) -> ReproducedItem:
     ratios = [
         pages.value("20", f"nylon | {how} | 1/2 in | new", f"{CYCLES} mean")
         / pages.value("20", f"polyester | {how} | 1/2 in | new", f"{CYCLES} mean")
@@ -463,7 +463,7 @@ def _over_polyester(cell: Cell, pages: Pages) -> Item:
     )  # fmt: skip
 
 
-def _jacket(cell: Cell, pages: Pages) -> Item:
+def _jacket(cell: Cell, pages: Pages) -> ReproducedItem:
     section, jacketed = "sec 6.2.2", f"{POLYESTER_BRAID} | jacketed"
     lives = np.array([
         pages.value(section, jacketed, f"{CYCLES} {one}") for one in ("first", "second", "third")
@@ -544,7 +544,7 @@ def _ratios(pages: Pages) -> dict[str, float]:
     }
 
 
-def _stiffness_ratio(cell: Cell, pages: Pages) -> Item:
+def _stiffness_ratio(cell: Cell, pages: Pages) -> ReproducedItem:
     if cell.table.startswith("sec A"):
         return not_testable(cell, "the stiffness of the screening is not printed")
     ratios = sorted(_ratios(pages).values())
@@ -554,7 +554,7 @@ def _stiffness_ratio(cell: Cell, pages: Pages) -> Item:
     )
 
 
-def _change(cell: Cell, pages: Pages) -> Item:
+def _change(cell: Cell, pages: Pages) -> ReproducedItem:
     quantity = cell.column.partition(" ")[0]
     if cell.column.endswith((" low", " high")):
         row, table = (
@@ -572,7 +572,7 @@ def _change(cell: Cell, pages: Pages) -> Item:
     return judge(cell, found[0], f"Table {table}, {found[1]}")
 
 
-def _figure_4(cell: Cell, pages: Pages) -> Item:
+def _figure_4(cell: Cell, pages: Pages) -> ReproducedItem:
     """At the lowest level of frequency; the figure does not state its own."""
     ends = np.array([
         [pages.value("3", cell.row if what != "frequency" else "every line", f"{K_AP} {what} {end}")
@@ -591,14 +591,14 @@ def _over_factor(pages: Pages, row: str, factor: int) -> tuple[float, float, flo
     return float(found.min()), float(found.max()), float(found[100])
 
 
-def _over_frequency(cell: Cell, pages: Pages) -> Item:
+def _over_frequency(cell: Cell, pages: Pages) -> ReproducedItem:
     least, greatest, centre = _over_factor(pages, cell.row, 0)
     return judge(
         cell, 100 * (greatest - least) / centre, "Table 3, greatest less least, at centre loads"
     )
 
 
-def _over_mean_load(cell: Cell, pages: Pages) -> Item:
+def _over_mean_load(cell: Cell, pages: Pages) -> ReproducedItem:
     changes = []
     for row in (NYLON_BRAIDS[0], NYLON_BRAIDS[2]):
         least, greatest, _ = _over_factor(pages, row, 1)
@@ -608,7 +608,7 @@ def _over_mean_load(cell: Cell, pages: Pages) -> Item:
     )
 
 
-def _mean_of_centre(cell: Cell, pages: Pages) -> Item:
+def _mean_of_centre(cell: Cell, pages: Pages) -> ReproducedItem:
     return judge(cell, pages.value("3", cell.row, cell.column), "Table 3")
 
 
@@ -618,7 +618,7 @@ def _mean_ratio(pages: Pages, over: str, under: str) -> float:
     )
 
 
-def _stiffer(cell: Cell, pages: Pages) -> Item:
+def _stiffer(cell: Cell, pages: Pages) -> ReproducedItem:
     if cell.row.startswith("polyester over nylon"):
         ratio = _mean_ratio(pages, POLYESTER_PLAITED, NYLON_PLAITED)
         return judge_word(cell, ratio, "B1 of Table 3")
@@ -631,7 +631,7 @@ def _stiffer(cell: Cell, pages: Pages) -> Item:
     )
 
 
-def _stiffness_of_materials(cell: Cell, pages: Pages) -> Item:
+def _stiffness_of_materials(cell: Cell, pages: Pages) -> ReproducedItem:
     ratios = sorted(
         [
             _mean_ratio(pages, POLYESTER_PLAITED, NYLON_PLAITED),
@@ -641,7 +641,7 @@ def _stiffness_of_materials(cell: Cell, pages: Pages) -> Item:
     return judge(cell, ratios[cell.column.endswith("high")], "B1 of Table 3, plaited and braid")
 
 
-def _limit(cell: Cell, pages: Pages) -> Item:
+def _limit(cell: Cell, pages: Pages) -> ReproducedItem:
     """Eqs. 2 and 3 from eq. 1, with the numbers of a line."""
     line = {"quasi_static_spring_constant": 2.0, "dissipation_spring_constant": 4.0,
             "relaxation_time": 1.0}  # fmt: skip
@@ -650,7 +650,7 @@ def _limit(cell: Cell, pages: Pages) -> Item:
     return agree(cell, abs(found - (6.0 if high else 2.0)) < 1e-9, "eq. 1 at the limit")
 
 
-def _constant(cell: Cell, pages: Pages) -> Item:
+def _constant(cell: Cell, pages: Pages) -> ReproducedItem:
     """What multiplies K_1 in eq. 4, from the seven centre points."""
     found = []
     for row, (_, _, amplitude) in CENTRE_LINES.items():
@@ -659,10 +659,10 @@ def _constant(cell: Cell, pages: Pages) -> Item:
         form = spring * amplitude**2 * turn / (rest**2 + (rest + spring) ** 2 * turn**2)
         found.append(pages.value("11", row, f"{ENERGY} B1") / form)
     mean = float(np.exp(np.mean(np.log(found))))
-    return beside(cell, mean, "geometric mean at the seven centre points")
+    return compared_item(cell, mean, "geometric mean at the seven centre points")
 
 
-def _little_effect_on_energy(cell: Cell, pages: Pages) -> Item:
+def _little_effect_on_energy(cell: Cell, pages: Pages) -> ReproducedItem:
     shares = []
     for row in CENTRE_LINES:
         mean, square, _, _, slope = pages.surface("11", row, ENERGY)[:5]
@@ -674,7 +674,7 @@ def _little_effect_on_energy(cell: Cell, pages: Pages) -> Item:
     )  # fmt: skip
 
 
-def _little_effect_on_spring(cell: Cell, pages: Pages) -> Item:
+def _little_effect_on_spring(cell: Cell, pages: Pages) -> ReproducedItem:
     shares = []
     for row in CENTRE_LINES:
         terms = pages.surface("14", row, K_1)
@@ -686,14 +686,14 @@ def _little_effect_on_spring(cell: Cell, pages: Pages) -> Item:
     )  # fmt: skip
 
 
-def _spring_with_exposure(cell: Cell, pages: Pages) -> Item:
+def _spring_with_exposure(cell: Cell, pages: Pages) -> ReproducedItem:
     new, old = (
         pages.value("16", f"{POLYESTER_BRAID} | {when}", f"{K_1} B1") for when in ("new", "5 years")
     )
     return agree(cell, old > new, f"Table 16: {old:g} and {new:g}, the one pair that is left")
 
 
-def _times(cell: Cell, pages: Pages) -> Item:
+def _times(cell: Cell, pages: Pages) -> ReproducedItem:
     time = {row: pages.value("17", row, f"{TIME} B1") for row in CENTRE_LINES}
     nylon = [value for row, value in time.items() if row.startswith("nylon")]
     polyester = [value for row, value in time.items() if row.startswith("polyester")]
@@ -705,7 +705,7 @@ def _times(cell: Cell, pages: Pages) -> Item:
     return agree(cell, min(polyester) > max(nylon), shown)
 
 
-def _fails(cell: Cell, pages: Pages) -> Item:
+def _fails(cell: Cell, pages: Pages) -> ReproducedItem:
     r2 = pages.value("17", cell.row, f"{TIME} r2")
     f = (r2 / 9) / ((1 - r2) / 5)
     return agree(cell, f < float(fdtri(9, 5, 0.95)), f"F with 9 and 5 degrees of freedom: {f:.2f}")

@@ -20,7 +20,7 @@ from reduction.published.cg_claims import (
 from reduction.published.cg_surfaces import TABLES_OF, item_of_static, item_of_surface
 from reduction.published.cg_tests import item_of_test
 from reduction.published.printed_cells import Cell, cells_of
-from reduction.published.reproduced_item import Item, not_testable
+from reduction.published.reproduced_item import ReproducedItem, not_testable
 
 SURFACES = {table for tables in TABLES_OF.values() for table in tables}
 
@@ -36,18 +36,18 @@ CLAIMS = CLAIMS_OF_STIFFNESS | CLAIMS_OF_PULLS | CLAIMS_OF_TESTS | CLAIMS_OF_SET
 PRINTED_ONCE = "measured, or a setting that is printed once"
 
 
-def items() -> list[Item]:
+def items() -> list[ReproducedItem]:
     """Verdicts on every cell of the report, in the order of its cells."""
     return _items_of(cells_of("CG-D-39-80"))
 
 
-def _items_of(cells: Sequence[Cell]) -> list[Item]:
+def _items_of(cells: Sequence[Cell]) -> list[ReproducedItem]:
     """Verdicts on cells that need not be those of the package."""
     pages = Pages(cells)
     return [_item_of(cell, pages) for cell in cells]
 
 
-def _item_of(cell: Cell, pages: Pages) -> Item:
+def _item_of(cell: Cell, pages: Pages) -> ReproducedItem:
     """Verdict on one cell among the others of the report."""
     of_table = OF_TABLE.get(cell.table)
     if of_table is not None:

@@ -27,7 +27,14 @@ from reduction.published.cg_cells import (
     rounding,
 )
 from reduction.published.printed_cells import Cell, printed_step
-from reduction.published.reproduced_item import Item, agree, beside, judge, judge_as, not_testable
+from reduction.published.reproduced_item import (
+    ReproducedItem,
+    agree,
+    compared_item,
+    judge,
+    judge_as,
+    not_testable,
+)
 from reduction.stages.line.line_model import (
     apparent_spring_constant,
     hysteresis_energy,
@@ -44,7 +51,7 @@ FITTED = "a fit to pulls that are not printed"
 EXPOSED_YEARS = "5 years"
 
 
-def item_of_static(cell: Cell, pages: Pages) -> Item:
+def item_of_static(cell: Cell, pages: Pages) -> ReproducedItem:
     """Verdict on a cell of Tables 6-9 and D-1."""
     if cell.table == "D-1":
         return _rate(cell, pages)
@@ -61,7 +68,7 @@ def item_of_static(cell: Cell, pages: Pages) -> Item:
     if cell.table in ("6", "7"):
         return _coefficient_of_stiffness(cell, pages, term)
     if cell.erratum == "CG-10":
-        return beside(
+        return compared_item(
             cell, _curvature_of_strain(cell, pages), f"{FITTED}; C that meets K_0 of Table 7"
         )
     return not_testable(cell, FITTED)
@@ -90,7 +97,7 @@ def _slopes(cell: Cell, pages: Pages, tension: float) -> float | None:
     return pages.slope(table, row, tension)
 
 
-def _coefficient_of_stiffness(cell: Cell, pages: Pages, term: str) -> Item:
+def _coefficient_of_stiffness(cell: Cell, pages: Pages, term: str) -> ReproducedItem:
     """Beside a coefficient: what it has to be for the others to meet the slope at mid range."""
     tension = 0.7 * pages.value(cell.table, cell.row, f"{REST} {RANGE}")
     slope = _slopes(cell, pages, tension)
@@ -100,7 +107,7 @@ def _coefficient_of_stiffness(cell: Cell, pages: Pages, term: str) -> Item:
     others = pages.polynomial(cell.table, cell.row, tension)
     scale = tension**power * POLYNOMIAL_SCALES[power]
     own = pages.value(cell.table, cell.row, cell.column)
-    return beside(
+    return compared_item(
         cell, own + (slope - others) / scale,
         f"{FITTED}; beside it what meets the slope of the cubic at {tension:.0f} lb",
     )  # fmt: skip
@@ -114,7 +121,7 @@ def _curvature_of_strain(cell: Cell, pages: Pages) -> float:
     return float((1 / rest - linear - 3 * cubic * tension**2) / (2 * tension) * 1e8)
 
 
-def _head(cell: Cell, pages: Pages, term: str) -> Item:
+def _head(cell: Cell, pages: Pages, term: str) -> ReproducedItem:
     """The form of the polynomial: powers of T, and the power of ten in front."""
     row, tension = "nylon | double braid | 1/2 in | new", 1344.0
     if term == "power of ten":
@@ -129,7 +136,7 @@ def _head(cell: Cell, pages: Pages, term: str) -> Item:
     return judge(cell, float(expected), "Table 7, which meets the slopes of Table 8")
 
 
-def _static_range(cell: Cell, pages: Pages) -> Item:
+def _static_range(cell: Cell, pages: Pages) -> ReproducedItem:
     if cell.erratum == "CG-12":
         off = ", ".join(f"{100 * one:.0f}" for one in _departures(cell.row, pages))
         return not_testable(cell, f"{off} % off the slope of Table 8 at the three levels")
@@ -168,7 +175,7 @@ def _departures(row: str, pages: Pages) -> list[float]:
     ]
 
 
-def _range_of_strength(cell: Cell, pages: Pages) -> Item:
+def _range_of_strength(cell: Cell, pages: Pages) -> ReproducedItem:
     """Two rows print a break strength where the others have 30 % of it."""
     if cell.row.startswith("polyester"):
         strength = pages.printed("10", cell.row, "tensile_strength mean")
@@ -178,7 +185,7 @@ def _range_of_strength(cell: Cell, pages: Pages) -> Item:
     return judge(cell, 0.30 * strength, "30 % of the strength of Table A-3")
 
 
-def _static_count(cell: Cell, pages: Pages) -> Item:
+def _static_count(cell: Cell, pages: Pages) -> ReproducedItem:
     table, quantity = ("8", STRAIN) if cell.table == "6" else ("6", REST)
     other = pages.by_key.get((table, cell.row, f"{quantity} number of samples"))
     if other is not None:
@@ -188,7 +195,7 @@ def _static_count(cell: Cell, pages: Pages) -> Item:
     return not_testable(cell, "a count that no other table prints")
 
 
-def _rate(cell: Cell, pages: Pages) -> Item:
+def _rate(cell: Cell, pages: Pages) -> ReproducedItem:
     if cell.column != REST:
         return not_testable(cell, "a setting of the test")
     load = np.linspace(0, 2000, 100)
@@ -209,7 +216,7 @@ TABLES_OF = {
 RUNS = "a regression over runs that are not printed"
 
 
-def item_of_surface(cell: Cell, pages: Pages) -> Item:
+def item_of_surface(cell: Cell, pages: Pages) -> ReproducedItem:
     """Verdict on a cell of Tables 3-5 and 11-19."""
     quantity, _, term = cell.column.partition(" ")
     if term == "r2":
@@ -249,19 +256,21 @@ def _twin(cell: Cell, pages: Pages, quantity: str) -> Cell | None:
     return None
 
 
-def _coefficient(cell: Cell, pages: Pages, quantity: str, term: str) -> Item:
+def _coefficient(cell: Cell, pages: Pages, quantity: str, term: str) -> ReproducedItem:
     twin = _twin(cell, pages, quantity)
     if twin is not None:
         return judge(cell, number(twin), f"Table {twin.table}")
     if cell.erratum == "CG-6":
-        return beside(
+        return compared_item(
             cell, _energy_by_mean_load(pages, cell.row),
             f"{RUNS}; half the difference of H at (0, +1, 0) and (0, -1, 0) by the equations",
         )  # fmt: skip
     if term != "B1" or cell.row not in CENTRE_LINES:
         return _exposed_time(cell, pages, quantity, term)
     recomputed = _centre(pages, cell.row, quantity)
-    return beside(cell, recomputed, f"{RUNS}; the equations at the centre give the number beside")
+    return compared_item(
+        cell, recomputed, f"{RUNS}; the equations at the centre give the number beside"
+    )
 
 
 def _centre(pages: Pages, row: str, quantity: str) -> float:
@@ -316,7 +325,7 @@ def _solved(stiffness: float, energy: float, amplitude: float, rest: float) -> t
     return float(line.dissipation_spring_constant) / 1e4, float(line.relaxation_time)
 
 
-def _exposed_time(cell: Cell, pages: Pages, quantity: str, term: str) -> Item:
+def _exposed_time(cell: Cell, pages: Pages, quantity: str, term: str) -> ReproducedItem:
     """K_1 and tau of exposed lines beside those solved from their own K_ap and H."""
     exposed = {
         f"{NYLON_PLAITED} | 5 years": ("4", "12", 1209.6, 489.6),
@@ -332,7 +341,7 @@ def _exposed_time(cell: Cell, pages: Pages, quantity: str, term: str) -> Item:
         amplitude,
         rest,
     )
-    return beside(
+    return compared_item(
         cell, solved[quantity == TIME],
         f"{RUNS}; Tables {stiff}, {lossy} and 7 with the equations give the number beside",
     )  # fmt: skip
@@ -342,7 +351,7 @@ def _f_of(r2: float) -> float:
     return float(statistics_from_r2(r2, n_runs=15, n_terms=10).printed_f)
 
 
-def _share(cell: Cell, pages: Pages) -> Item:
+def _share(cell: Cell, pages: Pages) -> ReproducedItem:
     f = pages.cell(cell.table, cell.row, cell.column.replace("r2", "F-stat"))
     if cell.confidence == "certain":
         return judge(cell, number(_true_column(cell, pages)), "Table 13, new")
@@ -356,7 +365,7 @@ def _true_column(cell: Cell, pages: Pages) -> Cell:
     return pages.cell("13", cell.row, cell.column)
 
 
-def _statistic(cell: Cell, pages: Pages) -> Item:
+def _statistic(cell: Cell, pages: Pages) -> ReproducedItem:
     quantity = cell.column.partition(" ")[0]
     if cell.erratum == "CG-5":
         return judge(cell, number(_true_column(cell, pages)), "Table 13, new")
@@ -390,7 +399,7 @@ def _cut_off(cell: Cell, pages: Pages, quantity: str) -> Cell | None:
     return None
 
 
-def _count(cell: Cell, pages: Pages) -> Item:
+def _count(cell: Cell, pages: Pages) -> ReproducedItem:
     for table in ("4", "5", "12", "13"):
         for quantity in (K_AP, ENERGY):
             other = pages.by_key.get((table, cell.row, f"{quantity} number of lines"))
@@ -402,7 +411,7 @@ def _count(cell: Cell, pages: Pages) -> Item:
     return judge(cell, number(strength), "samples of Table 10")
 
 
-def _change(cell: Cell, pages: Pages) -> Item:
+def _change(cell: Cell, pages: Pages) -> ReproducedItem:
     quantity = cell.column.partition(" ")[0]
     change = change_of_mean(pages, cell.table, cell.row, quantity)
     if change is None:
@@ -427,7 +436,7 @@ def change_of_mean(pages: Pages, table: str, row: str, quantity: str) -> tuple[f
     return 100 * (together / pages.value(table, new, column) - 1), f"{how} over B1 of the new line"
 
 
-def _range(cell: Cell, pages: Pages) -> Item:
+def _range(cell: Cell, pages: Pages) -> ReproducedItem:
     _, what, end = cell.column.split(" ")
     share = pages.value("1", levels_of(cell.row), f"{what} {end}")
     if what == "frequency":

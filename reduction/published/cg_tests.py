@@ -19,7 +19,7 @@ from reduction.published.cg_cells import (
     rounding,
 )
 from reduction.published.printed_cells import Cell, printed_step
-from reduction.published.reproduced_item import Item, judge, not_testable
+from reduction.published.reproduced_item import ReproducedItem, judge, not_testable
 
 MEASURED = "measured"
 
@@ -52,7 +52,7 @@ def _common_step(pages: Pages, kind: str) -> int:
     return gcd(*numbers)
 
 
-def _item_of_f_test(cell: Cell, pages: Pages, groups: tuple[str, str]) -> Item:
+def _item_of_f_test(cell: Cell, pages: Pages, groups: tuple[str, str]) -> ReproducedItem:
     """Verdict on F, its degrees of freedom or its critical value."""
     line = cell.row.rpartition(" | ")[0]
     quantity = STRENGTH if cell.table == "A-3" else STRAIN_AT_FAILURE
@@ -83,7 +83,7 @@ def _item_of_f_test(cell: Cell, pages: Pages, groups: tuple[str, str]) -> Item:
     return judge(cell, found[cell.column], counted)
 
 
-def _item_of_group(cell: Cell, pages: Pages) -> Item:
+def _item_of_group(cell: Cell, pages: Pages) -> ReproducedItem:
     """Means and deviations of Tables A-3 and A-4."""
     line, _, condition = cell.row.rpartition(" | ")
     quantity, _, kind = cell.column.partition(" ")
@@ -117,7 +117,7 @@ def _item_of_group(cell: Cell, pages: Pages) -> Item:
     return not_testable(cell, MEASURED)
 
 
-def item_of_test(cell: Cell, pages: Pages) -> Item:
+def item_of_test(cell: Cell, pages: Pages) -> ReproducedItem:
     """Verdict on a cell of Tables 10, 20, 21, A-2, A-3 and A-4."""
     if cell.table == "10":
         return _of_table_10(cell, pages)
@@ -145,7 +145,7 @@ def change_of_table_10(pages: Pages, row: str, quantity: str) -> float:
     return 100 * float(found.change)
 
 
-def _of_table_10(cell: Cell, pages: Pages) -> Item:
+def _of_table_10(cell: Cell, pages: Pages) -> ReproducedItem:
     quantity, _, kind = cell.column.partition(" ")
     if kind == "change":
         value = change_of_table_10(pages, cell.row, quantity)
@@ -203,7 +203,7 @@ def _dry(cell: Cell, pages: Pages) -> tuple[float, float, str] | None:
     return pages.printed(*place) / 100, pages.half(*place) / 100, "Table A-4"
 
 
-def _mean_by_change(cell: Cell, pages: Pages, quantity: str) -> Item:
+def _mean_by_change(cell: Cell, pages: Pages, quantity: str) -> ReproducedItem:
     """A mean from the other mean and the change between them."""
     line = cell.row.rpartition(" | ")[0]
     new = f"{line} | new"
@@ -238,14 +238,14 @@ def _mean_by_change(cell: Cell, pages: Pages, quantity: str) -> Item:
     )  # fmt: skip
 
 
-def _of_table_20(cell: Cell, pages: Pages) -> Item:
+def _of_table_20(cell: Cell, pages: Pages) -> ReproducedItem:
     kind = cell.column.partition(" ")[2]
     if kind not in ("mean", "standard deviation", "relative variability"):
         return not_testable(cell, MEASURED if kind == "number of samples" else "a setting")
     return _variability(cell, pages, "abrasion_cycles", kind)
 
 
-def _variability(cell: Cell, pages: Pages, quantity: str, kind: str) -> Item:
+def _variability(cell: Cell, pages: Pages, quantity: str, kind: str) -> ReproducedItem:
     """Mean, deviation and relative variability bind each other."""
     mean, deviation, relative = (
         f"{quantity} mean", f"{quantity} standard deviation", f"{quantity} relative variability",
@@ -275,7 +275,7 @@ def _variability(cell: Cell, pages: Pages, quantity: str, kind: str) -> Item:
     return judge(cell, inputs[0] * inputs[1], "mean times relative variability", tolerance=allowed)
 
 
-def _of_table_21(cell: Cell, pages: Pages) -> Item:
+def _of_table_21(cell: Cell, pages: Pages) -> ReproducedItem:
     quantity, _, kind = cell.column.partition(" ")
     if kind == "change":
         new = cell.row.rpartition(" | ")[0] + " | new"
@@ -289,7 +289,7 @@ def _of_table_21(cell: Cell, pages: Pages) -> Item:
     return _variability(cell, pages, quantity, kind)
 
 
-def _effect(cell: Cell, pages: Pages) -> Item:
+def _effect(cell: Cell, pages: Pages) -> ReproducedItem:
     quantity, _, kind = cell.column.partition(" ")
     if (quantity, kind) == (STRENGTH, "effect of diameter"):
         rows = [f"{PLAITED} | {size} in | {AFTER}" for size in ("1/2", "13/16")]

@@ -516,7 +516,7 @@ _SAME_STRENGTH = 1.0
 """Difference of two strengths that are one. [N]"""
 
 
-def strengths_told(line: PublishedLine) -> tuple[str, ...]:
+def strength_notes(line: PublishedLine) -> tuple[str, ...]:
     """What is said of the strength, where the tables do not agree."""
     found = sorted({round(one.value) for one in line.stated_strengths})
     if len(found) < 2:
@@ -573,7 +573,7 @@ def line_scatter(line: PublishedLine) -> float:
     return scale_to_si("%", "strain")[0] * _number_used(cell)
 
 
-def scatter_told(line: PublishedLine) -> tuple[str, ...]:
+def scatter_notes(line: PublishedLine) -> tuple[str, ...]:
     """How alike lines are after years in the sea; nothing of a new one."""
     if line.condition == "new":
         return ()
@@ -583,7 +583,7 @@ def scatter_told(line: PublishedLine) -> tuple[str, ...]:
     )
 
 
-def levels_told(line: PublishedLine) -> tuple[str, ...]:
+def level_notes(line: PublishedLine) -> tuple[str, ...]:
     """Of an exposed line whose levels are shares of another strength than those of the new one."""
     for new in published_lines():
         if line.condition == "new" or new.name != line.name.replace(

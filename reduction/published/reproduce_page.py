@@ -18,14 +18,14 @@ from jinja2 import Environment, StrictUndefined
 from reduction import __version__
 from reduction.published import cg_d_39_80, wang_2022, whoi_2004_06, whoi_2005_10, zhang_2015
 from reduction.published.printed_cells import REPORTS, Erratum, ReportId, errata_of, printed_step
-from reduction.published.reproduced_item import Item, Verdict
+from reduction.published.reproduced_item import ReproducedItem, Verdict
 
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 Counts = dict[str, int]
 """``cells``, then one number a verdict."""
 
-_ITEMS: Mapping[ReportId, Callable[[], list[Item]]] = {
+_ITEMS: Mapping[ReportId, Callable[[], list[ReproducedItem]]] = {
     "WHOI-2004-06": whoi_2004_06.items,
     "Zhang-2015": zhang_2015.items,
     "WHOI-2005-10": whoi_2005_10.items,
@@ -39,7 +39,7 @@ _COLUMNS = (
 )  # fmt: skip
 
 
-def reproduce(report: ReportId | None = None) -> dict[ReportId, list[Item]]:
+def reproduce(report: ReportId | None = None) -> dict[ReportId, list[ReproducedItem]]:
     """Recompute every printed number of a report, or of all.
 
     Parameters
@@ -55,7 +55,7 @@ def reproduce(report: ReportId | None = None) -> dict[ReportId, list[Item]]:
     return {one: _ITEMS[one]() for one in (REPORTS if report is None else (report,))}
 
 
-def counts_of(items: Iterable[Item]) -> Counts:
+def counts_of(items: Iterable[ReproducedItem]) -> Counts:
     """How many cells there are, and how many of each verdict.
 
     Parameters
@@ -75,7 +75,7 @@ def counts_of(items: Iterable[Item]) -> Counts:
     return counts
 
 
-def counts_by_table(items: Iterable[Item]) -> dict[str, Counts]:
+def counts_by_table(items: Iterable[ReproducedItem]) -> dict[str, Counts]:
     """Counts of each table, in the order in which the tables come.
 
     Parameters
@@ -88,7 +88,7 @@ def counts_by_table(items: Iterable[Item]) -> dict[str, Counts]:
     counts : dict of str to dict of str to int
         By table, or section of a claim.
     """
-    tables: dict[str, list[Item]] = {}
+    tables: dict[str, list[ReproducedItem]] = {}
     for item in items:
         tables.setdefault(item.cell.table, []).append(item)
     return {table: counts_of(own) for table, own in tables.items()}
@@ -99,10 +99,10 @@ class _TouchedErratum:
     """A fault of a page, and the items whose cells name it."""
 
     erratum: Erratum
-    items: tuple[Item, ...]
+    items: tuple[ReproducedItem, ...]
 
 
-def touched_errata(report: ReportId, items: Iterable[Item]) -> list[_TouchedErratum]:
+def touched_errata(report: ReportId, items: Iterable[ReproducedItem]) -> list[_TouchedErratum]:
     """Every known fault of a report with its cells.
 
     Parameters
@@ -117,13 +117,13 @@ def touched_errata(report: ReportId, items: Iterable[Item]) -> list[_TouchedErra
     errata : list of TouchedErratum
         In the order of their ids.
     """
-    by_id: dict[str, list[Item]] = {}
+    by_id: dict[str, list[ReproducedItem]] = {}
     for item in items:
         by_id.setdefault(item.cell.erratum, []).append(item)
     return [_TouchedErratum(one, tuple(by_id.get(one.id, ()))) for one in errata_of(report)]
 
 
-def csv_of(items: Iterable[Item]) -> str:
+def csv_of(items: Iterable[ReproducedItem]) -> str:
     """Items as a table, a line a cell.
 
     Parameters
@@ -186,7 +186,7 @@ _LEAST_FIXED, _MOST_FIXED = 1e-4, 1e9
 class _Row:
     """One cell as it is shown."""
 
-    item: Item
+    item: ReproducedItem
     corrected: str
     recomputed: str
     tolerance: str
@@ -209,7 +209,7 @@ class _Report:
     without_cell: tuple[str, ...]
 
 
-def render_reproduction(reports: Mapping[ReportId, Sequence[Item]]) -> str:
+def render_reproduction(reports: Mapping[ReportId, Sequence[ReproducedItem]]) -> str:
     """Every item of the reports as a page that opens from disk.
 
     Parameters
@@ -239,7 +239,7 @@ def render_reproduction(reports: Mapping[ReportId, Sequence[Item]]) -> str:
     )
 
 
-def _report(report: ReportId, items: Sequence[Item]) -> _Report:
+def _report(report: ReportId, items: Sequence[ReproducedItem]) -> _Report:
     rows: dict[str, list[_Row]] = {}
     for item in items:
         cell = item.cell

@@ -17,7 +17,7 @@ Verdict = Literal["reproduced", "erratum", "open", "not_testable", "unexplained"
 
 
 @dataclass(frozen=True)
-class Item:
+class ReproducedItem:
     """One cell of a report.
 
     ``recomputed`` is in the printed unit, NaN where nothing can be computed; ``how`` says from
@@ -32,7 +32,9 @@ class Item:
     tolerance: float = math.nan
 
 
-def judge(cell: Cell, recomputed: float, how: str, *, tolerance: float | None = None) -> Item:
+def judge(
+    cell: Cell, recomputed: float, how: str, *, tolerance: float | None = None
+) -> ReproducedItem:
     """Hold a printed number against what it ought to be.
 
     Parameters
@@ -62,10 +64,10 @@ def judge(cell: Cell, recomputed: float, how: str, *, tolerance: float | None = 
         verdict = "reproduced"
     elif verdict == "erratum" and cell.corrected is not None:
         verdict = "erratum" if abs(cell.corrected - recomputed) <= allowed else "unexplained"
-    return Item(cell, recomputed, verdict, how, allowed)
+    return ReproducedItem(cell, recomputed, verdict, how, allowed)
 
 
-def agree(cell: Cell, holds: bool, how: str) -> Item:
+def agree(cell: Cell, holds: bool, how: str) -> ReproducedItem:
     """A claim in words that numbers bear out or not.
 
     Parameters
@@ -84,10 +86,10 @@ def agree(cell: Cell, holds: bool, how: str) -> Item:
         else ``unexplained``.
     """
     verdict = "reproduced" if holds else _known_of(cell, "unexplained")
-    return Item(cell, math.nan, verdict, how)
+    return ReproducedItem(cell, math.nan, verdict, how)
 
 
-def not_testable(cell: Cell, why: str) -> Item:
+def not_testable(cell: Cell, why: str) -> ReproducedItem:
     """A cell that nothing else in the report determines.
 
     Parameters
@@ -102,10 +104,10 @@ def not_testable(cell: Cell, why: str) -> Item:
     item : Item
         ``erratum`` or ``open`` where the cell says so: that much is known of it.
     """
-    return Item(cell, math.nan, _known_of(cell, "not_testable"), why)
+    return ReproducedItem(cell, math.nan, _known_of(cell, "not_testable"), why)
 
 
-def beside(cell: Cell, recomputed: float, why: str) -> Item:
+def compared_item(cell: Cell, recomputed: float, why: str) -> ReproducedItem:
     """A cell that nothing determines to its last digit, with a number to hold against it.
 
     Parameters
@@ -169,7 +171,7 @@ def last_counted_place(text: str) -> float:
     return place
 
 
-def judge_round(cell: Cell, recomputed: float, how: str) -> Item:
+def judge_round(cell: Cell, recomputed: float, how: str) -> ReproducedItem:
     """Hold a round number, that the text itself calls one, against what it ought to be.
 
     Parameters
@@ -190,7 +192,7 @@ def judge_round(cell: Cell, recomputed: float, how: str) -> Item:
     return judge(cell, recomputed, f"{how}; round to {place:g}", tolerance=0.5 * place)
 
 
-def judge_limit(cell: Cell, recomputed: float, how: str, *, is_upper: bool) -> Item:
+def judge_limit(cell: Cell, recomputed: float, how: str, *, is_upper: bool) -> ReproducedItem:
     """Hold a printed limit against what it is said to bound.
 
     Parameters
@@ -212,13 +214,13 @@ def judge_limit(cell: Cell, recomputed: float, how: str, *, is_upper: bool) -> I
     printed = number_of(cell.printed)
     if printed is not None and (recomputed <= printed if is_upper else recomputed >= printed):
         side = "below" if is_upper else "above"
-        return Item(cell, recomputed, "reproduced", f"{how}; {side} the limit")
+        return ReproducedItem(cell, recomputed, "reproduced", f"{how}; {side} the limit")
     return judge(cell, recomputed, how)
 
 
 def judge_as(
     cell: Cell, text: str, recomputed: float, how: str, *, tolerance: float | None = None
-) -> Item:
+) -> ReproducedItem:
     """Hold another writing of a printed number against what it ought to be.
 
     Parameters
@@ -243,7 +245,7 @@ def judge_as(
     return replace(item, cell=cell)
 
 
-def judge_word(cell: Cell, recomputed: float, how: str, *, step: float = 1.0) -> Item:
+def judge_word(cell: Cell, recomputed: float, how: str, *, step: float = 1.0) -> ReproducedItem:
     """Hold a number in words against what it ought to be.
 
     Parameters
@@ -303,7 +305,7 @@ Answers = dict[Key, Answer | str]
 """By cell; a text says why nothing in the report determines it."""
 
 
-def items_from(report: ReportId, answers: Mapping[Key, Answer | str]) -> list[Item]:
+def items_from(report: ReportId, answers: Mapping[Key, Answer | str]) -> list[ReproducedItem]:
     """One item for each cell of a report.
 
     Parameters
@@ -330,7 +332,7 @@ def items_from(report: ReportId, answers: Mapping[Key, Answer | str]) -> list[It
     return [item_of(cell, answers) for cell in cells]
 
 
-def item_of(cell: Cell, answers: Mapping[Key, Answer | str]) -> Item:
+def item_of(cell: Cell, answers: Mapping[Key, Answer | str]) -> ReproducedItem:
     """The item of one cell.
 
     Parameters
@@ -357,7 +359,7 @@ def item_of(cell: Cell, answers: Mapping[Key, Answer | str]) -> Item:
         return not_testable(cell, answer)
     printed = number_of(cell.printed)
     if answer.meaning is not None and abs(answer.meaning - answer.value) <= _ROUND_OFF:
-        return Item(cell, answer.value, "reproduced", answer.how)
+        return ReproducedItem(cell, answer.value, "reproduced", answer.how)
     if answer.bound:
         is_upper = answer.bound == "below"
         return judge_limit(cell, answer.value, answer.how, is_upper=is_upper)

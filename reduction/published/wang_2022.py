@@ -23,7 +23,13 @@ from reduction.prediction.armour import (
     predict_armour,
     theory_errors,
 )
-from reduction.published.reproduced_item import Answer, Answers, Item, items_from, log_slope
+from reduction.published.reproduced_item import (
+    Answer,
+    Answers,
+    ReproducedItem,
+    items_from,
+    log_slope,
+)
 from reduction.record.measurement import Floats
 
 ELASTIC_MODULUS, POISSON_RATIO = 210_000e6, 0.3
@@ -222,7 +228,7 @@ _NAMED = {_UMBILICAL: (20.0, 0.36, 50.51), _PIPE: (30.0, 0.62, 67.62), _HOSE: (8
 _FINE = np.arange(10.0, 80.001, 0.02)
 
 
-def items() -> list[Item]:
+def items() -> list[ReproducedItem]:
     """One item for every printed number of the paper."""
     return items_from("Wang-2022", _answers())
 

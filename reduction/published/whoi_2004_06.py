@@ -26,7 +26,13 @@ from reduction.prediction.hose_geometry import (
 from reduction.prediction.hose_product import HoseDesign, HosePrediction
 from reduction.prediction.hose_tension import hose_energy, numbers_of, predict_hose
 from reduction.prediction.rubber_wall import rubber_tension
-from reduction.published.reproduced_item import Answer, Answers, Item, items_from, log_slope
+from reduction.published.reproduced_item import (
+    Answer,
+    Answers,
+    ReproducedItem,
+    items_from,
+    log_slope,
+)
 from reduction.record.measurement import Floats
 
 _ANGLE = np.radians(68.0)
@@ -216,7 +222,7 @@ _MEDIUM, _HIGH = "medium high stretching hose", "high stretching hose"
 _TEST = "sec 3.0"
 
 
-def items() -> list[Item]:
+def items() -> list[ReproducedItem]:
     """One item for every printed number of the report."""
     return items_from("WHOI-2004-06", _answers())
 

@@ -19,10 +19,10 @@ import numpy as np
 from reduction.published.printed_cells import Cell, cells_of, number_of, printed_step
 from reduction.published.published_tethers import TETHER_REPORT, published_static_test
 from reduction.published.reproduced_item import (
-    Item,
     Key,
+    ReproducedItem,
     agree,
-    beside,
+    compared_item,
     judge,
     judge_limit,
     judge_round,
@@ -84,7 +84,7 @@ _TIMES = "time of a reading, later than the one before"
 
 def _items_of_diameters(
     cells: Sequence[Cell], areas: Mapping[str, Sequence[float]]
-) -> Iterator[Item]:
+) -> Iterator[ReproducedItem]:
     """Table 2."""
     for row in _rows_of(cells):
         implied = areas[row.tether]
@@ -99,7 +99,7 @@ def _items_of_diameters(
                 yield not_testable(cell, _STRETCHED.format(stretched))
 
 
-def _items_of_marks(cells: Sequence[Cell]) -> Iterator[Item]:
+def _items_of_marks(cells: Sequence[Cell]) -> Iterator[ReproducedItem]:
     """Table 3."""
     rows = _rows_of(cells)
     for row in rows:
@@ -154,7 +154,7 @@ def _static_gauge_length(rows: Sequence[_Row]) -> tuple[float, float]:
     return float(np.max(length / (stretch + 0.005))), float(np.min(length / (stretch - 0.005)))
 
 
-def _items_of_weights(cells: Sequence[Cell]) -> Iterator[Item]:
+def _items_of_weights(cells: Sequence[Cell]) -> Iterator[ReproducedItem]:
     """Table 4."""
     rows = _rows_of(cells)
     for place, row in enumerate(rows):
@@ -165,7 +165,9 @@ def _items_of_weights(cells: Sequence[Cell]) -> Iterator[Item]:
             match column:
                 case "clock":
                     if place and cell.printed <= rows[place - 1].cells["clock"].printed:
-                        yield Item(cell, float("nan"), "unexplained", "earlier than the row before")
+                        yield ReproducedItem(
+                            cell, float("nan"), "unexplained", "earlier than the row before"
+                        )
                     else:
                         yield not_testable(cell, _TIMES)
                 case "tension":
@@ -251,7 +253,7 @@ def _areas_of_tables(*tables: Sequence[Cell]) -> dict[str, tuple[float, ...]]:
     }
 
 
-def _items_of_segments(cells: Sequence[Cell]) -> Iterator[Item]:
+def _items_of_segments(cells: Sequence[Cell]) -> Iterator[ReproducedItem]:
     """Table 5 or Table 6."""
     rows = _rows_of(cells)
     for row in rows:
@@ -360,7 +362,7 @@ _TWIN: dict[Key, Key] = {
 }  # fmt: skip
 
 
-def _items_of_plan(cells: Sequence[Cell], book: Mapping[Key, Cell]) -> Iterator[Item]:
+def _items_of_plan(cells: Sequence[Cell], book: Mapping[Key, Cell]) -> Iterator[ReproducedItem]:
     """Table 1, against the sections on its tests."""
     for cell in cells:
         name = _test_of_row(cell.row)
@@ -377,7 +379,7 @@ def _items_of_plan(cells: Sequence[Cell], book: Mapping[Key, Cell]) -> Iterator[
         yield _as_elsewhere(cell, key, book)
 
 
-def _item_of_programme(cell: Cell, plan: Sequence[Cell]) -> Item | None:
+def _item_of_programme(cell: Cell, plan: Sequence[Cell]) -> ReproducedItem | None:
     """A claim of the text on a test, against Table 1."""
     rows = {_test_of_row(row.name): row for row in _rows_of(plan)}
     cycled = [row for name, row in rows.items() if name in _SECTION and name != "T-4 Extended"]
@@ -408,12 +410,12 @@ def _columns(row: _Row) -> dict[str, float]:
     }
 
 
-def _item_printed_twice(cell: Cell, book: Mapping[Key, Cell]) -> Item | None:
+def _item_printed_twice(cell: Cell, book: Mapping[Key, Cell]) -> ReproducedItem | None:
     """A claim of the text against where the text makes it again."""
     return _as_elsewhere(cell, _TWIN[cell.key], book) if cell.key in _TWIN else None
 
 
-def _as_elsewhere(cell: Cell, key: Key, book: Mapping[Key, Cell]) -> Item:
+def _as_elsewhere(cell: Cell, key: Key, book: Mapping[Key, Cell]) -> ReproducedItem:
     there = book[key]
     place = f"printed again, {there.page}: {there.printed} {there.unit}"
     return judge(cell, _number_in_use(there), place)
@@ -432,7 +434,7 @@ _NEAR = 0.1  # of strain: how far the line of a first segment is carried down to
 _SPREAD = 0.1  # of 1 in: the material varied from 0.9 to 1.1 in (sec. 2.3.1)
 
 
-def _items_of_claims(book: Mapping[Key, Cell]) -> Iterator[Item]:
+def _items_of_claims(book: Mapping[Key, Cell]) -> Iterator[ReproducedItem]:
     """Every claim that a table decides."""
     tables = {
         table: _rows_of([cell for cell in book.values() if cell.table == table])
@@ -448,7 +450,7 @@ def _items_of_claims(book: Mapping[Key, Cell]) -> Iterator[Item]:
 
 def _of_lengths(
     book: Mapping[Key, Cell], diameters: Sequence[_Row], marks: Sequence[_Row]
-) -> Iterator[Item]:
+) -> Iterator[ReproducedItem]:
     slack = [row for row in marks if row.name.endswith("stretch 0 %")]
     splices = [row[f"splice_length {end}"] for row in slack for end in ("near", "far")]
     free = float(np.mean([row["free_length"] for row in slack]))
@@ -478,7 +480,7 @@ def _of_lengths(
 
 def _of_time(
     book: Mapping[Key, Cell], plan: Sequence[_Row], marks: Sequence[_Row]
-) -> Iterator[Item]:
+) -> Iterator[ReproducedItem]:
     """The extended test: stroke, velocity, rate and duration say the same."""
     new = [row for row in marks if "far_thimble" in row.cells and row.tether == "new"]
     low, high = new[1], new[-1]
@@ -499,7 +501,7 @@ def _of_time(
     )
 
 
-def _of_tension(book: Mapping[Key, Cell], rows: Sequence[_Row]) -> Iterator[Item]:
+def _of_tension(book: Mapping[Key, Cell], rows: Sequence[_Row]) -> Iterator[ReproducedItem]:
     """Tension of one tether at 100 %, by every test that comes near it."""
     first: dict[str, tuple[float, _Row]] = {}
     for row in rows:
@@ -528,10 +530,12 @@ def _of_tension(book: Mapping[Key, Cell], rows: Sequence[_Row]) -> Iterator[Item
             else (f"{n_tethers} tethers", "the stretch when deployed")
         )
         mean = n_tethers * float(np.mean(tension))
-        yield beside(book[key], mean, how.format(what, unknown))
+        yield compared_item(book[key], mean, how.format(what, unknown))
 
 
-def _of_strain(book: Mapping[Key, Cell], marks: Sequence[_Row], raw: Sequence[_Row]) -> Item:
+def _of_strain(
+    book: Mapping[Key, Cell], marks: Sequence[_Row], raw: Sequence[_Row]
+) -> ReproducedItem:
     """Which stretch of Table 3 the strains of Table 5 go by: where T-1 ends on both tethers."""
     misses = {"interpolated": 0.0, "actual": 0.0}
     for tether in ("new", "used"):
@@ -552,12 +556,12 @@ def _of_strain(book: Mapping[Key, Cell], marks: Sequence[_Row], raw: Sequence[_R
 
 def _of_modulus(
     book: Mapping[Key, Cell], raw: Sequence[_Row], consolidated: Sequence[_Row]
-) -> Iterator[Item]:
+) -> Iterator[ReproducedItem]:
     low = [
         row[MODULUS] for row in [*raw, *consolidated]
         if row.name.startswith("T-2") and row.name.endswith("segment 1")
     ]  # fmt: skip
-    yield beside(
+    yield compared_item(
         book["sec 1", "low elongations", "tangent_modulus"],
         float(np.mean(low)),
         f"first segments of T-2 in Tables 5 and 6, {min(low):.0f} to {max(low):.0f} psi, mean; "
@@ -598,7 +602,7 @@ def _of_modulus(
 
 def _of_static_test(
     book: Mapping[Key, Cell], readings: Sequence[_Row], raw: Sequence[_Row]
-) -> Iterator[Item]:
+) -> Iterator[ReproducedItem]:
     area = pi / 4 * _INCH**2
     reduced = reduce_stepwise(published_static_test(), area=area)
     up, down = (reduced.interval_branch == branch for branch in (1, 2))
@@ -608,7 +612,7 @@ def _of_static_test(
         reduced.strain[0], reduced.strain[top], reduced.tension[0], reduced.tension[top], area=area
     )
     text, later = "static test of Buoy Technology", "static test"
-    yield beside(
+    yield compared_item(
         book["sec 2.3.5", text, "tangent_modulus"],
         float(chord) / _PSI,
         "Table 4, first to last weight going up, on 1 in; no diameter is printed, 0.9 to 1.1 in "
@@ -701,12 +705,12 @@ _WHY_BY_ROW = {
 }
 
 
-def items() -> list[Item]:
+def items() -> list[ReproducedItem]:
     """Every cell of the report, with its verdict."""
     return _items_of(cells_of(TETHER_REPORT))
 
 
-def _items_of(cells: Sequence[Cell]) -> list[Item]:
+def _items_of(cells: Sequence[Cell]) -> list[ReproducedItem]:
     """Every cell, with its verdict."""
     book = {cell.key: cell for cell in cells}
     table = {number: [cell for cell in cells if cell.table == number] for number in "123456"}

@@ -36,7 +36,7 @@ from reduction.prediction.zhang_example import (
     printed_stokes_wave,
 )
 from reduction.published.printed_cells import Cell, cells_of, table_of
-from reduction.published.reproduced_item import Answer, Answers, Item, items_from
+from reduction.published.reproduced_item import Answer, Answers, ReproducedItem, items_from
 from reduction.record.measurement import Floats
 
 LENGTH, PERIOD, SPEED, HEIGHT = 20.0, 3.57, 5.6, 1.25
@@ -272,7 +272,7 @@ _EXAMPLES = {"example of the Airy theory": 6.0, "example of the Stokes theory": 
 _HALF_DIGIT = 0.005  # of the loads of Table 7
 
 
-def items() -> list[Item]:
+def items() -> list[ReproducedItem]:
     """One item for every printed number of the paper."""
     return items_from("Zhang-2015", _answers())
 

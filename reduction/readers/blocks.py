@@ -14,14 +14,14 @@ from pathlib import Path
 import numpy as np
 
 from reduction.readers.columns import (
-    Wanted,
+    DeclaredColumn,
     check_lengths,
     check_units,
+    declared_columns,
     find_column,
     keep_line,
-    wanted_columns,
 )
-from reduction.readers.layout import Layout, Parts, Watch
+from reduction.readers.layout import Layout, LogParts, Watch
 from reduction.readers.number_fields import GrowingLog, read_fields
 from reduction.readers.raw_log import RawLog, unchanged
 from reduction.readers.text_rows import TextFile, TextRows, line_starts, open_text, split_line
@@ -138,23 +138,25 @@ def read_blocks(
     layout: Layout,
     *,
     name: str,
-    parts: Parts | None = None,
+    parts: LogParts | None = None,
     watch: Watch | None = None,
 ) -> RawLog:
     """Read a log of repeated blocks."""
     watch = watch or Watch(path)
-    with unchanged(path), open_text(path, layout.encoding, parts or Parts(), watch) as file:
-        blocks: _Blocks | None = None
+    with unchanged(path), open_text(path, layout.encoding, parts or LogParts(), watch) as file:
+        blocks: _BlockReader | None = None
         for lines in _block_lines(file, layout):
             if blocks is None:
-                blocks = _Blocks(path, _with_separators(path, lines, layout), file.folder, watch)
+                blocks = _BlockReader(
+                    path, _with_separators(path, lines, layout), file.folder, watch
+                )
             blocks.take(lines)
         if blocks is None or not blocks.kinds:
             raise _no_block(path, layout)
         return blocks.finish(file, name)
 
 
-class _Blocks:
+class _BlockReader:
     """What has been read so far."""
 
     def __init__(self, path: Path, layout: Layout, folder: Path | None, watch: Watch) -> None:
@@ -162,7 +164,7 @@ class _Blocks:
         self.kinds: dict[bytes, _Kind] = {}
         self.open: _Kind | None = None  # that of the block that goes on
         self.chosen: _Kind | None = None
-        self.wanted: list[tuple[Wanted, int]] = []
+        self.wanted: list[tuple[DeclaredColumn, int]] = []
         self.log: GrowingLog | None = None
         self.refusal: LogError | None = None
         self.openers: list[tuple[str, int]] = []
@@ -256,7 +258,7 @@ class _Blocks:
         try:
             wanted = [
                 (want, find_column(self.path, want, names, where="the block", row=row + 1))
-                for want in wanted_columns(self.layout)
+                for want in declared_columns(self.layout)
             ]
         except LogError as error:
             self.refusal = self.refusal or error

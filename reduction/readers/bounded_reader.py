@@ -27,7 +27,7 @@ from typing import IO, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from reduction.readers.layout import Parts, Watch
+from reduction.readers.layout import LogParts, Watch
 from reduction.record.errors import ReductionError
 from reduction.record.samples import mapped, name_of_scratch_file, name_scratch_files
 
@@ -100,7 +100,10 @@ def bounded(
 ) -> Result:
     """Result of a function in the process that reads."""
     global _reader
-    scratch = named.get("parts", Parts()).folder, f"reduction-{os.getpid()}-{secrets.token_hex(8)}-"
+    scratch = (
+        named.get("parts", LogParts()).folder,
+        f"reduction-{os.getpid()}-{secrets.token_hex(8)}-",
+    )
     work = pickle.dumps((function, path, given, named))
     request = pickle.dumps((os.getcwd(), scratch, watch.limits, path, work))
     with _AT_WORK:
@@ -194,7 +197,7 @@ def _is_answered(requests: IO[bytes], answers: IO[bytes], silence: int) -> bool:
         watch = Watch(path, limits)  # what was loaded first does not count
         answer = function(path, *given, watch=watch, **named), None
     except Exception as error:
-        answer = None, _told(error)
+        answer = None, _portable_error(error)
     except BaseException as error:  # a failed check in a library of Rust
         answer = None, watch.broken(f"{type(error).__name__}: {error}"[:200])
     try:
@@ -219,7 +222,7 @@ def _bound_memory(n_bytes: int) -> None:
         )
 
 
-def _told(error: Exception) -> Exception:
+def _portable_error(error: Exception) -> Exception:
     """The error as it goes to the run, with the place where that is a fault of this package."""
     place = "".join(traceback.format_exception(error))
     error.__cause__ = error.__context__ = None  # errors of libraries, of which few can be pickled

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.quantities.units import Dimension, scale_to_si
-from reduction.readers.layout import CLOCK, Layout, Parts, Watch
+from reduction.readers.layout import CLOCK, Layout, LogParts, Watch
 from reduction.readers.text_rows import split_line
 from reduction.record.errors import LogError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers
@@ -72,7 +72,7 @@ _POWER = re.compile(r"\*\*|\^")  # one at most: 9**9**9 would take for ever
 
 
 @dataclass(frozen=True)
-class Wanted:
+class DeclaredColumn:
     """One column that a layout asks for; ``key`` is its name in `RawLog.columns`."""
 
     key: str
@@ -83,15 +83,17 @@ class Wanted:
     """Whether a unit that the file states must agree: not for a clock, nor for a voltage."""
 
 
-def wanted_columns(layout: Layout) -> tuple[Wanted, ...]:
+def declared_columns(layout: Layout) -> tuple[DeclaredColumn, ...]:
     """Columns of a layout in its order; own time stamps follow their channel."""
     wanted = []
     for key, channel in layout.channels.items():
         is_compared = channel.unit != CLOCK and channel.factor == 1
         dimension = Layout.dimension(key)
-        wanted.append(Wanted(key, channel.column, channel.unit, dimension, is_compared))
+        wanted.append(DeclaredColumn(key, channel.column, channel.unit, dimension, is_compared))
         if channel.time_column is not None:
-            wanted.append(Wanted(f"{key}.time", channel.time_column, channel.time_unit, "time"))
+            wanted.append(
+                DeclaredColumn(f"{key}.time", channel.time_column, channel.time_unit, "time")
+            )
     return tuple(wanted)
 
 
@@ -106,7 +108,7 @@ def _listing(names: Sequence[str]) -> str:
 
 def find_column(
     path: Path,
-    wanted: Wanted,
+    wanted: DeclaredColumn,
     names: Sequence[str],
     *,
     where: str = "the file",
@@ -162,7 +164,7 @@ def stated_scale(text: str, dimension: Dimension) -> tuple[float, float]:
     )
 
 
-def check_unit(path: Path, wanted: Wanted, found: str, *, row: int | None = None) -> None:
+def check_unit(path: Path, wanted: DeclaredColumn, found: str, *, row: int | None = None) -> None:
     """Compare the unit that a file states with the declared one; blank states nothing."""
     text = found.strip()
     if text[:1] in _BRACKETS and text.endswith(_BRACKETS[text[0]]):
@@ -248,7 +250,7 @@ def keep_line(metadata: dict[str, str], line: str, row: int, layout: Layout) -> 
 
 def check_units(
     path: Path,
-    wanted: Sequence[tuple[Wanted, int]],
+    wanted: Sequence[tuple[DeclaredColumn, int]],
     *,
     names: Sequence[str],
     units: Sequence[str],
@@ -266,7 +268,7 @@ def check_units(
             _check_unit_in_name(path, want, match[1])
 
 
-def _check_unit_in_name(path: Path, want: Wanted, stated: str) -> None:
+def _check_unit_in_name(path: Path, want: DeclaredColumn, stated: str) -> None:
     try:
         found = scale_to_si(stated.strip(), want.dimension)
     except SettingsError:
@@ -314,7 +316,9 @@ _FAULTS = (_LARGE, _MISSING, _INFINITE)  # what is told first
 class _CheckedColumn:
     """A declared column, shape (n_rows,); declared missing marks are NaN."""
 
-    def __init__(self, path: Path, wanted: Wanted, layout: Layout, folder: Path | None) -> None:
+    def __init__(
+        self, path: Path, wanted: DeclaredColumn, layout: Layout, folder: Path | None
+    ) -> None:
         """Begin with no rows."""
         self._path, self._wanted, self._layout = path, wanted, layout
         self._writer = ColumnWriter(folder)
@@ -491,13 +495,13 @@ def read_columns(
     table: ColumnTable,
     made: Mapping[str, Callable[[int], Iterator[Floats]]] | None = None,
     *,
-    parts: Parts | None = None,
+    parts: LogParts | None = None,
     watch: Watch | None = None,
 ) -> tuple[dict[str, Floats], int]:
     """Declared columns of a binary file by channel key, and how many rows they have."""
-    made, parts, watch = made or {}, parts or Parts(), watch or Watch(path)
+    made, parts, watch = made or {}, parts or LogParts(), watch or Watch(path)
     watch.check_columns(len(table.names))
-    wanted = wanted_columns(layout)
+    wanted = declared_columns(layout)
     places = {}
     for want in wanted:
         if want.key not in made:
@@ -535,7 +539,7 @@ def read_columns(
     return columns, check_lengths(path, columns)
 
 
-def _place(path: Path, wanted: Wanted, table: ColumnTable) -> int:
+def _place(path: Path, wanted: DeclaredColumn, table: ColumnTable) -> int:
     """Place of a declared column, whose unit is the declared one."""
     place = find_column(path, wanted, table.names, where=table.where, in_order=table.in_order)
     if table.units[place]:

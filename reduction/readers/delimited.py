@@ -12,14 +12,14 @@ from pathlib import Path
 import numpy as np
 
 from reduction.readers.columns import (
-    Wanted,
+    DeclaredColumn,
     check_lengths,
     check_units,
+    declared_columns,
     find_column,
     keep_line,
-    wanted_columns,
 )
-from reduction.readers.layout import Layout, Parts, Watch
+from reduction.readers.layout import Layout, LogParts, Watch
 from reduction.readers.number_fields import AT_A_TIME, Fields, GrowingLog, in_order, read_fields
 from reduction.readers.raw_log import RawLog, unchanged
 from reduction.readers.text_rows import (
@@ -56,7 +56,7 @@ class _Head:
     """Its editor's row, 0 where it has not been found yet."""
     n_fields: int = 0
     """Fields in it."""
-    wanted: list[tuple[Wanted, int]] = field(default_factory=list)
+    wanted: list[tuple[DeclaredColumn, int]] = field(default_factory=list)
     """Each declared column with its place."""
 
     def keep(self, line: str, row: int, layout: Layout) -> None:
@@ -71,7 +71,7 @@ def read_delimited(
     layout: Layout,
     *,
     name: str,
-    parts: Parts | None = None,
+    parts: LogParts | None = None,
     watch: Watch | None = None,
 ) -> RawLog:
     """Read a delimited text log."""
@@ -79,7 +79,7 @@ def read_delimited(
     log: GrowingLog | None = None
     with (
         unchanged(path),
-        open_text(path, layout.encoding, parts or Parts(), watch) as file,
+        open_text(path, layout.encoding, parts or LogParts(), watch) as file,
         ThreadPoolExecutor(AT_A_TIME) as workers,
     ):
         data_rows = _data_rows(path, file, head, layout, watch)
@@ -202,12 +202,12 @@ def _count_fields(path: Path, head: _Head, layout: Layout) -> int:
     return n_fields
 
 
-def _find_columns(path: Path, head: _Head, layout: Layout) -> list[tuple[Wanted, int]]:
+def _find_columns(path: Path, head: _Head, layout: Layout) -> list[tuple[DeclaredColumn, int]]:
     """Each declared column with its place, found in the header and in the declared unit."""
     names = head.names or [""] * head.n_fields
     wanted = [
         (want, find_column(path, want, names[: head.n_fields], row=head.name_row))
-        for want in wanted_columns(layout)
+        for want in declared_columns(layout)
     ]
     check_units(path, wanted, names=names, units=head.units, unit_row=head.unit_row)
     return wanted

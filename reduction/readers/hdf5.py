@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.readers.columns import ColumnTable, matrix_table, read_columns, row_parts
-from reduction.readers.layout import Layout, Parts, Watch, short_metadata
+from reduction.readers.layout import Layout, LogParts, Watch, short_metadata
 from reduction.readers.raw_log import RawLog, hash_source
 from reduction.record.errors import LogError
 
@@ -362,7 +362,7 @@ def read_hdf5(
     layout: Layout,
     *,
     name: str,
-    parts: Parts | None = None,
+    parts: LogParts | None = None,
     watch: Watch | None = None,
 ) -> RawLog:
     """Read the declared columns of one group, or of one matrix."""

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from reduction.readers.columns import check_unit, matrix_table, read_columns, wanted_columns
+from reduction.readers.columns import check_unit, declared_columns, matrix_table, read_columns
 from reduction.readers.layout import Layout, Watch
 from reduction.readers.raw_log import RawLog, read_bytes, source_of
 from reduction.readers.text_rows import decode
@@ -35,7 +35,7 @@ def read_json(path: Path, layout: Layout, *, name: str, watch: Watch | None = No
         names=_texts(path, content, layout.matrix_names, "matrix_names"),
         units=_texts(path, content, layout.matrix_units, "matrix_units"),
     )
-    for wanted in wanted_columns(layout):
+    for wanted in declared_columns(layout):
         channel = layout.channels.get(wanted.key)
         if channel is not None and channel.unit_key:
             stated = _entry(path, content, channel.unit_key, f"unit_key of {wanted.key}")

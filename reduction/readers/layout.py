@@ -377,7 +377,7 @@ most. If that is what was logged, raise columns under [limits] of campaign.toml.
 
 
 @dataclass(frozen=True)
-class Parts:
+class LogParts:
     """Parts of a raw file; no number depends on them.
 
     Parameters

@@ -15,7 +15,7 @@ import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.compute as pc  # type: ignore[import-untyped]
 import pyarrow.csv as pa_csv  # type: ignore[import-untyped]
 
-from reduction.readers.columns import Wanted, clock_to_seconds, without_marks
+from reduction.readers.columns import DeclaredColumn, clock_to_seconds, without_marks
 from reduction.readers.layout import CLOCK, Layout
 from reduction.readers.text_rows import TextRows, count_lines, split_line
 from reduction.record.errors import LogError, ReductionError
@@ -49,7 +49,9 @@ class Fields:
     row: Integers | None
 
 
-def read_fields(rows: TextRows, wanted: Sequence[tuple[Wanted, int]], n_fields: int) -> Fields:
+def read_fields(
+    rows: TextRows, wanted: Sequence[tuple[DeclaredColumn, int]], n_fields: int
+) -> Fields:
     """Declared columns of delimited rows: numbers, and the text of a clock."""
     try:
         return _read(rows, wanted, n_fields)
@@ -59,7 +61,7 @@ def read_fields(rows: TextRows, wanted: Sequence[tuple[Wanted, int]], n_fields: 
         raise
 
 
-def _read(rows: TextRows, wanted: Sequence[tuple[Wanted, int]], n_fields: int) -> Fields:
+def _read(rows: TextRows, wanted: Sequence[tuple[DeclaredColumn, int]], n_fields: int) -> Fields:
     layout = rows.layout
     places = [place for _, place in wanted]
     clocks = [place for want, place in wanted if want.unit == CLOCK]
@@ -176,7 +178,7 @@ def _ragged(rows: TextRows, n_fields: int, message: str) -> LogError:
 
 
 def _second_look(
-    rows: TextRows, row: Integers | None, want: Wanted, column: pa.ChunkedArray
+    rows: TextRows, row: Integers | None, want: DeclaredColumn, column: pa.ChunkedArray
 ) -> Floats:
     """Numbers of a text column, or a `LogError` that names its first bad field."""
     layout = rows.layout
@@ -247,7 +249,7 @@ class GrowingLog:
         Where the scratch files lie.  The text of a clock stays in memory.
     """
 
-    def __init__(self, wanted: Sequence[Wanted], folder: Path | None) -> None:
+    def __init__(self, wanted: Sequence[DeclaredColumn], folder: Path | None) -> None:
         """Begin with no rows."""
         self._wanted = wanted
         self._folder = folder

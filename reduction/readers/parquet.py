@@ -12,7 +12,7 @@ import pyarrow.parquet  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
 from reduction.readers.columns import ColumnTable, read_columns
-from reduction.readers.layout import Layout, Parts, Watch, short_metadata
+from reduction.readers.layout import Layout, LogParts, Watch, short_metadata
 from reduction.readers.raw_log import RawLog, hash_source
 from reduction.record.errors import LogError
 
@@ -93,7 +93,7 @@ def read_parquet(
     layout: Layout,
     *,
     name: str,
-    parts: Parts | None = None,
+    parts: LogParts | None = None,
     watch: Watch | None = None,
 ) -> RawLog:
     """Read the declared columns; a field's ``unit`` or ``units`` is checked."""

@@ -14,7 +14,7 @@ from reduction.readers.bounded_reader import bounded
 from reduction.readers.delimited import read_delimited
 from reduction.readers.hdf5 import read_hdf5
 from reduction.readers.json_matrix import read_json
-from reduction.readers.layout import Channel, Format, Layout, Parts, Watch
+from reduction.readers.layout import Channel, Format, Layout, LogParts, Watch
 from reduction.readers.matlab import read_matlab
 from reduction.readers.parquet import read_parquet
 from reduction.readers.raw_log import RawLog, unchanged
@@ -23,7 +23,7 @@ from reduction.readers.spreadsheet import read_spreadsheet
 from reduction.readers.tdms import read_tdms
 from reduction.record.errors import LogError, SettingsError
 from reduction.record.measurement import Floats, Record, Source, StepReadings
-from reduction.record.samples import give_back
+from reduction.record.samples import trim_heap
 from reduction.record.settings import Limits, QualitySettings
 
 _IN_PARTS: dict[Format, Callable[..., RawLog]] = {
@@ -48,7 +48,7 @@ def read_log(
     layout: Layout,
     *,
     name: str,
-    parts: Parts | None = None,
+    parts: LogParts | None = None,
     limits: Limits | None = None,
 ) -> RawLog:
     """Read a log in its declared layout.
@@ -84,7 +84,7 @@ def read_log(
         watch.check_size(n_bytes)
         given: dict[str, Any] = {"name": name, "watch": watch}
         if layout.format in _IN_PARTS:
-            given["parts"] = parts or Parts()
+            given["parts"] = parts or LogParts()
         read = (_IN_PARTS | _WHOLE)[layout.format]
         if layout.format in _TEXTS:
             return read(path, layout, **given)
@@ -98,7 +98,7 @@ def read_record(
     specimens: Sequence[str],
     quality: QualitySettings,
     length_needed: bool = True,
-    parts: Parts | None = None,
+    parts: LogParts | None = None,
     limits: Limits | None = None,
 ) -> tuple[Record, tuple[Source, ...]]:
     """Read the file or files of a test.
@@ -141,7 +141,7 @@ def read_record(
     record = to_record(
         logs, test_id=test_id, specimens=specimens, quality=quality, length_needed=length_needed
     )
-    give_back(record.time)
+    trim_heap(record.time)
     return record, tuple(log.source for log, _ in logs)
 
 

@@ -21,12 +21,12 @@ import numpy as np
 import python_calamine
 
 from reduction.readers.columns import (
-    Wanted,
+    DeclaredColumn,
     check_lengths,
     check_units,
     clock_to_seconds,
+    declared_columns,
     find_column,
-    wanted_columns,
     without_marks,
 )
 from reduction.readers.layout import CLOCK, Layout, Watch
@@ -135,7 +135,7 @@ def _fast_columns(
     sheet: int,
     first: int,
     places: Sequence[int],
-    wanted: Sequence[Wanted],
+    wanted: Sequence[DeclaredColumn],
     layout: Layout,
 ) -> _SheetCells | None:
     """Columns that hold numbers and blanks (NaN) alone; None where one holds more."""
@@ -194,7 +194,7 @@ def _exact_columns(
     sheet: int,
     first: int,
     places: Sequence[int],
-    wanted: Sequence[Wanted],
+    wanted: Sequence[DeclaredColumn],
     layout: Layout,
 ) -> _SheetCells:
     """Columns cell by cell; `LogError` at the first that is neither number nor missing mark."""
@@ -237,7 +237,7 @@ def _exact_columns(
     return found
 
 
-def _number(path: Path, cell: object, want: Wanted, layout: Layout, *, row: int) -> float:
+def _number(path: Path, cell: object, want: DeclaredColumn, layout: Layout, *, row: int) -> float:
     """A cell that is no float: a whole number, or NaN for a blank or a missing mark."""
     if type(cell) is int:  # a bool is no number
         return float(cell)
@@ -260,7 +260,7 @@ def _read_cells(
     sheet: int,
     first: int,
     places: Sequence[int],
-    wanted: Sequence[Wanted],
+    wanted: Sequence[DeclaredColumn],
     layout: Layout,
 ) -> _SheetCells:
     """Declared columns of a sheet below its first rows; blanks and missing marks are NaN."""
@@ -388,7 +388,7 @@ def read_spreadsheet(
     watch.check_columns(len(names))
     watch.check_time()
     first = layout.preamble_rows + layout.has_name_row + layout.has_unit_row
-    wanted = wanted_columns(layout)
+    wanted = declared_columns(layout)
     places = [
         find_column(
             path,

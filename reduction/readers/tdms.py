@@ -24,14 +24,14 @@ from numpy.typing import NDArray
 
 from reduction.readers.columns import (
     ColumnTable,
-    Wanted,
+    DeclaredColumn,
     check_unit,
+    declared_columns,
     find_column,
     read_columns,
     row_parts,
-    wanted_columns,
 )
-from reduction.readers.layout import Layout, Parts, Watch, short_metadata
+from reduction.readers.layout import Layout, LogParts, Watch, short_metadata
 from reduction.readers.raw_log import RawLog, hash_source
 from reduction.record.errors import LogError
 from reduction.record.measurement import Floats
@@ -134,7 +134,9 @@ def _check_scales(path: Path, *holders: Any) -> None:
         )
 
 
-def _waveform(path: Path, wanted: Wanted, channel: nptdms.TdmsChannel) -> tuple[Any, float, float]:
+def _waveform(
+    path: Path, wanted: DeclaredColumn, channel: nptdms.TdmsChannel
+) -> tuple[Any, float, float]:
     """Start, offset and increment of a channel's waveform."""
     properties = channel.properties
     increment = float(properties.get(WAVEFORM_COLUMN, 0.0))
@@ -156,10 +158,10 @@ def _waveform_times(
     """Times that the layout takes from waveform properties, by channel key, in parts."""
     if WAVEFORM_COLUMN in table.names:  # a channel of that name is read like any other
         return {}
-    wanted = {want.key: want for want in wanted_columns(layout)}
+    wanted = {want.key: want for want in declared_columns(layout)}
     channels = group.channels()
 
-    def waveform(key: str, clock: Wanted) -> tuple[tuple[Any, float, float], int]:
+    def waveform(key: str, clock: DeclaredColumn) -> tuple[tuple[Any, float, float], int]:
         place = find_column(path, wanted[key], table.names, where=table.where)
         return _waveform(path, clock, channels[place]), len(channels[place])
 
@@ -207,7 +209,7 @@ def read_tdms(
     layout: Layout,
     *,
     name: str,
-    parts: Parts | None = None,
+    parts: LogParts | None = None,
     watch: Watch | None = None,
 ) -> RawLog:
     """Read the declared channels of one group; channel scaling in the file is applied."""

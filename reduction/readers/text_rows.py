@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from reduction.readers.layout import Layout, Parts, Watch
+from reduction.readers.layout import Layout, LogParts, Watch
 from reduction.readers.raw_log import RunningHash, check_not_empty, unreadable
 from reduction.record.errors import LogError, SettingsError
 from reduction.record.measurement import Integers, Source
@@ -297,7 +297,7 @@ class TextFile:
     """A text file that is read once, from its beginning to its end; see `open_text`."""
 
     def __init__(
-        self, path: Path, stream: BufferedReader, encoding: str, parts: Parts, watch: Watch
+        self, path: Path, stream: BufferedReader, encoding: str, parts: LogParts, watch: Watch
     ) -> None:
         """Look at the beginning of the file."""
         size = os.fstat(stream.fileno()).st_size
@@ -415,7 +415,7 @@ class TextFile:
 
 @contextmanager
 def open_text(
-    path: Path, encoding: str, parts: Parts, watch: Watch | None = None
+    path: Path, encoding: str, parts: LogParts, watch: Watch | None = None
 ) -> Iterator[TextFile]:
     """Open a text file to be read in parts."""
     try:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats
-from reduction.record.samples import any_sample, give_back, let_go
+from reduction.record.samples import any_sample, release_pages, trim_heap
 
 
 def _refuse(name: str, values: Floats, bad: Bools, what: str, needed: str) -> None:
@@ -130,7 +130,7 @@ def run_blocks(
 
     def run(item: Item) -> Result:
         result = function(item)
-        let_go(*samples)
+        release_pages(*samples)
         return result
 
     n_workers = min(_n_processors(), len(todo), max(1, _TOGETHER // longest))
@@ -139,7 +139,7 @@ def run_blocks(
     else:
         with ThreadPoolExecutor(n_workers) as workers:
             results = list(workers.map(run, todo))
-    give_back(*samples)
+    trim_heap(*samples)
     return results
 
 

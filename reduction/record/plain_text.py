@@ -23,7 +23,7 @@ _NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?|[+-]?
 _CATEGORIES = ("Cc", "Cf", "Zl", "Zp", "Cs")
 
 
-class _Shown(dict[int, str]):
+class _VisibleText(dict[int, str]):
     """What each character is shown as, found when it is first met."""
 
     def __missing__(self, code: int) -> str:
@@ -34,7 +34,7 @@ class _Shown(dict[int, str]):
         return sign
 
 
-_SHOWN = _Shown()
+_SHOWN = _VisibleText()
 
 
 def visible(text: str) -> str:

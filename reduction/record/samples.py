@@ -92,7 +92,7 @@ def _is_on_disk(array: NDArray[Any]) -> bool:
     return _map_of(array) is not None
 
 
-def let_go(*arrays: NDArray[Any]) -> None:
+def release_pages(*arrays: NDArray[Any]) -> None:
     """Take the pages of arrays on disk off the memory of the process; their numbers stay."""
     for array in arrays:
         found = _map_of(array)
@@ -100,7 +100,7 @@ def let_go(*arrays: NDArray[Any]) -> None:
             found.madvise(mmap.MADV_DONTNEED)
 
 
-def give_back(*arrays: NDArray[Any]) -> None:
+def trim_heap(*arrays: NDArray[Any]) -> None:
     """Give what earlier work has freed back to the system, if any of the arrays is long or on disk.
 
     The C library keeps what is freed, in pieces between what is not: half of the memory of a
@@ -155,13 +155,13 @@ def empty_like(
         return mapped(file, n_bytes, beside.folder, kind).reshape(shape)
 
 
-def beside(reference: NDArray[Any], made: NDArray[Any]) -> NDArray[Any]:
+def like_storage(reference: NDArray[Any], made: NDArray[Any]) -> NDArray[Any]:
     """Return an array moved to disk where the reference is, else as it is; both are let go."""
     if not _is_on_disk(reference):
         return made
     moved = empty_like(reference, shape=made.shape, dtype=made.dtype)
     moved[...] = made
-    let_go(reference, moved)
+    release_pages(reference, moved)
     return moved
 
 
@@ -341,7 +341,7 @@ def sample_blocks(
         yield slice(start, min(start + size + overlap, n_samples))
         kept += size
         if kept >= _SPAN // 2 or start + size >= n_samples:  # less is not worth the call
-            let_go(*arrays)
+            release_pages(*arrays)
             kept = 0
 
 
@@ -382,7 +382,7 @@ def take_samples(series: NDArray[Any], index: NDArray[np.integer[Any]]) -> NDArr
     else:
         for start, stop in pairwise([0, *edges.tolist(), flat.size]):
             taken[..., start:stop] = series[..., flat[start:stop]]
-            let_go(series)
+            release_pages(series)
     return taken.reshape(*series.shape[:-1], *index.shape)
 
 
@@ -467,7 +467,7 @@ def first_sample(where: Where, start: int, stop: int, *samples: NDArray[Any]) ->
     """
     for low in range(start, stop, BLOCK):
         found = where(slice(low, min(low + BLOCK, stop)))
-        let_go(*samples)
+        release_pages(*samples)
         if found.any():
             return low + int(found.argmax())
     return None
@@ -478,7 +478,7 @@ def last_sample(where: Where, start: int, stop: int, *samples: NDArray[Any]) -> 
     for high in range(stop, start, -BLOCK):
         low = max(high - BLOCK, start)
         found = where(slice(low, high))
-        let_go(*samples)
+        release_pages(*samples)
         if found.any():
             return high - 1 - int(found[::-1].argmax())
     return None
@@ -539,7 +539,7 @@ def thinned(
 Floats = NDArray[np.float64]
 
 
-def chosen(where: Where, *series: NDArray[Any]) -> tuple[NDArray[Any], ...]:
+def select_samples(where: Where, *series: NDArray[Any]) -> tuple[NDArray[Any], ...]:
     """Samples of several series for which a condition on slices is true, beside them.
 
     Parameters
@@ -562,7 +562,7 @@ def chosen(where: Where, *series: NDArray[Any]) -> tuple[NDArray[Any], ...]:
     Examples
     --------
     >>> values = np.array([5.0, np.nan, 7.0])
-    >>> chosen(lambda part: np.isfinite(values[part]), np.arange(3), values)
+    >>> select_samples(lambda part: np.isfinite(values[part]), np.arange(3), values)
     (array([0, 2]), array([5., 7.]))
     """
     n_samples = series[0].size
@@ -753,6 +753,6 @@ def over_intervals(
             if reached[end - 1] == series.size:  # reduceat takes no bound after the last sample
                 samples = np.append(samples, samples[-1:])
             results[at:end] = operation.reduceat(samples, bounds)[::2]
-        let_go(series)
+        release_pages(series)
         at = end
     return results

@@ -13,7 +13,7 @@ from reduction.archive.uncertainty_budget import (
     cycles_averaged,
     place_name,
 )
-from reduction.archive.write import Limit, ReportDetails
+from reduction.archive.write import ReportDetails, ReportLimit
 from reduction.quantities.names import BRANCH_NAMES, quantity
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.record.errors import ReductionError
@@ -32,10 +32,10 @@ from reduction.report.test_view import (
 )
 from reduction.report.text_style import (
     NOT_GIVEN,
-    Cell,
     Kind,
+    PageTable,
     Shown,
-    Table,
+    TableCell,
     factors_of,
     in_order,
     make_table,
@@ -88,7 +88,7 @@ class AnswerBudget:
         return in_order({row.source for one in answers for row in one.budget.rows if row.share > 0})
 
     @property
-    def cell(self) -> Cell:
+    def cell(self) -> TableCell:
         """Value and expanded uncertainty, without the unit."""
         one = self.budget
         if self.drawn is not None:
@@ -148,7 +148,7 @@ def _words_of(view: TestView, one: Budget) -> str:
     return f"{clock[after - 1]} to {clock[after]}" if all(clock) else f"interval {after}"
 
 
-def budget_table(view: TestView, answers: Sequence[AnswerBudget]) -> Table | None:
+def budget_table(view: TestView, answers: Sequence[AnswerBudget]) -> PageTable | None:
     """Return the numbers of the bars: value, uncertainty, factor, and the share of each source."""
     if not answers:
         return None
@@ -178,8 +178,8 @@ def budget_table(view: TestView, answers: Sequence[AnswerBudget]) -> Table | Non
     )  # fmt: skip
 
 
-def _share(value: float) -> Cell:
-    return Cell(f"{100 * value:.1f}", repr(value), is_number=True)
+def _share(value: float) -> TableCell:
+    return TableCell(f"{100 * value:.1f}", repr(value), is_number=True)
 
 
 def budget_sentences(view: TestView, answers: Sequence[AnswerBudget]) -> list[str]:
@@ -194,7 +194,7 @@ _TANGENT = "tangent_modulus"
 _MOST_ROWS = 24
 
 
-def design_modulus_table(tests: Sequence[TestView]) -> Table | None:
+def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
     """Return the moduli to design with: of the whole cycle, and of each branch at its middle."""
     order = all_specimens(tests)
     is_of_ropes = bool(tests) and all(view.is_rope for view in tests)
@@ -231,7 +231,7 @@ def design_modulus_table(tests: Sequence[TestView]) -> Table | None:
     )  # fmt: skip
 
 
-def _rows(view: TestView, name: str) -> Iterator[list[Cell]]:
+def _rows(view: TestView, name: str) -> Iterator[list[TableCell]]:
     whole, middle = view.array(name), view.array("test_mean_strain")
     half_range = view.array("test_strain_amplitude")
     if whole is None or middle is None or half_range is None:
@@ -240,7 +240,7 @@ def _rows(view: TestView, name: str) -> Iterator[list[Cell]]:
     unit = stress if name == _WHOLE else shown("tension", view.units)
     spread = expanded_of(view, name, whole)
     frequency = view.array_like("test_frequency", whole)
-    doubts = _doubts(view)
+    doubts = _count_warnings(view)
     averaged = np.broadcast_to(cycles_averaged(view.data, name), whole.shape)
     for place in np.flatnonzero(np.isfinite(whole)).tolist():
         tangents, counts = _tangents(view, place, float(middle[place]))
@@ -255,16 +255,16 @@ def _rows(view: TestView, name: str) -> Iterator[list[Cell]]:
             span(low, high, percent, places=0),
             number(float(frequency[place]), digits=2),
             *cells,
-            Cell(_used(int(averaged[place]), counts), str(averaged[place]), is_number=True),
-            Cell(_factor_text(cells), is_number=True),
-            Cell(f"{doubts}" if doubts else "none", f"{doubts}", is_number=True),
+            TableCell(_used(int(averaged[place]), counts), str(averaged[place]), is_number=True),
+            TableCell(_factor_text(cells), is_number=True),
+            TableCell(f"{doubts}" if doubts else "none", f"{doubts}", is_number=True),
         ]
 
 
-def _tangents(view: TestView, specimen: int, strain: float) -> tuple[list[Cell], list[int]]:
+def _tangents(view: TestView, specimen: int, strain: float) -> tuple[list[TableCell], list[int]]:
     """Return the tangent modulus of both branches at a strain, and how many cycles are in it."""
     bins, modulus = view.array("strain_bin"), view.array(_TANGENT)
-    missing = Cell(NOT_GIVEN, is_number=True)
+    missing = TableCell(NOT_GIVEN, is_number=True)
     if bins is None or modulus is None or bins.size == 0:
         return [missing] * len(BRANCH_NAMES), []
     spacing = float(np.min(np.diff(bins))) if bins.size > 1 else 0.0
@@ -272,7 +272,7 @@ def _tangents(view: TestView, specimen: int, strain: float) -> tuple[list[Cell],
     counts = view.array_like(f"{_TANGENT}_count", modulus)
     branches = view.texts("branch_name") or BRANCH_NAMES
     nearest = int(np.argmin(np.abs(bins - strain)))
-    cells: list[Cell] = []
+    cells: list[TableCell] = []
     used: list[int] = []
     for name in BRANCH_NAMES:
         own = (specimen, branches.index(name))
@@ -300,12 +300,12 @@ def _used(n_cycles: int, counts: Sequence[int]) -> str:
     return "; ".join(dict.fromkeys(text for text in (f"{n_cycles:,}", of_curve) if text))
 
 
-def _factor_text(cells: Sequence[Cell]) -> str:
+def _factor_text(cells: Sequence[TableCell]) -> str:
     ends = [f"{one:.2f}" for one in sorted(factors_of([cells]))]
     return " to ".join(dict.fromkeys([ends[0], ends[-1]])) if ends else NOT_GIVEN
 
 
-def _doubts(view: TestView) -> int:
+def _count_warnings(view: TestView) -> int:
     notes = zip(view.texts("note_stage"), view.texts("note"), strict=True)
     return sum(severity_of(*note) == "doubt" for note in notes)
 
@@ -331,7 +331,7 @@ _REACHES = "no statement: the interval reaches over a limit"
 
 def conformity_table(
     details: ReportDetails, tests: Sequence[TestView], units: UnitSystem
-) -> Table | None:
+) -> PageTable | None:
     """Return a row for each limit; None where none is given."""
     if not details.limits or details.decision_rule is None:
         return None
@@ -349,7 +349,9 @@ def conformity_table(
     )  # fmt: skip
 
 
-def _row(one: Limit, view: TestView | None, rule: DecisionRule, units: UnitSystem) -> list[Cell]:
+def _row(
+    one: ReportLimit, view: TestView | None, rule: DecisionRule, units: UnitSystem
+) -> list[TableCell]:
     head = [words(one.quantity.replace("_", " ")), words(one.test), words(_place(one))]
     try:
         if view is None:
@@ -361,7 +363,7 @@ def _row(one: Limit, view: TestView | None, rule: DecisionRule, units: UnitSyste
         unit = _unit(quantity(one.quantity).unit, units)
         return [
             *head, words(""), _limits(one, unit), words(superscript(unit.unit)), words(one.source),
-            Cell(f"no statement: {getattr(error, 'problem', error)}"),
+            TableCell(f"no statement: {getattr(error, 'problem', error)}"),
         ]  # fmt: skip
     shown = _unit(budget.unit, units)
     interval = _interval(view, budget)
@@ -390,7 +392,7 @@ def _unit(unit: str, system: UnitSystem) -> Shown:
     return Shown(*display_unit(unit, system))
 
 
-def _place(one: Limit) -> str:
+def _place(one: ReportLimit) -> str:
     return ", ".join(f"{place_name(key)} {_label(key, value)}" for key, value in one.at.items())
 
 
@@ -401,7 +403,7 @@ def _label(key: str, value: str) -> str:
     return f"{value} N" if key in ("tension", "tension_grid") else value
 
 
-def _limits(one: Limit, unit: Shown) -> Cell:
+def _limits(one: ReportLimit, unit: Shown) -> TableCell:
     ends = [
         (sign, _plain(value * unit.factor))
         for sign, value in (("\N{GREATER-THAN OR EQUAL TO}", one.lower),
@@ -409,8 +411,8 @@ def _limits(one: Limit, unit: Shown) -> Cell:
         if value is not None
     ]  # fmt: skip
     if len(ends) == 2:
-        return Cell(f"{ends[0][1]} to {ends[1][1]}")
-    return Cell(" ".join(ends[0]))
+        return TableCell(f"{ends[0][1]} to {ends[1][1]}")
+    return TableCell(" ".join(ends[0]))
 
 
 def _plain(value: float) -> str:

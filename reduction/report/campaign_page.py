@@ -10,12 +10,12 @@ from pathlib import Path
 
 from reduction.archive.atomic_write import take_away
 from reduction.archive.open import Opener, archives_of_tests, reading
-from reduction.archive.write import read_details, write_whole
+from reduction.archive.write import read_details, write_text_atomically
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
 from reduction.record.plain_text import bare_cell
 from reduction.report.answer_tables import design_modulus_table
-from reduction.report.campaign_sections import WholeCampaign, is_there, read_whole
+from reduction.report.campaign_sections import CampaignView, is_there, read_campaign
 from reduction.report.campaign_summary import find_faults, summary_sentence, test_table, tiles
 from reduction.report.client_report import CLIENT_PAGE_NAME, ClientContent, render_client_report
 from reduction.report.figures.campaign_figures import (
@@ -34,7 +34,7 @@ from reduction.report.page_template import (
     render_page,
     render_section,
 )
-from reduction.report.test_section import Section, make_part, make_section
+from reduction.report.test_section import TestSection, make_part, make_section
 from reduction.report.test_tables import (
     design_tables,
     interval_table,
@@ -111,13 +111,13 @@ def _write_pages(
         names = [_NAME.format(number) for number in range(1, len(pages) + 1)]
         beside = [Link(name, _words(page)) for name, page in zip(names, pages, strict=True)]
         for name, page in zip(names, pages, strict=True):
-            write_whole(out / name, render_page(_part_of(content, page, beside)))
+            write_text_atomically(out / name, render_page(_part_of(content, page, beside)))
             kept.add(out / name)
         links = [
             link for name, page in zip(names, pages, strict=True) for link in _links(page, name)
         ]
         text = render_page(replace(content, links=links, beside=beside))
-    write_whole(index, text)
+    write_text_atomically(index, text)
     for path in out.iterdir():
         if _is_page_of_tests(path.name) and path not in kept:
             take_away(path)
@@ -193,7 +193,7 @@ def write_report(
     details = read_details(processed)
     tests: list[TestView] = []
     rendered: dict[str, RenderedSection] = {}
-    sections: dict[str, Section] = {}
+    sections: dict[str, TestSection] = {}
     not_shown: dict[str, str] = {}
     starts: dict[str, float] = {}
     for index, path in enumerate(paths):
@@ -213,7 +213,7 @@ def write_report(
             not_shown[path.name] = str(error).replace(str(path), path.name)
     by_id = {view.id: view for view in tests}
     tests.sort(key=lambda view: _place(view, by_id, starts))
-    whole = read_whole(processed, by_id, units, not_shown, stray, opener)
+    whole = read_campaign(processed, by_id, units, not_shown, stray, opener)
     if unreadable is not None:
         for name, why in not_shown.items():
             unreadable(name, why)
@@ -234,13 +234,13 @@ def write_report(
             details, tests, whole, [sections[view.key] for view in tests], statuses,
             content.faults, content.title, content.campaign, units,
         )  # fmt: skip
-        write_whole(beside, render_client_report(of_client))
+        write_text_atomically(beside, render_client_report(of_client))
     return page
 
 
 def _page_of(
     tests: Sequence[TestView],
-    whole: WholeCampaign,
+    whole: CampaignView,
     statuses: Sequence[Status],
     unreadable: dict[str, str],
     units: UnitSystem,

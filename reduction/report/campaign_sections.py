@@ -15,8 +15,8 @@ from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
 from reduction.record.notes import Severity
-from reduction.report.campaign_summary import Finding, Tile
 from reduction.report.campaign_summary import Severity as FindingSeverity
+from reduction.report.campaign_summary import SummaryFinding, Tile
 from reduction.report.experiment_tables import (
     anova_table,
     answer_table,
@@ -73,10 +73,10 @@ from reduction.report.outcome_tables import (
     load_life_table,
     pair_table,
     property_table,
+    rope_notes,
     snap_sentences,
     snap_table,
     strength_table,
-    told_of,
 )
 from reduction.report.prediction_tables import (
     answer_of_hoses,
@@ -105,12 +105,12 @@ from reduction.report.product_views import (
     view_ropes,
 )
 from reduction.report.surface_grid import make_planes, negative_inside
-from reduction.report.test_section import Part, Section, make_part, provenance_of
+from reduction.report.test_section import Part, TestSection, make_part, provenance_of
 from reduction.report.test_view import TestView
-from reduction.report.text_style import DEGREES, Table, number_text, shown
+from reduction.report.text_style import DEGREES, PageTable, number_text, shown
 
 
-def _make_experiment_section(view: ExperimentView, tests: Mapping[str, TestView]) -> Section:
+def _make_experiment_section(view: ExperimentView, tests: Mapping[str, TestView]) -> TestSection:
     """Return the section of one experiment."""
     surfaces = view.surfaces
     parts = [
@@ -133,7 +133,7 @@ def _make_experiment_section(view: ExperimentView, tests: Mapping[str, TestView]
     of = ", ".join(in_words(name) for name in view.factors)
     notes = list(dict.fromkeys(row["note"] for row in view.own_rows("note")))
     provenance, documents = provenance_of(view.data.attrs)
-    return Section(
+    return TestSection(
         key=view.key,
         title=f"Experiment {view.name}",
         subtitle=f"{kind} design over {of}; {len(view.runs)} runs",
@@ -238,7 +238,7 @@ _HOLDS = (
 )
 
 
-def _make_hose_section(view: HoseView) -> Section:
+def _make_hose_section(view: HoseView) -> TestSection:
     """Return the section of one hose; parts with nothing in them are left out."""
     parts = [
         make_part(
@@ -254,7 +254,7 @@ def _make_hose_section(view: HoseView) -> Section:
     ]  # fmt: skip
     notes = list(view.notes)
     provenance, documents = provenance_of(view.data.attrs)
-    return Section(
+    return TestSection(
         key=view.key,
         title=f"Predicted hose {view.name}",
         subtitle=(
@@ -270,10 +270,11 @@ def _make_hose_section(view: HoseView) -> Section:
     )
 
 
-def _hose_findings(view: HoseView) -> list[Finding]:
+def _hose_findings(view: HoseView) -> list[SummaryFinding]:
     """Return what a reader must know of a hose before its numbers."""
     return [
-        Finding(_FINDING[kind], (f"hose {view.name}",), text) for text, kind in view.notes.items()
+        SummaryFinding(_FINDING[kind], (f"hose {view.name}",), text)
+        for text, kind in view.notes.items()
     ]
 
 
@@ -314,7 +315,7 @@ def _story(view: HoseView) -> str:
 _TAKE_NONE = ". The fitted values are one choice of many, and their intervals do not hold"
 
 
-def _make_comparison_section(view: ComparisonView) -> Section:
+def _make_comparison_section(view: ComparisonView) -> TestSection:
     """Return the section of one comparison; parts with nothing in them are left out."""
     parts = [
         make_part(
@@ -333,7 +334,7 @@ def _make_comparison_section(view: ComparisonView) -> Section:
     ]  # fmt: skip
     notes = list(view.notes)
     provenance, documents = provenance_of(view.data.attrs)
-    return Section(
+    return TestSection(
         key=view.key,
         title=f"Comparison {view.name}",
         subtitle=(
@@ -347,17 +348,19 @@ def _make_comparison_section(view: ComparisonView) -> Section:
     )
 
 
-def _comparison_findings(view: ComparisonView) -> list[Finding]:
+def _comparison_findings(view: ComparisonView) -> list[SummaryFinding]:
     """Return what a reader must know of a comparison before its numbers."""
     of = (f"comparison {view.name}",)
     found = []
     if view.short_verdict == "differs":
-        found.append(Finding("warning", of, f"The prediction {view.verdict}."))
+        found.append(SummaryFinding("warning", of, f"The prediction {view.verdict}."))
     elif view.short_verdict != "agrees":
-        found.append(Finding("note", of, f"{view.verdict[:1].upper()}{view.verdict[1:]}."))
+        found.append(SummaryFinding("note", of, f"{view.verdict[:1].upper()}{view.verdict[1:]}."))
     if view.is_identified is False:
-        found += [Finding("warning", of, sentence) for sentence in _identified(view)]
-    return found + [Finding(_FINDING[kind], of, text) for text, kind in _other_notes(view).items()]
+        found += [SummaryFinding("warning", of, sentence) for sentence in _identified(view)]
+    return found + [
+        SummaryFinding(_FINDING[kind], of, text) for text, kind in _other_notes(view).items()
+    ]
 
 
 def _comparison_tiles(views: Sequence[ComparisonView]) -> list[Tile]:
@@ -410,7 +413,7 @@ def _identified(view: ComparisonView) -> list[str]:
     ]
 
 
-def _make_outcome_section(view: OutcomeView) -> Section:
+def _make_outcome_section(view: OutcomeView) -> TestSection:
     """Return the section; parts with nothing in them are left out."""
     parts = [
         make_part(
@@ -428,7 +431,7 @@ def _make_outcome_section(view: OutcomeView) -> Section:
         make_part("Abrasion", (), [fatigue_table(view, "abrasion_cycles")]),
     ]  # fmt: skip
     provenance, documents = provenance_of(view.attributes)
-    return Section(
+    return TestSection(
         key="outcomes",
         title="Strength and life",
         subtitle=view.summary,
@@ -439,12 +442,12 @@ def _make_outcome_section(view: OutcomeView) -> Section:
     )
 
 
-def _make_rope_section(view: RopeView) -> Section:
+def _make_rope_section(view: RopeView) -> TestSection:
     """Return the section of one rope; parts with nothing in them are left out."""
     parts = [
         make_part(
             "Change in length", draw_stiffness(view), [property_table(view)],
-            refusals=told_of(view, known=False),
+            refusals=rope_notes(view, known=False),
         ),
         make_part("Bedding-in", (), [bedding_table(view)]),
         make_part("Dynamic stiffness", (), [level_table(view)]),
@@ -452,7 +455,7 @@ def _make_rope_section(view: RopeView) -> Section:
         make_part("Creep", draw_creep(view), [creep_table(view)]),
     ]  # fmt: skip
     provenance, documents = provenance_of(view.data.attrs)
-    return Section(
+    return TestSection(
         key=view.key,
         title=f"Programme of rope {view.specimen}",
         subtitle=f"steps in order: {', '.join(test.id for test in view.tests)}",
@@ -482,14 +485,14 @@ _Read = TypeVar("_Read")
 
 
 @dataclass(frozen=True)
-class WholeCampaign:
+class CampaignView:
     """Views of the archives that belong to no single test, each with its section."""
 
-    outcomes: tuple[tuple[OutcomeView, Section], ...]
-    experiments: tuple[tuple[ExperimentView, Section], ...]
-    hoses: tuple[tuple[HoseView, Section], ...]
-    compared: tuple[tuple[ComparisonView, Section], ...]
-    ropes: tuple[tuple[RopeView, Section], ...]
+    outcomes: tuple[tuple[OutcomeView, TestSection], ...]
+    experiments: tuple[tuple[ExperimentView, TestSection], ...]
+    hoses: tuple[tuple[HoseView, TestSection], ...]
+    compared: tuple[tuple[ComparisonView, TestSection], ...]
+    ropes: tuple[tuple[RopeView, TestSection], ...]
     stray: tuple[str, ...] = ()
 
     @property
@@ -504,7 +507,7 @@ class WholeCampaign:
         ]
 
     @property
-    def chapters(self) -> list[Section]:
+    def chapters(self) -> list[TestSection]:
         """Sections that stand before those of the tests."""
         pairs = (*self.experiments, *self.ropes, *self.hoses, *self.compared)
         return [section for _, section in pairs]
@@ -524,15 +527,15 @@ class WholeCampaign:
         return ""
 
     @property
-    def findings(self) -> list[Finding]:
+    def findings(self) -> list[SummaryFinding]:
         """What a reader must know first."""
-        found = [Finding("warning", (name,), _STRAY) for name in self.stray]
+        found = [SummaryFinding("warning", (name,), _STRAY) for name in self.stray]
         found += [one for view, _ in self.experiments for one in experiment_findings(view)]
         found += [one for view, _ in self.compared for one in _comparison_findings(view)]
         return found + [one for view, _ in self.hoses for one in _hose_findings(view)]
 
     @property
-    def answers(self) -> list[Table]:
+    def answers(self) -> list[PageTable]:
         """Tables that answer on the first screen."""
         found = [
             answer_table(view, view.surfaces)
@@ -575,14 +578,14 @@ def is_there(processed: Path) -> bool:
     return any((processed / f"{name}.nc").is_file() for name in _SHOWN)
 
 
-def read_whole(
+def read_campaign(
     processed: Path,
     tests: Mapping[str, TestView],
     units: UnitSystem,
     unreadable: dict[str, str],
     stray: Collection[str] = (),
     opener: Opener = reading,
-) -> WholeCampaign:
+) -> CampaignView:
     """Read what there is; a file that cannot be read is told in ``unreadable``."""
 
     def read(name: str, views: Callable[[xr.Dataset], list[_Read]]) -> tuple[_Read, ...]:
@@ -596,11 +599,11 @@ def read_whole(
             unreadable[path.name] = str(error).replace(str(path), path.name)
             return ()
 
-    def outcomes(data: xr.Dataset) -> list[tuple[OutcomeView, Section]]:
+    def outcomes(data: xr.Dataset) -> list[tuple[OutcomeView, TestSection]]:
         view = view_outcomes(data, units)
         return [(view, _make_outcome_section(view))]
 
-    def experiments(data: xr.Dataset) -> list[tuple[ExperimentView, Section]]:
+    def experiments(data: xr.Dataset) -> list[tuple[ExperimentView, TestSection]]:
         loaded = data.load()
         views = [
             ExperimentView(f"experiment-{index}", loaded, index, units)
@@ -608,16 +611,16 @@ def read_whole(
         ]
         return [(view, _make_experiment_section(view, tests)) for view in views]
 
-    def hoses(data: xr.Dataset) -> list[tuple[HoseView, Section]]:
+    def hoses(data: xr.Dataset) -> list[tuple[HoseView, TestSection]]:
         return [(view, _make_hose_section(view)) for view in view_hoses(data, units)]
 
-    def compared(data: xr.Dataset) -> list[tuple[ComparisonView, Section]]:
+    def compared(data: xr.Dataset) -> list[tuple[ComparisonView, TestSection]]:
         return [(view, _make_comparison_section(view)) for view in view_comparisons(data, units)]
 
-    def ropes(data: xr.Dataset) -> list[tuple[RopeView, Section]]:
+    def ropes(data: xr.Dataset) -> list[tuple[RopeView, TestSection]]:
         return [(view, _make_rope_section(view)) for view in view_ropes(data, tests, units)]
 
-    return WholeCampaign(
+    return CampaignView(
         outcomes=read("outcomes", outcomes),
         experiments=read("surfaces", experiments),
         hoses=read("predictions", hoses),

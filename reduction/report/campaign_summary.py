@@ -15,8 +15,8 @@ from reduction.record.notes import Severity as NoteSeverity
 from reduction.report.test_view import OF_NO_TEST, Status, TestView, all_specimens, any_synthetic
 from reduction.report.text_style import (
     NOT_GIVEN,
-    Cell,
-    Table,
+    PageTable,
+    TableCell,
     count,
     make_table,
     shorten,
@@ -56,7 +56,7 @@ _NUMBER = re.compile(r"[-+]?\d[\d.,]*(e[-+]?\d+)?")
 
 
 @dataclass(frozen=True)
-class Finding:
+class SummaryFinding:
     """One thing that a reader must know, with the tests it concerns."""
 
     severity: Severity
@@ -78,8 +78,8 @@ def find_faults(
     tests: Sequence[TestView],
     statuses: Sequence[Status],
     unreadable: Mapping[str, str],
-    others: Sequence[Finding] = (),
-) -> list[Finding]:
+    others: Sequence[SummaryFinding] = (),
+) -> list[SummaryFinding]:
     """Return failures, then warnings, notes and refusals; the same text of many tests once."""
     gathered: dict[tuple[Severity, str], list[tuple[str, str]]] = {}
     for severity, test, pattern, text in _all_faults(tests, statuses, unreadable):
@@ -89,7 +89,7 @@ def find_faults(
         texts = list(dict.fromkeys(text for _, text in own))
         more = f" (and {len(texts) - 1} more like it)" if len(texts) > 1 else ""
         names = tuple(dict.fromkeys(test for test, _ in own))
-        found.append(Finding(severity, names, texts[0] + more))
+        found.append(SummaryFinding(severity, names, texts[0] + more))
     return sorted([*found, *others], key=lambda one: _ORDER.index(one.severity))
 
 
@@ -146,7 +146,7 @@ def summary_sentence(tests: Sequence[TestView]) -> str:
     )
 
 
-def test_table(tests: Sequence[TestView], statuses: Sequence[Status]) -> Table:
+def test_table(tests: Sequence[TestView], statuses: Sequence[Status]) -> PageTable:
     """Return what was tested: target, cycles found, status; a test without archive too."""
     is_by_load = _is_by_load(tests)
     rows = [_test_row(view, is_by_load=is_by_load) for view in tests]
@@ -167,7 +167,7 @@ def test_table(tests: Sequence[TestView], statuses: Sequence[Status]) -> Table:
 
 
 def tiles(
-    tests: Sequence[TestView], statuses: Sequence[Status], faults: Sequence[Finding]
+    tests: Sequence[TestView], statuses: Sequence[Status], faults: Sequence[SummaryFinding]
 ) -> list[Tile]:
     """Return the numbers at the top: tests, specimens, failures, warnings."""
     counts = {name: sum(one.severity == name for one in faults) for name in _ORDER}
@@ -231,7 +231,7 @@ def _is_by_load(tests: Sequence[TestView]) -> bool:
     return bool(tests) and all(view.is_rope and not _target(view) for view in tests)
 
 
-def _tension(view: TestView) -> Cell:
+def _tension(view: TestView) -> TableCell:
     mean, amplitude = view.array("mean_tension"), view.array("tension_amplitude")
     if mean is None or amplitude is None or not np.isfinite(mean).any():
         return words("")
@@ -239,7 +239,7 @@ def _tension(view: TestView) -> Cell:
     return span(*ends, shown("tension", view.units), places=0)
 
 
-def _reached(view: TestView) -> Cell:
+def _reached(view: TestView) -> TableCell:
     """Return the strain of the cycles, mean least to mean greatest; without one, of the record."""
     strain = view.array("strain")
     mean, amplitude = view.array("mean_strain"), view.array("strain_amplitude")
@@ -252,7 +252,7 @@ def _reached(view: TestView) -> Cell:
     return words("")
 
 
-def _test_row(view: TestView, *, is_by_load: bool) -> list[Cell]:
+def _test_row(view: TestView, *, is_by_load: bool) -> list[TableCell]:
     return [
         words(view.id),
         words(view.kind),

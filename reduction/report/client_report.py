@@ -19,15 +19,15 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 from reduction import __version__
-from reduction.archive.write import Client, Instrument, Item, Laboratory, ReportDetails
+from reduction.archive.write import Client, Instrument, Laboratory, ReportDetails, ReportItem
 from reduction.quantities.units import UnitSystem
 from reduction.report.answer_tables import AnswerBudget, answer_budgets, conformity_table
-from reduction.report.campaign_sections import WholeCampaign
-from reduction.report.campaign_summary import Finding, test_table
+from reduction.report.campaign_sections import CampaignView
+from reduction.report.campaign_summary import SummaryFinding, test_table
 from reduction.report.figure_data import Figure
 from reduction.report.figures.campaign_figures import draw_all_moduli
 from reduction.report.svg_figure import can_be_drawn, vector_of
-from reduction.report.test_section import Part, Section
+from reduction.report.test_section import Part, TestSection
 from reduction.report.test_tables import design_tables, specimen_notes, specimen_table
 from reduction.report.test_view import (
     DRAWN,
@@ -39,7 +39,15 @@ from reduction.report.test_view import (
     instrument_sentences,
     instrument_table,
 )
-from reduction.report.text_style import Cell, Table, factors_of, make_table, number, shorten, words
+from reduction.report.text_style import (
+    PageTable,
+    TableCell,
+    factors_of,
+    make_table,
+    number,
+    shorten,
+    words,
+)
 
 NOT_STATED = "not stated"
 
@@ -93,7 +101,7 @@ def _lines(party: Laboratory | Client) -> str:
     return "\n".join(filter(None, (party.name, party.address, party.contact)))
 
 
-def _received(items: Mapping[str, Item]) -> str:
+def _received(items: Mapping[str, ReportItem]) -> str:
     """Say when each item came in, where each has a date of its own."""
     if not items or not all(one.received for one in items.values()):
         return ""
@@ -162,10 +170,10 @@ def _of_tests(tests: Sequence[TestView], name: str) -> str:
     return "; ".join(f"{', '.join(ids)}: {text or NOT_STATED}" for text, ids in by_text.items())
 
 
-def _item_table(details: ReportDetails, tests: Sequence[TestView]) -> Table:
+def _item_table(details: ReportDetails, tests: Sequence[TestView]) -> PageTable:
     """Return what came in: every specimen that was tested, stated or not."""
     names = dict.fromkeys([*all_specimens(tests), *details.items])
-    given = {name: details.items.get(name, Item()) for name in names}
+    given = {name: details.items.get(name, ReportItem()) for name in names}
     rows = [
         [
             words(name), _said(one.identification), _said(one.description), _said(one.condition),
@@ -180,7 +188,7 @@ def _item_table(details: ReportDetails, tests: Sequence[TestView]) -> Table:
     )  # fmt: skip
 
 
-def _calibration_table(details: ReportDetails, tests: Sequence[TestView]) -> Table:
+def _calibration_table(details: ReportDetails, tests: Sequence[TestView]) -> PageTable:
     """Return the instruments with their calibration: as stated, then as the tests name them."""
     stated = list(details.instruments)
     known = {one.name for one in stated}
@@ -207,8 +215,8 @@ def _calibration_table(details: ReportDetails, tests: Sequence[TestView]) -> Tab
     )  # fmt: skip
 
 
-def _said(text: str) -> Cell:
-    return Cell(text or NOT_STATED)
+def _said(text: str) -> TableCell:
+    return TableCell(text or NOT_STATED)
 
 
 _TWO_PANELS = 1.25
@@ -244,7 +252,7 @@ def _not_drawn(figures: Collection[tuple[Figure, bool]]) -> list[str]:
 
 
 def _chosen_figures(
-    tests: Sequence[TestView], sections: Sequence[Section]
+    tests: Sequence[TestView], sections: Sequence[TestSection]
 ) -> Iterator[tuple[Figure, bool]]:
     """Give what is to be drawn, and whether it takes the whole width."""
     for one in draw_all_moduli(tests):
@@ -266,8 +274,8 @@ def _drawing(figure: Figure, *, is_wide: bool) -> _Drawing:
 
 
 def _chosen_parts(
-    tests: Sequence[TestView], sections: Sequence[Section], headings: Collection[str]
-) -> Iterator[tuple[Section, Part]]:
+    tests: Sequence[TestView], sections: Sequence[TestSection], headings: Collection[str]
+) -> Iterator[tuple[TestSection, Part]]:
     """Give parts of the sections of the tests; of holds those that a test was made for."""
     kinds = {view.key: view.kind for view in tests}
     for section in sections:
@@ -301,10 +309,10 @@ class ClientContent:
 
     details: ReportDetails
     tests: Sequence[TestView]
-    whole: WholeCampaign
-    sections: Sequence[Section]
+    whole: CampaignView
+    sections: Sequence[TestSection]
     statuses: Sequence[Status]
-    faults: Sequence[Finding]
+    faults: Sequence[SummaryFinding]
     title: str
     campaign: str
     units: UnitSystem
@@ -362,7 +370,7 @@ def render_client_report(content: ClientContent) -> str:
     )
 
 
-def _results(content: ClientContent) -> list[Table]:
+def _results(content: ClientContent) -> list[PageTable]:
     """Return the numbers: moduli at round strains, answers of each test, answers of the whole."""
     found = [part for one in design_tables(content.tests) for part in _by_columns(one)]
     found += [table for view in content.tests if (table := _answers(view)) is not None]
@@ -374,7 +382,7 @@ def _results(content: ClientContent) -> list[Table]:
     return [*found, *content.whole.answers]
 
 
-def _answers(view: TestView) -> Table | None:
+def _answers(view: TestView) -> PageTable | None:
     answers = answer_budgets(view)
     if not answers or view.is_stepwise:  # whose intervals stand in a table of their own
         return None
@@ -410,7 +418,7 @@ def _in_full(view: TestView, one: AnswerBudget) -> str:
     return f"modulus, {place['branch_name']}, strain {low:.0f} to {high:.0f} %"
 
 
-def _by_columns(table: Table) -> list[Table]:
+def _by_columns(table: PageTable) -> list[PageTable]:
     """Return a table in parts that fit the width of a page, the first column in each."""
     rest = range(1, len(table.columns))
     parts = [rest[start : start + _MOST_COLUMNS] for start in range(0, len(rest), _MOST_COLUMNS)]
@@ -436,7 +444,7 @@ def _by_columns(table: Table) -> list[Table]:
     return found
 
 
-def _tests(content: ClientContent) -> Table | None:
+def _tests(content: ClientContent) -> PageTable | None:
     """Return the tests; of what the software did with each only that it failed."""
     if not (content.tests or content.statuses):
         return None
@@ -450,7 +458,7 @@ def _tests(content: ClientContent) -> Table | None:
     return replace(table, columns=table.columns[:-1], rows=rows)
 
 
-def _raw_file_table(tests: Sequence[TestView], *, synthetic: bool) -> Table | None:
+def _raw_file_table(tests: Sequence[TestView], *, synthetic: bool) -> PageTable | None:
     rows = [
         [words(view.id), words(name), words(sum_)]
         for view in tests

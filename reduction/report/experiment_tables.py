@@ -24,7 +24,7 @@ from reduction.experiments.surface_points import evaluate_surfaces
 from reduction.quantities.names import QUANTITIES
 from reduction.record.measurement import Floats
 from reduction.report.answer_tables import AnswerBudget
-from reduction.report.campaign_summary import Finding
+from reduction.report.campaign_summary import SummaryFinding
 from reduction.report.figures.surface_figures import base_response, term_words
 from reduction.report.product_views import FORM_WORDS, ExperimentView, in_words, response_unit
 from reduction.report.sheet import Sheet
@@ -48,9 +48,9 @@ from reduction.report.test_view import (
 from reduction.report.text_style import (
     NOT_GIVEN,
     PERCENT,
-    Cell,
+    PageTable,
     Shown,
-    Table,
+    TableCell,
     make_table,
     number,
     number_text,
@@ -82,7 +82,9 @@ _LARGE = 1e9
 _ON_SCALE = {"log": ", by its logarithm", "box-cox": ", by its Box-Cox transform"}
 
 
-def run_table(view: ExperimentView, tests: Mapping[str, TestView] | None = None) -> Table | None:
+def run_table(
+    view: ExperimentView, tests: Mapping[str, TestView] | None = None
+) -> PageTable | None:
     """Return the runs as planned and as reached, with what each gave."""
     own = {} if tests is None else tests
     strength = view.per_run("run_rated_break_strength")
@@ -121,19 +123,19 @@ def _about_runs(view: ExperimentView, sheet: Sheet, tests: Mapping[str, TestView
     return plus_minus(sheet.factors, held + (", and the K_0 of the slow pull" if has_line else ""))
 
 
-def _fixed(value: float, factor: float, places: int) -> Cell:
+def _fixed(value: float, factor: float, places: int) -> TableCell:
     """Return a cell of a number to so many places; the archive's own value is beside it."""
     if not np.isfinite(value * factor):
-        return Cell(NOT_GIVEN, is_number=True)
+        return TableCell(NOT_GIVEN, is_number=True)
     text = f"{round(value * factor, places) + 0.0:,.{places}f}"
-    return Cell(text, repr(float(value)), is_number=True)
+    return TableCell(text, repr(float(value)), is_number=True)
 
 
 def _coded(levels: Floats) -> str:
     return ", ".join("0" if level == 0 else f"{level:+g}" for level in levels)
 
 
-def caution_table(view: ExperimentView) -> Table | None:
+def caution_table(view: ExperimentView) -> PageTable | None:
     """Return what the runs as reached warn of."""
     own = view.own_rows("caution")
     return (
@@ -147,7 +149,7 @@ def caution_table(view: ExperimentView) -> Table | None:
     )  # fmt: skip
 
 
-def effect_table(view: ExperimentView, name: str) -> Table | None:
+def effect_table(view: ExperimentView, name: str) -> PageTable | None:
     """Return the effects of a screening on one response, the largest first."""
     effect = view.array(f"{name}_effect")
     if effect.size == 0:
@@ -175,7 +177,7 @@ def effect_table(view: ExperimentView, name: str) -> Table | None:
     )  # fmt: skip
 
 
-def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> Table | None:
+def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> PageTable | None:
     """Return each response in the middle of the tested range, and from where to where it goes."""
     least, greatest, _ = extremes_in_box(surfaces)
     centre = np.zeros((1, len(view.factors)))
@@ -221,7 +223,7 @@ def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> Table | No
     )  # fmt: skip
 
 
-def quality_table(view: ExperimentView, surfaces: ResponseSurfaces) -> Table | None:
+def quality_table(view: ExperimentView, surfaces: ResponseSurfaces) -> PageTable | None:
     """Return how well the surface of each response fits."""
     names, lack = surfaces.response_names, surfaces.lack_of_fit
     units = [response_unit(name, view.units) for name in names]
@@ -232,7 +234,7 @@ def quality_table(view: ExperimentView, surfaces: ResponseSurfaces) -> Table | N
                             ("predicted r²", surfaces.predicted_r2)):  # fmt: skip
         sheet.cells(
             f"{heading} [1]",
-            [Cell(share_text(float(one)), repr(float(one)), is_number=True) for one in shares],
+            [TableCell(share_text(float(one)), repr(float(one)), is_number=True) for one in shares],
         )
     n_terms = len(surfaces.term_names) - 1
     (
@@ -258,7 +260,7 @@ def quality_table(view: ExperimentView, surfaces: ResponseSurfaces) -> Table | N
 
 def surface_coefficient_table(
     view: ExperimentView, surfaces: ResponseSurfaces, index: int
-) -> Table | None:
+) -> PageTable | None:
     """Return the coefficients of a surface, coded and in the units of the factors."""
     name = surfaces.response_names[index]
     unit, said = response_unit(name, view.units), in_words(name)
@@ -307,7 +309,7 @@ def surface_coefficient_table(
     )  # fmt: skip
 
 
-def anova_table(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> Table | None:
+def anova_table(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> PageTable | None:
     """Return the analysis of variance of a surface."""
     anova, name = surfaces.anova, surfaces.response_names[index]
     unit = response_unit(name, view.units)
@@ -320,7 +322,7 @@ def anova_table(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
         sheet.cells(
             square.label(heading),
             [
-                Cell(f"{one * square.factor:.3e}", repr(float(one)), is_number=True)
+                TableCell(f"{one * square.factor:.3e}", repr(float(one)), is_number=True)
                 if is_large
                 else number(float(one), square)
                 for one in values
@@ -347,20 +349,20 @@ def _left_out(sources: Sequence[str]) -> str:
     return _ONE_LINE if sources else NOT_OF_RUNS
 
 
-def _to_compute_with(value: float, spread: float, unit: Shown) -> Cell:
+def _to_compute_with(value: float, spread: float, unit: Shown) -> TableCell:
     """Return a coefficient of seven digits and its uncertainty of two."""
     if not np.isfinite(value):
-        return Cell(NOT_GIVEN, is_number=True)
+        return TableCell(NOT_GIVEN, is_number=True)
     half = f" ± {number_text(spread * unit.factor, 2)}" if np.isfinite(spread) else ""
     text = f"{number_text(value * unit.factor, 7)}{half}"
-    return Cell(text, repr(float(value)), is_number=True)
+    return TableCell(text, repr(float(value)), is_number=True)
 
 
 def _squared(unit: str) -> str:
     return unit if unit == "1" else f"({unit})²" if " " in unit or "/" in unit else f"{unit}²"
 
 
-def line_of_runs_table(view: ExperimentView, tests: Mapping[str, TestView]) -> Table | None:
+def line_of_runs_table(view: ExperimentView, tests: Mapping[str, TestView]) -> PageTable | None:
     """Return the parameters of the line of each run, and those derived from surfaces beside."""
     constant, time = (
         view.per_run(f"derived_{name}")
@@ -396,7 +398,7 @@ def _forms(view: ExperimentView, *dims: str) -> Sheet:
     return sheet.texts("form", [FORM_WORDS.get(name, name) for name in names])
 
 
-def form_table(view: ExperimentView) -> Table | None:
+def form_table(view: ExperimentView) -> PageTable | None:
     """Return the coefficients of the stiffness forms with their intervals."""
     sheet = _forms(view, "stiffness_term")
     if not sheet.n_rows:
@@ -411,7 +413,7 @@ def form_table(view: ExperimentView) -> Table | None:
         .cells(
             f"{confidence:g} % interval",
             [
-                Cell(f"{a:.4g} to {b:.4g}", f"{float(a)!r} {float(b)!r}", is_number=True)
+                TableCell(f"{a:.4g} to {b:.4g}", f"{float(a)!r} {float(b)!r}", is_number=True)
                 for a, b in zip(low, high, strict=True)
             ],
         )
@@ -424,7 +426,7 @@ def form_table(view: ExperimentView) -> Table | None:
     )  # fmt: skip
 
 
-def form_quality_table(view: ExperimentView) -> Table | None:
+def form_quality_table(view: ExperimentView) -> PageTable | None:
     """Return how well each form fits the runs, beside the quadratic surface."""
     sheet = _forms(view)
     if not sheet.n_rows:
@@ -503,7 +505,7 @@ def _apart(budget: Budget, share: float) -> Budget:
 
 def coefficient_budget_table(
     view: ExperimentView, name: str, answers: Sequence[AnswerBudget]
-) -> Table | None:
+) -> PageTable | None:
     """Return the numbers of the bars: value, uncertainty, factor, and the share of each source."""
     if not answers:
         return None
@@ -527,27 +529,27 @@ def coefficient_budget_table(
     )  # fmt: skip
 
 
-def _percent(value: float) -> Cell:
-    return Cell(f"{100 * value:.1f}", repr(value), is_number=True)
+def _percent(value: float) -> TableCell:
+    return TableCell(f"{100 * value:.1f}", repr(value), is_number=True)
 
 
-def experiment_findings(view: ExperimentView) -> list[Finding]:
+def experiment_findings(view: ExperimentView) -> list[SummaryFinding]:
     """Return what a reader must know of an experiment before its numbers."""
     name = f"experiment {view.name}"
     found = [
-        Finding("warning", (name,), row["caution"] + _of_runs(row))
+        SummaryFinding("warning", (name,), row["caution"] + _of_runs(row))
         for row in view.own_rows("caution")
     ]
     surfaces = view.surfaces
     if surfaces is not None:
         negative = negative_inside(surfaces)
         found += [
-            Finding("warning", (name,), f"{in_words(one)}: {_lower(text)}")
+            SummaryFinding("warning", (name,), f"{in_words(one)}: {_lower(text)}")
             for one in surfaces.response_names
             for text in negative_words(view, surfaces, one, negative)
         ]
     for note in dict.fromkeys(row["note"] for row in view.own_rows("note")):
-        found.append(Finding("refusal" if "refused" in note else "note", (name,), note))
+        found.append(SummaryFinding("refusal" if "refused" in note else "note", (name,), note))
     return found
 
 

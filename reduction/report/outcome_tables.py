@@ -30,9 +30,9 @@ from reduction.report.sheet import Calculated, Sheet, Unit
 from reduction.report.test_view import Expanded, expand, plus_minus
 from reduction.report.text_style import (
     PERCENT,
-    Cell,
+    PageTable,
     Shown,
-    Table,
+    TableCell,
     count,
     in_order,
     measured,
@@ -79,7 +79,7 @@ class _Groups(Sheet):
         """Add a count that is worth a column only where something was counted."""
         return self.cells(heading, (count(one) if one else words("") for one in self.of(name)))
 
-    def grouped(self, caption: str, reason: str, held: str, *notes: str) -> Table | None:
+    def grouped(self, caption: str, reason: str, held: str, *notes: str) -> PageTable | None:
         """Return the table: what ± holds, what is missing, and why, stands below."""
         told: dict[str, list[str]] = {}
         for name, row in zip(self.names, self.rows, strict=True):
@@ -109,7 +109,7 @@ def _real(row: Row, name: str) -> float:
     return float(row.get(name, "nan"))
 
 
-def strength_table(view: OutcomeView, name: str) -> Table | None:
+def strength_table(view: OutcomeView, name: str) -> PageTable | None:
     """Return a quantity of the table of strength by group: mean, scatter, change, bounds."""
     is_force = name == "tensile_strength"
     unit = shown("tension" if is_force else "strain", view.units)
@@ -150,7 +150,7 @@ def strength_table(view: OutcomeView, name: str) -> Table | None:
     )  # fmt: skip
 
 
-def exposure_table(view: OutcomeView) -> Table | None:
+def exposure_table(view: OutcomeView) -> PageTable | None:
     """Return the straight line of strength over years in the field, one row a line."""
     unit = shown("tension", view.units)
     a_year, lost = Shown(f"{unit.unit}/year", unit.factor), "share_lost_per_year"
@@ -177,7 +177,7 @@ def exposure_table(view: OutcomeView) -> Table | None:
     )  # fmt: skip
 
 
-def fatigue_table(view: OutcomeView, quantity: str) -> Table | None:
+def fatigue_table(view: OutcomeView, quantity: str) -> PageTable | None:
     """Return cycles to failure or of abrasion by group and peak load."""
     force = shown("tension", view.units)
     rows = [row for row in fatigue_rows(view.outcomes) if row["quantity"] == quantity]
@@ -203,7 +203,7 @@ def fatigue_table(view: OutcomeView, quantity: str) -> Table | None:
     )  # fmt: skip
 
 
-def load_life_table(view: OutcomeView) -> Table | None:
+def load_life_table(view: OutcomeView) -> PageTable | None:
     """Return the line of life against peak load, one row a group tested at several loads."""
     sheet = _Groups(view, load_life_rows(view.outcomes))
     exponent, life, scale = (
@@ -243,7 +243,7 @@ def _snaps(view: OutcomeView) -> list[tuple[str, SnapLevels]]:
     ]
 
 
-def snap_table(view: OutcomeView) -> Table | None:
+def snap_table(view: OutcomeView) -> PageTable | None:
     """Return what each level of peak load did to lines that go slack."""
     sheets = (
         Sheet(view)
@@ -286,7 +286,7 @@ _NOT_IN_ROPE_NUMBERS = (
 _COUNTED = ("bedding_cycles", "dynamic_cycles")
 
 
-def answer_of_ropes(views: Sequence[RopeView]) -> Table | None:
+def answer_of_ropes(views: Sequence[RopeView]) -> PageTable | None:
     """Return the properties of each rope in a row; least to greatest where it has several."""
     if not views:
         return None
@@ -314,20 +314,20 @@ def _about(sheet: Sheet, views: Sequence[RopeView]) -> str:
     )
 
 
-def _least_to_greatest(view: RopeView, name: str, unit: Shown) -> Cell:
+def _least_to_greatest(view: RopeView, name: str, unit: Shown) -> TableCell:
     kind = "property_stiffness" if name.endswith("stiffness") else "property_strain"
     rows = view.rows_of(name)
     values = view.array(kind)[rows]
     if len(rows) > 1:
         ends = [number_text(unit.factor * end) for end in (values.min(), values.max())]
-        return Cell(" to ".join(ends), is_number=True)
+        return TableCell(" to ".join(ends), is_number=True)
     if not rows:
         return number(float("nan"))
     spread = expanded_property(view, kind)
     return measured(values[0], spread.half[rows[0]], unit, factor=spread.factor[rows[0]])
 
 
-def told_of(view: RopeView, *, known: bool) -> list[str]:
+def rope_notes(view: RopeView, *, known: bool) -> list[str]:
     """Return what there is to say of the properties with a number, or why the others have none."""
     has_number = {row for name in PROPERTY_NAMES for row in view.rows_of(name)}
     tests = view.texts("property_test")
@@ -338,7 +338,7 @@ def told_of(view: RopeView, *, known: bool) -> list[str]:
     ]
 
 
-def property_table(view: RopeView) -> Table | None:
+def property_table(view: RopeView) -> PageTable | None:
     """Return the six properties; one without a number has its reason."""
     force = shown("tension", view.units)
     ends = zip(view.array("property_low_tension"), view.array("property_high_tension"), strict=True)
@@ -360,7 +360,7 @@ def property_table(view: RopeView) -> Table | None:
     return sheet.texts("test or step", "property_test").table(
         f"Change-in-length properties of {view.specimen}.", tall=16,
         remarks=[
-            *told_of(view, known=True),
+            *rope_notes(view, known=True),
             "Original stiffness: chord of the first rise of a new rope. Static: secant between two"
             " held tensions. Dynamic: last cycles of a level. Construction strain: what bedding-in"
             " left at equal tension. Polymer strain: creep from the reference time to the end of"
@@ -370,7 +370,7 @@ def property_table(view: RopeView) -> Table | None:
     )  # fmt: skip
 
 
-def bedding_table(view: RopeView) -> Table | None:
+def bedding_table(view: RopeView) -> PageTable | None:
     """Return what bedding-in did."""
     return _of_steps(
         view, "specimen", "bedding_permanent_strain", "Bedding-in.",
@@ -382,7 +382,7 @@ def bedding_table(view: RopeView) -> Table | None:
     )  # fmt: skip
 
 
-def level_table(view: RopeView) -> Table | None:
+def level_table(view: RopeView) -> PageTable | None:
     """Return the levels of dynamic stiffness."""
     return _of_steps(
         view, "specimen", "dynamic_stiffness", "Levels of dynamic stiffness, last cycles of each.",
@@ -396,7 +396,7 @@ def level_table(view: RopeView) -> Table | None:
     )  # fmt: skip
 
 
-def pair_table(view: RopeView) -> Table | None:
+def pair_table(view: RopeView) -> PageTable | None:
     """Return the pairs of holds, with the reason of one without a stiffness."""
     return _of_steps(
         view, "held_pair", "static_stiffness", "Pairs of held tensions.",
@@ -410,7 +410,7 @@ def pair_table(view: RopeView) -> Table | None:
     )  # fmt: skip
 
 
-def creep_table(view: RopeView) -> Table | None:
+def creep_table(view: RopeView) -> PageTable | None:
     """Return the holds at a kept tension, with the reason of one without a rate."""
     return _of_steps(
         view, "hold", "creep_tension_over_strength", "Creep at held tensions.",
@@ -431,7 +431,7 @@ def _of_steps(
     caption: str,
     *columns: tuple[str, str] | tuple[str, str, Unit],
     reason: str = "",
-) -> Table | None:
+) -> PageTable | None:
     """Return one row a step and place of this rope; a column that no row fills is left out."""
     sheets = []
     for test in view.tests:

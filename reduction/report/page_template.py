@@ -20,9 +20,9 @@ from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
 
 from reduction import __version__
 from reduction.quantities.units import UnitSystem
-from reduction.report.campaign_summary import Finding, Tile
-from reduction.report.test_section import Part, Section
-from reduction.report.text_style import Table
+from reduction.report.campaign_summary import SummaryFinding, Tile
+from reduction.report.test_section import Part, TestSection
+from reduction.report.text_style import PageTable
 
 _SCRIPTS = ("inflate", "figures", "cycles", "downloads", "contents")
 
@@ -93,19 +93,19 @@ class Page:
     summary: str
     about: Sequence[str]
     tiles: Sequence[Tile]
-    faults: Sequence[Finding]
-    chapters: Sequence[Section]
+    faults: Sequence[SummaryFinding]
+    chapters: Sequence[TestSection]
     synthetic: bool = False
     has_tests: bool = False
-    specimens: Table | None = None
+    specimens: PageTable | None = None
     specimen_notes: Sequence[str] = ()
-    tests: Table | None = None
-    instruments: Table | None = None
+    tests: PageTable | None = None
+    instruments: PageTable | None = None
     instrument_notes: Sequence[str] = ()
-    answers: Sequence[Table] = ()
-    designs: Sequence[Table] = ()
-    segments: Table | None = None
-    intervals: Sequence[Table] = ()
+    answers: Sequence[PageTable] = ()
+    designs: Sequence[PageTable] = ()
+    segments: PageTable | None = None
+    intervals: Sequence[PageTable] = ()
     comparisons: Sequence[Part] = ()
     across: str = ""
     sections: Sequence[RenderedSection] = ()
@@ -152,7 +152,7 @@ def _packed(text: str) -> tuple[str, int]:
     return b64encode(packer.compress(content) + packer.flush()).decode("ascii"), len(content)
 
 
-def render_section(section: Section, *, is_folded: bool) -> RenderedSection:
+def render_section(section: TestSection, *, is_folded: bool) -> RenderedSection:
     """Return the section of one test as HTML; one that is folded opens by a click."""
     macros = _environment().get_template("section.html").module
     html = str(macros.chapter(section, is_folded))  # type: ignore[attr-defined]

@@ -25,9 +25,9 @@ from reduction.report.text_style import (
     DEGREES,
     NOT_GIVEN,
     PERCENT,
-    Cell,
+    PageTable,
     Shown,
-    Table,
+    TableCell,
     interval,
     make_table,
     measured,
@@ -72,7 +72,7 @@ def _plus_minus_of_hoses(views: Sequence[HoseView]) -> list[str]:
     return [said, *([f"Nothing is stated of {', '.join(without)}."] if without else [])]
 
 
-def answer_of_hoses(views: Sequence[HoseView]) -> Table | None:
+def answer_of_hoses(views: Sequence[HoseView]) -> PageTable | None:
     """Return where the cords pick up, work and break: a line a hose."""
     return Sheet.stack(
         Sheet(view)
@@ -94,7 +94,7 @@ def answer_of_hoses(views: Sequence[HoseView]) -> Table | None:
     )
 
 
-def hose_event_table(view: HoseView) -> Table | None:
+def hose_event_table(view: HoseView) -> PageTable | None:
     """Return what happens to the cords, in the order of stretch."""
     sheet = Sheet(view, ("hose_event",))
     sheet.keep(np.array([view.event_place(name) for name in view.events]))
@@ -112,7 +112,7 @@ def hose_event_table(view: HoseView) -> Table | None:
     )
 
 
-def hose_design_table(view: HoseView) -> Table:
+def hose_design_table(view: HoseView) -> PageTable:
     """Return the numbers that the hose is made of, and what follows from them."""
     diameters = view.array("layer_diameter")
     is_same = diameters[0] == diameters[-1]
@@ -163,7 +163,7 @@ def hose_design_table(view: HoseView) -> Table:
     )  # fmt: skip
 
 
-def layer_table(view: HoseView) -> Table | None:
+def layer_table(view: HoseView) -> PageTable | None:
     """Return what the layers that carry no load are put to, and at which angle they bear it."""
     sheet = Sheet(view, ("hose_layer",))
     low, high, tensile, compressive = (
@@ -197,7 +197,7 @@ def _bears(low: float, high: float, tensile: float, compressive: float) -> str:
     return f"no: {' and '.join(wrong)} too far" if wrong else "yes"
 
 
-def cord_table(view: HoseView) -> Table | None:
+def cord_table(view: HoseView) -> PageTable | None:
     """Return the measured points of one cord."""
     scales = view.scalar("cord_load_scale"), view.scalar("cord_strain_scale")
     remarks = [
@@ -220,7 +220,7 @@ def cord_table(view: HoseView) -> Table | None:
     )
 
 
-def hose_curve_table(view: HoseView) -> Table | None:
+def hose_curve_table(view: HoseView) -> PageTable | None:
     """Return some points of the predicted curve, evenly spread, with the last."""
     sheet = Sheet(view, ("hose_point",))
     size = sheet.n_rows
@@ -246,7 +246,7 @@ def hose_curve_table(view: HoseView) -> Table | None:
     )  # fmt: skip
 
 
-def verdict_table(views: Sequence[ComparisonView]) -> Table | None:
+def verdict_table(views: Sequence[ComparisonView]) -> PageTable | None:
     """Return what each comparison says: a line a comparison."""
     return Sheet.stack(
         Sheet(view)
@@ -278,7 +278,7 @@ def verdict_table(views: Sequence[ComparisonView]) -> Table | None:
     )  # fmt: skip
 
 
-def compared_curve_table(view: ComparisonView) -> Table | None:
+def compared_curve_table(view: ComparisonView) -> PageTable | None:
     """Return the differences of each measured curve, and what the calibration leaves."""
     sheet = Sheet(view, ("curve",)).keep(np.array([view.curve_place(one) for one in view.curves]))
     (
@@ -311,7 +311,7 @@ def compared_curve_table(view: ComparisonView) -> Table | None:
     )
 
 
-def compared_event_table(view: ComparisonView) -> Table | None:
+def compared_event_table(view: ComparisonView) -> PageTable | None:
     """Return what happens to the cords, predicted and measured, in tension and in strain."""
     sheet = Sheet(view, ("hose_event",))
     (
@@ -334,7 +334,7 @@ def compared_event_table(view: ComparisonView) -> Table | None:
     )
 
 
-def energy_table(view: ComparisonView) -> Table | None:
+def energy_table(view: ComparisonView) -> PageTable | None:
     """Return energies between the same two strains; None where nothing could be integrated."""
     return (
         Sheet(view, where="measured_energy")
@@ -353,7 +353,7 @@ def energy_table(view: ComparisonView) -> Table | None:
     )  # fmt: skip
 
 
-def calibration_table(view: ComparisonView) -> Table | None:
+def calibration_table(view: ComparisonView) -> PageTable | None:
     """Return the fitted numbers with intervals and bounds; None where none was fitted."""
     fitted = [(one, one.shown(view.units)) for one in view.fitted]
     sheet = Sheet(view)
@@ -385,7 +385,7 @@ def calibration_table(view: ComparisonView) -> Table | None:
     )  # fmt: skip
 
 
-def correlation_table(view: ComparisonView) -> Table | None:
+def correlation_table(view: ComparisonView) -> PageTable | None:
     """Return how the fitted numbers go together; None of fewer than two."""
     if len(view.fitted) < 2:
         return None
@@ -404,12 +404,12 @@ def correlation_table(view: ComparisonView) -> Table | None:
     )
 
 
-def _fitted(one: FittedNumber, unit: Shown) -> Cell:
+def _fitted(one: FittedNumber, unit: Shown) -> TableCell:
     half, spread = (one.high - one.low) / 2, one.value_standard_uncertainty
     return measured(one.value, half, unit, factor=half / spread if spread > 0 else float("nan"))
 
 
-def _interval(one: FittedNumber, unit: Shown) -> Cell:
+def _interval(one: FittedNumber, unit: Shown) -> TableCell:
     """95 % interval to the digits of the uncertainty."""
     half = one.value_standard_uncertainty * unit.factor
     if not (np.isfinite(half) and half > 0):
@@ -418,16 +418,16 @@ def _interval(one: FittedNumber, unit: Shown) -> Cell:
     return span(one.low, one.high, unit, places=places)
 
 
-def _range(low: float, high: float, unit: Shown) -> Cell:
+def _range(low: float, high: float, unit: Shown) -> TableCell:
     return interval(low, high, unit) if np.isfinite(low) and np.isfinite(high) else words("")
 
 
-def _correlation(value: float) -> Cell:
+def _correlation(value: float) -> TableCell:
     text = f"{value:+.3f}"
-    return Cell(text, repr(float(value)), is_number=True) if np.isfinite(value) else words("")
+    return TableCell(text, repr(float(value)), is_number=True) if np.isfinite(value) else words("")
 
 
-def wires_table(found: PredictedArmour, units: UnitSystem) -> Table | None:
+def wires_table(found: PredictedArmour, units: UnitSystem) -> PageTable | None:
     """Return forces, moments and stresses of one wire of each layer by each theory."""
     pairs = [
         (place, theory, response)
@@ -458,7 +458,7 @@ def wires_table(found: PredictedArmour, units: UnitSystem) -> Table | None:
     )  # fmt: skip
 
 
-def layers_table(found: PredictedArmour, units: UnitSystem) -> Table | None:
+def layers_table(found: PredictedArmour, units: UnitSystem) -> PageTable | None:
     """Return what each layer carries and presses, and whether its wires find room."""
     limit, together = found.layers.yield_stress, found.together
     yields = np.where(together.is_yielding[:, 0], "yes", "no")
@@ -487,7 +487,7 @@ def layers_table(found: PredictedArmour, units: UnitSystem) -> Table | None:
     )  # fmt: skip
 
 
-def cable_table(found: PredictedArmour, units: UnitSystem) -> Table:
+def cable_table(found: PredictedArmour, units: UnitSystem) -> PageTable:
     """Return tension, torque, stiffness and first yield of all layers together."""
     force, together = shown("tension", units), found.together
     held, free = found.axial_stiffness
@@ -514,7 +514,7 @@ def cable_table(found: PredictedArmour, units: UnitSystem) -> Table:
     )  # fmt: skip
 
 
-def use_table(found: PredictedArmour) -> Table | None:
+def use_table(found: PredictedArmour) -> PageTable | None:
     """Return between which angles each theory is within the tolerance, layer by layer."""
     pairs = [
         (f"{layer}, {THEORY_WORDS[theory]}", use.least_angle[i], use.greatest_angle[i])
@@ -534,13 +534,13 @@ def use_table(found: PredictedArmour) -> Table | None:
     )
 
 
-def _angles(low: float, high: float) -> Cell:
+def _angles(low: float, high: float) -> TableCell:
     if not np.isfinite(low):
-        return Cell("nowhere", is_number=True)
+        return TableCell("nowhere", is_number=True)
     return number(low, DEGREES, digits=3) if low == high else span(low, high, DEGREES, places=1)
 
 
-def armour_design_table(found: PredictedArmour, units: UnitSystem) -> Table | None:
+def armour_design_table(found: PredictedArmour, units: UnitSystem) -> PageTable | None:
     """Return what was given of each layer."""
     return (
         Sheet(Calculated(units))
@@ -556,7 +556,7 @@ def armour_design_table(found: PredictedArmour, units: UnitSystem) -> Table | No
     )
 
 
-def extremes_table(found: PredictedWaveLoad, units: UnitSystem) -> Table | None:
+def extremes_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable | None:
     """Return greatest and least load of both forms, with how much less the improved one is."""
     unit = force_per_length(units)
     pairs = [(one, end) for one in ("horizontal", "vertical") for end in ("maximum", "minimum")]
@@ -578,7 +578,7 @@ def extremes_table(found: PredictedWaveLoad, units: UnitSystem) -> Table | None:
     )
 
 
-def wave_table(found: PredictedWaveLoad, units: UnitSystem) -> Table:
+def wave_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
     """Return what the wave is, and how far it is from the limits of its theory."""
     theory = found.theory
     return (
@@ -612,7 +612,7 @@ def wave_table(found: PredictedWaveLoad, units: UnitSystem) -> Table:
     )  # fmt: skip
 
 
-def regime_table(found: PredictedWaveLoad, units: UnitSystem) -> Table:
+def regime_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
     """Return the hose in the water, and the numbers by which coefficients are chosen."""
     section, regime = found.load.section, found.regime
     return (
@@ -636,7 +636,7 @@ def regime_table(found: PredictedWaveLoad, units: UnitSystem) -> Table:
     )  # fmt: skip
 
 
-def anchor_table(found: PredictedWaveLoad, units: UnitSystem) -> Table:
+def anchor_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
     """Return the greatest horizontal force of wind, wave and current, added and as one flow."""
     length, speed, anchor = shown("length", units), _velocity(units), found.anchor
     return (
@@ -661,7 +661,7 @@ def anchor_table(found: PredictedWaveLoad, units: UnitSystem) -> Table:
     )  # fmt: skip
 
 
-def wave_coefficient_table(found: PredictedWaveLoad) -> Table | None:
+def wave_coefficient_table(found: PredictedWaveLoad) -> PageTable | None:
     """Return published coefficients, with those of this case and where it stands among them."""
     regime, published = found.regime, (*PUBLISHED_COEFFICIENTS, CODE_OF_HYDROLOGY)
     at = f"KC {float(regime.keulegan_carpenter_number):.3g}"
@@ -695,6 +695,6 @@ def _velocity(units: UnitSystem) -> Shown:
     return Shown({"m s-1": "m/s", "ft s-1": "ft/s"}.get(unit, unit), factor)
 
 
-def _pair(low: float, high: float) -> Cell:
+def _pair(low: float, high: float) -> TableCell:
     text = f"{low:g}" if low == high else f"{low:g} to {high:g}"
-    return Cell(text, f"{low!r} {high!r}", is_number=True)
+    return TableCell(text, f"{low!r} {high!r}", is_number=True)

@@ -27,10 +27,10 @@ from reduction.report.test_view import (
 )
 from reduction.report.text_style import (
     NOT_GIVEN,
-    Cell,
     Kind,
+    PageTable,
     Shown,
-    Table,
+    TableCell,
     factors_of,
     make_table,
     shown,
@@ -84,7 +84,7 @@ class Sheet:
     dims: Sequence[str] = ()
     where: str = ""
     headings: list[str] = field(default_factory=list)
-    columns: list[list[Cell]] = field(default_factory=list)
+    columns: list[list[TableCell]] = field(default_factory=list)
     known: list[str] = field(default_factory=list)
     """Variables that stand in the table with their uncertainty."""
     places: dict[str, Integers] = field(init=False)
@@ -158,13 +158,13 @@ class Sheet:
         found = expanded_of(self.view, name, self.data.variables[name].values)
         return Expanded(self._at_rows(name, found.half), self._at_rows(name, found.factor))
 
-    def cells(self, heading: str, cells: Iterable[Cell]) -> Self:
+    def cells(self, heading: str, cells: Iterable[TableCell]) -> Self:
         """Add a column of cells that are made elsewhere."""
         self.headings.append(heading)
         self.columns.append(list(cells))
         return self
 
-    def row(self, *cells: Cell) -> Self:
+    def row(self, *cells: TableCell) -> Self:
         """Add a row below, of a cell for each column."""
         for column, cell in zip(self.columns, cells, strict=True):
             column.append(cell)
@@ -254,7 +254,7 @@ class Sheet:
         optional: Container[str] = (),
         is_compact: bool = False,
         is_tall: bool = False,
-    ) -> Table | None:
+    ) -> PageTable | None:
         """Return the table; None where it has no row."""
         pairs = [
             (heading, column)
@@ -276,7 +276,7 @@ class Sheet:
         corner: str = "what, with its unit",
         *,
         remarks: Sequence[str] = (),
-    ) -> Table:
+    ) -> PageTable:
         """Return the table with a row for each column; ``heads`` stand above what were rows."""
         rows = [
             [words(heading), *column]
@@ -304,7 +304,11 @@ class Sheet:
         return self.of(source) if isinstance(source, str) else list(source)
 
     def _each(
-        self, heading: str, make: Callable[[float], Cell], source: Source, unit: Shown | None = None
+        self,
+        heading: str,
+        make: Callable[[float], TableCell],
+        source: Source,
+        unit: Shown | None = None,
     ) -> Self:
         cells = (make(float(value)) for value in self._values(source))
         return self.cells(_label(heading, unit), cells)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from reduction.archive.write import write_whole
+from reduction.archive.write import write_text_atomically
 from reduction.lines.assembly import DeployedLine
 from reduction.lines.composite import CompositeCurve, PieceSource
 from reduction.prediction.armour import PredictedArmour
 from reduction.prediction.wave_load import PredictedWaveLoad
 from reduction.quantities.units import UnitSystem
-from reduction.report.campaign_summary import Finding, Tile
+from reduction.report.campaign_summary import SummaryFinding, Tile
 from reduction.report.figures.curve_figures import draw_assembly, draw_composite, draw_stiffness
 from reduction.report.figures.theory_figures import (
     draw_errors,
@@ -34,11 +34,11 @@ from reduction.report.prediction_tables import (
     wave_table,
     wires_table,
 )
-from reduction.report.test_section import Part, Section, make_part
+from reduction.report.test_section import Part, TestSection, make_part
 from reduction.report.test_view import NORMAL, factor_words
 from reduction.report.text_style import (
+    PageTable,
     Shown,
-    Table,
     make_table,
     measured,
     number,
@@ -122,13 +122,13 @@ def _write(
     key: str,
     parts: Sequence[Part],
     *,
-    answer: Table | None,
+    answer: PageTable | None,
     tiles: Sequence[Tile],
     notes: Sequence[str],
     units: UnitSystem,
     about: str,
 ) -> Path:
-    section = Section(
+    section = TestSection(
         key=key, title=title, subtitle="Predicted: nothing of it was measured.",
         parts=tuple(parts), notes=(), provenance=(),
     )  # fmt: skip
@@ -141,12 +141,14 @@ def _write(
             definitions=[about],
         ),
         tiles=tiles,
-        faults=[Finding("warning", (title,), f"{note[:1].upper()}{note[1:]}.") for note in notes],
+        faults=[
+            SummaryFinding("warning", (title,), f"{note[:1].upper()}{note[1:]}.") for note in notes
+        ],
         chapters=[section],
         answers=[] if answer is None else [answer],
     )  # fmt: skip
     path = out / "index.html"
-    write_whole(path, render_page(page))
+    write_text_atomically(path, render_page(page))
     return path
 
 
@@ -187,7 +189,7 @@ def write_composite_page(
     )  # fmt: skip
     _write_curve_page(
         path, f"Composite curve of {source.name}", [part], tiles=tiles, units=units,
-        notes=(*_doubt(curve), *curve.notes, *source.notes), sources=source.sources,
+        notes=(*_warning(curve), *curve.notes, *source.notes), sources=source.sources,
         synthetic=source.is_synthetic, subtitle=f"Branch: {source.branch}.",
     )  # fmt: skip
 
@@ -212,18 +214,18 @@ def write_assembly_page(found: DeployedLine, path: Path, *, units: UnitSystem = 
     ]  # fmt: skip
     _write_curve_page(
         path, f"Assembly {found.name}", parts, tiles=tiles, units=units,
-        notes=(*_doubt(found.curve), *found.deployed.notes, *found.curve.notes, *source.notes),
+        notes=(*_warning(found.curve), *found.deployed.notes, *found.curve.notes, *source.notes),
         sources=(found.splices, *source.sources), synthetic=source.is_synthetic,
         subtitle=f"{found.words}.",
     )  # fmt: skip
 
 
-def _doubt(curve: CompositeCurve) -> tuple[str, ...]:
+def _warning(curve: CompositeCurve) -> tuple[str, ...]:
     """What makes a curve doubtful as a whole, to stand before its notes."""
     return (f"DOUBTFUL: {curve.doubt}",) if curve.doubt else ()
 
 
-def _piece_table(source: PieceSource, curve: CompositeCurve, units: UnitSystem) -> Table:
+def _piece_table(source: PieceSource, curve: CompositeCurve, units: UnitSystem) -> PageTable:
     percent, force = shown("strain", units), shown("tension", units)
     used = set(curve.piece_names)
     rows = [
@@ -249,7 +251,7 @@ def _piece_table(source: PieceSource, curve: CompositeCurve, units: UnitSystem) 
     )  # fmt: skip
 
 
-def _working_table(found: DeployedLine, units: UnitSystem) -> Table | None:
+def _working_table(found: DeployedLine, units: UnitSystem) -> PageTable | None:
     """None where no working point was asked for."""
     length, force, percent = shown("length", units), shown("tension", units), shown("strain", units)
     rows = []
@@ -306,7 +308,7 @@ def _write_curve_page(
     synthetic: bool,
     subtitle: str,
 ) -> None:
-    section = Section(
+    section = TestSection(
         key="curve", title=title, subtitle=subtitle, parts=tuple(parts), notes=(),
         provenance=tuple(("source", text) for text in sources), noun="curve",
     )  # fmt: skip
@@ -319,7 +321,7 @@ def _write_curve_page(
         ),
         tiles=tiles,
         faults=[
-            Finding(
+            SummaryFinding(
                 "warning" if any(word in note for word in _DOUBTS) else "note",
                 (title,),
                 f"{note[:1].upper()}{note[1:]}.",
@@ -329,7 +331,7 @@ def _write_curve_page(
         chapters=[section],
         synthetic=synthetic,
     )
-    write_whole(path, render_page(page))
+    write_text_atomically(path, render_page(page))
 
 
 def _rounded_with_unit(value: float, unit: Shown) -> str:

@@ -45,7 +45,7 @@ from reduction.report.test_tables import (
     summary_table,
 )
 from reduction.report.test_view import TestView
-from reduction.report.text_style import Table
+from reduction.report.text_style import PageTable
 
 MOST = 4000
 """Most cycles of a test that a reader can choose from; a page has to stay small."""
@@ -132,7 +132,7 @@ class Part:
 
     heading: str
     figures: tuple[Figure, ...] = ()
-    tables: tuple[Table, ...] = ()
+    tables: tuple[PageTable, ...] = ()
     sentences: tuple[str, ...] = ()
     refusals: tuple[str, ...] = ()
     folded: Part | None = None
@@ -140,7 +140,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Section:
+class TestSection:
     """One test, or what ``noun`` says: its parts, its notes, and where its numbers come from.
 
     ``subtitle`` is what is seen of a section while it is folded; ``cycles`` are those that a
@@ -161,7 +161,7 @@ class Section:
 def make_part(
     heading: str,
     figures: Sequence[Figure] = (),
-    tables: Sequence[Table | None] = (),
+    tables: Sequence[PageTable | None] = (),
     sentences: Sequence[str] = (),
     refusals: Sequence[str] = (),
     folded: Part | None = None,
@@ -174,7 +174,7 @@ def make_part(
     )
 
 
-def make_section(view: TestView) -> Section:
+def make_section(view: TestView) -> TestSection:
     """Return the section of one test; parts with nothing in them are left out."""
     parts = [
         make_part("Stepwise readings", draw_steps(view), [step_table(view), interval_table(view)]),
@@ -204,7 +204,7 @@ def make_section(view: TestView) -> Section:
         make_part("History of the specimens", (), [history_table(view)]),
     ]  # fmt: skip
     provenance, documents = provenance_of(view.data.attrs)
-    return Section(
+    return TestSection(
         key=view.key,
         title=view.id,
         subtitle="; ".join(

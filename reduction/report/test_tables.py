@@ -30,9 +30,9 @@ from reduction.report.test_view import (
 from reduction.report.text_style import (
     NOT_GIVEN,
     PERCENT,
-    Cell,
+    PageTable,
     Shown,
-    Table,
+    TableCell,
     factors_of,
     make_table,
     measured,
@@ -87,7 +87,7 @@ _OF_HOLDS = "noise, regression"
 _OF_PULL = "scatter about the cubic"
 
 
-def specimen_table(tests: Sequence[TestView], units: UnitSystem) -> Table:
+def specimen_table(tests: Sequence[TestView], units: UnitSystem) -> PageTable:
     """Return the specimens of a campaign, each once, as its first test has it."""
     names = all_specimens(tests)
     sheets = []
@@ -120,7 +120,7 @@ def specimen_notes(tests: Sequence[TestView]) -> list[str]:
     return list(dict.fromkeys(notes))
 
 
-def history_table(view: TestView) -> Table | None:
+def history_table(view: TestView) -> PageTable | None:
     """Return what each specimen had seen before the test."""
     if "earlier_cycles" not in view.data:
         return None
@@ -137,7 +137,7 @@ def history_table(view: TestView) -> Table | None:
     return sheet.table("What each specimen had seen before this test.")
 
 
-def coefficient_table(view: TestView) -> Table | None:
+def coefficient_table(view: TestView) -> PageTable | None:
     """Return how crosshead position became strain: method, range of the marks, coefficients."""
     methods = view.texts("strain_method")
     if not methods:
@@ -192,7 +192,7 @@ def slope_sentences(view: TestView) -> list[str]:
     return found
 
 
-def mark_table(view: TestView) -> Table | None:
+def mark_table(view: TestView) -> PageTable | None:
     """Return the readings at the splice marks, and how far the method is off at each."""
     sheet = Sheet(view, ("mark",))
     residual = sheet.of("mark_strain_residual")
@@ -211,12 +211,12 @@ def mark_table(view: TestView) -> Table | None:
     )
 
 
-def _signed(residual: float) -> Cell:
+def _signed(residual: float) -> TableCell:
     text = f"{round(100 * residual, 2) + 0.0:+.2f}" if np.isfinite(residual) else NOT_GIVEN
-    return Cell(text, repr(float(residual)), is_number=True)
+    return TableCell(text, repr(float(residual)), is_number=True)
 
 
-def design_tables(tests: Sequence[TestView]) -> list[Table]:
+def design_tables(tests: Sequence[TestView]) -> list[PageTable]:
     """Return the modulus at round strains: rows strain, columns the tests that reach one."""
     for step in STEPS:
         found = [_design_table(tests, specimen, step) for specimen in all_specimens(tests)]
@@ -226,7 +226,7 @@ def design_tables(tests: Sequence[TestView]) -> list[Table]:
     return []
 
 
-def _design_table(tests: Sequence[TestView], specimen: str, step: float) -> Table | None:
+def _design_table(tests: Sequence[TestView], specimen: str, step: float) -> PageTable | None:
     given = [(view, _at_round_strains(view, specimen, step)) for view in tests]
     columns = [(view, cells) for view, cells in given if cells]
     if not columns:
@@ -247,7 +247,7 @@ def _design_table(tests: Sequence[TestView], specimen: str, step: float) -> Tabl
     )
 
 
-def _at_round_strains(view: TestView, specimen: str, step: float) -> dict[int, Cell]:
+def _at_round_strains(view: TestView, specimen: str, step: float) -> dict[int, TableCell]:
     """Return a cell for each multiple of the step that a branch reaches."""
     bins, modulus = view.array("strain_bin"), view.array("tangent_modulus")
     if bins is None or modulus is None or bins.size == 0 or specimen not in view.specimens:
@@ -262,7 +262,7 @@ def _at_round_strains(view: TestView, specimen: str, step: float) -> dict[int, C
         [curve_at(step * levels, bins, curve[row, place], spacing=spacing) for place in places]
         for curve in (modulus, spread.half, spread.factor)
     ]
-    found: dict[int, Cell] = {}
+    found: dict[int, TableCell] = {}
     for column in np.flatnonzero(np.isfinite(curves[0]).any(axis=0)):
         both = [
             measured(
@@ -271,7 +271,7 @@ def _at_round_strains(view: TestView, specimen: str, step: float) -> dict[int, C
             )
             for value, half, factor in zip(*curves, strict=True)
         ]  # fmt: skip
-        found[int(levels[column])] = Cell(
+        found[int(levels[column])] = TableCell(
             " /\n".join(cell.text for cell in both),
             " ".join(cell.value or "nan" for cell in both),
             is_number=True,
@@ -280,7 +280,7 @@ def _at_round_strains(view: TestView, specimen: str, step: float) -> dict[int, C
     return found
 
 
-def segment_table(tests: Sequence[TestView]) -> Table | None:
+def segment_table(tests: Sequence[TestView]) -> PageTable | None:
     """Return the piecewise-linear moduli: the answer, in the form of Tables 5 and 6."""
     sheet = Sheet.stack(_segments(view) for view in tests if "segment_modulus" in view.data)
     of = " of the rubber" if any(view.is_rubber for view in tests) else ""
@@ -308,7 +308,7 @@ def _segments(view: TestView) -> Sheet:
     )
 
 
-def summary_table(view: TestView) -> Table | None:
+def summary_table(view: TestView) -> PageTable | None:
     """Return the means over the cycles of a test, and what changed over them."""
     sheet = Sheet(view, ("specimen",)).all_of(*(one for one in _MEANS if one[1] in view.data))
     if not any(np.isfinite(sheet.of(name)).any() for name in sheet.known):
@@ -329,7 +329,7 @@ def summary_table(view: TestView) -> Table | None:
     )  # fmt: skip
 
 
-def stress_table(view: TestView) -> Table | None:
+def stress_table(view: TestView) -> PageTable | None:
     """Return stress at stated elongations; it is a stress and never called a modulus."""
     levels, stress = view.array("strain_level"), view.array("stress_at_strain")
     if levels is None or stress is None or not np.isfinite(stress).any():
@@ -343,7 +343,7 @@ def stress_table(view: TestView) -> Table | None:
     )
 
 
-def slip_table(view: TestView) -> Table | None:
+def slip_table(view: TestView) -> PageTable | None:
     """Return the steps of the splices."""
     sheet = Sheet(view, ("slip",))
     ends = zip(sheet.of("slip_cycle_low"), sheet.of("slip_cycle_high"), strict=True)
@@ -352,7 +352,7 @@ def slip_table(view: TestView) -> Table | None:
         .counts("first cycle after the step", "slip_cycle")
         .cells(
             "the step lies in cycles",
-            [Cell(f"{low:.0f} to {high:.0f}", is_number=True) for low, high in ends],
+            [TableCell(f"{low:.0f} to {high:.0f}", is_number=True) for low, high in ends],
         )
         .measured("step of peak tension", "slip_tension_step")
         .measured("splice let out", "slip_length")
@@ -360,7 +360,7 @@ def slip_table(view: TestView) -> Table | None:
     return sheet.table("Steps of a splice, told apart from steady creep.", remarks=[sheet.about()])
 
 
-def identity_table(view: TestView) -> Table | None:
+def identity_table(view: TestView) -> PageTable | None:
     """Return how well the closed-cycle identity holds, over the cycles of each specimen."""
     residual = view.array("identity_residual")
     if residual is None or not np.isfinite(residual).any():
@@ -380,7 +380,7 @@ def identity_table(view: TestView) -> Table | None:
     )
 
 
-def elastomer_table(view: TestView) -> Table | None:
+def elastomer_table(view: TestView) -> PageTable | None:
     """Return the fitted laws with their parameters, range and stability."""
     sheet = Sheet(view, ("elastomer_fit",))
     (
@@ -414,7 +414,7 @@ def _parameters(view: TestView, fit: int) -> Iterator[str]:
                 yield f"{str(name).replace('_', ' ')} {cell.text}{one}"
 
 
-def flag_table(view: TestView) -> Table | None:
+def flag_table(view: TestView) -> PageTable | None:
     """Return how many samples of each channel carry each flag; only flags that occur."""
     counts = view.array("n_flagged")
     if counts is None or not counts.any():
@@ -429,7 +429,7 @@ def flag_table(view: TestView) -> Table | None:
     )
 
 
-def step_table(view: TestView) -> Table | None:
+def step_table(view: TestView) -> PageTable | None:
     """Return the readings of a stepwise test."""
     if not view.is_stepwise or "strain" not in view.data:
         return None
@@ -449,7 +449,7 @@ def step_table(view: TestView) -> Table | None:
     return sheet.table("Readings of the stepwise test.")
 
 
-def interval_table(view: TestView) -> Table | None:
+def interval_table(view: TestView) -> PageTable | None:
     """Return the moduli between the readings of a stepwise test."""
     sheet = Sheet(view, ("interval",))
     clock = view.texts("clock") or tuple(str(place + 1) for place in range(sheet.n_rows + 1))
@@ -471,7 +471,7 @@ def _branches(values: Floats) -> list[str]:
     return [names.get(int(value), "") for value in values]
 
 
-def hold_table(view: TestView) -> Table | None:
+def hold_table(view: TestView) -> PageTable | None:
     """Return the holds; a column that no hold fills is left out."""
     sheet = Sheet(view, ("hold",))
     sheet.texts("hold", "hold_number").texts("specimen", "hold_specimen").texts("kind", "hold_kind")
@@ -507,7 +507,7 @@ def _of_holds(view: TestView, name: str) -> list[str]:
     ]
 
 
-def prony_table(view: TestView) -> Table | None:
+def prony_table(view: TestView) -> PageTable | None:
     """Return the Prony series of the holds that support one."""
     sheet = Sheet(view, ("hold", "prony_term"), where="prony_tension")
     (
@@ -527,7 +527,7 @@ def prony_table(view: TestView) -> Table | None:
     )
 
 
-def pull_table(view: TestView) -> Table | None:
+def pull_table(view: TestView) -> PageTable | None:
     """Return the cubic of each slow pull, its range of use, and how it was made."""
     if "pull_strain_coefficient" not in view.data:
         return None
@@ -560,12 +560,12 @@ def pull_table(view: TestView) -> Table | None:
     )  # fmt: skip
 
 
-def _scaled(value: float, half: float, scale: float) -> Cell:
+def _scaled(value: float, half: float, scale: float) -> TableCell:
     text = f"{value * scale:.6g}" + (f" ± {half * scale:.2g}" if np.isfinite(half) else "")
-    return Cell(text, repr(float(value)), is_number=True)
+    return TableCell(text, repr(float(value)), is_number=True)
 
 
-def pull_share_table(view: TestView) -> Table | None:
+def pull_share_table(view: TestView) -> PageTable | None:
     """Return strain and K_0 of the slow pull at round shares of the break strength."""
     strain = view.array("strain_at_break_share")
     if strain is None:
@@ -580,7 +580,7 @@ def pull_share_table(view: TestView) -> Table | None:
     )
 
 
-def line_table(view: TestView) -> Table | None:
+def line_table(view: TestView) -> PageTable | None:
     """Return the parameters of the line of each specimen of a test."""
     if "test_relaxation_time" not in view.data:
         return None

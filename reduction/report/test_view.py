@@ -32,8 +32,8 @@ from reduction.record.measurement import Floats, Integers
 from reduction.record.notes import Severity, severity_of
 from reduction.report.text_style import (
     FROM_READINGS,
+    PageTable,
     Shown,
-    Table,
     in_order,
     make_table,
     number,
@@ -253,7 +253,7 @@ NOTHING_STATED = (
 _PERCENT = Shown("%", 100.0)
 
 
-def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> Table | None:
+def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> PageTable | None:
     """Return what is stated, a column for each statement; None where nothing is."""
     statements: dict[StatedErrors, list[TestView]] = {}
     for view in tests:

@@ -236,7 +236,7 @@ _NOISE = 1e-12
 
 
 @dataclass(frozen=True)
-class Cell:
+class TableCell:
     """One cell: text as shown, the archive's own value, and whether it is a number.
 
     ``factors`` are the coverage factors of the uncertainties that the text shows.
@@ -249,7 +249,7 @@ class Cell:
 
 
 @dataclass(frozen=True)
-class Table:
+class PageTable:
     """A table; the first cell of a row heads it.
 
     ``caption`` and ``remarks``, which stand below, are plain text.
@@ -257,7 +257,7 @@ class Table:
 
     caption: str
     columns: tuple[str, ...]
-    rows: tuple[tuple[Cell, ...], ...]
+    rows: tuple[tuple[TableCell, ...], ...]
     is_tall: bool = False
     remarks: tuple[str, ...] = ()
     is_compact: bool = False
@@ -273,18 +273,18 @@ class Table:
 def make_table(
     caption: str,
     columns: Sequence[str],
-    rows: Sequence[Sequence[Cell]],
+    rows: Sequence[Sequence[TableCell]],
     *,
     synthetic: bool,
     is_tall: bool = False,
     remarks: Sequence[str] = (),
     is_compact: bool = False,
-) -> Table:
+) -> PageTable:
     """Return a table; the caption says where the data are synthetic."""
     text = f"{caption} SYNTHETIC DATA." if synthetic else caption
     cells = tuple(tuple(row) for row in rows)
-    plain = Table(text, tuple(columns), cells, is_tall, tuple(remarks), is_compact)
-    missing = Cell(NOT_GIVEN, is_number=True)
+    plain = PageTable(text, tuple(columns), cells, is_tall, tuple(remarks), is_compact)
+    missing = TableCell(NOT_GIVEN, is_number=True)
     aligned = tuple(
         tuple(
             missing if is_number and cell.text == NOT_GIVEN else cell
@@ -295,21 +295,21 @@ def make_table(
     return replace(plain, rows=aligned)
 
 
-def words(text: str) -> Cell:
+def words(text: str) -> TableCell:
     """Return a cell of text."""
-    return Cell(text or NOT_GIVEN)
+    return TableCell(text or NOT_GIVEN)
 
 
-def number(value: float, unit: Shown | None = None, *, digits: int = 4) -> Cell:
+def number(value: float, unit: Shown | None = None, *, digits: int = 4) -> TableCell:
     """Return a cell of one number, of so many digits."""
     scale = 1.0 if unit is None else unit.factor
-    return Cell(number_text(value * scale, digits), _exact(value), is_number=True)
+    return TableCell(number_text(value * scale, digits), _exact(value), is_number=True)
 
 
-def count(value: float) -> Cell:
+def count(value: float) -> TableCell:
     """Return a cell of a number that is counted."""
     text = f"{value:,.0f}" if isfinite(value) else NOT_GIVEN
-    return Cell(text, f"{value:.0f}" if isfinite(value) else "", is_number=True)
+    return TableCell(text, f"{value:.0f}" if isfinite(value) else "", is_number=True)
 
 
 def number_text(value: float, digits: int = 4) -> str:
@@ -336,7 +336,7 @@ def measured(
     *,
     factor: float = float("nan"),
     is_short: bool = False,
-) -> Cell:
+) -> TableCell:
     """Return a cell of a value and its expanded uncertainty, to two digits of the latter.
 
     Examples
@@ -350,7 +350,7 @@ def measured(
     """
     scale = 1.0 if unit is None else unit.factor
     if not isfinite(value):
-        return Cell(NOT_GIVEN, "", is_number=True)
+        return TableCell(NOT_GIVEN, "", is_number=True)
     if not isfinite(uncertainty) or uncertainty <= 0:
         return number(value, unit)
     half = uncertainty * scale
@@ -359,14 +359,14 @@ def measured(
         return number(value, unit)
     if not 1e-10 <= half < 1e9:
         text = f"{value * scale:.4g} ± {half:.2g}"
-        return Cell(text, _exact(value), is_number=True, factors=factors)
+        return TableCell(text, _exact(value), is_number=True, factors=factors)
     leading = half / 10.0 ** floor(log10(half))
     places = places_of(half, 1 if is_short and leading >= _LEAST_LEADING else 2)
     shown = f"{fixed_number(value * scale, places)} ± {fixed_number(half, places)}"
-    return Cell(shown, _exact(value), is_number=True, factors=factors)
+    return TableCell(shown, _exact(value), is_number=True, factors=factors)
 
 
-def within(value: float, low: float, high: float, unit: Shown) -> Cell:
+def within(value: float, low: float, high: float, unit: Shown) -> TableCell:
     """Return a cell of a value and the ends of its interval, which need not lie evenly about it.
 
     Examples
@@ -375,10 +375,12 @@ def within(value: float, low: float, high: float, unit: Shown) -> Cell:
     '4.8 (3.8 to 6.5)'
     """
     shown, ends = with_interval(value, low, high, unit)
-    return Cell(f"{shown.text} ({ends.text})", shown.value, is_number=True)
+    return TableCell(f"{shown.text} ({ends.text})", shown.value, is_number=True)
 
 
-def with_interval(value: float, low: float, high: float, unit: Shown) -> tuple[Cell, Cell]:
+def with_interval(
+    value: float, low: float, high: float, unit: Shown
+) -> tuple[TableCell, TableCell]:
     """Return a cell of a value and one of its interval, to two digits of half of that.
 
     Examples
@@ -387,14 +389,14 @@ def with_interval(value: float, low: float, high: float, unit: Shown) -> tuple[C
     ['156,600', '155,600 to 157,700']
     """
     if not (isfinite(low) and isfinite(high)):
-        return number(value, unit), Cell(NOT_GIVEN, is_number=True)
+        return number(value, unit), TableCell(NOT_GIVEN, is_number=True)
     places = places_of((high - low) / 2 * unit.factor, 2)
     shown, *ends = (fixed_number(one * unit.factor, places) for one in (value, low, high))
-    interval = Cell(" to ".join(ends), f"{_exact(low)} {_exact(high)}", is_number=True)
-    return Cell(shown, _exact(value), is_number=True), interval
+    interval = TableCell(" to ".join(ends), f"{_exact(low)} {_exact(high)}", is_number=True)
+    return TableCell(shown, _exact(value), is_number=True), interval
 
 
-def factors_of(rows: Iterable[Iterable[Cell]]) -> list[float]:
+def factors_of(rows: Iterable[Iterable[TableCell]]) -> list[float]:
     """Return the coverage factors of all uncertainties of a table.
 
     Examples
@@ -405,7 +407,7 @@ def factors_of(rows: Iterable[Iterable[Cell]]) -> list[float]:
     return [factor for row in rows for cell in row for factor in cell.factors]
 
 
-def probability(value: float) -> Cell:
+def probability(value: float) -> TableCell:
     """Return a cell of a probability; below 0.0001 only that it is.
 
     Examples
@@ -414,9 +416,9 @@ def probability(value: float) -> Cell:
     ('0.0312', '<0.0001')
     """
     if not isfinite(value):
-        return Cell(NOT_GIVEN, is_number=True)
+        return TableCell(NOT_GIVEN, is_number=True)
     text = "<0.0001" if value < _LEAST_PROBABILITY else f"{value:.4f}"
-    return Cell(text, _exact(value), is_number=True)
+    return TableCell(text, _exact(value), is_number=True)
 
 
 def share_text(value: float) -> str:
@@ -434,7 +436,7 @@ def share_text(value: float) -> str:
     return f"{value:.{digits}f}"
 
 
-def span(low: float, high: float, unit: Shown, *, places: int) -> Cell:
+def span(low: float, high: float, unit: Shown, *, places: int) -> TableCell:
     """Return a cell of a range, both ends to so many decimal places or more: two digits of it.
 
     Examples
@@ -443,14 +445,14 @@ def span(low: float, high: float, unit: Shown, *, places: int) -> Cell:
     '0.21 to 0.43'
     """
     if not (isfinite(low) and isfinite(high)):
-        return Cell(NOT_GIVEN, "", is_number=True)
+        return TableCell(NOT_GIVEN, "", is_number=True)
     ends = (low * unit.factor, high * unit.factor)
     places = max(places, places_of(ends[1] - ends[0], 2))
     text = " to ".join(fixed_number(end, places) for end in ends)
-    return Cell(text, f"{_exact(low)} {_exact(high)}", is_number=True)
+    return TableCell(text, f"{_exact(low)} {_exact(high)}", is_number=True)
 
 
-def interval(low: float, high: float, unit: Shown | None = None, *, digits: int = 3) -> Cell:
+def interval(low: float, high: float, unit: Shown | None = None, *, digits: int = 3) -> TableCell:
     """Return a cell of a range, each end to so many digits; nothing where neither is known.
 
     Examples
@@ -462,7 +464,7 @@ def interval(low: float, high: float, unit: Shown | None = None, *, digits: int 
         return words("")
     scale = 1.0 if unit is None else unit.factor
     text = " to ".join(number_text(end * scale, digits) for end in (low, high))
-    return Cell(text, f"{low!r} {high!r}", is_number=True)
+    return TableCell(text, f"{low!r} {high!r}", is_number=True)
 
 
 def _exact(value: float) -> str:

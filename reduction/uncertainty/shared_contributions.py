@@ -37,7 +37,7 @@ from reduction.record.contributions import (
     stacked,
 )
 from reduction.record.measurement import Floats, Record, areas_of
-from reduction.record.samples import empty_like, full_like, let_go
+from reduction.record.samples import empty_like, full_like, release_pages
 from reduction.record.settings import CycleSettings
 from reduction.stages.channel_lag import LagEstimate, lag_by_turns
 from reduction.stages.cycles.cycle_product import Cycles, Loops
@@ -366,7 +366,7 @@ def _place(test: ReducedTest, specimen: str) -> int:
     return [one.name for one in test.specimens].index(specimen)
 
 
-def _held(hold: HoldResult) -> Literal["position", "tension"]:
+def _constant_channel(hold: HoldResult) -> Literal["position", "tension"]:
     """What the machine keeps to its set value while it holds."""
     return "tension" if hold.kind == "creep" else "position"
 
@@ -379,7 +379,9 @@ def _padded(hold: HoldResult, n_terms: int) -> HoldResult:
 
 def _of_hold(hold: HoldResult, errors: InstrumentErrors, model: StrainModel) -> Contributions:
     def field_at(strain: Floats, tension: Floats) -> ErrorField:
-        return error_field(errors, model, strain=strain, tension=tension, held=_held(hold))
+        return error_field(
+            errors, model, strain=strain, tension=tension, held=_constant_channel(hold)
+        )
 
     return hold_contributions(field_at, hold)
 
@@ -426,7 +428,7 @@ def _of_pair(
         errors, model,
         strain=pair.low_strain + np.array([0.0, 0.0, stroke]),
         tension=pair.low_tension + np.array([0.0, rise, rise_then]),
-        held=_held(high),
+        held=_constant_channel(high),
     )  # fmt: skip
     begin, level, then = range(3)
     low_tension, high_tension = field.tension[:, begin], field.tension[:, level]
@@ -477,7 +479,7 @@ def _compliance_slope(pull: SlowPull, tension: Floats) -> Floats:
     return np.asarray(np.where(np.isfinite(bend), bend, 0.0))
 
 
-def _of_rest(
+def _quasi_static_contributions(
     pull: SlowPull, origin: PullOrigin, tension: Floats, of_mean_tension: Contributions
 ) -> Contributions:
     """K_0 at the mean tension of a run, which has its own errors, on a pull that has others."""
@@ -675,8 +677,8 @@ def shared_uncertainty_of_cycles(
                         shape=(n_specimens, n_cycles, *spread.shape[1:]),
                     )  # fmt: skip
                 shared[name][index, block] = spread
-        let_go(*shared.values())
-        test.loops.let_go()
+        release_pages(*shared.values())
+        test.loops.release_pages()
     return shared
 
 
@@ -715,7 +717,7 @@ def _of_specimen(
         if np.isfinite(area):
             yield _named(of_dynamic_modulus(of_loop, summary, index, errors, area), "test_")
         if test.line_of_test is not None and pull is not None:
-            rest = _of_rest(
+            rest = _quasi_static_contributions(
                 pull, origin or PullOrigin(errors, model),
                 np.asarray(summary.mean_tension[index]), of_loop,
             )  # fmt: skip
@@ -741,7 +743,7 @@ def _of_cycles(
     if part.end_moduli is not None:
         parts += _of_ends(part, index, errors, float(areas_of(test.specimens)[index]))
     if part.line is not None and test.amplitude is not None and pull is not None:
-        rest = _of_rest(
+        rest = _quasi_static_contributions(
             pull, origin or PullOrigin(errors, model),
             np.asarray(test.amplitude.mean_tension[index]),
             of_loops(test.amplitude, index, errors, model, test.cycles, cycles),

@@ -14,7 +14,7 @@ from reduction.batch.survey import survey_log
 from reduction.batch.test_history import fit_strain_models
 from reduction.campaign.load import load_campaign
 from reduction.readers import sample_flags as constant
-from reduction.readers.layout import Parts
+from reduction.readers.layout import LogParts
 from reduction.record import samples as blocks
 from reduction.record import samples as intervals
 from reduction.record import samples as scratch
@@ -110,8 +110,8 @@ def on_disk(monkeypatch, tmp_path):
     """Make every log one that is read in parts of some length and lies on disk."""
 
     def set_up(part):
-        monkeypatch.setattr(Parts, "folder_of", lambda self, n_bytes: tmp_path)
-        monkeypatch.setattr(Parts, "length_of", lambda self, n_bytes: part)
+        monkeypatch.setattr(LogParts, "folder_of", lambda self, n_bytes: tmp_path)
+        monkeypatch.setattr(LogParts, "length_of", lambda self, n_bytes: part)
         monkeypatch.setattr(scratch, "_ON_DISK_FROM", 1)
 
     return set_up

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from nptdms import ChannelObject, TdmsWriter
 
-from reduction.readers.layout import Layout, Parts
+from reduction.readers.layout import Layout, LogParts
 from reduction.readers.read_log import read_log
 from reduction.record.errors import LogError
 
@@ -51,7 +51,7 @@ def check(path, layout, lengths):
     whole = outcome(path, layout)
     for n_bytes in (1, *lengths):
         for in_memory in (0, 1 << 20):
-            parts = Parts(in_memory=in_memory, n_bytes=n_bytes, folder=path.parent)
+            parts = LogParts(in_memory=in_memory, n_bytes=n_bytes, folder=path.parent)
             assert outcome(path, layout, parts) == whole
 
 

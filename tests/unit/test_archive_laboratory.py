@@ -6,10 +6,10 @@ from reduction.archive.write import (
     FILE_NAME,
     Client,
     Instrument,
-    Item,
     Laboratory,
-    Limit,
     ReportDetails,
+    ReportItem,
+    ReportLimit,
     keep_details,
     read_details,
 )
@@ -17,10 +17,10 @@ from reduction.record.errors import ArchiveError
 
 EVERYTHING = ReportDetails(
     number="17 <b>", revision=1, laboratory=Laboratory(name="Läb", location="there"),
-    client=Client(name="C"), items={"new": Item(condition='"dry"')},
+    client=Client(name="C"), items={"new": ReportItem(condition='"dry"')},
     instruments=(Instrument(name="cell"),), decision_rule="guard band", paper="Letter",
     limits=(
-        Limit(quantity="tangent_modulus", test="T-1", at={"strain": "1.25"}, lower=0.1 + 0.2),
+        ReportLimit(quantity="tangent_modulus", test="T-1", at={"strain": "1.25"}, lower=0.1 + 0.2),
     ),
 )  # fmt: skip
 

@@ -9,14 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from reduction.archive.atomic_write import remove_abandoned, take_away, whole_file
-from reduction.archive.write import write_whole
+from reduction.archive.atomic_write import atomic_file, remove_abandoned, take_away
+from reduction.archive.write import write_text_atomically
 from reduction.record.errors import ArchiveError
 
 
 def test_the_file_appears_when_the_block_ends_well(tmp_path):
     path = tmp_path / "folder" / "a.txt"
-    with whole_file(path) as part:
+    with atomic_file(path) as part:
         part.write_text("new")
         assert not path.exists()
         assert part.parent == path.parent
@@ -30,7 +30,7 @@ def test_a_block_that_is_cut_short_leaves_the_file_before(tmp_path, error):
     path.write_text("old")
 
     def cut_short():
-        with whole_file(path) as part:
+        with atomic_file(path) as part:
             part.write_text("half")
             raise error
 
@@ -45,7 +45,7 @@ def test_a_block_that_writes_nothing_leaves_the_file_before(tmp_path):
     path.write_text("old")
 
     def forget():
-        with whole_file(path):
+        with atomic_file(path):
             pass
 
     with pytest.raises(FileNotFoundError):
@@ -56,7 +56,7 @@ def test_a_block_that_writes_nothing_leaves_the_file_before(tmp_path):
 def test_the_file_has_the_rights_that_any_new_file_has(tmp_path):
     plain = tmp_path / "plain.txt"
     plain.write_text("x")
-    with whole_file(tmp_path / "a.txt") as part:
+    with atomic_file(tmp_path / "a.txt") as part:
         part.write_text("x")
     assert (tmp_path / "a.txt").stat().st_mode == plain.stat().st_mode
 
@@ -75,7 +75,7 @@ def test_a_disk_that_refuses_to_clean_up_does_not_hide_why_a_file_was_not_writte
     path.write_text("old")
 
     def fill_the_disk():
-        with whole_file(path) as part:
+        with atomic_file(path) as part:
             part.write_text("half")
             monkeypatch.setattr(Path, "unlink", refuse(errno.EROFS))
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
@@ -94,7 +94,7 @@ def test_a_folder_that_is_not_flushed_is_told_and_the_file_is_there(tmp_path, mo
     )
 
     def write():
-        with whole_file(path) as part:
+        with atomic_file(path) as part:
             part.write_text("new")
 
     with pytest.raises(ArchiveError, match=r"a.txt is written, and may not be on the disk yet"):
@@ -102,7 +102,7 @@ def test_a_folder_that_is_not_flushed_is_told_and_the_file_is_there(tmp_path, mo
     assert path.read_text() == "new"
     assert list(tmp_path.iterdir()) == [path]
     with pytest.raises(ArchiveError, match=r"a.txt is written, and may not"):
-        write_whole(path, "newer")  # and not that what was there before is kept
+        write_text_atomically(path, "newer")  # and not that what was there before is kept
 
 
 def is_folder(handle):
@@ -115,7 +115,7 @@ def test_a_disk_that_knows_nothing_of_flushed_folders_is_none_the_worse(tmp_path
     monkeypatch.setattr(
         os, "fsync", lambda handle: (refuse(errno.EINVAL) if is_folder(handle) else flushed)(handle)
     )
-    with whole_file(tmp_path / "a.txt") as part:
+    with atomic_file(tmp_path / "a.txt") as part:
         part.write_text("new")
     assert (tmp_path / "a.txt").read_text() == "new"
 
@@ -136,9 +136,9 @@ def test_what_a_process_that_is_no_more_began_of_a_file_is_removed_before_it_is_
     gone.wait()
     names = {}
     for who, number in (("gone", gone.pid), ("alive", os.getppid()), ("no number", 10**30)):
-        with monkeypatch.context() as of_other, whole_file(path) as part:
+        with monkeypatch.context() as of_other, atomic_file(path) as part:
             of_other.setattr(os, "getpid", lambda number=number: number)
-            with whole_file(path) as began:
+            with atomic_file(path) as began:
                 names[who] = began.name
                 began.write_text("x")
             part.write_text("x")
@@ -146,7 +146,7 @@ def test_what_a_process_that_is_no_more_began_of_a_file_is_removed_before_it_is_
     elsewhere = names["gone"].replace(names["gone"].split(".")[-2].split("-")[0], "00000000")
     for name in (*names.values(), elsewhere, ".b.txt.1-2.part"):
         (tmp_path / name).write_text("half")
-    write_whole(path, "new")
+    write_text_atomically(path, "new")
     left = {one.name for one in tmp_path.iterdir()}
     assert left == {path.name, names["alive"], names["no number"], elsewhere, ".b.txt.1-2.part"}
     remove_abandoned(tmp_path / "no-folder" / "a.txt")

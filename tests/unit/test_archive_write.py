@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from reduction.archive.test_dataset import to_dataset
-from reduction.archive.write import appended_whole, write_archive, write_whole
+from reduction.archive.write import append_atomically, write_archive, write_text_atomically
 from reduction.record.errors import ArchiveError
 
 AGAIN = """
@@ -74,19 +74,19 @@ def test_a_full_disk_is_an_archive_error_and_the_file_before_is_kept(bare_test, 
 
 def test_a_text_is_written_as_it_is(tmp_path):
     path = tmp_path / "new folder" / "a.csv"
-    write_whole(path, "größe\r\n1\r\n")
+    write_text_atomically(path, "größe\r\n1\r\n")
     assert path.read_bytes() == "größe\r\n1\r\n".encode()
 
 
 def test_a_text_that_cannot_be_written_is_an_archive_error(tmp_path):
     (tmp_path / "file").write_text("not a folder")
     with pytest.raises(ArchiveError, match=r"file.a.csv cannot be written; found File exists"):
-        write_whole(tmp_path / "file" / "a.csv", "1")
+        write_text_atomically(tmp_path / "file" / "a.csv", "1")
 
 
 def test_a_text_that_is_added_to_appears_when_all_of_it_is_there(tmp_path):
     path = tmp_path / "a.csv"
-    with appended_whole(path) as append:
+    with append_atomically(path) as append:
         append("größe\r\n")
         append("1\r\n")
         assert not path.exists()
@@ -99,7 +99,7 @@ def test_what_fails_beside_a_text_is_told_as_it_is_and_the_file_before_is_kept(t
     path.write_text("before")
 
     def write():
-        with appended_whole(path) as append:
+        with append_atomically(path) as append:
             append("after")
             raise OSError("the log is gone")
 
@@ -113,7 +113,7 @@ def test_a_text_that_cannot_be_added_to_names_its_file(tmp_path):
     folder = tmp_path / "folder"
 
     def write():
-        with appended_whole(folder / "a.csv") as append:
+        with append_atomically(folder / "a.csv") as append:
             folder.rmdir()
             append("1")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from reduction.batch.survey import Survey
-from reduction.batch.test_history import history_of, history_remarks, past_of
+from reduction.batch.test_history import earlier_tests_of, history_of, history_remarks
 from reduction.campaign.plan import TestPlan
 from reduction.record.errors import DataError
 from reduction.record.measurement import Specimen
@@ -27,7 +27,7 @@ def past(surveys, *specimens):
     campaign = SimpleNamespace(specimens={one.name: one for one in specimens})
     found = {}
     for entry in surveys:
-        history = history_of(entry, past_of(surveys, {}), campaign)
+        history = history_of(entry, earlier_tests_of(surveys, {}), campaign)
         flex = history.earlier_flex_cycles
         found[entry.plan.id] = (history.earlier_cycles[0], None if flex is None else flex[0])
     return found
@@ -60,7 +60,7 @@ def test_one_specimen_of_two_that_was_never_said_to_be_flexed_has_no_number():
     campaign = SimpleNamespace(
         specimens={"hose": Specimen("hose", earlier_flex_cycles=0), "other": Specimen("other")}
     )
-    flex = history_of(both, past_of([both], {}), campaign).earlier_flex_cycles
+    flex = history_of(both, earlier_tests_of([both], {}), campaign).earlier_flex_cycles
     assert flex[0] == 0 and np.isnan(flex[1])
 
 
@@ -98,7 +98,7 @@ def test_a_failed_test_leaves_its_cycles_unknown_but_not_the_stated_flexing():
 def test_cycles_in_no_log_are_named_since_no_strain_of_them_is_known(before, between, count):
     surveys = [survey("A", 1, unlogged_cycles=between)]
     campaign = SimpleNamespace(specimens={"hose": Specimen("hose", earlier_cycles=before)})
-    remarks = history_remarks(surveys[0], past_of(surveys, {}), campaign)
+    remarks = history_remarks(surveys[0], earlier_tests_of(surveys, {}), campaign)
     expected = f"hose: {count} earlier cycles are in no log: earlier_maximum_strain and "
     assert [text.startswith(expected) for text in remarks] == ([] if count is None else [True])
 
@@ -106,12 +106,12 @@ def test_cycles_in_no_log_are_named_since_no_strain_of_them_is_known(before, bet
 def test_a_test_without_a_place_has_no_history():
     alone = survey("A", None, unlogged_cycles=5)
     campaign = SimpleNamespace(specimens={"hose": Specimen("hose")})
-    assert history_of(alone, past_of([alone], {}), campaign) is None
-    assert history_remarks(alone, past_of([alone], {}), campaign) == ()
+    assert history_of(alone, earlier_tests_of([alone], {}), campaign) is None
+    assert history_remarks(alone, earlier_tests_of([alone], {}), campaign) == ()
 
 
 def test_specimens_that_share_tests_without_an_order_are_asked_for_one():
     surveys = [survey("A", None), survey("B", None)]
     campaign = SimpleNamespace(specimens={"hose": Specimen("hose")})
-    (remark,) = history_remarks(surveys[0], past_of(surveys, {}), campaign)
+    (remark,) = history_remarks(surveys[0], earlier_tests_of(surveys, {}), campaign)
     assert remark.endswith("what earlier tests did to them is not known here; set order")

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from reduction.archive.write import Instrument, Item
+from reduction.archive.write import Instrument, ReportItem
 from reduction.campaign.model import _ReportSection, report_details
 from reduction.record.errors import SettingsError
 
@@ -53,7 +53,7 @@ def test_everything_arrives_at_its_place():
     assert (found.laboratory.name, found.laboratory.location) == ("L", "there")
     assert (found.client.name, found.client.order) == ("C", "4711")
     assert (found.authorised.by, found.authorised.function) == ("P", "head")
-    assert found.items == {"new": Item(identification="tag", condition="dry")}
+    assert found.items == {"new": ReportItem(identification="tag", condition="dry")}
     assert found.instruments == (Instrument(name="cell", traceable_to="standard"),)
     assert found.paper == "Letter"
 

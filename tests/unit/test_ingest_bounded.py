@@ -18,7 +18,7 @@ from reduction.campaign.load import load_campaign
 from reduction.readers import bounded_reader as module
 from reduction.readers import read_log as read
 from reduction.readers.bounded_reader import bounded
-from reduction.readers.layout import Layout, Parts, Watch
+from reduction.readers.layout import Layout, LogParts, Watch
 from reduction.readers.read_log import read_log
 from reduction.record.errors import LogError
 from reduction.record.samples import _is_on_disk
@@ -121,7 +121,7 @@ def test_a_path_is_that_of_the_folder_in_which_it_is_asked_for(path, monkeypatch
 
 
 def test_columns_on_disk_are_taken_over(path, tmp_path):
-    parts = Parts(in_memory=0, folder=tmp_path / "scratch")
+    parts = LogParts(in_memory=0, folder=tmp_path / "scratch")
     parts.folder.mkdir()
     log = read_log(path, LAYOUT, name="log", parts=parts)
     assert not list(parts.folder.iterdir())

@@ -5,18 +5,18 @@ import numpy as np
 import pytest
 
 from reduction.readers.columns import (
-    Wanted,
+    DeclaredColumn,
     check_lengths,
     check_unit,
+    declared_columns,
     find_column,
-    wanted_columns,
     without_marks,
 )
 from reduction.readers.layout import Layout
 from reduction.record.errors import LogError
 
 PATH = Path("log.h5")
-LOAD = Wanted("tension.1", "load", "kN", "force")
+LOAD = DeclaredColumn("tension.1", "load", "kN", "force")
 
 
 def layout(**settings):
@@ -30,7 +30,7 @@ def layout(**settings):
 
 
 def test_wanted_columns_are_the_channels_and_their_own_times():
-    wanted = wanted_columns(layout())
+    wanted = declared_columns(layout())
     assert [(want.key, want.column, want.dimension) for want in wanted] == [
         ("time", "t", "time"),
         ("tension.1", "a", "force"),
@@ -68,14 +68,14 @@ def test_a_name_that_stands_twice_is_refused():
 
 @pytest.mark.parametrize("number", [0, 3, -1])
 def test_a_number_outside_the_columns_is_refused(number):
-    wanted = Wanted("tension.1", number, "kN", "force")
+    wanted = DeclaredColumn("tension.1", number, "kN", "force")
     with pytest.raises(LogError, match="needed a number from 1 to 2"):
         find_column(PATH, wanted, ["a", "b"])
 
 
 def test_a_number_is_refused_where_columns_have_no_order():
     with pytest.raises(LogError, match="needed a name"):
-        find_column(PATH, Wanted("tension.1", 1, "kN", "force"), ["a", "b"], in_order=False)
+        find_column(PATH, DeclaredColumn("tension.1", 1, "kN", "force"), ["a", "b"], in_order=False)
 
 
 @pytest.mark.parametrize("stated", ["kN", " [kN] ", "(kN)", "kilonewton"])

@@ -1,6 +1,6 @@
 import pytest
 
-from reduction.readers.columns import check_units, keep_line, wanted_columns
+from reduction.readers.columns import check_units, declared_columns, keep_line
 from reduction.readers.layout import Layout
 from reduction.record.errors import LogError
 
@@ -43,7 +43,7 @@ def check(tmp_path, column, unit, *, unit_row=None, stated="", **channel):
     name = column if isinstance(column, str) else "Force (kN)"
     check_units(
         tmp_path / "log.csv",
-        [(wanted_columns(one)[0], 0)],
+        [(declared_columns(one)[0], 0)],
         names=[name],
         units=[stated] if unit_row else [],
         unit_row=unit_row,
@@ -92,7 +92,7 @@ def test_volts_with_a_factor_are_not_compared(tmp_path):
 
 def check_unit_row(tmp_path, place, units, **channels):
     one = Layout(format="delimited", channels=channels)
-    wanted = [(wanted_columns(one)[0], place)]
+    wanted = [(declared_columns(one)[0], place)]
     names = [""] * place + ["F"]
     check_units(tmp_path / "log.csv", wanted, names=names, units=units, unit_row=2)
 

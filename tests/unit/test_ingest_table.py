@@ -5,17 +5,17 @@ import pytest
 
 from reduction.readers.columns import (
     ColumnTable,
-    Wanted,
+    DeclaredColumn,
     _CheckedColumn,
     matrix_table,
     read_columns,
     row_parts,
 )
-from reduction.readers.layout import Layout, Parts
+from reduction.readers.layout import Layout, LogParts
 from reduction.record.errors import LogError
 
 PATH = Path("log.h5")
-TIME = Wanted("time", "t", "s", "time")
+TIME = DeclaredColumn("time", "t", "s", "time")
 
 
 def layout(**settings):
@@ -75,7 +75,7 @@ def test_what_is_no_real_number_is_refused(values, found):
 
 def test_a_clock_is_refused_in_a_binary_file():
     with pytest.raises(LogError, match="a clock is read from text alone"):
-        to_floats(PATH, Wanted("time", "t", "clock", "time"), np.array([945.0]), layout())
+        to_floats(PATH, DeclaredColumn("time", "t", "clock", "time"), np.array([945.0]), layout())
 
 
 def test_whole_numbers_that_float64_cannot_hold_are_refused():
@@ -153,7 +153,7 @@ def test_rows_that_the_file_keeps_together_are_read_once_for_all_columns():
             return np.arange(20.0).reshape(10, 2)[rows]
 
     made = matrix_table(PATH, Rows(), where="'M'", names=("t", "F"), n_together=4)
-    parts = Parts(in_memory=0, n_bytes=80)
+    parts = LogParts(in_memory=0, n_bytes=80)
     columns, _ = read_columns(PATH, layout(), made, parts=parts)
     assert asked == [(0, 4), (4, 8), (8, 10)]
     assert columns["tension.1"].tolist() == list(range(1, 20, 2))
@@ -167,5 +167,5 @@ def test_a_fault_is_told_alike_in_parts_of_any_length(n_bytes):
             PATH,
             layout(missing=[""]),
             table(t=np.arange(6), F=values),
-            parts=Parts(in_memory=0, n_bytes=n_bytes),
+            parts=LogParts(in_memory=0, n_bytes=n_bytes),
         )

@@ -3,7 +3,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from reduction.readers.layout import Layout, Parts
+from reduction.readers.layout import Layout, LogParts
 from reduction.readers.read_log import read_log
 from reduction.readers.text_rows import open_text
 from reduction.record import samples as scratch
@@ -20,14 +20,14 @@ def read(path, content, n_bytes=16, in_memory=0, **settings):
     path = path / "log.csv"
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     layout = Layout(format="delimited", channels=CHANNELS, **settings)
-    parts = Parts(in_memory=in_memory, n_bytes=n_bytes, folder=path.parent)
+    parts = LogParts(in_memory=in_memory, n_bytes=n_bytes, folder=path.parent)
     return read_log(path, layout, name="log.csv", parts=parts)
 
 
 def lines_of(path, content, n_bytes, encoding="utf-8"):
     path = path / "log.csv"
     path.write_bytes(content)
-    with open_text(path, encoding, Parts(n_bytes=n_bytes)) as file:
+    with open_text(path, encoding, LogParts(n_bytes=n_bytes)) as file:
         return [(bytes(part.text), part.first_row, part.n_lines, part.is_open) for part in file]
 
 
@@ -189,7 +189,7 @@ def test_a_log_four_times_as_long_takes_no_more_memory(tmp_path):
         path = tmp_path / f"{n_rows}.csv"
         np.savetxt(path, rows, "%.4f", ",", header="t,F", comments="")
         layout = Layout(format="delimited", channels=CHANNELS)
-        parts = Parts(in_memory=0, n_bytes=1 << 16, folder=tmp_path)
+        parts = LogParts(in_memory=0, n_bytes=1 << 16, folder=tmp_path)
         tracemalloc.start()
         log = read_log(path, layout, name="x", parts=parts)
         found = tracemalloc.get_traced_memory()[1]

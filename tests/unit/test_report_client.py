@@ -10,10 +10,10 @@ from reduction.archive.open import open_archive
 from reduction.archive.write import (
     Client,
     Instrument,
-    Item,
     Laboratory,
-    Limit,
     ReportDetails,
+    ReportItem,
+    ReportLimit,
     _Authorised,
     keep_details,
 )
@@ -76,7 +76,7 @@ AT = {"specimen": "new", "branch": "ascending", "strain": "1.0"}
 
 
 def limit(value, at=AT, **more):
-    return Limit(
+    return ReportLimit(
         quantity="tangent_modulus", test="T-1", at=at, lower=value, **{"source": "order"} | more
     )
 
@@ -114,7 +114,7 @@ def test_what_is_stated_stands_under_its_label(client, rich_test):
         authorised=_Authorised(by="A. Person", function="head", on="5 June"),
         laboratory=Laboratory(name="Lab", address="1 Street", location="the quay"),
         client=Client(name="Buoy", order="4711"),
-        items={"new": filled(Item, "tag 1", "a tether", "wet", "4 May")},
+        items={"new": filled(ReportItem, "tag 1", "a tether", "wet", "4 May")},
         instruments=(filled(Instrument, "cell", "s/n 1", "cert 2", "PTB", "2025", "2027"),),
     )  # fmt: skip
     page = client(details, rich_test)
@@ -161,7 +161,7 @@ def test_texts_of_the_laboratory_are_text_on_the_page_and_in_the_margins(client,
         ReportDetails, NASTY, 1, *[NASTY] * 9, decision_rule="guard band",
         laboratory=filled(Laboratory, *[NASTY] * 5), client=filled(Client, *[NASTY] * 4),
         authorised=_Authorised(by=NASTY), instruments=(Instrument(name=NASTY),),
-        items={"new": filled(Item, *[NASTY] * 4), NASTY: Item()},
+        items={"new": filled(ReportItem, *[NASTY] * 4), NASTY: ReportItem()},
         limits=(limit(1.0, source=NASTY),),
     )  # fmt: skip
     page = client(details, rich_test)

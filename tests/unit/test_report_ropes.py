@@ -13,7 +13,7 @@ from reduction.archive.open import open_archive
 from reduction.archive.surfaces_dataset import surfaces_to_dataset
 from reduction.archive.write import write_archive
 from reduction.report.campaign_page import write_report
-from reduction.report.campaign_summary import Finding, find_faults, test_table
+from reduction.report.campaign_summary import SummaryFinding, find_faults, test_table
 from reduction.report.experiment_tables import form_quality_table, form_table, line_of_runs_table
 from reduction.report.figures.hold_figures import draw_pull
 from reduction.report.test_tables import (
@@ -135,7 +135,7 @@ def test_a_table_of_means_without_a_mean_is_not_shown(view):
 
 
 def test_what_is_no_tests_fault_stands_among_those_as_serious():
-    other = Finding("warning", ("experiment",), "slack")
+    other = SummaryFinding("warning", ("experiment",), "slack")
     assert find_faults([], [], {"a.nc": "broken"}, [other])[-1] == other
 
 

@@ -10,7 +10,7 @@ from reproduced import whole
 from reduction.published.cg_cells import Pages, number, rounding
 from reduction.published.cg_d_39_80 import _item_of, _items_of
 from reduction.published.printed_cells import cells_of, errata_of, number_of
-from reduction.published.reproduced_item import agree, beside, judge, not_testable
+from reduction.published.reproduced_item import agree, compared_item, judge, not_testable
 from reduction.record.errors import DataError
 
 REPORT = "CG-D-39-80"
@@ -186,8 +186,8 @@ def test_a_claim_that_fails_without_an_erratum_is_unexplained():
     assert agree(stands, False, "why").verdict == "unexplained"
     assert judge(stands, 1e9, "why").verdict == "unexplained"
     assert not_testable(stands, "why").verdict == "not_testable"
-    assert beside(cell, 2.5, "why").recomputed == 2.5
-    assert beside(cell, 2.5, "why").verdict == "not_testable"
+    assert compared_item(cell, 2.5, "why").recomputed == 2.5
+    assert compared_item(cell, 2.5, "why").verdict == "not_testable"
 
 
 def test_rounding_of_inputs_adds_up():

@@ -11,7 +11,7 @@ from reproduced import whole
 
 from reduction.published.printed_cells import REPORTS, cells_of, errata_of, printed_step
 from reduction.published.reproduce_page import TITLES, number_beside, render_reproduction
-from reduction.published.reproduced_item import Item
+from reduction.published.reproduced_item import ReproducedItem
 
 VOID = {"meta", "input", "link", "br", "wbr"}
 
@@ -104,7 +104,7 @@ def test_parts_of_a_report_are_no_tables_and_long_names_may_break():
 
 def test_words_of_a_cell_are_no_markup_and_an_unexplained_cell_stands_out():
     cell = replace(cells_of("Wang-2022")[0], row="<b>steel</b>", column="<i>modulus", note="a & b")
-    html = render_reproduction({"Wang-2022": [Item(cell, 1.0, "unexplained", "x < y")]})
+    html = render_reproduction({"Wang-2022": [ReproducedItem(cell, 1.0, "unexplained", "x < y")]})
     assert (
         "&lt;b&gt;steel" in html
         and "&lt;i&gt;modulus" in html

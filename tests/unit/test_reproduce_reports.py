@@ -16,7 +16,7 @@ from reduction.published.reproduce_page import (
     reproduce,
     touched_errata,
 )
-from reduction.published.reproduced_item import Item
+from reduction.published.reproduced_item import ReproducedItem
 
 
 def test_all_five_reports_are_there_with_every_cell():
@@ -79,5 +79,7 @@ def test_the_table_of_items_gives_every_number_back():
 
 def test_the_table_keeps_commas_and_lines_within_a_cell():
     cell = replace(cells_of("Wang-2022")[0], note='two, "three"\nfour')
-    (row,) = csv.DictReader(io.StringIO(csv_of([Item(cell, float("inf"), "open", "so, so")])))
+    (row,) = csv.DictReader(
+        io.StringIO(csv_of([ReproducedItem(cell, float("inf"), "open", "so, so")]))
+    )
     assert (row["note"], row["how"], row["recomputed"]) == ('two, "three"\nfour', "so, so", "")

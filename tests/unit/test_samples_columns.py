@@ -8,9 +8,9 @@ from reduction.record import samples as scratch
 from reduction.record.samples import (
     ColumnWriter,
     _is_on_disk,
-    chosen,
     mean_of,
     median_step_reaches,
+    select_samples,
     shifted,
 )
 
@@ -35,7 +35,7 @@ def test_chosen_samples_are_those_of_a_mask_and_lie_beside_the_series(tmp_path, 
         for mask in (rng.random(n_samples) < 0.5, np.zeros(n_samples, bool)):
             expected = [one[mask] for one in whole]
             for series in (whole, [on_disk(tmp_path, one) for one in whole]):
-                found = chosen(mask.__getitem__, *series)
+                found = select_samples(mask.__getitem__, *series)
                 for one, wanted, source in zip(found, expected, series, strict=True):
                     np.testing.assert_array_equal(one, wanted)
                     assert one.dtype == wanted.dtype
@@ -45,7 +45,7 @@ def test_chosen_samples_are_those_of_a_mask_and_lie_beside_the_series(tmp_path, 
 
 def test_where_all_samples_are_chosen_nothing_is_copied():
     one, other = np.arange(3), np.arange(3.0)
-    found = chosen(lambda part: one[part] >= 0, one, other)
+    found = select_samples(lambda part: one[part] >= 0, one, other)
     assert found[0] is one
     assert found[1] is other
 
@@ -53,7 +53,7 @@ def test_where_all_samples_are_chosen_nothing_is_copied():
 def test_series_of_unequal_length_have_no_samples_in_common():
     mask = np.array([True, False, True])
     with pytest.raises(IndexError, match="boolean index did not match"):
-        chosen(mask.__getitem__, np.arange(3), np.arange(2))
+        select_samples(mask.__getitem__, np.arange(3), np.arange(2))
 
 
 @pytest.mark.usefixtures("_short_blocks")

@@ -40,7 +40,7 @@ def test_a_long_interval_is_let_go_as_it_is_passed(tmp_path, monkeypatch):
     passed = []
     monkeypatch.setattr(intervals, "BLOCK", 10)
     monkeypatch.setattr(blocks, "_SPAN", 40)
-    monkeypatch.setattr(blocks, "let_go", lambda *series: passed.append(len(series)))
+    monkeypatch.setattr(blocks, "release_pages", lambda *series: passed.append(len(series)))
     series = on_disk(tmp_path, np.arange(100.0))
     found = over_intervals(np.add, series, np.array([5]), np.array([95]))
     assert found.tolist() == [series[5:95].sum()]

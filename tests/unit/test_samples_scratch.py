@@ -12,8 +12,8 @@ from reduction.record.samples import (
     ColumnWriter,
     _is_on_disk,
     empty_like,
-    give_back,
     scratch_folder,
+    trim_heap,
 )
 
 
@@ -113,13 +113,13 @@ def test_what_stages_of_a_long_series_have_freed_is_given_back(tmp_path, monkeyp
     writer = ColumnWriter(tmp_path)
     writer.append(np.zeros(3))
     long = np.empty(scratch._LONG, dtype=bool)
-    give_back(np.zeros(3), long[1:])
+    trim_heap(np.zeros(3), long[1:])
     assert asked == []
     for arrays in ([long], [np.zeros(3), long], [writer.finish()]):
-        give_back(*arrays)
+        trim_heap(*arrays)
     assert asked == [0, 0, 0]
 
 
 def test_no_system_but_one_is_asked_to_give_back(monkeypatch):
     monkeypatch.setattr(scratch, "_MALLOC_TRIM", None)
-    give_back(np.empty(scratch._LONG, dtype=bool))
+    trim_heap(np.empty(scratch._LONG, dtype=bool))

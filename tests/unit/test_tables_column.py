@@ -3,19 +3,19 @@
 import numpy as np
 import pytest
 
-from reduction.archive.csv_columns import Column, _csv_lines, _texts_of, csv_text, uncertainty_of
+from reduction.archive.csv_columns import CsvColumn, _csv_lines, _texts_of, csv_text, uncertainty_of
 from reduction.archive.schema import SCHEMA
 from reduction.archive.variables import label
 
 
 def test_a_real_has_its_unit_in_the_header_and_a_label_or_count_has_none():
-    assert Column("segment_modulus", SCHEMA["segment_modulus"]).header == "segment_modulus [Pa]"
-    assert Column("segment", SCHEMA["segment"]).header == "segment"
-    assert Column("strain_method", SCHEMA["strain_method"]).header == "strain_method"
+    assert CsvColumn("segment_modulus", SCHEMA["segment_modulus"]).header == "segment_modulus [Pa]"
+    assert CsvColumn("segment", SCHEMA["segment"]).header == "segment"
+    assert CsvColumn("strain_method", SCHEMA["strain_method"]).header == "strain_method"
 
 
 def test_a_measured_column_is_followed_by_its_uncertainty():
-    column = uncertainty_of(Column("segment_modulus", SCHEMA["segment_modulus"]))
+    column = uncertainty_of(CsvColumn("segment_modulus", SCHEMA["segment_modulus"]))
     assert column.header == "segment_modulus_standard_uncertainty [Pa]"
 
 
@@ -63,8 +63,8 @@ def test_text_with_commas_quotes_and_line_ends_is_quoted():
 
 
 def test_a_label_says_why_it_has_no_uncertainty():
-    assert Column("test", label("test")[0]).description == ["test", "", "test", "label"]
-    assert Column("segment_modulus", SCHEMA["segment_modulus"]).description == [
+    assert CsvColumn("test", label("test")[0]).description == ["test", "", "test", "label"]
+    assert CsvColumn("segment_modulus", SCHEMA["segment_modulus"]).description == [
         "segment_modulus [Pa]",
         "Pa",
         "slope of a piecewise-linear segment",

@@ -2,7 +2,7 @@
 
 from reduction.archive.csv_columns import (
     SYNTHETIC,
-    Column,
+    CsvColumn,
     _lonely_numbers,
     column_descriptions,
     uncertainty_of,
@@ -11,7 +11,7 @@ from reduction.archive.variables import measured
 
 
 def test_an_empty_cell_beside_a_number_has_a_reason_and_a_full_column_needs_none():
-    diameter = Column("diameter", measured("diameter", ("specimen",))[0])
+    diameter = CsvColumn("diameter", measured("diameter", ("specimen",))[0])
     columns = [diameter, uncertainty_of(diameter), SYNTHETIC]
     holed = _lonely_numbers(columns, [["0.02", "0.02"], ["", "1e-4"], ["no", "no"]])
     full = _lonely_numbers(columns, [["", "0.02"], ["", "1e-4"], ["no", "no"]])

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
-from reduction.record.samples import give_back, let_go
+from reduction.record.samples import release_pages, trim_heap
 
 
 @dataclass(frozen=True)
@@ -100,8 +100,10 @@ class Loops:
     fundamental_energy_share: Floats
     uncertainty: dict[str, Floats]
 
-    def let_go(self) -> None:
+    def release_pages(self) -> None:
         """Take the tables of a long test, which lie on disk, off the memory of the process."""
         own = (getattr(self, item.name) for item in fields(self))
-        let_go(*(one for one in own if isinstance(one, np.ndarray)), *self.uncertainty.values())
-        give_back(self.frequency)
+        release_pages(
+            *(one for one in own if isinstance(one, np.ndarray)), *self.uncertainty.values()
+        )
+        trim_heap(self.frequency)

@@ -33,7 +33,7 @@ from numpy.typing import ArrayLike
 from reduction.record.arrays import as_same_shape, run_blocks
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, Integers, read_only_arrays
-from reduction.record.samples import empty_like, let_go, take_samples
+from reduction.record.samples import empty_like, release_pages, take_samples
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.loop_energy import (
     CycleBasis,
@@ -417,14 +417,14 @@ def close_loops(
         for name, column in values.items():
             tables[name][index] = column
             uncertainty[name][index] = errors[name]
-            let_go(tables[name], uncertainty[name])
-        let_go(measured)
+            release_pages(tables[name], uncertainty[name])
+        release_pages(measured)
     tables["cycle_start_time"][:] = begin
     tables["frequency"][:] = 1 / duration
     # a turn is known to one sample at each end of the cycle, evenly spread
     step = duration / (cycles.last - cycles.first)
     uncertainty["frequency"][:] = step / duration**2 * np.sqrt(2 / 12)
-    let_go(*tables.values(), *uncertainty.values())
+    release_pages(*tables.values(), *uncertainty.values())
     return Loops(**tables, uncertainty=uncertainty)
 
 

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from reduction.record.arrays import as_positive
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, Integers
-from reduction.record.samples import let_go, sample_blocks, take_samples
+from reduction.record.samples import release_pages, sample_blocks, take_samples
 from reduction.stages.standstills import noise_range
 
 _BAND_SHARE = 0.1
@@ -411,7 +411,7 @@ def counted_cycles(
         branch_last[i, 0] = branch_first[i, 1] = peak
         branch_last[i, 1] = peak + int(np.nanargmin(falling))
         if i % _CYCLES_READ == 0:
-            let_go(values)
+            release_pages(values)
     return first, last, branch_first, branch_last, counts[counted]
 
 

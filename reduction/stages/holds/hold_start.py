@@ -20,12 +20,12 @@ from reduction.record.arrays import as_increasing, as_same_shape
 from reduction.record.measurement import Floats
 from reduction.record.samples import (
     BLOCK,
-    chosen,
     finite_extremes,
     last_sample,
-    let_go,
     mean_of,
+    release_pages,
     sample_blocks,
+    select_samples,
 )
 
 
@@ -184,7 +184,7 @@ def _way_back(place: Floats, band: float) -> _Way | None:
     for stop in range(place.size, 0, -BLOCK):
         back = sign * (place[max(stop - BLOCK, 0) : stop] - end)[::-1]
         reached = np.maximum(np.maximum.accumulate(back), reach)
-        let_go(place)
+        release_pages(place)
         turned = np.flatnonzero(reached - back > band)
         if turned.size:
             at = int(turned[0])
@@ -196,7 +196,7 @@ def _way_back(place: Floats, band: float) -> _Way | None:
 def _upper_slope(place: Floats, load: Floats) -> float:
     """Slope of tension on position over the last half of a stroke; NaN where it has none."""
     half = 0.5 * abs(place[-1] - place[0])
-    x, y = chosen(lambda part: np.abs(place[part] - place[-1]) <= half, place, load)
+    x, y = select_samples(lambda part: np.abs(place[part] - place[-1]) <= half, place, load)
     middle, level = mean_of(x), mean_of(y)
     square = product = 0.0
     for part in sample_blocks(x.size, x, y):

@@ -28,11 +28,11 @@ from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats
 from reduction.record.samples import (
     BLOCK,
-    chosen,
     empty_like,
     mean_of,
     median_step_reaches,
     sample_blocks,
+    select_samples,
     shifted,
 )
 from reduction.record.settings import HoldSettings
@@ -103,7 +103,7 @@ class Hold:
     @property
     def strain_uncertainty(self) -> float:
         """Of its mean strain (type A); NaN with fewer than two readings. [1]."""
-        (known,) = chosen(lambda part: np.isfinite(self.strain[part]), self.strain)
+        (known,) = select_samples(lambda part: np.isfinite(self.strain[part]), self.strain)
         if known.size < 2:
             return float("nan")
         return end_mean(known, n_samples=known.size, at_end=True)[1]
@@ -294,7 +294,7 @@ def _ramp_before(time: Floats, moved: Floats, answer: Floats, *, band: float) ->
         whole = time, moved, answer
         looked = [one[start:] for one in whole]
         is_sound = _is_sound(*looked, after=_latest(*(one[:start] for one in whole)))
-        before = chosen(is_sound.__getitem__, *looked)
+        before = select_samples(is_sound.__getitem__, *looked)
         if before[0].size > 2 and begins_inside(before[1], band=band):
             break
     return find_ramp(*before, band=band) if before[0].size > 2 else None
@@ -358,7 +358,7 @@ def select_hold(
     begin = int(standstills.first[index - 1]) if index else 0
     inside = slice(first, last + 1)
     held = [one[inside] for one in (time, position, tension, strain)]
-    seconds, place, load, stretch = chosen(_is_sound(*held[:3]).__getitem__, *held)
+    seconds, place, load, stretch = select_samples(_is_sound(*held[:3]).__getitem__, *held)
     # under load control the machine moves the tension, and the length answers
     moved, answer, band = position, tension, standstills.position_tolerance
     if standstills.tension_tolerance is not None:
@@ -441,7 +441,7 @@ def _creep(hold: Hold) -> Rate | None:
         )
         return None
     since, strain = hold.since_centre, hold.strain
-    series = chosen(
+    series = select_samples(
         lambda part: (since[part] > 0) & np.isfinite(strain[part]), since, strain, hold.tension
     )
     try:
@@ -492,7 +492,9 @@ def _result(
     prony: PronyFit | None = None
     tension_at = strain_at = (nothing, nothing)
     ends = _Ends(*(np.nan,) * 6)
-    times_known, known = chosen(lambda part: np.isfinite(hold.strain[part]), hold.time, hold.strain)
+    times_known, known = select_samples(
+        lambda part: np.isfinite(hold.strain[part]), hold.time, hold.strain
+    )
     if hold.time.size < 3:
         hold.refusals.append(f"everything: {hold.time.size} samples in the hold")
     else:

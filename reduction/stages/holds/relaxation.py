@@ -31,7 +31,13 @@ from numpy.typing import ArrayLike
 from reduction.record.arrays import as_finite, as_increasing, as_same_shape
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, Integers, read_only_arrays
-from reduction.record.samples import chosen, let_go, mean_of, median_step_reaches, sample_blocks
+from reduction.record.samples import (
+    mean_of,
+    median_step_reaches,
+    release_pages,
+    sample_blocks,
+    select_samples,
+)
 from reduction.stages.cycles.loop_energy import reading_noise
 from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.moduli.splice_slip import sample_noise
@@ -160,7 +166,7 @@ LARGEST_WEIGHT = 64.0
 
 @dataclass(frozen=True)
 @read_only_arrays
-class _Blocks:
+class _LogBlocks:
     """Block means of a series, shape (n_blocks,) each."""
 
     elapsed: Floats
@@ -179,7 +185,7 @@ class _Blocks:
 
 def logarithmic_blocks(
     elapsed: ArrayLike, values: ArrayLike, *, per_decade: int = BLOCKS_PER_DECADE
-) -> _Blocks:
+) -> _LogBlocks:
     """Means over blocks of equal length in the logarithm of time.
 
     Parameters
@@ -232,7 +238,7 @@ def logarithmic_blocks(
         np.add.at(sums[1], here, np.add.reduceat(series[part], first))
         np.add.at(sums[2], here, count)
     elapsed_sum, value_sum, count = sums[:, sums[2] > 0]
-    return _Blocks(elapsed_sum / count, value_sum / count, count)
+    return _LogBlocks(elapsed_sum / count, value_sum / count, count)
 
 
 RAMP_TIMES_LEFT_OUT = 3.0
@@ -327,7 +333,7 @@ def end_mean(values: ArrayLike, *, n_samples: int, at_end: bool) -> tuple[float,
     3.0
     """
     whole = np.asarray(values, dtype=np.float64)
-    (series,) = chosen(lambda part: np.isfinite(whole[part]), whole)
+    (series,) = select_samples(lambda part: np.isfinite(whole[part]), whole)
     noise, quantum = sample_noise(series)
     count = max(1, min(n_samples, series.size))
     stretch = series[-count:] if at_end else series[:count]
@@ -335,7 +341,7 @@ def end_mean(values: ArrayLike, *, n_samples: int, at_end: bool) -> tuple[float,
     return mean_of(stretch), float(np.sqrt(variance))
 
 
-def rate_per_decade(blocks: _Blocks, *, ramp_duration: float) -> Rate:
+def rate_per_decade(blocks: _LogBlocks, *, ramp_duration: float) -> Rate:
     r"""Change of a series per decade of time, by regression on block means.
 
     Parameters
@@ -442,7 +448,7 @@ def value_at_times(
         found[index], spread[index] = _on_line(
             time[first:last], series[first:last], wanted, noise=noise
         )
-        let_go(time, series)
+        release_pages(time, series)
     return found, spread
 
 

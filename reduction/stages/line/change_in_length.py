@@ -455,7 +455,8 @@ def change_in_length(
     )
     of_strength = {one.name: one.strength_contribution for one in steps}
     return tuple(
-        _told(_over(one, rated_break_strength, of_strength.get(one.step)), missing) for one in found
+        _with_note(_over(one, rated_break_strength, of_strength.get(one.step)), missing)
+        for one in found
     )
 
 
@@ -473,7 +474,7 @@ def _over(one: ChangeInLength, strength: float, of_strength: Floats | None) -> C
     )
 
 
-def _told(one: ChangeInLength, missing: str) -> ChangeInLength:
+def _with_note(one: ChangeInLength, missing: str) -> ChangeInLength:
     """Say which tests are missing, where the property may have been in one of them."""
     if not missing or one.step or np.isfinite(one.value):
         return one

@@ -31,7 +31,7 @@ from scipy.special import stdtrit
 from reduction.record.arrays import as_positive, as_same_shape
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
-from reduction.record.samples import chosen, empty_like, finite_extremes, sample_blocks
+from reduction.record.samples import empty_like, finite_extremes, sample_blocks, select_samples
 from reduction.stages.holds.reduce_holds import Hold, select_hold
 from reduction.stages.holds.relaxation import (
     RAMP_TIMES_LEFT_OUT,
@@ -147,7 +147,7 @@ def _static_stiffness(
         known = np.isfinite(clock) & np.isfinite(load) & np.isfinite(stretch)
         return known & ~(clock < shortest)
 
-    clock, load, stretch = chosen(is_kept, *series)
+    clock, load, stretch = select_samples(is_kept, *series)
     if clock.size < _FEWEST_POINTS:
         raise FitError(
             "the upper hold is too short for a line in the logarithm of time",
@@ -316,7 +316,7 @@ def _stiffness(
             "the record does not show the ramp to the upper hold, so the time since loading is "
             "not known"
         )
-    (known,) = chosen(lambda part: np.isfinite(low.strain[part]), low.strain)
+    (known,) = select_samples(lambda part: np.isfinite(low.strain[part]), low.strain)
     if known.size < 3:
         raise DataError("the lower hold has no strain", found=f"{known.size} readings")
     (tension, u_tension), (strain, u_strain) = _end_of(low.tension), _end_of(known)

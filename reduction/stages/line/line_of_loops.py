@@ -145,7 +145,7 @@ _SKEWED = 0.3
 _SLACK_SHARE = 0.01
 
 
-def _of_rest(loops: Loops, name: str, values: ArrayLike) -> Floats:
+def _quasi_static_part(loops: Loops, name: str, values: ArrayLike) -> Floats:
     """One value a specimen, or one a specimen and cycle, as an array that broadcasts."""
     array = np.asarray(values, dtype=np.float64)
     shape = loops.frequency.shape
@@ -255,11 +255,13 @@ def identify_cycles(
     >>> print(line.relaxation_time.round(3))
     [[1.326 1.326]]
     """
-    rest = _of_rest(loops, "the quasi-static spring constant", quasi_static_spring_constant)
+    rest = _quasi_static_part(
+        loops, "the quasi-static spring constant", quasi_static_spring_constant
+    )
     names = FUNDAMENTAL_INPUTS if reading == "fundamental" else AMPLITUDE_INPUTS
     values = {name: getattr(loops, name) for name in names[:-1]}
     stated = {name: loops.uncertainty[name] for name in names[:-1]}
-    stated[names[-1]] = _of_rest(
+    stated[names[-1]] = _quasi_static_part(
         loops, "the uncertainty of the quasi-static one", quasi_static_standard_uncertainty
     )
     if reading == "fundamental":

@@ -29,7 +29,13 @@ from numpy.typing import ArrayLike
 
 from reduction.record.arrays import as_positive, as_same_shape, run_blocks
 from reduction.record.measurement import Bools, Floats, Integers
-from reduction.record.samples import first_sample, last_sample, let_go, sample_blocks, take_samples
+from reduction.record.samples import (
+    first_sample,
+    last_sample,
+    release_pages,
+    sample_blocks,
+    take_samples,
+)
 from reduction.record.settings import ModulusSettings
 from reduction.stages.moduli.local_regression import (
     LocalFits,
@@ -90,7 +96,7 @@ def _end_of_rise(strain: Floats, start: float) -> int:
     greatest = np.full(len(blocks), np.nan)
     for block, low in enumerate(blocks):
         greatest[block] = np.fmax.reduce(part(low, low + _CACHED))
-        let_go(strain)
+        release_pages(strain)
     while True:
         block = int(np.nanargmax(greatest))
         low = blocks[block]

@@ -323,7 +323,7 @@ def _strongest_response(
 
 
 @dataclass(frozen=True)
-class _Step:
+class _SlipStep:
     """One step of a series."""
 
     onset: int
@@ -341,12 +341,12 @@ class _Step:
         return self.onset + self.extent - 1
 
 
-def _step_sizes(values: ArrayLike, steps: tuple[_Step, ...]) -> tuple[Floats, Floats]:
+def _step_sizes(values: ArrayLike, steps: tuple[_SlipStep, ...]) -> tuple[Floats, Floats]:
     """Size of known steps in another series of the same length.
 
     Examples
     --------
-    >>> step = _Step(50, 1, 50, 50, 50, 1.0, 0.0, 0.0)
+    >>> step = _SlipStep(50, 1, 50, 50, 50, 1.0, 0.0, 0.0)
     >>> size, _ = _step_sizes(3.0 * (np.arange(100) >= 50), (step,))
     >>> print(size.round(6))
     [3.]
@@ -385,7 +385,7 @@ def _step_sizes(values: ArrayLike, steps: tuple[_Step, ...]) -> tuple[Floats, Fl
 MOST_STEPS = 30
 
 
-def _refine(values: Floats, candidate: _Candidate, sigma: float) -> tuple[_Step, bool]:
+def _refine(values: Floats, candidate: _Candidate, sigma: float) -> tuple[_SlipStep, bool]:
     """Onset and extent by least squares around a candidate; False where a kink does as well."""
     reach = 2 * max(candidate.window, candidate.extent)
     first = max(0, candidate.onset - reach, candidate.onset // 2)
@@ -410,7 +410,7 @@ def _refine(values: Floats, candidate: _Candidate, sigma: float) -> tuple[_Step,
     kink, kink_power = _fit_kinks(local, onset=onsets)
     kink_gain = float(np.max(kink**2 / kink_power))
     is_step = float(gain[best]) - kink_gain > variance * 10 and extent[best] < widest
-    step = _Step(
+    step = _SlipStep(
         onset=int(onset[best]) + first,
         extent=int(extent[best]),
         onset_low=int(onset[near].min()) + first,
@@ -426,7 +426,7 @@ def _refine(values: Floats, candidate: _Candidate, sigma: float) -> tuple[_Step,
     return step, bool(is_step)
 
 
-def _is_recovery(step: _Step, earlier: list[_Step], reach: int) -> bool:
+def _is_recovery(step: _SlipStep, earlier: list[_SlipStep], reach: int) -> bool:
     """Return whether a change belongs to a larger, opposite step just before it.
 
     A viscoelastic specimen that has been let out a little recovers part of the loss.
@@ -439,16 +439,16 @@ def _is_recovery(step: _Step, earlier: list[_Step], reach: int) -> bool:
     )
 
 
-def _joined(steps: list[_Step]) -> tuple[_Step, ...]:
+def _joined(steps: list[_SlipStep]) -> tuple[_SlipStep, ...]:
     """Join steps of one sign that touch: parts of one step that does not develop evenly."""
-    joined: list[_Step] = []
+    joined: list[_SlipStep] = []
     for step in sorted(steps, key=lambda step: step.onset):
         last = joined[-1] if joined else None
         if last is None or last.size * step.size < 0 or step.onset > last.end + last.extent:
             joined.append(step)
             continue
         larger = max(last, step, key=lambda part: abs(part.size))
-        joined[-1] = _Step(
+        joined[-1] = _SlipStep(
             # A part much smaller than the other belongs to the shape and does not date it.
             onset=last.onset if abs(last.size) > 0.2 * abs(larger.size) else step.onset,
             extent=max(last.end, step.end) - last.onset + 1,
@@ -462,7 +462,7 @@ def _joined(steps: list[_Step]) -> tuple[_Step, ...]:
     return tuple(joined)
 
 
-def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[_Step, ...]:
+def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[_SlipStep, ...]:
     """Steps of a series that neither drift, creep nor softening explains, in order.
 
     The likelihood ratio of a step of extent w against none, in a window of h samples
@@ -531,7 +531,7 @@ def find_steps(values: ArrayLike, *, false_alarm: float) -> tuple[_Step, ...]:
     _, quantum = sample_noise(series)
     smallest = 1.5 * quantum if quantum > sigma else 0.0
     allowed = np.ones(series.size, dtype=bool)
-    steps: list[_Step] = []
+    steps: list[_SlipStep] = []
     explained = 0
     while len(steps) + explained < MOST_STEPS:
         candidate, tried = _strongest_response(
@@ -575,7 +575,7 @@ def _filled(series: Floats) -> Floats:
     return np.interp(np.arange(series.size), known, series[known])
 
 
-def _creep_per_cycle(series: Floats, steps: tuple[_Step, ...]) -> float:
+def _creep_per_cycle(series: Floats, steps: tuple[_SlipStep, ...]) -> float:
     """Slope of the last half of the series, steps taken out."""
     n_samples = series.size
     half = slice(n_samples // 2, n_samples)
@@ -585,7 +585,7 @@ def _creep_per_cycle(series: Floats, steps: tuple[_Step, ...]) -> float:
     return float(np.linalg.lstsq(basis, series[half])[0][1] / n_samples)
 
 
-def _remarks(name: str, steps: tuple[_Step, ...], sizes: Floats) -> list[str]:
+def _remarks(name: str, steps: tuple[_SlipStep, ...], sizes: Floats) -> list[str]:
     rises = [str(step.onset + 1) for step, size in zip(steps, sizes, strict=True) if size > 0]
     if not rises:
         return []
@@ -665,7 +665,7 @@ def find_slips(
     n_cycles = peaks.shape[1]
     notes: list[str] = []
     names: list[str] = []
-    steps: list[_Step] = []
+    steps: list[_SlipStep] = []
     sizes, lengths = [np.empty((2, 0))], [np.empty((2, 0))]
     creep = np.full(len(specimens), np.nan)
     if n_cycles < settings.minimum_cycles:
@@ -702,7 +702,7 @@ def find_slips(
     )
 
 
-def _shared_steps(names: list[str], steps: list[_Step]) -> list[str]:
+def _shared_steps(names: list[str], steps: list[_SlipStep]) -> list[str]:
     """Note steps of two specimens in the same cycles: more likely the machine than the splices."""
     shared = {
         step.onset + 1

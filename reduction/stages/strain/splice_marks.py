@@ -395,7 +395,7 @@ def measure_mark_tension(
 
 @dataclass(frozen=True)
 @read_only_arrays
-class Calibration:
+class SpliceCalibration:
     """Coefficients of one method.
 
     Parameters
@@ -451,7 +451,7 @@ def line_slope(position: ArrayLike, values: ArrayLike) -> float:
 
 def fit_free_length_line(
     free_length: ArrayLike, position: ArrayLike, *, reading_uncertainty: float
-) -> Calibration:
+) -> SpliceCalibration:
     """Least squares line of free length on position.
 
     Parameters
@@ -511,7 +511,7 @@ def fit_free_length_line(
             [-centre / spread, 1 / spread],
         ]
     )
-    return Calibration(
+    return SpliceCalibration(
         np.array([intercept, slope]), covariance, np.zeros((2, 2)), residual, scatter.note
     )
 
@@ -524,7 +524,7 @@ def fit_splice_ratio(
     relaxed_splice_length: float,
     reading_uncertainty: float,
     relaxed_covariance: ArrayLike = ((0.0, 0.0), (0.0, 0.0)),
-) -> Calibration:
+) -> SpliceCalibration:
     r"""Ratio of splice strain to free strain, least squares through the slack point.
 
     .. math:: \rho = \sum x y / \sum x^2
@@ -608,7 +608,7 @@ def fit_splice_ratio(
             ]
         ]
     )
-    return Calibration(
+    return SpliceCalibration(
         np.array([ratio]), np.array([[variance]]), sensitivity, residual, scatter.note
     )
 
@@ -637,7 +637,7 @@ def fit_splice_law(
     reading_uncertainty: float,
     exponent: float | None = None,
     relaxed_standard_uncertainty: float = 0.0,
-) -> Calibration:
+) -> SpliceCalibration:
     r"""Power law of splice strain on tension.
 
     .. math:: \ell_s (1 + c F^n)
@@ -752,7 +752,7 @@ def fit_splice_law(
     scale = reference**-exponent
     to_si = np.array([[scale, -at_reference * scale * np.log(reference)], [0.0, 1.0]])
     sensitivity = to_si @ sensitivity
-    return Calibration(
+    return SpliceCalibration(
         np.array([at_reference * scale, exponent]),
         to_si @ covariance @ to_si.T,
         np.stack([np.zeros(2), sensitivity], axis=1),

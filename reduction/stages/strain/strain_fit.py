@@ -27,8 +27,8 @@ from reduction.record.settings import StrainMethod, StrainSettings
 from reduction.stages.standstills import Standstills
 from reduction.stages.strain.splice_marks import (
     HELD_EXPONENT,
-    Calibration,
     RelaxedLengths,
+    SpliceCalibration,
     check_marks,
     fit_free_length_line,
     fit_splice_law,
@@ -96,7 +96,7 @@ class PooledMarks:
 
 
 def _with_relaxed(
-    names: tuple[str, ...], relaxed: RelaxedLengths, fit: Calibration
+    names: tuple[str, ...], relaxed: RelaxedLengths, fit: SpliceCalibration
 ) -> tuple[dict[str, float], Floats]:
     """Coefficients and joint covariance of relaxed lengths and fitted values."""
     both = np.zeros((2 + fit.values.size,) * 2)
@@ -110,7 +110,7 @@ def _with_relaxed(
 
 
 def _scatter_notes(
-    marks: SpliceMarks, relaxed: RelaxedLengths, fit: Calibration
+    marks: SpliceMarks, relaxed: RelaxedLengths, fit: SpliceCalibration
 ) -> tuple[str, ...]:
     """What the marks do that the tape does not explain."""
     told = {"slack rows": relaxed.note, "stretched marks": fit.note}
@@ -181,7 +181,7 @@ def _fit_tension_driven(readings: PooledMarks) -> StrainModel:
     marks, rows = readings.marks, readings.stretched_rows("tension-driven")
     relaxed = readings.relaxed()
 
-    def law(exponent: float | None) -> Calibration:
+    def law(exponent: float | None) -> SpliceCalibration:
         return fit_splice_law(
             marks.splice_length[rows],
             readings.tension[rows],
