@@ -47,6 +47,7 @@ DOORS = {
     "reduction.pipeline.reduce_test": "a record to a reduced test",
     "reduction.prediction.hose_prediction": "a prediction in one piece",
     "reduction.stages.reduced_test": "a reduced test in one piece",
+    "reduction.record.contributions": "errors of a measurement, and what each adds to a number",
     "reduction.record.measurement": "records, specimens, flags",
     "reduction.published.reproduced_item": "a printed number beside the computed one",
     "reduction.published.reproduce_page": "every printed number again",
