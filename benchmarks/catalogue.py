@@ -30,8 +30,8 @@ from reduction.batch.catalogue import (
     condition_of,
     load_catalogue,
     needed_quantities,
-    rebuild,
 )
+from reduction.batch.catalogue_entries import rebuild
 
 ROOT = Path(__file__).parents[1]
 WANTED = 1.0  # s, of a question

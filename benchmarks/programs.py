@@ -34,10 +34,10 @@ say(seconds=time.perf_counter() - start, rows=len(table))
 
 REDUCE = """
 from reduction.batch.test_history import fit_strain_models
-from reduction.batch.reduce_tests import reduce_survey
+from reduction.batch.reduce_tests import _reduce_survey
 from reduction.batch.survey import survey_log
 from reduction.campaign.load import load_campaign
-from reduction.readers.layout import Parts
+from reduction.readers.layout import LogParts
 if sys.argv[2:] in (["memory"], ["disk"]):
     Parts.folder_of = lambda self, n_bytes: {"memory": None, "disk": self.folder}[sys.argv[2]]
 campaign = load_campaign(Path(sys.argv[1]))
@@ -47,7 +47,7 @@ if survey.error is not None:
     raise survey.error
 located = time.perf_counter()
 models, _ = fit_strain_models(campaign, [survey])
-test = reduce_survey(
+test = _reduce_survey(
     campaign, survey, [models["long", name] for name in survey.plan.specimens], None, "{}"
 )
 reduced = time.perf_counter()

@@ -9,7 +9,8 @@ from typing import Any
 
 import xarray as xr
 
-from reduction.archive.open import OF_CAMPAIGN, Chunks, archives_of_tests, open_archive
+from reduction.archive.open import Chunks, open_archive
+from reduction.archive.product_files import OF_CAMPAIGN, archives_of_tests
 from reduction.record.errors import ArchiveError, SettingsError
 
 # what an archive says of itself: of a campaign with one archive it is not said either

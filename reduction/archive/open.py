@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import re
 from collections.abc import Callable, Container, Hashable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
@@ -336,36 +335,3 @@ def _open_in_chunks(path: Path, chunks: Chunks) -> xr.Dataset:
             found=f"{chunks!r}: {str(error).splitlines()[0]}",
             needed='a number of values, or "auto", by the name of a dimension',
         ) from error
-
-
-OF_CAMPAIGN = ("surfaces", "predictions", "comparisons", "outcomes", "change_in_length")
-"""Archives of a whole campaign, by their file names; no test may be called so."""
-
-
-def archives_in(folder: Path) -> list[Path]:
-    """All archives in a folder, by name; `OSError` where the system refuses it."""
-    try:
-        names = os.listdir(folder)
-    except (FileNotFoundError, NotADirectoryError):
-        return []
-    # a folder that may not be read is no empty one, as `Path.glob` has it
-    return [folder / name for name in sorted(names) if name.endswith(".nc")]
-
-
-def processed_folders(processed: Path) -> list[Path]:
-    """Folders with archives: the one that is given, or those in it."""
-    inside = sorted(processed.iterdir()) if processed.is_dir() else []
-    folders = [processed] if archives_in(processed) else [one for one in inside if one.is_dir()]
-    folders = [folder for folder in folders if archives_in(folder)]
-    if not folders:
-        raise ArchiveError(
-            f"{processed}: no archive was found",
-            needed="a folder processed/CAMPAIGN with *.nc in it",
-            hint="`reduction run CAMPAIGN.toml` makes one.",
-        )
-    return folders
-
-
-def archives_of_tests(folder: Path) -> list[Path]:
-    """Archives of reduced tests in a folder, by name; `OSError` where the system refuses it."""
-    return [path for path in archives_in(folder) if path.stem not in OF_CAMPAIGN]

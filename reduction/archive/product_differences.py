@@ -20,7 +20,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from reduction.archive.open import archives_in
+from reduction.archive.product_files import archives_in
 from reduction.record.errors import ArchiveError, DataError, SettingsError
 
 MOVED = 0.5

@@ -270,7 +270,7 @@ def kept_samples(test: ReducedTest, settings: ReductionSettings) -> _KeptSamples
         index=index,
         words=words,
         note=f"samples are stored in part: {words}; every number was made from the whole record, "
-        'of which reduction.archive.test_dataset = "all" stores every sample',
+        'of which reduction.archive.samples = "all" stores every sample',
     )
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from reduction.archive.open import OF_CAMPAIGN
+from reduction.archive.product_files import OF_CAMPAIGN
 from reduction.batch.campaign_status import Progress, TestStatus
 from reduction.batch.reuse import Basis, basis_of
 from reduction.batch.run_lock import RunLock

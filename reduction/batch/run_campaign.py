@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from reduction.archive.csv_tables import write_tables
-from reduction.archive.open import OF_CAMPAIGN, Opener, archives_of_tests, read_once
+from reduction.archive.open import Opener, read_once
+from reduction.archive.product_files import OF_CAMPAIGN, archives_of_tests
 from reduction.archive.write import keep_details, write_text_atomically
 from reduction.batch.campaign_status import (
     PartStatus,
@@ -19,7 +20,8 @@ from reduction.batch.campaign_status import (
     read_status,
     status_csv,
 )
-from reduction.batch.catalogue import FILE_NAME, write_catalogue
+from reduction.batch.catalogue import FILE_NAME
+from reduction.batch.catalogue_entries import write_catalogue
 from reduction.batch.experiment_product import write_experiments
 from reduction.batch.other_products import tests_of_ropes, write_change_in_length, write_outcomes
 from reduction.batch.prediction_product import write_comparisons, write_predictions

@@ -12,7 +12,8 @@ from typing import Any, Literal
 
 from reduction import __version__
 from reduction.archive.csv_tables import write_tables
-from reduction.archive.open import OF_CAMPAIGN, archives_in, read_once, reading
+from reduction.archive.open import read_once, reading
+from reduction.archive.product_files import OF_CAMPAIGN, archives_in
 from reduction.archive.write import values_sha256
 from reduction.batch.campaign_status import Progress
 from reduction.batch.experiment_product import settings_of_experiments

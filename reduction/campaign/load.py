@@ -9,7 +9,8 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
-from reduction.archive.open import archives_of_tests, reading
+from reduction.archive.open import reading
+from reduction.archive.product_files import archives_of_tests
 from reduction.campaign.experiment_plans import agree_on_pulls, plan_experiment
 from reduction.campaign.hose_plans import hose_of, plan_comparison
 from reduction.campaign.model import (

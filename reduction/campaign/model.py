@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, field_validator
 
-from reduction.archive.open import OF_CAMPAIGN
+from reduction.archive.product_files import OF_CAMPAIGN
 from reduction.archive.uncertainty_budget import parse_place
 from reduction.archive.write import ReportDetails, ReportLimit, ReportSection, ReportText, Statement
 from reduction.campaign.plan import TestPlan, product_of

@@ -19,7 +19,8 @@ from rich.markup import escape
 from rich.table import Table
 
 from reduction.archive.atomic_write import atomic_file
-from reduction.archive.open import Opener, processed_folders, read_once, reading
+from reduction.archive.open import Opener, read_once, reading
+from reduction.archive.product_files import processed_folders
 from reduction.batch.campaign_status import PartStatus, TestStatus
 from reduction.batch.experiment_product import experiments_found
 from reduction.batch.other_products import results_found

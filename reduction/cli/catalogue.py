@@ -121,7 +121,7 @@ def _catalogue(folder: Path, quantities: Sequence[str] | None, *, rebuild: bool)
     if not rebuild:
         return load_catalogue(folder, quantities)
     # a question does without the libraries that read archives
-    from reduction.batch.catalogue import rebuild as write_again
+    from reduction.batch.catalogue_entries import rebuild as write_again
 
     left_out = write_again(folder)
     catalogue = load_catalogue(folder, quantities)

@@ -10,7 +10,8 @@ from typing import Any, cast
 import numpy as np
 import xarray as xr
 
-from reduction.archive.open import archives_of_tests, failing_reads, open_archive
+from reduction.archive.open import failing_reads, open_archive
+from reduction.archive.product_files import archives_of_tests
 from reduction.campaign.assembly_spec import AssemblyCase, load_assembly_case
 from reduction.campaign.toml_file import in_toml
 from reduction.cli.output import CommandOutput

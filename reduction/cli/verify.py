@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from pathlib import Path
 
-from reduction.archive.open import processed_folders
+from reduction.archive.product_files import processed_folders
 from reduction.batch.verification import verify_campaign
 from reduction.campaign.load import find_campaign
 from reduction.cli.output import CommandOutput

@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from reduction.archive.open import Opener, archives_of_tests, reading
+from reduction.archive.open import Opener, reading
+from reduction.archive.product_files import archives_of_tests
 from reduction.archive.shared_errors import components_of
 from reduction.archive.surfaces_dataset import surface_names, surfaces_of
 from reduction.archive.uncertainty_budget import random_freedom

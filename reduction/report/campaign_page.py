@@ -9,7 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from reduction.archive.atomic_write import take_away
-from reduction.archive.open import Opener, archives_of_tests, reading
+from reduction.archive.open import Opener, reading
+from reduction.archive.product_files import archives_of_tests
 from reduction.archive.write import read_details, write_text_atomically
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError

@@ -79,7 +79,7 @@ def part(command, folder):
 
 @pytest.fixture(scope="module")
 def whole(command, folder):
-    return run(command, folder, "whole", 'reduction.archive.test_dataset = "all"')
+    return run(command, folder, "whole", 'reduction.archive.samples = "all"')
 
 
 def test_by_default_some_cycles_are_stored_and_every_number_is_that_of_the_whole(part, whole):
@@ -127,7 +127,7 @@ def test_the_page_draws_no_line_across_what_is_left_out(part, folder):
 def test_a_changed_key_makes_the_test_anew_and_an_unchanged_one_does_not(command, folder):
     _, first = run(command, folder, "again")
     _, second = run(command, folder, "again")
-    archive, third = run(command, folder, "again", 'reduction.archive.test_dataset = "all"')
+    archive, third = run(command, folder, "again", 'reduction.archive.samples = "all"')
     assert first["status"] == third["status"] == "reduced_with_notes"
     assert second["status"] == "unchanged"
     with reduction.open_campaign(archive / "L-1.nc") as found:
@@ -137,12 +137,8 @@ def test_a_changed_key_makes_the_test_anew_and_an_unchanged_one_does_not(command
 
 def test_a_word_that_is_no_choice_is_refused(command, folder):
     campaign = folder / "wrong.toml"
-    campaign.write_text(
-        CAMPAIGN.format('reduction.archive.test_dataset = "some"'), encoding="utf-8"
-    )
+    campaign.write_text(CAMPAIGN.format('reduction.archive.samples = "some"'), encoding="utf-8")
     done = command("check", campaign)
     assert done.returncode == 2
     message = " ".join(done.stderr.split())
-    assert (
-        "reduction.archive.test_dataset is unknown; found 'some'; needed \"selected\" or" in message
-    )
+    assert "reduction.archive.samples is unknown; found 'some'; needed \"selected\" or" in message

@@ -7,7 +7,7 @@ import pytest
 from commandruns import reduction
 from documentedcampaign import copied, run
 
-from reduction.archive.open import processed_folders
+from reduction.archive.product_files import processed_folders
 
 NAME = "two-tethers"
 

@@ -15,7 +15,8 @@ from faults.calls import Calls
 from shortcampaign import TESTS, write_short
 
 from reduction.archive.csv_tables import write_tables
-from reduction.batch.catalogue import FILE_NAME, write_catalogue
+from reduction.batch.catalogue import FILE_NAME
+from reduction.batch.catalogue_entries import write_catalogue
 from reduction.pages.design_values import write_design_page
 from reduction.report.campaign_page import write_report
 

@@ -88,6 +88,6 @@ def test_a_number_of_the_cycles_that_the_samples_do_not_give_is_seen(plant):
 
         return of_cycles
 
-    plant(case, loops, "quantities_of_cycles", too_high)
+    plant(case, loops, "_quantities_of_cycles", too_high)
     with pytest.raises(InvariantError, match="peak_tension: 6 values differ"):
         judge(case, files, "another log")

@@ -144,16 +144,16 @@ from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 from generate import write_campaign
 from reduction.batch.test_history import fit_strain_models
-from reduction.batch.reduce_tests import reduce_survey
+from reduction.batch.reduce_tests import _reduce_survey
 from reduction.batch.survey import survey_log
 from reduction.campaign.load import load_campaign
-from reduction.readers.layout import Parts
+from reduction.readers.layout import LogParts
 Parts.folder_of = lambda self, n_bytes: self.folder
 Parts.length_of = lambda self, n_bytes: 1 << 22
 campaign = load_campaign(write_campaign(Path(sys.argv[2]), n_rows=int(sys.argv[3])))
 [survey] = survey_log(campaign, "long")
 models, _ = fit_strain_models(campaign, [survey])
-test = reduce_survey(
+test = _reduce_survey(
     campaign, survey, [models["long", name] for name in survey.plan.specimens], None, "{}"
 )
 peak = [line.split()[1] for line in open("/proc/self/status") if line.startswith("VmHWM")]

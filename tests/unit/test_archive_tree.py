@@ -11,7 +11,8 @@ import xarray as xr
 
 import reduction
 from reduction.archive import open as opening
-from reduction.archive.open import OF_CAMPAIGN, open_archive
+from reduction.archive.open import open_archive
+from reduction.archive.product_files import OF_CAMPAIGN
 from reduction.record.errors import ArchiveError, SettingsError
 
 needs_dask = pytest.mark.skipif(find_spec("dask") is None, reason="Dask is not installed")

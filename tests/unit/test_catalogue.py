@@ -19,10 +19,7 @@ from reduction.batch import catalogue as file
 from reduction.batch.catalogue import (
     CONDITIONS,
     FILE_NAME,
-    LEFT_OUT,
     Query,
-    _entry_of,
-    _kept_cycles,
     _shown_path,
     answer,
     campaigns_below,
@@ -31,9 +28,14 @@ from reduction.batch.catalogue import (
     meaning_of,
     needed_quantities,
     quantities_there,
-    rebuild,
     unit_of,
     write_answer,
+)
+from reduction.batch.catalogue_entries import (
+    LEFT_OUT,
+    _entry_of,
+    _kept_cycles,
+    rebuild,
     write_catalogue,
 )
 from reduction.quantities.names import QUANTITIES

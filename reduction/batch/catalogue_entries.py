@@ -1,0 +1,343 @@
+"""Rows of the catalogue from the archives of a campaign, and the file that holds them."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import pyarrow  # type: ignore[import-untyped]
+import pyarrow.parquet  # type: ignore[import-untyped]
+import xarray as xr
+from numpy.typing import NDArray
+
+from reduction.archive.atomic_write import atomic_file, remove_abandoned
+from reduction.archive.open import Opener, reading
+from reduction.archive.product_files import OF_CAMPAIGN
+from reduction.batch.catalogue import (
+    CONDITIONS,
+    FILE_NAME,
+    MARK,
+    NUMBER,
+    NUMBERS,
+    TEXTS,
+    _archives_of,
+    _column_type,
+    _mark,
+    _shown_path,
+    campaigns_below,
+)
+from reduction.quantities.names import QUANTITIES
+from reduction.record.errors import ArchiveError
+from reduction.record.measurement import Floats
+
+LEFT_OUT: Final = frozenset(
+    {"sample", "selected_cycle", "bound", "uncertainty_component", "uncertainty_source"}
+)
+
+"""Dimensions that stay in the archives: samples, curves by cycle, parts of uncertainties."""
+
+_SAMPLES_AT_ONCE = 1_000_000
+
+_ROWS_AT_ONCE = 65_536
+
+_WHOLE = -1
+
+_TESTS = pyarrow.schema(
+    [("row", pyarrow.int32()), ("is_whole", pyarrow.bool_())]
+    + [(name, _column_type(name)) for name in (*CONDITIONS, *NUMBER)]
+)
+
+
+@dataclass(frozen=True)
+class CatalogueEntry:
+    """What a catalogue keeps of one archive.
+
+    Parameters
+    ----------
+    rows : list of dict
+        Conditions: of the whole test, then of each specimen.
+    numbers : list of pyarrow.Table
+        Numbers that stand on the same dimensions, with which of the rows each is of.
+    """
+
+    rows: list[dict[str, Any]]
+    numbers: list[Any]
+
+
+def write_catalogue(archives: Sequence[Path], path: Path, *, opener: Opener = reading) -> None:
+    """Write the catalogue of a campaign, whole or not at all.
+
+    Parameters
+    ----------
+    archives : sequence of pathlib.Path
+        Of the campaign.
+    path : pathlib.Path
+        Of the catalogue; equal archives give equal bytes.
+    opener : Opener
+        How archives are opened.
+
+    Raises
+    ------
+    ArchiveError
+        If an archive cannot be read, or the disk refuses.
+    """
+    _write([_entry_of(one, opener=opener) for one in sorted(archives)], path)
+
+
+def rebuild(folder: Path) -> dict[str, str]:
+    """Write the catalogue of every campaign of a folder from the archives that are there.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Holds a folder for each campaign.
+
+    Returns
+    -------
+    left_out : dict of str to str
+        Archives that cannot be read and folders that take no file, each with the reason.
+    """
+    left_out = {}
+    for campaign in campaigns_below(folder):
+        shown = _shown_path(campaign.name)
+        entries = []
+        try:
+            for path in _archives_of(campaign):
+                try:
+                    entries.append(_entry_of(path))
+                except (ArchiveError, OSError, RuntimeError, ValueError, LookupError) as error:
+                    # one that opens may have parts that are damaged, or not those of an archive
+                    words = (str(error) or type(error).__name__).splitlines()[0]
+                    left_out[f"{shown}/{_shown_path(path.name)}"] = _shown_path(words)
+            if entries:
+                _write(entries, campaign / FILE_NAME)
+        except OSError as error:
+            left_out[shown] = _shown_path(str(error))
+    return left_out
+
+
+def _write(entries: Sequence[CatalogueEntry], path: Path) -> None:
+    rows: list[dict[str, Any]] = []
+    numbers = []
+    for entry in entries:
+        for one in entry.numbers:
+            row = pyarrow.array(one["row"].to_numpy() + len(rows), pyarrow.int32())
+            numbers.append(one.set_column(0, "row", row))
+        rows += entry.rows
+    tests = pyarrow.Table.from_pylist(
+        [row | {"row": place} for place, row in enumerate(rows)], schema=_TESTS
+    )
+    table = pyarrow.concat_tables([tests.schema.empty_table(), *numbers], promote_options="default")
+    # each number with the conditions of its test: the file can be read by itself
+    for name in ("is_whole", *CONDITIONS):
+        place = table.schema.get_field_index(name)
+        table = table.set_column(place, name, tests[name].take(table["row"]))
+    table = table.sort_by("quantity")
+    schema = table.schema.with_metadata({MARK: _mark()})
+    tests = pyarrow.concat_tables([schema.empty_table(), tests], promote_options="default")
+    try:
+        remove_abandoned(path)
+        with atomic_file(path) as part:
+            # opened here: a path may be no text
+            with (
+                part.open("wb") as file,
+                pyarrow.parquet.ParquetWriter(file, schema, compression="zstd") as writer,
+            ):
+                writer.write_table(tests, max(1, tests.num_rows))  # the first group are the tests
+                writer.write_table(table, _ROWS_AT_ONCE)
+    except ArchiveError:
+        raise
+    except OSError as error:
+        raise ArchiveError(
+            f"{path} cannot be written",
+            found=getattr(error, "strerror", None) or str(error),
+            hint="What was there before is kept.",
+        ) from error
+
+
+def _kept_cycles(n_cycles: int) -> NDArray[np.intp]:
+    """Index of the cycles whose numbers a catalogue keeps: 1, 2, 5, 10, 20, 50, ... and the last.
+
+    Examples
+    --------
+    >>> [int(index) + 1 for index in _kept_cycles(3000)]
+    [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 3000]
+    """
+    numbers = [one * 10**power for power in range(len(str(n_cycles))) for one in (1, 2, 5)]
+    return np.array(sorted({n for n in numbers if n < n_cycles} | {n_cycles}), dtype=np.intp) - 1
+
+
+def _entry_of(path: Path, *, opener: Opener = reading) -> CatalogueEntry:
+    """Read what a catalogue keeps of an archive; `ArchiveError` where it cannot be read."""
+    with opener(path) as archive:
+        attributes = archive.attrs
+        stem = path.stem
+        whole: dict[str, Any] = {"synthetic": "no", "campaign": path.parent.name, "test": stem}
+        whole |= {name: str(attributes[name]) for name in TEXTS if name in attributes}
+        whole |= {"archive": path.name, "is_whole": True}
+        part = stem if stem in OF_CAMPAIGN else ""
+        whole["test_kind"] = part or str(attributes.get("test_kind", ""))
+        if "cycle" in archive.sizes:
+            whole["n_cycles"] = float(archive.sizes["cycle"])
+        names = (
+            archive.variables["specimen"].to_numpy().tolist() if "specimen" in archive.sizes else []
+        )
+        ends = _strain_ends(archive) if names else []
+        of_specimens = [
+            whole
+            | {"specimen": str(name), "is_whole": False}
+            | _conditions(archive, place)
+            | ends[place]
+            for place, name in enumerate(names)
+        ]
+        rows = [
+            {name: _shown_path(one) if isinstance(one, str) else one for name, one in row.items()}
+            for row in (whole, *of_specimens)
+        ]
+        return CatalogueEntry(rows, list(_blocks(archive, names)))
+
+
+def _conditions(archive: xr.Dataset, place: int) -> dict[str, str | float]:
+    found: dict[str, str | float] = {}
+    for name in (*TEXTS, *NUMBERS):
+        if name != "specimen" and name in archive and archive.variables[name].dims == ("specimen",):
+            value = archive.variables[name].to_numpy()[place]
+            found[name] = float(value) if name in NUMBERS else str(value)
+    return _known(found)
+
+
+def _known(found: dict[str, str | float]) -> dict[str, str | float]:
+    """Without numbers that are missing."""
+    return {name: one for name, one in found.items() if isinstance(one, str) or np.isfinite(one)}
+
+
+def _strain_ends(archive: xr.Dataset) -> list[dict[str, str | float]]:
+    """Least and greatest strain of each specimen, of its samples, steps and cycles."""
+    n_specimens = archive.sizes["specimen"]
+    low, high = np.full(n_specimens, np.nan), np.full(n_specimens, np.nan)
+    if "strain" in archive and archive.variables["strain"].dims in (
+        ("specimen", "sample"),
+        ("step",),
+    ):
+        strain = archive.variables["strain"]
+        long = strain.dims[-1]
+        for first in range(0, strain.sizes[long], _SAMPLES_AT_ONCE):
+            part = strain.isel({long: slice(first, first + _SAMPLES_AT_ONCE)})
+            spread = np.broadcast_to(part.values, (n_specimens, part.sizes[long]))
+            low, high = _widened(low, high, spread)
+    if {"mean_strain", "strain_amplitude"} <= set(archive.variables) and "cycle" in archive.sizes:
+        mean, half = (
+            archive.variables["mean_strain"].to_numpy(),
+            archive.variables["strain_amplitude"].to_numpy(),
+        )
+        low, high = _widened(low, high, np.concatenate([mean - half, mean + half], axis=-1))
+    return [
+        _known({"least_strain": float(least), "greatest_strain": float(most)})
+        for least, most in zip(low, high, strict=True)
+    ]
+
+
+def _widened(low: Floats, high: Floats, strain: Floats) -> tuple[Floats, Floats]:
+    # fmin and fmax pass over samples that are missing
+    return (
+        np.fmin(low, np.fmin.reduce(strain, axis=-1, initial=np.nan)),
+        np.fmax(high, np.fmax.reduce(strain, axis=-1, initial=np.nan)),
+    )
+
+
+def _blocks(archive: xr.Dataset, names: list[str]) -> Iterator[Any]:
+    """Numbers of an archive, those on the same dimensions together."""
+    groups: dict[tuple[Hashable, ...], list[str]] = {}
+    for name, variable in archive.variables.items():
+        is_number = variable.dtype.kind in "fiu" and "flag_meanings" not in variable.attrs
+        stays = LEFT_OUT & set(variable.dims) or any(
+            str(dim).endswith("_other") for dim in variable.dims
+        )
+        if is_number and not stays and name in QUANTITIES and name not in archive.sizes:
+            groups.setdefault(variable.dims, []).append(str(name))
+    for dims, group in groups.items():
+        yield _block(archive, dims, group, names)
+
+
+def _block(
+    archive: xr.Dataset, dims: tuple[Hashable, ...], group: list[str], specimens: list[str]
+) -> Any:
+    axes = [np.arange(archive.sizes[dim]) for dim in dims]
+    cycles: dict[str, NDArray[np.intp]] = {}
+    if "cycle" in dims and archive.sizes["cycle"]:
+        cycles["cycle"] = _kept_cycles(archive.sizes["cycle"])
+        axes[dims.index("cycle")] = cycles["cycle"]
+    shape = tuple(len(axis) for axis in axes)
+    # of many cycles the others are not read
+    read = {
+        name: archive.variables[name].isel(cycles, missing_dims="ignore")
+        for one in group
+        for name in (one, f"{one}_standard_uncertainty")
+        if name in archive.variables
+    }
+    values = np.stack([np.asarray(read[name].values, float) for name in group])
+    spread = np.full_like(values, np.nan)
+    for row, name in enumerate(group):
+        own = read.get(f"{name}_standard_uncertainty")
+        if own is not None:
+            missing = [axis for axis, dim in enumerate(dims) if dim not in own.dims]
+            spread[row] = np.broadcast_to(np.expand_dims(own.values, missing), shape)
+    # where a quantity is known anywhere its other places stand as missing, so that all keep their
+    # order; a quantity of which nothing is known is not there
+    known = np.isfinite(values)
+    has_any = known.reshape(len(group), -1).any(axis=1)
+    found = np.nonzero(np.broadcast_to(has_any.reshape(-1, *[1] * len(dims)), values.shape))
+    at = {dim: axes[axis][found[axis + 1]] for axis, dim in enumerate(dims)}
+    n_values = len(found[0])
+    place = {
+        str(dim): _labels(archive, str(dim))[index]
+        for dim, index in at.items()
+        if dim != "specimen"
+    }
+    only = 0 if len(specimens) == 1 else _WHOLE
+    specimen = np.full(n_values, only, np.int32)
+    if "specimen" in at:
+        specimen = at["specimen"].astype(np.int32)
+    else:
+        for dim, index in at.items():
+            whose = f"{dim}_specimen"
+            if whose in archive and archive.variables[whose].dims == (dim,) and specimens:
+                number = {name: place for place, name in enumerate(specimens)}
+                of_row = [
+                    number.get(str(name), _WHOLE) for name in archive.variables[whose].to_numpy()
+                ]
+                specimen = np.array(of_row, np.int32)[index]
+    columns = {
+        # the row of the whole test stands before those of its specimens
+        "row": 1 + specimen,
+        "quantity": np.array(group, object)[found[0]],
+        "value": values[found],
+        "standard_uncertainty": spread[found],
+    } | place
+    types = {"row": pyarrow.int32()}
+    return pyarrow.table(
+        {
+            name: pyarrow.array(column, types.get(name) or _column_type(name), from_pandas=True)
+            for name, column in columns.items()
+        }
+    )
+
+
+def _labels(archive: xr.Dataset, dim: str) -> NDArray[Any]:
+    """Text or number of each place along a dimension; from 1 where the archive names none."""
+    is_text = _column_type(dim) == "string"
+    if dim == "comparison" and {"ratio_numerator", "ratio_denominator"} <= set(archive.variables):
+        pairs = zip(
+            archive.variables["ratio_numerator"].to_numpy(),
+            archive.variables["ratio_denominator"].to_numpy(),
+            strict=True,
+        )
+        labels: NDArray[Any] = np.array([f"{over} over {under}" for over, under in pairs])
+    elif dim not in archive.variables:
+        labels = np.arange(1, archive.sizes[dim] + 1)
+    else:
+        labels = archive.variables[dim].to_numpy()
+    return labels.astype(str).astype(object) if is_text else labels.astype(float)
