@@ -62,14 +62,24 @@ def differences_of_archives(one: Path, other: Path) -> Iterator[Difference]:
         for file in (first, second):
             file.set_auto_mask(False)
         yield from _attributes(one.name, first, second)
-        if list(first.variables) != list(second.variables):
-            found = set(first.variables) ^ set(second.variables)
-            yield Difference(where=one.name, said=f"variables {sorted(found)}")
-        for name in first.variables:
-            if name in second.variables:
-                where = f"{one.name}:{name}"
-                yield from _attributes(where, first[name], second[name])
-                yield from compared(where, first[name][...], second[name][...])
+        own, its = _variables(first), _variables(second)
+        if list(own) != list(its):
+            yield Difference(where=one.name, said=f"variables {sorted(set(own) ^ set(its))}")
+        for name in own:
+            if name in its:
+                where = f"{one.name}:{name.rpartition('/')[2]}"
+                yield from _attributes(where, own[name], its[name])
+                yield from compared(where, own[name][...], its[name][...])
+
+
+def _variables(file: netCDF4.Dataset) -> dict[str, netCDF4.Variable[Any]]:
+    """Variables of the root and of the groups, by their paths."""
+    inside = {
+        f"{group}/{name}": variable
+        for group, held in file.groups.items()
+        for name, variable in held.variables.items()
+    }
+    return {**file.variables, **inside}
 
 
 def _attributes(where: str, first: Any, second: Any) -> Iterator[Difference]:

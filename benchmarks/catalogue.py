@@ -66,7 +66,7 @@ def campaigns(product: Path, folder: Path, count: int) -> None:
         with netCDF4.Dataset(path, "a") as archive:
             archive.setncatts({"campaign": path.parent.name, "id": f"{path.parent.name}/T-1"})
             for name in SCALED:
-                archive[name][:] = archive[name][:] * rng.uniform(0.1, 10.0)
+                archive[f"cycles/{name}"][:] = archive[f"cycles/{name}"][:] * rng.uniform(0.1, 10.0)
 
 
 def seconds_of_command(folder: Path, *options: str) -> float:

@@ -6,7 +6,7 @@ is checked by an outside program.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from reduction.archive.dataset_builder import CONVENTIONS, SCHEMA_VERSION
 from reduction.archive.open import _schema_of_file
-from reduction.archive.variables import Variable
+from reduction.archive.variables import GROUPS, Variable
 
 _BLOCK = 1 << 20  # values of a long variable that are read at a time
 _CACHE = 1 << 19  # bytes of the largest chunk
+_MOST_IN_ROOT = 40
 _REQUIRED = ("title", "history", "raw_file_sha256", "settings", "software_version")
 
 
@@ -37,13 +38,19 @@ def check_archive(path: Path) -> list[str]:
         Empty where the file keeps every rule.
     """
     with netCDF4.Dataset(path) as file:
-        file.set_auto_maskandscale(False)
-        return [*_global_findings(file), *_variable_findings(file)]
+        found = list(_global_findings(file))
+        for group in (file, *file.groups.values()):
+            group.set_auto_maskandscale(False)
+            found += _variable_findings(group, file)
+        return found
 
 
 def _global_findings(file: netCDF4.Dataset) -> Iterator[str]:
-    if file.groups:
-        yield "the file has groups"
+    if len(file.variables) > _MOST_IN_ROOT:
+        yield f"the root has {len(file.variables)} variables"
+    for name, group in file.groups.items():
+        if getattr(group, "comment", "") != GROUPS.get(name) or group.groups:
+            yield f"group {name} is not one of the schema"
     if getattr(file, "Conventions", None) != CONVENTIONS:
         yield f"Conventions is not {CONVENTIONS}"
     if getattr(file, "schema_version", None) != SCHEMA_VERSION:
@@ -56,9 +63,10 @@ def _global_findings(file: netCDF4.Dataset) -> Iterator[str]:
             yield f"dimension {name} is unlimited"
 
 
-def _variable_findings(file: netCDF4.Dataset) -> Iterator[str]:
+def _variable_findings(group: netCDF4.Dataset, file: netCDF4.Dataset) -> Iterator[str]:
     schema = _schema_of_file(file.dimensions)
-    for name, variable in file.variables.items():
+    own = "" if group is file else group.name
+    for name, variable in group.variables.items():
         if name not in schema:
             yield f"{name} is not in the schema"
             continue
@@ -66,8 +74,11 @@ def _variable_findings(file: netCDF4.Dataset) -> Iterator[str]:
         dims = (*row.dims, f"{name}_strlen") if row.is_text else row.dims
         if variable.dimensions != dims:
             yield f"{name} has dimensions {variable.dimensions}, not {dims}"
+        is_axis = row.dims == (name,) or row.is_bounds
+        if row.group != own and not is_axis:
+            yield f"{name} is in group '{own}', not in '{row.group}'"
         yield from _type_findings(name, variable, row)
-        yield from _reference_findings(name, variable, file)
+        yield from _reference_findings(name, variable, {**file.variables, **group.variables})
         if row.flags:
             yield from _flag_findings(name, variable, row)
         elif not row.is_bounds and not row.is_text and not getattr(variable, "units", ""):
@@ -89,13 +100,13 @@ def _type_findings(name: str, variable: netCDF4.Variable[Any], row: Variable) ->
 
 
 def _reference_findings(
-    name: str, variable: netCDF4.Variable[Any], file: netCDF4.Dataset
+    name: str, variable: netCDF4.Variable[Any], there: Mapping[str, netCDF4.Variable[Any]]
 ) -> Iterator[str]:
     for attribute in ("ancillary_variables", "coordinates", "bounds"):
         for other in str(getattr(variable, attribute, "")).split():
-            if other not in file.variables:
+            if other not in there:
                 yield f"{name} names {other} in {attribute}, which is not there"
-            elif attribute != "bounds" and not set(file.variables[other].dimensions) <= set(
+            elif attribute != "bounds" and not set(there[other].dimensions) <= set(
                 variable.dimensions
             ):
                 yield f"{name} names {other} in {attribute}, which has other dimensions"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from reduction.archive.campaign_products import OUTCOME_SCHEMA
 from reduction.archive.rope_properties import PROPERTY_SCHEMA
 from reduction.archive.schema import COMPARISON_SCHEMA, PREDICTION_SCHEMA, SCHEMA, SURFACE_SCHEMA
-from reduction.archive.variables import SUFFIXES, Variable
+from reduction.archive.variables import GROUPS, SUFFIXES, Variable
 
 __all__ = ["pages"]
 
@@ -21,11 +21,16 @@ _FILES = {
 
 def _rows(schema: dict[str, Variable]) -> list[str]:
     """One row a variable; its uncertainty, count and bounds stand with it as suffixes."""
-    lines = ["| variable | dimensions | unit | what |", "|---|---|---|---|"]
-    for name, one in schema.items():
+    lines: list[str] = []
+    group = None
+    for name, one in sorted(schema.items(), key=lambda row: row[1].group):
         base = next((name.removesuffix(end) for end in SUFFIXES if name.endswith(end)), "")
         if base in schema:
             continue
+        if one.group != group:
+            group = one.group
+            lines += ["", f"Group `{group}`: {GROUPS[group]}." if group else "Root:", ""]
+            lines += ["| variable | dimensions | unit | what |", "|---|---|---|---|"]
         beside = [end for end in SUFFIXES if f"{name}{end}" in schema]
         words = one.long_name + (
             f". Beside it: {', '.join(f'`{end}`' for end in beside)}" if beside else ""
@@ -46,7 +51,8 @@ def pages() -> dict[str, str]:
     lines = [
         "# Variables of the archives", "",
         "Made from the schemas of the archives and the vocabulary. A file has those that its test "
-        "or campaign gives; SI. A suffix is part of the name, `tension_standard_uncertainty`. How "
+        "or campaign gives; SI. The root holds what somebody looks for, groups the rest. A suffix "
+        "is part of the name, `tension_standard_uncertainty`. How "
         "to read them: [Reading the archives](../archive.md).", "",
         "| suffix | means |", "|---|---|",
         *(f"| `{end}` | {words.format('...')} |" for end, (words, _, _) in SUFFIXES.items()), "",

@@ -79,7 +79,7 @@ def _variable(array: NDArray[Any], row: Variable, present: Values, auxiliary: st
         row.dims,
         array if row.is_text else array.astype(row.dtype, copy=False),
         attrs=_attributes(row, present),
-        encoding=_encoding(array, row, auxiliary),
+        encoding={"group": row.group} | _encoding(array, row, auxiliary),
     )
     release_pages(array)
     return made

@@ -20,7 +20,7 @@ from reduction.archive.campaign_products import OUTCOME_SCHEMA
 from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.rope_properties import PROPERTY_SCHEMA
 from reduction.archive.schema import COMPARISON_SCHEMA, PREDICTION_SCHEMA, SURFACE_SCHEMA, schema_of
-from reduction.archive.variables import Variable
+from reduction.archive.variables import GROUPS, Variable
 from reduction.record.errors import ArchiveError, SettingsError
 
 Chunks = int | Mapping[str, int | Literal["auto"] | tuple[int, ...]]
@@ -159,12 +159,12 @@ def _words(error: Exception) -> str:
     return (str(error) or type(error).__name__).splitlines()[0]
 
 
-def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
-    """Open an archive; values are read from the disk when they are asked for.
+def open_archive(path: Path | str, *, chunks: Chunks | None = None) -> xr.Dataset:
+    """Open an archive, root and groups as one; values are read when they are asked for.
 
     Parameters
     ----------
-    path : pathlib.Path
+    path : pathlib.Path or str
         A file that `write_archive` wrote.
     chunks : int or mapping of str to int or "auto", optional
         Values of a chunk, by dimension; with them every variable is a Dask array, cut as it
@@ -182,14 +182,13 @@ def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
     SettingsError
         If Dask is wanted and not installed, or refuses the chunks.
     """
+    path = Path(path)
     if not path.is_file():
         raise ArchiveError(f"there is no archive {path}", hint="Run the campaign first.")
     try:
         _refuse(path, _fault_stored(path))
         with _small_cache():
-            dataset = xr.open_dataset(
-                path, engine="netcdf4", decode_times=False, decode_timedelta=False
-            )
+            dataset = _opened(path)
     except ArchiveError:
         raise
     except UnicodeEncodeError as error:
@@ -229,6 +228,33 @@ def open_archive(path: Path, *, chunks: Chunks | None = None) -> xr.Dataset:
     return _open_in_chunks(path, chunks)
 
 
+def _opened(path: Path, chunks: Chunks | None = None) -> xr.Dataset:
+    """All groups of a file as one dataset, variables in the order of its schema."""
+    groups = xr.open_groups(
+        path, engine="netcdf4", decode_times=False, decode_timedelta=False, chunks=chunks
+    )
+    root = groups["/"]
+    variables = {
+        name: variable for one in groups.values() for name, variable in one.variables.items()
+    }
+    places = {name: place for place, name in enumerate(_schema_of_file(root.sizes))}
+    ordered = sorted(variables, key=lambda name: places.get(str(name), len(places)))
+    coordinates = {name for one in groups.values() for name in one.coords}
+    merged = xr.Dataset(
+        {name: variables[name] for name in ordered if name not in coordinates},
+        {name: variables[name] for name in ordered if name in coordinates},
+        root.attrs,
+    )
+    merged.encoding = root.encoding
+
+    def close() -> None:
+        for one in groups.values():
+            one.close()
+
+    merged.set_close(close)
+    return merged
+
+
 def _refuse(path: Path, fault: str | None) -> None:
     if fault is not None:
         raise ArchiveError(
@@ -241,21 +267,29 @@ def _refuse(path: Path, fault: str | None) -> None:
 
 def _fault_stored(path: Path) -> str | None:
     """Values that lie in other files, or are more than the file can hold."""
-    size = path.stat().st_size
     with h5py.File(path, "r", locking=False) as file:
-        for raw in file.id:
-            name = raw.decode(errors="replace")[:80]
-            if file.id.links.get_info(raw).type != h5py.h5l.TYPE_HARD:
-                return f"a link '{name}'"
-            held = h5py.h5o.open(file.id, raw)
-            if not isinstance(held, h5py.h5d.DatasetID):
-                return f"'{name}', which is no variable"
-            made = held.get_create_plist()
-            if made.get_layout() == h5py.h5d.VIRTUAL or made.get_external_count():
-                return f"a variable '{name}' whose values lie in other files"
-            n_bytes = math.prod(held.shape or ()) * held.get_type().get_size()
-            if n_bytes > _MOST_PACKED * size:
-                return f"a variable '{name}' of {n_bytes:,} bytes in a file of {size:,}"
+        return _fault_in_group(file.id, path.stat().st_size)
+
+
+def _fault_in_group(group: h5py.h5g.GroupID, size: int, inside: str = "") -> str | None:
+    for raw in group:
+        name = inside + raw.decode(errors="replace")[:80]
+        if group.links.get_info(raw).type != h5py.h5l.TYPE_HARD:
+            return f"a link '{name}'"
+        held = h5py.h5o.open(group, raw)
+        if isinstance(held, h5py.h5g.GroupID) and name in GROUPS:
+            fault = _fault_in_group(held, size, f"{name}/")
+            if fault is not None:
+                return fault
+            continue
+        if not isinstance(held, h5py.h5d.DatasetID):
+            return f"'{name}', which is no variable"
+        made = held.get_create_plist()
+        if made.get_layout() == h5py.h5d.VIRTUAL or made.get_external_count():
+            return f"a variable '{name}' whose values lie in other files"
+        n_bytes = math.prod(held.shape or ()) * held.get_type().get_size()
+        if n_bytes > _MOST_PACKED * size:
+            return f"a variable '{name}' of {n_bytes:,} bytes in a file of {size:,}"
     return None
 
 
@@ -326,9 +360,7 @@ def _open_in_chunks(path: Path, chunks: Chunks) -> xr.Dataset:
             "when they are asked for all the same.",
         )
     try:
-        return xr.open_dataset(
-            path, engine="netcdf4", decode_times=False, decode_timedelta=False, chunks=chunks
-        )
+        return _opened(path, chunks=chunks)
     except (AttributeError, TypeError, ValueError, NotImplementedError) as error:
         raise SettingsError(
             "archives cannot be cut in these chunks",

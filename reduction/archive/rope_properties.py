@@ -27,6 +27,7 @@ from reduction.archive.variables import (
     label,
     measured,
     numbers,
+    schema_from,
     stated,
     texts,
 )
@@ -59,9 +60,8 @@ _OF_STEP = "as the step has it"
 
 _MEASURED = ("property_stiffness", "property_stiffness_over_strength", "property_strain")
 
-PROPERTY_SCHEMA: dict[str, Variable] = {
-    row.name: row
-    for row in chain(
+PROPERTY_SCHEMA: dict[str, Variable] = schema_from(
+    chain(
         count("property", _ALONG),
         label("property_specimen", _ALONG),
         label("property_name", _ALONG),
@@ -82,7 +82,7 @@ PROPERTY_SCHEMA: dict[str, Variable] = {
             for name in _MEASURED
         ),
     )
-}
+)
 """Every variable that an archive of change-in-length properties may have."""
 
 

@@ -16,6 +16,7 @@ from reduction.archive.variables import (
     Variable,
     companion,
     count,
+    in_group,
     label,
     stated,
     stored,
@@ -124,11 +125,14 @@ _ALIKE = {"tangent_modulus_by_cycle": "tangent_modulus"}
 
 SHARED_ROWS: tuple[Variable, ...] = tuple(
     chain(
-        count(COMPONENT, (COMPONENT,)),
-        label("uncertainty_source", (COMPONENT,)),
-        label("uncertainty_source_of", (COMPONENT,)),
-        count("uncertainty_source_number", (COMPONENT,)),
-        stated(FREEDOM, (COMPONENT,), OF_UNCERTAINTY),
+        in_group(
+            "uncertainty",
+            count(COMPONENT, (COMPONENT,)),
+            label("uncertainty_source", (COMPONENT,)),
+            label("uncertainty_source_of", (COMPONENT,)),
+            count("uncertainty_source_number", (COMPONENT,)),
+            stated(FREEDOM, (COMPONENT,), OF_UNCERTAINTY),
+        ),
         *(
             (
                 companion(name, "_random_standard_uncertainty", dims),

@@ -29,11 +29,13 @@ from reduction.archive.variables import (
     companion,
     count,
     flag,
+    in_group,
     label,
     mask,
     measured,
     numbers,
     pad,
+    schema_from,
     stated,
     texts,
 )
@@ -164,33 +166,49 @@ CURVE_ROWS: tuple[Variable, ...] = tuple(
     chain(
         stated("strain_window", (), SETTING),
         measured("tangent_modulus", _B, "_count", "_minimum", "_maximum", "_scatter"),
-        measured("tangent_modulus_untrimmed", _B),
         measured("branch_tension", _B, "_count"),
-        measured("tangent_modulus_by_cycle", _BC),
-        measured("tangent_modulus_first_loading", _F),
-        measured("branch_tension_first_loading", _F),
-        measured("segment_modulus", _G),
-        stated("segment_strain_low", _G, BOUND),
-        stated("segment_strain_high", _G, BOUND),
-        measured("segment_tension_low", _G),
-        measured("segment_tension_high", _G),
-        stated("segment_misfit", _G, SPREAD),
-        label("segment_criterion"),
-        measured("stress_at_strain", ("specimen", "strain_level")),
-        measured("slack_strain_at_unloading", _S),
+        in_group(
+            "curves",
+            measured("tangent_modulus_untrimmed", _B),
+            measured("tangent_modulus_by_cycle", _BC),
+        ),
+        in_group(
+            "first_loading",
+            measured("tangent_modulus_first_loading", _F),
+            measured("branch_tension_first_loading", _F),
+        ),
+        in_group(
+            "segments",
+            measured("segment_modulus", _G),
+            stated("segment_strain_low", _G, BOUND),
+            stated("segment_strain_high", _G, BOUND),
+            measured("segment_tension_low", _G),
+            measured("segment_tension_high", _G),
+            stated("segment_misfit", _G, SPREAD),
+            label("segment_criterion"),
+        ),
+        in_group(
+            "rubber",
+            measured("stress_at_strain", ("specimen", "strain_level")),
+            measured("slack_strain_at_unloading", _S),
+        ),
         # the ratio of two specimens
-        label("ratio_numerator", ("comparison",)),
-        label("ratio_denominator", ("comparison",)),
-        measured("modulus_ratio", _R),
-        stated("modulus_ratio_low", _R, BOUND),
-        stated("modulus_ratio_high", _R, BOUND),
-        stated("modulus_ratio_degrees_of_freedom", _R, OF_UNCERTAINTY),
-        flag("modulus_ratio_is_different", _R, NO_YES),
+        in_group(
+            "comparisons",
+            label("ratio_numerator", ("comparison",)),
+            label("ratio_denominator", ("comparison",)),
+            measured("modulus_ratio", _R),
+            stated("modulus_ratio_low", _R, BOUND),
+            stated("modulus_ratio_high", _R, BOUND),
+            stated("modulus_ratio_degrees_of_freedom", _R, OF_UNCERTAINTY),
+            flag("modulus_ratio_is_different", _R, NO_YES),
+        ),
     )
 )
 
 ELASTOMER_ROWS: tuple[Variable, ...] = tuple(
-    chain(
+    in_group(
+        "rubber",
         label("elastomer_specimen", ("elastomer_fit",)),
         label("elastomer_law", ("elastomer_fit",)),
         stated("elastomer_rms_stress", ("elastomer_fit",), SPREAD),
@@ -314,7 +332,8 @@ def elastomer_values(fits: Sequence[ElastomerFit]) -> Values:
 
 
 HOLD_ROWS: tuple[Variable, ...] = tuple(
-    chain(
+    in_group(
+        "holds",
         count("hold_number", ("hold",)),
         label("hold_specimen", ("hold",)),
         label("hold_kind", ("hold",)),
@@ -416,7 +435,8 @@ def _on_common_times(holds: Sequence[HoldResult], name: str, times: Floats) -> F
 
 
 LAG_ROWS: tuple[Variable, ...] = tuple(
-    chain(
+    in_group(
+        "record",
         measured("channel_lag", _S),
         count("channel_lag_turns", _S),
         flag("channel_lag_refusal", _S, LAG_REFUSALS),
@@ -454,7 +474,8 @@ _T = ("specimen", "tension_grid")
 _P = ("specimen", "pull_term")
 
 LINE_ROWS: tuple[Variable, ...] = tuple(
-    chain(
+    in_group(
+        "line",
         chain.from_iterable(measured(name, _C) for name in _LINE),
         flag("line_refusal", _C, LINE_REFUSALS),
         measured("test_quasi_static_spring_constant", _S),
@@ -595,7 +616,8 @@ _U = "_standard_uncertainty"
 _OVER = re.compile("_over_strength|^creep_compliance")
 
 ROPE_ROWS: tuple[Variable, ...] = tuple(
-    chain(
+    in_group(
+        "programme",
         label("programme_step"),
         # bedding-in
         count("bedding_cycles", _S),
@@ -849,9 +871,8 @@ STEP_ROWS: tuple[Variable, ...] = tuple(
     )
 )
 
-STEPWISE: dict[str, Variable] = {
-    row.name: row
-    for row in chain(
+STEPWISE: dict[str, Variable] = schema_from(
+    chain(
         stated("time", ("step",), CLOCK),
         measured("tension", ("step",)),
         measured("strain", ("step",), ancillary=("step_flag",)),
@@ -865,7 +886,7 @@ STEPWISE: dict[str, Variable] = {
             for name, dims in SHARED_OF_STEPS.items()
         ),
     )
-}
+)
 """Names that stand along ``step`` in a stepwise test."""
 
 

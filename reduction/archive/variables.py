@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -104,6 +104,44 @@ SUFFIXES = {
 """Suffix: its long name, type, and why it has no uncertainty of its own."""
 
 
+GROUPS = {
+    "specimens": "specimens: readings of the diameter, and what they went through before",
+    "record": "rows of the log, the lag between its channels, and where the test stood still",
+    "splice": "how position became strain: method, coefficients, tape readings",
+    "cycles": "cycles one by one, means over them, trends and slips",
+    "curves": "tangent modulus of each cycle, and with the ends of the branches",
+    "first_loading": "tangent modulus and tension of the first loading",
+    "segments": "piecewise-linear moduli",
+    "rubber": "stress at stated strains, slack strain, hyperelastic laws",
+    "line": "the three-parameter line, and slow pulls",
+    "programme": "steps of a rope laboratory's programme",
+    "holds": "relaxation and creep",
+    "comparisons": "specimens of the test against each other",
+    "coefficients": "coefficients in other units, with their tests; subsets of terms",
+    "quality": "how well each surface fits",
+    "anova": "analysis of variance",
+    "stationary_point": "stationary point and principal directions of each surface",
+    "runs": "runs: levels, measured, fitted, residuals",
+    "points": "values of the surfaces at points and along ridges",
+    "blocks": "effects of blocks",
+    "screening": "effects of a screening, and what they are confounded with",
+    "stiffness": "dynamic stiffness in the forms of mooring codes",
+    "single_time": "whether one relaxation time holds over frequency",
+    "design": "the hose: angles, diameters, cords, rubber",
+    "cords": "cords: load against strain, angle and spacing along the curve",
+    "layers": "helical layers that go along with the hose",
+    "events": "slack, pick-up, working load and break",
+    "energy": "energies of the measured and the predicted curve",
+    "statistics": "statistics behind the verdict",
+    "fit": "numbers that were fitted to the measured curve",
+    "uncertainty": "random parts of uncertainties, and contributions of errors that numbers share",
+    "notes": "what to know before the numbers are used",
+}
+"""Groups of archives and what they hold; the root holds what somebody looks for."""
+
+_PARTS = ("_random_standard_uncertainty", "_uncertainty_contribution")
+
+
 @dataclass(frozen=True)
 class Variable:
     """One variable of an archive.
@@ -124,6 +162,8 @@ class Variable:
         Meaning to value, or to mask where ``is_mask``.
     bounds : str
         Name of the variable with the edges of the cells.
+    group : str
+        One of `GROUPS`; empty in the root.
     """
 
     name: str
@@ -134,6 +174,7 @@ class Variable:
     flags: dict[str, int] = field(default_factory=dict)
     is_mask: bool = False
     bounds: str = ""
+    group: str = ""
 
     def __post_init__(self) -> None:
         """Refuse a name that the vocabulary lacks."""
@@ -184,6 +225,21 @@ class Variable:
     def standard_name(self) -> str | None:
         """CF standard name, where the table has one."""
         return None if self._suffix else QUANTITIES[self._base].standard_name
+
+
+def in_group(group: str, *rows: Variable | Iterable[Variable]) -> Iterator[Variable]:
+    """Put variables into a group of the archive."""
+    for one in rows:
+        for row in [one] if isinstance(one, Variable) else one:
+            yield replace(row, group=group)
+
+
+def schema_from(rows: Iterable[Variable]) -> dict[str, Variable]:
+    """Return variables by name; parts of uncertainties stand in a group of their own."""
+    return {
+        row.name: replace(row, group="uncertainty") if row.name.endswith(_PARTS) else row
+        for row in rows
+    }
 
 
 def measured(

@@ -14,7 +14,7 @@ from __future__ import annotations
 import datetime
 import hashlib
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
@@ -34,6 +34,7 @@ from pydantic import (
 )
 
 from reduction.archive.atomic_write import atomic_file, remove_abandoned, take_away
+from reduction.archive.variables import GROUPS
 from reduction.record.errors import ArchiveError
 from reduction.record.samples import release_pages, sample_blocks
 from reduction.uncertainty.budget import DecisionRule
@@ -49,9 +50,15 @@ def _write_netcdf(dataset: xr.Dataset, path: Path) -> None:
         file.setncatts(dataset.attrs)
         for name, size in dataset.sizes.items():
             file.createDimension(str(name), size)
+        placed = sorted(_placed(dataset), key=lambda one: one[0])
+        for group in dict.fromkeys(group for group, _ in placed if group):
+            file.createGroup(group).setncattr("comment", GROUPS[group])
         todo = [
-            (_defined(file, str(name), variable), variable.values)
-            for name, variable in dataset.variables.items()
+            (
+                _defined(file[group] if group else file, name, dataset.variables[name]),
+                dataset.variables[name].values,
+            )
+            for group, name in placed
         ]
         written = hashlib.sha256()
         for place, values in todo:
@@ -64,16 +71,43 @@ def _write_netcdf(dataset: xr.Dataset, path: Path) -> None:
         file.setncattr("values_sha256", written.hexdigest())
 
 
+def _placed(dataset: xr.Dataset) -> Iterator[tuple[str, str]]:
+    """Group and name of each variable; a group has the coordinates that the root lacks.
+
+    A coordinate stands in the root where a variable of the root has its dimension, and otherwise
+    with its bounds in every group that needs it, so that each group can be read by itself.
+    """
+    groups_of: dict[Hashable, dict[str, None]] = {}
+    for variable in dataset.variables.values():
+        for dim in variable.dims:
+            if (
+                variable.dims != (dim,)
+                or dim not in dataset.variables
+                or (dataset.variables[dim] is not variable)
+            ):
+                groups_of.setdefault(dim, {})[variable.encoding.get("group", "")] = None
+    axes = {name for name, one in dataset.variables.items() if one.dims == (name,)}
+    edges = {dataset.variables[axis].attrs.get("bounds"): axis for axis in axes}
+    for name, variable in dataset.variables.items():
+        axis = name if name in axes else edges.get(name)
+        groups = groups_of.get(axis, {}) if axis is not None else {}
+        if not groups or "" in groups:
+            groups = {"" if groups else variable.encoding.get("group", ""): None}
+        for group in groups:
+            yield group, str(name)
+
+
 def values_sha256(path: Path) -> str:
     """Sum of the names and values of all variables, as a file holds them now."""
     found = hashlib.sha256()
     with netCDF4.Dataset(path) as file:
-        file.set_auto_maskandscale(False)
-        file.set_auto_chartostring(False)
-        for name, variable in file.variables.items():
-            found.update(name.encode())
-            for part in _parts(variable.shape):
-                found.update(np.asarray(variable[part]).tobytes())
+        for group in (file, *file.groups.values()):
+            group.set_auto_maskandscale(False)
+            group.set_auto_chartostring(False)
+            for name, variable in group.variables.items():
+                found.update(name.encode())
+                for part in _parts(variable.shape):
+                    found.update(np.asarray(variable[part]).tobytes())
     return found.hexdigest()
 
 

@@ -82,8 +82,8 @@ def test_the_answer_is_that_of_the_archives(campaigns, visit):
         with netCDF4.Dataset(made.processed / f"{test}.nc") as archive:
             names = list(archive["specimen"][:])
             own = names.index(specimen)
-            modulus = float(archive["test_dynamic_modulus"][own])
-            middle = float(np.mean(archive["mean_strain"][own]))
+            modulus = float(archive["cycles/test_dynamic_modulus"][own])
+            middle = float(np.mean(archive["cycles/mean_strain"][own]))
             curves = np.ma.filled(archive["tangent_modulus"][own], np.nan)
             bins = archive["strain_bin"][:]
         assert float(whole[1]) == pytest.approx(modulus, rel=1e-12)

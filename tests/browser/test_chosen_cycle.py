@@ -1,9 +1,9 @@
 """A cycle chosen in one figure of a test is shown in the others."""
 
-import netCDF4
-import numpy as np
 import pytest
 from manytests import wait_for
+
+from reduction.archive.open import open_archive
 
 TEST = "T01"
 KEY = "test-0"
@@ -37,8 +37,8 @@ def choose(shown, number):
 
 
 def archive(small, *names):
-    with netCDF4.Dataset(small.processed / f"{TEST}.nc") as data:
-        return [np.ma.filled(data[name][:], np.nan) for name in names]
+    with open_archive(small.processed / f"{TEST}.nc") as data:
+        return [data[name].to_numpy() for name in names]
 
 
 def test_no_cycle_is_chosen_at_first_and_the_page_says_so(shown):

@@ -24,7 +24,7 @@ def test_the_data_of_a_figure_have_units_and_the_numbers_of_the_archive(shown, s
     assert first[0].startswith("# SYNTHETIC DATA. T01: apparent spring constant. Many small tests")
     assert columns == ["line", "cycle number [1]", "apparent spring constant [N]"]
     with netCDF4.Dataset(small.processed / "T01.nc") as data:
-        values = data["apparent_spring_constant"][0]
+        values = data["cycles/apparent_spring_constant"][0]
     lines = [row for row in rows if row[0] == "one"]
     assert [int(row[1]) for row in lines] == list(range(1, 13))
     assert [float(row[2]) for row in lines] == pytest.approx(values, rel=1e-5)

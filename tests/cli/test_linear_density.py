@@ -6,7 +6,8 @@ import shutil
 from pathlib import Path
 
 import pytest
-import xarray as xr
+
+from reduction.archive.open import open_archive
 
 pytestmark = pytest.mark.slow
 
@@ -33,7 +34,7 @@ def processed(command, tmp_path_factory):
 
 
 def test_it_is_in_the_archive_of_whom_it_is_stated_for(processed):
-    with xr.open_dataset(processed / "T-1.nc") as archive:
+    with open_archive(processed / "T-1.nc") as archive:
         assert archive["linear_density"].attrs["units"] == "kg m-1"
         assert archive["linear_density"].to_numpy()[0] == pytest.approx(0.6)
         assert archive["wet_linear_density"].to_numpy()[0] == pytest.approx(0.05)
@@ -41,7 +42,7 @@ def test_it_is_in_the_archive_of_whom_it_is_stated_for(processed):
 
 
 def test_an_archive_without_one_has_no_such_variable(synthetic):
-    with xr.open_dataset(synthetic.processed / "T-1.nc") as archive:
+    with open_archive(synthetic.processed / "T-1.nc") as archive:
         assert "linear_density" not in archive
 
 

@@ -6,6 +6,7 @@ import xarray as xr
 from long_records import long_test
 
 from reduction.archive import write as netcdf
+from reduction.archive.open import open_archive
 from reduction.archive.test_dataset import to_dataset
 from reduction.archive.write import _write_netcdf
 from reduction.record.samples import ColumnWriter, _is_on_disk, empty_like
@@ -21,7 +22,7 @@ def test_xarray_reads_the_same_as_from_a_file_of_its_own(any_test, tmp_path):
     for variable in dataset.variables.values():
         variable.encoding["fletcher32"] = "chunksizes" in variable.encoding
     dataset.to_netcdf(tmp_path / "theirs.nc", format="NETCDF4", engine="netcdf4")
-    with opened(tmp_path / "ours.nc") as ours, opened(tmp_path / "theirs.nc") as theirs:
+    with open_archive(tmp_path / "ours.nc") as ours, opened(tmp_path / "theirs.nc") as theirs:
         assert len(ours.attrs.pop("values_sha256")) == 64
         xr.testing.assert_identical(ours.load(), theirs.load())
         for name, variable in ours.variables.items():
@@ -49,7 +50,10 @@ def test_a_series_in_blocks_and_from_disk_is_the_same_bytes(on_disk, tmp_path, m
             dataset[name].variable.data = scratch
     monkeypatch.setattr(netcdf, "_BLOCK", 1000)
     _write_netcdf(dataset, tmp_path / "blocks.nc")
-    with opened(tmp_path / "whole.nc") as whole, opened(tmp_path / "blocks.nc") as blocks:
+    with (
+        open_archive(tmp_path / "whole.nc") as whole,
+        open_archive(tmp_path / "blocks.nc") as blocks,
+    ):
         xr.testing.assert_identical(whole.load(), blocks.load())
 
 

@@ -235,10 +235,10 @@ def test_surfaces_of_other_runs_are_refused():
 def test_the_own_check_knows_the_names_of_experiments(path):
     with netCDF4.Dataset(path, "a") as file:
         file.createVariable("tension", "f8", ("run",))
-        file["apparent_spring_constant_stationary_kind"][0] = 9
+        file["stationary_point/apparent_spring_constant_stationary_kind"][0] = 9
     assert check_archive(path) == [
-        "apparent_spring_constant_stationary_kind has values without a meaning",
         "tension is not in the schema",
+        "apparent_spring_constant_stationary_kind has values without a meaning",
     ]
 
 

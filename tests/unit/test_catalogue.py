@@ -288,7 +288,7 @@ def test_a_name_that_the_vocabulary_lacks_is_refused(option):
 def test_what_is_known_of_a_campaign_is_what_its_archives_were_when_it_was_made(folder):
     made(folder)
     with netCDF4.Dataset(folder / "two" / "T-1.nc", "a") as archive:
-        archive["test_frequency"][:] = [0.25, 0.5]
+        archive["cycles/test_frequency"][:] = [0.25, 0.5]
     found = made(folder)
     rows = asked(found, names={"test": ("T-1",)})
     assert [row["test_frequency"] for row in rows if row["archive"] == "two/T-1.nc"] == [0.25, 0.5]
@@ -536,7 +536,7 @@ def test_of_many_cycles_those_that_are_not_kept_are_not_read(tmp_path):
     assert peak < len(names) * numbers.nbytes
     (block,) = (one.to_pandas() for one in entry.numbers)
     last = block[(block["row"] == 2) & (block["cycle"] == n_cycles)]["value"]
-    assert last.tolist() == [2 * n_cycles - 1, 2 * n_cycles, 2 * n_cycles + 1]
+    assert sorted(last) == [2 * n_cycles - 1, 2 * n_cycles, 2 * n_cycles + 1]
 
 
 def test_a_folder_that_is_closed_is_named_and_hides_no_other(folder, monkeypatch):

@@ -94,7 +94,9 @@ def test_a_bit_that_is_turned_over_in_a_raw_file_is_found(place, at, without_tab
     assert "take a copy of it that is as it was" in one.hint
 
 
-@pytest.mark.parametrize("name", ["tension", "time", "segment_modulus", "note", "strain_bin"])
+@pytest.mark.parametrize(
+    "name", ["tension", "time", "segments/segment_modulus", "notes/note", "strain_bin"]
+)
 def test_a_bit_that_is_turned_over_in_a_value_is_found(place, name, without_tables):
     path = place / "processed" / NAME / "T-1.nc"
     with h5py.File(path) as file:
