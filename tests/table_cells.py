@@ -3,13 +3,13 @@
 import csv
 import io
 
-from reduction.archive.csv_columns import _csv_lines, table_blocks
+from reduction.archive.csv_columns import _text_of, table_blocks
 from reduction.archive.variables import TEXT
 
 
 def table_rows(archive, table):
     """Numbers as numbers, None where there is none; text as it stands in the file."""
-    text = "".join(map(_csv_lines, table_blocks(archive, table)))
+    text = "".join(_text_of(one, header=False) for one in table_blocks(archive, table))
     rows = csv.reader(io.StringIO(text, newline=""))
     variables = [column.variable for column in table.columns]
     return [

@@ -33,6 +33,7 @@ ROOMS = {
 DOORS = {
     "reduction": "the package",
     "reduction.archive.campaign_tree": "processed campaigns as trees of datasets",
+    "reduction.archive.csv_tables": "tables as pandas DataFrames",
     "reduction.archive.open": "one archive",
     "reduction.archive.surfaces_dataset": "surfaces out of their archive",
     "reduction.archive.uncertainty_budget": "uncertainty budgets out of an archive",

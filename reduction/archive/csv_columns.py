@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import pairwise
 from math import prod
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal
 
 import numpy as np
-import pyarrow  # type: ignore[import-untyped]
-import pyarrow.compute  # type: ignore[import-untyped]
+import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
@@ -42,34 +39,10 @@ from reduction.experiments.outcome_groups import (
     load_life_rows,
     strength_rows,
 )
-from reduction.record.measurement import Bools, Floats
+from reduction.record.measurement import Bools
 from reduction.record.plain_text import safe_cell
 
-_LOW, _HIGH = 1e-4, 1e9
-"""Between these Arrow, which is three times as fast, and Python write a number alike."""
-
-
-def _number_texts(values: Floats) -> list[str]:
-    """Return numbers as Python writes them, NaN as an empty text.
-
-    Examples
-    --------
-    >>> _number_texts(np.array([0.1, 2.0, 1e-7, np.nan]))
-    ['0.1', '2.0', '1e-07', '']
-    """
-    numbers = np.asarray(values, dtype=np.float64)
-    size = np.abs(numbers)
-    is_alike = (size >= _LOW) & (size < _HIGH) & (numbers != np.trunc(numbers))
-    texts: list[str] = pyarrow.compute.cast(pyarrow.array(numbers), pyarrow.string()).to_pylist()
-    other = np.flatnonzero(~is_alike)
-    for place, number in zip(other.tolist(), numbers[other].tolist(), strict=True):
-        texts[place] = "" if number != number else repr(number)  # NaN alone is not itself
-    return texts
-
-
 Cell = str | int | float | None
-
-_Label = TypeVar("_Label", int, str)
 
 
 @dataclass(frozen=True)
@@ -102,36 +75,19 @@ def uncertainty_of(column: CsvColumn) -> CsvColumn:
     )
 
 
-def _texts_of_columns(columns: Sequence[tuple[NDArray[Any], Variable]]) -> list[list[str]]:
-    """Return columns of one length as fields, those of real numbers written in one go."""
-    is_real = [
-        values.dtype.kind == "f" and not variable.flags and variable.dtype != TEXT
-        for values, variable in columns
-    ]
-    real = [values for (values, _), one in zip(columns, is_real, strict=True) if one]
-    written = _number_texts(np.concatenate(real)) if real else []
-    numbers = (written[len(part) * at : len(part) * (at + 1)] for at, part in enumerate(real))
-    return [
-        next(numbers) if one else _texts_of(values, variable)
-        for (values, variable), one in zip(columns, is_real, strict=True)
-    ]
-
-
-def _texts_of(values: NDArray[Any], variable: Variable) -> list[str]:
-    """Return the values of a column as fields of a CSV file; flags as their meanings."""
+def _shown_values(values: NDArray[Any], variable: Variable) -> NDArray[Any]:
+    """Values of a column as a table has them: flags as their meanings, texts safe to open."""
     if variable.flags:
-        return _labels([int(value) for value in values], partial(_flag_text, variable=variable))
+        return _each(values, lambda value: _flag_text(int(value), variable))
     if variable.dtype == TEXT:
-        return _labels([str(value) for value in values], str)
-    if values.dtype.kind == "f":
-        return _number_texts(values)
-    return [repr(value) for value in values.tolist()]
+        return _each(values, lambda value: safe_cell(str(value)))
+    return values
 
 
-def _labels(labels: Sequence[_Label], worded: Callable[[_Label], str]) -> list[str]:
-    """Put labels, most of which repeat, in fields."""
-    field = {label: _csv_field(worded(label)) for label in set(labels)}
-    return [field[label] for label in labels]
+def _each(values: NDArray[Any], worded: Callable[[Any], str]) -> NDArray[Any]:
+    """Put labels, most of which repeat, in words."""
+    labels, place = np.unique(values.astype(object), return_inverse=True)
+    return np.array([worded(one) for one in labels], dtype=object)[place]
 
 
 def _flag_text(value: int, variable: Variable) -> str:
@@ -140,40 +96,19 @@ def _flag_text(value: int, variable: Variable) -> str:
     return next((name for name, number in variable.flags.items() if number == value), str(value))
 
 
-def _csv_field(cell: Cell) -> str:
-    """Return a cell as a field of a CSV file, quoted where it has to be.
-
-    Examples
-    --------
-    >>> print(_csv_field(0.1), _csv_field("=a, b"))
-    0.1 "'=a, b"
-    """
-    line = io.StringIO()
-    # a second field keeps an empty one from being quoted; ends of lines are, with this terminator
-    csv.writer(line, lineterminator="\r\n").writerow([_written(cell), ""])
-    return line.getvalue().removesuffix(",\r\n")
-
-
-def _csv_lines(columns: Iterable[Sequence[str]]) -> str:
-    """Return columns of fields, two at least, as lines of a CSV file."""
-    return "".join(f"{line}\r\n" for line in map(",".join, zip(*columns, strict=True)))
-
-
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
     """Return a table as text of a CSV file."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\r\n")
-    writer.writerow(map(safe_cell, header))
-    writer.writerows([_written(cell) for cell in row] for row in rows)
-    return text.getvalue()
+    return _text_of(table_from_rows(header, rows))
 
 
-def _written(cell: Cell) -> str:
-    if cell is None:
-        return ""
-    if isinstance(cell, str):
-        return safe_cell(cell)
-    return repr(cell)
+def table_from_rows(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> pd.DataFrame:
+    """Return rows of cells as a table; texts are safe to open in a spreadsheet program."""
+    cells = [[safe_cell(cell) if isinstance(cell, str) else cell for cell in row] for row in rows]
+    return pd.DataFrame(cells, columns=[safe_cell(one) for one in header], dtype=object)
+
+
+def _text_of(table: pd.DataFrame, *, header: bool = True) -> str:
+    return table.to_csv(index=False, header=header, lineterminator="\r\n")
 
 
 Product = Literal[
@@ -276,7 +211,7 @@ BLOCK_ROWS = 1 << 12
 
 def table_blocks(
     archive: xr.Dataset, table: CsvTable, *, block_rows: int = BLOCK_ROWS
-) -> Iterator[list[list[str]]]:
+) -> Iterator[pd.DataFrame]:
     """Give the rows that an archive gives to a table; none where it lacks the subject."""
     needed = [name for name in table.needs if name in archive]
     if not needed or not set(table.dims) <= set(archive.sizes):
@@ -284,27 +219,25 @@ def table_blocks(
     variables = {str(name): variable for name, variable in archive.variables.items()}
     variables |= table.derive(archive)
     sizes = {dim: archive.sizes[dim] for dim in table.dims}
-    global_fields = {
-        TEST.name: _csv_field(archive.attrs.get("test", "")),
-        SYNTHETIC.name: _csv_field(archive.attrs.get("synthetic", "no")),
+    of_archive = {
+        TEST.name: safe_cell(archive.attrs.get("test", "")),
+        SYNTHETIC.name: archive.attrs.get("synthetic", "no"),
     }
-    columns = table.columns
     for block in _blocks(sizes, block_rows):
-        laid_out = [_laid_out(variables[name], block) for name in needed]
-        known = np.any([_is_known(values) for values in laid_out], axis=0)
-        n_rows = int(known.sum())
-        if not n_rows:
+        known = np.any([_is_known(_laid_out(variables[name], block)) for name in needed], axis=0)
+        if not known.any():
             continue
-        values = {
-            place: (_laid_out(variables[column.variable.name], block)[known], column.variable)
-            for place, column in enumerate(columns)
-            if column.name not in global_fields and column.variable.name in variables
-        }
-        texts = dict(zip(values, _texts_of_columns(list(values.values())), strict=True))
-        yield [
-            texts[place] if place in texts else [global_fields.get(column.name, "")] * n_rows
-            for place, column in enumerate(columns)
-        ]
+        yield pd.DataFrame(
+            {
+                column.header: of_archive.get(column.name, "")
+                if column.name in of_archive or column.variable.name not in variables
+                else _shown_values(
+                    _laid_out(variables[column.variable.name], block)[known], column.variable
+                )
+                for column in table.columns
+            },
+            index=np.flatnonzero(known),
+        )
 
 
 def _blocks(sizes: Mapping[str, int], most: int) -> Iterator[dict[str, range]]:
@@ -418,17 +351,13 @@ _WHY = {
 _UNKNOWN = "nothing is known of its scatter"
 
 
-def _lonely_numbers(
-    columns: Sequence[CsvColumn | GroupColumn], fields: Sequence[Sequence[str]]
-) -> set[int]:
+def _lonely_numbers(columns: Sequence[CsvColumn | GroupColumn], table: pd.DataFrame) -> set[int]:
     """Find the uncertainties that are empty where a number stands beside."""
+    is_empty = table.isna() | (table == "")
     return {
         place
         for place, _ in _uncertainties(columns)
-        if "" in fields[place]
-        and any(
-            not own and number for own, number in zip(fields[place], fields[place - 1], strict=True)
-        )
+        if (is_empty.iloc[:, place] & ~is_empty.iloc[:, place - 1]).any()
     }
 
 
@@ -480,16 +409,16 @@ class TableFile:
         """Whether the table has a row."""
         return self._append is not None
 
-    def add(self, fields: Sequence[Sequence[str]]) -> None:
-        """Add rows, given as columns of fields of `reduction.archive.csv_columns._texts_of`."""
-        if not fields or not fields[0]:
+    def add(self, table: pd.DataFrame) -> None:
+        """Add the rows of a table."""
+        if table.empty:
             return
+        is_new = self._append is None
         if self._append is None:
             self._append = self._whole.enter_context(append_atomically(self.path))
-            self._append(csv_text([column.header for column in self.columns], ()))
-        self._append(_csv_lines(fields))
-        self.lonely |= _lonely_numbers(self.columns, fields)
+        self._append(_text_of(table, header=is_new))
+        self.lonely |= _lonely_numbers(self.columns, table)
 
     def add_rows(self, rows: Sequence[Sequence[Cell]]) -> None:
         """Add rows of cells."""
-        self.add([[_csv_field(cell) for cell in column] for column in zip(*rows, strict=True)])
+        self.add(table_from_rows([column.header for column in self.columns], rows))

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
@@ -43,6 +44,7 @@ from reduction.archive.variables import SUFFIXES, count, label, measured, stored
 from reduction.quantities.names import BRANCH_VALUES, QUANTITIES, RESPONSE_PATTERNS, SURFACE_NAMES
 from reduction.quantities.units import combined_unit
 from reduction.record.contributions import Component, Contributions, combined_standard_uncertainty
+from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats
 from reduction.stages.moduli.local_regression import curve_at
 from reduction.uncertainty.propagation import ratio_contributions
@@ -393,6 +395,38 @@ def write_tables(
     return [files[name].path for name in filled]
 
 
+def table_of(archive: xr.Dataset, name: str) -> pd.DataFrame:
+    """Return one table of an archive of a test as its CSV file has it.
+
+    Parameters
+    ----------
+    archive : xarray.Dataset
+        As `reduction.open_archive` gives it.
+    name : str
+        File name without suffix: "cycles", "moduli", "relaxation", ...
+
+    Returns
+    -------
+    table : pandas.DataFrame
+        Columns by their headers, units among them; no rows where the test lacks the subject.
+
+    Raises
+    ------
+    SettingsError
+        If no table of tests has that name.
+    """
+    table = next((one for one in TABLES if one.name == name), None)
+    if table is None:
+        raise SettingsError(
+            "there is no such table of a test",
+            found=repr(name),
+            needed="one of " + ", ".join(sorted(one.name for one in TABLES)),
+        )
+    empty = pd.DataFrame(columns=[column.header for column in table.columns])
+    blocks = list(table_blocks(archive, table))
+    return pd.concat(blocks, ignore_index=True) if blocks else empty
+
+
 def _place(attributes: dict[str, Any]) -> _Place:
     """Place in the history, tests without one last; then the name, T-2 before T-10."""
     name = re.split(r"(\d+)", attributes["test"])
@@ -445,5 +479,5 @@ def _add_outcomes(files: Mapping[str, TableFile], outcomes: Path | None, opener:
 
 
 def _add(file: TableFile, archive: xr.Dataset, table: CsvTable) -> None:
-    for fields in table_blocks(archive, table):
-        file.add(fields)
+    for block in table_blocks(archive, table):
+        file.add(block)

@@ -3,16 +3,18 @@
 import tracemalloc
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from experiments import ABOUT, screening_experiment, surface_experiment
 
-from reduction.archive.csv_columns import _csv_lines, table_blocks
+from reduction.archive.csv_columns import _text_of, table_blocks
 from reduction.archive.csv_definitions import EXPERIMENT_TABLES, TABLES
-from reduction.archive.csv_tables import _by_response, write_tables
+from reduction.archive.csv_tables import _by_response, table_of, write_tables
 from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.open import open_archive
 from reduction.archive.surfaces_dataset import surfaces_to_dataset
+from reduction.record.errors import SettingsError
 
 N_CYCLES = 30000
 PER_CYCLE = ("mean_tension", "tension_amplitude", "loss_factor", "hysteresis_energy")
@@ -20,8 +22,8 @@ PER_CYCLE = ("mean_tension", "tension_amplitude", "loss_factor", "hysteresis_ene
 
 def text_of(archive, table, block_rows):
     blocks = list(table_blocks(archive, table, block_rows=block_rows))
-    assert all(0 < len(block[0]) <= block_rows for block in blocks)
-    return "".join(map(_csv_lines, blocks))
+    assert all(0 < len(block) <= block_rows for block in blocks)
+    return "".join(_text_of(block, header=False) for block in blocks)
 
 
 @pytest.mark.parametrize("block_rows", [1, 2, 3, 7, 40])
@@ -77,3 +79,13 @@ def test_blocks_read_no_more_of_an_archive_than_their_rows(long_archive):
     with open_archive(long_archive) as archive:
         assert len(list(table_blocks(archive, cycles))) == 2 * -(-N_CYCLES // 4096)
         assert not any(archive[name].variable._in_memory for name in PER_CYCLE)
+
+
+def test_a_table_of_an_archive_is_that_of_its_file(archives, tmp_path):
+    with open_archive(archives[-1]) as archive:
+        write_tables(archives[-1:], tmp_path)
+        written = pd.read_csv(tmp_path / "cycles.csv")
+        pd.testing.assert_frame_equal(table_of(archive, "cycles"), written, check_dtype=False)
+        assert table_of(archive, "stepwise").empty
+        with pytest.raises(SettingsError, match="found 'cycle'; needed one of .*cycles"):
+            table_of(archive, "cycle")

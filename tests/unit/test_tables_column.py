@@ -1,9 +1,16 @@
 """Cells and headers of the tables."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
-from reduction.archive.csv_columns import CsvColumn, _csv_lines, _texts_of, csv_text, uncertainty_of
+from reduction.archive.csv_columns import (
+    CsvColumn,
+    _shown_values,
+    _text_of,
+    csv_text,
+    uncertainty_of,
+)
 from reduction.archive.schema import SCHEMA
 from reduction.archive.variables import label
 
@@ -26,24 +33,32 @@ def test_a_number_comes_back_from_its_digits_exactly():
 
 
 def test_what_is_not_known_is_an_empty_field():
-    assert _texts_of(np.array([1.5, np.nan]), SCHEMA["tension"]) == ["1.5", ""]
+    table = pd.DataFrame({"x": np.array([1.5, np.nan]), "y": ["a", "b"]})
+    assert _text_of(table) == "x,y\r\n1.5,a\r\n,b\r\n"
 
 
 def test_a_count_is_written_without_a_point():
-    assert _texts_of(np.array([3], dtype=np.int32), SCHEMA["cycle"]) == ["3"]
+    assert _text_of(pd.DataFrame({"x": np.array([3], dtype=np.int32)})) == "x\r\n3\r\n"
 
 
 def test_flags_are_written_in_words():
-    assert _texts_of(np.array([1, 2, 7]), SCHEMA["branch"]) == ["ascending", "descending", "7"]
-    assert _texts_of(np.array([0, 33]), SCHEMA["quality_flag"]) == ["", "missing spike"]
+    branches = _shown_values(np.array([1, 2, 7]), SCHEMA["branch"])
+    assert branches.tolist() == ["ascending", "descending", "7"]
+    flags = _shown_values(np.array([0, 33]), SCHEMA["quality_flag"])
+    assert flags.tolist() == ["", "missing spike"]
 
 
-def test_columns_of_fields_are_the_lines_of_a_table_of_cells():
+def test_a_table_of_columns_is_that_of_its_rows():
     labels = ["=1+1", 'a "b", c', "d\ne", "f\rg", "", " h", "größe", "'i"]
     rows = [[label, 0.1 * place, None] for place, label in enumerate(labels)]
-    numbers = _texts_of(np.array([row[1] for row in rows]), SCHEMA["tension"])
-    columns = [_texts_of(np.array(labels), label("test")[0]), numbers, [""] * len(rows)]
-    assert csv_text(["a", "b", "c"], rows) == "a,b,c\r\n" + _csv_lines(columns)
+    table = pd.DataFrame(
+        {
+            "a": _shown_values(np.array(labels), label("test")[0]),
+            "b": np.array([row[1] for row in rows]),
+            "c": None,
+        }
+    )
+    assert csv_text(["a", "b", "c"], rows) == _text_of(table)
 
 
 @pytest.mark.parametrize("start", ["=", "+", "-", "@", "\t", "\r"])

@@ -1,5 +1,8 @@
 """Why a cell of a table is empty beside a number."""
 
+import numpy as np
+import pandas as pd
+
 from reduction.archive.csv_columns import (
     SYNTHETIC,
     CsvColumn,
@@ -13,8 +16,8 @@ from reduction.archive.variables import measured
 def test_an_empty_cell_beside_a_number_has_a_reason_and_a_full_column_needs_none():
     diameter = CsvColumn("diameter", measured("diameter", ("specimen",))[0])
     columns = [diameter, uncertainty_of(diameter), SYNTHETIC]
-    holed = _lonely_numbers(columns, [["0.02", "0.02"], ["", "1e-4"], ["no", "no"]])
-    full = _lonely_numbers(columns, [["", "0.02"], ["", "1e-4"], ["no", "no"]])
+    holed = _lonely_numbers(columns, pd.DataFrame([[0.02, np.nan, "no"], [0.02, 1e-4, "no"]]))
+    full = _lonely_numbers(columns, pd.DataFrame([[np.nan, np.nan, "no"], [0.02, 1e-4, "no"]]))
     assert (holed, full) == ({1}, set())
     (_, of_holed, _) = column_descriptions(columns, holed)
     assert of_holed[-1] == (
