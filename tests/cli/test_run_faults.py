@@ -11,7 +11,7 @@ import pytest
 from commandruns import ROOT
 from shortcampaign import write_short
 
-from reduction.archive import open as products_module
+from reduction.archive import product_files as products_module
 from reduction.archive.open import reading
 from reduction.batch import reduce_tests as reduce_module
 from reduction.batch import run_campaign as run_module

@@ -194,7 +194,7 @@ def test_an_earlier_test_that_is_new_and_fails_makes_the_later_ones_anew(row, co
     ("module", "part"),
     [
         (reduction.batch.requested_products, "basis_of"),
-        (reduction.batch.reduce_tests, "standing_product"),
+        (reduction.batch.reduce_tests, "reusable_product"),
     ],
 )
 def test_a_defect_before_the_reduction_is_the_failure_of_one_test(

@@ -144,7 +144,7 @@ def test_a_folder_that_no_run_left_is_no_campaign(processed, tmp_path):
 
 
 def test_a_run_that_ends_meanwhile_is_on_the_page(processed, tmp_path, monkeypatch):
-    whole, times = made.write_whole, []
+    whole, times = made.write_text_atomically, []
 
     def write(path, text):
         whole(path, text)
@@ -152,7 +152,7 @@ def test_a_run_that_ends_meanwhile_is_on_the_page(processed, tmp_path, monkeypat
             shutil.copytree(processed / "many", processed / "other")
         times.append(path)
 
-    monkeypatch.setattr(made, "write_whole", write)
+    monkeypatch.setattr(made, "write_text_atomically", write)
     found = data_of(made.write_design_page(processed, tmp_path))
     assert len(times) == 2
     assert [one["name"] for one in found["campaigns"]] == ["many", "other"]
