@@ -31,15 +31,12 @@ from numpy.typing import ArrayLike
 
 from reduction.experiments.designs import engineering_matrix
 from reduction.experiments.fit_results import BlockEffects, LeastSquares
-from reduction.experiments.response_matrix import block_contrasts, highest_of_each, patterns_of
-from reduction.experiments.run_sheet import variance_factor
+from reduction.experiments.least_squares_fit import two_sided_p
+from reduction.experiments.response_matrix import block_contrasts
+from reduction.experiments.run_sheet import is_singular, variance_factor
+from reduction.experiments.surface_statistics import ratio_of_variances, regress
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
-
-_LARGEST = 6.0
-"""Decimal logarithm of the largest ratio of variances that is searched."""
-
-_GRID = 49
 
 _SINGULAR = 1e-9
 
@@ -55,6 +52,7 @@ class _RandomIntercept:
     standard_deviation: Floats
     effect: Floats
     degrees_of_freedom: Floats
+    t: Floats
     is_between: Bools
     at_boundary: Bools
 
@@ -106,20 +104,13 @@ def block_columns(labels: Sequence[str]) -> tuple[tuple[str, ...], Integers, Flo
 def _fit_random_intercept(
     matrix: ArrayLike, responses: ArrayLike, *, block: Integers
 ) -> _RandomIntercept:
-    r"""Restricted maximum likelihood of surfaces with one random level a block.
-
-    .. math::
-
-        -2\ell(\gamma) = \sum_i \ln(1 + \gamma d_i)
-            + (n - p) \ln \sum_i \frac{u_i^2}{1 + \gamma d_i}
-
-    with d and u from the eigenvectors of :math:`Z Z^T` among the residuals.
+    """Restricted maximum likelihood of surfaces with one random level a block.
 
     Notes
     -----
-    Source: [1]_.  The ratio of variances is the one unknown left, found on a grid of
-    1e-6 to 1e6 and by golden section; nil is an answer.  Degrees of freedom as [2]_.  A
-    block's own answer to a factor (its slope) is not modelled: it is in sigma.
+    Source: [1]_.  The ratio of the two variances is that of the largest restricted likelihood,
+    nil among them; the surface is that of generalized least squares with it.  Degrees of freedom
+    as [2]_.  A block's own answer to a factor (its slope) is not modelled: it is in sigma.
 
     Examples
     --------
@@ -140,75 +131,41 @@ def _fit_random_intercept(
         )
     n_blocks, n_columns = int(block.max()) + 1, columns.shape[1]
     member = (block[:, None] == np.arange(n_blocks)).astype(np.float64)
-    n_responses = values.shape[0]
-    coefficient = np.full((n_responses, n_columns), np.nan)
-    factor = np.full((n_responses, n_columns, n_columns), np.nan)
-    ratio, sigma = np.full(n_responses, np.nan), np.full(n_responses, np.nan)
-    effect = np.full((n_responses, n_blocks), np.nan)
-    freedom = np.full((n_responses, n_columns), np.nan)
-    is_between = _is_between(columns[np.isfinite(columns).all(axis=1)],
-                             member[np.isfinite(columns).all(axis=1)])  # fmt: skip
-    is_used, pattern = patterns_of(np.isfinite(values))
-    for index, used in enumerate(is_used):
-        rows = np.flatnonzero(pattern == index)
-        part, of_block = columns[used], member[used]
-        complete, upper = np.linalg.qr(part, mode="complete")
-        if part.shape[0] <= n_columns or _is_short(upper[:n_columns]):
+    shape = (values.shape[0], n_columns)
+    coefficient, t, freedom = np.full((3, *shape), np.nan)
+    factor = np.full((*shape, n_columns), np.nan)
+    ratio, sigma = np.full((2, shape[0]), np.nan)
+    effect = np.full((shape[0], n_blocks), np.nan)
+    known = np.isfinite(columns).all(axis=1)
+    is_between = _is_between(columns[known], member[known])
+    for row, used in enumerate(np.isfinite(values)):
+        part, of_block, response = columns[used], member[used], values[row, used]
+        if len(part) <= n_columns or is_singular(part):
             continue
-        known = values[rows][:, used]
-        ratio[rows], sigma[rows] = _restricted(known @ complete[:, n_columns:],
-                                               complete[:, n_columns:].T @ of_block)  # fmt: skip
+        rank = np.linalg.matrix_rank(np.hstack([part, of_block]))
+        # levels that the terms take up have no scatter of their own
+        ratio[row] = ratio_of_variances(response, part, block[used]) if rank > n_columns else 0.0
+        found = regress(response, part, np.eye(len(part)) + ratio[row] * of_block @ of_block.T)
+        coefficient[row], factor[row] = found.params, found.normalized_cov_params
+        sigma[row] = np.sqrt(found.scale)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            t[row] = found.tvalues
         count = of_block.sum(axis=0)
-        weight = ratio[rows, None] / (1 + ratio[rows, None] * count)
-        sums = of_block.T @ part
-        outer = sums[:, :, None] * sums[:, None, :]
-        normal = part.T @ part - np.einsum("rb,bst->rst", weight, outer)
-        right = known @ part - (weight * (known @ of_block)) @ sums
-        factor[rows] = inverse = np.linalg.inv(normal)
-        coefficient[rows] = found = np.einsum("rst,rt->rs", inverse, right)
-        effect[rows] = weight * ((known - found @ part.T) @ of_block)
-        effect[np.ix_(rows, count == 0)] = np.nan
-        within = part.shape[0] - np.linalg.matrix_rank(np.hstack([part, of_block]))
+        level = ratio[row] / (1 + ratio[row] * count) * (found.resid @ of_block)
+        effect[row] = np.where(count > 0, level, np.nan)
         between = int((count > 0).sum()) - int(is_between.sum())
-        freedom[rows] = np.where(is_between, between, within)
+        freedom[row] = np.where(is_between, between, len(part) - rank)
+    freedom[freedom <= 0] = np.nan
     return _RandomIntercept(
-        coefficient, factor, sigma, np.sqrt(ratio) * sigma, effect,
-        np.where(freedom > 0, freedom, np.nan), is_between, ratio == 0,
+        coefficient, factor, sigma, np.sqrt(ratio) * sigma, effect, freedom, t, is_between,
+        ratio == 0,
     )  # fmt: skip
-
-
-def _is_short(upper: Floats) -> bool:
-    size = np.abs(np.diag(upper))
-    return bool(size.min() < _SINGULAR * size.max())
 
 
 def _is_between(columns: Floats, member: Floats) -> Bools:
     """Columns without motion inside any block."""
     mean = (member.T @ columns) / np.maximum(member.sum(axis=0), 1)[:, None]
     return np.asarray(np.abs(columns - member @ mean).max(axis=0) < _SINGULAR)
-
-
-def _restricted(contrast: Floats, projected: Floats) -> tuple[Floats, Floats]:
-    """Ratio of variances and sigma of each response, from contrasts free of the surface."""
-    size, vectors = np.linalg.eigh(projected @ projected.T)
-    size = np.maximum(size, 0.0)
-    square = (contrast @ vectors) ** 2
-    count = size.size
-
-    def remainder(ratio: Floats) -> Floats:
-        return np.asarray(np.sum(square / (1 + ratio[:, None] * size), axis=1))
-
-    def deviance(ratio: Floats) -> Floats:
-        left = np.maximum(remainder(ratio), np.finfo(float).tiny)
-        return np.asarray(np.sum(np.log1p(ratio[:, None] * size), axis=1) + count * np.log(left))
-
-    n_responses = contrast.shape[0]
-    grid = np.linspace(-_LARGEST, _LARGEST, _GRID)
-    power, _ = highest_of_each(lambda power: -deviance(10**power), grid, n_responses)
-    ratio = 10**power
-    none = np.zeros(n_responses)
-    ratio = np.where(deviance(none) <= deviance(ratio), 0.0, ratio)
-    return ratio, np.sqrt(remainder(ratio) / count)
 
 
 @dataclass(frozen=True)
@@ -220,10 +177,12 @@ class _Estimates:
     pattern: Integers
     sigma: Floats
     degrees_of_freedom: Floats
+    t: Floats
+    p_value: Floats
     error_term: tuple[str, ...]
 
 
-def fixed_estimates(fit: LeastSquares, column: Integers) -> _Estimates:
+def fixed_estimates(fit: LeastSquares, column: Integers, t: Floats, p_value: Floats) -> _Estimates:
     """Least squares in printed order."""
     freedom = np.where(fit.degrees_of_freedom > 0, fit.degrees_of_freedom, np.nan)
     return _Estimates(
@@ -232,6 +191,8 @@ def fixed_estimates(fit: LeastSquares, column: Integers) -> _Estimates:
         fit.pattern,
         fit.sigma,
         np.repeat(freedom[:, None], column.size, axis=1),
+        t,
+        p_value,
         ("residuals",) * column.size,
     )
 
@@ -257,6 +218,7 @@ def with_blocks(
         none, inside = np.full(n_responses, np.nan), np.zeros(n_responses, dtype=bool)
         return fixed, BlockEffects(names, index, treatment, effect, none, inside)
     mixed = _fit_random_intercept(surface, values, block=index)
+    t = np.where(fit.reason[:, None] == 0, mixed.t, np.nan)
     terms = tuple("blocks" if between else "residuals" for between in mixed.is_between)
     estimates = _Estimates(
         mixed.coefficient,
@@ -264,6 +226,8 @@ def with_blocks(
         np.arange(n_responses),
         mixed.sigma,
         mixed.degrees_of_freedom,
+        t,
+        two_sided_p(t, mixed.degrees_of_freedom),
         terms,
     )
     effects = BlockEffects(

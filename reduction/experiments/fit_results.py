@@ -218,8 +218,6 @@ class LeastSquares:
         Row of the three above.
     fitted, residual : ndarray, shape (n_responses, n_runs)
         Residuals are NaN where a run is missing. [unit of the response]
-    sequential_sum_of_squares : ndarray, shape (n_responses, n_columns)
-        What each column takes away after those before it. [unit of the response, squared]
     residual_sum_of_squares, total_sum_of_squares : ndarray, shape (n_responses,)
         The total is about the baseline. [unit of the response, squared]
     prediction_sum_of_squares : ndarray, shape (n_responses,)
@@ -238,7 +236,6 @@ class LeastSquares:
     pattern: Integers
     fitted: Floats
     residual: Floats
-    sequential_sum_of_squares: Floats
     residual_sum_of_squares: Floats
     total_sum_of_squares: Floats
     prediction_sum_of_squares: Floats

@@ -1,4 +1,4 @@
-r"""Least squares of response surfaces with diagnostics and analysis of variance.
+r"""Least squares of many responses at once, F of a printed r2, and lack of fit.
 
 Least squares of one response or ten thousand on one matrix, by one orthogonal factorisation.
 
@@ -10,49 +10,32 @@ Least squares of one response or ten thousand on one matrix, by one orthogonal f
 Responses that miss the same runs are solved together; there is a loop over the patterns of
 missing runs and none over responses.
 
-Leverage, Cook's distance, studentized residuals, and how straight their probability plot is.
-
 F statistic of a whole surface from its r2: the right one, and the one the report prints.
 
-As printed, [5]_ computes :math:`F = (r^2 / 10) / ((1 - r^2) / 4)` for fifteen runs and ten
+As printed, [2]_ computes :math:`F = (r^2 / 10) / ((1 - r^2) / 4)` for fifteen runs and ten
 terms, which counts the mean twice, and holds it against 3.48, which is the 5 % point for 4 and
 10 degrees of freedom, transposed.  As computed, r2 is about the mean: 9 and 5.  The two errors
 nearly cancel (3.48 against 3.44 on the printed scale).
 
-Analysis of variance of response surfaces, and lack of fit.
-
-Sources are sequential: blocks, first order, interactions, squares, as R's rsm prints them; in
-a design whose levels are met exactly the order makes no difference.
-
 References
 ----------
-.. [1] N. R. Draper and H. Smith, Applied Regression Analysis, 3rd ed. New York: Wiley, 1998.
-.. [2] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3.
-.. [3] R. D. Cook and S. Weisberg, Residuals and Influence in Regression. New York: Chapman and
-   Hall, 1982.
-.. [4] S. S. Shapiro and R. S. Francia, "An Approximate Analysis of Variance Test for
-   Normality," J. Am. Stat. Assoc., vol. 67, pp. 215-216, 1972.
-.. [5] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3, Tables 3-5 and 11-19.
-.. [6] R. V. Lenth, "Response-Surface Methods in R, Using rsm," J. Stat. Softw., vol. 32, no. 7,
-   2009.
-.. [7] N. R. Draper and H. Smith, Applied Regression Analysis, 3rd ed. New York: Wiley, 1998,
+.. [1] N. R. Draper and H. Smith, Applied Regression Analysis, 3rd ed. New York: Wiley, 1998,
    sec. 2.2 (lack of fit and pure error).
+.. [2] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3, Tables 3-5 and 11-19.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike
-from scipy.special import fdtrc, fdtri, ndtri
+from scipy.special import fdtrc, fdtri, stdtr
 
-from reduction.experiments.fit_results import Anova, Diagnostics, LackOfFit, LeastSquares
-from reduction.experiments.response_matrix import block_contrasts, patterns_of, student_p, times
+from reduction.experiments.fit_results import LackOfFit, LeastSquares
+from reduction.experiments.response_matrix import block_contrasts, patterns_of, times
 from reduction.experiments.run_sheet import is_singular
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers
@@ -63,8 +46,8 @@ _ROUNDING = 1e-12
 _HUGE = 1e150
 """Numbers beyond it cannot be squared."""
 
-_FIXES_A_TERM = 1 - 1e-9
-"""Leverage from which a run is fitted by itself alone."""
+FIXES_A_TERM = 1 - 1e-9
+"""Leverage from which a run is fitted by itself alone and has no residual to look at."""
 
 
 def two_sided_p(t: ArrayLike, degrees_of_freedom: ArrayLike) -> Floats:
@@ -91,8 +74,7 @@ def two_sided_p(t: ArrayLike, degrees_of_freedom: ArrayLike) -> Floats:
 
     Notes
     -----
-    The incomplete beta function keeps its digits where p is small; 1 less a
-    distribution function does not.
+    The tail below -|t| keeps its digits where p is small; 1 less a distribution function does not.
 
     Examples
     --------
@@ -101,15 +83,8 @@ def two_sided_p(t: ArrayLike, degrees_of_freedom: ArrayLike) -> Floats:
     >>> print(two_sided_p(2.570582, 5).round(4))
     0.05
     """
-    statistic, nu = np.broadcast_arrays(
-        np.asarray(t, dtype=np.float64), np.asarray(degrees_of_freedom, dtype=np.float64)
-    )
-    if nu.size and (nu == nu.flat[0]).all() and nu.flat[0] > 0:
-        return student_p(statistic.ravel(), float(nu.flat[0])).reshape(statistic.shape)
-    p_value = np.full(statistic.shape, np.nan)
-    for value in np.unique(nu[nu > 0]):
-        p_value[nu == value] = student_p(statistic[nu == value], float(value))
-    return p_value
+    nu = np.asarray(degrees_of_freedom, dtype=np.float64)
+    return np.asarray(2 * stdtr(np.where(nu > 0, nu, np.nan), -np.abs(t)))
 
 
 def fit_least_squares(
@@ -170,7 +145,6 @@ def fit_least_squares(
             ("leverage", is_used.shape),
             ("fitted", values.shape),
             ("residual", values.shape),
-            ("sequential_sum_of_squares", (values.shape[0], n_columns)),
             ("residual_sum_of_squares", values.shape[:1]),
             ("total_sum_of_squares", values.shape[:1]),
             ("prediction_sum_of_squares", values.shape[:1]),
@@ -204,13 +178,12 @@ def fit_least_squares(
             else _spread(known - residual, np.flatnonzero(used), used.size)
         )
         out["residual"][rows] = _spread(residual, np.flatnonzero(used), used.size)
-        out["sequential_sum_of_squares"][rows] = _spread(projection**2, kept, n_columns)
         remainder = np.sum(residual**2, axis=1)
         total = remainder + np.sum(projection[:, n_fixed:] ** 2, axis=1)
         out["residual_sum_of_squares"][rows] = remainder
         out["total_sum_of_squares"][rows] = total
         out["prediction_sum_of_squares"][rows] = np.sum(
-            (residual / np.where(leverage < _FIXES_A_TERM, 1 - leverage, np.nan)) ** 2, axis=1
+            (residual / np.where(leverage < FIXES_A_TERM, 1 - leverage, np.nan)) ** 2, axis=1
         )
         rounding = (_ROUNDING * np.max(np.abs(known), axis=1)) ** 2 * known.shape[1]
         reason[rows] = np.select(
@@ -272,68 +245,6 @@ def _spread(values: Floats, places: Integers, count: int) -> Floats:
     return wide
 
 
-"""Leverage from which a run is fitted by itself alone and has no residual to look at."""
-
-
-def diagnose(fit: LeastSquares) -> Diagnostics:
-    r"""Look at the residuals of every run of every surface.
-
-    .. math::
-
-        r_i = \frac{e_i}{s \sqrt{1 - h_i}}, \qquad
-        t_i = r_i \sqrt{\frac{n - p - 1}{n - p - r_i^2}}, \qquad
-        D_i = \frac{r_i^2}{p} \frac{h_i}{1 - h_i}
-
-    Notes
-    -----
-    Source: [3]_; the correlation of [4]_ is with the scores of Blom.  Fifteen residuals of a
-    surface of ten terms have five degrees of freedom among them and look more normal than the
-    scatter is: a low correlation says something, a high one little.
-
-    Examples
-    --------
-    Three values about their mean: the leverage of each is a third.
-
-    >>> from reduction.experiments.least_squares_fit import fit_least_squares
-    >>> found = diagnose(fit_least_squares(np.ones((3, 1)), [[1.0, 2.0, 3.0]]))
-    >>> print(found.leverage.round(3), found.cooks_distance.round(3))
-    [[0.333 0.333 0.333]] [[0.75 0.   0.75]]
-    """
-    leverage = fit.leverage[fit.pattern]
-    n_columns = np.isfinite(fit.coefficient).sum(axis=1, keepdims=True)
-    df = fit.degrees_of_freedom[:, None]
-    own = np.where(leverage < _FIXES_A_TERM, 1 - leverage, np.nan)
-    sigma = np.where(fit.reason == 0, fit.sigma, np.nan)[:, None]
-    inner = fit.residual / (sigma * np.sqrt(own))
-    distance = inner**2 * leverage / own / np.maximum(n_columns, 1)
-    # with every other residual nil the scatter without the run is nil, and t has no bound
-    without = df - inner**2
-    safe = (without > 1e-9 * df) & (df > 1)
-    outer = inner * np.sqrt(
-        np.divide(df - 1, without, where=safe, out=np.full(inner.shape, np.inf))
-    )
-    outer = np.where(df > 1, outer, np.nan)
-    return Diagnostics(
-        leverage, distance, inner, outer, _straightness(inner, fit.is_used[fit.pattern])
-    )
-
-
-def _straightness(studentized: Floats, used: Bools) -> Floats:
-    """Squared correlation of ordered residuals with normal scores, shape (n_responses,)."""
-    known = np.isfinite(studentized)
-    count = known.sum(axis=1, keepdims=True)
-    ordered = np.sort(np.where(known, studentized, np.nan), axis=1)
-    place = np.arange(1, used.shape[1] + 1)
-    inside = place <= count
-    score = np.where(inside, ndtri(np.where(inside, (place - 0.375) / (count + 0.25), 0.5)), 0.0)
-    inside &= count > 2
-    middle = np.sum(np.where(inside, ordered, 0.0), axis=1, keepdims=True) / np.maximum(count, 1)
-    centred = np.where(inside, ordered - middle, 0.0)
-    product = np.sum(centred * score, axis=1) ** 2
-    size = np.sum(centred**2, axis=1) * np.sum(score**2, axis=1)
-    return np.asarray(np.divide(product, size, where=size > 0, out=np.full(size.shape, np.nan)))
-
-
 class _OverallF(NamedTuple):
     """Statistics of one r2: the right test, and the one the report printed.
 
@@ -381,7 +292,7 @@ def statistics_from_r2(
 
     Notes
     -----
-    Source: [5]_, Tables 3-5 and 11-19: 54 of 58 printed statistics follow from the printed r2
+    Source: [2]_, Tables 3-5 and 11-19: 54 of 58 printed statistics follow from the printed r2
     and 10 and 4 degrees of freedom within its rounding, 3 from 9 and 5.  The text "if F-Stat >
     F-Crit the data fits equation 5 with 95 % confidence" is not what the test says: that not
     all slopes are nil.  NaN where no degree of freedom is left.
@@ -500,7 +411,7 @@ def lack_of_fit(
     -----
     Repeats whose levels differ are compared by their residuals, that is, after the surface has
     moved each to the same place; for exact repeats the surface drops out and the result is
-    that of [7]_.  With blocks, what is left after an additive model of blocks and cells is
+    that of [1]_.  With blocks, what is left after an additive model of blocks and cells is
     pure error (as R's rsm): it holds the scatter of a block's answer to a run.
 
     Examples
@@ -543,61 +454,3 @@ def lack_of_fit(
     f[tested] = (lack[tested] / lack_df[tested]) / (pure[tested] / pure_df[tested])
     p_value = np.asarray(fdtrc(np.maximum(lack_df, 1), np.maximum(pure_df, 1), f), dtype=np.float64)
     return LackOfFit(lack_df, pure_df, lack, pure, f, p_value, reason, cell, tolerance)
-
-
-def anova_table(
-    fit: LeastSquares, groups: Mapping[str, slice], lack: LackOfFit, *, n_baseline: int = 1
-) -> Anova:
-    """Sums of squares by source, with F and p.
-
-    Notes
-    -----
-    Sequential sums: each source after those above it.  Every source is tested against the
-    residuals, lack of fit against pure error.
-
-    Examples
-    --------
-    Four runs on a line, two of them repeated:
-
-    >>> from reduction.experiments.least_squares_fit import fit_least_squares
-    >>> matrix = np.stack([np.ones(4), [-1.0, -1.0, 1.0, 1.0]], axis=1)
-    >>> fit = fit_least_squares(matrix, [[1.0, 2.0, 6.0, 8.0]])
-    >>> lack = lack_of_fit(fit, np.array([0, 0, 1, 1]), baseline=matrix[:, :1])
-    >>> found = anova_table(fit, {"first order": slice(1, 2)}, lack)
-    >>> print(found.source[0], found.f[0, 0].round(3), found.p_value[0, 0].round(4))
-    first order 24.2 0.0389
-    """
-    edges = [(part.start, part.stop) for part in groups.values()]
-    joined = [n_baseline, *[stop for _, stop in edges]]
-    if [start for start, _ in edges] != joined[:-1] or joined[-1] != fit.coefficient.shape[1]:
-        raise SettingsError(
-            "the sources do not cover the columns in order",
-            found=str(edges),
-            needed=f"from {n_baseline} to {fit.coefficient.shape[1]} without a gap",
-        )
-    none = np.where(np.isin(fit.reason, (1, 2, 6)), np.nan, 1.0)
-    # the column of a block that a response does without is NaN and no degree of freedom
-    stands = np.isfinite(fit.sequential_sum_of_squares)
-    squares = [
-        none * np.sum(fit.sequential_sum_of_squares[:, part], axis=1, where=stands[:, part])
-        for part in groups.values()
-    ]
-    degrees = [none * stands[:, part].sum(axis=1) for part in groups.values()]
-    residual_df = none * fit.degrees_of_freedom
-    unexplained = [lack.sum_of_squares, lack.pure_error_sum_of_squares]
-    unexplained_df = [none * lack.degrees_of_freedom, none * lack.pure_error_degrees_of_freedom]
-    left = fit.residual_sum_of_squares
-    sums = np.stack([*squares, left, *unexplained, np.sum([*squares, left], axis=0)], axis=1)
-    total_df = np.sum([*degrees, residual_df], axis=0)
-    df = np.stack([*degrees, residual_df, *unexplained_df, total_df], axis=1)
-    mean_square = np.divide(sums, df, out=np.full(sums.shape, np.nan), where=df > 0)
-    n_groups = len(groups)
-    f, p_value = np.full(sums.shape, np.nan), np.full(sums.shape, np.nan)
-    tested = fit.reason == 0
-    error = mean_square[tested, n_groups, None]
-    f[tested, :n_groups] = mean_square[tested, :n_groups] / error
-    p_value[:, :n_groups] = fdtrc(df[:, :n_groups], df[:, n_groups, None], f[:, :n_groups])
-    f[:, n_groups + 1], p_value[:, n_groups + 1] = lack.f, lack.p_value
-    source = (*groups, "residuals", "lack of fit", "pure error", "total")
-    against = (*(["residuals"] * n_groups), "", "pure error", "", "")
-    return Anova(source, df, sums, mean_square, f, p_value, against)

@@ -46,18 +46,21 @@ from reduction.experiments.fit_results import (
     ResponseSurfaces,
 )
 from reduction.experiments.least_squares_fit import (
-    anova_table,
-    diagnose,
     fit_least_squares,
     lack_of_fit,
     replicate_cells,
     statistics_from_r2,
-    two_sided_p,
 )
 from reduction.experiments.response_matrix import times
 from reduction.experiments.response_transform import Transform, box_cox_exponent, transform
 from reduction.experiments.run_sheet import covariance_factor
 from reduction.experiments.stationary_point import canonical_analysis
+from reduction.experiments.surface_statistics import (
+    anova_table,
+    diagnose,
+    regress_each,
+    term_tests,
+)
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers
 
@@ -274,6 +277,7 @@ def fit_surfaces(
     block_treatment: Literal["fixed", "random"] = "fixed",
     transforms: Transform | Sequence[Transform] = "none",
     replicate_tolerance: float = 0.1,
+    with_tests: bool = True,
 ) -> ResponseSurfaces:
     """Fit the quadratic surface of every response over the runs as they were done.
 
@@ -302,6 +306,9 @@ def fit_surfaces(
         Scale each response is fitted on.
     replicate_tolerance : float
         Runs count as repeats where no coded level differs by more. [1]
+    with_tests : bool
+        Without them t and p of terms and surfaces, analysis of variance and residuals looked at
+        are NaN, and thousands of responses are fitted in the time of some tens.
 
     Returns
     -------
@@ -372,29 +379,27 @@ def fit_surfaces(
     if set(scale) != {"none"}:
         bent = np.array([kind != "none" for kind in scale])
         values[bent] = transform(measured[bent], power[bent, None])
-    fit = fit_least_squares(
-        matrix,
-        values,
-        n_baseline=baseline.shape[1],
-        block=None if grouping is None else grouping[1],
-    )
+    index = None if grouping is None else grouping[1]
+    fit = fit_least_squares(matrix, values, n_baseline=baseline.shape[1], block=index)
     fit = replace(fit, reason=np.where(np.isnan(power), np.int8(6), fit.reason))
-    found = fixed_estimates(fit, column)
+    cell = replicate_cells(coded, tolerance=replicate_tolerance)
+    lack = lack_of_fit(fit, cell, baseline=baseline, tolerance=replicate_tolerance)
+    regressions = regress_each(values, matrix, fit, baseline.shape[1], index) if with_tests else {}
+    tested = {row: result for row, result in regressions.items() if fit.reason[row] == 0}
+    t, p_value, overall_f, overall_p_value = term_tests(tested, fit, column)
+    found = fixed_estimates(fit, column, t, p_value)
     effects = None
     if grouping is not None:
-        names, index, _ = grouping
-        found, effects = with_blocks(found, fit, surface, values, names, index, block_treatment)
+        found, effects = with_blocks(
+            found, fit, surface, values, grouping[0], grouping[1], block_treatment
+        )
     deviation, engineering_deviation, to_engineering = deviations(found, exponents, low, high)
-    judged = (fit.reason == 0)[:, None] & (deviation > 0)
-    t = np.divide(found.coefficient, deviation, out=np.full(deviation.shape, np.nan), where=judged)
     r2, adjusted, predicted = _shares(fit, baseline.shape[1])
-    overall = statistics_from_r2(
+    printed = statistics_from_r2(
         np.where(fit.reason == 0, r2, np.nan),
         n_runs=fit.degrees_of_freedom + len(terms),
         n_terms=len(terms),
-    )
-    cell = replicate_cells(coded, tolerance=replicate_tolerance)
-    lack = lack_of_fit(fit, cell, baseline=baseline, tolerance=replicate_tolerance)
+    ).printed_f
     return ResponseSurfaces(
         response_names=tuple(response_names),
         factor_names=tuple(factor_names),
@@ -409,8 +414,8 @@ def fit_surfaces(
         transform_exponent_interval=interval,
         coefficient=found.coefficient,
         coefficient_standard_uncertainty=deviation,
-        t=t,
-        p_value=two_sided_p(t, found.degrees_of_freedom),
+        t=found.t,
+        p_value=found.p_value,
         term_degrees_of_freedom=found.degrees_of_freedom,
         error_term=found.error_term,
         coefficient_engineering=times(found.coefficient, to_engineering.T),
@@ -424,13 +429,13 @@ def fit_surfaces(
         r2=r2,
         adjusted_r2=adjusted,
         predicted_r2=predicted,
-        overall_f=overall.f,
-        overall_p_value=overall.p_value,
+        overall_f=overall_f,
+        overall_p_value=overall_p_value,
         # the report had one specimen a surface, or their mean
-        printed_f=overall.printed_f if effects is None else np.full(len(r2), np.nan),
+        printed_f=printed if effects is None else np.full(len(r2), np.nan),
         fitted=fit.fitted,
         residual=fit.residual,
-        anova=anova_table(fit, groups, lack),
+        anova=anova_table(regressions, groups, fit, lack),
         lack_of_fit=lack,
         canonical=canonical_analysis(
             found.coefficient,
@@ -441,7 +446,7 @@ def fit_surfaces(
             low=low,
             high=high,
         ),
-        diagnostics=diagnose(fit),
+        diagnostics=diagnose(tested, fit),
         blocks=effects,
         condition_number=condition,
         reason=fit.reason,

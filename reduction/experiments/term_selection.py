@@ -21,8 +21,8 @@ import numpy as np
 
 from reduction.experiments.designs import model_matrix
 from reduction.experiments.fit_results import ResponseSurfaces
-from reduction.experiments.least_squares_fit import two_sided_p
 from reduction.experiments.response_matrix import block_contrasts
+from reduction.experiments.surface_statistics import regress
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 
@@ -132,26 +132,17 @@ def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> Re
         best[rows] = criterion[choice, np.arange(rows.size)]
         full[rows] = criterion[-1]
         close[rows] = np.sum(criterion <= best[rows] + 2, axis=0)
-        for chosen in np.unique(choice):
-            members = rows[choice == chosen]
-            kept = subsets[chosen]
-            columns = np.hstack([baseline, terms[:, kept]])
-            basis, upper = np.linalg.qr(columns)
-            inverse = np.linalg.inv(upper)
-            values = responses[members][:, used]
-            found = (values @ basis) @ inverse.T
-            freedom[members] = columns.shape[0] - columns.shape[1]
-            left = np.sum((values - found @ columns.T) ** 2, axis=1)
-            sigma[members] = np.sqrt(left / freedom[members])
-            of_term = np.concatenate([[0], np.arange(baseline.shape[1], columns.shape[1])])
-            places = np.concatenate([[0], kept])
-            is_kept[np.ix_(members, places)] = True
-            deviation = sigma[members, None] * np.sqrt(np.sum(inverse**2, axis=1))[of_term]
-            out["coefficient"][members] = 0.0
-            out["coefficient"][np.ix_(members, places)] = found[:, of_term]
-            out["coefficient_standard_uncertainty"][np.ix_(members, places)] = deviation
-            out["t"][np.ix_(members, places)] = found[:, of_term] / deviation
-    out["p_value"] = two_sided_p(out["t"], freedom[:, None])
+        for row, chosen in zip(rows.tolist(), choice.tolist(), strict=True):
+            places = [0, *subsets[chosen]]
+            found = regress(responses[row, used], np.hstack([terms[:, places], baseline[:, 1:]]))
+            is_kept[row, places] = True
+            out["coefficient"][row] = 0.0
+            for name, values in (
+                ("coefficient", found.params), ("coefficient_standard_uncertainty", found.bse),
+                ("t", found.tvalues), ("p_value", found.pvalues),
+            ):  # fmt: skip
+                out[name][row, places] = values[: len(places)]
+            sigma[row], freedom[row] = np.sqrt(found.scale), found.df_resid
     return ReducedSurfaces(
         is_kept=is_kept,
         **out,

@@ -1,17 +1,19 @@
 import numpy as np
 import pandas as pd
 import pytest
+import statsmodels.api as sm
+from scipy import stats
 from statsmodels.formula.api import ols
 from statsmodels.stats.anova import anova_lm
 
 from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
 from reduction.experiments.fit_results import LACK_OF_FIT_REASONS
 from reduction.experiments.least_squares_fit import (
-    anova_table,
     fit_least_squares,
     lack_of_fit,
     replicate_cells,
 )
+from reduction.experiments.surface_statistics import anova_table, regress_each
 from reduction.record.errors import DataError, SettingsError
 
 EXPONENTS = quadratic_exponents(3)
@@ -28,18 +30,20 @@ def test_sequential_sums_are_those_of_statsmodels_for_levels_as_met():
     rng = np.random.default_rng(6)
     runs = RUNS + rng.normal(0, 0.05, RUNS.shape)
     response = rng.normal(size=15) + runs[:, 0]
-    order = [0, 4, 5, 6, 7, 8, 9, 1, 2, 3]
-    fit = fit_least_squares(model_matrix(runs, EXPONENTS)[:, order], [response])
+    matrix = model_matrix(runs, EXPONENTS)[:, [0, 4, 5, 6, 7, 8, 9, 1, 2, 3]]
+    fit = fit_least_squares(matrix, [response])
     data = pd.DataFrame({"y": response, "a": runs[:, 0], "b": runs[:, 1], "c": runs[:, 2]})
     other = anova_lm(
         ols("y ~ a + b + c + a:b + a:c + b:c + I(a**2) + I(b**2) + I(c**2)", data).fit(), typ=1
     )
-    np.testing.assert_allclose(
-        fit.sequential_sum_of_squares[0, 1:], other["sum_sq"].to_numpy()[:-1], rtol=1e-9
-    )
     groups = {"first order": slice(1, 4), "interactions": slice(4, 7), "squares": slice(7, 10)}
     lack = lack_of_fit(fit, replicate_cells(runs, tolerance=0.3), baseline=MEAN)
-    table = anova_table(fit, groups, lack)
+    table = anova_table(regress_each(response[None], matrix, fit, 1, None), groups, fit, lack)
+    each = other["sum_sq"].to_numpy()[:-1].reshape(3, 3).sum(axis=1)
+    np.testing.assert_allclose(table.sum_of_squares[0, :3], each, rtol=1e-9)
+    f = each / 3 / other.loc["Residual", "mean_sq"]
+    np.testing.assert_allclose(table.f[0, :3], f, rtol=1e-9)
+    np.testing.assert_allclose(table.p_value[0, :3], stats.f.sf(f, 3, 5), rtol=1e-9)
     assert table.source[-1] == "total"
     assert table.sum_of_squares[0, -1] == pytest.approx(np.sum((response - response.mean()) ** 2))
     assert table.degrees_of_freedom[0].tolist() == [3, 3, 3, 5, 3, 2, 14]
@@ -95,6 +99,19 @@ def test_steep_surfaces_over_near_repeats_do_not_pass_for_pure_error():
     assert mean_square == pytest.approx(0.05**2, rel=0.05)
 
 
+def test_the_lack_of_fit_of_exact_repeats_is_that_of_two_models_of_statsmodels():
+    rng = np.random.default_rng(4)
+    values, cell = rng.normal(size=(2, 15)) + RUNS[:, 0] ** 3, replicate_cells(RUNS)
+    fit = fit_least_squares(MATRIX[:, :7], values)
+    lack = lack_of_fit(fit, cell, baseline=MEAN)
+    for row, response in enumerate(values):
+        of_cells = sm.OLS(response, (cell[:, None] == np.arange(13)).astype(float)).fit()
+        f, p_value, degrees = of_cells.compare_f_test(sm.OLS(response, MATRIX[:, :7]).fit())
+        assert lack.degrees_of_freedom[row] == degrees
+        assert lack.f[row] == pytest.approx(f, rel=1e-9)
+        assert lack.p_value[row] == pytest.approx(p_value, rel=1e-9)
+
+
 def test_each_lack_of_fit_that_cannot_be_tested_says_why():
     rng = np.random.default_rng(1)
     responses = rng.normal(size=(5, 15))
@@ -125,10 +142,3 @@ def test_runs_no_more_different_than_terms_cannot_lack_fit():
 def test_cells_that_do_not_pair_up_are_refused():
     with pytest.raises(DataError, match="cells do not pair up with the runs; found 14 cells"):
         lack_of_fit(fitted(np.arange(15.0)), np.zeros(14, dtype=int), baseline=MEAN)
-
-
-def test_sources_with_a_gap_are_refused():
-    fit = fitted(np.arange(15.0) ** 2)
-    lack = lack_of_fit(fit, replicate_cells(RUNS), baseline=MEAN)
-    with pytest.raises(SettingsError, match="sources do not cover the columns in order"):
-        anova_table(fit, {"first order": slice(1, 4), "squares": slice(5, 10)}, lack)

@@ -59,7 +59,9 @@ def test_simultaneous_intervals_hold_the_whole_surface_as_often_as_they_say():
     truth = np.arange(1.0, 11.0)
     grid = np.stack(np.meshgrid(*[np.linspace(-1, 1, 7)] * 3), axis=-1).reshape(-1, 3)
     found = evaluate_surfaces(
-        surfaces(MATRIX @ truth + rng.normal(size=(1500, 15))), grid, units="coded"
+        surfaces(MATRIX @ truth + rng.normal(size=(1500, 15)), with_tests=False),
+        grid,
+        units="coded",
     )
     true = model_matrix(grid, EXPONENTS) @ truth
 
@@ -111,7 +113,8 @@ def test_a_point_outside_is_flagged_where_that_is_asked_for(responses):
 def test_values_of_a_logarithm_are_medians_above_nought_with_their_means():
     rng = np.random.default_rng(9)
     log_truth = np.array([0.0, 0.1, 0.2, 0.0, -1.0, 2.0, 0.1, 0, 0, 0.3])
-    model = surfaces(np.exp(MATRIX @ log_truth + rng.normal(0, 0.3, (4000, 15))), transforms="log")
+    drawn = np.exp(MATRIX @ log_truth + rng.normal(0, 0.3, (4000, 15)))
+    model = surfaces(drawn, transforms="log", with_tests=False)
     found = evaluate_surfaces(model, [[0.0, 0.0, 0.0], [1.0, -1.0, 0.0]], units="coded")
     assert (found.value > 0).all() and (found.confidence_interval > 0).all()
     true = model_matrix([[0.0, 0, 0], [1.0, -1, 0]], EXPONENTS) @ log_truth

@@ -1,9 +1,7 @@
-import warnings
-
 import numpy as np
 import pytest
+from scipy import optimize
 from statsmodels.regression.linear_model import GLS
-from statsmodels.regression.mixed_linear_model import MixedLM
 
 from reduction.experiments.block_effects import _fit_random_intercept, block_columns
 from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
@@ -24,29 +22,43 @@ def responses():
     return values
 
 
-def test_random_blocks_are_those_of_statsmodels(responses):
+def likeliest_ratio(response, matrix, block):
+    """Of the restricted likelihood in closed form, from contrasts free of the surface."""
+    free = np.linalg.qr(matrix, mode="complete")[0][:, matrix.shape[1] :]
+    size, vectors = np.linalg.eigh(free.T @ (block[:, None] == block) @ free)
+    square = (response @ free @ vectors) ** 2
+
+    def deviance(power):
+        factor = 1 + 10**power * size
+        return np.sum(np.log(factor)) + size.size * np.log(np.sum(square / factor))
+
+    best = optimize.minimize_scalar(deviance, bounds=(-6, 6), options={"xatol": 1e-12})
+    return 10**best.x
+
+
+def test_random_blocks_are_those_of_the_restricted_likelihood_in_closed_form(responses):
     found = _fit_random_intercept(MATRIX, responses, block=BLOCK)
     for row, response in enumerate(responses):
         has = np.isfinite(response)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            other = MixedLM(response[has], MATRIX[has], groups=BLOCK[has]).fit(
-                reml=True, method="bfgs", gtol=1e-10
-            )
-        np.testing.assert_allclose(found.coefficient[row], other.fe_params, rtol=1e-6)
-        assert found.sigma[row] ** 2 == pytest.approx(other.scale, rel=1e-5)
-        assert found.standard_deviation[row] ** 2 == pytest.approx(other.cov_re[0, 0], rel=1e-4)
-        # bse_fe is of the observed Hessian; the covariance of generalized least squares is not
-        of_block = (BLOCK[has][:, None] == np.arange(4)).astype(float)
-        ratio = other.cov_re[0, 0] / other.scale
-        general = GLS(
-            response[has], MATRIX[has], sigma=np.eye(has.sum()) + ratio * of_block @ of_block.T
+        ratio = likeliest_ratio(response[has], MATRIX[has], BLOCK[has])
+        other = GLS(
+            response[has],
+            MATRIX[has],
+            np.eye(has.sum()) + ratio * (BLOCK[has][:, None] == BLOCK[has]),
+        ).fit()
+        # a thousandth of an uncertainty of a number is asked for
+        np.testing.assert_allclose(
+            (found.coefficient[row] - other.params) / other.bse, 0, atol=1e-6
         )
         np.testing.assert_allclose(
-            found.covariance_factor[row], general.fit().normalized_cov_params, rtol=1e-4, atol=1e-9
+            found.covariance_factor[row], other.normalized_cov_params, rtol=1e-5, atol=1e-12
         )
-        for group, effect in other.random_effects.items():
-            assert found.effect[row, group] == pytest.approx(np.asarray(effect)[0], rel=1e-4)
+        assert found.sigma[row] ** 2 == pytest.approx(other.scale, rel=1e-6)
+        assert found.standard_deviation[row] ** 2 == pytest.approx(ratio * other.scale, rel=1e-5)
+        for block in np.unique(BLOCK[has]):
+            left = other.resid[BLOCK[has] == block]
+            effect = ratio * left.sum() / (1 + ratio * left.size)
+            assert found.effect[row, block] == pytest.approx(effect, rel=1e-5)
 
 
 def test_balanced_blocks_have_the_variance_of_the_analysis_of_variance():
@@ -74,6 +86,23 @@ def test_blocks_closer_together_than_the_scatter_have_no_variance():
     assert found.at_boundary.tolist() == [True]
     assert found.standard_deviation[0] == 0.0
     np.testing.assert_allclose(found.effect, 0.0)
+
+
+@pytest.mark.parametrize("values", [np.full(60, 4.0), np.zeros(60)])
+def test_a_response_that_does_not_vary_has_no_variance_between_blocks(values):
+    found = _fit_random_intercept(MATRIX, values[None], block=BLOCK)
+    assert found.at_boundary.tolist() == [True] and found.sigma[0] < 1e-13
+    np.testing.assert_allclose(found.coefficient[0], [values[0], *np.zeros(9)], atol=1e-13)
+
+
+@pytest.mark.parametrize("scatter", [0.0, 1e-9])
+def test_blocks_that_do_not_scatter_within_are_apart_by_the_largest_ratio(scatter):
+    levels = np.array([0.0, 3.0, 7.0, 2.0])
+    noise = scatter * np.random.default_rng(7).normal(size=60)
+    values = MATRIX @ np.ones(10) + levels[BLOCK] + noise
+    found = _fit_random_intercept(MATRIX, values[None], block=BLOCK)
+    assert found.standard_deviation[0] == pytest.approx(1e3 * found.sigma[0], rel=1e-9)
+    np.testing.assert_allclose(found.effect[0], levels - levels.mean(), atol=2e-6)
 
 
 def test_a_factor_that_moves_between_blocks_alone_is_judged_between_them():

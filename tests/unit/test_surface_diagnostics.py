@@ -4,16 +4,23 @@ import statsmodels.api as sm
 from scipy import stats
 
 from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
-from reduction.experiments.least_squares_fit import diagnose, fit_least_squares
+from reduction.experiments.least_squares_fit import fit_least_squares
+from reduction.experiments.surface_statistics import diagnose, regress_each
 
 RUNS = box_behnken(3).coded
 MATRIX = model_matrix(RUNS, quadratic_exponents(3))
 
 
+def diagnosed(matrix, responses):
+    fit, values = fit_least_squares(matrix, responses), np.asarray(responses, dtype=float)
+    regressions = regress_each(values, matrix, fit, 1, None)
+    return diagnose({row: one for row, one in regressions.items() if not fit.reason[row]}, fit)
+
+
 def test_residuals_are_those_of_statsmodels():
     responses = np.random.default_rng(5).normal(size=(3, 15))
     responses[1, 13] = np.nan
-    found = diagnose(fit_least_squares(MATRIX, responses))
+    found = diagnosed(MATRIX, responses)
     for row, response in enumerate(responses):
         has = np.isfinite(response)
         other = sm.OLS(response[has], MATRIX[has]).fit().get_influence()
@@ -31,7 +38,7 @@ def test_residuals_are_those_of_statsmodels():
 
 def test_straightness_is_that_of_the_probability_plot():
     """Scores of Blom, by scipy's own inverse normal."""
-    found = diagnose(fit_least_squares(MATRIX, np.random.default_rng(9).normal(size=(2, 15))))
+    found = diagnosed(MATRIX, np.random.default_rng(9).normal(size=(2, 15)))
     scores = stats.norm.ppf((np.arange(1, 16) - 0.375) / 15.25)
     for row in range(2):
         ordered = np.sort(found.studentized_residual[row])
@@ -44,14 +51,14 @@ def test_an_outlier_bends_the_probability_plot():
     even = stats.norm.ppf((np.arange(30) + 0.5) / 30)
     bent = even.copy()
     bent[-1] = 12.0
-    found = diagnose(fit_least_squares(matrix, [even, bent]))
+    found = diagnosed(matrix, [even, bent])
     assert found.probability_plot_correlation[0] > 0.98
     assert found.probability_plot_correlation[1] < 0.7
 
 
 def test_a_run_that_fixes_a_term_alone_has_no_residual_to_look_at():
     matrix = model_matrix([[0.0], [0.0], [0.0], [1.0]], quadratic_exponents(1))[:, [0, 2]]
-    found = diagnose(fit_least_squares(matrix, [[1.0, 2.0, 4.0, 9.0]]))
+    found = diagnosed(matrix, [[1.0, 2.0, 4.0, 9.0]])
     assert found.leverage[0, 3] == pytest.approx(1.0)
     assert np.isnan(found.studentized_residual[0, 3])
     assert np.isfinite(found.studentized_residual[0, :3]).all()
@@ -64,17 +71,17 @@ def test_without_one_edge_run_the_opposite_one_fixes_a_term_alone():
     fit = fit_least_squares(MATRIX, responses)
     opposite = (RUNS == [-1, 0, -1]).all(axis=1)
     assert fit.leverage[0, opposite] == pytest.approx(1.0)
-    assert np.isnan(diagnose(fit).studentized_residual[0, opposite]).all()
+    assert np.isnan(diagnosed(MATRIX, responses).studentized_residual[0, opposite]).all()
     assert np.isnan(fit.prediction_sum_of_squares[0])
 
 
 def test_residuals_of_rounding_are_not_looked_at():
-    found = diagnose(fit_least_squares(MATRIX, [MATRIX @ np.ones(10)]))
+    found = diagnosed(MATRIX, [MATRIX @ np.ones(10)])
     assert np.isnan(found.cooks_distance).all()
     assert np.isnan(found.probability_plot_correlation).all()
 
 
 def test_one_degree_of_freedom_leaves_no_deleted_residual():
-    found = diagnose(fit_least_squares(np.ones((2, 1)), [[1.0, 3.0]]))
+    found = diagnosed(np.ones((2, 1)), [[1.0, 3.0]])
     assert np.isnan(found.deleted_residual).all()
     assert np.isfinite(found.studentized_residual).all()

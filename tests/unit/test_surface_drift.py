@@ -45,7 +45,7 @@ def test_blocks_keep_means_of_their_own():
 
 def test_a_false_alarm_is_as_rare_as_its_level():
     noise = RNG.normal(0, 1, (20_000, 15))
-    p_value = drift_over_order(fitted(noise), ORDER).p_value
+    p_value = drift_over_order(fitted(noise, with_tests=False), ORDER).p_value
     assert np.mean(p_value < 0.05) == pytest.approx(0.05, abs=0.006)
 
 

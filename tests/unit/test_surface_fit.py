@@ -6,6 +6,8 @@ from scipy import stats
 from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents, term_names
 from reduction.experiments.fit_results import FIT_REASONS
 from reduction.experiments.least_squares_fit import fit_least_squares, two_sided_p
+from reduction.experiments.response_matrix import block_contrasts
+from reduction.experiments.surface_statistics import regress_each
 from reduction.record.errors import DataError
 
 EXPONENTS = quadratic_exponents(3)
@@ -19,21 +21,68 @@ def responses():
     return np.random.default_rng(8).normal(5.0, 1.0, (6, 15))
 
 
-def test_a_fit_is_that_of_statsmodels(responses):
-    fit = fit_least_squares(MATRIX, responses)
-    for row, response in enumerate(responses):
-        other = sm.OLS(response, MATRIX).fit()
-        np.testing.assert_allclose(fit.coefficient[row], other.params, rtol=1e-10)
-        deviation = fit.sigma[row] * np.sqrt(np.diag(fit.covariance_factor[0]))
-        np.testing.assert_allclose(deviation, other.bse, rtol=1e-10)
-        np.testing.assert_allclose(fit.residual[row], other.resid, atol=1e-12)
-        np.testing.assert_allclose(1 - fit.residual_sum_of_squares[row]
-                                   / fit.total_sum_of_squares[row], other.rsquared, rtol=1e-10)  # fmt: skip
-        influence = other.get_influence()
-        np.testing.assert_allclose(fit.leverage[0], influence.hat_matrix_diag, rtol=1e-10)
-        np.testing.assert_allclose(
-            fit.prediction_sum_of_squares[row], np.sum(influence.resid_press**2), rtol=1e-10
-        )
+def gone(values, *places):
+    values = values.copy()
+    for row, runs in places:
+        values[row, runs] = np.nan
+    return values
+
+
+def designs():
+    """Columns, responses and blocks over which one fit of many and many of one are compared."""
+    rng = np.random.default_rng(8)
+    values = rng.normal(5.0, 1.0, (6, 60))
+    met = RUNS + rng.uniform(-0.08, 0.08, RUNS.shape)
+    several = np.repeat(np.arange(4), 15)
+    lines = model_matrix(np.tile(met, (4, 1)), EXPONENTS)
+    with_blocks = np.hstack([lines[:, :1], block_contrasts(several), lines[:, 1:]])
+    yield "as planned", MATRIX, values[:, :15], None
+    yield "as met", model_matrix(met, EXPONENTS), 1e6 * values[:, :15], None
+    missing = gone(values[:, :15], (1, [3]), (4, [3]), (2, [0, 14]), (5, [12, 13, 14, 1, 2, 3]))
+    yield "missing runs", MATRIX, missing, None
+    yield "repeats", model_matrix(np.repeat(met, 2, axis=0), EXPONENTS), values[:, :30], None
+    yield "saturated", MATRIX[[0, 1, 2, 4, 5, 7, 8, 10, 11, 12]], values[:, :10], None
+    yield "blocks", with_blocks, values, several
+    absent = gone(values, (0, several == 3), (1, several == 0), (2, several > 0), (3, [5, 40]))
+    yield "blocks that miss", with_blocks, absent, several
+
+
+@pytest.mark.parametrize(("matrix", "values", "block"), [
+    pytest.param(*design, id=name) for name, *design in designs()
+])  # fmt: skip
+def test_one_fit_of_many_is_that_of_statsmodels_of_each(matrix, values, block):
+    n_baseline = 1 if block is None else 4
+    fit = fit_least_squares(matrix, values, n_baseline=n_baseline, block=block)
+    each = regress_each(values, matrix, fit, n_baseline, block)
+    assert sorted(each) == [row for row in range(6) if fit.reason[row] not in (1, 2)]
+    for row, other in each.items():
+        pattern = fit.pattern[row]
+        stands = np.isfinite(fit.coefficient[row])
+        factor = fit.covariance_factor[pattern][np.ix_(stands, stands)]
+        mine = {
+            "coefficient": fit.coefficient[row, stands],
+            "covariance": factor,
+            "fitted": fit.fitted[row, fit.is_used[pattern]],
+            "residual": fit.residual[row, fit.is_used[pattern]],
+            "leverage": fit.leverage[pattern, fit.is_used[pattern]],
+        }
+        theirs = {
+            "coefficient": other.params, "covariance": other.normalized_cov_params,
+            "fitted": other.fittedvalues, "residual": other.resid,
+            "leverage": other.get_influence().hat_matrix_diag,
+        }  # fmt: skip
+        assert fit.degrees_of_freedom[row] == other.df_resid
+        if other.df_resid:
+            mine |= {"deviation": fit.sigma[row] * np.sqrt(np.diag(factor)),
+                     "sum": fit.residual_sum_of_squares[row]}  # fmt: skip
+            theirs |= {"deviation": other.bse, "sum": other.ssr}
+        if np.isfinite(fit.prediction_sum_of_squares[row]):
+            mine["press"] = fit.prediction_sum_of_squares[row]
+            theirs["press"] = np.sum(other.get_influence().resid_press ** 2)
+        for name, number in theirs.items():
+            size = np.nanmax(values[row])
+            least = 1e-13 * size if name in ("residual", "coefficient", "fitted") else 1e-14
+            np.testing.assert_allclose(mine[name], number, rtol=1e-9, atol=least, err_msg=name)
 
 
 def test_responses_with_missing_runs_are_fitted_to_the_runs_they_have(responses):

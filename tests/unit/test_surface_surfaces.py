@@ -84,7 +84,8 @@ def test_true_coefficients_come_back_from_levels_as_met():
     rng = np.random.default_rng(3)
     runs = RUNS + rng.uniform(-0.08, 0.08, RUNS.shape)
     truth = np.array([9.457, 0.1, -0.2, 0.05, 0.4, 2.6, -0.3, 0.1, 0.0, 0.2])
-    found = surfaces(model_matrix(runs, EXPONENTS) @ truth + rng.normal(0, 0.02, (5000, 15)), runs)
+    values = model_matrix(runs, EXPONENTS) @ truth + rng.normal(0, 0.02, (5000, 15))
+    found = surfaces(values, runs, with_tests=False)
     np.testing.assert_allclose(found.coefficient.mean(axis=0), truth, atol=0.002)
     np.testing.assert_allclose(
         found.coefficient.std(axis=0),
@@ -155,6 +156,16 @@ def test_the_product_cannot_be_changed(noise):
     with pytest.raises(dataclasses.FrozenInstanceError):
         found.sigma = 1.0
     assert found.labels[0] == "B1" and found.labels[-1] == "B10"
+
+
+def test_without_tests_the_surfaces_are_the_same_and_nothing_is_tested(noise):
+    whole, bare = surfaces(noise), surfaces(noise, with_tests=False)
+    for name in ("coefficient", "coefficient_standard_uncertainty", "sigma", "r2", "fitted"):
+        np.testing.assert_array_equal(getattr(bare, name), getattr(whole, name))
+    np.testing.assert_array_equal(bare.lack_of_fit.f, whole.lack_of_fit.f)
+    for untested in (bare.t, bare.p_value, bare.overall_f, bare.anova.f, bare.anova.sum_of_squares,
+                     bare.diagnostics.cooks_distance):  # fmt: skip
+        assert np.isnan(untested).all()
 
 
 # blocks ---------------------------------------------------------------------------------
