@@ -72,11 +72,7 @@ def _write_netcdf(dataset: xr.Dataset, path: Path) -> None:
 
 
 def _placed(dataset: xr.Dataset) -> Iterator[tuple[str, str]]:
-    """Group and name of each variable; a group has the coordinates that the root lacks.
-
-    A coordinate stands in the root where a variable of the root has its dimension, and otherwise
-    with its bounds in every group that needs it, so that each group can be read by itself.
-    """
+    """Group and name of each variable; a group has the coordinates that the root lacks."""
     groups_of: dict[Hashable, dict[str, None]] = {}
     for variable in dataset.variables.values():
         for dim in variable.dims:

@@ -68,38 +68,12 @@ class CatalogueEntry:
 
 
 def write_catalogue(archives: Sequence[Path], path: Path, *, opener: Opener = reading) -> None:
-    """Write the catalogue of a campaign, whole or not at all.
-
-    Parameters
-    ----------
-    archives : sequence of pathlib.Path
-        Of the campaign.
-    path : pathlib.Path
-        Of the catalogue; equal archives give equal bytes.
-    opener : Opener
-        How archives are opened.
-
-    Raises
-    ------
-    ArchiveError
-        If an archive cannot be read, or the disk refuses.
-    """
+    """Write the catalogue of a campaign, whole or not at all."""
     _write([_entry_of(one, opener=opener) for one in sorted(archives)], path)
 
 
 def rebuild(folder: Path) -> dict[str, str]:
-    """Write the catalogue of every campaign of a folder from the archives that are there.
-
-    Parameters
-    ----------
-    folder : pathlib.Path
-        Holds a folder for each campaign.
-
-    Returns
-    -------
-    left_out : dict of str to str
-        Archives that cannot be read and folders that take no file, each with the reason.
-    """
+    """Write the catalogue of every campaign of a folder from the archives that are there."""
     left_out = {}
     for campaign in campaigns_below(folder):
         shown = _shown_path(campaign.name)

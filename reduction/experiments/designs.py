@@ -31,13 +31,9 @@ References
 ----------
 .. [1] G. E. P. Box and D. W. Behnken, "Some new three level designs for the study of
    quantitative variables," Technometrics 2(4), 1960, Table 1.
-.. [2] R. L. Plackett and J. P. Burman, "The design of optimum multifactorial experiments,"
-   Biometrika 33(4), 1946.
 .. [3] CG-D-39-80 (three factors, sec. 4.3; screening in twelve runs, Appendix A).
 .. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eq. 5, Tables 3-5 and 11-19.
-.. [5] G. E. P. Box and D. W. Behnken, "Some New Three Level Designs for the Study of
-   Quantitative Variables," Technometrics, vol. 2, no. 4, pp. 455-475, 1960.
 .. [6] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, App. C, eqs. 5 and 5a.
 .. [7] R. H. Myers and D. C. Montgomery, Response Surface Methodology, 2nd ed. New York: Wiley,

@@ -74,7 +74,8 @@ def two_sided_p(t: ArrayLike, degrees_of_freedom: ArrayLike) -> Floats:
 
     Notes
     -----
-    The tail below -|t| keeps its digits where p is small; 1 less a distribution function does not.
+    The tail below -``|t|`` keeps its digits where p is small; 1 less a distribution function does
+    not.
 
     Examples
     --------

@@ -23,18 +23,9 @@ ratios of two groups those of `compare.ratio_of_means` (means) and `life.ratio_o
 
 References
 ----------
-.. [1] W. Q. Meeker and L. A. Escobar, Statistical Methods for Reliability Data, Wiley, 1998,
-   ch. 8.
-.. [2] R. J. Olsen, "Note on the Uniqueness of the Maximum Likelihood Estimator for the Tobit
-   Model," Econometrica, vol. 46, no. 5, pp. 1211-1215, 1978.
-.. [3] J. Burridge, "A Note on Maximum Likelihood Estimation for Regression Models Using Grouped
-   Data," J. R. Stat. Soc. B, vol. 43, no. 1, pp. 41-45, 1981.
-.. [4] W. Q. Meeker and L. A. Escobar, Statistical Methods for Reliability Data, Wiley, 1998.
 .. [5] CG-D-39-80, section 5 (snap loading), section 6.2.2 (abrasion).
 .. [6] NIST/SEMATECH e-Handbook of Statistical Methods, section 8.4.1.3.
 .. [7] CG-D-39-80, section 5 and Figure 19 (snap loading).
-.. [8] W. Q. Meeker and L. A. Escobar, Statistical Methods for Reliability Data, Wiley, 1998,
-   ch. 17.
 .. [9] CG-D-39-80, section 6.2.2 and Table 20.
 .. [10] G. Y. Zou and A. Donner, "Construction of Confidence Limits about Effect Measures: A
    General Approach," Stat. Med., vol. 27, no. 10, pp. 1693-1702, 2008.

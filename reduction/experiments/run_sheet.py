@@ -26,17 +26,11 @@ References
 .. [2] CG-D-39-80: sec. 4.3 (order of the runs), sec. 3.4 (snap loading is cyclic loading with a
    minimum of zero; nylon failed by it above 30 % of the break strength), App. A (levels chosen
    to keep a minimum tension of 3 %).
-.. [3] CG-D-39-80, sec. 4.3 and App. A: levels of the plan, to which a hydraulic machine comes
-   within a few per cent.
-.. [4] CG-D-39-80, Appendix A, Table A-2: the smallest significant effect at 90 %.
 .. [5] R. L. Plackett and J. P. Burman, "The design of optimum multifactorial experiments,"
    Biometrika 33(4), 1946.
-.. [6] N. R. Draper and H. Smith, Applied Regression Analysis, 3rd ed. New York: Wiley, 1998.
 .. [7] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3.
 .. [8] CG-D-39-80, sec. 4.3 and eq. 5: fifteen runs, ten terms.
-.. [9] R. H. Myers and D. C. Montgomery, Response Surface Methodology, 2nd ed. New York: Wiley,
-   2002, sec. 8.2 (scaled prediction variance).
 """
 
 from __future__ import annotations

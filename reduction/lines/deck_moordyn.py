@@ -39,11 +39,8 @@ Not run by the tests of this package: OpenFAST is no Python package.
 
 References
 ----------
-.. [1] MoorDyn documentation, "Input Files", v2.7.1, 2026.
 .. [2] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1-4.
-.. [3] NREL, "MoorPy documentation", v1.3.0.
-.. [4] MoorDyn documentation, "Input Files", v2.7.1, 2026, notes on MoorDyn-F.
 """
 
 from __future__ import annotations

@@ -28,13 +28,8 @@ Cable is a program of its own under the GPL; nothing of it is part of this packa
 
 References
 ----------
-.. [1] Dassault Systemes, "Abaqus Keywords Reference Guide": HYPERELASTIC, UNIAXIAL TEST DATA.
-.. [2] Orcina Ltd., "OrcaFlex Help," version 11.6: line types, variable data, text data files.
 .. [3] J. O. Ramsay, "Monotone regression splines in action," Statist. Sci., vol. 3, no. 4, pp.
    425-441, 1988.
-.. [4] J. I. Gobat and M. A. Grosenbaugh, "WHOI Cable v2.0: Time Domain Numerical Simulation of
-   Moored and Towed Oceanographic Systems," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech.
-   Rep. WHOI-2000-08, July 2000.
 """
 
 from __future__ import annotations

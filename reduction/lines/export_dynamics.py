@@ -23,7 +23,6 @@ References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1-4.
-.. [2] MoorDyn documentation, "Input Files", v2.7.1, 2026, on the Syrope model.
 .. [3] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
    in measurement," 5.2.
 .. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D

@@ -10,9 +10,6 @@ A line for export from what is known of it for look-up: its curve, its dynamics 
 
 References
 ----------
-.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4.
 .. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
    Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
    MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2.

@@ -26,8 +26,6 @@ References
 .. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
    Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
    MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2.
-.. [3] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4, 4.4.1.
 .. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eq. 5, App. C.
 .. [5] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty

@@ -23,8 +23,6 @@ References
    General Approach," Statistics in Medicine, vol. 27, no. 10, pp. 1693-1702, 2008.
 .. [3] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.1, Tables 4, 5.
-.. [4] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.2.2, F.1.2.3, G.4.1.
 """
 
 from __future__ import annotations

@@ -955,23 +955,6 @@ def layer_strength(design: ArmourDesign, yield_stress: ArrayLike) -> Floats:
 
     .. math:: F = n \sigma_y A \cos\alpha
 
-    Parameters
-    ----------
-    design : ArmourDesign
-        Shape (...).
-    yield_stress : array_like, shape (...)
-        Of the wires. [Pa]
-
-    Returns
-    -------
-    layer_strength : ndarray, shape (...)
-        All wires together. [N]
-
-    Raises
-    ------
-    SettingsError
-        By the design.
-
     Notes
     -----
     Source: [8]_, sec. 5.3, which divides by the cosine where the component along the axis is
@@ -1263,31 +1246,7 @@ class PredictedArmour:
 def predict_armour_case(
     layers: ArmourLayers, strain: Floats, *, names: Sequence[str], tolerance: float
 ) -> PredictedArmour:
-    """Predict an armour by every theory.
-
-    Parameters
-    ----------
-    layers : ArmourLayers
-        The innermost first.
-    strain : ndarray, shape (1,)
-        Of the cable. [1]
-    names : sequence of str
-        Of the layers.
-    tolerance : float
-        Error at which a theory still counts as right. [1]
-
-    Returns
-    -------
-    armour : PredictedArmour
-        Wire by wire, layer by layer, and the cable.
-
-    Raises
-    ------
-    SettingsError
-        If the layers do not go together.
-    DataError
-        If the strain is none that a cable can have.
-    """
+    """Predict an armour by every theory."""
     design = layers.design
     responses = {
         theory: predict_armour(design, strain, theory=theory) for theory in ARMOUR_THEORIES
@@ -1329,20 +1288,7 @@ def predict_armour_case(
 
 
 def wound_at_all_angles(design: ArmourDesign, place: int) -> ArmourDesign:
-    """Wires of a layer, wound at any angle from 5 to 85 deg.
-
-    Parameters
-    ----------
-    design : ArmourDesign
-        Of all layers.
-    place : int
-        Of the layer among them; 0 is the innermost.
-
-    Returns
-    -------
-    designs : ArmourDesign
-        One wire, of shape (n_angles,).
-    """
+    """Wires of a layer, wound at any angle from 5 to 85 deg."""
 
     def of_layer(value: float | Floats) -> float:
         return float(np.broadcast_to(value, design.shape)[place])

@@ -31,8 +31,6 @@ References
    initial positive sequence).
 .. [3] N. F. Zhang, "Calculation of the uncertainty of the mean of autocorrelated measurements,"
    Metrologia, vol. 43, 2006.
-.. [4] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004.
 .. [5] ASME V&V 20-2009, "Standard for Verification and Validation in Computational Fluid
    Dynamics and Heat Transfer," sec. 1-5 (comparison error E = S - D).
 .. [6] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
@@ -287,21 +285,6 @@ def autocorrelation_length(residual: ArrayLike) -> float:
 
     .. math:: \tau = 1 + 2 \sum_k \rho_k
 
-    Parameters
-    ----------
-    residual : array_like, shape (n_strain,)
-        In the order of strain, about zero, over its standard deviation. [1]
-
-    Returns
-    -------
-    length : float
-        1 for residuals without memory, never less; n for residuals of one sign. [1]
-
-    Raises
-    ------
-    DataError
-        If a residual is not finite.
-
     Notes
     -----
     The sum ends before the first pair of lags whose correlations add up to less than nothing
@@ -333,27 +316,6 @@ def difference_of(
     strain: ArrayLike, predicted: ArrayLike, measured: ArrayLike, *, curve: CurveName
 ) -> _Difference:
     """Comparison error E = predicted - measured of one curve.
-
-    Parameters
-    ----------
-    strain : array_like, shape (n_strain,)
-        Common axis, equally spaced. [1]
-    predicted : array_like, shape (n_strain,)
-        NaN where the cords are broken. [N]
-    measured : array_like, shape (n_strain,)
-        NaN where not visited. [N]
-    curve : {"ascending", "descending", "midline"}
-        Which curve was measured.
-
-    Returns
-    -------
-    difference : Difference
-        Over the strains at which both are known. [N]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up, or there is no strain at which both are known.
 
     Notes
     -----
@@ -425,24 +387,6 @@ def _strain_at_tension(strain: ArrayLike, tension: ArrayLike, level: float) -> f
 def energy_difference(predicted: ArrayLike, measured: MeasuredCurve) -> _EnergyDifference:
     """Energy under the ascending branch, and of the loop, beside the elastic prediction.
 
-    Parameters
-    ----------
-    predicted : array_like, shape (n_strain,)
-        Tension at the strains of the measured curve. [N]
-    measured : MeasuredCurve
-        The test. [SI]
-
-    Returns
-    -------
-    energy : EnergyDifference
-        Between the first and the last strain at which all are known; NaN where there are
-        fewer than two. [J m-1]
-
-    Raises
-    ------
-    DataError
-        If the prediction is not on the axis of the test.
-
     Notes
     -----
     Trapezoid.  What a cyclic test takes up and does not give back is the loop; an elastic
@@ -482,23 +426,6 @@ def energy_difference(predicted: ArrayLike, measured: MeasuredCurve) -> _EnergyD
 
 def cycle_differences(predicted: ArrayLike, measured: MeasuredCurve) -> _CycleDifference:
     """Comparison error of every cycle, and its trend over the cycles.
-
-    Parameters
-    ----------
-    predicted : array_like, shape (n_strain,)
-        Tension at the strains of the measured curve. [N]
-    measured : MeasuredCurve
-        The test. [SI]
-
-    Returns
-    -------
-    cycles : CycleDifference
-        Bias and RMS of each, slope of the bias over the logarithm of the cycle number. [N]
-
-    Raises
-    ------
-    DataError
-        If the prediction is not on the axis of the test.
 
     Notes
     -----
@@ -596,21 +523,6 @@ def measured_pick_up(measured: MeasuredCurve) -> PickUp:
 
     .. math:: D(\varepsilon) = \sum_{k=0}^{3} b_k \varepsilon^k
               + \sum_{k=1}^{m} c_k (\varepsilon - \varepsilon_p)_+^k
-
-    Parameters
-    ----------
-    measured : MeasuredCurve
-        The test; its judged curve counts. [SI]
-
-    Returns
-    -------
-    found : PickUp
-        Strain and standard uncertainty, or why there is none. [1]
-
-    Raises
-    ------
-    Nothing
-        A curve without a bend has none.
 
     Notes
     -----
@@ -762,25 +674,6 @@ def event_differences(
     difference of tension at its strain errs by :math:`\delta T - D' \delta\varepsilon`, where
     D' is the slope of the measured curve, and by the error of that curve.
 
-    Parameters
-    ----------
-    design : HoseDesign
-        One hose.
-    measured : MeasuredCurve
-        The test; its judged curve counts. [SI]
-    standard_uncertainty : mapping of str to float, optional
-        Of numbers of the design. [SI]
-
-    Returns
-    -------
-    events : tuple of EventDifference
-        In the order of `EVENTS`. [SI]
-
-    Raises
-    ------
-    SettingsError
-        If an uncertainty is of no number of a hose, or below zero.
-
     Notes
     -----
     At pick-up the tension is compared, and the strain at which the test had that tension; neither
@@ -903,25 +796,6 @@ def plausibility_of_working_strain(
 ) -> str:
     """Say how a stretch at the working load compares with the two hoses that were reported.
 
-    Parameters
-    ----------
-    wrap_angle : float
-        Of the cords at rest, from the axis. [rad]
-    working_strain : float
-        Stretch of the whole length at the working load, predicted or measured. [1]
-    loading : {"static", "dynamic"}
-        Of the stretch that is looked at: that of a static cord curve is static.
-
-    Returns
-    -------
-    note : str
-        Empty for a hose that is neither of the two.
-
-    Raises
-    ------
-    DataError
-        If the angle or the stretch is not a number above zero.
-
     Notes
     -----
     [8]_ reports a maximum stretch of 79 % at the 115,000th cycle for 64 degrees and 130 % at
@@ -978,25 +852,6 @@ def _probability_words(probability: float) -> str:
 
 def verdict_words(validation: _Validation, *, unit: str = "N", factor: float = 1.0) -> str:
     """What a comparison says, with forces in the unit of the reader.
-
-    Parameters
-    ----------
-    validation : Validation
-        From `reduction.prediction.comparison_error.validate_curve`.
-    unit : str
-        Of force, as it is to stand in the text.
-    factor : float
-        Of that unit in a newton. [1]
-
-    Returns
-    -------
-    words : str
-        One sentence.
-
-    Raises
-    ------
-    Nothing
-        A comparison without an uncertainty is called not judged.
 
     Notes
     -----
@@ -1138,29 +993,6 @@ def validate_curve(
     largest_useful_share: float = 0.3,
 ) -> _Validation:
     """Whether prediction and test agree within what both are uncertain by.
-
-    Parameters
-    ----------
-    predicted : array_like, shape (n_strain,)
-        Tension at the strains of the measured curve; NaN where the cords are broken. [N]
-    measured : MeasuredCurve
-        The test; its judged curve counts. [SI]
-    input_error : array_like, shape (n_draws, n_strain)
-        What the prediction may be off by, in draws of the numbers that went into it, from
-        `reduction.prediction.hose_comparison._input_draws`; no rows where it counts as exact. [N]
-    largest_useful_share : float
-        Where U is more than this part of the measured tension at half of the strains,
-        agreement says little. [1]
-
-    Returns
-    -------
-    validation : Validation
-        Uncertainties over strain, the largest ratio, chi square, and the verdict.
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up, or prediction and test have no strain in common.
 
     Notes
     -----

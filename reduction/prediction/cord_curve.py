@@ -113,23 +113,6 @@ class CordPieces:
 def pieces_of(curve: CordCurve, *, order: Literal[0, 1, -1] = 0) -> CordPieces:
     """Polynomials of a cord curve, of its slope, or of its integral.
 
-    Parameters
-    ----------
-    curve : CordCurve
-        Measured points.
-    order : {0, 1, -1}
-        Of the derivative; -1 is the integral from zero strain.
-
-    Returns
-    -------
-    pieces : CordPieces
-        For `piece_of` and `evaluate`.
-
-    Raises
-    ------
-    ValueError
-        From scipy, if the points do not rise; `CordCurve` has seen to that.
-
     Notes
     -----
     Source: [2]_, as `scipy.interpolate.PchipInterpolator` has it.
@@ -159,23 +142,6 @@ def pieces_of(curve: CordCurve, *, order: Literal[0, 1, -1] = 0) -> CordPieces:
 def piece_of(pieces: CordPieces, strain: Floats) -> NDArray[np.intp]:
     """Which polynomial a strain belongs to.
 
-    Parameters
-    ----------
-    pieces : CordPieces
-        Of a cord.
-    strain : ndarray, shape (...)
-        Of the cord. [1]
-
-    Returns
-    -------
-    piece : ndarray of int, shape (...)
-        0 where slack (strain not above zero), the number of points where broken. [1]
-
-    Raises
-    ------
-    ValueError
-        From numpy, if the strains are no array of numbers.
-
     Notes
     -----
     The break strain itself is still borne ([1]_, sec. 1.2.4).
@@ -202,27 +168,6 @@ def evaluate_into(
     out: Floats, scratch: Floats, pieces: CordPieces, strain: Floats, piece: NDArray[np.intp]
 ) -> Floats:
     """Write the values of the polynomials into an array.
-
-    Parameters
-    ----------
-    out, scratch : ndarray, shape (...)
-        Written; loads in `out` where the pieces are those of the load. [N]
-    pieces : CordPieces
-        Of a cord.
-    strain : ndarray, shape (...)
-        Of the cord; overwritten by strain from the left end of the piece. [1]
-    piece : ndarray of int, shape (...)
-        From `piece_of`. [1]
-
-    Returns
-    -------
-    out : ndarray, shape (...)
-        The array given: load [N], slope [N] or energy a length [J m-1], by the pieces. [N]
-
-    Raises
-    ------
-    ValueError
-        From numpy, if shapes differ.
 
     Notes
     -----
@@ -283,23 +228,6 @@ def cord_load(curve: CordCurve, strain: ArrayLike) -> Floats:
 def cord_stiffness(curve: CordCurve, strain: ArrayLike) -> Floats:
     """Slope of the load on one cord over its strain.
 
-    Parameters
-    ----------
-    curve : CordCurve
-        Measured points.
-    strain : array_like, shape (...)
-        Of the cord. [1]
-
-    Returns
-    -------
-    stiffness : ndarray, shape (...)
-        0 where the strain is not above zero, NaN beyond the last point. [N]
-
-    Raises
-    ------
-    ValueError
-        From numpy, if the strains are no array of numbers.
-
     Notes
     -----
     Continuous but for the pick-up, where it jumps from zero; its own slope jumps at the points
@@ -316,23 +244,6 @@ def cord_stiffness(curve: CordCurve, strain: ArrayLike) -> Floats:
 
 def cord_energy(curve: CordCurve, strain: ArrayLike) -> Floats:
     """Energy in one cord, a length at rest: the integral of its load over strain.
-
-    Parameters
-    ----------
-    curve : CordCurve
-        Measured points.
-    strain : array_like, shape (...)
-        Of the cord. [1]
-
-    Returns
-    -------
-    energy : ndarray, shape (...)
-        0 where the strain is not above zero, NaN beyond the last point. [J m-1]
-
-    Raises
-    ------
-    ValueError
-        From numpy, if the strains are no array of numbers.
 
     Notes
     -----

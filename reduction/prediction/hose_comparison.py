@@ -23,19 +23,11 @@ References
 ----------
 .. [1] R. Brun, P. Reichert and H. R. Kunsch, "Practical identifiability analysis of large
    environmental simulation models," Water Resour. Res., vol. 37, 2001 (collinearity index).
-.. [2] A. Raue et al., "Structural and practical identifiability analysis of partially observed
-   dynamical models," Bioinformatics, vol. 25, 2009.
-.. [3] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
-   1.2: the numbers that make a hose.
 .. [4] JCGM 101:2008, "Propagation of distributions using a Monte Carlo method."
 .. [5] ASME V&V 20-2009, "Standard for Verification and Validation in Computational Fluid
    Dynamics and Heat Transfer," sec. 2 (u_num).
-.. [6] G. A. F. Seber and C. J. Wild, "Nonlinear Regression," Wiley, 1989, ch. 2.
 .. [7] R. T. Birge, "The calculation of errors by the method of least squares," Phys. Rev., vol.
    40, 1932.
-.. [8] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004.
 .. [9] G. A. F. Seber and C. J. Wild, "Nonlinear Regression," Wiley, 1989, ch. 2 and 6.
 .. [10] ASME V&V 20-2009, "Standard for Verification and Validation in Computational Fluid
    Dynamics and Heat Transfer."
@@ -1118,37 +1110,7 @@ def compare_record(
     shared: SharedErrors | None = None,
     calibrate: Sequence[str] = (),
 ) -> Comparison:
-    """Hold the prediction of a hose against one test.
-
-    Parameters
-    ----------
-    plan : HosePlan
-        The hose.
-    strain, tension : ndarray, shape (n_samples,)
-        Of the whole relaxed length [1], and axial load [N]; NaN where not usable.
-    loading : {"static", "dynamic"}
-        How it was pulled.
-    cycle_number, branch : ndarray of int, shape (n_samples,), or None
-        Cycles of the test, and their branches; None of a pull, whose way back is a branch too.
-    break_in_cycles : int
-        First cycles that enter no mean.
-    shared : SharedErrors, optional
-        What is wrong alike with all samples; nothing where not given.
-    calibrate : sequence of str
-        Numbers of the hose to be fitted.
-
-    Returns
-    -------
-    comparison : Comparison
-        Differences, verdict, and calibration where asked for.
-
-    Raises
-    ------
-    DataError
-        If no sample is usable, or test and prediction have no strain in common.
-    FitError
-        If the calibration does not come to an end.
-    """
+    """Hold the prediction of a hose against one test."""
     usable = np.isfinite(strain) & np.isfinite(tension)
     if not usable.any():
         raise DataError(

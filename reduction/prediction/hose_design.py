@@ -241,20 +241,7 @@ class DesignedHose:
 
 
 def design_hoses(plan: HosePlan, target: HoseTarget) -> tuple[DesignedHose, ...]:
-    """Each way to reach a target from a hose: angle alone, with fabric, with diameters.
-
-    Parameters
-    ----------
-    plan : HosePlan
-        What the wanted hose has in common with it.
-    target : HoseTarget
-        Strain, and tension where one is wanted, at the working load.
-
-    Returns
-    -------
-    designs : tuple of DesignedHose
-        The first holds everything but the angle, so that its load is what it is.
-    """
+    """Each way to reach a target from a hose: angle alone, with fabric, with diameters."""
     like = plan.design
     ways: dict[str, Callable[[], HoseDesign]] = {
         "wrap angle": partial(_design_angle, like, strain=target.strain)

@@ -312,27 +312,6 @@ def current_wrap_angle(
 
     .. math:: \tan a = \tan a_0 \, \lambda_r / \lambda_h
 
-    Parameters
-    ----------
-    stretch_ratio : array_like, shape (...)
-        :math:`\lambda_h` of the cylinder. [1]
-    wrap_angle : array_like, shape (...)
-        :math:`a_0` at rest, from the axis. [rad]
-    core : {"isochoric", "rigid"}
-        What the radius does.
-
-    Returns
-    -------
-    current_wrap_angle : ndarray, shape (...)
-        :math:`a`, from the axis. [rad]
-
-    Raises
-    ------
-    SettingsError
-        If an angle is not between 0 and 90 deg, or the core is unknown.
-    DataError
-        If a stretch ratio is not a positive number.
-
     Notes
     -----
     Source: [1]_, eq. (7), :math:`\lambda_r/\lambda_h = \lambda_h^{-3/2}`.
@@ -356,27 +335,6 @@ def wrap_angle_for(
     r"""Angle at rest that gives both stretch ratios at once.
 
     .. math:: \cos^2 a_0 = \frac{\lambda_c^2 - \lambda_r^2}{\lambda_h^2 - \lambda_r^2}
-
-    Parameters
-    ----------
-    stretch_ratio : array_like, shape (...)
-        :math:`\lambda_h` of the cylinder. [1]
-    cord_stretch_ratio : array_like, shape (...)
-        :math:`\lambda_c` of the helix. [1]
-    core : {"isochoric", "rigid"}
-        What the radius does.
-
-    Returns
-    -------
-    wrap_angle : ndarray, shape (...)
-        :math:`a_0` at rest, from the axis; NaN where no angle between 0 and 90 deg does. [rad]
-
-    Raises
-    ------
-    SettingsError
-        If the core is unknown.
-    DataError
-        If a stretch ratio is not a positive number.
 
     Notes
     -----
@@ -446,25 +404,6 @@ def number_of_cords(
 ) -> Floats:
     """Cords in a cross-section of the hose, both layers together.
 
-    Parameters
-    ----------
-    wrap_diameter : array_like, shape (...)
-        Mean of the two layers at rest. [m]
-    wrap_angle : array_like, shape (...)
-        From the hose axis, 0 to below pi/2. [rad]
-    cords_per_length : array_like, shape (...)
-        Of the fabric, across the cords. [m-1]
-
-    Returns
-    -------
-    number : ndarray, shape (...)
-        N, not rounded: a ribbon need not end between two cords. [1]
-
-    Raises
-    ------
-    DataError
-        If a diameter or a cord density is not positive, or an angle is outside its range.
-
     Notes
     -----
     Eq. 11 of [2]_ (module), with eq. 10.
@@ -501,27 +440,6 @@ def cord_strain_chart(
     wrap_angle: ArrayLike, strain: ArrayLike, *, dead_length_share: float = 0.0
 ) -> _CordStrainChart:
     """Cord strain over hose strain for a family of wrap angles: Figure 7.
-
-    Parameters
-    ----------
-    wrap_angle : array_like, shape (n_angles,)
-        At rest, from the hose axis. [rad]
-    strain : array_like, shape (n_strain,)
-        Of the whole relaxed length. [1]
-    dead_length_share : float
-        Part of the relaxed length that does not stretch. [1]
-
-    Returns
-    -------
-    chart : CordStrainChart
-        The curves, their lowest points and where they come back to zero.
-
-    Raises
-    ------
-    SettingsError
-        If an angle is not between 0 and 90 deg.
-    DataError
-        If a strain is -1 or less, an input is no series, or the share is none.
 
     Notes
     -----
@@ -593,29 +511,6 @@ def layer_range(
 ) -> _LayerRange:
     """Least and greatest strain of a layer while the hose is stretched from rest.
 
-    Parameters
-    ----------
-    wrap_angle : array_like, shape (...)
-        Of the layer at rest, from the hose axis. [rad]
-    hose_strain : array_like, shape (...)
-        End of the range, of the whole length: at the working load, or at the break. [1]
-    strain_limit : array_like, shape (...)
-        Greatest tensile strain that the layer bears. [1]
-    dead_length_share : array_like, shape (...)
-        Of the hose. [1]
-
-    Returns
-    -------
-    range : LayerRange
-        Strains of the layer, where they occur, and what is exceeded.
-
-    Raises
-    ------
-    SettingsError
-        If an angle is not between 0 and 90 deg.
-    DataError
-        If a strain, limit or share is outside its range.
-
     Notes
     -----
     Eq. 8 of [4]_ (module); convex, hence no search.  The report says that a steep layer will
@@ -657,25 +552,6 @@ def least_layer_angle(
 ) -> Floats:
     r"""Smallest wrap angle at which a layer is nowhere stretched beyond its limit.
 
-    Parameters
-    ----------
-    hose_strain : array_like, shape (...)
-        End of the range, of the whole length: at the working load, or at the break. [1]
-    strain_limit : array_like, shape (...)
-        Greatest tensile strain that the layer bears; 0 where it is not to be stretched. [1]
-    dead_length_share : array_like, shape (...)
-        Of the hose. [1]
-
-    Returns
-    -------
-    wrap_angle : ndarray, shape (...)
-        From the hose axis; 0 where every angle will do. [rad]
-
-    Raises
-    ------
-    DataError
-        If a strain, limit or share is outside its range.
-
     Notes
     -----
     The greatest strain stands at the end of the range, so the angle is that of eq. 8 of [4]_
@@ -701,25 +577,6 @@ def greatest_layer_angle(
     hose_strain: ArrayLike, *, compression_limit: ArrayLike, dead_length_share: ArrayLike = 0.0
 ) -> Floats:
     r"""Greatest wrap angle at which a layer is nowhere compressed beyond its limit.
-
-    Parameters
-    ----------
-    hose_strain : array_like, shape (...)
-        End of the range, of the whole length: at the working load, or at the break. [1]
-    compression_limit : array_like, shape (...)
-        Greatest compressive strain that the layer bears, a positive number below 1. [1]
-    dead_length_share : array_like, shape (...)
-        Of the hose. [1]
-
-    Returns
-    -------
-    wrap_angle : ndarray, shape (...)
-        From the hose axis; pi/2 where every angle will do. [rad]
-
-    Raises
-    ------
-    DataError
-        If a strain, limit or share is outside its range.
 
     Notes
     -----

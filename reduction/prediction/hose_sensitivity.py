@@ -24,9 +24,6 @@ References
 .. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
    Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
    1.2.1.
-.. [2] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, sec.
-   1.2.
 .. [3] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
    Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004, eq. 8,
    24 and 26 (the equations that are differentiated, with the end cap by virtual work).

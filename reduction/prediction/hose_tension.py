@@ -186,29 +186,6 @@ def loads_at(
        F = \frac{\pi (d_1 + d_2) n P \sin^2 a_0}{2 \lambda_h^2 \lambda_c}, \qquad
        T_c = \pi (d_1 + d_2) n \cos^2 a_0 \frac{\lambda_h P}{\lambda_c} - F
 
-    Parameters
-    ----------
-    numbers : HoseNumbers
-        Of the designs, shape (...) or a column of them.
-    stretch : ndarray, shape (...)
-        :math:`\lambda_h`. [1]
-    cord_stretch : ndarray, shape (...)
-        :math:`\lambda_c`. [1]
-    cord_tension : ndarray, shape (...)
-        :math:`P`. [N]
-    out : HoseLoads, optional
-        Where to write.
-
-    Returns
-    -------
-    loads : HoseLoads
-        Of the shape of all four together.
-
-    Raises
-    ------
-    ValueError
-        From numpy, if shapes do not broadcast.
-
     Notes
     -----
     Source: [1]_, eq. (24) with a pressure for each layer, and eq. (26) with the end cap as the
@@ -400,23 +377,6 @@ def hose_energy(design: HoseDesign, stretch_ratio: ArrayLike) -> Floats:
     r"""Energy in cords and rubber, a relaxed length of the part that stretches.
 
     .. math:: W = \pi (d_1 + d_2) n \int P \, d\lambda_c + \int T_r \, d\lambda_h
-
-    Parameters
-    ----------
-    design : HoseDesign
-        One hose or many, shape (...).
-    stretch_ratio : array_like, shape (n_stretch,)
-        :math:`\lambda_h` of the part that stretches. [1]
-
-    Returns
-    -------
-    energy : ndarray, shape (..., n_stretch)
-        NaN where the cords are broken. [J m-1]
-
-    Raises
-    ------
-    DataError
-        If a stretch ratio is not a positive number.
 
     Notes
     -----

@@ -11,8 +11,6 @@ References
 ----------
 .. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
    in measurement," 5.1 (the law of propagation) and 5.2 (correlated quantities).
-.. [2] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004.
 """
 
 from __future__ import annotations

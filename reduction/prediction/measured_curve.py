@@ -14,17 +14,10 @@ A measured curve on an axis of strain, from the samples of a test.
 
 References
 ----------
-.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004.
-.. [2] W. H. Press et al., "Numerical Recipes," 3rd ed., 2007, sec. 14.1 (sums in one pass).
-.. [3] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," sec. 4.2.
 .. [4] V. A. Marchenko and L. A. Pastur, "Distribution of eigenvalues for some sets of random
    matrices," Math. USSR Sbornik, vol. 1, 1967 (the largest variance that noise reaches).
 .. [5] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
    in measurement," F.1.2.3 (correlation by common influence quantities).
-.. [6] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement" (type A and type B).
 """
 
 from __future__ import annotations
@@ -706,25 +699,6 @@ def constant_errors(
 ) -> SharedErrors:
     """Zero and scale of the load and of the strain as shared errors.
 
-    Parameters
-    ----------
-    tension_offset, strain_offset : float
-        Standard uncertainties of the zero. [N], [1]
-    tension_gain, strain_gain : float
-        Of the scale, relative; a strain gain is that of the relaxed length too. [1]
-    of : str
-        Whose they are.
-
-    Returns
-    -------
-    errors : SharedErrors
-        Those that are not zero.
-
-    Raises
-    ------
-    SettingsError
-        If one is negative or unknown.
-
     Notes
     -----
     Each is one error ([5]_).
@@ -760,21 +734,6 @@ def constant_errors(
 def error_words(component: Component) -> str:
     """What an error is called in a note.
 
-    Parameters
-    ----------
-    component : Component
-        One error.
-
-    Returns
-    -------
-    words : str
-        Its source, and whose it is where that is said.
-
-    Raises
-    ------
-    Nothing
-        Any error has a source.
-
     Examples
     --------
     >>> print(error_words(Component("tension_gain", "load cell A")))
@@ -787,25 +746,6 @@ def error_words(component: Component) -> str:
 
 def read_along(at: Floats, known: Floats, values: Floats) -> Floats:
     """Values between known points on straight lines, and beyond them on the line of the last five.
-
-    Parameters
-    ----------
-    at : ndarray, shape (n,)
-        Where; NaN gives NaN. [any]
-    known : ndarray, shape (n_known,)
-        Not falling. [as at]
-    values : ndarray, shape (n_known,)
-        There. [any]
-
-    Returns
-    -------
-    found : ndarray, shape (n,)
-        [as values]
-
-    Raises
-    ------
-    ValueError
-        If the known points do not pair up.
 
     Examples
     --------
@@ -852,40 +792,6 @@ def measured_curve(
 
     slope and bend from the means of the two neighbouring bins, :math:`s^2` the variance of
     strain in the bin.
-
-    Parameters
-    ----------
-    strain : array_like, shape (n_samples,)
-        Nominal strain of the whole relaxed length; NaN where missing or flagged. [1]
-    tension : array_like, shape (n_samples,)
-        Tension; NaN where missing or flagged. [N]
-    loading : {"static", "dynamic"}
-        How it was pulled.
-    cycle_number : array_like of int, shape (n_samples,), optional
-        From 1; 0 outside cycles. Without it the record is one slow pull, which ends at its
-        greatest tension. [1]
-    branch : array_like of int, shape (n_samples,), optional
-        0 none, 1 ascending, 2 descending; goes with ``cycle_number``. [1]
-    strain_step : float, optional
-        Between the strains of the curve; without it 1 %, or wider where samples are few. [1]
-    break_in_cycles : int
-        First cycles that are in no mean; they are kept cycle by cycle. [1]
-    shared : SharedErrors, optional
-        What is wrong alike with all samples; nothing where not given.
-
-    Returns
-    -------
-    curve : MeasuredCurve
-        Cycle by cycle, means, midline, and what they are uncertain by. [SI]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up, no sample belongs to a branch, no cycle is left after
-        break-in, or a strain is one that no hose has.
-    SettingsError
-        If the step is not positive, one of ``cycle_number`` and ``branch`` is missing, or
-        ``loading`` is neither.
 
     Notes
     -----

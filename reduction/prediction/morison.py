@@ -50,8 +50,6 @@ References
 .. [5] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
    Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
    Petroleum Eng. J., vol. 8, 2015, eq. 1-3, 7-10.
-.. [6] J. R. Morison, M. P. O'Brien, J. W. Johnson and S. A. Schaaf, "The force exerted by
-   surface waves on piles," J. Petroleum Tech., vol. 2, 1950, pp. 149-154.
 .. [7] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
    Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
    Petroleum Eng. J., vol. 8, 2015, Tables 5 and 6.
@@ -445,29 +443,6 @@ def flow_regime(
 ) -> FlowRegime:
     """Numbers by which coefficients are chosen, of hoses in one wave.
 
-    Parameters
-    ----------
-    wave : WaveHarmonics
-        At the hose.
-    outer_diameter : array_like, shape (...)
-        Of the hoses. [m]
-    current_velocity : float
-        Along the wave. [m s-1]
-    drag_coefficient, inertia_coefficient : float
-        C_D, C_M. [1]
-    kinematic_viscosity : float
-        Of the water. [m2 s-1]
-
-    Returns
-    -------
-    regime : FlowRegime
-        Arrays of shape (...).
-
-    Raises
-    ------
-    DataError
-        If a diameter, the viscosity or C_M is not positive.
-
     Notes
     -----
     Of the horizontal velocity, the current included; some sources give KC for the wave alone
@@ -746,34 +721,6 @@ def find_extremes(
 ) -> LoadExtremes:
     """Extremes of the loads of `reduction.prediction.morison.wave_load` over a period.
 
-    Parameters
-    ----------
-    wave : WaveHarmonics
-        At the hose.
-    section : ImmersedSection
-        Arrays of shape (...).
-    drag_coefficient, inertia_coefficient : float
-        C_D and C_M = 1 + C_m. [1]
-    water_density : float
-        Of the sea. [kg m-3]
-    current_velocity : float
-        Along the wave. [m s-1]
-    position : float
-        Along the wave; the crest is at 0 at time 0. [m]
-    vertical_width : {"submerged", "immersion depth"}
-        See `reduction.prediction.morison.load_factors`.
-
-    Returns
-    -------
-    extremes : LoadExtremes
-        Arrays of shape (...).
-
-    Raises
-    ------
-    DataError
-        If a coefficient, the current or the position is not finite, or the density or C_M
-        is not positive.
-
     Notes
     -----
     Table 5 of [7]_ is the extreme on a grid of 0.1 s up to 5 s, its Table 6 up to 10 s; both
@@ -908,26 +855,6 @@ def load_difference(
     load: WaveLoad, extremes: LoadExtremes, *, minimum_share: float = 0.1
 ) -> LoadDifference:
     """How much less the improved load is than the classic one, where that means something.
-
-    Parameters
-    ----------
-    load : WaveLoad
-        Over time.
-    extremes : LoadExtremes
-        Of the same loads.
-    minimum_share : float
-        Of the greatest magnitude of the classic load over a period; below it the difference
-        is NaN. [1]
-
-    Returns
-    -------
-    difference : LoadDifference
-        Shares of the classic load.
-
-    Raises
-    ------
-    SettingsError
-        If the share is not above 0 and at most 1.
 
     Notes
     -----

@@ -84,27 +84,6 @@ def rubber_tension(
 def tension_into(out: Floats, stretch: Floats, stiffness: Floats, law: RubberLaw) -> Floats:
     """Write the axial load of the wall into an array; nothing is checked but the law.
 
-    Parameters
-    ----------
-    out : ndarray, shape (...)
-        Written. [N]
-    stretch : ndarray, shape (...)
-        Stretch ratio, above zero. [1]
-    stiffness : ndarray, shape (...)
-        Slope at rest, A E. [N]
-    law : {"neo-hookean", "linear", "linear-current", "hencky"}
-        See the table of the module.
-
-    Returns
-    -------
-    out : ndarray, shape (...)
-        The array given. [N]
-
-    Raises
-    ------
-    SettingsError
-        If the law is unknown.
-
     Notes
     -----
     As `rubber_tension`, for many hoses at once: no array is made on the way.
@@ -144,29 +123,6 @@ def rubber_energy(
 
     times :math:`A_0 E`, in the order of the table of the module.
 
-    Parameters
-    ----------
-    stretch_ratio : array_like, shape (...)
-        :math:`\lambda`. [1]
-    area : array_like, shape (...)
-        Of the wall at rest. [m2]
-    modulus : array_like, shape (...)
-        Young's modulus at small strain. [Pa]
-    law : {"neo-hookean", "linear", "linear-current", "hencky"}
-        See the table of the module.
-
-    Returns
-    -------
-    energy : ndarray, shape (...)
-        A length at rest. [J m-1]
-
-    Raises
-    ------
-    SettingsError
-        If the law is unknown.
-    DataError
-        If a stretch ratio is not a positive number.
-
     Notes
     -----
     The integrals of the laws of [1]_ and [2]_ in closed form.
@@ -200,29 +156,6 @@ def rubber_stiffness(
        (1 - \ln\lambda)\lambda^{-2}
 
     times :math:`A_0 E`, in the order of the table of the module.
-
-    Parameters
-    ----------
-    stretch_ratio : array_like, shape (...)
-        :math:`\lambda`. [1]
-    area : array_like, shape (...)
-        Of the wall at rest. [m2]
-    modulus : array_like, shape (...)
-        Young's modulus at small strain. [Pa]
-    law : {"neo-hookean", "linear", "linear-current", "hencky"}
-        See the table of the module.
-
-    Returns
-    -------
-    stiffness : ndarray, shape (...)
-        Below zero for the Hencky law beyond a stretch ratio of e. [N]
-
-    Raises
-    ------
-    SettingsError
-        If the law is unknown.
-    DataError
-        If a stretch ratio is not a positive number.
 
     Notes
     -----

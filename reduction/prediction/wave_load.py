@@ -251,45 +251,7 @@ def predict_wave_load(
     hose_length: float,
     time: Floats,
 ) -> PredictedWaveLoad:
-    """Predict the load of a regular wave on a floating hose that lies along its crest.
-
-    Parameters
-    ----------
-    outer_diameter, wall_thickness : float
-        Of the hose. [m]
-    wall_density, content_density, water_density, air_density : float
-        [kg m-3]
-    water_depth, wave_height : float
-        [m]
-    wave_period : float
-        As a fixed point sees it. [s]
-    wave_length : float or None
-        Given beside the period, it is used as it is. [m]
-    wave_theory : {"auto", "airy", "stokes"}
-        ``airy``, ``stokes``, or ``auto`` for the one that applies.
-    elevation : float or None
-        At which the water moves; None for the centre of the hose. [m]
-    drag_coefficient, inertia_coefficient, wind_drag_coefficient : float
-        [1]
-    vertical_width : str
-        Which width the vertical drag acts on.
-    current_velocity, wind_velocity : float
-        Along the wave. [m s-1]
-    hose_length : float
-        For the anchor force. [m]
-    time : ndarray, shape (n_times,)
-        [s]
-
-    Returns
-    -------
-    load : PredictedWaveLoad
-        Improved and classic, with extremes found continuously.
-
-    Raises
-    ------
-    DataError
-        If the hose sinks, the wave is beyond breaking, or no theory here computes it.
-    """
+    """Predict the load of a regular wave on a floating hose that lies along its crest."""
     section = immerse_hose(
         outer_diameter=outer_diameter,
         wall_thickness=wall_thickness,

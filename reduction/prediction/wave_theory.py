@@ -64,10 +64,6 @@ References
 .. [4] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
    Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
    Petroleum Eng. J., vol. 8, 2015, Table 4.
-.. [5] R. Miche, "Mouvements ondulatoires de la mer en profondeur constante ou décroissante,"
-   Annales des Ponts et Chaussées, 1944, pp. 25-78, 131-164, 270-292, 369-406.
-.. [6] J. McCowan, "On the highest wave of permanent type," Phil. Mag., ser. 5, vol. 38, 1894,
-   pp. 351-358.
 .. [7] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
    Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
    Petroleum Eng. J., vol. 8, 2015, Table 1.
@@ -86,8 +82,6 @@ References
    Soc., vol. 49, 1953, pp. 685-694.
 .. [13] R. G. Dean and R. A. Dalrymple, Water Wave Mechanics for Engineers and Scientists.
    Singapore: World Scientific, 1991, ch. 11.
-.. [14] R. G. Dean and R. A. Dalrymple, Water Wave Mechanics for Engineers and Scientists.
-   Singapore: World Scientific, 1991, ch. 3.
 """
 
 from __future__ import annotations
@@ -155,27 +149,6 @@ def wave_period_of(
     gravity: float = STANDARD_GRAVITY,
 ) -> Floats:
     """Period of the linear wave with this wave number, as a fixed point sees it.
-
-    Parameters
-    ----------
-    wave_number : array_like, shape (...)
-        2 pi over the wave length. [rad m-1]
-    water_depth : array_like, shape (...)
-        Of the still water. [m]
-    current_velocity : array_like, shape (...)
-        Uniform over the depth, positive along the wave. [m s-1]
-    gravity : float
-        Acceleration of free fall. [m s-2]
-
-    Returns
-    -------
-    wave_period : ndarray, shape (...)
-        Period. [s]
-
-    Raises
-    ------
-    DataError
-        If a wave number or depth is not positive, or the current stops the wave.
 
     Notes
     -----
@@ -340,23 +313,6 @@ GREATEST_HEIGHT_TO_DEPTH = 0.78
 def breaking_height(wave_number: ArrayLike, water_depth: ArrayLike) -> Floats:
     """Height at which a wave of this length breaks over a flat bed.
 
-    Parameters
-    ----------
-    wave_number : array_like, shape (...)
-        2 pi over the wave length. [rad m-1]
-    water_depth : array_like, shape (...)
-        Of the still water. [m]
-
-    Returns
-    -------
-    breaking_height : ndarray, shape (...)
-        The lower one of the limits of [5]_ and [6]_. [m]
-
-    Raises
-    ------
-    DataError
-        If a number is not positive.
-
     Notes
     -----
     Not covered: a sloping bed, an opposing current and short-crested seas, which break
@@ -457,23 +413,6 @@ _ZERO = 1e-14  # outermost coefficients below this share of the largest are roun
 def cosine_series(amplitude: Floats, constant: float = 0.0) -> Coefficients:
     """Coefficients of a constant and cosines.
 
-    Parameters
-    ----------
-    amplitude : ndarray, shape (n_harmonics,)
-        Of cos n(phase), n from 1. [1] or that of the quantity, e.g. [m s-1]
-    constant : float
-        Mean of the sum, in the same unit. [1]
-
-    Returns
-    -------
-    coefficients : ndarray of complex, shape (2 n_harmonics + 1,)
-        From order -n_harmonics upwards, in the same unit. [1]
-
-    Raises
-    ------
-    DataError
-        If the amplitudes are not a series.
-
     Notes
     -----
     cos x = (e^ix + e^-ix) / 2.
@@ -489,21 +428,6 @@ def cosine_series(amplitude: Floats, constant: float = 0.0) -> Coefficients:
 
 def sine_series(amplitude: Floats) -> Coefficients:
     """Coefficients of sines.
-
-    Parameters
-    ----------
-    amplitude : ndarray, shape (n_harmonics,)
-        Of sin n(phase), n from 1. [1] or that of the quantity, e.g. [m s-1]
-
-    Returns
-    -------
-    coefficients : ndarray of complex, shape (2 n_harmonics + 1,)
-        From order -n_harmonics upwards, in the same unit. [1]
-
-    Raises
-    ------
-    DataError
-        If the amplitudes are not a series.
 
     Notes
     -----
@@ -521,21 +445,6 @@ def sine_series(amplitude: Floats) -> Coefficients:
 def phase_derivative(coefficients: Coefficients) -> Coefficients:
     """Coefficients of the derivative by the phase.
 
-    Parameters
-    ----------
-    coefficients : ndarray of complex, shape (..., 2 n_harmonics + 1)
-        Of a sum. [1]
-
-    Returns
-    -------
-    derivative : ndarray of complex, shape (..., 2 n_harmonics + 1)
-        Of its derivative, per radian. [rad-1]
-
-    Raises
-    ------
-    DataError
-        If the coefficients are not of an odd number.
-
     Notes
     -----
     i m c_m.
@@ -552,21 +461,6 @@ def phase_derivative(coefficients: Coefficients) -> Coefficients:
 
 def series_product(first: Coefficients, second: Coefficients) -> Coefficients:
     """Coefficients of the product of two sums.
-
-    Parameters
-    ----------
-    first, second : ndarray of complex, shape (2 n_harmonics + 1,)
-        Of the factors. [1]
-
-    Returns
-    -------
-    product : ndarray of complex, shape (2 (n_first + n_second) + 1,)
-        Of the product. [1]
-
-    Raises
-    ------
-    DataError
-        If the coefficients are not of an odd number.
 
     Notes
     -----
@@ -587,23 +481,6 @@ def series_product(first: Coefficients, second: Coefficients) -> Coefficients:
 def sum_at(coefficients: Coefficients, phase: Floats) -> Floats:
     """Value of a sum at phases.
 
-    Parameters
-    ----------
-    coefficients : ndarray of complex, shape (2 n_harmonics + 1,)
-        Of the sum. [1]
-    phase : ndarray, shape (...)
-        Where. [rad]
-
-    Returns
-    -------
-    value : ndarray, shape (...)
-        In the unit of the coefficients. [1]
-
-    Raises
-    ------
-    DataError
-        If the coefficients are not of an odd number.
-
     Notes
     -----
     Real, since the coefficients of opposite orders are conjugate.
@@ -619,21 +496,6 @@ def sum_at(coefficients: Coefficients, phase: Floats) -> Floats:
 
 def root_phases(coefficients: Coefficients) -> Floats:
     """Phases of all roots of z^M f, on the unit circle or not.
-
-    Parameters
-    ----------
-    coefficients : ndarray of complex, shape (..., 2 n_harmonics + 1)
-        Of the sums, in any unit. [1]
-
-    Returns
-    -------
-    phase : ndarray, shape (..., n_roots)
-        Among them every zero of the sum; 0 where a sum has fewer roots than others. [rad]
-
-    Raises
-    ------
-    DataError
-        If the coefficients are not of an odd number.
 
     Notes
     -----
@@ -694,34 +556,6 @@ def airy_wave(
 ) -> WaveHarmonics:
     """Airy's linear wave at one elevation.
 
-    Parameters
-    ----------
-    wave_height : float
-        Trough to crest. [m]
-    wave_period : float
-        As a fixed point sees it. [s]
-    water_depth : float
-        Of the still water. [m]
-    elevation : float
-        Of the place above the mean level; of a floating hose, that of its centre. [m]
-    wave_number : float, optional
-        2 pi over a length given beside the period; None: by the dispersion relation. [rad m-1]
-    current_velocity : float
-        On which the wave rides, positive along it; changes its length and motion. [m s-1]
-    gravity : float
-        Acceleration of free fall; without use where the wave number is given. [m s-2]
-
-    Returns
-    -------
-    wave : WaveHarmonics
-        One harmonic.
-
-    Raises
-    ------
-    DataError
-        If a number is not positive, the place is in the bed or above the crest, the current
-        stops or outruns the wave, or the wave is beyond breaking.
-
     Notes
     -----
     Eq. (13) and (15) of [8]_ print the velocity amplitude H g k / (2 omega) with cosh kd below,
@@ -772,34 +606,6 @@ def stokes_wave(
     gravity: float = STANDARD_GRAVITY,
 ) -> WaveHarmonics:
     """Stokes' wave of second order at one elevation.
-
-    Parameters
-    ----------
-    wave_height : float
-        Trough to crest. [m]
-    wave_period : float
-        As a fixed point sees it. [s]
-    water_depth : float
-        Of the still water. [m]
-    elevation : float
-        Of the place above the mean level; of a floating hose, that of its centre. [m]
-    wave_number : float, optional
-        2 pi over a length given beside the period; None: by the dispersion relation. [rad m-1]
-    current_velocity : float
-        On which the wave rides, positive along it; changes its length and motion. [m s-1]
-    gravity : float
-        Acceleration of free fall; without use where the wave number is given. [m s-2]
-
-    Returns
-    -------
-    wave : WaveHarmonics
-        Two harmonics.
-
-    Raises
-    ------
-    DataError
-        If a number is not positive, the place is in the bed or above the crest, the current
-        stops or outruns the wave, or the wave is beyond breaking.
 
     Notes
     -----
@@ -1032,31 +838,6 @@ def describe_wave(
 ) -> WaveTheory:
     """Theory, limits and doubts of one wave.
 
-    Parameters
-    ----------
-    wave_height : float
-        Trough to crest. [m]
-    wave_period : float
-        As a fixed point sees it. [s]
-    water_depth : float
-        Of the still water. [m]
-    wave_length : float, optional
-        Where one is given beside the period; None: by the dispersion relation. [m]
-    current_velocity : float
-        On which the wave rides, positive along it. [m s-1]
-    gravity : float
-        Acceleration of free fall. [m s-2]
-
-    Returns
-    -------
-    wave : WaveTheory
-        A breaking wave is flagged, not refused: a description is no prediction.
-
-    Raises
-    ------
-    DataError
-        If a number is not positive, or the current stops the wave.
-
     Notes
     -----
     Limits of height: `reduction.prediction.wave_theory`.  Number of [12]_, secondary crest after
@@ -1143,33 +924,6 @@ def regular_wave(
     current_velocity: float = 0.0,
 ) -> WaveHarmonics:
     """Motion at one elevation by the theory that applies, or by the one asked for.
-
-    Parameters
-    ----------
-    wave : WaveTheory
-        Of the same wave.
-    wave_height : float
-        Trough to crest. [m]
-    wave_period : float
-        As a fixed point sees it. [s]
-    water_depth : float
-        Of the still water. [m]
-    elevation : float
-        Of the place above the mean level. [m]
-    theory : {"airy", "stokes", "cnoidal or solitary", "beyond the table"}, optional
-        None: that of the description.
-    current_velocity : float
-        On which the wave rides, positive along it. [m s-1]
-
-    Returns
-    -------
-    wave : WaveHarmonics
-        With the wave length of the description.
-
-    Raises
-    ------
-    DataError
-        If the theory is not computed, the wave is beyond breaking, or as `airy_wave`.
 
     Notes
     -----

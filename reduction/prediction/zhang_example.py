@@ -54,15 +54,6 @@ _STOKES_DEPTH = 3.0  # m, sec. 5.2
 def printed_section() -> ImmersedSection:
     """Hose of the examples with the rounded immersion that the tables use.
 
-    Returns
-    -------
-    section : ImmersedSection
-        One hose: D of Table 3, h and S_1 of eq. (11).
-
-    Raises
-    ------
-    Nothing
-
     Notes
     -----
     `reduction.prediction.morison.immerse_hose` gives 95.124 mm and 0.0090994 m2 for it.
@@ -80,22 +71,7 @@ def printed_section() -> ImmersedSection:
 
 
 def printed_airy_wave(load: PrintedLoad = "improved") -> WaveHarmonics:
-    r"""Linear wave, 6 m deep, as Tables 5 and 7 use it.
-
-    Parameters
-    ----------
-    load : {"classic", "improved"}
-        Which column of the vertical load: they do not share their kinematics.
-
-    Returns
-    -------
-    wave : WaveHarmonics
-        One harmonic, at the mean level.
-
-    Raises
-    ------
-    SettingsError
-        If the load is neither.
+    """Linear wave, 6 m deep, as Tables 5 and 7 use it.
 
     Notes
     -----
@@ -134,15 +110,6 @@ def printed_airy_wave(load: PrintedLoad = "improved") -> WaveHarmonics:
 
 def printed_stokes_wave() -> WaveHarmonics:
     """Stokes' wave of second order, 3 m deep, as Tables 6 and 7 use it.
-
-    Returns
-    -------
-    wave : WaveHarmonics
-        Two harmonics, at the mean level.
-
-    Raises
-    ------
-    Nothing
 
     Notes
     -----

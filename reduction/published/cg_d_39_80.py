@@ -1,10 +1,4 @@
-"""CG-D-39-80, nylon and polyester line: every printed number again.
-
-References
-----------
-.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980.
-"""
+"""CG-D-39-80, nylon and polyester line: every printed number again."""
 
 from __future__ import annotations
 

@@ -1,11 +1,4 @@
-"""Rubber tethers of WHOI-2005-10 in SI, as corrected: specimens, marks, test plan, segments.
-
-References
-----------
-.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
-"""
+"""Rubber tethers of WHOI-2005-10 in SI, as corrected: specimens, marks, test plan, segments."""
 
 from __future__ import annotations
 

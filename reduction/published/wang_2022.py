@@ -2,12 +2,6 @@
 
 The forces of the paper are finite-element results in figures, and the core radius, on which every
 moment depends, is not given.
-
-References
-----------
-.. [1] H. Wang, Z. Yang, J. Yan, G. Wang, D. Shi, B. Zhou and Y. Li, "Prediction Method and
-   Validation Study of Tensile Performance of Reinforced Armor Layer in Marine Flexible
-   Pipe/Cables," J. Mar. Sci. Eng., vol. 10, 642, 2022.
 """
 
 from __future__ import annotations

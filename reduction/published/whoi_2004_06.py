@@ -2,11 +2,6 @@
 
 The report gives neither the curve of a cord nor the size of a hose, so that no load of a hose can
 be recomputed, and no stretch at a load.
-
-References
-----------
-.. [1] W. Paul, "Hose Elements for Buoy Moorings: Design, Fabrication, and Mechanical
-   Properties," Woods Hole Oceanog. Inst., Woods Hole, MA, Tech. Rep. WHOI-2004-06, 2004.
 """
 
 from __future__ import annotations

@@ -1,11 +1,4 @@
-"""Every printed number of WHOI-2005-10 again.
-
-References
-----------
-.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
-"""
+"""Every printed number of WHOI-2005-10 again."""
 
 from __future__ import annotations
 

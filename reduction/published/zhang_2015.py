@@ -2,12 +2,6 @@
 
 Settings follow from the tables that were made with them; Tables 5 to 8 are in
 `reduction.published.zhang_2015`, equations in `reduction.published.zhang_2015`.
-
-References
-----------
-.. [1] S. Zhang, C. Chen, Q. Zhang, D. Zhang and F. Zhang, "Wave Loads Computation for Offshore
-   Floating Hose Based on Partially Immersed Cylinder Model of Improved Morison Formula," Open
-   Petroleum Eng. J., vol. 8, 2015.
 """
 
 from __future__ import annotations

@@ -2,11 +2,6 @@
 
 A name that is not here may not be a variable of a product or a column of a
 table (a test reads this package).  Symbols stand only beside their source.
-
-References
-----------
-.. [1] WHOI-2005-10 (tethers), [2] CG-D-39-80 (line), [3] WHOI-2004-06 (hoses); CF standard
-   names are given only where the CF table has them.
 """
 
 from __future__ import annotations

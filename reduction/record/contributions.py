@@ -2,8 +2,6 @@
 
 References
 ----------
-.. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.1, 5.2 and F.1.2.3 (correlation by common influence quantities).
 .. [2] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
    in measurement," 5.2, G.4 (effective degrees of freedom, Welch and Satterthwaite).
 .. [3] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty

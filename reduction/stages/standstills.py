@@ -558,28 +558,6 @@ def find_standstills(
 ) -> Standstills:
     """Find every interval in which the crosshead stands still, and say which are rests.
 
-    Parameters
-    ----------
-    time : array_like, shape (n_samples,)
-        Elapsed time. [s]
-    position : array_like, shape (n_samples,)
-        Crosshead position; NaN where missing. [m]
-    tension : array_like, shape (n_specimens, n_samples)
-        Tension; NaN where missing. [N]
-    settings : PhaseSettings
-        What is None there is found here and written into the result. [SI]
-
-    Returns
-    -------
-    standstills : Standstills
-        In order of time; none where the crosshead never stands. [SI]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up, have fewer than four samples or no finite
-        position, or time does not advance.
-
     Notes
     -----
     *Tolerance.* None: `noise_range` of position.  The crosshead stands where the range
@@ -645,27 +623,6 @@ def find_tension_stands(
     time: ArrayLike, position: ArrayLike, tension: ArrayLike, *, settings: PhaseSettings
 ) -> Standstills:
     """Find every hold at constant tension, and every rest.
-
-    Parameters
-    ----------
-    time : array_like, shape (n_samples,)
-        Elapsed time. [s]
-    position : array_like, shape (n_samples,)
-        Crosshead position; NaN where missing. [m]
-    tension : array_like, shape (n_specimens, n_samples)
-        Tension; NaN where missing. [N]
-    settings : PhaseSettings
-        What is None there is found here and written into the result. [SI]
-
-    Returns
-    -------
-    standstills : Standstills
-        In order of time, with ``tension_tolerance``. [SI]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up, are too short, or time does not advance.
 
     Notes
     -----

@@ -6,8 +6,6 @@ Whether a number conforms to a limit, by a rule that is stated.
 
 References
 ----------
-.. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 7.2.7 and Table H.1 (what a report of uncertainty holds).
 .. [2] JCGM 106:2012, "Evaluation of measurement data - The role of measurement uncertainty in
    conformity assessment," 8.2 (simple acceptance), 8.3 (decision rules based on guard bands).
 """

@@ -28,8 +28,6 @@ constant, an area.
 
 References
 ----------
-.. [1] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.1.3 (sensitivity coefficients).
 .. [2] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
    in measurement," 5.1.3 (sensitivity coefficients) and F.1.2.3 (common influence quantities).
 .. [3] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber

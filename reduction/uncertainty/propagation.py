@@ -109,15 +109,10 @@ References
    MA, Tech. Rep. WHOI-2005-10, Dec. 2005, Tables 5 and 6.
 .. [5] R. W. Ogden, G. Saccomandi and I. Sgura, "Fitting hyperelastic models to experimental
    data," Comput. Mech. 34, 2004.
-.. [6] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4.1.
 .. [7] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
    in measurement," 5.2.
 .. [8] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1 and 4.
-.. [9] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3.
 .. [10] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
    in measurement," 5.2, F.1.2.3.
 .. [11] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D

@@ -4,7 +4,6 @@ The form of Figure 31 of [2]_: modulus against stretch of all tests, new and use
 
 References
 ----------
-.. [1] WHOI-2005-10, sec. 4.5 to 4.8.
 .. [2] WHOI-2005-10, sec. 4.6 and 5.
 """
 

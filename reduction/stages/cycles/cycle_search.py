@@ -408,33 +408,6 @@ def find_cycles(
 ) -> Cycles:
     """Find the whole cycles of a record, valley to peak to valley.
 
-    Parameters
-    ----------
-    time : array_like, shape (n_samples,)
-        Elapsed time. [s]
-    position : array_like, shape (n_samples,)
-        Crosshead position; NaN where missing. [m]
-    tension : array_like, shape (n_specimens, n_samples)
-        Tension; their mean is the control channel of a load-controlled test. [N]
-    standstills : Standstills
-        From `reduction.stages.standstills.find_standstills`. [SI]
-    settings : CycleSettings
-        Control channel, waveform, band, threshold, plan. [SI]
-    cycle_counter : ndarray of int, shape (n_samples,), optional
-        The machine's own count: it says where each cycle begins, and the reversals are
-        held against it. [1]
-
-    Returns
-    -------
-    cycles : Cycles
-        One or more, with notes on what was cut, left out, or differs. [SI]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up, the control channel is missing or does not
-        reverse, or no whole cycle is left.
-
     Notes
     -----
     Reversals by a hysteresis band (`first_pass` where none is stated), half cycles by the

@@ -26,16 +26,8 @@ Drift of a series from cycle to cycle, apart from the cycles themselves.
 
 References
 ----------
-.. [1] CG-D-39-80, eq. 4 (the area is the energy lost in a cycle and unit length).
-.. [2] B. Fornberg, "Generation of finite difference formulas on arbitrarily spaced grids,"
-   Math. Comput., vol. 51, pp. 699-706, 1988 (weights of the eighth order).
-.. [3] J. von Neumann, R. H. Kent, H. R. Bellinson and B. I. Hart, "The mean square successive
-   difference," Ann. Math. Stat., vol. 12, 1941, pp. 153-162, for differences as noise.
 .. [4] M. Abramowitz and I. A. Stegun, "Handbook of Mathematical Functions," NBS, 1964, eqs.
    4.3.16 and 4.3.17 (sums of angles), 4.3.65 and 4.3.66 (series).
-.. [5] CG-D-39-80, sec. 2.2 and eqs. 1-4: a rope's tension leads its strain; the part in phase
-   is stored, the part in quadrature is lost.
-.. [6] CG-D-39-80, sec. 4.3: break-in, after which loops still creep.
 """
 
 from __future__ import annotations
@@ -109,29 +101,7 @@ def loop_energy(
     *,
     waveform: Literal["triangular", "sinusoidal", "other"] = "triangular",
 ) -> tuple[Floats, Floats]:
-    r"""Energy lost in each cycle and unit length, and its sensitivity to noise.
-
-    Parameters
-    ----------
-    tension, strain : array_like, shape (n_samples,)
-        Of one specimen, without NaN. [N], [1]
-    first, last : ndarray of int, shape (n_cycles,)
-        First and last sample of each cycle, both inside. [1]
-    waveform : {"triangular", "sinusoidal", "other"}
-        Sinusoidal takes eighth-order differences of strain; the others the polygon. [-]
-
-    Returns
-    -------
-    energy : ndarray, shape (n_cycles,)
-        Positive where tension is higher on the way up. [J m-1]
-    strain_step_norm : ndarray, shape (n_cycles,)
-        Square root of the sum of squared strain steps: the standard uncertainty of
-        the energy is this times that of one tension reading. [1]
-
-    Raises
-    ------
-    DataError
-        If the series differ in length or are shorter than three samples.
+    """Energy lost in each cycle and unit length, and its sensitivity to noise.
 
     Notes
     -----
@@ -294,25 +264,6 @@ def reading_noise(values: Floats) -> float:
 def bridge_gaps(values: Floats, first: Integers, last: Integers) -> tuple[Floats, Bools]:
     """Series with missing readings bridged, and the cycles that lack too many of them.
 
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        A series; NaN where a reading is missing. [any]
-    first, last : ndarray of int, shape (n_cycles,)
-        First and last sample of each cycle. [1]
-
-    Returns
-    -------
-    bridged : ndarray, shape (n_samples,)
-        Straight lines over the gaps; zero throughout where nothing was read. [any]
-    lacks_too_many : ndarray of bool, shape (n_cycles,)
-        More than a tenth of the cycle's readings are missing. [1]
-
-    Raises
-    ------
-    IndexError
-        If a cycle lies outside the series.
-
     Notes
     -----
     Over a tenth of a cycle a straight line is off by up to 5 % of its amplitude at a turn.
@@ -418,25 +369,6 @@ def cycle_basis(
 ) -> CycleBasis:
     """Basis of the fundamental, common to all specimens of a test.
 
-    Parameters
-    ----------
-    time : ndarray, shape (n_samples,)
-        Elapsed time, rising inside a cycle; steps need not be equal. [s]
-    first, last : ndarray of int, shape (n_cycles,)
-        First and last sample of each cycle, both inside. [1]
-    period : ndarray, shape (n_cycles,), optional
-        Of the wave in each cycle; that of the cycles around where not given. [s]
-
-    Returns
-    -------
-    basis : CycleBasis
-        Weighted cosine and sine.
-
-    Raises
-    ------
-    DataError
-        If a cycle takes no time, or its samples have fewer than three phases.
-
     Examples
     --------
     >>> basis = cycle_basis(np.arange(9.0), np.array([0]), np.array([8]))
@@ -509,25 +441,6 @@ def cycle_basis(
 def mean_period(turns: Floats, first: Integers, last: Integers, *, last_turn: Floats) -> Floats:
     """Mean duration of up to 21 cycles that touch, around each cycle.
 
-    Parameters
-    ----------
-    turns : ndarray, shape (n_cycles,)
-        Time at which each cycle begins. [s]
-    first, last : ndarray of int, shape (n_cycles,)
-        First and last sample of each cycle; the next begins where one ends, if they touch. [1]
-    last_turn : ndarray, shape (n_cycles,)
-        Time at which each cycle ends. [s]
-
-    Returns
-    -------
-    period : ndarray, shape (n_cycles,)
-        Of the cycles around. [s]
-
-    Raises
-    ------
-    IndexError
-        If the arrays differ in length.
-
     Examples
     --------
     >>> first = np.array([0, 8, 17])
@@ -549,25 +462,6 @@ def mean_period(turns: Floats, first: Integers, last: Integers, *, last_turn: Fl
 def phase_turns(cosine: Floats, sine: Floats, basis: CycleBasis, time: Floats) -> Floats:
     """Time near the first sample of each cycle at which its fundamental turns.
 
-    Parameters
-    ----------
-    cosine, sine : ndarray, shape (n_cycles,)
-        From `fundamental`. [any]
-    basis : CycleBasis
-        With which they were found.
-    time : ndarray, shape (n_samples,)
-        Elapsed time. [s]
-
-    Returns
-    -------
-    turns : ndarray, shape (n_cycles,)
-        Least value of the fundamental; the first sample's own time where it has none. [s]
-
-    Raises
-    ------
-    IndexError
-        If the arrays differ in length.
-
     Examples
     --------
     >>> t = np.arange(14.0)
@@ -582,23 +476,6 @@ def phase_turns(cosine: Floats, sine: Floats, basis: CycleBasis, time: Floats) -
 
 def fundamental(values: Floats, basis: CycleBasis) -> tuple[Floats, Floats, Floats]:
     """Cosine and sine amplitude of the fundamental in each cycle, and its mean.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        Without NaN. [any]
-    basis : CycleBasis
-        From `cycle_basis`.
-
-    Returns
-    -------
-    cosine, sine, mean : ndarray, shape (n_cycles,)
-        Amplitudes and mean over time, in the unit of the series. [any]
-
-    Raises
-    ------
-    IndexError
-        If the series is shorter than the cycles.
 
     Notes
     -----
@@ -631,25 +508,6 @@ def fundamental(values: Floats, basis: CycleBasis) -> tuple[Floats, Floats, Floa
 def part_means(values: Floats, basis: CycleBasis, middles: Integers) -> Floats:
     """Mean over time of a series in the three parts of each cycle between its middles.
 
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        Without NaN. [any]
-    basis : CycleBasis
-        From `cycle_basis`.
-    middles : ndarray of int, shape (2, n_cycles)
-        Middle sample of the rise and of the fall, rising between the ends of the cycle. [1]
-
-    Returns
-    -------
-    means : ndarray, shape (3, n_cycles)
-        In the unit of the series. [any]
-
-    Raises
-    ------
-    IndexError
-        If the series is shorter than the cycles.
-
     Examples
     --------
     >>> from reduction.stages.cycles.loop_energy import cycle_basis
@@ -673,25 +531,6 @@ def part_means(values: Floats, basis: CycleBasis, middles: Integers) -> Floats:
 
 def mean_drift(means: Floats, ends: Floats) -> Floats:
     """Steady drift of a series over each cycle, from its means across the ends of cycles.
-
-    Parameters
-    ----------
-    means : ndarray, shape (3, n_cycles)
-        Of the three parts of each cycle, from `part_means`. [any]
-    ends : ndarray, shape (4, n_cycles)
-        Times of the start, the middles of rise and fall, and the end; where the end of a
-        cycle is the start of the next, the two touch. [s]
-
-    Returns
-    -------
-    drift : ndarray, shape (n_cycles,)
-        That of the next cycle at an end of a run; zero where fewer than three cycles touch.
-        [any]
-
-    Raises
-    ------
-    IndexError
-        If the arrays differ in length.
 
     Notes
     -----

@@ -19,7 +19,6 @@ References
 .. [2] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.2 and A-3 (slope of the line between
    the ends of the loop; which ends is not said).
-.. [3] ISO 4664-1 usage of storage and loss: in phase and in quadrature with strain.
 """
 
 from __future__ import annotations

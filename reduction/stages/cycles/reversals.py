@@ -197,23 +197,6 @@ def _typical_range(values: ArrayLike) -> float:
 def first_pass(values: ArrayLike) -> tuple[NDArray[np.intp], float]:
     """Reversals of a record that states no band, and the band: above its noise, below its cycles.
 
-    Parameters
-    ----------
-    values : array_like, shape (n_samples,)
-        Control channel; NaN is left out. [any unit]
-
-    Returns
-    -------
-    reversals : ndarray of int, shape (n_reversals,)
-        As `find_reversals` with that band gives them. [1]
-    band : float
-        Smallest range that makes a reversal. [unit of the values]
-
-    Raises
-    ------
-    DataError
-        If fewer than 8 samples are finite.
-
     Notes
     -----
     The band is the greater of the range that noise alone may span (`noise_range`) and a
@@ -251,25 +234,6 @@ _FEWEST_STEPS = 8  # with fewer steps a half cycle, one step is a good part of i
 
 def drop_jumps(values: Floats, reversals: Indices) -> tuple[Indices, Indices]:
     """Leave out pairs of reversals that a jump of the channel makes.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n_samples,)
-        Control channel; NaN where missing. [m] or [N]
-    reversals : ndarray of int, shape (n_reversals,)
-        From `reduction.stages.cycles.reversals.find_reversals`. [1]
-
-    Returns
-    -------
-    reversals : ndarray of int, shape (n_kept,)
-        Without the two ends of every jump, valleys and peaks in turn. [1]
-    jumps : ndarray of int, shape (n_jumps,)
-        First sample of each jump that was left out. [1]
-
-    Raises
-    ------
-    IndexError
-        If a reversal is not a sample of the values.
 
     Notes
     -----
@@ -320,21 +284,6 @@ _CYCLES_READ = 64  # before their samples are let go
 def changes_of_count(cycle_counter: Integers) -> Indices:
     """Samples after which the machine's count is another.
 
-    Parameters
-    ----------
-    cycle_counter : ndarray of int, shape (n_samples,)
-        The count. [1]
-
-    Returns
-    -------
-    changes : ndarray of int, shape (n_changes,)
-        Last sample of each count but the last. [1]
-
-    Raises
-    ------
-    IndexError
-        If the count is not a series.
-
     Examples
     --------
     >>> changes_of_count(np.array([0, 0, 1, 1, 2]))
@@ -351,30 +300,6 @@ def counted_cycles(
     cycle_counter: Integers, values: Floats
 ) -> tuple[Indices, Indices, Indices, Indices, Integers]:
     """First and last sample, the turns, and the machine's number of every counted cycle.
-
-    Parameters
-    ----------
-    cycle_counter : ndarray of int, shape (n_samples,)
-        The machine's count; zero or less outside cycles. [1]
-    values : ndarray, shape (n_samples,)
-        Control channel; NaN where missing. [m] or [N]
-
-    Returns
-    -------
-    first, last : ndarray of int, shape (n_cycles,)
-        Samples with the same count, both inside. [1]
-    branch_first, branch_last : ndarray of int, shape (n_cycles, 2)
-        Ascending and descending branch: from the valley before the peak to the peak, and
-        to the valley after it, all within the counted samples. [1]
-    number : ndarray of int, shape (n_cycles,)
-        The machine's number. [1]
-
-    Raises
-    ------
-    IndexError
-        If the series do not pair up.
-    DataError
-        If the count runs backward to another number than 1, where a new block may begin.
 
     Notes
     -----

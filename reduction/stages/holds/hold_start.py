@@ -134,23 +134,6 @@ def find_ramp(
 def begins_inside(position: ArrayLike, *, band: float) -> bool:
     """Whether a series shows where its last motion began, so that nothing before it counts.
 
-    Parameters
-    ----------
-    position : array_like, shape (n_samples,)
-        Up to the first sample of the hold. [m]
-    band : float
-        A change of position within it is not motion. [m]
-
-    Returns
-    -------
-    begins_inside : bool
-        False where the motion may have begun before the series. [1]
-
-    Raises
-    ------
-    IndexError
-        If there is no sample.
-
     Examples
     --------
     >>> begins_inside([0.0, 1.0, 2.0], band=0.1), begins_inside([5.0, 0.0, 1.0, 2.0], band=0.1)

@@ -65,27 +65,6 @@ def prony_tension(
 ) -> Floats:
     """Tension of a Prony series at constant length after a constant-rate ramp.
 
-    Parameters
-    ----------
-    elapsed : array_like, shape (n_samples,)
-        Time from the end of the ramp. [s]
-    tension, relaxation_time : array_like, shape (n_terms,)
-        Terms. [N], [s]
-    long_time_tension : float
-        What the series tends to. [N]
-    ramp_duration : float, optional
-        Duration of the ramp. [s]
-
-    Returns
-    -------
-    tension : ndarray, shape (n_samples,)
-        Tension. [N]
-
-    Raises
-    ------
-    DataError
-        If a relaxation time is not positive.
-
     Examples
     --------
     >>> print(prony_tension([0.0, 60.0], tension=[75.0], relaxation_time=[60.0],

@@ -11,9 +11,6 @@ References
 .. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
    Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
    MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
-.. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 4.1 (holds between cycles).
 """
 
 from __future__ import annotations
@@ -309,31 +306,6 @@ def select_hold(
     index: int,
 ) -> Hold:
     """Take the samples of one specimen in one standstill, and the ramp that led to it.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n_samples,)
-        Elapsed time; samples that do not come later than all before are left out. [s]
-    position : ndarray, shape (n_samples,)
-        Crosshead position. [m]
-    tension : ndarray, shape (n_samples,)
-        Of this specimen; a sample that is NaN here, in time or in position is left out. [N]
-    strain : ndarray, shape (n_samples,)
-        Of this specimen; may be NaN. [1]
-    standstills : Standstills
-        Of the record; where it has a ``tension_tolerance`` the ramp is that of the tension. [SI]
-    index : int
-        Which of them. [1]
-
-    Returns
-    -------
-    hold : Hold
-        Without notes or refusals as yet. [SI]
-
-    Raises
-    ------
-    IndexError
-        If there is no such standstill.
 
     Notes
     -----

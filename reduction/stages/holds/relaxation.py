@@ -17,7 +17,6 @@ References
 .. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
    Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
    MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
-.. [3] J. D. Ferry, "Viscoelastic Properties of Polymers," 3rd ed., Wiley, 1980, ch. 1.
 """
 
 from __future__ import annotations
@@ -401,27 +400,6 @@ def value_at_times(
 ) -> tuple[Floats, Floats]:
     """Series at stated times, each from a line through the samples within a tenth of it.
 
-    Parameters
-    ----------
-    elapsed : array_like, shape (n_samples,)
-        Time, increasing. [s]
-    values : array_like, shape (n_samples,)
-        Series. [any unit]
-    times : array_like, shape (n_times,)
-        Where it is wanted. [s]
-
-    Returns
-    -------
-    at_times, standard_uncertainty : ndarray, shape (n_times,)
-        The value, and that of the line by the noise of the samples (type A); NaN where
-        the series does not reach from before to after the time, or has a gap of
-        more than a fifth of the time there. [unit of the series]
-
-    Raises
-    ------
-    DataError
-        If the time does not increase or a value is not finite.
-
     Examples
     --------
     >>> value, spread = value_at_times([0.0, 1.0, 2.0, 3.0], [8.0, 6.0, 4.0, 2.0], [1.5, 5.0])
@@ -486,28 +464,6 @@ def creep_rate(
     time: ArrayLike, strain: ArrayLike, tension: ArrayLike, *, ramp_duration: float
 ) -> Rate:
     """Strain gained per decade of time at constant tension.
-
-    Parameters
-    ----------
-    time : array_like, shape (n_samples,)
-        Time from the centre of the ramp, increasing and positive. [s]
-    strain : array_like, shape (n_samples,)
-        Strain of the free length. [1]
-    tension : array_like, shape (n_samples,)
-        Tension. [N]
-    ramp_duration : float
-        Duration of the equivalent ramp. [s]
-
-    Returns
-    -------
-    rate : Rate
-        Slope of strain against log10(time). [1]
-
-    Raises
-    ------
-    DataError
-        If tension strays from its mean by more than 1 % after the ramp, or the hold is too
-        short (`rate_per_decade`).
 
     Notes
     -----

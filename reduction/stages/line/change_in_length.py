@@ -400,30 +400,6 @@ def change_in_length(
 ) -> tuple[ChangeInLength, ...]:
     """Six change-in-length properties of one rope, from the steps of its programme.
 
-    Parameters
-    ----------
-    steps : sequence of StepOfProgramme
-        In the order in which they were done.
-    loaded_before : str, optional
-        What the rope had carried before the first of them, in words; empty of a new rope.
-    is_ordered : bool, optional
-        Whether their order is known.
-    missing : str, optional
-        Which steps there are no numbers of, in words; it is told where a property is missing.
-    rated_break_strength : float, optional
-        NaN where not stated. [N]
-
-    Returns
-    -------
-    properties : tuple of ChangeInLength
-        At least one of each name, in the order of the abstract; one for each pair of holds, level
-        or hold where a step has several.
-
-    Raises
-    ------
-    SettingsError
-        If a reference time is not positive.
-
     Notes
     -----
     Every number is that of a stage before, or one line of arithmetic with it.  An error that

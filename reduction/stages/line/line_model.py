@@ -78,10 +78,6 @@ References
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eqs. 1-4, Tables 3-19.
 .. [2] CG-D-39-80, eqs. 1 and 4 (the equations that are differentiated).
-.. [3] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement" (the law of propagation).
-.. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3 and A-3.
 .. [5] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3 and A-3 (the simultaneous solution),
    Tables 3-19.
@@ -441,21 +437,6 @@ _UNKNOWN_REST, _BAD_REST, _MISSING, NOT_POSITIVE, TOO_WIDE, _NOT_ABOVE = range(1
 
 def reasons_in_words(reason: ArrayLike) -> tuple[str, ...]:
     """How many lines have no K_1 and tau, and why.
-
-    Parameters
-    ----------
-    reason : array_like of int, shape (...)
-        From `LineParameters`. [1]
-
-    Returns
-    -------
-    words : tuple of str
-        One entry a reason that occurs.
-
-    Raises
-    ------
-    KeyError
-        If a code is none of `REASONS`.
 
     Examples
     --------

@@ -236,21 +236,6 @@ def one_a_specimen(rated_break_strength: ArrayLike, n_specimens: int) -> Floats:
 def mean_of_rows(values: Floats) -> Floats:
     """Mean over the last axis of what is known.
 
-    Parameters
-    ----------
-    values : ndarray, shape (..., n)
-        NaN is left out. [any]
-
-    Returns
-    -------
-    mean : ndarray, shape (...)
-        NaN where nothing is known. [any]
-
-    Raises
-    ------
-    numpy.exceptions.AxisError
-        If the values have no axis.
-
     Examples
     --------
     >>> print(mean_of_rows(np.array([[1.0, np.nan, 3.0], [np.nan, np.nan, np.nan]])))

@@ -15,17 +15,12 @@ References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.3 (break-in and levels).
-.. [2] J. F. Flory and V. Ahjem, "Measuring and Calculating the Six Change-in-Length Properties
-   of Fibre Rope," OIPEEC (abstract: original, static and dynamic stiffness, construction,
-   polymer and working strain, by a programme of many steps).
 .. [3] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 5 (cycles to failure under snap loads,
    against the peak as a share of the break strength).
 .. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 6, Tables 10 and 21 (tensile strength
    and strain at failure of each pull).
-.. [5] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
-   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4 to 6.
 """
 
 from __future__ import annotations

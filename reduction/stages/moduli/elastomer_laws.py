@@ -206,27 +206,6 @@ def even_grid(
 ) -> tuple[Floats, Floats]:
     """Means over even strain intervals, so that every strain counts alike in a fit.
 
-    Parameters
-    ----------
-    strain : array_like, shape (n_samples,)
-        Nominal strain; samples at or below zero and NaN are left out. [1]
-    stress : array_like, shape (n_samples,)
-        Nominal stress. [Pa]
-    n_points : int, optional
-        Number of intervals from zero to the greatest strain. [1]
-
-    Returns
-    -------
-    grid_strain : ndarray, shape (n_filled,)
-        Mean strain of each interval that holds a sample. [1]
-    grid_stress : ndarray, shape (n_filled,)
-        Mean stress. [Pa]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up or no sample is stretched.
-
     Examples
     --------
     >>> strain, _ = even_grid(np.linspace(0, 1, 1001), np.linspace(0, 1, 1001), n_points=4)

@@ -12,12 +12,7 @@ with a modulus here: on a curve through the origin it is the secant modulus time
 
 References
 ----------
-.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
 .. [2] L. Mullins, "Softening of rubber by deformation," Rubber Chem. Technol., vol. 42, 1969.
-.. [3] ASTM D412 usage: tensile stress at given elongation, on a first loading.
-.. [4] WHOI-2005-10, sec. 2.3.2: a tether carries about 85 lb at 100 % stretch.
 """
 
 from __future__ import annotations

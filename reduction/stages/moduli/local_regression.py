@@ -16,9 +16,6 @@ A curve on bins, read between them.
 
 References
 ----------
-.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
-   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
-   MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
 .. [2] T. A. Davis, "Direct Methods for Sparse Linear Systems," SIAM, 2006, ch. 2 (compressed
    columns).
 .. [3] T. F. Chan, G. H. Golub and R. J. LeVeque, "Algorithms for computing the sample

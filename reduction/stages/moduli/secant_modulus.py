@@ -543,28 +543,7 @@ FEWEST_CYCLES = 3
 
 
 def slope_per_decade(values: ArrayLike, *, first_cycle: int = 1) -> tuple[Floats, Floats]:
-    r"""Slope of per-cycle values against log10 of the cycle number.
-
-    Parameters
-    ----------
-    values : array_like, shape (n_series, n_cycles)
-        One value a cycle; NaN is left out. [any unit]
-    first_cycle : int, optional
-        Number of the first cycle. [1]
-
-    Returns
-    -------
-    slope : ndarray, shape (n_series,)
-        Change per tenfold cycle number; NaN where fewer than three cycles are known.
-        [unit of the series]
-    slope_standard_uncertainty : ndarray, shape (n_series,)
-        From the scatter about the line, widened by the correlation of neighbouring cycles,
-        so that curvature counts too (type A). [unit of the series]
-
-    Raises
-    ------
-    DataError
-        If the first cycle number is below 1.
+    """Slope of per-cycle values against log10 of the cycle number.
 
     Notes
     -----
@@ -605,21 +584,6 @@ def slope_per_decade(values: ArrayLike, *, first_cycle: int = 1) -> tuple[Floats
 
 def cycles_at_an_end(n_cycles: int) -> int:
     """Return how many cycles at each end of a test are compared: a tenth, from one to ten.
-
-    Parameters
-    ----------
-    n_cycles : int
-        Of the test. [1]
-
-    Returns
-    -------
-    n_ends : int
-        At each end. [1]
-
-    Raises
-    ------
-    DataError
-        Never by itself.
 
     Examples
     --------

@@ -105,27 +105,6 @@ def slack_crossings(
 ) -> _SlackCrossings:
     """Positions at which a record first becomes taut and last goes slack.
 
-    Parameters
-    ----------
-    position : array_like, shape (n_samples,)
-        Crosshead position. [m]
-    tension : array_like, shape (n_samples,)
-        Tension of one specimen; NaN is left out. [N]
-    slack_tension : float
-        Tension at or below which the specimen is slack. [N]
-    time : array_like, shape (n_samples,), optional
-        For the rate at the crossings. [s]
-
-    Returns
-    -------
-    crossings : SlackCrossings
-        [m]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up or the slack tension is not positive.
-
     Notes
     -----
     The first rise of the next test of a specimen, less the first rise of this one, is the

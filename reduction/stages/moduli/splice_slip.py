@@ -23,11 +23,8 @@ looked at is the level of each cycle, from `reduction.stages.moduli.loop_balance
 
 References
 ----------
-.. [1] B. Widrow and I. Kollar, "Quantization Noise," Cambridge Univ. Press, 2008, ch. 1.
 .. [2] M. Basseville and I. V. Nikiforov, "Detection of Abrupt Changes: Theory and Application,"
    Prentice-Hall, 1993, sec. 2.4 (generalized likelihood ratio).
-.. [3] M. Basseville and I. V. Nikiforov, "Detection of Abrupt Changes: Theory and Application,"
-   Prentice-Hall, 1993, sec. 2.4 (size of a change at a known time).
 .. [4] P. Fryzlewicz, "Wild binary segmentation for multiple change-point detection," Ann.
    Statist. 42(6), 2014 (strongest first, local windows).
 .. [5] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
@@ -56,24 +53,6 @@ from reduction.stages.moduli.modulus_product import Slips
 
 def sample_noise(values: ArrayLike) -> tuple[float, float]:
     """Noise of single samples and the step of the digitizer, from the series itself.
-
-    Parameters
-    ----------
-    values : array_like, shape (n_samples,)
-        A series that changes slowly. [any unit]
-
-    Returns
-    -------
-    noise : float
-        Root mean square of neighbouring differences over the square root of two.
-        [unit of the series]
-    quantum : float
-        Smallest difference between unequal values; 0 where all are equal. [unit of the series]
-
-    Raises
-    ------
-    DataError
-        If there are fewer than two samples.
 
     Notes
     -----

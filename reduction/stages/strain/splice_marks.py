@@ -238,20 +238,6 @@ _TAPE_UNCERTAINTY = 0.003
 def check_marks(marks: SpliceMarks, *, tests: Collection[str] | None = None) -> None:
     """Refuse marks of one test that contradict each other.
 
-    Parameters
-    ----------
-    marks : SpliceMarks
-        Tape readings of one specimen, any number of tests.
-    tests : collection of str, optional
-        Tests whose rows are looked at; None: all.
-
-    Raises
-    ------
-    DataError
-        If in one test the free length falls while the position grows, or two rows
-        at one position differ in free length, by more than four standard
-        uncertainties; names test and holds.
-
     Notes
     -----
     The same position at another tension has another free length (the splices
@@ -421,23 +407,6 @@ class SpliceCalibration:
 
 def line_slope(position: ArrayLike, values: ArrayLike) -> float:
     """Least squares slope of a series on position.
-
-    Parameters
-    ----------
-    position : array_like, shape (n,)
-        At two places or more. [m]
-    values : array_like, shape (n,)
-        Strain, or its residual. [1]
-
-    Returns
-    -------
-    slope : float
-        Per unit of position. [m-1]
-
-    Raises
-    ------
-    DataError
-        If the series do not pair up.
 
     Examples
     --------

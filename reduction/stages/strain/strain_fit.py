@@ -234,25 +234,6 @@ def _slope_ratio(model: StrainModel, readings: PooledMarks) -> float:
 def fit_to_marks(method: StrainMethod, readings: PooledMarks) -> StrainModel:
     """Fit a method that needs marks, and say how far it is from each mark it used.
 
-    Parameters
-    ----------
-    method : StrainMethod
-        ``marks``, ``strain-ratio``, ``tension-driven`` or ``constant-fraction``.
-    readings : PooledMarks
-        Marks with their tension.
-
-    Returns
-    -------
-    model : StrainModel
-        Coefficients, covariance, range, residuals, slope ratio. [SI]
-
-    Raises
-    ------
-    DataError
-        If there are too few marks for the method.
-    FitError
-        If the splices do not follow a law of tension.
-
     Examples
     --------
     >>> marks = SpliceMarks("new", 2 * ("T-1",), ("slack", "min"), np.array([0.63, 0.74]),
@@ -492,26 +473,6 @@ def zero_strain_position(
     standstills: Standstills, *, position_is_length: bool, length_at_slack: float | None = None
 ) -> float | None:
     """Crosshead position at which a specimen without splices has no strain.
-
-    Parameters
-    ----------
-    standstills : Standstills
-        Of the log.
-    position_is_length : bool
-        False where the channel is a displacement of which no length is stated.
-    length_at_slack : float, optional
-        Length at displacement zero, where it was stated at slack. [m]
-
-    Returns
-    -------
-    position : float or None
-        Mean position of the first rest at slack; without one, where a displacement is zero,
-        and None for a length of which nothing says where it is slack. [m]
-
-    Raises
-    ------
-    DataError
-        Never by itself; `fit_strain_model` refuses None where it is needed.
 
     Examples
     --------

@@ -524,25 +524,6 @@ def strain_by_model(
 def extrapolated(model: StrainModel, position: ArrayLike, tension: ArrayLike) -> Bools:
     """Samples outside the range of the marks.
 
-    Parameters
-    ----------
-    model : StrainModel
-        Fitted to marks; other models extrapolate nowhere.
-    position : array_like, shape (...)
-        Crosshead position. [m]
-    tension : array_like, shape (...)
-        Of this specimen. [N]
-
-    Returns
-    -------
-    extrapolated : ndarray of bool, shape (...)
-        True outside; False where the value is missing. [1]
-
-    Raises
-    ------
-    DataError
-        Never by itself.
-
     Notes
     -----
     ``tension-driven`` is bounded in tension, from slack to the highest marked
