@@ -58,6 +58,7 @@ from reduction.archive.variables import (
     CRITERION,
     MOVEMENT,
     NO_YES,
+    NOTE_ROWS,
     OF_MARKS,
     OF_UNCERTAINTY,
     PART,
@@ -290,8 +291,7 @@ _TEST_ROWS = chain(
     count("n_rows_kept", ()),
     count("n_rows_stored", ()),
     count("n_flagged", ("channel", "quality_mask")),
-    label("note", ("note",)),
-    label("note_stage", ("note",)),
+    NOTE_ROWS,
 )
 
 SCHEMA: dict[str, Variable] = {row.name: row for row in _TEST_ROWS}
@@ -432,7 +432,7 @@ COMPARISON_SCHEMA: dict[str, Variable] = {
         ),
         stated("model_error", _COMPARISON, SPREAD),
         label("note_comparison", ("note",)),
-        label("note", ("note",)),
+        NOTE_ROWS,
     )
 }
 """Every variable that an archive of comparisons may have."""
@@ -535,7 +535,7 @@ PREDICTION_SCHEMA: dict[str, Variable] = {
             )
         ),
         label("note_hose", ("note",)),
-        label("note", ("note",)),
+        NOTE_ROWS,
     )
 }
 """Every variable that an archive of predictions may have."""
@@ -815,8 +815,7 @@ _EXPERIMENT_ROWS = chain(
         rows_of_response(name, is_transformed=name not in RESPONSES) for name in SURFACE_NAMES
     ),
     # what a reader of the numbers has to know
-    label("note", ("note",)),
-    label("note_stage", ("note",)),
+    NOTE_ROWS,
     label("note_experiment", ("note",)),
     label("caution", ("caution",)),
     label("caution_kind", ("caution",)),
