@@ -478,8 +478,8 @@ class _HalfCycles:
     last: Indices
     rises: Bools
     run: Indices
-    made: tuple[str, ...]
     notes: tuple[Note, ...]
+    made: tuple[str, ...] = ()
 
 
 def _replaced(samples: Indices, old: Indices, new: Integers) -> Indices:
