@@ -118,7 +118,7 @@ def _read(path, layout, limits):
         _say(f"refused: {error}")
         sys.exit(error.exit_status)
     loads = sum(log.columns["tension.1"][:30])  # as many rows as every good file has
-    _say(f"read {log.n_rows_read} rows, loads {loads:g};", *log.notes)
+    _say(f"read {log.n_rows_read} rows, loads {loads:g};", *map(str, log.notes))
 
 
 def _forked(asked, seconds, cwd, environment):

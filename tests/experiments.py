@@ -16,6 +16,7 @@ from reduction.experiments.term_selection import reduce_terms
 from reduction.quantities.names import RESPONSES
 from reduction.record.contributions import Component, Contributions
 from reduction.record.measurement import Origin, Source, Step
+from reduction.record.notes import Note, note
 from reduction.stages.line.line_model import check_single_time
 from reduction.uncertainty.surface_errors import with_shared_surfaces
 
@@ -56,7 +57,7 @@ def run_table(coded, level, responses, *, specimens=None, missing=(), prefix="R"
         peak_tension=known(mean + amplitude),
         minimum_tension=known(mean - amplitude),
         rated_break_strength=np.full(n_runs, STRENGTH),
-        remark=tuple("its test gave no product" if one else "" for one in gone),
+        remarks=tuple((note("run-without-product"),) if one else () for one in gone),
         shared=None if names is None else Contributions(
             (Component("tension_gain", "load cell"),),
             {
@@ -144,7 +145,10 @@ def surface_experiment(
             Caution("slack", "the minimum tension of run 2 reaches zero", "Raise it.", (2,)),
             Caution("no-repeats", "no run is repeated", "Add centre runs."),
         ),
-        notes=(*surfaces.notes, "=a note that looks like a formula"),
+        notes=(
+            *surfaces.notes,
+            Note("fixture", "note", text="=a note that looks like a formula"),
+        ),
     )
     return with_shared_surfaces(result)
 

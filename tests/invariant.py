@@ -77,7 +77,7 @@ def _product(campaign):
         return _refused(next(iter(errors.values())))
     basis = basis_of(campaign, survey, earlier_tests_of([survey], models), pulls={})
     dataset, notes = dataset_of(campaign, survey, basis, command="")
-    said = frozenset((stage, re.sub(r"[-+]?\d[\d.,e+-]*", "#", text)) for stage, text in notes)
+    said = frozenset((one.stage, re.sub(r"[-+]?\d[\d.,e+-]*", "#", str(one))) for one in notes)
     values = tuple(outcome.value for outcome in campaign.outcomes)
     return Answer(dataset=dataset, notes=said, outcomes=values)
 

@@ -9,7 +9,7 @@ was stopped are lower bounds.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any, get_args
 
@@ -27,6 +27,7 @@ from reduction.archive.variables import (
     count,
     flag,
     label,
+    note_values,
     numbers,
     pad,
     pad_texts,
@@ -44,6 +45,7 @@ from reduction.quantities.names import quantity
 from reduction.record.contributions import combined_standard_uncertainty
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Floats, Origin
+from reduction.record.notes import Note
 
 _OF_CURVE = {
     "tension_bias": "bias",
@@ -110,7 +112,7 @@ class NamedComparison:
     comparison: Comparison
 
     @property
-    def notes(self) -> tuple[str, ...]:
+    def notes(self) -> tuple[Note, ...]:
         """Of the comparison, its verdict and its calibration, none twice."""
         found = self.comparison
         own = () if found.calibration is None else found.calibration.notes
@@ -136,7 +138,7 @@ def comparisons_to_dataset(named: Sequence[NamedComparison], *, origin: Origin) 
         "comparison_loading": texts([one.measured.loading for one in found]),
         "judged_curve": texts([one.judged for one in found]),
         "note_comparison": texts([one.name for one in named for _ in one.notes]),
-        "note": texts([note for one in named for note in one.notes]),
+        **note_values([replace(said, stage="comparison") for one in named for said in one.notes]),
     }
     values |= _compared_curves(found) | _judgement_values(found) | _calibration_values(found)
     for axis, along in (
@@ -325,7 +327,7 @@ def predictions_to_dataset(hoses: Sequence[PredictedHose], *, origin: Origin) ->
         "cord_layer": texts(("inner", "outer")),
         "rubber_law": texts([hose.plan.design.rubber_law for hose in hoses]),
         "note_hose": texts([hose.plan.name for hose in hoses for _ in hose.notes]),
-        "note": texts([note for hose in hoses for note in hose.notes]),
+        **note_values([replace(said, stage="prediction") for hose in hoses for said in hose.notes]),
     }
     values |= _design_values(hoses) | _predicted_curves(hoses) | _event_values(hoses)
     values |= _uncertainty_values(hoses) | _layer_values(hoses)

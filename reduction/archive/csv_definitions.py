@@ -687,7 +687,7 @@ RECORD_TABLES = (
         ),
         ("standstill_start_time",),
     ),
-    CsvTable("notes", ("note",), ("note_stage",), ("note",)),
+    CsvTable("notes", ("note",), ("note_stage", "note_code", "note_severity"), ("note",)),
     CsvTable(
         "rows",
         ("channel", "quality_mask"),
@@ -1213,7 +1213,7 @@ EXPERIMENT_TABLES = (
     _table_of_experiments(
         "experiment_notes",
         ("note",),
-        ("experiment=note_experiment", "note_stage"),
+        ("experiment=note_experiment", "note_stage", "note_code", "note_severity"),
         ("note",),
     ),
 )

@@ -212,7 +212,7 @@ def global_attributes(
             "settings": test.settings_json,
             "key": key_of(test.settings_json),
         },
-        steps=test.stage_lines,
+        steps=test.all_steps(),
         version=version,
         command=command,
     )

@@ -58,6 +58,7 @@ from reduction.archive.variables import (
     CRITERION,
     MOVEMENT,
     NO_YES,
+    NOTE_ROWS,
     OF_MARKS,
     OF_UNCERTAINTY,
     PART,
@@ -316,7 +317,7 @@ _TEST_ROWS = chain(
         count("n_rows_stored", ()),
         count("n_flagged", ("channel", "quality_mask")),
     ),
-    in_group("notes", label("note", ("note",)), label("note_stage", ("note",))),
+    NOTE_ROWS,
 )
 
 SCHEMA: dict[str, Variable] = schema_from(_TEST_ROWS)
@@ -476,11 +477,8 @@ COMPARISON_SCHEMA: dict[str, Variable] = schema_from(
             ),
             stated("model_error", _COMPARISON, SPREAD),
         ),
-        in_group(
-            "notes",
-            label("note_comparison", ("note",)),
-            label("note", ("note",)),
-        ),
+        in_group("notes", label("note_comparison", ("note",))),
+        NOTE_ROWS,
     )
 )
 """Every variable that an archive of comparisons may have."""
@@ -596,11 +594,8 @@ PREDICTION_SCHEMA: dict[str, Variable] = schema_from(
                 )
             ),
         ),
-        in_group(
-            "notes",
-            label("note_hose", ("note",)),
-            label("note", ("note",)),
-        ),
+        in_group("notes", label("note_hose", ("note",))),
+        NOTE_ROWS,
     )
 )
 """Every variable that an archive of predictions may have."""
@@ -950,11 +945,10 @@ _EXPERIMENT_ROWS = chain(
     chain.from_iterable(
         rows_of_response(name, is_transformed=name not in RESPONSES) for name in SURFACE_NAMES
     ),
+    # what a reader of the numbers has to know
+    NOTE_ROWS,
     in_group(
         "notes",
-        # what a reader of the numbers has to know
-        label("note", ("note",)),
-        label("note_stage", ("note",)),
         label("note_experiment", ("note",)),
         label("caution", ("caution",)),
         label("caution_kind", ("caution",)),

@@ -31,6 +31,7 @@ from reduction.record.contributions import (
 )
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Bools, Floats
+from reduction.record.notes import Note, note
 from reduction.record.samples import like_storage, release_pages
 
 COMPONENT = "uncertainty_component"
@@ -293,13 +294,8 @@ _OF_ALL_SAMPLES = (
 )  # fmt: skip
 """What may be stated of a test that is in its curve: not the noise of a reading."""
 
-_NO_CURVE = (
-    "the archive of the test holds no curve with what its instruments may be wrong by (a specimen "
-    "without a diameter has none): what is stated of load and crosshead is not in the comparison"
-)
 
-
-def curve_errors_of(archive: xr.Dataset, place: int) -> tuple[SharedErrors, tuple[str, ...]]:
+def curve_errors_of(archive: xr.Dataset, place: int) -> tuple[SharedErrors, tuple[Note, ...]]:
     """Errors that all samples share, at the bins of the curve of one specimen."""
     for curve, modulus, axis in _CURVES:
         rows = stored(archive, f"{curve}_uncertainty_contribution")
@@ -317,7 +313,7 @@ def curve_errors_of(archive: xr.Dataset, place: int) -> tuple[SharedErrors, tupl
         for curve, *_ in _CURVES
     )
     is_left_out = not has_curve and any(getattr(stated, name) for name in _OF_ALL_SAMPLES)
-    return _of_length(archive, place), (_NO_CURVE,) if is_left_out else ()
+    return _of_length(archive, place), (note("no-curve-of-errors"),) if is_left_out else ()
 
 
 def _errors(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import combinations
 from typing import Any
 
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from reduction.archive.dataset_builder import build_dataset, part_attributes
 from reduction.archive.schema import SURFACE_SCHEMA
 from reduction.archive.shared_errors import component_values
-from reduction.archive.variables import Values, pad, stored, texts
+from reduction.archive.variables import Values, note_values, pad, read_notes, stored, texts
 from reduction.experiments.block_effects import block_columns
 from reduction.experiments.designs import engineering_matrix
 from reduction.experiments.experiment import ExperimentResult, RunTable, SharedSurfaces
@@ -38,6 +39,7 @@ from reduction.quantities.units import combined_unit
 from reduction.record.contributions import combined_standard_uncertainty
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Floats, Integers, Origin
+from reduction.record.notes import Note
 from reduction.stages.line.line_model import VERDICTS, SingleTimeCheck
 from reduction.uncertainty.surface_errors import with_shared_at_points
 
@@ -450,7 +452,7 @@ def _run_values(runs: RunTable, response_names: Sequence[str]) -> Values:
         "run": np.arange(1, len(runs.run) + 1),
         "run_name": texts(runs.run),
         "run_specimen": texts(runs.specimen),
-        "run_remark": texts(runs.remark),
+        "run_remark": texts(["; ".join(map(str, one)) for one in runs.remarks]),
         "run_plan": runs.coded_plan,
         "run_level": runs.level,
     }
@@ -705,17 +707,15 @@ def _own_dims(name: str) -> tuple[str, ...]:
 
 def _note_values(results: Sequence[ExperimentResult]) -> Values:
     """Notes of surfaces under their own stage, and none twice."""
-    rows = []
+    names: list[str] = []
+    notes: list[Note] = []
     for result in results:
         of_surfaces = () if result.surfaces is None else result.surfaces.notes
-        rows += [(result.name, "surfaces", text) for text in of_surfaces]
-        rows += [
-            (result.name, "experiment", text) for text in result.notes if text not in of_surfaces
-        ]
-    return {
-        name: texts([row[column] for row in rows])
-        for column, name in enumerate(("note_experiment", "note_stage", "note"))
-    }
+        own = [one for one in result.notes if one not in of_surfaces]
+        notes += [replace(one, stage="surfaces") for one in of_surfaces]
+        notes += [replace(one, stage="experiment") for one in own]
+        names += [result.name] * (len(of_surfaces) + len(own))
+    return {"note_experiment": texts(names), **note_values(notes)}
 
 
 def _caution_values(results: Sequence[ExperimentResult]) -> Values:
@@ -1003,16 +1003,8 @@ class _Reader:
             at_boundary=self.stack("block_at_boundary").astype(bool),
         )
 
-    def notes(self) -> tuple[str, ...]:
+    def notes(self) -> tuple[Note, ...]:
         """Give the notes of the surfaces."""
-        if "note" not in self.dataset:
-            return ()
-        columns = [
-            self.dataset.variables[f"note{part}"].values for part in ("_experiment", "_stage", "")
-        ]
         name = str(self.dataset.variables["experiment"].values[self.row])
-        return tuple(
-            str(text)
-            for experiment, stage, text in zip(*columns, strict=True)
-            if (str(experiment), str(stage)) == (name, "surfaces")
-        )
+        own = read_notes(self.dataset, of=("note_experiment", name))
+        return tuple(one for one in own if one.stage == "surfaces")

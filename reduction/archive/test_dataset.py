@@ -37,7 +37,7 @@ from reduction.archive.test_variables import (
     stress_at_strain_values,
     trend_values,
 )
-from reduction.archive.variables import Values, numbers, pad, texts
+from reduction.archive.variables import Values, note_values, numbers, pad, texts
 from reduction.record.contributions import Contributions
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import (
@@ -212,15 +212,6 @@ def _mark_values(models: Sequence[StrainModel]) -> Values:
     }
 
 
-def _note_values(test: ReducedTest) -> Values:
-    """Return the notes in the order of the stages, by stage and text."""
-    pairs = test.all_notes()
-    return {
-        "note": texts([text for _, text in pairs]),
-        "note_stage": texts([stage for stage, _ in pairs]),
-    }
-
-
 _SHARE = 8
 """Of a longer record than is stored whole, this part of it at most for cycles, and for the rest."""
 
@@ -232,7 +223,6 @@ class _KeptSamples:
 
     index: Integers
     words: str
-    note: str
 
     def of(self, values: NDArray[Any]) -> NDArray[Any]:
         """Return the stored samples of a series, shape (..., n_stored)."""
@@ -266,12 +256,7 @@ def kept_samples(test: ReducedTest, settings: ReductionSettings) -> _KeptSamples
         listed = ", ".join(map(str, numbers))
         words += f"; {numbers.size} of {first.size} cycles ({listed}){_every(step)}"
     words += f"; what is in no cycle{_every(step_outside)}"
-    return _KeptSamples(
-        index=index,
-        words=words,
-        note=f"samples are stored in part: {words}; every number was made from the whole record, "
-        'of which reduction.archive.samples = "all" stores every sample',
-    )
+    return _KeptSamples(index=index, words=words)
 
 
 def _cycles_with_curves(test: ReducedTest, longest: int) -> Integers:
@@ -409,7 +394,7 @@ def to_dataset(
 
 def _all_values(test: ReducedTest, kept: _KeptSamples | None) -> Values:
     names = tuple(one.name for one in test.specimens)
-    values = _specimen_values(test.specimens) | _note_values(test)
+    values = _specimen_values(test.specimens) | note_values(test.all_notes())
     if test.stepwise is not None:
         values |= stepwise_values(test.stepwise)
     elif test.record is not None:

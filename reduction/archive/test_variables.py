@@ -229,7 +229,7 @@ def curve_values(curves: ModulusCurves) -> Values:
     values: Values = {
         item.name: getattr(curves, item.name)
         for item in fields(curves)
-        if item.name not in ("window", "notes", "branch_tension_count")
+        if item.name not in ("window", "notes", "made", "branch_tension_count")
     }
     if curves.branch_tension_count is not None:
         values["branch_tension_count"] = curves.branch_tension_count
@@ -403,7 +403,7 @@ def hold_values(holds: Sequence[HoldResult]) -> Values:
         "hold_specimen": texts([one.specimen for one in holds]),
         "hold_kind": texts([one.kind for one in holds]),
         "hold_criterion": texts([one.criterion for one in holds]),
-        "hold_refusal": texts(["; ".join(one.refusals) for one in holds]),
+        "hold_refusal": texts([one.refused for one in holds]),
     }
     for name in _PLAIN:
         values[name] = numbers([getattr(one, name) for one in holds])

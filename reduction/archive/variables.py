@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import xarray as xr
@@ -13,6 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from reduction.quantities.names import QUANTITIES
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Floats
+from reduction.record.note_sentences import Severity
+from reduction.record.notes import Note
 
 READING = "a reading: its uncertainty is that of the channel"
 
@@ -313,3 +315,45 @@ def stored(dataset: xr.Dataset, name: str) -> xr.Variable | None:
     True
     """
     return dataset.variables[name] if name in dataset else None
+
+
+NOTE_ROWS: tuple[Variable, ...] = tuple(
+    in_group(
+        "notes",
+        *(label(name, ("note",)) for name in ("note", "note_stage", "note_code", "note_severity")),
+    )
+)
+"""What each note says, which stage gave it, its code, and how serious it is."""
+
+
+def note_values(notes: Sequence[Note]) -> Values:
+    """Return notes as variables, in their order."""
+    return {
+        "note": texts([str(one) for one in notes]),
+        "note_stage": texts([one.stage for one in notes]),
+        "note_code": texts([one.code for one in notes]),
+        "note_severity": texts([one.severity for one in notes]),
+    }
+
+
+def read_notes(archive: xr.Dataset, *, of: tuple[str, str] | None = None) -> tuple[Note, ...]:
+    """Return the notes of an archive, or those where a variable has one value; none twice.
+
+    Those of an archive that does not know how serious they are count as what else there is to know.
+    """
+    if "note" not in archive:
+        return ()
+    columns = [
+        archive.variables[row.name].values.astype(str).tolist()
+        if row.name in archive
+        else ["note" if row.name == "note_severity" else ""] * archive.variables["note"].size
+        for row in NOTE_ROWS
+    ]
+    rows = zip(*columns, strict=True)
+    owners = archive.variables[of[0]].values.astype(str) if of else columns[0]
+    found = (
+        Note(code, cast("Severity", severity), stage=stage, text=text)
+        for (text, stage, code, severity), owner in zip(rows, owners, strict=True)
+        if of is None or owner == of[1]
+    )
+    return tuple(dict.fromkeys(found))

@@ -30,7 +30,7 @@ from reduction.readers.raw_log import hash_source
 from reduction.record.contributions import Contributions
 from reduction.record.errors import FitError
 from reduction.record.measurement import Bools, Floats, Origin, Source, Step
-from reduction.record.notes import by_severity
+from reduction.record.notes import Note, by_severity, note
 from reduction.stages.line.line_product import REASONS
 from reduction.uncertainty.surface_errors import with_shared_surfaces
 
@@ -52,7 +52,7 @@ def experiments_found(campaign: Campaign, tests: Sequence[TestStatus]) -> list[d
                 for specimen, test in plan.quasi_static.items()
             ],
             "slack_runs": _slack_runs(campaign, plan),
-            "notes": [*_without_pull(campaign, plan), *_same_logs(plan, sums)],
+            "notes": [*_without_pull(campaign, plan), *map(str, _same_logs(plan, sums))],
         }
         for plan in campaign.experiments.values()
     ]
@@ -104,17 +104,14 @@ def _without_pull(campaign: Campaign, plan: ExperimentPlan) -> list[str]:
     return [f"no slow pull of {', '.join(bare)}: K_0, and so K_1 and tau, are refused"]
 
 
-def _same_logs(plan: ExperimentPlan, raw_sha256: Mapping[str, str]) -> list[str]:
+def _same_logs(plan: ExperimentPlan, raw_sha256: Mapping[str, str]) -> list[Note]:
     """Runs of different tests whose logs are byte for byte the same."""
     tests_of: dict[str, dict[str, None]] = {}
     for run in plan.runs:
         if raw_sha256.get(run):
             tests_of.setdefault(raw_sha256[run], {})[run.partition(".")[0]] = None
     return [
-        f"{' and '.join(tests)} have the same log, byte for byte: one run that was copied under "
-        "another name?"
-        for tests in tests_of.values()
-        if len(tests) > 1
+        note("same-log", tests=" and ".join(tests)) for tests in tests_of.values() if len(tests) > 1
     ]
 
 
@@ -144,8 +141,8 @@ def _rows_of_run(
     specimens = campaign.tests[log].specimens
     about = {"run": run, "coded": coded, "order": _order(campaign, plan, run)}
     if path is None or not path.exists():
-        missing = "its test failed" if path is None else "its test gave no product"
-        return [about | {"remark": missing, "specimen": name} for name in specimens]
+        missing = note("run-test-failed" if path is None else "run-without-product")
+        return [about | {"remarks": (missing,), "specimen": name} for name in specimens]
     # one that is there and cannot be read is no run that is missing: surfaces would be other ones
     with opener(path) as archive:
         given = [str(name) for name in archive.variables["specimen"].values]
@@ -192,16 +189,16 @@ def _row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, speci
         remarks += _slack(valley <= MEASURED_SLACK * peak)
     strength = stored(archive, "rated_break_strength")
     row["strength"] = float("nan") if strength is None else float(strength.values[place])
-    return row | {"specimen": specimen, "remark": "; ".join(remarks)}
+    return row | {"specimen": specimen, "remarks": tuple(remarks)}
 
 
-def _slack(is_slack: Bools) -> list[str]:
+def _slack(is_slack: Bools) -> list[Note]:
     if not is_slack.any():
         return []
-    return [f"the line goes slack in {'every cycle' if is_slack.all() else 'some of its cycles'}"]
+    return [note("run-slack", cycles="every cycle" if is_slack.all() else "some of its cycles")]
 
 
-def _refusal(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: str) -> list[str]:
+def _refusal(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: str) -> list[Note]:
     """Why a run has no K_1 and tau; empty where it has."""
     flags = stored(archive, "test_line_refusal")
     code = _NO_REST if flags is None else int(flags.values[place])
@@ -215,13 +212,13 @@ def _refusal(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: st
         reason = f"the slow pull {pull} gave no load-strain curve"
     elif code == _NO_REST and any(f"of the slow pull of {specimen}" in one for one in notes):
         reason = f"the mean tension lies outside the slow pull {pull}"
-    return [f"K_1 and tau refused: {reason}"]
+    return [note("run-without-line", reason=reason)]
 
 
 _UNITS = {"temperature": "K", "diameter": "m"}
 
 # notes of which the message tells the first: without that part there is little to read
-_MAIN_PART = ("refused: response surfaces", "refused: effects", "refused: surface of")
+_MAIN_PART = ("no-main-part", "no-effect", "no-surface")
 
 
 def write_experiments(
@@ -310,11 +307,10 @@ def _in_one_line(result: ExperimentResult) -> str:
 def _status(result: ExperimentResult) -> PartStatus:
     """A design whose main part the runs do not carry has failed, as the error of it says."""
     failed = result.refusal_status != 0
-    main = [note for note in result.notes if note.startswith(_MAIN_PART)]
-    ranked = [text for _, text in by_severity(("experiment", note) for note in result.notes)]
+    main = [one for one in result.notes if one.code in _MAIN_PART]
+    ranked = by_severity(one for one in result.notes if one.code not in _MAIN_PART)
     # what is missing, and the worst of what else there is to know
-    said = [*main[:1], *[note for note in ranked if note not in main][:1]]
-    message = "; ".join([_in_one_line(result), *said])
+    message = "; ".join([_in_one_line(result), *map(str, (*main[:1], *ranked[:1]))])
     status = "failed" if failed else "fitted_with_notes" if result.notes else "fitted"
     return PartStatus(result.name, status, result.refusal_status, message)
 
@@ -391,7 +387,7 @@ def _fit_rows(plan: ExperimentPlan, rows: list[Row]) -> ExperimentResult:
         peak_tension=_column(rows, "peak"),
         minimum_tension=_column(rows, "least"),
         rated_break_strength=_column(rows, "strength"),
-        remark=tuple(row["remark"] for row in rows),
+        remarks=tuple(row["remarks"] for row in rows),
         shared=_shared(plan, rows),
     )
     result = fit_experiment(

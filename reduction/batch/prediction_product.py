@@ -30,6 +30,7 @@ from reduction.prediction.hose_prediction import HosePlan, PredictedHose, predic
 from reduction.readers.raw_log import hash_source
 from reduction.record.errors import DataError, ReductionError
 from reduction.record.measurement import Integers, Origin, Source, Step
+from reduction.record.notes import Note, note
 
 
 def write_predictions(campaign: Campaign, folder: Path, *, command: str) -> list[PartStatus]:
@@ -44,7 +45,7 @@ def write_predictions(campaign: Campaign, folder: Path, *, command: str) -> list
             continue
         hoses.append(hose)
         status = "predicted_with_notes" if hose.notes else "predicted"
-        message = "; ".join([_in_one_line(hose), *hose.notes[:1]])
+        message = "; ".join([_in_one_line(hose), *map(str, hose.notes[:1])])
         statuses.append(PartStatus(plan.name, status, 0, message))
     if hoses:
         write_hoses(
@@ -193,7 +194,7 @@ def compare_archive(
         )
         comparison = replace(comparison, notes=(*notes, *_of_part(archive), *comparison.notes))
         if plan.loading is None and comparison.measured.loading == "dynamic":
-            assumed = f'taken as dynamic, as {kind} tests are; a slow one has loading = "static"'
+            assumed = note("taken-as-dynamic", kind=kind)
             comparison = replace(comparison, notes=(assumed, *comparison.notes))
         return NamedComparison(plan.name, archive.attrs["test"], specimen, hose.name, comparison)
 
@@ -206,13 +207,11 @@ def _numbers(archive: xr.Dataset) -> Integers:
     return np.where(np.isin(number, stored_cycles(archive)), number, 0)
 
 
-def _of_part(archive: xr.Dataset) -> tuple[str, ...]:
+def _of_part(archive: xr.Dataset) -> tuple[Note, ...]:
     """What a reader has to know where an archive holds a part of the samples."""
     if "sample_index" not in archive:
         return ()
-    return (
-        f"from the samples that are stored of a long record: {archive.attrs['stored_samples']}",
-    )
+    return (note("from-stored-samples", samples=archive.attrs["stored_samples"]),)
 
 
 def _require_hose(path: Path, archive: xr.Dataset, index: int) -> None:

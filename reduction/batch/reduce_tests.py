@@ -33,6 +33,7 @@ from reduction.pipeline.plausibility import check_stated_errors
 from reduction.pipeline.reduce_test import reduce_stepwise_test, reduce_test
 from reduction.readers.raw_log import hash_source
 from reduction.record.errors import LogError, ReductionError
+from reduction.record.notes import Note
 from reduction.stages.line.line_product import SlowPull
 from reduction.stages.reduced_test import History, ReducedTest
 from reduction.stages.strain.strain_model import StrainModel
@@ -87,15 +88,14 @@ def dataset_of(
     basis: Basis,
     *,
     command: str,
-) -> tuple[xr.Dataset, tuple[tuple[str, str], ...]]:
+) -> tuple[xr.Dataset, tuple[Note, ...]]:
     """Reduce one surveyed test to all that its archive is to hold."""
     product = _reduce_survey(
         campaign, survey, basis.models, basis.history, basis.settings, basis.pulls,
         basis.pull_origins,
     )  # fmt: skip
     kept = kept_samples(product, survey.plan.settings)
-    of_archive = () if kept is None else (kept.note,)
-    product = replace(product, notes=(*product.notes, *basis.remarks, *of_archive))
+    product = replace(product, notes=(*product.notes, *basis.remarks))
     dataset = to_dataset(product, version=__version__, command=command, kept=kept)
     return dataset, product.all_notes()
 

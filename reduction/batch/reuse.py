@@ -12,11 +12,13 @@ from typing import Any
 from reduction import __version__
 from reduction.archive.dataset_builder import key_of
 from reduction.archive.open import reading
+from reduction.archive.variables import read_notes
 from reduction.batch.slow_pulls import origins_of, pull_tests, pulls_of
 from reduction.batch.survey import Survey
 from reduction.batch.test_history import EarlierTests, history_of, history_remarks, instruments_of
 from reduction.campaign.plan import Campaign
 from reduction.record.measurement import Floats
+from reduction.record.notes import Note
 from reduction.stages.line.line_product import SlowPull
 from reduction.stages.reduced_test import History, TestDescription
 from reduction.stages.strain.strain_model import StrainModel
@@ -155,7 +157,7 @@ class Basis:
     pulls: list[SlowPull | None] | None
     pull_origins: tuple[PullOrigin | None, ...]
     settings: str
-    remarks: tuple[str, ...]
+    remarks: tuple[Note, ...]
 
 
 def basis_of(
@@ -187,8 +189,8 @@ _MANY = 4  # runs that are named one by one
 
 
 def reusable_product(
-    path: Path, survey: Survey, settings: str, *, remarks: Sequence[str] = ()
-) -> tuple[tuple[str, str], ...] | None:
+    path: Path, survey: Survey, settings: str, *, remarks: Sequence[Note] = ()
+) -> tuple[Note, ...] | None:
     """Notes of the product of an earlier run that stands; None where it has to be made."""
     try:
         if not path.exists():
@@ -202,19 +204,11 @@ def reusable_product(
             }
             if any(archive.attrs.get(name) != value for name, value in wanted.items()):
                 return None
-            notes: tuple[tuple[str, str], ...] = ()
-            if "note" in archive:
-                stages, texts = (
-                    archive.variables["note_stage"].values,
-                    archive.variables["note"].values,
-                )
-                notes = tuple(
-                    (str(stage), str(text)) for stage, text in zip(stages, texts, strict=True)
-                )
+            notes = read_notes(archive)
     except OSError:
         return None  # an archive that cannot be read is made again
     # where it lacks a remark another test has failed than then
-    return notes if set(remarks) <= {text for _, text in notes} else None
+    return notes if {str(one) for one in remarks} <= {str(one) for one in notes} else None
 
 
 def outdated_runs(

@@ -28,7 +28,8 @@ from reduction.record.errors import (
     refused_by_system,
 )
 from reduction.record.measurement import Floats, Record, Source, SpliceMarks, StepReadings
-from reduction.record.notes import Severity, by_severity, full_note, severity_of
+from reduction.record.note_sentences import Severity
+from reduction.record.notes import Note, by_severity, full_note
 from reduction.stages.standstills import median_step
 from reduction.stages.strain.strain_fit import zero_strain_position
 
@@ -43,8 +44,8 @@ def _log_summary(located: Located) -> dict[str, Any]:
         "standstills": located.standstills.n_standstills,
         "flags": {channel: masks for channel, masks in n_flagged.items() if masks},
         "notes": [
-            *record.notes,
-            *(() if located.cycles is None else located.cycles.notes),
+            *map(str, record.notes),
+            *(() if located.cycles is None else map(str, located.cycles.notes)),
         ],
     }
 
@@ -337,21 +338,21 @@ def with_record(survey: Survey, kept: Sequence[Survey] | None) -> Survey:
     return survey
 
 
-_SERIOUS: tuple[Severity, ...] = ("doubt", "refusal")
+_SERIOUS: tuple[Severity, ...] = ("warning", "refusal")
 
 
-def note_message(notes: Sequence[tuple[str, str]]) -> str:
+def note_message(notes: Sequence[Note]) -> str:
     """How many notes there are, how many of them are serious, and the most serious of all."""
     ranked = by_severity(notes)
     if not ranked:
         return ""
-    kinds = Counter(severity_of(stage, text) for stage, text in ranked)
+    kinds = Counter(one.severity for one in ranked)
     serious = [
         f"{kinds[kind]} {kind}{'s' if kinds[kind] > 1 else ''}" for kind in _SERIOUS if kinds[kind]
     ]
     among = f" ({', '.join(serious)})" if serious else ""
     count = f"{len(ranked)} note{'s' if len(ranked) > 1 else ''}"
-    return f"{count}{among}; first: {full_note(*ranked[0])}"
+    return f"{count}{among}; first: {full_note(ranked[0].stage, str(ranked[0]))}"
 
 
 def _error_message(campaign: Campaign, survey: Survey, error: ReductionError) -> str:

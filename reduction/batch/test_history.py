@@ -15,6 +15,7 @@ from reduction.pipeline.test_extremes import greatest_strain, growth_of_slack_le
 from reduction.record.contributions import InstrumentErrors
 from reduction.record.errors import ReductionError
 from reduction.record.measurement import Floats, Specimen, SpliceMarks
+from reduction.record.notes import Note, note
 from reduction.stages.reduced_test import History
 from reduction.stages.strain.strain_fit import fit_strain_model
 from reduction.stages.strain.strain_model import StrainModel
@@ -154,30 +155,21 @@ def _greatest(values: Sequence[float]) -> float:
     return float(np.max(values)) if values else float("nan")
 
 
-def history_remarks(survey: Survey, past: EarlierTests, campaign: Campaign) -> tuple[str, ...]:
+def history_remarks(survey: Survey, past: EarlierTests, campaign: Campaign) -> tuple[Note, ...]:
     """What the campaign leaves open about the place of a test in its specimens' history."""
     plan = survey.plan
     remarks = (*_unknown(survey, past), *_unlogged(survey, past, campaign))
-    if plan.part_of is not None:
-        return (
-            f"a part of {plan.part_of}: its history is that of the whole; cycles of the whole "
-            "before this part are not counted",
-            *remarks,
-        )
     shared = [
         name
         for name in plan.specimens
         if any(name in other.plan.specimens for other in past.surveys if other.plan.log != plan.log)
     ]
-    if plan.order is None and shared:
-        return (
-            f"no place in the order of tests is given for {', '.join(shared)}: what earlier tests "
-            "did to them is not known here; set order",
-        )
+    if plan.order is None and shared and plan.part_of is None:
+        return (note("no-order", specimens=", ".join(shared)),)
     return remarks
 
 
-def _unlogged(survey: Survey, past: EarlierTests, campaign: Campaign) -> tuple[str, ...]:
+def _unlogged(survey: Survey, past: EarlierTests, campaign: Campaign) -> tuple[Note, ...]:
     """Earlier cycles of which the campaign has the number alone."""
     if _place(survey, past) is None:
         return ()
@@ -187,14 +179,11 @@ def _unlogged(survey: Survey, past: EarlierTests, campaign: Campaign) -> tuple[s
         before = campaign.specimens[name].earlier_cycles
         count = _unlogged_cycles(_earlier(survey, past, name), own, before)
         if count:
-            remarks.append(
-                f"{name}: {count} earlier cycles are in no log: earlier_maximum_strain and "
-                "earlier_maximum_tension are of the logged tests alone"
-            )
+            remarks.append(note("cycles-in-no-log", name, n_cycles=count))
     return tuple(remarks)
 
 
-def _unknown(survey: Survey, past: EarlierTests) -> tuple[str, ...]:
+def _unknown(survey: Survey, past: EarlierTests) -> tuple[Note, ...]:
     """Earlier tests of which a number is lacking, and what has none for it here."""
     failed: dict[str, list[str]] = {}
     bare: dict[str, list[str]] = {}
@@ -206,13 +195,11 @@ def _unknown(survey: Survey, past: EarlierTests) -> tuple[str, ...]:
                 bare.setdefault(entry.plan.id, []).append(name)
     return (
         *(
-            f"earlier test {test} failed: what it did to {', '.join(names)} is not known, and "
-            "earlier_cycles, earlier_maximum_strain and earlier_maximum_tension have no number"
+            note("earlier-test-failed", test=test, specimens=", ".join(names))
             for test, names in failed.items()
         ),
         *(
-            f"earlier test {test} has no strain of {', '.join(names)}: earlier_maximum_strain "
-            "has no number"
+            note("earlier-test-without-strain", test=test, specimens=", ".join(names))
             for test, names in bare.items()
         ),
     )

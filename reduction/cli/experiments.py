@@ -630,10 +630,10 @@ def fit_runs(path: Path, spec_path: Path | None, *, output: CommandOutput) -> No
         ) from error
     notes = (
         *runs.notes,
-        *surfaces.notes,
+        *map(str, surfaces.notes),
         *_unstated(runs),
-        *negative_surfaces(surfaces),
-        *drifting_responses(surfaces, drift),
+        *map(str, negative_surfaces(surfaces)),
+        *map(str, drifting_responses(surfaces, drift)),
     )
     _show_surfaces(surfaces, runs, notes, output, units)
     documents = {
@@ -680,7 +680,7 @@ def _screen(runs: RunSeries) -> tuple[ScreeningEffects, tuple[str, ...]]:
         )
     if away.any():
         notes.append(f"levels up to {away.max():.2g} coded off the plan count as those of the plan")
-    notes += screening_remarks(runs.dummy.shape[1], runs.blocks is not None)
+    notes += map(str, screening_remarks(runs.dummy.shape[1], runs.blocks is not None))
     design = Design("plackett-burman", near, runs.dummy)
     return screening_effects(design, runs.responses, names=runs.factor_names), tuple(notes)
 

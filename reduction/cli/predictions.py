@@ -277,7 +277,7 @@ def _hose_document(hose: PredictedHose) -> dict[str, Any]:
             }
             for one in hose.layers
         ],
-        "notes": list(hose.notes),
+        "notes": list(map(str, hose.notes)),
     }  # fmt: skip
 
 
@@ -741,7 +741,7 @@ def _comparison_document(named: NamedComparison) -> dict[str, Any]:
         },
         "calibrated": None if found.calibration is None else _calibrated(found.calibration),
         "units": {"strain": "1", "tension": "N", "difference": "N", "energy": "J m-1"},
-        "notes": list(named.notes),
+        "notes": list(map(str, named.notes)),
     }  # fmt: skip
 
 

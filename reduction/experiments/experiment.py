@@ -17,6 +17,7 @@ from reduction.experiments.term_selection import ReducedSurfaces
 from reduction.record.contributions import Component, Contributions
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, read_only_arrays
+from reduction.record.notes import Note
 from reduction.stages.line.line_model import SingleTimeCheck
 
 
@@ -64,7 +65,7 @@ class RunTable:
     peak_tension: Floats
     minimum_tension: Floats
     rated_break_strength: Floats
-    remark: tuple[str, ...]
+    remarks: tuple[tuple[Note, ...], ...]
     shared: Contributions | None = None
 
     def __post_init__(self) -> None:
@@ -76,7 +77,7 @@ class RunTable:
             "level": self.level.shape[0],
             "response": self.response.shape[1],
             "frequency": self.frequency.size,
-            "remark": len(self.remark),
+            "remarks": len(self.remarks),
         }
         for name, found in columns.items():
             if found != n_runs:
@@ -145,7 +146,7 @@ class ExperimentResult:
         Subsets of the terms of ``surfaces``, where they were asked for.
     cautions : tuple of Caution
         Of the runs as reached.
-    notes : tuple of str
+    notes : tuple of Note
         What a reader of the numbers has to know.
     refusal_status : int
         Exit status of the error for which there are neither surfaces nor effects; 0 where
@@ -171,6 +172,6 @@ class ExperimentResult:
     derived_relaxation_time: Floats
     reduced: ReducedSurfaces | None = None
     cautions: tuple[Caution, ...] = ()
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
     refusal_status: int = 0
     shared: SharedSurfaces | None = None

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from reduction.experiments.designs import Design, FactorLevels, coded_from_engineering
 from reduction.experiments.experiment import ExperimentResult, RunTable
-from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
+from reduction.experiments.fit_results import FIT_REASONS, NO_SURFACE, ResponseSurfaces
 from reduction.experiments.least_squares_fit import replicate_cells
 from reduction.experiments.response_surfaces import fit_surfaces
 from reduction.experiments.response_transform import Transform
@@ -45,6 +45,7 @@ from reduction.experiments.surface_warnings import (
 from reduction.experiments.term_selection import ReducedSurfaces, reduce_terms
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers
+from reduction.record.notes import Note, note
 from reduction.stages.line.line_model import (
     VERDICTS,
     SingleTimeCheck,
@@ -59,8 +60,6 @@ _WRONG_HALF = 0.5
 
 _OF_ORDER = ("pure-error-excludes-drift", "order-confounded")
 
-_NO_SURFACE = (1, 2, 6)
-
 
 def _listed(words: Sequence[str], *, most: int = 5, between: str = ", ") -> str:
     """The first of several, and how many more."""
@@ -68,16 +67,16 @@ def _listed(words: Sequence[str], *, most: int = 5, between: str = ", ") -> str:
     return between.join(words[:most]) + more
 
 
-def _remarks_of_runs(runs: RunTable) -> list[str]:
+def _remarks_of_runs(runs: RunTable) -> list[Note]:
     """One note a remark, with the runs that have it."""
-    of_remark: dict[str, list[str]] = {}
-    for run, remark in zip(runs.names, runs.remark, strict=True):
-        for part in remark.split("; ") if remark else ():
-            of_remark.setdefault(part, []).append(run)
-    return [f"{_listed(names)}: {remark}" for remark, names in of_remark.items()]
+    of_remark: dict[Note, list[str]] = {}
+    for run, remarks in zip(runs.names, runs.remarks, strict=True):
+        for remark in remarks:
+            of_remark.setdefault(remark, []).append(run)
+    return [replace(remark, subject=_listed(names)) for remark, names in of_remark.items()]
 
 
-def _surface_levels_off_plan(runs: RunTable, coded: Floats, names: Sequence[str]) -> list[str]:
+def _surface_levels_off_plan(runs: RunTable, coded: Floats, names: Sequence[str]) -> list[Note]:
     """A note where runs of a surface were not run where the plan has them."""
     words = levels_off_plan(
         coded, runs.coded_plan[:, : len(names)], beyond=ON_PLAN,
@@ -85,13 +84,10 @@ def _surface_levels_off_plan(runs: RunTable, coded: Floats, names: Sequence[str]
     )  # fmt: skip
     if not words:
         return []
-    return [
-        f"levels reached disagree with the plan by more than {ON_PLAN:g} coded: "
-        f"{_listed(words, between='; ')}; the surfaces are of the levels reached"
-    ]
+    return [note("levels-off-plan", limit=ON_PLAN, where=_listed(words, between="; "))]
 
 
-def _require_screening_levels(runs: RunTable, coded: Floats, names: Sequence[str]) -> list[str]:
+def _require_screening_levels(runs: RunTable, coded: Floats, names: Sequence[str]) -> list[Note]:
     """A note where runs of a screening strayed; `DataError` where they left their half."""
     given = {"run_names": runs.names, "factor_names": names}
     plan = runs.coded_plan[:, : len(names)]
@@ -106,37 +102,41 @@ def _require_screening_levels(runs: RunTable, coded: Floats, names: Sequence[str
     words = levels_off_plan(coded, plan, beyond=_OFF_SCREENING, **given)
     if not words:
         return []
-    return [
-        f"levels reached disagree with the plan by more than {_OFF_SCREENING:g} coded: "
-        f"{_listed(words, between='; ')}; they count as those of the plan"
-    ]
+    where = _listed(words, between="; ")
+    return [note("screening-levels-off-plan", limit=_OFF_SCREENING, where=where)]
 
 
 def _missing_surfaces(
     runs: RunTable, surfaces: ResponseSurfaces, response_names: Sequence[str]
-) -> list[str]:
+) -> list[Note]:
     """What has no surface, with what the runs say of it; one note where runs miss alike."""
     alike: dict[tuple[int, bytes], list[int]] = {}
     for row in range(len(response_names)):
         reason = int(surfaces.reason[row])
-        if reason in _NO_SURFACE:
+        if reason in NO_SURFACE:
             key = (reason, np.isfinite(runs.response[row]).tobytes())
             alike.setdefault(key, []).append(row)
     notes = []
     for (reason, _), rows in alike.items():
         has = np.isfinite(runs.response[rows[0]])
         notes.append(
-            f"refused: surface of {', '.join(response_names[row] for row in rows)}: "
-            f"{FIT_REASONS[reason]} ({int(has.sum())} runs of {has.size}, "
-            f"{len(surfaces.term_names)} terms){_causes(runs, ~has)}"
+            note(
+                "no-surface",
+                responses=", ".join(response_names[row] for row in rows),
+                reason=FIT_REASONS[reason],
+                n_runs=int(has.sum()),
+                n_all=has.size,
+                n_terms=len(surfaces.term_names),
+                causes=_causes(runs, ~has),
+            )
         )
     return notes
 
 
 def _causes(runs: RunTable, chosen: Bools) -> str:
     """Reasons of the runs that are chosen, which stand first in their remarks, by frequency."""
-    reasons = [runs.remark[row].split("; ")[0] for row in np.flatnonzero(chosen)]
-    often = sorted(set(filter(None, reasons)), key=lambda text: (-reasons.count(text), text))
+    reasons = [str(one) for row in np.flatnonzero(chosen) for one in runs.remarks[row][:1]]
+    often = sorted(set(reasons), key=lambda text: (-reasons.count(text), text))
     said = [f"{text} ({reasons.count(text)} of them)" for text in often[:2]]
     return f": {'; '.join(said)}" if said else ""
 
@@ -231,7 +231,7 @@ def _specimen_blocks(runs: RunTable) -> tuple[str, ...] | None:
 
 def _stiffness_of_runs(
     runs: RunTable, surfaces: ResponseSurfaces, response_names: Sequence[str]
-) -> tuple[tuple[StiffnessForm, ...], FormQuality | None, list[str]]:
+) -> tuple[tuple[StiffnessForm, ...], FormQuality | None, list[Note]]:
     """Forms that mooring codes ask for, fitted to the apparent spring constant."""
     if "apparent_spring_constant" not in response_names:
         return (), None, []
@@ -239,10 +239,9 @@ def _stiffness_of_runs(
     used = np.isfinite(spring) & np.isfinite(surfaces.coded).all(axis=1)
     strengths = np.unique(runs.rated_break_strength[used])
     if strengths.size > 1:
-        return (), None, [
-            "refused: stiffness forms of mooring codes: the runs are of lines of "
-            f"{strengths.size} break strengths, or not of every line is one stated"
-        ]  # fmt: skip
+        several = f"the runs are of lines of {strengths.size} break strengths"
+        reason = f"{several}, or not of every line is one stated"
+        return (), None, [note("no-stiffness-forms", reason=reason)]
     strength = float(strengths[0]) if strengths.size and strengths[0] > 0 else None
     spring, frequency = spring[used], runs.frequency[used]
     loads: dict[str, Any] = {
@@ -262,18 +261,15 @@ def _stiffness_of_runs(
             coded=surfaces.coded[used], **loads,
         )  # fmt: skip
     except REFUSALS as error:
-        return (), None, [f"refused: stiffness forms of mooring codes: {error}"]
+        return (), None, [note("no-stiffness-forms", reason=str(error))]
     if _specimen_blocks(runs) is None:
         return forms, quality, []
-    return forms, quality, [
-        "stiffness forms of mooring codes pool the specimens: what sets one apart from another "
-        "is in their scatter"
-    ]  # fmt: skip
+    return forms, quality, [note("stiffness-forms-pooled")]
 
 
 def _derived_line(
     runs: RunTable, line: LineOfRuns, names: tuple[str, ...], low: Floats, high: Floats
-) -> tuple[tuple[Floats, Floats], list[str]]:
+) -> tuple[tuple[Floats, Floats], list[Note]]:
     """K_1 and tau at the levels of each run from surfaces of E' and of the logarithm of E''."""
     missing = np.full(len(runs.run), np.nan)
     parts = np.array([line.storage_spring_constant, line.loss_spring_constant])
@@ -284,7 +280,7 @@ def _derived_line(
             transforms=("none", "log"), blocks=_specimen_blocks(runs),
         )  # fmt: skip
     except REFUSALS as error:
-        return (missing, missing), [f"refused: K_1 and tau from surfaces of E' and E'': {error}"]
+        return (missing, missing), [note("no-derived-line", reason=str(error))]
     known = np.isfinite(runs.level).all(axis=1)
     # with the level of the specimen of each run, as its own K_0 is taken off
     storage, loss = smooth.fitted[0], np.exp(smooth.fitted[1])
@@ -303,13 +299,13 @@ def _derived_line(
 
 def _single_time_of_runs(
     runs: RunTable, coded: Floats, frequency: int, response_names: Sequence[str], line: LineOfRuns
-) -> tuple[SingleTimeCheck | None, list[str]]:
+) -> tuple[SingleTimeCheck | None, list[Note]]:
     """Whether one relaxation time holds: runs at equal loads, as reached, are compared."""
     place = response_names.index("relaxation_time")
     time = runs.response[place]
     used = np.isfinite(time) & np.isfinite(coded).all(axis=1)
     if not used.any():
-        return None, ["refused: check of a single relaxation time: no run has one"]
+        return None, [note("no-check-of-single-time", reason="no run has one")]
     loads = replicate_cells(np.delete(coded, frequency, axis=1))
     group = [f"{one} {cell}" for one, cell in zip(runs.specimen, loads.tolist(), strict=True)]
     loss = line.loss_spring_constant / line.storage_spring_constant
@@ -320,18 +316,13 @@ def _single_time_of_runs(
             relative_standard_uncertainty=(runs.response_standard_uncertainty[place] / time)[used],
         )  # fmt: skip
     except REFUSALS as error:
-        return None, [f"refused: check of a single relaxation time: {error}"]
-    return check, [VERDICTS[int(check.verdict)]]
+        return None, [note("no-check-of-single-time", reason=str(error))]
+    return check, [note("single-time", verdict=VERDICTS[int(check.verdict)])]
 
 
 _PREFIX: dict[str, Transform] = {"log_": "log", "box_cox_": "box-cox"}
 
 _FROM_SLOW_PULL = {"dissipation_spring_constant", "relaxation_time", "dashpot_coefficient"}
-
-_SHARED = (
-    "t and p of the surfaces of K_1 and tau are of the scatter of the runs; the error of K_0, "
-    "which all runs of one slow pull share, is in the uncertainty of the coefficients alone"
-)
 
 
 def fit_experiment(
@@ -372,7 +363,7 @@ def fit_experiment(
             surfaces = _surfaces(runs, names, low, high, response_names, transform, specimens_as)
     except REFUSALS as error:
         what = "effects" if kind == "plackett-burman" else "response surfaces"
-        notes.append(f"refused: {what}: {error}")
+        notes.append(note("no-main-part", part=what, reason=str(error)))
         refusal_status = error.exit_status
     if surfaces is not None:
         notes += _missing_surfaces(runs, surfaces, response_names)
@@ -381,7 +372,7 @@ def fit_experiment(
         drift = drift_over_order(surfaces, _places_in_order(runs, run_order))
         notes += drifting_responses(surfaces, drift)
         if _FROM_SLOW_PULL & set(response_names):
-            notes.append(_SHARED)
+            notes.append(note("slow-pull-error-shared"))
         if term_reduction == "aicc":
             reduced, remarks = _reduced(surfaces)
             notes += remarks
@@ -419,7 +410,7 @@ def fit_experiment(
 
 def _screening(
     runs: RunTable, coded: Floats, names: tuple[str, ...], response_names: tuple[str, ...]
-) -> tuple[ScreeningEffects, list[str]]:
+) -> tuple[ScreeningEffects, list[Note]]:
     """Effects by the plan, where the runs kept to it."""
     notes = _require_screening_levels(runs, coded, names)
     n_factors = len(names)
@@ -434,8 +425,12 @@ def _screening(
             without = [run for run, gone in zip(runs.names, missing, strict=True) if gone]
             responses = [one for one, taken in zip(response_names, of, strict=True) if taken]
             notes.append(
-                f"refused: effects on {_listed(responses)}: {reason}"
-                + (f"; no value of {_listed(without)}" if without else "")
+                note(
+                    "no-effect",
+                    responses=_listed(responses),
+                    reason=reason,
+                    without=_listed(without),
+                )
             )
     return effects, notes + screening_remarks(
         design.dummy.shape[1], _specimen_blocks(runs) is not None
@@ -475,9 +470,9 @@ def _surfaces(
     )
 
 
-def _reduced(surfaces: ResponseSurfaces) -> tuple[ReducedSurfaces | None, list[str]]:
+def _reduced(surfaces: ResponseSurfaces) -> tuple[ReducedSurfaces | None, list[Note]]:
     try:
         reduced = reduce_terms(surfaces)
     except REFUSALS as error:
-        return None, [f"refused: reduction of terms: {error}"]
+        return None, [note("no-reduction-of-terms", reason=str(error))]
     return reduced, list(reduced.notes)

@@ -25,6 +25,7 @@ from numpy import int8
 from numpy.typing import NDArray
 
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
+from reduction.record.notes import Note
 
 
 @dataclass(frozen=True)
@@ -198,6 +199,9 @@ FIT_REASONS: dict[int, str] = {
 }
 """1, 2 and 6: no surface.  3: a surface without uncertainty.  4 and 5: without tests of it."""
 
+NO_SURFACE = (1, 2, 6)
+"""Keys of `FIT_REASONS` of which there is no surface."""
+
 
 @dataclass(frozen=True)
 @read_only_arrays
@@ -331,7 +335,7 @@ shape (n_responses, n_terms)
         Of the model matrix over all runs that are used. [1]
     reason : ndarray of int8, shape (n_responses,)
         0, or a key of `FIT_REASONS`.
-    notes : tuple of str
+    notes : tuple of Note
         What a reader of the numbers has to know.
     """
 
@@ -375,7 +379,7 @@ shape (n_responses, n_terms)
     blocks: BlockEffects | None
     condition_number: float
     reason: NDArray[int8]
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
     @property
     def labels(self) -> tuple[str, ...]:

@@ -40,6 +40,7 @@ from reduction.experiments.designs import (
 )
 from reduction.experiments.fit_results import (
     FIT_REASONS,
+    NO_SURFACE,
     BlockEffects,
     LackOfFit,
     LeastSquares,
@@ -63,6 +64,7 @@ from reduction.experiments.surface_statistics import (
 )
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers
+from reduction.record.notes import Note, note
 
 _STILL = 1e-6
 """Coded range below which a factor does not move."""
@@ -148,7 +150,7 @@ def _remarks(
     run_names: Sequence[str],
     response_names: Sequence[str],
     condition: float,
-) -> tuple[str, ...]:
+) -> tuple[Note, ...]:
     """Notes of the surfaces, shortest list that leaves nothing out."""
     used = np.asarray(np.isfinite(responses).any(axis=0))
     notes = [
@@ -159,12 +161,12 @@ def _remarks(
         *_alone(fit, run_names),
     ]
     if condition > _ILL:
-        notes.append(
-            f"terms lean on each other: condition number {condition:.0f}, that of fifteen "
-            "Box-Behnken runs met exactly is 4.24"
-        )
+        notes.append(note("terms-lean", condition=condition))
     if blocks is not None:
-        notes.append(_error_terms(blocks))
+        n_specimens = len(blocks.names)
+        notes.append(
+            note(f"blocks-{blocks.treatment}", n_specimens=n_specimens, freedom=n_specimens - 1)
+        )
     return tuple(notes)
 
 
@@ -175,19 +177,23 @@ def _listed(names: Sequence[str], chosen: Bools) -> str:
 
 def _missing(
     responses: Floats, used: Bools, run_names: Sequence[str], response_names: Sequence[str]
-) -> list[str]:
+) -> list[Note]:
     notes = []
     if not used.all():
-        notes.append(f"runs without any value: {_listed(run_names, ~used)}")
+        notes.append(note("runs-without-value", runs=_listed(run_names, ~used)))
     short = np.asarray(np.isnan(responses[:, used]).any(axis=1))
     if short.any():
-        notes.append(f"responses that miss further runs: {_listed(response_names, short)}")
+        notes.append(note("responses-miss-runs", responses=_listed(response_names, short)))
     return notes
 
 
-def _reasons(fit: LeastSquares, response_names: Sequence[str]) -> list[str]:
+def _reasons(fit: LeastSquares, response_names: Sequence[str]) -> list[Note]:
     return [
-        f"{_listed(response_names, fit.reason == code)}: {text}"
+        note(
+            "surface-not-fitted" if code in NO_SURFACE else "surface-not-judged",
+            responses=_listed(response_names, fit.reason == code),
+            reason=text,
+        )
         for code, text in FIT_REASONS.items()
         if code and (fit.reason == code).any()
     ]
@@ -195,7 +201,7 @@ def _reasons(fit: LeastSquares, response_names: Sequence[str]) -> list[str]:
 
 def _repeats(
     coded: Floats, responses: Floats, used: Bools, lack: LackOfFit, run_names: Sequence[str]
-) -> list[str]:
+) -> list[Note]:
     notes = []
     # a run typed in twice looks like this, and makes pure error too small
     twins = [
@@ -206,57 +212,37 @@ def _repeats(
     ]
     if twins:
         first, second = twins[0]
-        notes.append(
-            f"runs {run_names[first]} and {run_names[second]} agree in every level and "
-            f"response ({len(twins)} such pairs): repeats, or one run twice?"
-        )
+        pair = {"first": run_names[first], "second": run_names[second]}
+        notes.append(note("runs-alike", **pair, n_pairs=len(twins)))
     spread = max(
         (np.ptp(coded[lack.cell == cell], axis=0).max() for cell in np.unique(lack.cell[used])),
         default=0.0,
     )
     if spread > 1e-9:
-        notes.append(
-            f"repeated runs differ by up to {spread:.2g} in coded levels (tolerance "
-            f"{lack.tolerance:g}): pure error is taken after the surface has moved them together"
-        )
+        notes.append(note("repeats-differ", spread=float(spread), tolerance=lack.tolerance))
     return notes
 
 
-def _levels(coded: Floats, factor_names: Sequence[str]) -> list[str]:
+def _levels(coded: Floats, factor_names: Sequence[str]) -> list[Note]:
     notes = []
     bounds = zip(factor_names, coded.min(axis=0), coded.max(axis=0), strict=True)
     for name, low, high in bounds:
         beyond = max(-1 - low, high - 1)
         short = max(low + 1, 1 - high)
         if beyond > _STRAY or short > _STRAY:
-            what = "go beyond" if beyond > _STRAY else "fall short of"
-            notes.append(f"levels of {name} {what} the plan: {low:.2f} to {high:.2f} coded")
+            how = "go beyond" if beyond > _STRAY else "fall short of"
+            ends = {"low": float(low), "high": float(high)}
+            notes.append(note("levels-off-range", factor=name, how=how, **ends))
     return notes
 
 
-def _alone(fit: LeastSquares, run_names: Sequence[str]) -> list[str]:
+def _alone(fit: LeastSquares, run_names: Sequence[str]) -> list[Note]:
     alone = np.any(np.nan_to_num(fit.leverage) > _ALONE, axis=0)
     # without degrees of freedom every run is, and the reason says so
     alone &= bool((fit.degrees_of_freedom > 0).any())
     if not alone.any():
         return []
-    return [
-        f"runs that fix a term alone and have no residual to check: {_listed(run_names, alone)}"
-    ]
-
-
-def _error_terms(blocks: BlockEffects) -> str:
-    count = len(blocks.names)
-    if blocks.treatment == "fixed":
-        return (
-            f"{count} specimens as fixed blocks: every term is judged by the residuals, which "
-            "hold each specimen's own answer to the factors; the mean is of these specimens"
-        )
-    return (
-        f"{count} specimens as random draws (REML): the mean is judged by the scatter between "
-        f"specimens ({count - 1} degrees of freedom), the other terms by the residuals within; "
-        "r2, analysis of variance, lack of fit and residuals are those of fixed blocks"
-    )
+    return [note("runs-fix-terms", runs=_listed(run_names, alone))]
 
 
 _SEQUENCE = {"linear": "first order", "interaction": "interactions", "square": "squares"}

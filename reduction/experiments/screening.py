@@ -38,6 +38,7 @@ from reduction.experiments.least_squares_fit import two_sided_p
 from reduction.record.arrays import as_finite
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
+from reduction.record.notes import Note, note
 
 
 @dataclass(frozen=True)
@@ -221,7 +222,7 @@ def _pseudo_standard_error(effects: Floats) -> Floats:
     return second
 
 
-def screening_remarks(n_dummy: int, has_blocks: bool) -> list[str]:
+def screening_remarks(n_dummy: int, has_blocks: bool) -> list[Note]:
     """What the error of effects rests on.
 
     Parameters
@@ -233,7 +234,7 @@ def screening_remarks(n_dummy: int, has_blocks: bool) -> list[str]:
 
     Returns
     -------
-    remarks : list of str
+    remarks : list of Note
         Empty where dummies of one specimen give the error.
 
     Raises
@@ -248,8 +249,7 @@ def screening_remarks(n_dummy: int, has_blocks: bool) -> list[str]:
     """
     if n_dummy < 0:
         raise SettingsError("a number of columns", found=str(n_dummy), needed="0 or more")
-    lenth = "no columns dummy_1, ..: the error is Lenth's, from the smaller effects themselves"
-    blocks = "the effects are over all blocks; differences of blocks are in their error"
+    lenth, blocks = note("error-by-lenth"), note("effects-over-blocks")
     return [lenth] * (n_dummy == 0) + [blocks] * has_blocks
 
 

@@ -31,6 +31,7 @@ from reduction.experiments.response_matrix import block_contrasts
 from reduction.experiments.surface_points import evaluate_surfaces
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
+from reduction.record.notes import Note, note
 
 
 class Drift(NamedTuple):
@@ -120,7 +121,7 @@ _DRIFTS = 0.05
 """A p below this is worth a word."""
 
 
-def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[str, ...]:
+def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
     """Surfaces that fall below zero among the levels, over runs that are all above it.
 
     Parameters
@@ -130,8 +131,8 @@ def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[str, ...]:
 
     Returns
     -------
-    words : tuple of str
-        One entry a response.
+    notes : tuple of Note
+        One a response.
 
     Raises
     ------
@@ -152,7 +153,7 @@ def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[str, ...]:
     >>> found = fit_surfaces([[-1.0], [-1.0], [0.0], [0.0], [0.8], [0.8]],
     ...     [[2.11, 2.09, 1.01, 0.99, 0.13, 0.11]], factor_names=["f"], response_names=["energy"],
     ...     low=[0.1], high=[0.5], units="coded")
-    >>> [words[:48] for words in negative_surfaces(found)]
+    >>> [str(one)[:48] for one in negative_surfaces(found)]
     ['the surface of energy goes below zero among the ']
     """
     grid = np.array(list(product((-1.0, 0.0, 1.0), repeat=surfaces.coded.shape[1])))
@@ -161,14 +162,13 @@ def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[str, ...]:
         surfaces.fitted + surfaces.residual
     )
     return tuple(
-        f"the surface of {name} goes below zero among the levels, where no run does: "
-        'transform = "log" keeps it above'
+        note("surface-below-zero", response=name)
         for name, low, values in zip(surfaces.response_names, lowest, measured, strict=True)
         if low < 0 and np.isfinite(values).any() and np.nanmin(values) > 0
     )
 
 
-def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[str, ...]:
+def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[Note, ...]:
     """Responses that drift over the order of the runs beyond their surface.
 
     Parameters
@@ -180,8 +180,8 @@ def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[str, .
 
     Returns
     -------
-    words : tuple of str
-        One entry a response with a p below 0.05.
+    notes : tuple of Note
+        One a response with a p below 0.05.
 
     Raises
     ------
@@ -202,7 +202,7 @@ def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[str, .
     >>> noise = 0.1 * np.array([1, -1, 1, 1, -1, -1, 1, -1, 1, -1, 1, 1, -1, 1, -1])
     >>> found = fit_surfaces(runs, [3 + runs[:, 0] + 0.2 * np.arange(15) + noise], units="coded",
     ...     factor_names=["f", "T", "a"], response_names=["y"], low=[0] * 3, high=[1] * 3)
-    >>> [words[:34] for words in drifting_responses(found, drift_over_order(found, range(15)))]
+    >>> [str(one)[:34] for one in drifting_responses(found, drift_over_order(found, range(15)))]
     ['y drifts over the order of the run']
     """
     if drift.p_value.shape != surfaces.reason.shape:
@@ -212,8 +212,7 @@ def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[str, .
             needed=f"{surfaces.reason.size}",
         )
     return tuple(
-        f"{name} drifts over the order of the runs beyond its surface: {slope:+.3g} a run "
-        f"(p {p:.2g})"
+        note("response-drifts", response=name, slope=float(slope), p=float(p))
         for name, slope, p in zip(surfaces.response_names, drift.slope, drift.p_value, strict=True)
         if p < _DRIFTS
     )

@@ -25,6 +25,7 @@ from reduction.experiments.response_matrix import block_contrasts
 from reduction.experiments.surface_statistics import regress
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
+from reduction.record.notes import Note, note
 
 _MOST = 50_000
 """Subsets that are looked at before the search is refused."""
@@ -57,7 +58,7 @@ class ReducedSurfaces:
         Subsets that are not clearly worse: within 2 of the best. [1]
     hierarchical : bool
         A square or an interaction keeps its linear terms.
-    notes : tuple of str
+    notes : tuple of Note
         What a reader of the numbers has to know.
     """
 
@@ -73,7 +74,7 @@ class ReducedSurfaces:
     full_criterion: Floats
     n_within_two: Integers
     hierarchical: bool
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
 
 
 def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> ReducedSurfaces:
@@ -153,7 +154,7 @@ def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> Re
         full_criterion=full,
         n_within_two=close,
         hierarchical=hierarchical,
-        notes=("the runs that are tested chose the terms: p and intervals are too small",),
+        notes=(note("terms-chosen-by-runs"),),
     )
 
 

@@ -11,6 +11,7 @@ from reduction.pipeline.located_test import Located
 from reduction.record.arrays import run_blocks
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats, Specimen, areas_of
+from reduction.record.notes import Note, note
 from reduction.record.samples import first_sample
 from reduction.record.settings import ReductionSettings
 from reduction.stages.cycles.loops import close_loops
@@ -44,37 +45,34 @@ def _compare_specimens(
             curves, curves, numerator_specimen=index, denominator_specimen=0,
             numerator_name=specimen.name, denominator_name=first.name,
         )  # fmt: skip
-        remarks = ["two specimens in one test, under one crosshead: one piece of each"]
-        remarks += _unequal(first, specimen, index, history)
         pair = f"{specimen.name} over {first.name}"
-        notes = tuple(f"{pair}: {text}" for text in remarks)
+        unequal = _unequal(first, specimen, index, history)
+        notes = tuple(replace(one, subject=pair) for one in unequal)
         ratios.append(replace(ratio, notes=(*ratio.notes, *notes)))
     return ratios
 
 
-def _unequal(first: Specimen, other: Specimen, index: int, history: History | None) -> list[str]:
+def _unequal(first: Specimen, other: Specimen, index: int, history: History | None) -> list[Note]:
     """Every way in which two specimens are known to come from unequal histories."""
     found = []
     if first.condition != other.condition:
         told = " against ".join(
             f"'{one.condition}'" if one.condition else "not stated" for one in (other, first)
         )
-        found.append(f"unequal before the campaign: condition {told}")
+        found.append(note("unequal-condition", told=told))
     if history is None:
-        return [*found, "what earlier tests did to either is not known: no order is given"]
+        return [*found, note("history-without-order")]
     cycles, strain = history.earlier_cycles[[index, 0]], history.earlier_maximum_strain[[index, 0]]
     if np.isnan(cycles).any():
-        return [*found, "what earlier tests did to them is not wholly known: one of those failed"]
+        return [*found, note("history-with-failed-tests")]
     if cycles[0] != cycles[1]:
-        found.append(
-            f"unequal histories in the campaign: {cycles[0]:.0f} earlier cycles against "
-            f"{cycles[1]:.0f}"
-        )
+        own, of_first = cycles.tolist()
+        found.append(note("unequal-cycles", cycles=own, of_first=of_first))
     if history.earlier_flex_cycles is not None:
         flex = history.earlier_flex_cycles[[index, 0]]
         if not np.array_equal(flex[:1], flex[1:], equal_nan=True):
             told = " against ".join("not known" if np.isnan(n) else f"{n:.0f}" for n in flex)
-            found.append(f"unequal histories in the campaign: {told} earlier flex cycles")
+            found.append(note("unequal-flex-cycles", told=told))
     is_known = np.isfinite(strain)
     if is_known[0] != is_known[1] or np.ptp(strain) > _SAME_STRAIN * np.max(strain):
         told = " against ".join(
@@ -82,7 +80,7 @@ def _unequal(first: Specimen, other: Specimen, index: int, history: History | No
             for value, known in zip(strain, is_known, strict=True)
         )
         softer = "; rubber is softer below what it has seen" if other.is_rubber else ""
-        found.append(f"unequal histories in the campaign: greatest earlier strain {told}{softer}")
+        found.append(note("unequal-strain", told=told, softer=softer))
     return found
 
 
@@ -163,30 +161,22 @@ def _elastomers(
     earlier_maximum_strain: float,
     *,
     is_first: bool,
-) -> tuple[tuple[ElastomerFit, ...], str]:
+) -> tuple[tuple[ElastomerFit, ...], Note | None]:
     """Hyperelastic laws of one first loading, or the reason why there are none."""
     known = np.isfinite(stress)
     if not (strain[known] > 0).any():
         reached = "no stress is known on it"
         if known.any():
             reached = f"strain reaches {100 * strain[known].max():.3g} % on it"
-        return (), (
-            f"{name}: no hyperelastic law: the first rise of the record is no pull from slack "
-            f"({reached}); is the kind of the test right, and where strain is zero?"
-        )
+        return (), note("law-without-pull", name, reached=reached)
     try:
         fits = fit_elastomers(strain[known], stress[known], specimen=name)
     except (DataError, FitError) as error:
-        return (), f"{name}: no hyperelastic law from the first loading: {error}"
+        return (), note("no-law", name, reason=str(error))
     if is_first:
-        return fits, ""
-    note = (
-        "not a first loading of the specimen: earlier tests reached "
-        f"{100 * earlier_maximum_strain:.0f} %, and below that the rubber is softened"
-        if np.isfinite(earlier_maximum_strain)
-        else "not a first loading of the specimen: how far earlier tests reached is not known"
-    )
-    return tuple(replace(fit, notes=(*fit.notes, note)) for fit in fits), ""
+        return fits, None
+    softened = note("law-of-softened-rubber", strain=earlier_maximum_strain)
+    return tuple(replace(fit, notes=(*fit.notes, softened)) for fit in fits), None
 
 
 def _first_finite(series: Floats) -> float:
@@ -220,7 +210,7 @@ def parts_of_first_loading(
     history: History | None,
     *,
     kind: str,
-) -> tuple[dict[str, Any], list[str]]:
+) -> tuple[dict[str, Any], list[Note]]:
     """The first rise of a record that begins slack: curve; of rubber, stress and laws too."""
     begins = [_first_finite(force) for force in tension]
     if all(start > located.standstills.slack_tension for start in begins):
@@ -258,7 +248,7 @@ def parts_of_first_loading(
         range(area.size),
     )
     notes = [
-        f"{name}: stress at {100 * level:g} % not given: {reason}"
+        note("stress-at-strain-not-given", name, level=level, reason=reason)
         for name, (_, _, reasons), given in zip(names, stresses, rubber, strict=True)
         if given
         for level, reason in zip(levels, reasons, strict=True)

@@ -20,6 +20,7 @@ from reduction.record.measurement import (
     SpliceMarks,
     areas_of,
 )
+from reduction.record.notes import note
 from reduction.record.samples import copied, empty_like, release_pages, sample_blocks
 from reduction.record.settings import ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles
@@ -100,11 +101,8 @@ def _held_on_tension(
             of_hold[:, part] &= ~np.uint16(_REPEATS)
     if not freed:
         return record, standstills
-    note = (
-        f"{freed} samples in holds at constant tension repeat one value of it: their flags stuck "
-        "and saturated are taken off, since the machine holds it there"
-    )
-    return replace(record, quality_flag=flags, notes=(*record.notes, note)), standstills
+    notes = (*record.notes, note("held-load-repeats", n_samples=freed))
+    return replace(record, quality_flag=flags, notes=notes), standstills
 
 
 def _usable(values: Floats, flags: NDArray[np.uint16], *, but: int = 0) -> Floats:

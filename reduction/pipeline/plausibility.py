@@ -25,6 +25,7 @@ from reduction.record.contributions import (
 )
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats, Integers, Record, Specimen
+from reduction.record.notes import Note, note
 from reduction.record.samples import (
     count_samples,
     finite_extremes,
@@ -61,16 +62,13 @@ def plausibility_notes(
     curves: ModulusCurves | None,
     control: Literal["position", "load"] = "position",
     is_snap: bool = False,
-) -> tuple[str, ...]:
+) -> tuple[Note, ...]:
     """Name what is hardly so: sign, unit of position, slack or drift in cycles, waveform."""
     notes = []
     greatest = [finite_extremes(one)[1] for one in strain]
     for name, one in zip(specimens, greatest, strict=True):
         if one > _GREATEST_STRAIN:
-            notes.append(
-                f"{name}: strain reaches {one:.4g}, which no specimen does; is the unit of "
-                "position, or the length that strain refers to, right?"
-            )
+            notes.append(note("strain-impossible", name, strain=one))
     if cycles is None or loops is None:
         return tuple(notes)
     for index, name in enumerate(specimens):
@@ -96,27 +94,21 @@ def _half_range(strain: Floats, cycles: Cycles) -> Floats:
     return np.asarray((high - low) / 2, dtype=np.float64)
 
 
-def _shape(name: str, loops: Loops, index: int, half_strain: Floats, control: str) -> list[str]:
+def _shape(name: str, loops: Loops, index: int, half_strain: Floats, control: str) -> list[Note]:
     """A sinusoidal test whose range is not that of its fundamental, from which numbers come."""
     half_tension = (loops.peak_tension[index] - loops.valley_tension[index]) / 2
     of_strain = _median(half_strain / loops.strain_amplitude[index]) - 1
     of_tension = _median(half_tension / loops.tension_amplitude[index]) - 1
     moved, excess = ("tension", of_tension) if control == "load" else ("strain", of_strain)
     if abs(excess) > _OFF_THE_SINE:
-        return [
-            f"{name}: declared sinusoidal, but half the range of {moved} is {excess:+.0%} off the "
-            "amplitude of its fundamental, which stands for it; is waveform right?"
-        ]
+        return [note("not-sinusoidal", name, moved=moved, effect=excess)]
     other, excess = ("strain", of_strain) if control == "load" else ("tension", of_tension)
     if not abs(excess) > _OFF_THE_SINE:
         return []
-    return [
-        f"{name}: {moved} is a sine and {other} is none: half its range is {excess:+.0%} off the "
-        "amplitude of its fundamental, which stands for it"
-    ]
+    return [note("answer-not-sinusoidal", name, moved=moved, other=other, effect=excess)]
 
 
-def _drift(name: str, loops: Loops, index: int, half_strain: Floats) -> list[str]:
+def _drift(name: str, loops: Loops, index: int, half_strain: Floats) -> list[Note]:
     """Cycles whose loop is what is left of a drift: half of it has been taken off the range."""
     half_tension = (loops.peak_tension[index] - loops.valley_tension[index]) / 2
     kept = [
@@ -130,61 +122,58 @@ def _drift(name: str, loops: Loops, index: int, half_strain: Floats) -> list[str
     n_far = max(int(np.count_nonzero(~(share >= 1 - _MOST_DRIFT / 2))) for share in kept)
     if not n_far:
         return []
-    return [
-        f"{name}: {n_far} of {half_tension.size} cycles drift by more than {_MOST_DRIFT:.0%} of "
-        "their range: their amplitudes, slopes and energies rest on it"
-    ]
+    n_cycles = half_tension.size
+    return [note("cycles-drift", name, n_far=n_far, n_cycles=n_cycles, limit=_MOST_DRIFT)]
 
 
-def _sign(name: str, mean_tension: Floats, slopes: Floats | None) -> list[str]:
+def _sign(name: str, mean_tension: Floats, slopes: Floats | None) -> list[Note]:
     """Tension that pushes, or falls with stretch."""
     level = _median(mean_tension)
     slope = np.nan if slopes is None else _median(slopes)
-    what = []
-    if level < 0:
-        what.append(f"mean tension of the cycles is negative ({level:.4g} N)")
-    if slope <= 0:
-        what.append(f"tension falls with stretch (median tangent modulus {slope:.4g} Pa)")
-    if not what:
+    if not (level < 0 or slope <= 0):
         return []
-    hint = "does the log count compression positive? Then set sign = -1 for this channel"
-    return [f"{name}: {' and '.join(what)}; {hint}"]
+    return [note("sign-of-tension", name, tension=level, slope=slope)]
 
 
-def _slack(name: str, valley_tension: Floats, slack_tension: float) -> list[str]:
+def _slack(name: str, valley_tension: Floats, slack_tension: float) -> list[Note]:
     """Cycles that go slack: strain below it is no strain of the specimen."""
     slack = int(np.count_nonzero(valley_tension <= slack_tension))
     if not slack:
         return []
     return [
-        f"{name}: slack within {slack} of {valley_tension.size} cycles (tension at or below "
-        f"{slack_tension:.4g} N): amplitudes and energies of these include the slack part"
+        note(
+            "slack-in-cycles",
+            name,
+            n_slack=slack,
+            n_cycles=valley_tension.size,
+            slack_tension=slack_tension,
+        )
     ]
 
 
-def _taut(name: str, valley_tension: Floats, slack_tension: float) -> list[str]:
+def _taut(name: str, valley_tension: Floats, slack_tension: float) -> list[Note]:
     """Snap loads that are none: cycles in which the line stays taut."""
     taut = int(np.count_nonzero(valley_tension > slack_tension))
     if not taut:
         return []
     return [
-        f"{name}: {taut} of {valley_tension.size} cycles are no snap loads: "
-        f"tension stays above {slack_tension:.4g} N, so the line does not go slack in them"
+        note(
+            "no-snap-loads",
+            name,
+            n_taut=taut,
+            n_cycles=valley_tension.size,
+            slack_tension=slack_tension,
+        )
     ]
 
 
-def _waveform(cycles: Cycles, waveform: str) -> list[str]:
+def _waveform(cycles: Cycles, waveform: str) -> list[Note]:
     """A triangular test of which little runs at a constant rate."""
     n_samples = cycles.branch_last - cycles.branch_first + 1
     if waveform != "triangular" or np.median(n_samples) < _FEWEST_SAMPLES:
         return []
     share = count_samples(cycles.is_constant_rate) / int(n_samples.sum())
-    if share >= _TRIANGULAR_SHARE:
-        return []
-    return [
-        f"declared triangular, but only {share:.0%} of the branches run at a constant rate; is "
-        'waveform = "sinusoidal" right?'
-    ]
+    return [note("not-triangular", share=share)] if share < _TRIANGULAR_SHARE else []
 
 
 def _median(values: Floats) -> float:
@@ -210,7 +199,7 @@ class _Limit:
 
 def check_stated_errors(
     located: Located, instruments: Sequence[InstrumentErrors], *, place: str
-) -> tuple[str, ...]:
+) -> tuple[Note, ...]:
     """Refuse standard uncertainties that a log shows to be impossible; say which are too large."""
     for index, errors in enumerate(instruments):
         for limit in _limits(located, index, errors):
@@ -227,10 +216,11 @@ def check_stated_errors(
     if not is_short.any():
         return ()
     return (
-        f"the stated lag of {lag:.4g} s is more than a twentieth of {int(is_short.sum())} of "
-        f"{period.size} cycles, the shortest of {period.min():.4g} s: what it does to stiffness "
-        "and loss is of first order, and their uncertainties are too small",
-    )
+        note(
+            "stated-lag-long", lag=lag, n_short=int(is_short.sum()), n_cycles=period.size,
+            shortest=float(period.min()),
+        ),
+    )  # fmt: skip
 
 
 def _limits(located: Located, index: int, errors: InstrumentErrors) -> Iterator[_Limit]:

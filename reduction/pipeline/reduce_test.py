@@ -163,7 +163,7 @@ def reduce_test(
         sources=sources,
         stage_lines=stage_lines(located, models),
         settings_json=settings_json,
-        notes=tuple(dict.fromkeys((*notes, *lag_notes))),
+        notes=(*notes, *lag_notes),
         history=history,
         standstills=standstills,
         phase=phase,

@@ -11,12 +11,13 @@ import numpy as np
 from reduction.pipeline.located_test import Located
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Floats, Integers, Specimen
+from reduction.record.notes import Note, note
 from reduction.record.samples import last_sample
 from reduction.record.settings import CycleSettings, RopeSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.holds.relaxation import HoldResult
 from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair, creep_of_hold, held_pairs
-from reduction.stages.line.line_model import reasons_in_words
+from reduction.stages.line.line_model import refused_lines
 from reduction.stages.line.line_of_loops import identify_cycles, identify_run
 from reduction.stages.line.line_product import SlowPull
 from reduction.stages.line.rope_programme import (
@@ -58,10 +59,10 @@ def pull_specimens(
     *,
     specimens: Sequence[Specimen],
     models: Sequence[StrainModel],
-) -> tuple[tuple[SlowPull | None, ...], list[str]]:
+) -> tuple[tuple[SlowPull | None, ...], list[Note]]:
     """Load-strain cubic of each specimen of a slow pull; None and a note where it has none."""
     pulls: list[SlowPull | None] = []
-    notes: list[str] = []
+    notes: list[Note] = []
     for index, name in enumerate(located.record.specimens):
         length = conditions.reference_length
         if length is None and np.isfinite(models[index].relaxed_length):
@@ -74,19 +75,16 @@ def pull_specimens(
                 waiting_time=conditions.waiting_time, waiting=conditions.waiting,
             )  # fmt: skip
         except (DataError, FitError) as error:
-            notes.append(f"{name}: refused: quasi-static spring constant: {error}")
+            notes.append(note("no-pull", name, reason=str(error)))
             pulls.append(None)
             continue
         if specimens[index].kind == "stretch hose" and pull.misfit_share > MISFIT_NOTED:
             notes.append(
-                f"{name}: refused: quasi-static spring constant: a cubic of strain misses the "
-                f"curve of this hose by {pull.misfit_share:.1%} of its strain (rms), more than "
-                f"{MISFIT_NOTED:.0%}; the curve stands in the samples, and a comparison with a "
-                "predicted hose has its slope"
+                note("hose-pull-misfit", name, misfit=pull.misfit_share, limit=MISFIT_NOTED)
             )
             pulls.append(None)
             continue
-        notes += [f"{name}: {note}" for note in pull.notes]
+        notes += [replace(one, subject=name) for one in pull.notes]
         pulls.append(pull)
     return tuple(pulls), notes
 
@@ -111,7 +109,7 @@ def parts_of_line(
         "line": of_cycles,
         "line_of_test": of_test,
         "quasi_static_standard_uncertainty": spread,
-        "line_notes": (*notes, *of_test.notes, *reasons_in_words(of_cycles.reason)),
+        "line_notes": (*notes, *of_test.notes, *refused_lines(of_cycles.reason)),
     }
 
 
@@ -171,7 +169,7 @@ def rope_step(
     step = RopeStep(_NAMES[kind])
     if kind in ("creep", "quasi-static"):
         step = replace(step, creep=_creep(holds, names, strength))
-    notes: list[str] = []
+    notes: list[Note] = []
     if kind in ("cyclic", "bedding-in") and loops is not None:
         dynamic = dynamic_stiffness(
             loops, last_cycles=settings.last_cycles, rated_break_strength=strength
@@ -183,7 +181,10 @@ def rope_step(
         step = replace(step, bedding_in=bedding, dynamic=dynamic)
     if kind in ("fatigue", "snap") and loops is not None:
         lasted = _lasted(located, tension, loops, strength, failed, settings)
-        notes += [f"{name}: {how}" for name, how in zip(names, lasted.how, strict=True)]
+        notes += [
+            note("cycles-counted-until", name, how=how)
+            for name, how in zip(names, lasted.how, strict=True)
+        ]
         step = replace(step, lasted=lasted)
     if kind == "quasi-static":
         pairs = held_pairs(
@@ -203,7 +204,7 @@ def rope_step(
         return None
     if np.isnan(strength).any():
         notes += [
-            f"{name}: no rated break strength is stated: nothing is divided by it"
+            note("no-break-strength", name)
             for name, one in zip(names, strength, strict=True)
             if np.isnan(one)
         ]
@@ -226,10 +227,10 @@ def _bedding_in(loops: Loops, strength: Floats) -> BeddingIn | None:
     return summarise_bedding_in(loops, rated_break_strength=strength)
 
 
-def _of_first_cycle(loops: Loops, names: Sequence[str]) -> list[str]:
+def _of_first_cycle(loops: Loops, names: Sequence[str]) -> list[Note]:
     """Bedding-in that begins elsewhere than its cycles do."""
     if loops.frequency.shape[1] < 2:
-        return ["refused: bedding-in: one cycle alone; two are needed"]
+        return [note("no-bedding-in")]
     notes = []
     for name, valley, amplitude in zip(
         names, loops.valley_tension, loops.tension_amplitude, strict=True
@@ -237,36 +238,30 @@ def _of_first_cycle(loops: Loops, names: Sequence[str]) -> list[str]:
         usual = float(np.nanmedian(valley))
         if abs(valley[0] - usual) > _UNEQUAL_VALLEY * 2 * float(np.nanmedian(amplitude)):
             notes.append(
-                f"{name}: the first cycle begins at {valley[0]:.4g} N, others at {usual:.4g} N: "
-                "its stiffness and the permanent strain hold that part of the rise too"
+                note("first-cycle-begins-elsewhere", name, first=float(valley[0]), usual=usual)
             )
     return notes
 
 
 def _of_cycles(
     dynamic: DynamicStiffness, names: Sequence[str], settings: RopeSettings
-) -> list[str]:
+) -> list[Note]:
     """Too few cycles, and a stiffness that has not settled."""
     notes = []
     for row, name in enumerate(names):
         used = int(dynamic.n_cycles[row, 0])
         if used < settings.last_cycles:
-            notes.append(
-                f"{name}: dynamic stiffness from {used} cycles; rope.last_cycles asks for "
-                f"{settings.last_cycles}"
-            )
+            asked = settings.last_cycles
+            notes.append(note("stiffness-of-few-cycles", name, n_cycles=used, n_asked=asked))
         drift = float(dynamic.drift_per_cycle[row, 0])
         spread = float(dynamic.drift_per_cycle_standard_uncertainty[row, 0])
         share = drift * (used - 1) / float(dynamic.dynamic_stiffness[row, 0])
         if abs(drift) > _SIGNIFICANT * spread and abs(share) > _DRIFT_NOTED:
-            notes.append(
-                f"{name}: the dynamic stiffness has not settled: it changes by {share:+.1%} over "
-                f"its last {used} cycles"
-            )
+            notes.append(note("stiffness-not-settled", name, effect=share, n_cycles=used))
     return notes
 
 
-def _of_levels(loops: Loops, dynamic: DynamicStiffness, names: Sequence[str]) -> list[str]:
+def _of_levels(loops: Loops, dynamic: DynamicStiffness, names: Sequence[str]) -> list[Note]:
     """Cycles of another level than those that count: a step is one level."""
     notes = []
     for row, name in enumerate(names):
@@ -275,10 +270,7 @@ def _of_levels(loops: Loops, dynamic: DynamicStiffness, names: Sequence[str]) ->
         other = np.abs(loops.tension_amplitude[row] / amplitude - 1) > _OTHER_LEVEL
         count = int(np.count_nonzero(shift | other))
         if count >= _FEWEST_OF_LEVEL:
-            notes.append(
-                f"{name}: {count} of {shift.size} cycles are of another level than the last ones, "
-                "of which the dynamic stiffness is; give each level as a step"
-            )
+            notes.append(note("cycles-of-another-level", name, n_other=count, n_cycles=shift.size))
     return notes
 
 
@@ -341,25 +333,23 @@ def _last_taut(load: Floats, stop: int, slack: float) -> int | None:
     return last_sample(lambda part: load[part] > slack, 0, stop, load)
 
 
-def _of_pairs(pairs: Sequence[HeldPair]) -> list[str]:
-    notes = []
+def _of_pairs(pairs: Sequence[HeldPair]) -> list[Note]:
+    notes: list[Note] = []
     for pair in pairs:
         where = f"{pair.specimen}: holds {pair.low_hold} and {pair.high_hold}"
         if pair.stiffness is None:
-            notes.append(f"{where}: refused: static stiffness: {pair.reason}")
+            notes.append(note("no-static-stiffness", where, reason=pair.reason))
         else:
-            notes += [f"{where}: {note}" for note in pair.stiffness.notes]
+            notes += [replace(one, subject=where) for one in pair.stiffness.notes]
     return notes
 
 
-def _of_pull(pull: TensilePull, names: Sequence[str]) -> list[str]:
+def _of_pull(pull: TensilePull, names: Sequence[str]) -> list[Note]:
     notes = []
     for row, name in enumerate(names):
         if not pull.is_break[row]:
-            notes.append(
-                f"{name}: refused: tensile strength: {pull.how[row]}: the line holds "
-                f"{pull.peak_tension[row]:.4g} N or more"
-            )
+            peak = float(pull.peak_tension[row])
+            notes.append(note("no-break", name, how=pull.how[row], tension=peak))
         elif np.isnan(pull.strain_at_peak[row]):
-            notes.append(f"{name}: refused: strain at failure: no strain is known at the peak")
+            notes.append(note("no-strain-at-failure", name))
     return notes

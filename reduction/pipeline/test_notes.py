@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from reduction.pipeline.located_test import HELD, Located
 from reduction.pipeline.plausibility import plausibility_notes
 from reduction.record.measurement import Floats, Specimen, Step
+from reduction.record.notes import Note, note
 from reduction.record.settings import ReductionSettings
 from reduction.stages.holds.relaxation import HoldResult
 from reduction.stages.standstills import Standstills
@@ -24,18 +26,14 @@ def notes_of_test(
     settings: ReductionSettings,
     holds: tuple[HoldResult, ...],
     parts: Mapping[str, Any],
-    of_stages: Iterable[str],
-    slack_remarks: Sequence[str],
-) -> tuple[str, ...]:
+    of_stages: Iterable[Note],
+    slack_remarks: Sequence[Note | None],
+) -> tuple[Note, ...]:
     """What a reader has to know before the numbers are used, nothing twice."""
     record, standstills = located.record, located.standstills
-    notes = [note for specimen in specimens for note in check_constant_volume(specimen)]
+    notes = [one for specimen in specimens for one in check_constant_volume(specimen)]
     notes += of_stages
-    notes += [
-        f"{specimen.name}: no diameter is stated: spring constants, but no stress and no modulus"
-        for specimen in specimens
-        if not specimen.diameter
-    ]
+    notes += [note("no-diameter", one.name) for one in specimens if not one.diameter]
     if kind in HELD and not holds:
         notes.append(_no_hold(standstills, settings))
     notes += plausibility_notes(
@@ -44,11 +42,11 @@ def notes_of_test(
         loops=parts.get("loops"), curves=parts.get("curves"), is_snap=kind == "snap",
     )  # fmt: skip
     notes += [
-        f"{name}: {text}"
-        for name, text in zip(record.specimens, slack_remarks, strict=True)
-        if text
+        replace(one, subject=name)
+        for name, one in zip(record.specimens, slack_remarks, strict=True)
+        if one
     ]
-    return tuple(dict.fromkeys(notes))
+    return tuple(notes)
 
 
 def stage_lines(located: Located, models: Sequence[StrainModel]) -> tuple[Step, ...]:
@@ -79,19 +77,14 @@ def stage_lines(located: Located, models: Sequence[StrainModel]) -> tuple[Step, 
     return tuple(lines)
 
 
-def _no_hold(standstills: Standstills, settings: ReductionSettings) -> str:
+def _no_hold(standstills: Standstills, settings: ReductionSettings) -> Note:
     """Why a test that was to be held has no number of a hold."""
-    if standstills.tension_tolerance is None:
-        channel, tolerance, key = (
-            "the crosshead", f"{standstills.position_tolerance:.3g} m", "position_tolerance",
-        )  # fmt: skip
-    else:
-        channel, tolerance, key = (
-            "the tension", f"{standstills.tension_tolerance:.3g} N", "tension_tolerance",
-        )  # fmt: skip
-    return (
-        f"refused: everything about holds: none is found; above the slack tension of "
-        f"{standstills.slack_tension:.3g} N {channel} nowhere keeps within {tolerance} for "
-        f"{settings.phases.minimum_duration:g} s (kind and control right? else state "
-        f"phases.{key})"
+    held = standstills.tension_tolerance
+    of_position = ("the crosshead", standstills.position_tolerance, "m", "position_tolerance")
+    channel, tolerance, unit, key = (
+        of_position if held is None else ("the tension", held, "N", "tension_tolerance")
     )
+    return note(
+        "no-hold", slack_tension=standstills.slack_tension, channel=channel, tolerance=tolerance,
+        unit=unit, duration=settings.phases.minimum_duration, key=key,
+    )  # fmt: skip

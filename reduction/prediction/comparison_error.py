@@ -63,6 +63,7 @@ from reduction.prediction.measured_curve import CurveName, Loading, MeasuredCurv
 from reduction.record.arrays import as_finite, as_same_shape
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, Integers, read_only_arrays
+from reduction.record.notes import Note, note
 
 
 @dataclass(frozen=True)
@@ -164,7 +165,7 @@ class _Validation:
     is_informative: bool
     verdict: str
     ratio_difference: float = float("nan")
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -253,7 +254,7 @@ class HoseCalibration:
     effective_points: float
     shared_error: tuple[str, ...]
     shared_error_value: Floats
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -275,7 +276,7 @@ class Comparison:
     cycles: _CycleDifference
     validation: _Validation
     calibration: HoseCalibration | None
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
     measured_pick_up_strain: float = float("nan")
     measured_pick_up_strain_standard_uncertainty: float = float("nan")
 
@@ -1092,25 +1093,16 @@ def validate_curve(
 
 def _notes(
     inputs: Floats, measured: MeasuredCurve, agrees: bool, judged: _Judged
-) -> tuple[str, ...]:
+) -> tuple[Note, ...]:
     notes = []
     if not inputs.any():
-        notes.append(
-            "no uncertainty of the prediction is stated: it counts as exact, and a difference "
-            "that the angle or the cord curve would explain counts against it"
-        )
+        notes.append(note("prediction-counts-as-exact"))
     if not measured.contribution.any():
-        notes.append("no uncertainty of the calibration is stated: the test counts as unbiased")
+        notes.append(note("test-counts-as-unbiased"))
     elif not any(one.source.startswith("tension_") for one in measured.component):
-        notes.append("nothing is stated of the load cell: its scale and its zero count as exact")
+        notes.append(note("load-cell-counts-as-exact"))
     if agrees and judged.probability < LEAST_PROBABILITY:
-        notes.append(
-            f"no strain differs by more than U, but the shape of the difference is one that the "
-            f"stated errors make in {_probability_words(judged.probability)} of all cases alone"
-        )
+        notes.append(note("shape-differs", probability=_probability_words(judged.probability)))
     if judged.outside > _OUTSIDE:
-        notes.append(
-            f"{100 * judged.outside:.2g} % of the squared difference lies where no stated error "
-            "can be"
-        )
+        notes.append(note("difference-without-error", effect=judged.outside))
     return tuple(notes)

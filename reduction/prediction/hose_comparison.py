@@ -78,6 +78,7 @@ from reduction.prediction.measured_curve import (
 from reduction.record.arrays import as_spread
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
+from reduction.record.notes import Note, note
 
 CALIBRATED = (
     "wrap_angle",
@@ -903,25 +904,22 @@ def _pose(
 
 def _notes_of_numbers(
     names: tuple[str, ...], told_apart: Identifiability, at_bound: Bools, is_wide: Bools
-) -> list[str]:
+) -> list[Note]:
     notes = []
     if not told_apart.is_identified:
         notes.append(
-            f"this curve cannot tell {' and '.join(names)} apart: {told_apart.words}, less than "
-            f"the {100 * told_apart.needed_change:.2g} % that an error of the model may be; the "
-            "values are one choice of many, and their intervals are as wide as such an error makes "
-            "them"
-            if len(names) > 1
-            else f"this curve does not show {names[0]}: {told_apart.words}, less than the "
-            f"{100 * told_apart.needed_change:.2g} % that an error of the model may be"
-        )
+            note(
+                "numbers-not-told-apart" if len(names) > 1 else "number-not-shown",
+                names=" and ".join(names), words=told_apart.words, needed=told_apart.needed_change,
+            )
+        )  # fmt: skip
     notes += [
-        f"{name} was stopped at a bound: its interval does not hold"
+        note("number-at-bound", name=name)
         for name, stopped in zip(names, at_bound, strict=True)
         if stopped
     ]
     notes += [
-        f"the interval of {name} is wider than half of what it was allowed: not determined"
+        note("number-not-determined", name=name)
         for name, wide in zip(names, is_wide, strict=True)
         if wide
     ]
@@ -930,40 +928,29 @@ def _notes_of_numbers(
 
 def _notes_of_fit(
     spread: _FitSpread, n_fitted: int, sources: tuple[str, ...], z: Floats, broken: Bools
-) -> list[str]:
+) -> list[Note]:
     notes = []
     if spread.effective_points < n_fitted + 1:
-        notes.append(
-            f"residuals are worth {spread.effective_points:.1f} independent points for {n_fitted} "
-            "numbers: what is left is an error of the model, not noise"
-        )
+        points = spread.effective_points
+        notes.append(note("residuals-are-model", n_points=points, n_numbers=n_fitted))
     notes += [
-        f"{name} would have to be {value:+.1f} of its standard uncertainty off"
+        note("source-far-off", name=name, factor=float(value))
         for name, value in zip(sources, z, strict=True)
         if abs(value) > _FAR
     ]
     if broken.any():
-        notes.append(
-            f"cords of the fitted hose are broken at {int(broken.sum())} of the measured strains: "
-            "there it was held against its tangent"
-        )
+        notes.append(note("fitted-cords-broken", n_strains=int(broken.sum())))
     return notes
 
 
 def _notes_of_stated(
     names: tuple[str, ...], moved: Floats, stated: Mapping[str, float]
-) -> list[str]:
+) -> list[Note]:
     return [
-        f"{name} moved by {step / stated[name]:+.1f} of its stated standard uncertainty"
+        note("number-moved-far", name=name, factor=float(step / stated[name]))
         for name, step in zip(names, moved, strict=True)
         if stated.get(name, 0) > 0 and abs(step) > _FAR * stated[name]
     ]
-
-
-_DYNAMIC = (
-    "the test is dynamic and the cord curve static: nylon is stiffer under quick load, so that a "
-    "prediction is expected to stretch more than this test; a difference is not of the model alone"
-)
 
 
 def _compare_hose(
@@ -1044,10 +1031,8 @@ def _as_read(design: HoseDesign, measured: MeasuredCurve, prediction: HosePredic
     return np.where(there & np.isfinite(read), read, prediction.tension)
 
 
-def _of_pick_up(found: PickUp) -> tuple[str, ...]:
-    if not found.reason:
-        return ()
-    return (f"where the cords of the test pick up is not shown: {found.reason}",)
+def _of_pick_up(found: PickUp) -> tuple[Note, ...]:
+    return (note("pick-up-not-shown", reason=found.reason),) if found.reason else ()
 
 
 def _notes(
@@ -1055,16 +1040,20 @@ def _notes(
     measured: MeasuredCurve,
     prediction: HosePrediction,
     working: EventDifference,
-) -> tuple[str, ...]:
+) -> tuple[Note, ...]:
     notes = list(measured.notes)
     if measured.loading == "dynamic":
-        notes.append(_DYNAMIC)
+        notes.append(note("dynamic-test"))
     seen: Bools = np.isfinite(measured.tension_of(measured.judged))
     n_broken = int(np.sum(seen & prediction.is_broken))
     if n_broken:
         notes.append(
-            f"the test went on to strain {measured.strain[seen].max():.4g}; cords are predicted "
-            f"broken at {n_broken} of its {int(seen.sum())} strains, which are in no difference"
+            note(
+                "test-beyond-break",
+                strain=float(measured.strain[seen].max()),
+                n_broken=n_broken,
+                n_strains=int(seen.sum()),
+            )
         )
     angle = float(design.wrap_angle)
     said = [plausibility_of_working_strain(angle, working.strain)]
@@ -1074,12 +1063,13 @@ def _notes(
         )
     else:
         last = np.append(measured.strain[seen], measured.end_strain)
-        ended = float(np.nanmax(last))
-        notes.append(
-            f"the judged curve ends at strain {ended:.4g}, before the predicted working load"
-        )
+        notes.append(note("curve-ends-early", strain=float(np.nanmax(last))))
     sides = ("predicted", "measured")
-    notes += [f"{side} {text}" for side, text in zip(sides, said, strict=False) if text]
+    notes += [
+        note("stretch-beside-reported", side=side, words=text)
+        for side, text in zip(sides, said, strict=False)
+        if text
+    ]
     return tuple(notes)
 
 

@@ -27,6 +27,7 @@ from reduction.prediction.hose_tension import find_events, predict_hose
 from reduction.prediction.hose_uncertainty import HoseUncertainty, propagate_hose
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Bools, Floats
+from reduction.record.notes import Note, note
 
 
 @dataclass(frozen=True)
@@ -105,7 +106,7 @@ class PredictedHose:
     ribbon_width: tuple[float, float]
     number_of_cords: float
     layers: tuple[_LayerResponse, ...]
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
 
 
 _MOST_POINTS = 20_000
@@ -145,9 +146,9 @@ def predict_from_plan(plan: HosePlan) -> PredictedHose:
     relative = float(uncertainty.working.tension_standard_uncertainty) / float(
         events.working.tension
     )
-    notes = [*_notes_of_design(plan, prediction), *(text for one in layers for text in _says(one))]
+    notes = [*_notes_of_design(plan, prediction), *(said for one in layers for said in _says(one))]
     if relative > _HIGH_UNCERTAINTY:
-        notes.append(f"the safe working load is uncertain by {100 * relative:.0f} % (k = 1)")
+        notes.append(note("working-load-uncertain", effect=relative))
     return PredictedHose(
         plan=plan,
         prediction=prediction,
@@ -209,46 +210,42 @@ def _layer(
     )
 
 
-def _says(one: _LayerResponse) -> list[str]:
+def _says(one: _LayerResponse) -> list[Note]:
     """What a layer does that it does not bear."""
     name, said = one.layer.name, []
     if one.greatest_strain > one.layer.strain_limit:
         said.append(
-            f"layer {name} is stretched by {100 * one.greatest_strain:.1f} % at the working load, "
-            f"above its {100 * one.layer.strain_limit:g} %: it needs "
-            f"{np.degrees(one.least_angle):.1f} degrees or more"
-        )
+            note(
+                "layer-stretched", layer=name, strain=one.greatest_strain,
+                limit=one.layer.strain_limit, angle=one.least_angle,
+            )
+        )  # fmt: skip
     if -one.least_strain > one.layer.compression_limit:
         said.append(
-            f"layer {name} is compressed by {-100 * one.least_strain:.1f} % on the way, above its "
-            f"{100 * one.layer.compression_limit:g} %: it needs "
-            f"{np.degrees(one.greatest_angle):.1f} degrees or less"
-        )
+            note(
+                "layer-compressed", layer=name, strain=one.least_strain,
+                limit=one.layer.compression_limit, angle=one.greatest_angle,
+            )
+        )  # fmt: skip
     if one.greatest_angle < one.least_angle:
-        said.append(f"layer {name}: no angle keeps it within both limits up to the working load")
+        said.append(note("layer-without-angle", layer=name))
     return said
 
 
-def _notes_of_design(plan: HosePlan, prediction: HosePrediction) -> list[str]:
+def _notes_of_design(plan: HosePlan, prediction: HosePrediction) -> list[Note]:
     design: HoseDesign = plan.design
     notes = []
     if float(design.wrap_angle) <= NEUTRAL_ANGLE:
-        notes.append(
-            f"at {np.degrees(float(design.wrap_angle)):.2f} degrees there is no slack zone: the "
-            "cords carry from the first"
-        )
-    for name, what in (
-        ("is_jammed", "neighbouring cords touch"),
-        ("is_bore_too_small", "the bore is below its limit"),
-    ):
+        notes.append(note("no-slack-zone", angle=float(design.wrap_angle)))
+    for name, code in (("is_jammed", "cords-touch"), ("is_bore_too_small", "bore-too-small")):
         where = _ranges(prediction.strain, getattr(prediction, name))
         if where:
-            notes.append(f"{what} {where} % strain: the prediction does not hold there")
+            notes.append(note(code, where=where))
     beyond = prediction.strain[prediction.is_broken]
     if beyond.size:
-        notes.append(f"the cords are broken from {100 * beyond[0]:.1f} % strain: no load is given")
+        notes.append(note("cords-broken", strain=float(beyond[0])))
     if not plan.standard_uncertainty:
-        notes.append("no number of the hose has a stated uncertainty: none is given")
+        notes.append(note("hose-without-uncertainty"))
     return notes
 
 

@@ -33,6 +33,7 @@ from reduction.record.arrays import as_same_shape, as_spread
 from reduction.record.contributions import Component
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays, require_shapes
+from reduction.record.notes import Note, note
 
 Loading = Literal["static", "dynamic"]
 
@@ -106,7 +107,7 @@ class MeasuredCurve:
         its type A; NaN where there are none. [1], [N], [N]
     cycles_pooled : int
         Consecutive cycles in a row of ``tension``.
-    notes : tuple of str
+    notes : tuple of Note
         What a reader has to know.
     """
 
@@ -128,7 +129,7 @@ class MeasuredCurve:
     end_tension: float = float("nan")
     end_standard_uncertainty: float = float("nan")
     cycles_pooled: int = 1
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
     def __post_init__(self) -> None:
         """Check shapes once and make the arrays read-only."""
@@ -196,7 +197,7 @@ class _BranchSamples:
     cycle_number: Integers
     cycles_pooled: int
     n_break_in: int
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
 
     def least_step(self) -> float:
         """Width of a bin that holds four samples or more, 1, 2 or 5 times a power of ten. [1]."""
@@ -275,7 +276,7 @@ def _select_samples(
         cycle_number=there[::pooled],
         cycles_pooled=pooled,
         n_break_in=min(-(-n_break_in // pooled), (there.size - 1) // pooled),
-        notes=() if pooled == 1 else (f"each row pools {pooled} consecutive cycles",),
+        notes=() if pooled == 1 else (note("cycles-pooled", n_cycles=pooled),),
     )
 
 
@@ -764,10 +765,6 @@ def read_along(at: Floats, known: Floats, values: Floats) -> Floats:
     return np.asarray(np.where(np.isfinite(at), found, np.nan))
 
 
-_ONE_BRANCH = (
-    "one branch was measured: it is judged itself, and lies above a midline by half the loop"
-)
-
 _GREATEST_STRAIN = 10.0  # no hose stretches to eleven times its length
 
 
@@ -902,7 +899,7 @@ def measured_curve(
         end_tension=end[1],
         end_standard_uncertainty=end[2],
         cycles_pooled=samples.cycles_pooled,
-        notes=samples.notes if is_paired else (*samples.notes, _ONE_BRANCH),
+        notes=samples.notes if is_paired else (*samples.notes, note("one-branch")),
     )
 
 

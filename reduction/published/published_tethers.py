@@ -12,6 +12,7 @@ from reduction.published.printed_cells import Cell, ReportId, cells_of, errata_o
 from reduction.quantities.units import scale_to_si
 from reduction.record.errors import DataError
 from reduction.record.measurement import Specimen, SpliceMarks, StepReadings
+from reduction.record.notes import note
 from reduction.record.settings import StrainMethod
 
 TetherName = Literal["new", "used"]
@@ -204,7 +205,15 @@ def published_static_test() -> StepReadings:
         length=_INCH * in_si["length"],
         eye_to_eye_length=_INCH * in_si["eye_to_eye_length"],
         printed_strain=_PER_CENT * in_si["strain"],
-        notes=("length at 1325 is 15.38 in, printed 16.38 (WH5-13)",),
+        notes=(
+            note(
+                "misprint-corrected",
+                reading="1325",
+                length="15.38 in",
+                printed="16.38",
+                erratum="WH5-13",
+            ),
+        ),
     )
 
 

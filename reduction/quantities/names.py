@@ -557,6 +557,8 @@ OF_SPECIMENS = (
     # what is known about the record
     _Quantity("note", "", "quality note"),
     _Quantity("note_stage", "", "stage that gave the note"),
+    _Quantity("note_code", "", "what the note is of, the same in every version"),
+    _Quantity("note_severity", "", "warning, refusal or note: how serious the note is"),
     _Quantity("channel", "", "channel of the log"),
     _Quantity("quality_mask", "", "mask of the quality flag"),
     _Quantity("n_rows_read", "1", "data rows in the raw files"),

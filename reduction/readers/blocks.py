@@ -27,6 +27,7 @@ from reduction.readers.raw_log import RawLog, unchanged
 from reduction.readers.text_rows import TextFile, TextRows, line_starts, open_text, split_line
 from reduction.record.errors import LogError
 from reduction.record.measurement import Bools, Integers
+from reduction.record.notes import Note, note
 
 _NEWLINE, _RETURN = b"\n\r"
 
@@ -278,16 +279,18 @@ class _BlockReader:
                     keep_line(self.metadata, text, lines.first_row + line, self.layout)
                 self.n_loose += 1
 
-    def _notes(self) -> Iterator[str]:
+    def _notes(self) -> Iterator[Note]:
         chosen = [kind for kind in self.kinds.values() if kind is self.chosen]
-        yield f"{sum(kind.n_blocks for kind in chosen)} blocks of data"
+        yield note("blocks-read", n_blocks=sum(kind.n_blocks for kind in chosen))
         if self.n_loose > _KEPT_LINES:
-            yield f"{self.n_loose - _KEPT_LINES} more lines between the blocks are not kept"
+            yield note("lines-between-blocks-not-kept", n_lines=self.n_loose - _KEPT_LINES)
         for kind in self.kinds.values():
             if kind is not self.chosen:
-                yield (
-                    f"{kind.n_blocks} blocks of another kind with {kind.n_rows} rows are not "
-                    f"read, the first at row {kind.first_row}"
+                yield note(
+                    "blocks-not-read",
+                    n_blocks=kind.n_blocks,
+                    n_rows=kind.n_rows,
+                    row=kind.first_row,
                 )
 
 

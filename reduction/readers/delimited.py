@@ -31,6 +31,7 @@ from reduction.readers.text_rows import (
     split_line,
 )
 from reduction.record.errors import LogError
+from reduction.record.notes import note
 
 _LINE = 1 << 12  # bytes that most lines of a header have at most
 
@@ -99,7 +100,7 @@ def read_delimited(
         row=log.row,
         n_rows_read=check_lengths(path, columns),
         metadata=head.metadata,
-        notes=(f"{left_out} more lines that are not data are not kept",) if left_out > 0 else (),
+        notes=(note("lines-not-kept", n_lines=left_out),) if left_out > 0 else (),
     )
 
 

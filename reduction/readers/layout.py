@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator, model_valida
 
 from reduction.quantities.units import Dimension, parse_quantity, scale_to_si
 from reduction.record.errors import LogError, SettingsError
+from reduction.record.notes import Note, note
 from reduction.record.samples import scratch_folder
 from reduction.record.settings import Limits
 
@@ -407,7 +408,7 @@ class LogParts:
 _LONGEST = 100_000
 
 
-def short_metadata(found: Mapping[str, str]) -> tuple[dict[str, str], tuple[str, ...]]:
+def short_metadata(found: Mapping[str, str]) -> tuple[dict[str, str], tuple[Note, ...]]:
     """Return the texts that are short enough to be kept, and a note on each that is not.
 
     Parameters
@@ -419,18 +420,19 @@ def short_metadata(found: Mapping[str, str]) -> tuple[dict[str, str], tuple[str,
     -------
     metadata : dict
         Those of 100,000 characters or fewer.
-    notes : tuple of str
+    notes : tuple of Note
         One a text that is left out.
 
     Examples
     --------
-    >>> short_metadata({"operator": "KH", "picture": "x" * 200_000})
-    ({'operator': 'KH'}, ("'picture' of the file is left out: it has 200,000 characters",))
+    >>> kept, notes = short_metadata({"operator": "KH", "picture": "x" * 200_000})
+    >>> print(kept, *notes)
+    {'operator': 'KH'} 'picture' of the file is left out: it has 200,000 characters
     """
     metadata, notes = {}, []
     for key, text in found.items():
         if len(key) + len(text) <= _LONGEST:
             metadata[key] = text
         else:
-            notes.append(f"{key[:40]!r} of the file is left out: it has {len(text):,} characters")
+            notes.append(note("metadata-left-out", key=key[:40], n_characters=len(text)))
     return metadata, tuple(notes)

@@ -18,6 +18,7 @@ import numpy as np
 from reduction.readers.layout import check_regular
 from reduction.record.errors import LogError, ReductionError
 from reduction.record.measurement import Bools, Floats, Integers, Source
+from reduction.record.notes import Note
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class RawLog:
         Data rows seen; equal to the length of the columns.
     metadata : dict of str to str
         Preamble and comment lines, file properties; as printed.
-    notes : tuple of str
+    notes : tuple of Note
         What the reader wants a person to know.
     """
 
@@ -52,7 +53,7 @@ class RawLog:
     text: dict[str, tuple[str, ...]] = field(default_factory=dict)
     row: Integers | None = None
     metadata: dict[str, str] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
     def missing(self, name: str) -> Bools:
         """Where a channel holds a declared missing mark, shape (n_rows,)."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -15,6 +15,7 @@ from reduction.readers.raw_log import RawLog
 from reduction.readers.sample_flags import flag_record
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats, Integers, Record
+from reduction.record.notes import Note, note
 from reduction.record.samples import (
     empty_like,
     finite_extremes,
@@ -48,7 +49,7 @@ class _CommonTime:
     time: Floats
     values: dict[str, Floats]
     resampled: frozenset[str] = frozenset()
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
 
 @dataclass
@@ -111,8 +112,13 @@ def _on_common_time(
                 base.time, axis, trimmed[key], gap_factor, is_count=key == _COUNTED
             )
         notes.append(
-            f"{', '.join(axis.keys)}: {1 / axis.step:.4g} Hz resampled to the "
-            f"{1 / base.step:.4g} Hz of {', '.join(base.keys)} by linear interpolation"
+            note(
+                "resampled",
+                channels=", ".join(axis.keys),
+                rate=1 / axis.step,
+                base_rate=1 / base.step,
+                base=", ".join(base.keys),
+            )
         )
     moved = frozenset(key for axis in axes if axis is not base for key in axis.keys)
     return _CommonTime(base.time, {key: result[key] for key in values}, moved, tuple(notes))
@@ -167,7 +173,7 @@ class _Piece:
     values: dict[str, Floats]
     scale: dict[str, tuple[float, float]]
     resampled: frozenset[str]
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
 
     def channel(self, key: str) -> Channel:
         """Declaration of a channel; ``tension`` alone is ``tension.1``."""
@@ -206,7 +212,7 @@ def _to_piece(log: RawLog, layout: Layout, *, gap_factor: float) -> _Piece:
     common = _on_common_time(_shared_time(log, layout), values, own, gap_factor=gap_factor)
     notes = [*log.notes, *common.notes]
     if unused:
-        notes.append(f"read, but not part of a record: {', '.join(unused)}")
+        notes.append(note("channels-not-used", channels=", ".join(unused)))
     piece = _Piece(log, layout, common.time, common.values, scale, common.resampled, tuple(notes))
     _check_restart(piece)
     return piece
@@ -473,7 +479,7 @@ def _check_clock(piece: _Piece) -> None:
         )
 
 
-def _counter(pieces: Sequence[_Piece], n_samples: int) -> tuple[Integers | None, tuple[str, ...]]:
+def _counter(pieces: Sequence[_Piece], n_samples: int) -> tuple[Integers | None, tuple[Note, ...]]:
     """The machine's own count as whole numbers, -1 where it is missing."""
     key = "cycle_counter"
     if key not in pieces[0].values:
@@ -496,7 +502,7 @@ def _counter(pieces: Sequence[_Piece], n_samples: int) -> tuple[Integers | None,
                 needed="whole numbers",
             )
     if n_missing:
-        return whole, (f"the cycle counter is missing on {n_missing} rows, -1 there",)
+        return whole, (note("counter-missing", n_rows=n_missing),)
     return whole, ()
 
 
@@ -518,12 +524,12 @@ def _metadata(pieces: Sequence[_Piece]) -> dict[str, str]:
     return metadata
 
 
-def _piece_notes(pieces: Sequence[_Piece]) -> list[str]:
+def _piece_notes(pieces: Sequence[_Piece]) -> list[Note]:
     if len(pieces) == 1:
         return list(pieces[0].notes)
     joined = " and ".join(piece.log.source.name for piece in pieces)
-    named = [f"{piece.log.source.name}: {note}" for piece in pieces for note in piece.notes]
-    return [f"one record of {len(pieces)} pieces: {joined}", *named]
+    named = [replace(one, subject=piece.log.source.name) for piece in pieces for one in piece.notes]
+    return [note("record-of-pieces", n_pieces=len(pieces), files=joined), *named]
 
 
 def _verified(
@@ -543,7 +549,7 @@ def _verified(
     return verified
 
 
-def _datum_notes(record: Record, piece: _Piece) -> tuple[str, ...]:
+def _datum_notes(record: Record, piece: _Piece) -> tuple[Note, ...]:
     """Compare the tension at displacement zero with that at which the length was read."""
     channel = piece.channel("crosshead_position")
     if channel.datum != "displacement" or channel.reference_length is None:
@@ -569,7 +575,6 @@ def _datum_notes(record: Record, piece: _Piece) -> tuple[str, ...]:
         low, high = finite_extremes(load)
         if abs(found - stated) > _DATUM_SHARE * (high - low):
             notes.append(
-                f"reference_length is stated at {stated:.4g} N, but where displacement is first "
-                f"zero the tension of {name} is {found:.4g} N"
+                note("reference-length-elsewhere", stated=stated, specimen=name, found=found)
             )
     return tuple(notes)

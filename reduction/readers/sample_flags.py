@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from reduction.record.arrays import run_blocks
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, Quality, Record
+from reduction.record.notes import Note, note
 from reduction.record.samples import (
     BLOCK,
     any_sample,
@@ -581,7 +582,7 @@ def flag_record(
     settings: QualitySettings,
     resampled: Sequence[str] = (),
     verified: Mapping[tuple[int, int, int], tuple[float, float]] | None = None,
-    notes: Sequence[str] = (),
+    notes: Sequence[Note] = (),
 ) -> Record:
     """Return the record with its flags set and what they mean in its notes."""
     position_flag: _Flags = zeros_like(record.time, dtype=np.uint16)
@@ -626,16 +627,20 @@ def flag_record(
     first_lost = first_sample(no_stamp.__getitem__, 0, no_stamp.size, no_stamp)
     if first_lost is not None:
         found.append(
-            f"{count_samples(no_stamp)} rows have no time, first sample {first_lost + 1}: "
-            "their time is that of even steps between the rows beside them, and their position is "
-            "not used"
+            note("rows-without-time", n_rows=count_samples(no_stamp), sample=first_lost + 1)
         )
     _check_usable(flagged)
     if timing.n_uneven:
         found.append(
-            f"the sampling rate is not constant: {timing.n_uneven} of {record.n_samples - 1} time "
-            f"steps differ by more than {settings.rate_tolerance:.0%} from their median "
-            f"{timing.step:.4g} s ({timing.shortest:.4g} to {timing.longest:.4g} s, gaps apart)"
+            note(
+                "sampling-uneven",
+                n_uneven=timing.n_uneven,
+                n_steps=record.n_samples - 1,
+                tolerance=settings.rate_tolerance,
+                median=timing.step,
+                shortest=timing.shortest,
+                longest=timing.longest,
+            )
         )
     found += _lone_steps(flagged, settings)
     account = account_rows(flagged)
@@ -645,7 +650,9 @@ def flag_record(
             for channel, masks in account.n_flagged.items()
             if masks
         )
-        found.append(f"{account.n_read} rows read, {account.n_kept} kept, flagged: {listed}")
+        is_resampled = set().union(*account.n_flagged.values()) <= {"resampled"}
+        code = "rows-resampled" if is_resampled else "rows-flagged"
+        found.append(note(code, n_read=account.n_read, n_kept=account.n_kept, flags=listed))
     return replace(flagged, notes=tuple(found))
 
 
@@ -677,7 +684,7 @@ def _spikes(values: Floats, settings: QualitySettings) -> Bools:
     return _find_spikes(values, noise=noise, factor=settings.spike_factor)
 
 
-def _lone_steps(record: Record, settings: QualitySettings) -> list[str]:
+def _lone_steps(record: Record, settings: QualitySettings) -> list[Note]:
     """A note for each channel that steps, and stays, where what it is measured with does not."""
     position, tension = record.crosshead_position[np.newaxis], record.tension
     of_time = record.crosshead_position_quality_flag
@@ -685,7 +692,7 @@ def _lone_steps(record: Record, settings: QualitySettings) -> list[str]:
     for name, load, of_load in zip(record.specimens, tension, record.quality_flag, strict=True):
         channels.append((f"tension of '{name}'", "N", load, position, of_load))
     noise = [_noise_of(channel[2])[0] for channel in channels]
-    notes = [""] * len(channels)
+    notes: list[Note | None] = [None] * len(channels)
 
     def look(index: int) -> None:
         name, unit, values, beside, flags = channels[index]
@@ -700,16 +707,14 @@ def _lone_steps(record: Record, settings: QualitySettings) -> list[str]:
         if step.size:
             first = int(step[0])
             low, high = values[first : first + 2].tolist()
-            others = f", and at {step.size - 1} more" if step.size > 1 else ""
-            notes[index] = (
-                f"{name} steps from {low:.4g} to {high:.4g} {unit} between sample {first + 1} "
-                f"({record.time[first]:.6g} s) and the next{others}, and stays there, while "
-                f"{'tension does' if index == 0 else 'the position does'} not: a slip, a break, a "
-                "zero that was set again, or another unit from there on; numbers across it mix both"
-            )
+            notes[index] = note(
+                "channel-steps", channel=name, low=low, high=high, unit=unit, sample=first + 1,
+                time=float(record.time[first]), n_more=step.size - 1,
+                beside="tension does" if index == 0 else "the position does",
+            )  # fmt: skip
 
     run_blocks(look, range(len(channels)))
-    return [note for note in notes if note]
+    return [one for one in notes if one]
 
 
 def _no_length(position: Floats, flags: _Flags) -> Bools:

@@ -33,6 +33,7 @@ from reduction.readers.layout import CLOCK, Layout, Watch
 from reduction.readers.raw_log import RawLog, hash_source
 from reduction.record.errors import LogError
 from reduction.record.measurement import Bools, Floats
+from reduction.record.notes import note
 
 _SUFFIXES = (".xml", ".rels")
 
@@ -429,5 +430,5 @@ def read_spreadsheet(
         n_rows_read=check_lengths(path, columns),
         text={key: texts[:n_rows] for key, texts in cells.text.items()},
         metadata=_metadata(sheet_name, preamble),
-        notes=(f"{left_out} blank rows at the end of the sheet are left out",) if left_out else (),
+        notes=(note("blank-rows", n_rows=left_out),) if left_out else (),
     )

@@ -35,6 +35,7 @@ from reduction.readers.layout import Layout, LogParts, Watch, short_metadata
 from reduction.readers.raw_log import RawLog, hash_source
 from reduction.record.errors import LogError
 from reduction.record.measurement import Floats
+from reduction.record.notes import note
 
 WAVEFORM_COLUMN = "wf_increment"
 
@@ -230,7 +231,5 @@ def read_tdms(
         first_row=0,
         n_rows_read=n_rows,
         metadata=metadata,
-        notes=("the file ends inside a block of data: the logger was stopped or cut off", *notes)
-        if cut
-        else notes,
+        notes=(note("log-cut-off"), *notes) if cut else notes,
     )

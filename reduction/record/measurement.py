@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.record.errors import DataError
+from reduction.record.notes import Note
 
 _T = TypeVar("_T")
 
@@ -263,7 +264,7 @@ class Record:
         As declared in the layout; NaN where not declared. [m]
     metadata : dict of str to str
         Preamble rows of the file, as printed there.
-    notes : tuple of str
+    notes : tuple of Note
         What a reader of the product has to know.
     """
 
@@ -281,7 +282,7 @@ class Record:
     tension_standard_uncertainty: tuple[float, ...] = ()
     position_standard_uncertainty: float = float("nan")
     metadata: dict[str, str] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
     def __post_init__(self) -> None:
         """Check shapes once and make the arrays read-only."""
@@ -318,7 +319,7 @@ class StepReadings:
     length_standard_uncertainty: float = float("nan")
     tension_standard_uncertainty: float = float("nan")
     metadata: dict[str, str] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -1,89 +1,96 @@
-"""Notes, and how serious each one is.
+"""Notes: what a reader has to know before a number is used, as data.
 
-A note is a sentence for a reader, given by the stage that knows; this is the one place
-that ranks them, for the archive, the status table and the report alike.
+The stage that knows raises a note by its code.  What a code means, how serious it is and the
+sentence for a reader stand in one table, `reduction.record.note_sentences`; the sentence is
+composed where it is shown.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable
-from typing import Literal
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
-Severity = Literal["doubt", "refusal", "note", "method"]
+from reduction.record.note_sentences import SENTENCES, Severity
 
-SEVERITIES: tuple[Severity, ...] = ("doubt", "refusal", "note", "method")
+SEVERITIES: tuple[Severity, ...] = ("warning", "refusal", "note")
 """Most serious first."""
 
-# what was done, as it is done in every test of its kind: no reason to look again
-_METHOD = re.compile(
-    r"by local regression|rising pieces? between|^initial tension is the mean|acts as a step"
-    r"|^rate per decade from|take an area of|left to relax goes on|^the interval holds what"
-    r"|the method of WHOI|marks are taken to be read|under one crosshead: one piece of each"
-    r"|each curve pools|gauge length .* from length and|no marks of its own; its strain rests"
-    r"|slip not looked for: \d+ cycles;|is held at 1$|to which none|^a part of "
-    r"|^half cycles at the end of a run|^samples are stored in part",
-    re.IGNORECASE,
-)
 
-_REFUSAL = re.compile(
-    r"(^|: )refused:|\bnot given\b|: no hyperelastic law|has no tangent modulus|^not fitted"
-    r"|no stress and no modulus|no load is given",
-    re.IGNORECASE,
-)
-
-# words of a note after which a reader may have to put a number aside
-_DOUBT = re.compile(
-    r"contradict|disagree|inconsisten|extrapolat|outside|saturat|stuck|spike|backward|repeated"
-    r"|\bgaps?\b|missing|broken|slipped|steps? of|not stable|do not use"
-    r"|fewer|second look|implies|imply|points off|grows|gives no|creep, not|identity leaves"
-    r"|whole cycles found|not counted|is negative|falls with stretch|slack within"
-    r"|only \d+% of the branches|which no specimen does|cut off|marks differ|reversals give"
-    r"|has no time|have no time|two amplitudes|is not constant|given up for|failed"
-    r"|goes slack|drifts over the order|goes below zero"
-    r"|does not hold there|is (stretched|compressed) by|no angle keeps it|load is uncertain by"
-    r"|this curve (cannot tell|does not show)|stopped at a bound|was allowed: not determined"
-    r"|where no stated error|is one that the stated errors|uncertainties are too small",
-    re.IGNORECASE,
-)
-
-
-def severity_of(stage: str, text: str) -> Severity:
-    """Rank of one note.
+@dataclass(frozen=True)
+class Note:
+    """One thing that a reader has to know.
 
     Parameters
     ----------
+    code : str
+        What it is, such as ``marks-outlier``; the same in every version.
+    severity : {"warning", "refusal", "note"}
+        What could move an answer; a number that is not given, and why; what else there is to
+        know.
     stage : str
-        Stage that gave it, such as ``hold 2 new``; what is said of a specimen in the
-        laboratory's own words is never more than a note.
+        Stage that gave it, such as ``hold 2 new``; its last word is the specimen.
+    subject : str
+        What it is of and the sentence begins with, a specimen, a reading, a file; empty where the
+        stage says it.
+    numbers : mapping
+        Numbers [SI] and short texts of the sentence, by name; ``effect`` is how far the answer
+        moves, as a share of it. [1]
     text : str
-        The note.
+        The sentence, of a note that was read from an archive.
+    """
+
+    code: str
+    severity: Severity
+    stage: str = ""
+    subject: str = ""
+    numbers: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    text: str = ""
+
+    def __str__(self) -> str:
+        """Return the sentence."""
+        if self.text:
+            return self.text
+        template = SENTENCES[self.code][1]
+        compose = template.format if isinstance(template, str) else template
+        said = compose(**self.numbers)
+        return f"{self.subject}: {said}" if self.subject else said
+
+
+def note(code: str, subject: str = "", /, **numbers: Any) -> Note:
+    """Return a note with the severity of its code.
+
+    Parameters
+    ----------
+    code : str
+        A key of `reduction.record.note_sentences.SENTENCES`.
+    subject : str, optional
+        What it is of and the sentence begins with.
+    **numbers
+        What its sentence uses. [SI]
 
     Returns
     -------
-    severity : {"doubt", "refusal", "note", "method"}
-        A doubt of the data or of a number that is given all the same; a number that is
-        not given, and why; what else there is to know; how a number was made.
+    note : Note
+        Without a stage as yet.
+
+    Raises
+    ------
+    KeyError
+        If nothing is known of the code.
 
     Examples
     --------
-    >>> severity_of("hold 1 new", "refused: rate per decade: the hold is too short")
-    'refusal'
-    >>> severity_of("moduli", "tangent modulus by local regression in a window of 0.1 of strain")
-    'method'
+    >>> found = note("cycles-not-as-planned", n_found=9, n_planned=10)
+    >>> print(found.severity, "-", found)
+    warning - 9 whole cycles found, 10 planned
     """
-    if stage.startswith("specimen"):
-        return "note"
-    if _REFUSAL.search(text):
-        return "refusal"
-    if _METHOD.search(text):
-        return "method"
-    return "doubt" if _DOUBT.search(text) else "note"
+    return Note(code, SENTENCES[code][0], subject=subject, numbers=numbers)
 
 
-def by_severity(notes: Iterable[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
-    """Notes as (stage, text), most serious first; those alike keep their order."""
-    return tuple(sorted(notes, key=lambda note: SEVERITIES.index(severity_of(*note))))
+def by_severity(notes: Iterable[Note]) -> tuple[Note, ...]:
+    """Notes, most serious first; those alike keep their order."""
+    return tuple(sorted(notes, key=lambda one: SEVERITIES.index(one.severity)))
 
 
 def full_note(stage: str, text: str) -> str:
@@ -94,7 +101,7 @@ def full_note(stage: str, text: str) -> str:
     stage : str
         Stage that gave it, such as ``hold 2 new``; its last word is the specimen.
     text : str
-        The note.
+        The sentence.
 
     Returns
     -------

@@ -18,7 +18,6 @@ from reduction.quantities.names import BRANCH_NAMES, quantity
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.record.errors import ReductionError
 from reduction.record.measurement import Floats
-from reduction.record.notes import severity_of
 from reduction.report.test_view import (
     DRAWN,
     TestView,
@@ -306,8 +305,7 @@ def _factor_text(cells: Sequence[TableCell]) -> str:
 
 
 def _count_warnings(view: TestView) -> int:
-    notes = zip(view.texts("note_stage"), view.texts("note"), strict=True)
-    return sum(severity_of(*note) == "doubt" for note in notes)
+    return sum(one.severity == "warning" for one in view.notes)
 
 
 RULES: dict[DecisionRule, str] = {

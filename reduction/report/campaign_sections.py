@@ -14,8 +14,7 @@ from reduction.archive.open import Opener, reading
 from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
-from reduction.record.notes import Severity
-from reduction.report.campaign_summary import Severity as FindingSeverity
+from reduction.record.notes import Note
 from reduction.report.campaign_summary import SummaryFinding, Tile
 from reduction.report.experiment_tables import (
     anova_table,
@@ -131,7 +130,7 @@ def _make_experiment_section(view: ExperimentView, tests: Mapping[str, TestView]
     kind = view.text("experiment_kind").replace("box-behnken", "Box-Behnken")
     kind = kind.replace("plackett-burman", "Plackett-Burman")
     of = ", ".join(in_words(name) for name in view.factors)
-    notes = list(dict.fromkeys(row["note"] for row in view.own_rows("note")))
+    notes = list(map(str, view.notes))
     provenance, documents = provenance_of(view.data.attrs)
     return TestSection(
         key=view.key,
@@ -226,10 +225,6 @@ def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-_FINDING: dict[Severity, FindingSeverity] = {
-    "doubt": "warning", "refusal": "refusal", "note": "note", "method": "note",
-}  # fmt: skip
-
 _HOLDS = (
     "Predicted from the construction alone: no hose was pulled for it. It holds for a slow pull of"
     " a long, straight, closed hose full of water, on the static curve of one cord; not in"
@@ -246,13 +241,13 @@ def _make_hose_section(view: HoseView) -> TestSection:
             [*draw_tension(view), *draw_pressure(view), *draw_budget(view)],
             [hose_event_table(view)], [_story(view), _HOLDS],
             folded=make_part("The curve as numbers", (), [hose_curve_table(view)]),
-            warnings=[text for text, kind in view.notes.items() if kind == "doubt"],
+            warnings=[str(one) for one in view.notes if one.severity == "warning"],
         ),
         make_part("Strain of the cords", [*draw_chart(view), *draw_limits(view)]),
         make_part("Layers that carry no load", (), [layer_table(view)]),
         make_part("Construction", (), [hose_design_table(view), cord_table(view)]),
     ]  # fmt: skip
-    notes = list(view.notes)
+    notes = list(map(str, view.notes))
     provenance, documents = provenance_of(view.data.attrs)
     return TestSection(
         key=view.key,
@@ -272,10 +267,7 @@ def _make_hose_section(view: HoseView) -> TestSection:
 
 def _hose_findings(view: HoseView) -> list[SummaryFinding]:
     """Return what a reader must know of a hose before its numbers."""
-    return [
-        SummaryFinding(_FINDING[kind], (f"hose {view.name}",), text)
-        for text, kind in view.notes.items()
-    ]
+    return [SummaryFinding(one.severity, (f"hose {view.name}",), str(one)) for one in view.notes]
 
 
 def _hose_tiles(views: Sequence[HoseView]) -> list[Tile]:
@@ -321,7 +313,7 @@ def _make_comparison_section(view: ComparisonView) -> TestSection:
         make_part(
             "Measured and predicted tension", draw_comparison(view),
             [compared_curve_table(view), compared_event_table(view)], [f"Verdict: {view.verdict}."],
-            warnings=[text for text, kind in _other_notes(view).items() if kind == "doubt"],
+            warnings=[str(one) for one in _other_notes(view) if one.severity == "warning"],
         ),
         make_part("Comparison error", draw_error(view), (), [_shape(view)]),
         make_part("Cycle by cycle", draw_cycle_bias(view)),
@@ -332,7 +324,7 @@ def _make_comparison_section(view: ComparisonView) -> TestSection:
             warnings=[] if view.is_identified else _identified(view),
         ),
     ]  # fmt: skip
-    notes = list(view.notes)
+    notes = list(map(str, view.notes))
     provenance, documents = provenance_of(view.data.attrs)
     return TestSection(
         key=view.key,
@@ -358,9 +350,7 @@ def _comparison_findings(view: ComparisonView) -> list[SummaryFinding]:
         found.append(SummaryFinding("note", of, f"{view.verdict[:1].upper()}{view.verdict[1:]}."))
     if view.is_identified is False:
         found += [SummaryFinding("warning", of, sentence) for sentence in _identified(view)]
-    return found + [
-        SummaryFinding(_FINDING[kind], of, text) for text, kind in _other_notes(view).items()
-    ]
+    return found + [SummaryFinding(one.severity, of, str(one)) for one in _other_notes(view)]
 
 
 def _comparison_tiles(views: Sequence[ComparisonView]) -> list[Tile]:
@@ -376,10 +366,10 @@ def _comparison_tiles(views: Sequence[ComparisonView]) -> list[Tile]:
     return found
 
 
-def _other_notes(view: ComparisonView) -> dict[str, Severity]:
+def _other_notes(view: ComparisonView) -> list[Note]:
     """Notes but the one whose words stand beside the fitted numbers."""
     said = view.text("identifiability")
-    return {text: kind for text, kind in view.notes.items() if not (said and said in text)}
+    return [one for one in view.notes if not (said and said in str(one))]
 
 
 def _shape(view: ComparisonView) -> str:

@@ -10,8 +10,8 @@ from typing import Literal
 
 import numpy as np
 
-from reduction.record.notes import SEVERITIES, full_note, severity_of
-from reduction.record.notes import Severity as NoteSeverity
+from reduction.record.note_sentences import Severity as NoteSeverity
+from reduction.record.notes import SEVERITIES, full_note
 from reduction.report.test_view import OF_NO_TEST, Status, TestView, all_specimens, any_synthetic
 from reduction.report.text_style import (
     NOT_GIVEN,
@@ -33,15 +33,10 @@ _NOT_SHOWN = "no archive"
 
 _STATUS_WORDS = {OF_NO_TEST: "of an earlier run: no test of the campaign now"}
 
-_FINDING: dict[NoteSeverity, Severity] = {
-    "doubt": "warning", "refusal": "refusal", "note": "note", "method": "note",
-}  # fmt: skip
-
 _HEADINGS: dict[NoteSeverity, str] = {
-    "doubt": "Doubts of the data, or of a number",
+    "warning": "Doubts of the data, or of a number",
     "refusal": "Numbers that are not given, and why",
     "note": "Also to know",
-    "method": "How numbers were made",
 }
 
 _NO_TEST = (
@@ -93,20 +88,15 @@ def find_faults(
     return sorted([*found, *others], key=lambda one: _ORDER.index(one.severity))
 
 
-def _all_notes(view: TestView) -> list[str]:
-    """Return every note of a test, with the stage that gave it where the note does not say."""
-    return [
-        full_note(stage, text)
-        for stage, text in zip(view.texts("note_stage"), view.texts("note"), strict=True)
-    ]
-
-
 def grouped_notes(view: TestView) -> list[tuple[str, list[str]]]:
     """Return the notes of a test under headings, most serious first; no empty heading."""
-    stages, texts = view.texts("note_stage"), view.texts("note")
-    kinds = [severity_of(*pair) for pair in zip(stages, texts, strict=True)]
-    said = list(zip(kinds, _all_notes(view), strict=True))
-    groups = [(_HEADINGS[kind], [text for own, text in said if own == kind]) for kind in SEVERITIES]
+    groups = [
+        (
+            _HEADINGS[kind],
+            [full_note(one.stage, str(one)) for one in view.notes if one.severity == kind],
+        )
+        for kind in SEVERITIES
+    ]
     return [(heading, notes) for heading, notes in groups if notes]
 
 
@@ -118,11 +108,11 @@ def brief(view: TestView) -> str:
     if reached != NOT_GIVEN:
         rows.append(f"strain {reached} %")
     notes = dict(grouped_notes(view))
-    doubts = len(notes.pop(_HEADINGS["doubt"], ()))
+    warnings = len(notes.pop(_HEADINGS["warning"], ()))
     others = sum(len(own) for own in notes.values())
     rows += [
         f"{number} {noun if number == 1 else f'{noun}s'}"
-        for number, noun in ((doubts, "doubt"), (others, "note"))
+        for number, noun in ((warnings, "warning"), (others, "note"))
         if number
     ]
     return ", ".join(rows)
@@ -214,9 +204,9 @@ def _all_faults(
         if status and status.status != "failed" and status.raw_sha256 not in ("", archived_hash):
             text = "The archive was made from other raw files than status.csv."
             yield "warning", view.id, text, text
-        raw = zip(view.texts("note_stage"), view.texts("note"), strict=True)
-        for (stage, note), text in zip(raw, _all_notes(view), strict=True):
-            yield _FINDING[severity_of(stage, note)], view.id, _pattern(view, note), text
+        for one in view.notes:
+            text = str(one)
+            yield one.severity, view.id, _pattern(view, text), full_note(one.stage, text)
 
 
 def _pattern(view: TestView, note: str) -> str:

@@ -548,9 +548,7 @@ def experiment_findings(view: ExperimentView) -> list[SummaryFinding]:
             for one in surfaces.response_names
             for text in negative_words(view, surfaces, one, negative)
         ]
-    for note in dict.fromkeys(row["note"] for row in view.own_rows("note")):
-        found.append(SummaryFinding("refusal" if "refused" in note else "note", (name,), note))
-    return found
+    return found + [SummaryFinding(one.severity, (name,), str(one)) for one in view.notes]
 
 
 def negative_words(

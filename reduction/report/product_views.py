@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from reduction.archive.campaign_products import outcomes_of_dataset
 from reduction.archive.shared_errors import COMPONENT
 from reduction.archive.surfaces_dataset import surface_names, surfaces_of
-from reduction.archive.variables import stored
+from reduction.archive.variables import read_notes, stored
 from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.outcome_groups import Group
 from reduction.experiments.outcomes import Outcome
@@ -24,7 +24,7 @@ from reduction.prediction.hose_geometry import NEUTRAL_ANGLE
 from reduction.quantities.names import QUANTITIES, RESPONSES
 from reduction.quantities.units import UnitSystem, combined_unit, display_unit
 from reduction.record.measurement import Floats
-from reduction.record.notes import Severity
+from reduction.record.notes import Note
 from reduction.report.test_view import Expanded, RowView, TestView, expand
 from reduction.report.text_style import DEGREES, Shown, in_order, shown
 
@@ -131,9 +131,9 @@ class HoseView(RowView):
         return found
 
     @cached_property
-    def notes(self) -> dict[str, Severity]:
-        """What is to be said of the hose, with how serious it is."""
-        return self.notes_of("note_hose", self.name, stage="predict")
+    def notes(self) -> tuple[Note, ...]:
+        """What is to be said of the hose."""
+        return read_notes(self.data, of=("note_hose", self.name))
 
     @property
     def per_length(self) -> Shown:
@@ -359,9 +359,9 @@ class ComparisonView(RowView):
         )
 
     @cached_property
-    def notes(self) -> dict[str, Severity]:
-        """What is to be said of the comparison, with how serious it is."""
-        return self.notes_of("note_comparison", self.name, stage="compare")
+    def notes(self) -> tuple[Note, ...]:
+        """What is to be said of the comparison."""
+        return read_notes(self.data, of=("note_comparison", self.name))
 
 
 def view_comparisons(archive: xr.Dataset, units: UnitSystem) -> list[ComparisonView]:
@@ -473,8 +473,13 @@ class ExperimentView(RowView):
             return np.full((0, 0), "")
         return np.asarray(self.data.variables[name].values[self.index], dtype=np.str_)
 
+    @cached_property
+    def notes(self) -> tuple[Note, ...]:
+        """What is to be said of the experiment."""
+        return read_notes(self.data, of=("note_experiment", self.name))
+
     def own_rows(self, name: str) -> list[dict[str, str]]:
-        """Rows of the notes or of the cautions that are of this experiment."""
+        """Rows of the cautions that are of this experiment."""
         if name not in self.data:
             return []
         columns = [one for one in map(str, self.data.variables) if one.startswith(name)]

@@ -112,10 +112,10 @@ def specimen_table(tests: Sequence[TestView], units: UnitSystem) -> PageTable:
 def specimen_notes(tests: Sequence[TestView]) -> list[str]:
     """Return what is to be known about each specimen, each sentence once."""
     notes = [
-        f"{stage.removeprefix('specimen ')}: {text}"
+        f"{one.stage.removeprefix('specimen ')}: {one}"
         for view in tests
-        for stage, text in zip(view.texts("note_stage"), view.texts("note"), strict=True)
-        if stage.startswith("specimen ")
+        for one in view.notes
+        if one.stage.startswith("specimen ")
     ]
     return list(dict.fromkeys(notes))
 

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from reduction.archive.shared_errors import stated_errors_of
 from reduction.archive.test_dataset import stored_cycles
 from reduction.archive.uncertainty_budget import effective_freedom
+from reduction.archive.variables import read_notes
 from reduction.quantities.units import UnitSystem
 from reduction.record.contributions import (
     LINE_METHODS,
@@ -29,7 +30,7 @@ from reduction.record.contributions import (
     effective_degrees_of_freedom,
 )
 from reduction.record.measurement import Floats, Integers
-from reduction.record.notes import Severity, severity_of
+from reduction.record.notes import Note
 from reduction.report.text_style import (
     FROM_READINGS,
     PageTable,
@@ -186,6 +187,11 @@ class TestView:
         if name not in self.data:
             return ()
         return tuple(str(value) for value in np.ravel(self.data.variables[name].values))
+
+    @cached_property
+    def notes(self) -> tuple[Note, ...]:
+        """What a reader has to know, most serious first."""
+        return read_notes(self.data)
 
     @property
     def hold_numbers(self) -> tuple[int, ...]:
@@ -523,14 +529,3 @@ class RowView:
     def text(self, name: str) -> str:
         """Value of a text variable without further dimensions; "" where there is none."""
         return str(self.data.variables[name].values[self.index]) if name in self.data else ""
-
-    def notes_of(self, owner: str, name: str, *, stage: str) -> dict[str, Severity]:
-        """Notes whose ``owner`` is the name, with how serious each is at the stage."""
-        if "note" not in self.data:
-            return {}
-        pairs = zip(
-            self.data[owner].values.astype(str),
-            self.data.variables["note"].values.astype(str),
-            strict=True,
-        )
-        return {str(note): severity_of(stage, note) for own, note in pairs if own == name}

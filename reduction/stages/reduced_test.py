@@ -5,12 +5,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 
 from reduction.record.contributions import Contributions, LineSpread
 from reduction.record.measurement import Floats, Integers, Record, Source, Specimen, Step
-from reduction.record.notes import by_severity
+from reduction.record.notes import Note, by_severity, note
 from reduction.stages.channel_lag import LagEstimate
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.holds.relaxation import HoldResult, hold_numbers
@@ -106,7 +106,7 @@ class ReducedTest:
     sources: tuple[Source, ...]
     stage_lines: tuple[Step, ...]
     settings_json: str
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
     history: History | None = None
     standstills: Standstills | None = None
     phase: Integers | None = None
@@ -135,7 +135,7 @@ class ReducedTest:
     line: LineParameters | None = None
     line_of_test: LineParameters | None = None
     quasi_static_standard_uncertainty: Floats | None = None
-    line_notes: tuple[str, ...] = ()
+    line_notes: tuple[Note, ...] = ()
     line_spread: LineSpread | None = None
     pulls: tuple[SlowPull | None, ...] = ()
     rope_step: RopeStep | None = None
@@ -143,24 +143,33 @@ class ReducedTest:
     shared_uncertainty_of_cycles: dict[str, Floats] = field(default_factory=dict)
     channel_lag: LagEstimate | None = None
 
-    def all_notes(self) -> tuple[tuple[str, str], ...]:
-        """Every note as (stage, text), most serious first, none twice.
+    def all_notes(self) -> tuple[Note, ...]:
+        """Every note with its stage, most serious first, none twice.
 
         Notes that are alike in that stand in the order of the stages.
         A note of the test that a stage gave too stands under the stage alone.
         """
-        pairs = list(dict.fromkeys(self._stage_notes()))
-        said = {text for _, text in pairs}
-        pairs += [("test", text) for text in dict.fromkeys(self.notes) if text not in said]
-        return by_severity(pairs)
+        given = [
+            replace(one, stage=stage) for stage, notes, _ in self._of_stages() for one in notes
+        ]
+        said = {str(one) for one in given}
+        given += [replace(one, stage="test") for one in self.notes if str(one) not in said]
+        return by_severity({(one.stage, str(one)): one for one in given}.values())
 
-    def _stage_notes(self) -> Iterator[tuple[str, str]]:
+    def all_steps(self) -> tuple[Step, ...]:
+        """Every line of the history: one a stage, then how single numbers were made."""
+        made = ((stage, line) for stage, _, lines in self._of_stages() for line in lines)
+        return (*self.stage_lines, *(Step(stage, line) for stage, line in made))
+
+    def _of_stages(self) -> Iterator[tuple[str, Sequence[Note], Sequence[str]]]:
+        """Each stage by its name, with its notes and how its numbers were made."""
         if self.record is not None:
-            yield from (("ingest", text) for text in self.record.notes)
+            yield "ingest", self.record.notes, ()
         for specimen in self.specimens:
-            yield from ((f"specimen {specimen.name}", text) for text in specimen.notes)
+            said = [note("laboratory", text=text) for text in specimen.notes]
+            yield f"specimen {specimen.name}", said, ()
         for model in self.strain_models:
-            yield from ((f"strain {model.specimen}", text) for text in model.notes)
+            yield f"strain {model.specimen}", model.notes, model.made
         stages = (
             ("cycles", self.cycles),
             ("moduli", self.curves),
@@ -171,15 +180,13 @@ class ReducedTest:
         )
         for stage, product in stages:
             if product is not None:
-                yield from ((stage, text) for text in product.notes)
-        yield from (("line", text) for text in self.line_notes)
+                yield stage, product.notes, getattr(product, "made", ())
+        yield "line", self.line_notes, ()
         if self.rope_step is not None:
-            yield from ((self.rope_step.name, text) for text in self.rope_step.notes)
+            yield self.rope_step.name, self.rope_step.notes, ()
         for ratio in self.ratios:
-            yield from (("comparison", text) for text in ratio.notes)
+            yield "comparison", ratio.notes, ()
         for fit in self.elastomers:
-            yield from ((f"{fit.law} {fit.specimen}", text) for text in fit.notes)
+            yield f"{fit.law} {fit.specimen}", fit.notes, ()
         for number, hold in zip(hold_numbers(self.holds), self.holds, strict=True):
-            stage = f"hold {number} {hold.specimen}"
-            yield from ((stage, text) for text in hold.notes)
-            yield from ((stage, f"refused: {text}") for text in hold.refusals)
+            yield f"hold {number} {hold.specimen}", (*hold.notes, *hold.refusals), hold.made

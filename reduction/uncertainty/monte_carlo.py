@@ -39,6 +39,7 @@ from reduction.record.contributions import (
 )
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
+from reduction.record.notes import Note, note
 from reduction.record.settings import CycleSettings
 from reduction.stages.cycles.cycle_product import Loops
 from reduction.stages.line.line_model import (
@@ -303,21 +304,13 @@ def _shared(test: ReducedTest, line: LineParameters, name: str) -> Floats:
     return np.zeros((1, line.reason.size))
 
 
-def _note(specimen: str, draws: _LineDraws, place: int) -> str:
-    share = draws.without_solution_share[place]
+def _note(specimen: str, draws: _LineDraws, place: int) -> Note:
+    share = float(draws.without_solution_share[place])
     if share > 0:
-        reason = (
-            f"{share:.2g} of the draws of loop and slow pull have no K_1 and tau, and the interval "
-            "is that of the others"
-        )
-    else:
-        first = draws.linear_standard_uncertainty[:, place]
-        with np.errstate(divide="ignore"):
-            ratio = draws.standard_uncertainty[:, place] / first
-        worst = int(np.argmax(np.abs(np.log(np.maximum(ratio, 1e-300)))))
-        words = ("K_1", "tau", "K_1 tau")
-        reason = f"the linear one of {words[worst]} is {1 / ratio[worst]:.2f} of it"
-    return (
-        f"{specimen}: K_1 and tau: uncertainty and 95 % interval are by Monte Carlo, where linear "
-        f"propagation does not hold: {reason}"
-    )
+        return note("line-draws-without-solution", specimen, share=share)
+    first = draws.linear_standard_uncertainty[:, place]
+    with np.errstate(divide="ignore"):
+        ratio = draws.standard_uncertainty[:, place] / first
+    worst = int(np.argmax(np.abs(np.log(np.maximum(ratio, 1e-300)))))
+    words = ("K_1", "tau", "K_1 tau")
+    return note("line-by-monte-carlo", specimen, worst=words[worst], ratio=float(1 / ratio[worst]))

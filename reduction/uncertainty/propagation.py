@@ -1073,12 +1073,6 @@ def stepwise_contributions(
     return with_diameter(Contributions(tuple(component), values), errors, moduli, area=area)
 
 
-_BOTH = (
-    "the interval holds what differs from cycle to cycle (type A), and errors of instruments, "
-    "diameters and splice strain as far as the two do not share them"
-)
-
-
 def ratio_contributions(
     ratio: ArrayLike,
     *,
@@ -1159,5 +1153,4 @@ def with_shared_interval(
         ratio_low=low,
         ratio_high=high,
         is_different=(low > 1) | (high < 1),
-        notes=(_BOTH, *ratio.notes[1:]),
     )

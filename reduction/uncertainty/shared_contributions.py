@@ -37,6 +37,7 @@ from reduction.record.contributions import (
     stacked,
 )
 from reduction.record.measurement import Floats, Record, areas_of
+from reduction.record.notes import Note, note
 from reduction.record.samples import empty_like, full_like, release_pages
 from reduction.record.settings import CycleSettings
 from reduction.stages.channel_lag import LagEstimate, lag_by_turns
@@ -598,7 +599,7 @@ def lag_of_test(
     cycles: Cycles,
     *,
     stated: Sequence[float] = (),
-) -> tuple[LagEstimate, list[str]]:
+) -> tuple[LagEstimate, list[Note]]:
     """Estimate the lag of each tension channel, and say where it is more than what is stated."""
     turns = np.concatenate([cycles.branch_first.ravel(), cycles.branch_last.ravel()])
     estimate = lag_by_turns(record.time, position, tension, turns)
@@ -609,11 +610,8 @@ def lag_of_test(
         lag, spread, own = estimate.lag[place], estimate.standard_uncertainty[place], known[place]
         if not lag > _NOTED * total[place]:
             continue
-        told = f"a lag of 0 +- {1e3 * own:g} ms is stated" if own else "no lag is stated"
         notes.append(
-            f"{name}: tension turns {1e3 * lag:.0f} +- {1e3 * spread:.0f} ms (k=1) later than "
-            f"position, and {told}: it was logged late, by at least that, since damping makes it "
-            "turn early; nothing is corrected, and loops are too narrow by it"
+            note("tension-late", name, lag=float(lag), spread=float(spread), stated=float(own))
         )
     return estimate, notes
 

@@ -92,7 +92,7 @@ def test_by_default_some_cycles_are_stored_and_every_number_is_that_of_the_whole
         assert kept.sizes["cycle"] == all_of_it.sizes["cycle"] == pytest.approx(N_CYCLES, abs=1)
         assert {1, 2, 3, *kept["selected_cycle"].values} <= set(kept["cycle_number"].values)
         for name, variable in kept.variables.items():
-            if name in ("sample_index", "n_rows_stored", "note", "note_stage"):
+            if name in ("sample_index", "n_rows_stored"):
                 continue
             other = all_of_it[name].values
             expected = other[..., index] if "sample" in variable.dims else other
@@ -106,16 +106,11 @@ def test_by_default_some_cycles_are_stored_and_every_number_is_that_of_the_whole
     assert cycles[0].read_bytes() == cycles[1].read_bytes()
 
 
-def test_the_status_and_the_notes_say_it(part, whole):
-    assert part[1]["status"] == "reduced_with_notes"
+def test_an_attribute_says_it_and_no_note(part, whole):
     with reduction.open_campaign(part[0] / "L-1.nc") as archive:
-        (note,) = (
-            text for text in archive["note"].values if text.startswith("samples are stored in part")
-        )
-        assert archive.attrs["stored_samples"] in note
+        assert archive.attrs["stored_samples"].startswith(f"{archive.sizes['sample']} of ")
     with reduction.open_campaign(whole[0] / "L-1.nc") as archive:
         assert archive.attrs["stored_samples"] == "all"
-        assert not any("stored in part" in text for text in archive["note"].values)
 
 
 def test_the_page_draws_no_line_across_what_is_left_out(part, folder):

@@ -237,4 +237,4 @@ def test_rate_and_waiting_time_change_the_quasi_static_spring_constant_as_table_
     assert spring_constant_ratio(fast, slow, 1000.0)[0] == half_digit(1.50, 2)
     assert spring_constant_ratio(at_once, slow, 1000.0)[0] == half_digit(1.83, 2)
     assert [60 * one.strain_rate for one in (slow, fast)] == pytest.approx([0.071, 0.23])
-    assert "24 h" in slow.waiting and not slow.notes[1:]
+    assert "24 h" in slow.waiting and not tuple(map(str, slow.notes))[1:]

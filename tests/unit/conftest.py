@@ -13,6 +13,7 @@ from reduction.archive.test_dataset import to_dataset
 from reduction.archive.write import write_archive
 from reduction.record.contributions import Component, Contributions, InstrumentErrors, LineSpread
 from reduction.record.measurement import Quality, Record, Source, Specimen, Step
+from reduction.record.notes import Note
 from reduction.stages.channel_lag import LagEstimate
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.holds.relaxation import HoldResult
@@ -95,7 +96,7 @@ def make_record(rng, specimens, test_id="T-1"):
         tension_standard_uncertainty=(2.2, float("nan"))[: len(specimens)],
         position_standard_uncertainty=0.0015,
         metadata={"operator": "größe"},
-        notes=("one row left out of the account",),
+        notes=(Note("fixture", "note", text="one row left out of the account"),),
     )
 
 
@@ -113,7 +114,7 @@ def make_cycles():
         branch=branch,
         is_constant_rate=np.ones(N_SAMPLES, dtype=bool),
         band=0.02,
-        notes=("the last cycle is broken",),
+        notes=(Note("fixture", "warning", text="the last cycle is broken"),),
     )
 
 
@@ -144,7 +145,7 @@ def make_curves(rng, n_specimens):
         selected_cycle=np.array([1, 4]),
         tangent_modulus_by_cycle=array(rng, n_specimens, 2, 2, N_BINS),
         tangent_modulus_by_cycle_standard_uncertainty=array(rng, n_specimens, 2, 2, N_BINS),
-        notes=("few samples in the window",),
+        notes=(Note("fixture", "note", text="few samples in the window"),),
         **values,
     )
 
@@ -163,8 +164,13 @@ def make_hold(rng, specimen, start_time, kind="relaxation", n_terms=2):
         prony_time=array(rng, n_terms),
         prony_time_standard_uncertainty=array(rng, n_terms),
         criterion="corrected Akaike",
-        refusals=() if n_terms else ("Prony series: the hold lasts 25 s", "rate: too short"),
-        notes=("ramp of 4 s left out",),
+        refusals=()
+        if n_terms
+        else (
+            Note("fixture", "refusal", text="refused: Prony series: the hold lasts 25 s"),
+            Note("fixture", "refusal", text="refused: rate: too short"),
+        ),
+        notes=(Note("fixture", "note", text="ramp of 4 s left out"),),
         **numbers,
     )
 
@@ -189,7 +195,7 @@ def make_model(rng, specimen):
         mark_tension=array(rng, 2),
         mark_strain_residual=array(rng, 2),
         strain_slope_ratio=0.86,
-        notes=("constant-fraction reads 14 % high",),
+        notes=(Note("fixture", "note", text="constant-fraction reads 14 % high"),),
     )
 
 
@@ -203,7 +209,7 @@ def make_ratio(rng):
         ratio_low=array(rng, 2, 3),
         ratio_high=array(rng, 2, 3),
         is_different=np.array([[True, False, True], [False, False, True]]),
-        notes=("unequal histories",),
+        notes=(Note("fixture", "note", text="unequal histories"),),
     )
 
 
@@ -230,7 +236,7 @@ def make_elastomers(specimen):
             strain_high=1.2,
             is_stable=False,
             aicc=-15.5,
-            notes=("unstable in equibiaxial extension",),
+            notes=(Note("fixture", "note", text="unstable in equibiaxial extension"),),
         ),
     )
 
@@ -246,7 +252,7 @@ def make_slips(rng):
         slip_length=array(rng, 2),
         slip_length_standard_uncertainty=array(rng, 2),
         creep_per_cycle=-array(rng, 2),
-        notes=("resolution 0.5 N",),
+        notes=(Note("fixture", "note", text="resolution 0.5 N"),),
     )
 
 
@@ -309,7 +315,10 @@ def rich_test():
         sources=(SOURCE, Source("T-1b.csv", "cd" * 32, 99)),
         stage_lines=STAGE_LINES,
         settings_json='{"cycles": {"band": null}}',
-        notes=("=1+1 looks like a formula", "the last cycle is broken"),
+        notes=(
+            Note("fixture", "note", text="=1+1 looks like a formula"),
+            Note("fixture", "warning", text="the last cycle is broken"),
+        ),
         history=History(
             (("T-0", "T-00"), ()),
             np.array([1.2, np.nan]),
@@ -354,7 +363,7 @@ def rich_test():
             array(rng, *per_cycle),
             array(rng, 2),
             array(rng, 2),
-            ("new: the identity leaves 2 %",),
+            (Note("fixture", "warning", text="new: the identity leaves 2 %"),),
         ),
         amplitude=AmplitudeSummary(
             **{name: array(rng, 2) for name in of_test},
@@ -363,7 +372,7 @@ def rich_test():
         line=make_line(np.random.default_rng(1), 2, N_CYCLES),
         line_of_test=make_line(np.random.default_rng(2), 2),
         quasi_static_standard_uncertainty=np.array([10.0, 20.0]),
-        line_notes=("new: no slow pull",),
+        line_notes=(Note("fixture", "note", text="new: no slow pull"),),
         channel_lag=LagEstimate(
             np.array([0.02, np.nan]),
             np.array([0.003, np.nan]),
@@ -466,7 +475,7 @@ def make_rope_step(rng):
         creep=tuple(CreepOfHold(name, 0.001, 1e-5, 300.0, 0.3, 0.003, 600.0) for name in creep),
         lasted=CyclesToFailure(**parts[CyclesToFailure]),
         tensile=TensilePull(**parts[TensilePull]),
-        notes=("new: the dynamic stiffness has not settled",),
+        notes=(Note("fixture", "note", text="new: the dynamic stiffness has not settled"),),
     )
 
 
@@ -543,7 +552,7 @@ def stepwise_test():
             interval_branch=np.array([1, 2]),
             secant_modulus=array(rng, 3),
             secant_modulus_standard_uncertainty=array(rng, 3),
-            notes=("row 1140 disagrees with itself",),
+            notes=(Note("fixture", "warning", text="row 1140 disagrees with itself"),),
         ),
         contributions=Contributions(
             (Component("diameter", "old"),), {"interval_modulus": array(rng, 1, 2)}

@@ -264,7 +264,7 @@ def test_without_any_calibration_its_variables_are_absent(tmp_path):
 def test_notes_stand_once_with_the_comparison_they_are_of(archive):
     pairs = list(zip(archive["note_comparison"].values, archive["note"].values, strict=True))
     for named in (agreeing(), differing(), trading()):
-        assert [note for name, note in pairs if name == named.name] == list(named.notes)
+        assert [note for name, note in pairs if name == named.name] == list(map(str, named.notes))
     assert len(set(pairs)) == len(pairs)
 
 

@@ -16,7 +16,6 @@ from long_records import AFTER, BEFORE, PER_CYCLE, cycles_of, long_test
 from reduction.archive.open import open_archive
 from reduction.archive.test_dataset import kept_samples, stored_cycles, to_dataset
 from reduction.archive.write import write_archive
-from reduction.record.notes import severity_of
 from reduction.record.settings import ModulusSettings, ReductionSettings, _ArchiveSettings
 from reduction.stages.moduli.local_regression import select_cycles
 
@@ -168,8 +167,6 @@ def test_the_archive_says_what_it_holds_and_counts_over_the_whole_record(tmp_pat
     assert kept.words.startswith(
         f"{index.size} of {n_samples}; 8 of 100 cycles (1, 2, 3, 10, 32, 98, 99, 100)"
     )
-    assert kept.note.startswith(f"samples are stored in part: {index.size} of {n_samples};")
-    assert severity_of("test", kept.note) == "method"
 
 
 def test_an_archive_of_the_whole_record_has_no_index_of_samples(rich_test):
@@ -217,7 +214,7 @@ writer = ColumnWriter(Path(sys.argv[1]))
 for _ in range(16):
     writer.append(np.zeros(1 << 20))
 series = writer.finish()
-kept = _KeptSamples(np.arange(0, series.size, 500), "", "")
+kept = _KeptSamples(np.arange(0, series.size, 500), "")
 before = memory("VmHWM")
 assert kept.of(series).size == kept.index.size
 print(memory("VmHWM") - before)

@@ -177,7 +177,7 @@ def test_layers_that_carry_no_load_stand_in_their_order(archive, hoses):
 
 def test_notes_stand_beside_their_hose(archive, hoses):
     pairs = list(zip(archive["note_hose"].values, archive["note"].values, strict=True))
-    assert pairs == [(hose.plan.name, note) for hose in hoses for note in hose.notes]
+    assert pairs == [(hose.plan.name, note) for hose in hoses for note in map(str, hose.notes)]
     assert ("stiff" in dict(pairs)) and "Kevlar" in dict(pairs)["gumby"]
 
 

@@ -44,6 +44,8 @@ def of_responses(thing, index, count, name=""):
         return thing
     if isinstance(thing, np.ndarray):
         return thing[index]
+    if name == "notes":  # a file has the sentence, not the numbers in it
+        return [(one.code, one.severity, str(one)) for one in thing]
     return thing[index] if name in ("response_names", "transform") else thing
 
 

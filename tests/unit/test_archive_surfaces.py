@@ -15,6 +15,7 @@ from reduction.archive.surfaces_dataset import surfaces_to_dataset
 from reduction.archive.write import write_archive
 from reduction.quantities.names import RESPONSES
 from reduction.record.errors import ArchiveError
+from reduction.record.notes import Note
 
 ONE = surface_experiment()
 SHORT = surface_experiment("short", seed=4, names=RESPONSES[:1], missing=(3,))
@@ -178,7 +179,7 @@ def test_notes_say_of_what_they_are_and_none_stands_twice(dataset):
     assert len(rows) == len(set(rows))
     assert ("half-inch", "experiment", "=a note that looks like a formula") in rows
     of_surfaces = [text for name, stage, text in rows if (name, stage) == ("lines", "surfaces")]
-    assert of_surfaces == list(LINES.surfaces.notes)
+    assert of_surfaces == list(map(str, LINES.surfaces.notes))
 
 
 def test_cautions_give_the_names_of_the_runs_that_they_count(dataset):
@@ -205,7 +206,13 @@ def test_provenance_is_complete(dataset):
 
 
 def test_an_experiment_that_gave_no_surface_keeps_its_runs():
-    bare = replace(SHORT, surfaces=None, stiffness_forms=(), form_quality=None, notes=("refused",))
+    bare = replace(
+        SHORT,
+        surfaces=None,
+        stiffness_forms=(),
+        form_quality=None,
+        notes=(Note("fixture", "refusal", text="refused"),),
+    )
     dataset = build(bare)
     assert not [name for name in dataset.variables if "coefficient" in name]
     assert dataset["run_name"].values[0, 0] == "R01"

@@ -98,7 +98,7 @@ def test_a_failed_test_leaves_its_cycles_unknown_but_not_the_stated_flexing():
 def test_cycles_in_no_log_are_named_since_no_strain_of_them_is_known(before, between, count):
     surveys = [survey("A", 1, unlogged_cycles=between)]
     campaign = SimpleNamespace(specimens={"hose": Specimen("hose", earlier_cycles=before)})
-    remarks = history_remarks(surveys[0], earlier_tests_of(surveys, {}), campaign)
+    remarks = tuple(map(str, history_remarks(surveys[0], earlier_tests_of(surveys, {}), campaign)))
     expected = f"hose: {count} earlier cycles are in no log: earlier_maximum_strain and "
     assert [text.startswith(expected) for text in remarks] == ([] if count is None else [True])
 
@@ -107,11 +107,11 @@ def test_a_test_without_a_place_has_no_history():
     alone = survey("A", None, unlogged_cycles=5)
     campaign = SimpleNamespace(specimens={"hose": Specimen("hose")})
     assert history_of(alone, earlier_tests_of([alone], {}), campaign) is None
-    assert history_remarks(alone, earlier_tests_of([alone], {}), campaign) == ()
+    assert tuple(map(str, history_remarks(alone, earlier_tests_of([alone], {}), campaign))) == ()
 
 
 def test_specimens_that_share_tests_without_an_order_are_asked_for_one():
     surveys = [survey("A", None), survey("B", None)]
     campaign = SimpleNamespace(specimens={"hose": Specimen("hose")})
-    (remark,) = history_remarks(surveys[0], earlier_tests_of(surveys, {}), campaign)
+    (remark,) = map(str, history_remarks(surveys[0], earlier_tests_of(surveys, {}), campaign))
     assert remark.endswith("what earlier tests did to them is not known here; set order")

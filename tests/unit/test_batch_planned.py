@@ -79,5 +79,5 @@ def test_steps_of_one_log_are_no_copies():
     level = (0.0, 0.0)
     planned = plan(**{"P-7.one": level, "P-7.two": level, "P-8.one": level, "R": level, "S": level})
     sums = {"P-7.one": "a", "P-7.two": "a", "P-8.one": "b", "R": "b", "S": ""}
-    (note,) = _same_logs(planned, sums)
+    (note,) = map(str, _same_logs(planned, sums))
     assert note.startswith("P-8 and R have the same log, byte for byte")

@@ -89,7 +89,7 @@ def test_a_slow_pull_ends_at_its_greatest_tension_and_has_one_branch():
     assert curve.tension.shape[:2] == (1, 2)
     assert np.isnan(curve.tension[0, 1]).all()
     assert curve.branch_tension[0] == pytest.approx(900 * curve.strain, abs=1e-6)
-    assert "one branch was measured" in curve.notes[0]
+    assert "one branch was measured" in str(curve.notes[0])
 
 
 def test_missing_samples_are_left_out_and_bins_not_visited_are_nan():
@@ -215,7 +215,7 @@ def test_more_than_a_thousand_cycles_are_kept_as_means_of_consecutive_ones():
     assert curve.cycle_number[:3].tolist() == [1, 4, 7]
     k = np.searchsorted(curve.strain, 0.4999)
     assert curve.tension[1, 0, k] == pytest.approx(55, abs=0.5)  # cycles 4, 5, 6
-    assert "pools 3 consecutive cycles" in curve.notes[0]
+    assert "pools 3 consecutive cycles" in str(curve.notes[0])
 
 
 def test_end_bins_are_not_extrapolated():

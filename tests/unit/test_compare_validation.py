@@ -84,8 +84,8 @@ def test_an_uncertainty_that_swallows_everything_is_called_so():
 def test_what_was_not_stated_is_said():
     test = pulled(1000 + np.random.default_rng(2).normal(0, 5, STROKE.size))
     found = validate_curve(1000 + 0 * test.strain, test, input_error=exact(test))
-    assert any("no uncertainty of the prediction" in text for text in found.notes)
-    assert any("no uncertainty of the calibration" in text for text in found.notes)
+    assert any("no uncertainty of the prediction" in text for text in map(str, found.notes))
+    assert any("no uncertainty of the calibration" in text for text in map(str, found.notes))
 
 
 def test_nothing_known_is_not_judged():
@@ -100,7 +100,7 @@ def test_a_wrong_shape_inside_the_band_is_noted():
     test = pulled(1000 + rng.normal(0, 2, STROKE.size), tension_offset=100.0)
     found = validate_curve(1000 + 60 * test.strain, test, input_error=exact(test))
     assert found.agrees and found.chi_square_probability < 0.01
-    assert any("shape of the difference" in text for text in found.notes)
+    assert any("shape of the difference" in text for text in map(str, found.notes))
 
     assert found.verdict.startswith(
         "agrees within U point by point, but its shape does not (below 0.1 %); U is "
@@ -131,7 +131,7 @@ def test_a_difference_where_no_stated_error_can_be_is_noted():
     test = pulled(0 * STROKE, tension_offset=100.0)
     found = validate_curve(50 * test.strain, test, input_error=exact(test))
     assert found.chi_square_freedom == 1
-    assert any("lies where no stated error can be" in text for text in found.notes)
+    assert any("lies where no stated error can be" in text for text in map(str, found.notes))
 
 
 def test_a_right_prediction_is_called_wrong_in_one_of_twenty():

@@ -30,8 +30,13 @@ def hold(tension=RELAXING, *, time=TIME, position=None, ramp=RAMP, noise=0.3):
     )
 
 
+REFUSED = "refused: drop, rate per decade, Prony series: "
+
+
 def reasons(one):
-    return _reasons_against(one, _hold_ends(one), HoldSettings())
+    found = _reasons_against(one, _hold_ends(one), HoldSettings())
+    assert all(one.severity == "refusal" for one in found)
+    return [str(one).removeprefix(REFUSED) for one in found]
 
 
 def test_nothing_speaks_against_a_sound_hold():
@@ -135,7 +140,7 @@ def test_the_first_stretch_is_a_tenth_of_the_ramp_where_that_is_longer():
     for ramp, n_initial in ((None, 8), (RAMP, 8), (replace(RAMP, duration=40.0), 40)):
         one = hold(ramp=ramp)
         _hold_ends(one)
-        assert f"the mean of the first {n_initial}, " in one.notes[0]
+        assert f"the mean of the first {n_initial}, " in one.made[0]
 
 
 def test_a_hold_without_samples_is_refused():

@@ -40,7 +40,7 @@ def where(flags, mask):
 def test_a_clean_record_gets_no_flag_and_no_note():
     result = flagged(record(notes=("kept",)))
     assert not result.quality_flag.any() and not result.crosshead_position_quality_flag.any()
-    assert result.notes == ("kept",)
+    assert tuple(map(str, result.notes)) == ("kept",)
 
 
 def test_every_fault_gets_its_mask_and_a_line_in_the_notes():
@@ -60,7 +60,7 @@ def test_every_fault_gets_its_mask_and_a_line_in_the_notes():
     assert where(along, Quality.MISSING) == [55]
     assert where(along, Quality.GAP) == [1500]
     assert where(along, Quality.REPEATED_OR_BACKWARD_TIME) == [1700]
-    assert result.notes[-1] == (
+    assert str(result.notes[-1]) == (
         "2000 rows read, 2000 kept, flagged: crosshead_position missing 1, gap 1, "
         "repeated_or_backward_time 1; tension of new missing 1, stuck 100, spike 1"
     )
@@ -75,7 +75,7 @@ def test_a_saturated_run_is_not_called_stuck_as_well():
 
 def test_an_uneven_rate_is_a_note():
     time = np.cumsum(np.tile([0.1, 0.1, 0.1, 0.15], TIME.size // 4))
-    (note,) = flagged(record(time=time)).notes
+    (note,) = map(str, flagged(record(time=time)).notes)
     assert note == (
         "the sampling rate is not constant: 500 of 1999 time steps differ by more than 20% from "
         "their median 0.1 s (0.1 to 0.15 s, gaps apart)"
@@ -105,7 +105,7 @@ def test_missing_stamps_are_bridged_and_position_is_not_used_there():
     np.testing.assert_allclose(result.time, TIME, atol=1e-9)
     along = result.crosshead_position_quality_flag
     assert where(along, Quality.MISSING) == [0, 1, 500, 501, 502, TIME.size - 1]
-    assert result.notes[0].startswith("6 rows have no time, first sample 1: ")
+    assert str(result.notes[0]).startswith("6 rows have no time, first sample 1: ")
 
 
 def test_a_gap_among_missing_stamps_is_seen():

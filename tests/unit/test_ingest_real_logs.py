@@ -68,7 +68,7 @@ def test_instron_logs_with_byte_order_mark_and_trailing_comma(name, n_tracking, 
     assert not flagged(
         tracking, Quality.SPIKE | Quality.STUCK | Quality.SATURATED | Quality.MISSING
     )
-    assert any("sampling rate is not constant" in note for note in tracking.notes)
+    assert any("sampling rate is not constant" in note for note in map(str, tracking.notes))
 
 
 @pytest.mark.parametrize(("name", "n_tracking", "n_stop", "n_trends"), SPECIMENS)
@@ -158,7 +158,9 @@ def test_an_mts_file_with_two_kinds_of_blocks():
     assert record.n_samples == 931
     assert record.tension.max() == pytest.approx(472_881, abs=0.5)
     assert record.metadata["Masse"] == "5646,2"
-    assert "1 blocks of another kind with 2 rows are not read, the first at row 948" in record.notes
+    assert "1 blocks of another kind with 2 rows are not read, the first at row 948" in tuple(
+        map(str, record.notes)
+    )
     position = {"column": "Ch 1 W2TK Mittel", "unit": "mm", "datum": "displacement"}
     second = Layout(
         format="blocks",

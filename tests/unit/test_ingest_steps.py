@@ -28,7 +28,7 @@ def notes(*, tension=TENSION, position=POSITION, time=TIME, specimens=("new",)):
         crosshead_position_quality_flag=np.zeros(time.size, dtype=np.uint16),
         n_rows_read=time.size,
     )  # fmt: skip
-    return flag_record(record, settings=QualitySettings()).notes
+    return tuple(map(str, flag_record(record, settings=QualitySettings()).notes))
 
 
 @pytest.mark.parametrize("place", [1, 50, 100, 777, 1500, 1998])

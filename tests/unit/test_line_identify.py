@@ -8,7 +8,7 @@ from reduction.stages.line.line_model import (
     hysteresis_energy,
     identify_by_amplitude,
     identify_by_fundamental,
-    reasons_in_words,
+    refused_lines,
 )
 from reduction.stages.line.line_product import REASONS
 
@@ -101,7 +101,7 @@ def test_a_line_that_cannot_be_has_no_number_and_a_reason(changed, reason):
     for name in NAMES[2:]:
         assert np.isnan(getattr(found, name)), name
         assert np.isnan(found.uncertainty[name]), name
-    assert found.notes == (f"K_1 and tau: 1 of 1 are refused: {REASONS[reason]}",)
+    assert tuple(map(str, found.notes)) == (f"K_1 and tau: 1 of 1 are refused: {REASONS[reason]}",)
 
 
 @pytest.mark.parametrize("rest", [np.nan, 6.4e4])
@@ -121,11 +121,11 @@ def test_one_bad_loop_does_not_touch_its_neighbours():
     )
     assert found.reason.tolist() == [0, 3, 4, 0]
     assert np.isfinite(found.relaxation_time).tolist() == [True, False, False, True]
-    assert len(found.notes) == 2
+    assert len(tuple(map(str, found.notes))) == 2
 
 
 def test_no_reason_gives_no_words():
-    assert reasons_in_words([0, 0]) == ()
+    assert refused_lines([0, 0]) == ()
 
 
 def test_the_conditioning_is_how_a_change_of_k0_enters():

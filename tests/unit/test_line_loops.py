@@ -56,7 +56,7 @@ K0 = {"quasi_static_spring_constant": [REST], "quasi_static_standard_uncertainty
 @pytest.mark.parametrize("reading", ["amplitude", "fundamental"])
 def test_a_line_comes_back_from_its_loops(reading):
     line = identify_cycles(loops_of(*series(6)), **K0, reading=reading)
-    assert line.relaxation_time.shape == (1, 6) and line.notes == ()
+    assert line.relaxation_time.shape == (1, 6) and tuple(map(str, line.notes)) == ()
     assert line.dissipation_spring_constant == pytest.approx(np.full((1, 6), SPRING), rel=1e-3)
     assert line.relaxation_time == pytest.approx(np.full((1, 6), TIME), rel=1e-3)
 
@@ -65,11 +65,11 @@ def test_triangular_cycles_need_the_fundamental_and_the_note_says_so():
     loops = loops_of(*series(6, waveform="triangular"), waveform="triangular")
     by_fundamental = identify_run(loops, **K0, reading="fundamental")
     assert by_fundamental.relaxation_time == pytest.approx([TIME], rel=2e-3)
-    assert by_fundamental.notes == ()
+    assert tuple(map(str, by_fundamental.notes)) == ()
     by_amplitude = identify_run(loops, **K0)
     # E'' by area and amplitudes is about (8/pi^2)^2 of the true one
     assert by_amplitude.relaxation_time[0] > 1.3 * TIME
-    (note,) = by_amplitude.notes
+    (note,) = map(str, by_amplitude.notes)
     assert note.startswith("the loops are no ellipses: E'' by area and amplitudes is 0.6")
 
 
@@ -161,7 +161,7 @@ def test_a_specimen_without_a_pull_has_no_parameters_and_the_other_has():
     }
     line = identify_cycles(loops, **rest)
     assert line.reason.tolist() == [[0] * 5, [1] * 5]
-    assert "5 of 10 are refused: the quasi-static spring constant" in line.notes[0]
+    assert "5 of 10 are refused: the quasi-static spring constant" in str(line.notes[0])
     assert identify_run(loops, **rest).reason.tolist() == [0, 1]
 
 
@@ -178,7 +178,7 @@ def test_a_spring_constant_of_each_cycle_is_taken_too():
 def test_a_slack_line_is_noted():
     time, tension, strain = series(4)
     loops = loops_of(time, np.maximum(tension - 1600, 0), strain)
-    notes = identify_cycles(loops, **K0).notes
+    notes = tuple(map(str, identify_cycles(loops, **K0).notes))
     assert any("goes slack in 4 of 4 loops" in note for note in notes)
 
 
@@ -191,7 +191,9 @@ def test_an_uncertain_rest_spring_is_noted():
         quasi_static_spring_constant=[rest],
         quasi_static_standard_uncertainty=[0.1 * rest],
     )
-    assert any("uncertainty of K_0 is more than 30% of K_1" in note for note in line.notes)
+    assert any(
+        "uncertainty of K_0 is more than 30% of K_1" in note for note in map(str, line.notes)
+    )
 
 
 @pytest.mark.parametrize("function", [identify_cycles, identify_run])

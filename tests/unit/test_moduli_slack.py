@@ -27,7 +27,7 @@ def test_set_is_the_shift_of_the_crossing_over_the_free_length():
         relaxed_free_length=[2.5, 2.5],
     )
     np.testing.assert_allclose(found.strain, [0.02, 0], atol=1e-9)
-    assert found.remarks == ("", "")
+    assert found.remarks == (None, None)
     # 1 N later on both ways, at 100 N m-1 each: nothing between them
     np.testing.assert_allclose(found.by_tension, 0, atol=1e-12)
 
@@ -106,7 +106,9 @@ def test_a_record_that_does_not_show_it_gives_a_reason(rows, reason):
         POSITION[rows], [pull(0.2, 0.25)[rows]], slack_tension=SLACK, relaxed_free_length=[2.5]
     )
     assert np.isnan(found.strain[0])
-    assert found.remarks == (f"slack strain at unloading not given: {reason}",)
+    (remark,) = found.remarks
+    assert str(remark) == f"slack strain at unloading not given: {reason}"
+    assert remark.severity == "refusal"
 
 
 def test_without_a_free_length_there_is_no_strain():
@@ -114,7 +116,7 @@ def test_without_a_free_length_there_is_no_strain():
         POSITION, [pull(0.2, 0.25)], slack_tension=SLACK, relaxed_free_length=[np.nan]
     )
     assert np.isnan(found.strain[0])
-    assert "the relaxed free length is not known" in found.remarks[0]
+    assert "the relaxed free length is not known" in str(found.remarks[0])
 
 
 def test_set_after_rest_is_the_shift_between_two_first_crossings():

@@ -1,56 +1,126 @@
-"""Which notes a reader sees first."""
+"""Which notes a reader sees first, and how serious each is."""
+
+import re
+from dataclasses import replace
+from string import Formatter
 
 import pytest
 
 from reduction.batch.survey import note_message
-from reduction.record.notes import by_severity, full_note, severity_of
+from reduction.record.note_sentences import SENTENCES
+from reduction.record.notes import SEVERITIES, Note, by_severity, full_note, note
 
-METHOD = ("moduli", "tangent modulus by local regression in a window of 0.13 of strain")
-REFUSED = ("hold 1 new", "refused: Prony series: a drop of 0.03% is not told from zero")
-DOUBT = ("identity", "new: the closed-cycle identity leaves +2.2% of the stroke-mean modulus")
-SAID = ("specimen new", "the printed diameters contradict each other")
-
-
-@pytest.mark.parametrize(
-    ("stage", "text", "severity"),
-    [
-        (*METHOD, "method"),
-        (*REFUSED, "refusal"),
-        (*DOUBT, "doubt"),
-        (*SAID, "note"),
-        ("ingest", "400 rows read, 400 kept, flagged: tension of new spike 3", "doubt"),
-        ("cycles", "9 whole cycles found, 10 planned", "doubt"),
-        ("test", "new: mean tension of the cycles is negative (-3 N); set sign = -1", "doubt"),
-        ("stepwise", "1325: length 416.1 mm is 167 %; the row gives no modulus", "doubt"),
-        ("test", "new: stress at 50 % not given: 1 samples within 10 % before it", "refusal"),
-        ("experiment", "R05: the line goes slack in every cycle", "doubt"),
-        ("experiment", "tau drifts over the order of the runs beyond its surface", "doubt"),
-        ("experiment", "refused: stiffness forms of mooring codes: no strength", "refusal"),
-        ("test", "hose: refused: quasi-static spring constant: no cubic", "refusal"),
-        ("cycles", "one cycle only: there is no scatter from cycle to cycle", "note"),
-    ],
+REFUSED = replace(note("drop-not-told-from-zero", drop=0.0003, spread=0.0011), stage="hold 1 new")
+OPEN = replace(
+    note("identity-open", "new", effect=0.022, error=0.001, is_coarse=False), stage="identity"
 )
-def test_a_note_has_a_rank(stage, text, severity):
-    assert severity_of(stage, text) == severity
+SAID = replace(
+    note("laboratory", text="the printed diameters contradict each other"), stage="specimen new"
+)
+# what a reader may be told, and whether it could move an answer
+FACTS = {
+    "refused: Prony series: a drop of 0.03% +- 0.11% (one standard uncertainty) is not told from "
+    "zero": (REFUSED, "refusal"),
+    "the printed diameters contradict each other": (SAID, "note"),
+    "400 rows read, 400 kept, flagged: tension of new spike 3": (
+        note("rows-flagged", n_read=400, n_kept=400, flags="tension of new spike 3"), "warning",
+    ),
+    "400 rows read, 400 kept, flagged: tension of new resampled 400": (
+        note("rows-resampled", n_read=400, n_kept=400, flags="tension of new resampled 400"),
+        "note",
+    ),
+    "9 whole cycles found, 10 planned": (
+        note("cycles-not-as-planned", n_found=9, n_planned=10), "warning",
+    ),
+    "one cycle only: there is no scatter from cycle to cycle": (note("one-cycle"), "note"),
+    "new: mean tension of the cycles is negative (-3 N); does the log count compression positive? "
+    "Then set sign = -1 for this channel": (
+        note("sign-of-tension", "new", tension=-3.0, slope=1e6), "warning",
+    ),
+    "1325: length 416.1 mm is 167 %, recorded is 151 %; the row gives no modulus. A length of "
+    "390.5 mm would agree, and the intervals beside it would be 0.62 and 0.33 MPa": (
+        note(
+            "reading-inconsistent", "1325", length=0.4161, strain=1.67, recorded=1.51,
+            corrected=0.3905, speaks_for="", beside=[0.62e6, 0.33e6],
+        ),
+        "warning",
+    ),
+    "new: stress at 50 % not given: 1 samples within 10 % before it": (
+        note("stress-at-strain-not-given", "new", level=0.5, reason="1 samples within 10 % before it"),
+        "refusal",
+    ),
+    "new: the slack rows scatter 1.6 times as much as the tape explains (chi-square 26.5 of 10 "
+    "degrees of freedom, one in 320); their uncertainty is widened by as much": (
+        note(
+            "marks-scatter", "new", rows="slack rows", ratio=1.6, chi_square=26.5, freedom=10,
+            chance=1 / 320,
+        ),
+        "note",
+    ),
+    "new: 3 of 10 cycles drift by more than 20% of their range: their amplitudes, slopes and "
+    "energies rest on it": (
+        note("cycles-drift", "new", n_far=3, n_cycles=10, limit=0.2), "warning",
+    ),
+    "K_1 and tau: 2 of 3 are refused: a measured quantity of the loop is missing": (
+        note("no-line", n_lines=2, n_all=3, reason="a measured quantity of the loop is missing"),
+        "refusal",
+    ),
+    "R05: the line goes slack in every cycle": (
+        note("run-slack", "R05", cycles="every cycle"), "warning",
+    ),
+    "tau drifts over the order of the runs beyond its surface: +0.2 a run (p 0.01)": (
+        note("response-drifts", response="tau", slope=0.2, p=0.01), "warning",
+    ),
+    "refused: stiffness forms of mooring codes: no strength": (
+        note("no-stiffness-forms", reason="no strength"), "refusal",
+    ),
+    "hose: refused: quasi-static spring constant: no cubic": (
+        note("no-pull", "hose", reason="no cubic"), "refusal",
+    ),
+    "the cords are broken from 150.9 % strain: no load is given": (
+        note("cords-broken", strain=1.509), "refusal",
+    ),
+}  # fmt: skip
 
 
-def test_doubts_come_first_and_methods_last_and_those_alike_keep_their_order():
-    later = ("identity", "used: the closed-cycle identity leaves +2.5%")
-    notes = by_severity([METHOD, SAID, REFUSED, DOUBT, later])
-    assert notes == (DOUBT, later, REFUSED, SAID, METHOD)
+@pytest.mark.parametrize("sentence", FACTS)
+def test_a_note_has_its_sentence_and_its_rank(sentence):
+    found, severity = FACTS[sentence]
+    assert (str(found), found.severity) == (sentence, severity)
+
+
+def test_every_code_is_plain_and_has_a_severity_and_a_sentence():
+    for code, (severity, template) in SENTENCES.items():
+        assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", code)
+        assert severity in SEVERITIES
+        assert callable(template) or list(Formatter().parse(template))
+
+
+def test_a_code_that_is_not_known_is_refused():
+    with pytest.raises(KeyError):
+        note("no-such-note")
+
+
+def test_a_note_of_an_archive_says_what_stands_there():
+    assert str(Note("of-a-later-version", "note", text="a sentence")) == "a sentence"
+
+
+def test_warnings_come_first_and_those_alike_keep_their_order():
+    later = replace(OPEN, subject="used")
+    assert by_severity([SAID, REFUSED, OPEN, later]) == (OPEN, later, REFUSED, SAID)
 
 
 def test_the_message_of_a_test_names_the_most_serious_note():
-    message = note_message([METHOD, SAID, REFUSED, DOUBT])
-    assert message == f"4 notes (1 doubt, 1 refusal); first: identity: {DOUBT[1]}"
-    assert note_message([METHOD]) == f"1 note; first: moduli: {METHOD[1]}"
+    message = note_message([SAID, REFUSED, OPEN])
+    assert message == f"3 notes (1 warning, 1 refusal); first: identity: {OPEN}"
+    assert note_message([SAID]) == f"1 note; first: specimen new: {SAID}"
     assert note_message([]) == ""
 
 
 def test_the_message_of_a_test_says_of_what_the_first_note_speaks_and_counts_each_specimen():
-    text = "the fitted law is not stable: do not use it in a model"
-    message = note_message([("yeoh new", text), ("yeoh used", text)])
-    assert message == f"2 notes (2 doubts); first: yeoh new: {text}"
+    found = note("law-not-stable", strain=1.25)
+    message = note_message([replace(found, stage=f"yeoh {name}") for name in ("new", "used")])
+    assert message == f"2 notes (2 warnings); first: yeoh new: {found}"
 
 
 def test_a_note_that_names_its_specimen_is_not_given_it_again():

@@ -38,7 +38,7 @@ def history(strain, cycles):
 
 def remarks(first, other, past):
     (ratio,) = _compare_specimens(curves(1e6, 1e6), (first, other), past)
-    return [note for note in ratio.notes if note.startswith("b over a: ")]
+    return [note for note in map(str, ratio.notes) if note.startswith("b over a: ")]
 
 
 def test_three_specimens_give_two_ratios_over_the_first():
@@ -46,14 +46,14 @@ def test_three_specimens_give_two_ratios_over_the_first():
     found = _compare_specimens(curves(1e6, 2e6, 0.5e6), three, history([1.0] * 3, [10.0] * 3))
     assert [(one.numerator, one.denominator) for one in found] == [("b", "a"), ("c", "a")]
     assert [float(one.ratio[0, 0]) for one in found] == pytest.approx([2.0, 0.5])
-    assert found[1].notes[-1].startswith("c over a: two specimens in one test")
+    assert all(one.notes == () for one in found)
 
 
 def test_unequal_flexing_is_named_and_softening_is_said_of_rubber_alone():
     past = replace(history([1.0, 1.3], [10.0, 10.0]), earlier_flex_cycles=np.array([1e6, np.nan]))
     hoses = (Specimen("a", kind="stretch hose"), Specimen("b", kind="stretch hose"))
     found = remarks(*hoses, past)
-    assert found[1:] == [
+    assert found == [
         "b over a: unequal histories in the campaign: not known against 1000000 earlier flex "
         "cycles",
         "b over a: unequal histories in the campaign: greatest earlier strain 130% against 100%",
@@ -62,18 +62,18 @@ def test_unequal_flexing_is_named_and_softening_is_said_of_rubber_alone():
         "rubber is softer below what it has seen"
     )
     alike = replace(past, earlier_flex_cycles=np.full(2, np.nan), earlier_maximum_strain=np.ones(2))
-    assert len(remarks(*hoses, alike)) == 1
+    assert remarks(*hoses, alike) == []
 
 
 def test_one_specimen_is_compared_with_nothing():
     assert _compare_specimens(curves(1e6), (Specimen("a"),), None) == []
 
 
-def test_equal_histories_leave_only_the_word_on_two_pieces():
+def test_equal_histories_leave_nothing_to_say():
     equal = history([1.28, 1.30], [10.0, 10.0])
-    assert len(remarks(Specimen("a"), Specimen("b"), equal)) == 1
+    assert remarks(Specimen("a"), Specimen("b"), equal) == []
     first = history([np.nan, np.nan], [0.0, 0.0])
-    assert len(remarks(Specimen("a"), Specimen("b"), first)) == 1
+    assert remarks(Specimen("a"), Specimen("b"), first) == []
 
 
 @pytest.mark.parametrize(
@@ -86,14 +86,13 @@ def test_equal_histories_leave_only_the_word_on_two_pieces():
     ],
 )
 def test_unequal_or_unknown_histories_are_told(past, told):
-    first, second = remarks(Specimen("a"), Specimen("b"), past)
-    assert "one piece of each" in first
-    assert told in second
+    (said,) = remarks(Specimen("a"), Specimen("b"), past)
+    assert told in said
 
 
 def test_another_condition_before_the_campaign_is_an_unequal_history():
     equal = history([1.2, 1.2], [10.0, 10.0])
     told = remarks(Specimen("a", condition="new"), Specimen("b", condition="used"), equal)
-    assert told[1] == "b over a: unequal before the campaign: condition 'used' against 'new'"
+    assert told[0] == "b over a: unequal before the campaign: condition 'used' against 'new'"
     told = remarks(Specimen("a"), Specimen("b", condition="used"), equal)
-    assert "'used' against not stated" in told[1]
+    assert "'used' against not stated" in told[0]

@@ -6,6 +6,7 @@ import pytest
 from reduction.experiments.designs import FactorLevels, box_behnken, plackett_burman
 from reduction.experiments.experiment import RunTable
 from reduction.experiments.experiment_fit import LineOfRuns, fit_experiment
+from reduction.record.notes import note
 
 FACTORS = (
     FactorLevels("frequency", 0.1, 0.5),
@@ -45,7 +46,7 @@ def made(coded=None, specimens=("a",), shift=0.0, factors=FACTORS):
         peak_tension=mean + amplitude,
         minimum_tension=mean - amplitude,
         rated_break_strength=np.full(frequency.size, 28000.0),
-        remark=("",) * frequency.size,
+        remarks=((),) * frequency.size,
     )
     return runs, LineOfRuns(storage, loss, rest)
 
@@ -78,7 +79,7 @@ def test_a_surface_a_response_and_one_more_on_another_scale():
 def test_one_time_of_every_run_is_said_to_hold():
     result = fit(*made())
     assert result.single_time.exponent == pytest.approx(0.0, abs=1e-6)
-    assert any("one relaxation time holds" in note for note in result.notes)
+    assert any("one relaxation time holds" in note for note in map(str, result.notes))
 
 
 def test_k_1_and_tau_come_back_from_the_surfaces_of_their_parts():
@@ -100,7 +101,7 @@ def test_forms_are_refused_without_a_break_strength_and_the_surfaces_stand():
     bare = RunTable(**{**vars(runs), "rated_break_strength": np.full(15, np.nan)})
     result = fit(bare, line)
     assert result.stiffness_forms == () and result.form_quality is None
-    assert any("refused: stiffness forms" in note for note in result.notes)
+    assert any("refused: stiffness forms" in note for note in map(str, result.notes))
     assert result.surfaces is not None
 
 
@@ -115,7 +116,7 @@ def test_fewer_runs_than_terms_are_refused_with_a_note():
     runs, line = made()
     result = fit(without(runs, *range(7)), line)
     assert result.surfaces is None
-    assert any("refused: response surfaces: " in note for note in result.notes)
+    assert any("refused: response surfaces: " in note for note in map(str, result.notes))
 
 
 def test_several_specimens_are_blocks():
@@ -145,9 +146,9 @@ def test_a_run_that_goes_slack_is_named():
 
 def test_remarks_of_runs_are_notes_of_the_experiment():
     runs, line = made()
-    remark = ("its test gave no product", *[""] * 14)
-    result = fit(RunTable(**{**vars(without(runs, 0)), "remark": remark}), line)
-    assert "R1: its test gave no product" in result.notes
+    remarks = ((note("run-without-product"),), *[()] * 14)
+    result = fit(RunTable(**{**vars(without(runs, 0)), "remarks": remarks}), line)
+    assert "R1: its test gave no product" in tuple(map(str, result.notes))
 
 
 def test_a_screening_gives_effects_and_no_surface():
@@ -185,7 +186,7 @@ def test_specimens_drawn_from_many_keep_all_terms_with_a_note():
     runs, line = made(specimens=("a", "b", "c"), shift=4000.0)
     result = fit(runs, line, specimens_as="random", term_reduction="aicc")
     assert result.reduced is None
-    assert any("refused: reduction of terms" in note for note in result.notes)
+    assert any("refused: reduction of terms" in note for note in map(str, result.notes))
 
 
 def changed(runs, **columns):
@@ -221,19 +222,21 @@ def test_a_missing_run_leaves_the_stiffness_forms_and_the_single_time():
     result = fit(changed(runs, response=response, level=level, **gone), LineOfRuns(*parts))
     assert [form.form for form in result.stiffness_forms] == ["del-vecchio", "mean-load"]
     assert result.single_time.exponent == pytest.approx(0.0, abs=1e-6)
-    assert not [note for note in result.notes if note.startswith("refused")]
+    assert not [note for note in map(str, result.notes) if note.startswith("refused")]
 
 
 def test_lines_of_two_strengths_have_no_common_form():
     runs, line = made(specimens=("a", "b"))
     result = fit(changed(runs, rated_break_strength=np.repeat([28000.0, 30000.0], 15)), line)
     assert result.stiffness_forms == ()
-    assert any("lines of 2 break strengths" in note for note in result.notes)
+    assert any("lines of 2 break strengths" in note for note in map(str, result.notes))
 
 
 def test_forms_over_several_specimens_say_that_they_pool_them():
-    assert any("pool the specimens" in note for note in fit(*made(specimens=("a", "b"))).notes)
-    assert not any("pool the specimens" in note for note in fit(*made()).notes)
+    assert any(
+        "pool the specimens" in note for note in map(str, fit(*made(specimens=("a", "b"))).notes)
+    )
+    assert not any("pool the specimens" in note for note in map(str, fit(*made()).notes))
 
 
 def test_runs_at_equal_loads_are_found_by_the_levels_reached_not_by_the_plan():
@@ -246,7 +249,7 @@ def test_runs_at_equal_loads_are_found_by_the_levels_reached_not_by_the_plan():
     plan[[0, 6]] = plan[[6, 0]]
     result = fit(changed(runs, response=response, coded_plan=plan), line)
     assert result.single_time.exponent == pytest.approx(1.0, abs=1e-6)
-    (note,) = [note for note in result.notes if "disagree with the plan" in note]
+    (note,) = [note for note in map(str, result.notes) if "disagree with the plan" in note]
     assert "R1 " in note and "R7 " in note and "R2 " not in note
 
 
@@ -258,7 +261,7 @@ def test_a_screening_whose_runs_are_swapped_has_no_effects_and_says_which():
     plan[[0, 1]] = plan[[1, 0]]
     result = fit(changed(runs, coded_plan=plan), line, kind="plackett-burman")
     assert result.screening is None
-    (note,) = [note for note in result.notes if "refused: effects" in note]
+    (note,) = [note for note in map(str, result.notes) if "refused: effects" in note]
     assert "R1 " in note and "R2 " in note and "R3 " not in note
 
 
@@ -270,7 +273,7 @@ def test_a_screening_whose_levels_stray_keeps_its_effects_with_a_note():
     runs, line = made(near)
     result = fit(changed(runs, coded_plan=coded), line, kind="plackett-burman")
     assert result.screening is not None
-    (note,) = [note for note in result.notes if "disagree with the plan" in note]
+    (note,) = [note for note in map(str, result.notes) if "disagree with the plan" in note]
     assert "R5 frequency" in note
 
 
@@ -279,13 +282,15 @@ def test_a_screening_that_misses_a_run_says_why_it_has_no_effects():
     runs, line = made(np.hstack([design.coded, design.dummy]))
     result = fit(without(runs, 3), line, kind="plackett-burman")
     assert np.isnan(result.screening.effect).all() and result.refusal_status == 5
-    (note,) = [note for note in result.notes if "refused: effects" in note]
+    (note,) = [note for note in map(str, result.notes) if "refused: effects" in note]
     assert "a run is missing" in note and "no value of R4" in note
 
 
 def test_a_screening_without_dummies_says_whose_error_it_has():
     coded = plackett_burman(3).coded
-    assert any("Lenth" in note for note in fit(*made(coded), kind="plackett-burman").notes)
+    assert any(
+        "Lenth" in note for note in map(str, fit(*made(coded), kind="plackett-burman").notes)
+    )
 
 
 def test_a_response_that_no_run_gives_is_named_with_the_reason_of_the_runs():
@@ -293,12 +298,13 @@ def test_a_response_that_no_run_gives_is_named_with_the_reason_of_the_runs():
     response = runs.response.copy()
     response[2] = np.nan
     reason = "K_1 and tau refused: no slow pull is named"
-    result = fit(changed(runs, response=response, remark=(reason,) * 15), line)
-    (note,) = [note for note in result.notes if note.startswith("refused: surface of")]
-    assert note.startswith("refused: surface of relaxation_time: fewer runs")
-    assert "0 runs of 15" in note and f"{reason} (15 of them)" in note
+    remark = note("run-without-line", reason="no slow pull is named")
+    result = fit(changed(runs, response=response, remarks=((remark,),) * 15), line)
+    (said,) = [note for note in map(str, result.notes) if note.startswith("refused: surface of")]
+    assert said.startswith("refused: surface of relaxation_time: fewer runs")
+    assert "0 runs of 15" in said and f"{reason} (15 of them)" in said
     # and the runs themselves in one line
-    (remark,) = [note for note in result.notes if note.endswith(f": {reason}")]
+    (remark,) = [note for note in map(str, result.notes) if note.endswith(f": {reason}")]
     assert remark == f"R1, R2, R3, R4, R5 and 10 more: {reason}"
 
 
@@ -306,9 +312,11 @@ def test_a_remark_of_two_parts_is_two_notes_and_the_first_is_the_reason():
     runs, line = made()
     response = runs.response.copy()
     response[2] = np.nan
-    remark = ["K_1 and tau refused: no pull"] * 15
-    remark[3] += "; the line goes slack in every cycle"
-    notes = fit(changed(runs, response=response, remark=tuple(remark)), line).notes
+    remarks = [(note("run-without-line", reason="no pull"),)] * 15
+    remarks[3] += (note("run-slack", cycles="every cycle"),)
+    notes = tuple(
+        map(str, fit(changed(runs, response=response, remarks=tuple(remarks)), line).notes)
+    )
     assert "R4: the line goes slack in every cycle" in notes
     (refusal,) = [note for note in notes if note.startswith("refused: surface of")]
     assert "slack" not in refusal and "(15 of them)" in refusal
@@ -316,16 +324,16 @@ def test_a_remark_of_two_parts_is_two_notes_and_the_first_is_the_reason():
 
 def test_the_error_of_the_slow_pull_is_said_to_be_outside_the_standard_errors():
     said = "the error of K_0"
-    assert any(said in note for note in fit(*made()).notes)
+    assert any(said in note for note in map(str, fit(*made()).notes))
     other = fit(*made(), response_names=("apparent_spring_constant", "hysteresis_energy", "x"))
-    assert not any(said in note for note in other.notes)
+    assert not any(said in note for note in map(str, other.notes))
 
 
 def test_a_surface_below_zero_is_named():
     runs, line = made()
     response = runs.response.copy()
     response[1] = 2.1 - runs.coded_plan.sum(axis=1)
-    notes = fit(changed(runs, response=response), line).notes
+    notes = tuple(map(str, fit(changed(runs, response=response), line).notes))
     assert any("surface of hysteresis_energy goes below zero" in note for note in notes)
 
 
@@ -337,10 +345,10 @@ def test_a_drift_over_the_order_that_is_stated_is_named():
     response = runs.response.copy()
     response[2] = TIME + 0.02 * order / 10 + rng.normal(0, 1e-3, 15)
     drifting = changed(runs, response=response)
-    notes = fit(drifting, line, run_order=order).notes
+    notes = tuple(map(str, fit(drifting, line, run_order=order).notes))
     (note,) = [note for note in notes if note.startswith("relaxation_time drifts over")]
     assert float(note.partition(": ")[2].split()[0]) == pytest.approx(0.02, rel=0.05)
-    assert not any("drifts over" in note for note in fit(drifting, line).notes)
+    assert not any("drifts over" in note for note in map(str, fit(drifting, line).notes))
 
 
 def test_cautions_follow_the_order_that_is_stated():

@@ -58,7 +58,9 @@ def test_a_load_that_repeats_one_value_in_a_hold_of_it_is_no_fault():
     assert not flags[80:].any()
     # at rest the flag stays: nothing is held there
     assert (flags[5:30] == Quality.STUCK).all()
-    assert "520 samples in holds at constant tension repeat one value" in located.record.notes[0]
+    assert "520 samples in holds at constant tension repeat one value" in str(
+        located.record.notes[0]
+    )
     still = locate(record(repeats=True), kind="relaxation", settings=ReductionSettings())
     assert np.isnan(still.tension[0, 80:]).all()
 

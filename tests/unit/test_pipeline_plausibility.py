@@ -27,24 +27,24 @@ def notes_of(triangle):
         curves = tangent_curves(
             stretch, load, area=AREA, cycles=one, settings=ModulusSettings(), break_in_cycles=0
         )
-        return plausibility_notes(
+        return tuple(map(str, plausibility_notes(
             stretch, specimens=("new",), slack_tension=20.0, waveform=waveform, cycles=one,
             loops=close_loops(
                 0.1 * np.arange(strain.size), load, stretch, one, waveform=waveform
             ), curves=curves,
             control=control, is_snap=snap,
-        )  # fmt: skip
+        )))  # fmt: skip
 
     notes.strain = strain
     return notes
 
 
 def test_a_test_as_tests_are_gets_no_note(notes_of):
-    assert notes_of() == ()
+    assert tuple(map(str, notes_of())) == ()
 
 
 def test_a_channel_that_counts_compression_positive_is_named(notes_of):
-    (note,) = notes_of(-1000 * notes_of.strain)
+    (note,) = map(str, notes_of(-1000 * notes_of.strain))
     assert note.startswith(
         "new: mean tension of the cycles is negative (-1000 N) and tension falls"
     )
@@ -52,57 +52,57 @@ def test_a_channel_that_counts_compression_positive_is_named(notes_of):
 
 
 def test_tension_that_falls_with_stretch_is_named_where_it_is_positive(notes_of):
-    (note,) = notes_of(3000 - 1000 * notes_of.strain)
+    (note,) = map(str, notes_of(3000 - 1000 * notes_of.strain))
     # -1000 N / 3e-4 m2
     assert note.startswith("new: tension falls with stretch (median tangent modulus -3.333e+06 Pa)")
 
 
 def test_a_strain_no_specimen_reaches_asks_for_the_unit_of_position(notes_of):
-    (note,) = notes_of(stretch=1000 * notes_of.strain)
+    (note,) = map(str, notes_of(stretch=1000 * notes_of.strain))
     assert note.startswith("new: strain reaches 1500, which no specimen does")
 
 
 def test_cycles_that_are_mostly_drift_are_counted(notes_of):
     samples = np.arange(notes_of.strain.size)
     # 500 N a cycle beside a range of 1000 N
-    (note,) = notes_of(1000 * notes_of.strain + 5.0 * samples)
+    (note,) = map(str, notes_of(1000 * notes_of.strain + 5.0 * samples))
     assert note.startswith("new: 10 of 10 cycles drift by more than 20% of their range")
     # a jump to a tenth: beside it the drift is more than what is left of the range
     jump = np.where(samples < 410, 1.0, 0.1)
-    (note,) = notes_of(1000 * notes_of.strain * jump)
+    (note,) = map(str, notes_of(1000 * notes_of.strain * jump))
     assert "cycles drift by more than" in note
 
 
 def test_snap_loads_go_slack_and_a_line_that_stays_taut_is_named(notes_of):
-    assert notes_of(np.maximum(1000 * (notes_of.strain - 0.7), 0), snap=True) == ()
-    (note,) = notes_of(snap=True)
+    assert tuple(map(str, notes_of(np.maximum(1000 * (notes_of.strain - 0.7), 0), snap=True))) == ()
+    (note,) = map(str, notes_of(snap=True))
     assert "are no snap loads: tension stays above 20 N" in note
 
 
 def test_cycles_that_go_slack_are_counted(notes_of):
-    (note,) = notes_of(np.maximum(1000 * (notes_of.strain - 0.7), 0))
+    (note,) = map(str, notes_of(np.maximum(1000 * (notes_of.strain - 0.7), 0)))
     assert note.startswith("new: slack within 10 of 10 cycles (tension at or below 20 N)")
 
 
 @pytest.mark.parametrize(("share", "n_notes"), [(0.5, 1), (0.7, 0)])
 def test_little_at_a_constant_rate_asks_for_the_waveform(notes_of, share, n_notes):
-    notes = notes_of(share=share)
+    notes = tuple(map(str, notes_of(share=share)))
     assert len(notes) == n_notes
     assert all("only 49% of the branches run at a constant rate" in note for note in notes)
-    assert notes_of(share=share, waveform="other") == ()
+    assert tuple(map(str, notes_of(share=share, waveform="other"))) == ()
 
 
 def test_a_test_without_cycles_is_judged_by_its_strain_alone():
-    notes = plausibility_notes(
+    notes = tuple(map(str, plausibility_notes(
         np.array([[0.0, np.nan, 12.0], [0.0, 1.0, 2.0]]), specimens=("new", "used"),
         slack_tension=20.0, waveform="triangular", cycles=None, loops=None, curves=None,
-    )  # fmt: skip
+    )))  # fmt: skip
     assert [note.split(":")[0] for note in notes] == ["new"]
 
 
 def test_a_triangle_declared_sinusoidal_asks_for_the_waveform(notes_of):
     # the fundamental of a triangle is 8 / pi^2 of its half range, 23 % below it
-    (note,) = notes_of(waveform="sinusoidal")
+    (note,) = map(str, notes_of(waveform="sinusoidal"))
     assert note.startswith("new: declared sinusoidal, but half the range of strain is +23% off")
     assert note.endswith("is waveform right?")
 
@@ -115,8 +115,11 @@ def test_the_wave_is_judged_by_what_the_machine_moved(notes_of, control, moved):
     two = {"tension": 1000 * sine, "stretch": sine} | {
         "strain": {"tension": kinked}, "tension": {"stretch": kinked / 1000}
     }[moved]  # fmt: skip
-    (note,) = notes_of(**two, waveform="sinusoidal", control=control)
+    (note,) = map(str, notes_of(**two, waveform="sinusoidal", control=control))
     other = {"strain": "tension", "tension": "strain"}[moved]
     assert note.startswith(f"new: {moved} is a sine and {other} is none: half its range is +")
     assert "waveform right" not in note
-    assert notes_of(1000 * sine, stretch=sine, waveform="sinusoidal", control=control) == ()
+    assert (
+        tuple(map(str, notes_of(1000 * sine, stretch=sine, waveform="sinusoidal", control=control)))
+        == ()
+    )

@@ -22,7 +22,7 @@ BREAK = 0.22
 
 
 def said(hose, start):
-    return [note for note in hose.notes if note.startswith(start)]
+    return [note for note in map(str, hose.notes) if note.startswith(start)]
 
 
 def idle(degrees, strain_limit=np.nan, compression_limit=np.nan):
@@ -168,7 +168,9 @@ def test_cords_that_touch_at_rest_and_again_near_the_end_are_told_apart():
 
 def test_without_a_stated_uncertainty_none_is_given():
     hose = predicted(uncertain={}, layers=())
-    assert hose.notes == ("no number of the hose has a stated uncertainty: none is given",)
+    assert tuple(map(str, hose.notes)) == (
+        "no number of the hose has a stated uncertainty: none is given",
+    )
     assert hose.uncertainty.source == ()
 
 

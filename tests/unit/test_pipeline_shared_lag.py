@@ -38,15 +38,15 @@ def test_a_tension_that_is_late_is_noted_for_its_own_channel():
     estimate, notes = lag_of([0.02, 0.0])
     assert estimate.lag == pytest.approx([0.02, 0.0], abs=0.002)
     assert len(notes) == 1
-    assert notes[0].startswith("new: tension turns 20 +- ")
-    assert "no lag is stated" in notes[0] and "nothing is corrected" in notes[0]
+    assert str(notes[0]).startswith("new: tension turns 20 +- ")
+    assert "no lag is stated" in str(notes[0]) and "nothing is corrected" in str(notes[0])
 
 
 def test_a_lag_within_what_is_stated_is_no_news():
     _, notes = lag_of([0.02], stated=[0.015])
     assert notes == []
     _, notes = lag_of([0.05], stated=[0.015])
-    assert "a lag of 0 +- 15 ms is stated" in notes[0]
+    assert "a lag of 0 +- 15 ms is stated" in str(notes[0])
 
 
 def test_the_archive_has_the_estimate_and_why_there_is_none():

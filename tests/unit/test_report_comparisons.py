@@ -19,6 +19,7 @@ from compared_hoses import (
 )
 
 from reduction.archive.write import write_archive
+from reduction.record.notes import note
 from reduction.report.campaign_page import write_report
 from reduction.report.campaign_sections import (
     _comparison_findings,
@@ -356,7 +357,7 @@ def test_a_number_that_was_stopped_says_so_and_one_without_an_interval_has_none(
     stopped = fitted_as(
         trading(), is_at_bound=np.array([True, False]),
         standard_uncertainty=np.array([np.nan, 0.1]), low=np.array([np.nan, 0.9]),
-        high=np.array([np.nan, 1.1]), notes=("cord_load_scale was stopped at a bound",),
+        high=np.array([np.nan, 1.1]), notes=(note("number-at-bound", name="cord_load_scale"),),
     )  # fmt: skip
     one = view(stopped)
     table = calibration_table(one)
@@ -364,7 +365,7 @@ def test_a_number_that_was_stopped_says_so_and_one_without_an_interval_has_none(
     assert column(table, "at a bound") == ["yes", "no"]
     assert column(table, "95 % interval") == [NOT_GIVEN, "0.90 to 1.10"]
     warned = {one.text for one in _comparison_findings(one) if one.severity == "warning"}
-    assert "cord_load_scale was stopped at a bound" in warned
+    assert "cord_load_scale was stopped at a bound: its interval does not hold" in warned
 
 
 def test_correlations_are_a_square_with_the_index_below():
@@ -433,7 +434,7 @@ def test_a_section_has_its_parts_and_no_empty_one():
     assert section.title == "Comparison apart"
     assert section.subtitle == "test B-64 (static), specimen hose-64, against hose H64"
     ((_, notes),) = section.notes
-    assert notes == list(differing().notes)
+    assert notes == list(map(str, differing().notes))
 
 
 def test_chi_square_is_said_with_its_chance():

@@ -35,8 +35,10 @@ def make_view(test="T-1", *, units="si", kind="rubber tether", whole=(1.2e6, 1.1
         "test_mean_strain": (S, [1.0, 1.1]),
         "test_strain_amplitude": (S, [0.25, 0.25]),
         "test_frequency": (S, [0.1, 0.1]),
-        "note_stage": ("note", [stage for stage, _ in notes]),
-        "note": ("note", [text for _, text in notes]),
+        "note_stage": ("note", [stage for stage, _, _ in notes]),
+        "note": ("note", [text for _, text, _ in notes]),
+        "note_code": ("note", ["fixture" for _ in notes]),
+        "note_severity": ("note", [severity for *_, severity in notes]),
     }
     own = {
         S: ["new", "used"], "branch_name": ["ascending", "descending"],
@@ -78,7 +80,10 @@ def test_specimens_stand_together_in_the_order_of_the_campaign():
 
 
 def test_doubts_of_a_test_are_counted_beside_its_numbers():
-    notes = [("cycles", "the last cycle is broken"), ("moduli", "take an area of 5 cm2")]
+    notes = [
+        ("cycles", "the last cycle is broken", "warning"),
+        ("moduli", "one cycle only", "note"),
+    ]
     doubted, sound = make_view(notes=notes), make_view("T-2")
     column = {row[1]: row[9] for row in texts(design_modulus_table([doubted, sound]))}
     assert column == {"T-1": "1", "T-2": "none"}

@@ -14,6 +14,7 @@ import pytest
 
 from reduction.archive.open import open_archive
 from reduction.record.errors import ArchiveError
+from reduction.record.notes import Note
 from reduction.report.campaign_page import write_report
 from reduction.report.test_view import TestView
 
@@ -96,6 +97,10 @@ def report(tmp_path, write):
     return make
 
 
+def plain(text):
+    return Note("fixture", "note", text=text)
+
+
 def renamed(test, test_id, **attributes):
     about = test.description
     description = replace(about, test_id=test_id, attributes=about.attributes | attributes)
@@ -173,7 +178,7 @@ def test_names_with_markup_quotes_lines_and_500_characters_are_text(report, rich
         rich_test.specimens[1],
     )
     nasty = renamed(
-        replace(rich_test, specimens=specimens, notes=(NASTY, long)), "T-1",
+        replace(rich_test, specimens=specimens, notes=(plain(NASTY), plain(long))), "T-1",
         title=NASTY, operator=NASTY, summary=long,
     )  # fmt: skip
     page = report(nasty)
@@ -313,7 +318,8 @@ def test_notes_that_differ_in_numbers_alone_stand_once_on_top_and_all_in_their_s
     report, rich_test
 ):
     notes = tuple(f"window of 0.{place} of strain" for place in range(5))
-    page = report(replace(rich_test, notes=notes), renamed(rich_test, "T-2"))
+    told = replace(rich_test, notes=tuple(map(plain, notes)))
+    page = report(told, renamed(rich_test, "T-2"))
     text = "".join(page.text)
     assert text.count("of strain (and 4 more like it)") == 1
     assert all(text.count(note) >= 1 for note in notes)

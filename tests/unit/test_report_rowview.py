@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from reduction.archive.variables import read_notes
 from reduction.report.test_view import RowView
 
 DATA = xr.Dataset(
@@ -20,6 +21,9 @@ DATA = xr.Dataset(
         "mean": ("row", [7.0, 8.0]),
         "note": ("said", ["first", "second"]),
         "note_row": ("said", ["long", "short"]),
+        "note_stage": ("said", ["", ""]),
+        "note_code": ("said", ["one", "two"]),
+        "note_severity": ("said", ["warning", "note"]),
     },
     attrs={"synthetic": "Yes"},
 )
@@ -52,11 +56,17 @@ def test_what_an_archive_lacks_is_empty():
     assert np.isnan(row.scalar("absent")) and np.isnan(row.scalar("share"))
     assert np.isnan(row.array_like("share", np.zeros(2))).all()
     assert row.text("absent") == row.attribute("absent") == ""
-    assert row.notes_of("note_row", "neither", stage="predict") == {}
-    assert Row("row", DATA.drop_vars("note"), 0).notes_of("note_row", "long", stage="predict") == {}
+    assert read_notes(DATA, of=("note_row", "neither")) == ()
+    assert read_notes(DATA.drop_vars("note")) == ()
+
+
+def test_notes_of_an_archive_without_severities_are_told_as_notes():
+    found = read_notes(DATA.drop_vars(["note_stage", "note_code", "note_severity"]))
+    assert [(str(one), one.severity) for one in found] == [("first", "note"), ("second", "note")]
 
 
 def test_a_row_has_its_own_values_notes_and_says_that_it_is_synthetic():
     row = Row("row", DATA, 1)
     assert (row.text("name"), row.scalar("mean"), row.is_synthetic) == ("long", 8.0, True)
-    assert list(row.notes_of("note_row", row.text("name"), stage="predict")) == ["first"]
+    (first,) = read_notes(DATA, of=("note_row", row.text("name")))
+    assert (str(first), first.severity, first.code) == ("first", "warning", "one")

@@ -14,12 +14,12 @@ AWAY = np.array([1.0, -2.0, 1.0]) / np.sqrt(6)  # what no line through three row
 def test_a_stated_error_stands_up_to_the_quantile_and_widens_beyond():
     # 7.879 is the 99.5 % point of chi-square with one degree of freedom
     inside = _row_scatter(4.0, 2 * np.sqrt(7.87) * AWAY, LINE)
-    assert (inside.variance, inside.widening, inside.note) == (4.0, 1.0, "")
+    assert (inside.variance, inside.widening, inside.note) == (4.0, 1.0, None)
     beyond = _row_scatter(4.0, 2 * np.sqrt(7.89) * AWAY, LINE)
     assert beyond.widening == pytest.approx(np.sqrt(7.89))
     assert beyond.variance == pytest.approx(4.0 * 7.89)
-    assert beyond.note == (
-        "scatter 2.8 times as much as the tape explains (chi-square 7.89 of 1 degree of freedom, "
+    assert str(beyond.note) == (
+        "the rows scatter 2.8 times as much as the tape explains (chi-square 7.89 of 1 degree of freedom, "
         "one in 201); their uncertainty is widened by as much"
     )
 
@@ -59,7 +59,9 @@ def test_without_a_stated_error_an_interval_by_1_96_holds_95_per_cent():
 def test_without_a_stated_error_the_note_says_what_is_taken(size, note):
     found = _row_scatter(0.0, np.zeros(size), LINE[:, :size])
     assert found.variance == 0.0
-    assert found.note.startswith("have no stated reading error") and found.note.endswith(note)
+    assert str(found.note).startswith("the rows have no stated reading error") and str(
+        found.note
+    ).endswith(note)
 
 
 def test_a_row_to_spare_is_needed_to_refute_the_tape():
@@ -67,7 +69,7 @@ def test_a_row_to_spare_is_needed_to_refute_the_tape():
 
 
 def test_odds_that_are_too_small_to_print_are_not_printed():
-    assert "one in a million or more" in _row_scatter(1.0, 100 * AWAY, LINE).note
+    assert "one in a million or more" in str(_row_scatter(1.0, 100 * AWAY, LINE).note)
 
 
 def test_residuals_and_design_pair_up():

@@ -45,26 +45,26 @@ def stretched(scale, scatter=0.0):
 
 def test_agreeing_diameters_say_nothing():
     specimen = Specimen("a", diameter=(0.0264,), stretched_diameters=stretched(1.0, 0.005))
-    assert check_constant_volume(specimen) == ()
+    assert tuple(map(str, check_constant_volume(specimen))) == ()
 
 
 def test_a_difference_within_reading_scatter_says_nothing():
     specimen = Specimen("a", diameter=(0.0264,), stretched_diameters=stretched(1.01, 0.01))
-    assert check_constant_volume(specimen) == ()
+    assert tuple(map(str, check_constant_volume(specimen))) == ()
 
 
 def test_a_difference_beyond_reading_scatter_says_what_it_does_to_moduli():
     thick = Specimen("a", diameter=(0.0264,), stretched_diameters=stretched(1.05, 0.001))
-    assert "9.3 % lower" in check_constant_volume(thick)[0]  # 1 / 1.05**2 - 1
+    assert "9.3 % lower" in str(check_constant_volume(thick)[0])  # 1 / 1.05**2 - 1
     thin = Specimen("a", diameter=(0.0264,), stretched_diameters=stretched(0.95, 0.001))
-    assert "10.8 % higher" in check_constant_volume(thin)[0]  # 1 / 0.95**2 - 1
+    assert "10.8 % higher" in str(check_constant_volume(thin)[0])  # 1 / 0.95**2 - 1
 
 
 def test_one_stretched_reading_has_no_scatter_to_judge_by():
     specimen = Specimen("a", diameter=(0.0264,), stretched_diameters=((1.0, 0.01),))
-    assert check_constant_volume(specimen) == ()
+    assert tuple(map(str, check_constant_volume(specimen))) == ()
 
 
 def test_stretched_diameters_without_one_before_stretch_are_refused():
     with pytest.raises(DataError, match="specimen 'a' has no diameter"):
-        check_constant_volume(Specimen("a", stretched_diameters=stretched(1.0)))
+        tuple(map(str, check_constant_volume(Specimen("a", stretched_diameters=stretched(1.0)))))

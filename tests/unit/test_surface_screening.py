@@ -124,7 +124,7 @@ def test_a_response_names_or_a_level_that_do_not_fit_are_refused():
 
 def test_the_error_of_effects_is_named_where_it_is_no_dummies_of_one_specimen():
     assert screening_remarks(8, has_blocks=False) == []
-    lenth, blocks = screening_remarks(0, has_blocks=True)
+    lenth, blocks = map(str, screening_remarks(0, has_blocks=True))
     assert "Lenth" in lenth and "blocks" in blocks
     with pytest.raises(SettingsError, match="a number of columns; found -1"):
         screening_remarks(-1, has_blocks=False)

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.record.measurement import Bools, Floats, Integers
+from reduction.record.notes import Note, note
 from reduction.record.samples import BLOCK, sample_blocks, take_samples
 from reduction.stages.standstills import Standstills, median_step, noise_range
 
@@ -477,7 +478,8 @@ class _HalfCycles:
     last: Indices
     rises: Bools
     run: Indices
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
+    made: tuple[str, ...] = ()
 
 
 def _replaced(samples: Indices, old: Indices, new: Integers) -> Indices:
@@ -581,15 +583,15 @@ def find_half_cycles(
     cut = [at for run in runs for at in run.cut]
     short = [at for run in runs for at in run.short]
     paced = [at for run in runs for at in run.paced]
-    notes = []
-    for samples, what in (
-        (cut, "half cycles at the end of a run, cut where they pass their neighbours' level"),
-        (short, "half cycles at the end of a run, short of their neighbours' level, not counted"),
-        (paced, "half cycles at the end of a run that are no part of the sine, not counted"),
-        (gap_before, "gaps of the record longer than 30 % of a half cycle, each the end of a run"),
-    ):
-        if len(samples):
-            notes.append(f"{what}: {len(samples)}, first near {time[samples[0]]:g} s")
+    made = [
+        f"half cycles at the end of a run{what}: {len(samples)}, first near {time[samples[0]]:g} s"
+        for samples, what in (
+            (cut, ", cut where they pass their neighbours' level"),
+            (short, ", short of their neighbours' level, not counted"),
+            (paced, " that are no part of the sine, not counted"),
+        )
+        if samples
+    ]
     empty = np.empty(0, dtype=np.intp)
     first = np.concatenate([empty, *(run.nodes[:-1] for run in runs)])
     last = np.concatenate([empty, *(run.nodes[1:] for run in runs)])
@@ -603,7 +605,10 @@ def find_half_cycles(
         last=last,
         rises=rises,
         run=np.repeat(np.arange(len(runs)), [run.nodes.size - 1 for run in runs]),
-        notes=tuple(notes),
+        made=tuple(made),
+        notes=(note("gaps-end-runs", n_gaps=gap_before.size, time=float(time[gap_before[0]])),)
+        if gap_before.size
+        else (),
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
+from reduction.record.notes import Note
 from reduction.record.samples import release_pages, trim_heap
 
 
@@ -38,8 +39,10 @@ class Cycles:
         Smallest range of the control channel that makes a reversal. [m] or [N]
     counted_by : str
         ``reversals`` or ``machine counter``.
-    notes : tuple of str
-        Broken first or last cycles, a count that differs from the plan, ...
+    notes : tuple of Note
+        A count that differs from the plan, gaps of the record, ...
+    made : tuple of str
+        Half cycles at the ends of runs that were cut or left out: lines of the history.
     """
 
     first: Integers
@@ -52,7 +55,8 @@ class Cycles:
     is_constant_rate: Bools
     band: float
     counted_by: str = "reversals"
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
+    made: tuple[str, ...] = ()
 
     @property
     def n_cycles(self) -> int:

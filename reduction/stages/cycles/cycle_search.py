@@ -27,6 +27,7 @@ from reduction.quantities.names import BRANCH_NAMES, BRANCH_VALUES, PHASE_VALUES
 from reduction.record.arrays import as_same_shape
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers
+from reduction.record.notes import Note, note
 from reduction.record.samples import (
     empty_like,
     finite_extremes,
@@ -362,7 +363,7 @@ def _trimmed(
     branch_first: Indices,
     branch_last: Indices,
     settings: CycleSettings,
-) -> tuple[Indices, Indices, Floats, list[str]]:
+) -> tuple[Indices, Indices, Floats, list[Note]]:
     noise = estimate_noise(values)[0]
     if settings.waveform != "triangular":
         first, last = _stroke_span(values, branch_first, branch_last)
@@ -370,10 +371,7 @@ def _trimmed(
             first,
             last,
             _plateau_rates(time, values, branch_first, branch_last, noise=noise),
-            [
-                f"a {settings.waveform} waveform has no plateau of rate: the trimmed branches "
-                "leave out 5 % of the stroke at each end"
-            ],
+            [note("no-plateau", waveform=settings.waveform)],
         )
     first, last, rate = _constant_rate_span(
         time,
@@ -389,8 +387,12 @@ def _trimmed(
         last,
         rate,
         [
-            f"{bare} of {first.size} branches have no part at a constant rate, first near "
-            f"{time[branch_first[np.argmax(last < first)]]:g} s"
+            note(
+                "branches-without-constant-rate",
+                n_bare=bare,
+                n_branches=first.size,
+                time=float(time[branch_first[np.argmax(last < first)]]),
+            )
         ]
         if bare
         else [],
@@ -435,14 +437,12 @@ def find_cycles(
     tension = np.atleast_2d(np.asarray(tension, dtype=np.float64))
     time, position, _ = as_same_shape(time=time, position=position, tension=tension[0])
     values = _control_channel(position, tension, settings)
-    notes: list[str] = []
+    notes: list[Note] = []
+    made: tuple[str, ...] = ()
     reversals, band = _reversals(values, settings)
     reversals, jumps = drop_jumps(values, reversals)
     if jumps.size:
-        notes.append(
-            f"{jumps.size} jumps of the control channel and back are no reversals, first at "
-            f"{time[jumps[0]]:g} s"
-        )
+        notes.append(note("jumps-no-reversals", n_jumps=jumps.size, time=float(time[jumps[0]])))
     halves = find_half_cycles(
         time, values, reversals, standstills, band=band,
         is_sinusoidal=settings.waveform == "sinusoidal",
@@ -456,14 +456,13 @@ def find_cycles(
         counted_by = "machine counter"
         notes += _counter_notes(number, values, first, branch_first, branch_last, n_reversals, band)
     else:
+        made = halves.made
         notes += halves.notes
         if left_out.size:
-            notes.append(
-                f"cycles between two amplitudes, one branch of each, not counted: {left_out.size}, "
-                f"first at {time[left_out[0]]:g} s"
-            )
+            begins = float(time[left_out[0]])
+            notes.append(note("cycles-of-two-amplitudes", n_cycles=left_out.size, time=begins))
         if cycle_counter is not None:
-            notes.append("the machine's cycle counter never changes: reversals are counted instead")
+            notes.append(note("counter-constant"))
     if first.size == 0:
         raise DataError(
             "no whole cycle",
@@ -473,9 +472,11 @@ def find_cycles(
             hint=_HINT,
         )
     if first.size == 1:
-        notes.append("one cycle only: there is no scatter from cycle to cycle")
+        notes.append(note("one-cycle"))
     if settings.expected_cycles is not None and settings.expected_cycles != first.size:
-        notes.append(f"{first.size} whole cycles found, {settings.expected_cycles} planned")
+        notes.append(
+            note("cycles-not-as-planned", n_found=first.size, n_planned=settings.expected_cycles)
+        )
 
     start, stop, rate, trim_notes = _trimmed(
         time, values, branch_first.ravel(), branch_last.ravel(), settings
@@ -499,6 +500,7 @@ def find_cycles(
         band=float(band),
         counted_by=counted_by,
         notes=tuple(notes),
+        made=made,
     )
 
 
@@ -510,27 +512,28 @@ def _counter_notes(
     branch_last: Indices,
     n_reversals: int,
     band: float,
-) -> list[str]:
+) -> list[Note]:
     """What the machine's counter says that the reversals do not."""
     notes = []
     travel = take_samples(values, branch_last) - take_samples(values, branch_first)
     stroke = np.abs(travel).max(axis=1)
     still = stroke < band
     if still.any():
-        notes.append(
-            f"counted cycles without a stroke: {int(still.sum())}, first machine cycle "
-            f"{int(number[np.argmax(still)])}"
-        )
+        first_still = int(number[np.argmax(still)])
+        notes.append(note("counted-without-stroke", n_cycles=int(still.sum()), first=first_still))
     if number.size and (np.diff(number) != 1).any():
         row = int(np.argmax(np.diff(number) != 1))
         notes.append(
-            f"the log holds {number.size} of the machine's cycles {int(number[0])} to "
-            f"{int(number[-1])}: {int(number[row + 1])} follows {int(number[row])}"
+            note(
+                "counter-skips",
+                n_cycles=number.size,
+                first=int(number[0]),
+                last=int(number[-1]),
+                after=int(number[row + 1]),
+                before=int(number[row]),
+            )
         )
     moving = int((~still).sum())
     if moving != n_reversals:
-        notes.append(
-            f"the machine counted {moving} cycles with a stroke, the reversals give {n_reversals} "
-            "whole ones"
-        )
+        notes.append(note("counter-differs", n_counted=moving, n_reversals=n_reversals))
     return notes

@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike
 
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats
+from reduction.record.notes import Note, note
 from reduction.record.samples import (
     BLOCK,
     empty_like,
@@ -77,8 +78,8 @@ class Hold:
         Range of position that was allowed inside the standstill. [m]
     slack_tension : float
         Tension at or below which the specimen is slack. [N]
-    refusals, notes : list of str
-        Filled as the hold is reduced.
+    refusals, notes : list of Note
+        Filled as the hold is reduced; ``made``, how, too.
     """
 
     time: Floats
@@ -89,8 +90,9 @@ class Hold:
     ramp: Ramp | None
     position_tolerance: float
     slack_tension: float = 0.0
-    refusals: list[str] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
+    refusals: list[Note] = field(default_factory=list)
+    notes: list[Note] = field(default_factory=list)
+    made: list[str] = field(default_factory=list)
 
     @property
     def duration(self) -> float:
@@ -130,7 +132,7 @@ class _Ends:
 
 
 def _hold_ends(hold: Hold) -> _Ends:
-    """Tension at both ends of a hold; the stretches are named in its notes.
+    """Tension at both ends of a hold; the stretches are named in ``made``.
 
     Notes
     -----
@@ -153,7 +155,7 @@ def _hold_ends(hold: Hold) -> _Ends:
     n_final = max(3, int(FINAL_SHARE * hold.time.size))
     initial, u_initial = end_mean(hold.tension, n_samples=n_initial, at_end=False)
     final, u_final = end_mean(hold.tension, n_samples=n_final, at_end=True)
-    hold.notes.append(
+    hold.made.append(
         f"initial tension is the mean of the first {n_initial}, final tension of the last "
         f"{n_final} of {hold.time.size} samples"
     )
@@ -163,7 +165,7 @@ def _hold_ends(hold: Hold) -> _Ends:
     return _Ends(initial, final, drop, known, u_initial, u_final)
 
 
-def _step_reason(hold: Hold) -> str | None:
+def _step_reason(hold: Hold) -> Note | None:
     """Name a step of tension inside the hold, where there is one."""
     if hold.time.size < FEWEST_SAMPLES or not median_step_reaches(
         hold.time, 3, _longest_step(hold.time)
@@ -180,10 +182,7 @@ def _step_reason(hold: Hold) -> str | None:
         return None
     largest = max(steps, key=lambda step: abs(step.size))
     when = hold.time[largest.onset * size] - hold.start_time
-    return (
-        f"tension steps by {largest.size:.3g} N at {when:.0f} s into the hold, which "
-        "relaxation does not explain (a slip of the splice?)"
-    )
+    return note("hold-tension-steps", step=float(largest.size), time=float(when))
 
 
 def _longest_step(time: Floats) -> float:
@@ -193,7 +192,7 @@ def _longest_step(time: Floats) -> float:
     )
 
 
-def _motion_reason(hold: Hold, ends: _Ends) -> str | None:
+def _motion_reason(hold: Hold, ends: _Ends) -> Note | None:
     """Name a motion of the crosshead that is worth more than a tenth of the drop."""
     n_samples = max(3, int(FINAL_SHARE * hold.time.size))
     before, u_before = end_mean(hold.position, n_samples=n_samples, at_end=False)
@@ -201,18 +200,18 @@ def _motion_reason(hold: Hold, ends: _Ends) -> str | None:
     motion, noise = after - before, float(np.hypot(u_before, u_after))
     if hold.ramp is None or not np.isfinite(hold.ramp.stiffness):
         moved = abs(motion) > max(SIGNIFICANT * noise, 0.5 * hold.position_tolerance)
-        worth = ""
+        worth = float("nan")
     else:
         stiffness = abs(hold.ramp.stiffness)
         lost = abs(ends.initial - ends.final)
         moved = abs(motion) > SIGNIFICANT * noise and stiffness * abs(motion) > max(
             0.1 * lost, SIGNIFICANT * ends.drop_uncertainty * ends.initial
         )
-        worth = f", worth {stiffness * abs(motion):.3g} N"
-    return f"the crosshead moves by {motion:.2g} m in the hold{worth}" if moved else None
+        worth = stiffness * abs(motion)
+    return note("hold-crosshead-moves", motion=motion, worth=worth) if moved else None
 
 
-def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[str]:
+def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[Note]:
     """Everything that speaks against relaxation numbers from a hold.
 
     Notes
@@ -226,26 +225,22 @@ def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[st
     --------
     >>> t = np.linspace(0, 10, 101)
     >>> hold = Hold(t, 0 * t, 400 - t, 1 + 0 * t, 0.0, None, 0.01)
-    >>> _reasons_against(hold, _hold_ends(hold), HoldSettings())
-    ['the hold is too short: 10 s; 30 s or more are needed']
+    >>> [one.code for one in _reasons_against(hold, _hold_ends(hold), HoldSettings())]
+    ['hold-too-short']
     """
     reasons = []
     if hold.duration < settings.minimum_duration:
         reasons.append(
-            f"the hold is too short: {hold.duration:.3g} s; "
-            f"{settings.minimum_duration:g} s or more are needed"
+            note("hold-too-short", duration=hold.duration, needed=settings.minimum_duration)
         )
     if hold.time.size < FEWEST_SAMPLES:
-        reasons.append(f"too few samples: {hold.time.size}; {FEWEST_SAMPLES} are needed")
+        reasons.append(
+            note("hold-too-few-samples", n_samples=hold.time.size, needed=FEWEST_SAMPLES)
+        )
     if not ends.final > hold.slack_tension or not ends.drop_uncertainty < 1 / SIGNIFICANT:
-        reasons.append(
-            f"the specimen is slack: {ends.final:.3g} N; more than "
-            f"{hold.slack_tension:.3g} N is needed"
-        )
+        reasons.append(note("hold-slack", tension=ends.final, slack_tension=hold.slack_tension))
     elif ends.drop < -SIGNIFICANT * ends.drop_uncertainty:
-        reasons.append(
-            f"tension rises by {-ends.drop:.2%} over the hold (recovery after unloading, or drift)"
-        )
+        reasons.append(note("hold-tension-rises", rise=-ends.drop))
     reasons += [reason for reason in (_motion_reason(hold, ends), _step_reason(hold)) if reason]
     return reasons
 
@@ -354,10 +349,7 @@ _EMPTY = np.empty(0)
 def _rate(hold: Hold, ends: _Ends) -> Rate | None:
     """Share of tension lost per decade, or None with a refusal."""
     if hold.ramp is None:
-        hold.refusals.append(
-            "rate per decade: the record does not show the ramp, so the time since loading "
-            "is not known"
-        )
+        hold.refusals.append(note("rate-without-ramp"))
         return None
     since = hold.since_centre
     later = int(np.searchsorted(since, 0.0, side="right"))
@@ -366,12 +358,11 @@ def _rate(hold: Hold, ends: _Ends) -> Rate | None:
     try:
         slope = rate_per_decade(blocks, ramp_duration=hold.ramp_duration)
     except DataError as error:
-        hold.refusals.append(f"rate per decade: {error.problem}")
+        hold.refusals.append(note("no-rate", reason=error.problem))
         return None
     if -slope.value < SIGNIFICANT * slope.standard_uncertainty:
         hold.refusals.append(
-            f"rate per decade: a loss of {-slope.value:.2%} +- {slope.standard_uncertainty:.2%} "
-            "(one standard uncertainty) is not told from zero"
+            note("rate-not-told-from-zero", loss=-slope.value, spread=slope.standard_uncertainty)
         )
         return None
     return Rate(-slope.value, slope.standard_uncertainty, slope.elapsed_low, slope.elapsed_high)
@@ -381,8 +372,7 @@ def _prony(hold: Hold, ends: _Ends, settings: HoldSettings) -> PronyFit | None:
     """Prony series, or None with a refusal."""
     if ends.drop < SIGNIFICANT * ends.drop_uncertainty:
         hold.refusals.append(
-            f"Prony series: a drop of {ends.drop:.2%} +- {ends.drop_uncertainty:.2%} "
-            "(one standard uncertainty) is not told from zero"
+            note("drop-not-told-from-zero", drop=ends.drop, spread=ends.drop_uncertainty)
         )
         return None
     # The constant-rate ramp of the same centre and spread ends half its duration later.
@@ -400,17 +390,14 @@ def _prony(hold: Hold, ends: _Ends, settings: HoldSettings) -> PronyFit | None:
             weights=blocks.weight,
         )
     except FitError as error:
-        hold.refusals.append(f"Prony series: {error.problem} ({error.found})")
+        hold.refusals.append(note("no-prony-series", reason=error.problem, found=error.found))
         return None
 
 
 def _creep(hold: Hold) -> Rate | None:
     """Strain per decade, or None with a refusal."""
     if hold.ramp is None:
-        hold.refusals.append(
-            "rate per decade: the record does not show the ramp, so the time since loading "
-            "is not known"
-        )
+        hold.refusals.append(note("rate-without-ramp"))
         return None
     since, strain = hold.since_centre, hold.strain
     series = select_samples(
@@ -419,7 +406,7 @@ def _creep(hold: Hold) -> Rate | None:
     try:
         return creep_rate(*series, ramp_duration=hold.ramp_duration)
     except DataError as error:
-        hold.refusals.append(f"rate per decade: {error.problem}")
+        hold.refusals.append(note("no-rate", reason=error.problem))
         return None
 
 
@@ -430,20 +417,21 @@ def _describe(
     if hold.ramp is not None:
         added = "length" if on_tension else "tension"
         use = "counts" if on_tension else "enters the Prony terms"
-        hold.notes.append(
+        hold.made.append(
             f"ramp of {hold.ramp.end_time - hold.ramp.start_time:.3g} s; it acts as a step "
             f"{hold.ramp.end_time - hold.ramp.centre_time:.3g} s before the hold (centre of the "
             f"{added} it adds) and {use} as {hold.ramp.duration:.3g} s at constant rate"
         )
     if rate is not None:
-        hold.notes.append(
+        hold.made.append(
             f"rate per decade from {rate.elapsed_low:.3g} to {rate.elapsed_high:.3g} s after "
             "the centre of the ramp"
         )
     if hold.time.size < n_samples:
-        hold.notes.append(f"{n_samples - hold.time.size} of {n_samples} samples left out")
+        left_out = n_samples - hold.time.size
+        hold.notes.append(note("hold-samples-left-out", n_left_out=left_out, n_samples=n_samples))
     if follows_hold:
-        hold.notes.append("what an earlier hold has left to relax goes on under this one")
+        hold.made.append("what an earlier hold has left to relax goes on under this one")
 
 
 def _result(
@@ -468,14 +456,14 @@ def _result(
         lambda part: np.isfinite(hold.strain[part]), hold.time, hold.strain
     )
     if hold.time.size < 3:
-        hold.refusals.append(f"everything: {hold.time.size} samples in the hold")
+        hold.refusals.append(note("hold-empty", n_samples=hold.time.size))
     else:
         ends = _hold_ends(hold)
         tension_at = value_at_times(shifted(hold.time, hold.start_time), hold.tension, times)
         if known.size > 1:
             strain_at = value_at_times(shifted(times_known, hold.start_time), known, times)
         reasons = _reasons_against(hold, ends, settings) if kind == "relaxation" else []
-        hold.refusals.extend(f"drop, rate per decade, Prony series: {one}" for one in reasons)
+        hold.refusals.extend(reasons)
         if kind == "creep":
             rate = _creep(hold)
         elif not reasons:
@@ -514,6 +502,7 @@ def _result(
         criterion="" if prony is None else prony.criterion,
         refusals=tuple(hold.refusals),
         notes=tuple(hold.notes),
+        made=tuple(hold.made),
         ramp_centre_time=np.nan if hold.ramp is None else hold.ramp.centre_time,
         hold_strain_standard_uncertainty=hold.strain_uncertainty,
         hold_initial_tension_standard_uncertainty=ends.initial_uncertainty,

@@ -30,6 +30,7 @@ from numpy.typing import ArrayLike
 from reduction.record.arrays import as_finite, as_increasing, as_same_shape
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, Integers, read_only_arrays
+from reduction.record.notes import Note
 from reduction.record.samples import (
     mean_of,
     median_step_reaches,
@@ -59,7 +60,7 @@ class HoldResult:
         [s]
     hold_strain, hold_initial_tension, hold_final_tension : float
         Mean strain [1]; tension at the start and at the end of the hold, each the
-        mean of a short stretch that the notes name. [N]
+        mean of a short stretch that ``made`` names. [N]
     relaxation_drop, relaxation_drop_standard_uncertainty : float
         Share of the initial tension lost over the hold. [1]
     rate_per_decade, rate_per_decade_standard_uncertainty : float
@@ -75,10 +76,12 @@ class HoldResult:
         [N]
     criterion : str
         How the number of terms was chosen.
-    refusals : tuple of str
+    refusals : tuple of Note
         Numbers that are missing, each with its reason.
-    notes : tuple of str
-        How the finite ramp was treated, and other remarks.
+    notes : tuple of Note
+        What else there is to know.
+    made : tuple of str
+        Samples of the ends, how the finite ramp was treated: lines of the history.
     ramp_centre_time : float
         When the ramp acts as a step: zero of the time of the rate per decade; NaN where the
         record does not show the ramp. [s]
@@ -111,14 +114,20 @@ class HoldResult:
     long_time_tension: float
     long_time_tension_standard_uncertainty: float
     criterion: str = ""
-    refusals: tuple[str, ...] = field(default=())
-    notes: tuple[str, ...] = field(default=())
+    refusals: tuple[Note, ...] = field(default=())
+    notes: tuple[Note, ...] = field(default=())
+    made: tuple[str, ...] = field(default=())
     ramp_centre_time: float = float("nan")
     hold_strain_standard_uncertainty: float = float("nan")
     hold_initial_tension_standard_uncertainty: float = float("nan")
     hold_final_tension_standard_uncertainty: float = float("nan")
     tension_at_time_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
     strain_at_time_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
+
+    @property
+    def refused(self) -> str:
+        """Which numbers it does not give, and why; empty where it gives all."""
+        return "; ".join(str(one).removeprefix("refused: ") for one in self.refusals)
 
 
 def hold_numbers(holds: Sequence[HoldResult]) -> Integers:

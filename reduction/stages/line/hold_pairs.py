@@ -31,6 +31,7 @@ from scipy.special import stdtrit
 from reduction.record.arrays import as_positive, as_same_shape
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
+from reduction.record.notes import Note, note
 from reduction.record.samples import empty_like, finite_extremes, sample_blocks, select_samples
 from reduction.stages.holds.reduce_holds import Hold, select_hold
 from reduction.stages.holds.relaxation import (
@@ -65,7 +66,7 @@ class _StaticStiffness:
     stiffness_over_strength: float
     slope_per_decade_over_strength: float
     confidence: float
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -199,8 +200,12 @@ def _static_stiffness(
         notes=()
         if reaches
         else (
-            f"the stiffness at {reference_time:g} s is read off the line beyond the hold, which "
-            f"has readings from {clock[0]:.3g} to {clock[-1]:.3g} s",
+            note(
+                "stiffness-beyond-hold",
+                reference=reference_time,
+                first=float(clock[0]),
+                last=float(clock[-1]),
+            ),
         ),
     )
 
@@ -258,7 +263,7 @@ def creep_of_hold(hold: HoldResult, *, rated_break_strength: float = float("nan"
         creep_compliance_per_decade=hold.rate_per_decade / share if share else float("nan"),
         duration=hold.hold_duration,
         tension_standard_uncertainty=float(np.hypot(*of_ends)) / 2,
-        reason="; ".join(hold.refusals) if np.isnan(hold.rate_per_decade) else "",
+        reason=hold.refused if np.isnan(hold.rate_per_decade) else "",
     )
 
 

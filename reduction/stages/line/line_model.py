@@ -98,6 +98,7 @@ from scipy.special import ndtr, ndtri, stdtr, stdtrit
 from reduction.record.arrays import as_positive, as_same_shape
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats, Integers, read_only_arrays
+from reduction.record.notes import Note, note
 from reduction.stages.line.line_product import REASONS, LineParameters
 
 
@@ -435,19 +436,19 @@ def amplitude_sensitivities(
 _UNKNOWN_REST, _BAD_REST, _MISSING, NOT_POSITIVE, TOO_WIDE, _NOT_ABOVE = range(1, 7)
 
 
-def reasons_in_words(reason: ArrayLike) -> tuple[str, ...]:
+def refused_lines(reason: ArrayLike) -> tuple[Note, ...]:
     """How many lines have no K_1 and tau, and why.
 
     Examples
     --------
-    >>> reasons_in_words([0, 6, 6])
-    ('K_1 and tau: 2 of 3 are refused: the storage spring constant does not exceed the
-    quasi-static one',)
+    >>> print(refused_lines([0, 6, 6])[0])
+    K_1 and tau: 2 of 3 are refused: the storage spring constant does not exceed the
+    quasi-static one
     """
     codes, counts = np.unique(np.asarray(reason), return_counts=True)
     total = int(counts.sum())
     return tuple(
-        f"K_1 and tau: {count} of {total} are refused: {REASONS[int(code)]}"
+        note("no-line", n_lines=int(count), n_all=total, reason=REASONS[int(code)])
         for code, count in zip(codes, counts, strict=True)
         if code
     )
@@ -547,7 +548,7 @@ def _line_of_loop(
         shared_uncertainty=shared,
         uncertainty=both,
         reading=reading,
-        notes=reasons_in_words(reason),
+        notes=refused_lines(reason),
     )
 
 

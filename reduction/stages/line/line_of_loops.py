@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike
 
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
+from reduction.record.notes import Note, note
 from reduction.stages.cycles.cycle_product import Loops
 from reduction.stages.line.line_model import (
     AMPLITUDE_INPUTS,
@@ -176,7 +177,7 @@ def _amplitude_correlation(loops: Loops) -> Floats:
     return np.nan_to_num(correlation)
 
 
-def _remarks(loops: Loops, line: LineParameters) -> tuple[str, ...]:
+def _remarks(loops: Loops, line: LineParameters) -> tuple[Note, ...]:
     """What is odd about the loops for a line of three parameters."""
     remarks = list(line.notes)
     known = line.reason == 0
@@ -187,24 +188,19 @@ def _remarks(loops: Loops, line: LineParameters) -> tuple[str, ...]:
         lost = lost if lost.shape == known.shape else np.nanmean(lost, axis=1)
         ratio = float(np.nanmedian(own / lost[known]))
         if abs(ratio - 1) > _NOT_AN_ELLIPSE:
-            remarks.append(
-                f"the loops are no ellipses: E'' by area and amplitudes is {ratio:.2f} of E'' of "
-                "the fundamental, so K_1 and tau of the fundamental are the sounder ones"
-            )
+            remarks.append(note("loops-no-ellipses", ratio=ratio))
     with np.errstate(invalid="ignore"):
         relative = line.shared_uncertainty["dissipation_spring_constant"]
         skewed = relative > _SKEWED * line.dissipation_spring_constant
     if skewed.any():
+        n_skewed = int(skewed.sum())
         remarks.append(
-            f"K_1 and tau: in {int(skewed.sum())} of {skewed.size} the uncertainty of K_0 is more "
-            f"than {_SKEWED:.0%} of K_1; their standard uncertainties say little"
+            note("line-uncertainty-skewed", n_skewed=n_skewed, n_lines=skewed.size, limit=_SKEWED)
         )
     slack = loops.valley_tension <= _SLACK_SHARE * loops.peak_tension
     if slack.any():
-        remarks.append(
-            f"the line goes slack in {int(slack.sum())} of {slack.size} loops, and the model of "
-            "springs and a dashpot does not hold there"
-        )
+        n_slack = int(slack.sum())
+        remarks.append(note("line-slack-in-loops", n_slack=n_slack, n_loops=slack.size))
     return tuple(remarks)
 
 

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, read_only_arrays
+from reduction.record.notes import Note
 
 REASONS: dict[int, str] = {
     0: "",
@@ -71,7 +72,7 @@ class LineParameters:
         NaN where an uncertainty that goes in is not stated.
     reading : str
         ``amplitude`` or ``fundamental``.
-    notes : tuple of str
+    notes : tuple of Note
         What a reader of the numbers has to know.
     """
 
@@ -90,7 +91,7 @@ class LineParameters:
     shared_uncertainty: dict[str, Floats]
     uncertainty: dict[str, Floats]
     reading: str = "amplitude"
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -139,7 +140,7 @@ class SlowPull:
         K_0 as A + B T + C T^2 + D T^3, for those who need the printed form. [N N-k]
     polynomial_deviation : float
         Greatest distance of that form from the slope over the range of use, as a share. [1]
-    notes : tuple of str
+    notes : tuple of Note
         What a reader of the numbers has to know.
     """
 
@@ -168,7 +169,7 @@ class SlowPull:
     reference_tension: float
     polynomial_coefficient: Floats
     polynomial_deviation: float
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
     @property
     def strain_coefficient(self) -> Floats:

@@ -33,6 +33,7 @@ from numpy.typing import ArrayLike
 from reduction.record.arrays import as_same_shape
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
+from reduction.record.notes import Note, note
 from reduction.stages.cycles.cycle_product import Loops
 from reduction.stages.cycles.loop_energy import reading_noise
 from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair
@@ -98,7 +99,7 @@ class DynamicStiffness:
         Over the rated break strength, which counts as exact. [1]
     mean_tension_over_strength, tension_amplitude_over_strength : ndarray
         [1]
-    notes : tuple of str
+    notes : tuple of Note
         Levels with fewer cycles than asked for.
     """
 
@@ -118,7 +119,7 @@ class DynamicStiffness:
     frequency_standard_uncertainty: Floats
     mean_tension_standard_uncertainty: Floats
     tension_amplitude_standard_uncertainty: Floats
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
 
 def summarise_bedding_in(loops: Loops, *, rated_break_strength: ArrayLike) -> BeddingIn:
@@ -268,7 +269,14 @@ def dynamic_stiffness(
     for column, name in enumerate(names):
         cycles = np.flatnonzero(labels == name)
         if cycles.size < last_cycles:
-            notes.append(f"level {name} has {cycles.size} of the {last_cycles} cycles asked for")
+            notes.append(
+                note(
+                    "level-with-few-cycles",
+                    level=str(name),
+                    n_cycles=cycles.size,
+                    n_asked=last_cycles,
+                )
+            )
         cycles = cycles[-last_cycles:]
         series = loops.apparent_spring_constant[:, cycles]
         used[:, column] = np.isfinite(series).sum(axis=1)
@@ -661,4 +669,4 @@ class RopeStep:
     creep: tuple[CreepOfHold, ...] = ()
     lasted: CyclesToFailure | None = None
     tensile: TensilePull | None = None
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()

@@ -52,6 +52,7 @@ from numpy.typing import ArrayLike
 from reduction.record.arrays import as_positive, as_same_shape
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats, Integers
+from reduction.record.notes import Note, note
 from reduction.stages.cycles.cycle_product import Loops
 from reduction.stages.cycles.loop_energy import reading_noise
 from reduction.stages.line.line_product import SlowPull
@@ -448,32 +449,20 @@ def _remarks(
     waiting: bool,
     cut: bool,
     misfit: float,
-) -> tuple[str, ...]:
-    remarks = []
-    if misfit > MISFIT_NOTED:
-        remarks.append(
-            f"a cubic misses the load-strain curve by {misfit:.1%} of its strain (rms): strain "
-            "and K_0 by it are no values to design by"
-        )
-    if fall > _FALL_NOTED:
-        remarks.append(f"tension falls by {fall:.1%} of the rise on the way to the peak")
-    if rates[2] > _UNEVEN_RATE * rates[1]:
-        remarks.append(
-            f"the strain rate is uneven: from {rates[1]:.2g} to {rates[2]:.2g} 1/s over quarters "
-            "of the range"
-        )
-    if not np.isfinite(reference_length):
-        remarks.append("the length at which strain is zero is not stated")
-    if not np.isnan(reference_strain):
-        remarks.append(
-            f"strain is {reference_strain:+.2%} at the reference tension, so the reference length "
-            "was read elsewhere, or the line has lengthened since"
-        )
-    if not waiting:
-        remarks.append("the time since the last dynamic test is not stated, and K_0 depends on it")
-    if cut:
-        remarks.append("the range of use ends where the slope of the cubic turns")
-    return tuple(remarks)
+) -> tuple[Note, ...]:
+    found = (
+        (misfit > MISFIT_NOTED, note("pull-misfit", misfit=misfit)),
+        (fall > _FALL_NOTED, note("pull-falls", fall=fall)),
+        (
+            rates[2] > _UNEVEN_RATE * rates[1],
+            note("pull-rate-uneven", low=rates[1], high=rates[2]),
+        ),
+        (not np.isfinite(reference_length), note("pull-length-not-stated")),
+        (not np.isnan(reference_strain), note("pull-off-zero", strain=reference_strain)),
+        (not waiting, note("pull-waiting-not-stated")),
+        (cut, note("pull-cut-at-turn")),
+    )
+    return tuple(one for is_so, one in found if is_so)
 
 
 def fit_pull(
@@ -832,7 +821,7 @@ def spring_constant_ratio(
 
 def quasi_static_of_run(
     loops: Loops, pulls: Sequence[SlowPull | None], *, break_in_cycles: int = 0
-) -> tuple[Floats, Floats, tuple[str, ...]]:
+) -> tuple[Floats, Floats, tuple[Note, ...]]:
     """K_0 of each specimen at the mean tension of a run.
 
     Parameters
@@ -848,7 +837,7 @@ def quasi_static_of_run(
     -------
     quasi_static_spring_constant, standard_uncertainty : ndarray, shape (n_specimens,)
         NaN without a pull, or with a mean tension outside its range of use. [N]
-    notes : tuple of str
+    notes : tuple of Note
         Why a specimen has none, and a drift of the mean tension that matters.
 
     Raises
@@ -879,28 +868,37 @@ def quasi_static_of_run(
             f"{n_cycles} cycles",
         )
     constant, uncertainty = np.full((2, n_specimens), np.nan)
-    notes: list[str] = []
+    notes: list[Note] = []
     for row, pull in enumerate(pulls):
         load = loops.mean_tension[row, break_in_cycles:]
         load = load[np.isfinite(load)]
         if pull is None or load.size == 0:
-            notes.append(
-                f"specimen {row + 1} has no " + ("slow pull" if pull is None else "mean tension")
-            )
+            lacking = "slow pull" if pull is None else "mean tension"
+            notes.append(note("no-slow-pull", place=row + 1, lacking=lacking))
             continue
         mean = float(load.mean())
         constant[row], uncertainty[row] = quasi_static_spring_constant(pull, mean)
         if np.isnan(constant[row]):
             notes.append(
-                f"the mean tension of {mean:.4g} N lies outside the {pull.tension_low:.4g} to "
-                f"{pull.tension_high:.4g} N of the slow pull of {pull.specimen or row + 1}"
+                note(
+                    "mean-tension-outside-pull",
+                    mean=mean,
+                    low=pull.tension_low,
+                    high=pull.tension_high,
+                    pull=pull.specimen or row + 1,
+                )
             )
             continue
         ends, _ = quasi_static_spring_constant(pull, [float(load[0]), float(load[-1])])
         change = float(ends[1] / ends[0]) - 1
         if abs(change) > _DRIFT_NOTED:
             notes.append(
-                f"the mean tension drifts from {load[0]:.4g} to {load[-1]:.4g} N over the run, "
-                f"which changes K_0 by {change:+.0%}; K_0 is that at {mean:.4g} N"
+                note(
+                    "mean-tension-drifts",
+                    first=float(load[0]),
+                    last=float(load[-1]),
+                    effect=change,
+                    mean=mean,
+                )
             )
     return constant, uncertainty, tuple(notes)

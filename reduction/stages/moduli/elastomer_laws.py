@@ -31,6 +31,7 @@ from numpy.typing import ArrayLike
 from reduction.record.arrays import as_positive, as_same_shape
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Floats
+from reduction.record.notes import note
 from reduction.stages.moduli.least_squares import fit_separable, lag_one_inflation
 from reduction.stages.moduli.modulus_product import ElastomerFit
 
@@ -395,7 +396,7 @@ def fit_elastomers(
                     float(x[-1]),
                     False,
                     np.nan,
-                    (f"not fitted: {error}",),
+                    (note("law-not-fitted", reason=str(error)),),
                 )
             )
             continue
@@ -406,14 +407,10 @@ def fit_elastomers(
         notes = []
         vague = [name for name, u in zip(names, spread, strict=True) if u > abs(parameters[name])]
         if vague:
-            notes.append(f"not told from zero: {', '.join(vague)}")
+            notes.append(note("law-not-told-from-zero", names=", ".join(vague)))
         stable = _is_stable(law=law, parameters=parameters, strain_high=float(x[-1]))
         if not stable:
-            notes.append(
-                "the fitted law is not stable: below a strain of "
-                f"{100 * float(x[-1]):.3g} % its stress falls with strain in uniaxial, biaxial "
-                "or shear deformation; do not use it in a model"
-            )
+            notes.append(note("law-not-stable", strain=float(x[-1])))
         fits.append(
             ElastomerFit(
                 specimen=specimen,

@@ -319,8 +319,8 @@ def first_loading_curves(
         selected_cycle=np.empty(0, dtype=np.int64),
         tangent_modulus_by_cycle=none_selected,
         tangent_modulus_by_cycle_standard_uncertainty=none_selected.copy(),
-        notes=(
-            f"first loading: {max(rise.n_pieces for rise in rises)} rising "
+        made=(
+            f"{max(rise.n_pieces for rise in rises)} rising "
             f"pieces between holds, window {grid.window:g} of strain",
         ),
     )

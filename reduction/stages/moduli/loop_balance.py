@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from reduction.record.arrays import run_blocks
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers
+from reduction.record.notes import note
 from reduction.record.samples import BLOCK, count_samples, sample_blocks, take_samples, thinned
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.moduli.local_regression import sums_by_cell
@@ -146,20 +147,6 @@ def _mean_over_cycles(residual: Floats) -> tuple[Floats, Floats]:
     return mean, np.where(count > 1, error, np.nan)
 
 
-def _judgement(mean: float, error: float, n_pieces: int) -> str:
-    causes = [
-        "strain and tension may not be sampled together (lag)",
-        "tension may change while strain stands (a dwell), or strain may not be that of the "
-        "rubber alone (slip, slack)",
-    ]
-    if n_pieces < _MOST_PIECES:
-        causes.append("a branch has few samples for its curvature")
-    return (
-        f"the closed-cycle identity leaves {mean:+.1%} of the stroke-mean modulus (standard "
-        f"error {error:.1%}): " + "; or ".join(causes)
-    )
-
-
 def check_identity(
     strain: ArrayLike,
     tension: ArrayLike,
@@ -275,7 +262,7 @@ def check_identity(
         mean_identity_residual=mean,
         mean_identity_residual_standard_uncertainty=error,
         notes=tuple(
-            f"{name}: {_judgement(one, spread, n_pieces)}"
+            note("identity-open", name, effect=one, error=spread, is_coarse=n_pieces < _MOST_PIECES)
             for name, one, spread in zip(names, mean, error, strict=True)
             if abs(one) > max(_SIGNIFICANT * spread, _WORTH_A_NOTE)
         ),

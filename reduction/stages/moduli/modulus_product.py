@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
+from reduction.record.notes import Note
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,8 @@ class ModulusCurves:
         Numbers of the cycles whose curves are kept.
     tangent_modulus_by_cycle, tangent_modulus_by_cycle_standard_uncertainty : ndarray
         Shape (n_specimens, n_selected, 2, n_bins). [Pa]
+    made : tuple of str
+        How they were made, with numbers that stand nowhere else: lines of the history.
     """
 
     strain_bin: Floats
@@ -62,7 +65,8 @@ class ModulusCurves:
     selected_cycle: Integers
     tangent_modulus_by_cycle: Floats
     tangent_modulus_by_cycle_standard_uncertainty: Floats
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
+    made: tuple[str, ...] = ()
     branch_tension_count: Integers | None = None
 
 
@@ -123,7 +127,7 @@ class CycleIdentity:
     identity_residual: Floats
     mean_identity_residual: Floats
     mean_identity_residual_standard_uncertainty: Floats
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -187,6 +191,8 @@ class Slips:
         Splice length let out, from the step and the slope of tension on position. [m]
     creep_per_cycle : ndarray, shape (n_specimens,)
         Steady drift of peak tension in the last half of the test, steps taken out. [N]
+    made : tuple of str
+        Why slips were not looked for: a line of the history.
     """
 
     specimen: tuple[str, ...]
@@ -198,7 +204,8 @@ class Slips:
     slip_length: Floats
     slip_length_standard_uncertainty: Floats
     creep_per_cycle: Floats
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
+    made: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -207,7 +214,7 @@ class Ratio:
     """Ratio of two specimens' (or two tests') modulus on one strain axis.
 
     Arrays have shape (2, n_bins); the interval holds 95 %, by the ``degrees_of_freedom`` of the
-    standard uncertainty. ``notes`` begin with what is in the interval.
+    standard uncertainty.
     """
 
     numerator: str
@@ -218,7 +225,7 @@ class Ratio:
     ratio_low: Floats
     ratio_high: Floats
     is_different: Bools
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
     degrees_of_freedom: Floats = field(default_factory=lambda: np.array(np.inf))
 
 
@@ -252,4 +259,4 @@ class ElastomerFit:
     strain_high: float
     is_stable: bool
     aicc: float
-    notes: tuple[str, ...] = field(default=())
+    notes: tuple[Note, ...] = field(default=())

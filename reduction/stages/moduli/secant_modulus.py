@@ -36,6 +36,7 @@ from scipy.special import stdtrit
 from reduction.record.arrays import as_positive
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
+from reduction.record.notes import note
 from reduction.record.samples import take_samples
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.loop_energy import reading_noise
@@ -332,11 +333,6 @@ _CONFIDENCE = 0.95
 _MANY = 1e9
 """Degrees of freedom of hundreds of samples."""
 
-_TYPE_A = (
-    "the interval holds what differs from cycle to cycle (type A); errors of area, calibration "
-    "and splice strain that the two do not share are not in it"
-)
-
 
 @dataclass(frozen=True)
 class _Side:
@@ -357,9 +353,7 @@ def _ratio(strain: Floats, above: _Side, below: _Side) -> Ratio:
         freedom = total**2 / (relative[0] ** 2 / above.freedom + relative[1] ** 2 / below.freedom)
         uncertainty = np.abs(ratio) * np.sqrt(total)
         reach = uncertainty * stdtrit(np.where(total > 0, freedom, 1), (1 + _CONFIDENCE) / 2)
-    notes = [_TYPE_A]
-    if not np.isfinite(ratio).any():
-        notes.append(f"{above.name} and {below.name} have no strain in common")
+    is_apart = not np.isfinite(ratio).any()
     low, high = ratio - reach, ratio + reach
     return Ratio(
         numerator=above.name,
@@ -370,7 +364,7 @@ def _ratio(strain: Floats, above: _Side, below: _Side) -> Ratio:
         ratio_low=low,
         ratio_high=high,
         is_different=(low > 1) | (high < 1),
-        notes=tuple(notes),
+        notes=(note("no-common-strain", above=above.name, below=below.name),) if is_apart else (),
         degrees_of_freedom=freedom,
     )
 

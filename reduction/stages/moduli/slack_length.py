@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from reduction.record.arrays import as_positive, as_same_shape
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
+from reduction.record.notes import Note, note
 from reduction.record.samples import first_sample, last_sample
 
 FEWEST_SAMPLES = 3
@@ -49,7 +50,7 @@ class SlackStrain:
         Change of it with the tension that counts as slack. [N-1]
     by_lag : ndarray
         Change of it with a time by which tension is logged late. [s-1]
-    remarks : tuple of str, length n_specimens
+    remarks : tuple of Note or None, length n_specimens
         Why the number is missing; empty where it is there.
     """
 
@@ -57,7 +58,7 @@ class SlackStrain:
     standard_uncertainty: Floats
     by_tension: Floats
     by_lag: Floats
-    remarks: tuple[str, ...]
+    remarks: tuple[Note | None, ...]
 
 
 def _slack_position(
@@ -241,5 +242,5 @@ def slack_strain_at_unloading(
         uncertainty[row] = np.hypot(*at.standard_uncertainty) / length
         by_tension[row] = (at.compliance[1] - at.compliance[0]) / length
         by_lag[row] = (at.rate[1] - at.rate[0]) / length
-        remarks.append(f"slack strain at unloading not given: {reason}" if reason else "")
+        remarks.append(note("slack-strain-not-given", reason=reason) if reason else None)
     return SlackStrain(found, uncertainty, by_tension, by_lag, tuple(remarks))

@@ -45,6 +45,7 @@ from scipy.special import chdtri, ndtri
 from reduction.record.arrays import as_finite
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers
+from reduction.record.notes import Note, note
 from reduction.record.samples import sample_blocks
 from reduction.record.settings import SlipSettings
 from reduction.stages.cycles.cycle_product import Loops
@@ -564,14 +565,9 @@ def _creep_per_cycle(series: Floats, steps: tuple[_SlipStep, ...]) -> float:
     return float(np.linalg.lstsq(basis, series[half])[0][1] / n_samples)
 
 
-def _remarks(name: str, steps: tuple[_SlipStep, ...], sizes: Floats) -> list[str]:
+def _remarks(name: str, steps: tuple[_SlipStep, ...], sizes: Floats) -> list[Note]:
     rises = [str(step.onset + 1) for step, size in zip(steps, sizes, strict=True) if size > 0]
-    if not rises:
-        return []
-    return [
-        f"{name}: tension steps up at cycle {', '.join(rises)}; a splice cannot take up "
-        "length, look at the zero of the load cell and the set point of the crosshead"
-    ]
+    return [note("tension-steps-up", name, cycles=", ".join(rises))] if rises else []
 
 
 def find_slips(
@@ -642,19 +638,18 @@ def find_slips(
             needed=f"level {peaks.shape}, {peaks.shape[0]} names and slopes",
         )
     n_cycles = peaks.shape[1]
-    notes: list[str] = []
+    notes: list[Note] = []
+    made: tuple[str, ...] = ()
     names: list[str] = []
     steps: list[_SlipStep] = []
     sizes, lengths = [np.empty((2, 0))], [np.empty((2, 0))]
     creep = np.full(len(specimens), np.nan)
     if n_cycles < settings.minimum_cycles:
-        notes.append(
-            f"slip not looked for: {n_cycles} cycles; {settings.minimum_cycles} or more are needed"
-        )
+        made = (f"not looked for: {n_cycles} cycles; {settings.minimum_cycles} or more are needed",)
     for row, name in enumerate(specimens if n_cycles >= settings.minimum_cycles else ()):
         missing = int(np.sum(~np.isfinite(level[row]) | ~np.isfinite(peaks[row])))
         if missing > n_cycles // 2:
-            notes.append(f"{name}: slip not looked for: {missing} of {n_cycles} cycles are missing")
+            notes.append(note("slip-cycles-missing", name, n_missing=missing, n_cycles=n_cycles))
             continue
         found = find_steps(_filled(level[row]), false_alarm=settings.false_alarm)
         peak = _filled(peaks[row])
@@ -678,10 +673,11 @@ def find_slips(
         slip_length_standard_uncertainty=slip_length[1],
         creep_per_cycle=creep,
         notes=tuple(notes),
+        made=made,
     )
 
 
-def _shared_steps(names: list[str], steps: list[_SlipStep]) -> list[str]:
+def _shared_steps(names: list[str], steps: list[_SlipStep]) -> list[Note]:
     """Note steps of two specimens in the same cycles: more likely the machine than the splices."""
     shared = {
         step.onset + 1
@@ -691,7 +687,4 @@ def _shared_steps(names: list[str], steps: list[_SlipStep]) -> list[str]:
         and step.onset_low <= other.end_high
         and other.onset_low <= step.end_high
     }
-    return [
-        f"two specimens step at cycle {cycle}: look at the crosshead before the splices"
-        for cycle in sorted(shared)
-    ]
+    return [note("specimens-step-together", cycle=cycle) for cycle in sorted(shared)]

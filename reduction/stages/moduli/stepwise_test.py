@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 from reduction.record.arrays import as_finite, as_positive, as_same_shape
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, StepReadings, read_only_arrays
+from reduction.record.notes import Note, note
 
 STRAIN_DIGIT = 0.01
 """A recorded elongation is a whole per cent; readings that differ by less agree. [1]"""
@@ -188,7 +189,9 @@ class StepwiseResult:
     secant_modulus, secant_modulus_standard_uncertainty : ndarray
         Stress over strain; NaN where the reading is inconsistent. Uncertainty of the
         reading and of the weight alone, as that of the intervals. [Pa]
-    notes : tuple of str
+    notes : tuple of Note
+    made : tuple of str
+        How it was made, with numbers that stand nowhere else: lines of the history.
     length_standard_uncertainty, tension_standard_uncertainty : float
         Of one reading of length, stated or from its scatter, and of one weight as stated; NaN
         where neither is known. [m], [N]
@@ -212,31 +215,32 @@ class StepwiseResult:
     interval_branch: Integers
     secant_modulus: Floats
     secant_modulus_standard_uncertainty: Floats
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
+    made: tuple[str, ...] = ()
     length_standard_uncertainty: float = float("nan")
     tension_standard_uncertainty: float = float("nan")
 
 
-def _gauge_notes(
-    gauge: float, readings: StepReadings, is_inconsistent: Bools, stated: float | None
-) -> list[str]:
+def _made(gauge: float, readings: StepReadings, is_inconsistent: Bools) -> tuple[str, ...]:
+    """Where the gauge length is from, and how well the rows agree with it."""
     known = np.isfinite(readings.printed_strain)
-    notes = []
-    if known.any():
-        difference = readings.length / gauge - 1 - readings.printed_strain
-        agreeing = known & ~is_inconsistent
-        notes.append(
-            f"gauge length {1e3 * gauge:.1f} mm from length and recorded elongation; "
-            f"{int(agreeing.sum())} of {int(known.sum())} rows agree within "
-            f"{100 * float(np.abs(difference[agreeing]).max(initial=0.0)):.1f} points of strain"
-        )
-        if stated is not None and abs(stated / gauge - 1) > STRAIN_DIGIT:
-            low, high = (100 * (end / stated - 1) for end in _ends(readings.length))
-            notes.append(
-                f"the stated gauge length {1e3 * stated:.1f} mm is not used: it would give strains "
-                f"of {low:.0f} to {high:.0f} %, which the recorded elongations contradict"
-            )
-    return notes
+    if not known.any():
+        return ()
+    difference = readings.length / gauge - 1 - readings.printed_strain
+    agreeing = known & ~is_inconsistent
+    return (
+        f"gauge length {1e3 * gauge:.1f} mm from length and recorded elongation; "
+        f"{int(agreeing.sum())} of {int(known.sum())} rows agree within "
+        f"{100 * float(np.abs(difference[agreeing]).max(initial=0.0)):.1f} points of strain",
+    )
+
+
+def _gauge_notes(gauge: float, readings: StepReadings, stated: float | None) -> list[Note]:
+    is_recorded = np.isfinite(readings.printed_strain).any()
+    if not is_recorded or stated is None or abs(stated / gauge - 1) <= STRAIN_DIGIT:
+        return []
+    low, high = (end / stated - 1 for end in _ends(readings.length))
+    return [note("gauge-length-contradicted", stated=stated, low=low, high=high)]
 
 
 def _ends(values: Floats) -> tuple[float, float]:
@@ -245,25 +249,29 @@ def _ends(values: Floats) -> tuple[float, float]:
 
 def _inconsistency_note(
     row: int, readings: StepReadings, gauge: float, area: float, is_inconsistent: Bools
-) -> str:
+) -> Note:
     """What a row would be if its elongation is right and its length is not."""
     length, printed = readings.length, readings.printed_strain
     corrected = gauge * (1 + printed[row])
-    text = (
-        f"{readings.clock[row]}: length {1e3 * length[row]:.1f} mm is "
-        f"{100 * (length[row] / gauge - 1):.0f} %, recorded is {100 * printed[row]:.0f} %; the row "
-        f"gives no modulus. A length of {1e3 * corrected:.1f} mm would agree"
-    )
+    speaks_for = ""
     eye, sound = readings.eye_to_eye_length, ~is_inconsistent
     sound &= np.isfinite(eye)
     if np.isfinite(eye[row]) and sound.sum() > 2:
         line = np.polynomial.Polynomial.fit(length[sound], eye[sound], 1)
         closer = abs(line(corrected) - eye[row]) < abs(line(length[row]) - eye[row])
-        text += f" (the eye-to-eye length speaks for the {'elongation' if closer else 'length'})"
+        speaks_for = "elongation" if closer else "length"
     strain = np.where(np.arange(length.size) == row, printed[row], length / gauge - 1)
     modulus = _interval_slopes(readings.tension, strain, area=area)[1]
-    beside = [f"{modulus[i] / 1e6:.2f}" for i in (row - 1, row) if 0 <= i < modulus.size]
-    return f"{text}, and the intervals beside it would be {' and '.join(beside)} MPa"
+    return note(
+        "reading-inconsistent",
+        readings.clock[row],
+        length=float(length[row]),
+        strain=float(length[row] / gauge - 1),
+        recorded=float(printed[row]),
+        corrected=float(corrected),
+        speaks_for=speaks_for,
+        beside=[float(modulus[i]) for i in (row - 1, row) if 0 <= i < modulus.size],
+    )
 
 
 def _gauge(readings: StepReadings, stated: float | None) -> tuple[float, float, Bools]:
@@ -372,17 +380,14 @@ def reduce_stepwise(
     growth, weight_change = np.diff(length), np.diff(readings.tension)
     against = (growth * weight_change < 0) | ((weight_change == 0) & (growth != 0))
     is_creep = np.concatenate([[False], against & ~(is_inconsistent[:-1] | is_inconsistent[1:])])
-    notes = _gauge_notes(gauge, readings, is_inconsistent, stated_gauge_length)
+    notes = _gauge_notes(gauge, readings, stated_gauge_length)
 
     reading = readings.length_standard_uncertainty
     if not np.isfinite(reading):
         difference = (length - gauge * (1 + readings.printed_strain))[~is_inconsistent]
         difference = difference[np.isfinite(difference)]
         reading = float(np.sqrt(np.mean(difference**2))) if difference.size else float("nan")
-        notes.append(
-            "the uncertainty of a length is not stated; the scatter between length and recorded "
-            f"elongation, {1e3 * reading:.2f} mm, is taken for it"
-        )
+        notes.append(note("length-error-from-scatter", scatter=reading))
     weight = readings.tension_standard_uncertainty
     interval_strain, modulus, uncertainty = _interval_slopes(
         readings.tension,
@@ -396,16 +401,15 @@ def reduce_stepwise(
     for row in np.flatnonzero(is_inconsistent):
         notes.append(_inconsistency_note(int(row), readings, gauge, area, is_inconsistent))
     for row in np.flatnonzero(is_creep):
-        elapsed = (readings.time[row] - readings.time[row - 1]) / 60
         notes.append(
-            f"{readings.clock[row]}: in {elapsed:.0f} min the weight changed by "
-            f"{weight_change[row - 1]:+.1f} N and the length by {1e3 * growth[row - 1]:+.1f} mm: "
-            "creep, not elasticity"
+            note(
+                "reading-of-creep",
+                readings.clock[row],
+                elapsed=float(readings.time[row] - readings.time[row - 1]),
+                weight=float(weight_change[row - 1]),
+                growth=float(growth[row - 1]),
+            )
         )
-    notes.append(
-        f"moduli take an area of {1e6 * area:.1f} mm2 (a round section of "
-        f"{1e3 * sqrt(4 * area / pi):.2f} mm) and go as its inverse"
-    )
     with np.errstate(divide="ignore", invalid="ignore"):
         secant = np.where(is_inconsistent | (strain <= 0), np.nan, readings.tension / area / strain)
         of_weight = (weight if np.isfinite(weight) else 0.0) / (area * strain)
@@ -432,6 +436,7 @@ def reduce_stepwise(
         secant_modulus=secant,
         secant_modulus_standard_uncertainty=secant_uncertainty,
         notes=(*readings.notes, *notes),
+        made=_made(gauge, readings, is_inconsistent),
         length_standard_uncertainty=reading,
         tension_standard_uncertainty=weight,
     )

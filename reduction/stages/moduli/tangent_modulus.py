@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike
 from reduction.record.arrays import as_positive, as_same_shape, run_blocks
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, Integers
+from reduction.record.notes import Note, note
 from reduction.record.samples import sample_blocks, take_samples
 from reduction.record.settings import ModulusSettings
 from reduction.stages.cycles.cycle_product import Cycles
@@ -360,34 +361,25 @@ def tangent_curves(
         tangent_modulus_by_cycle_standard_uncertainty=gain
         * np.sqrt(by_cycle_variance)
         * per_area[..., None],
-        notes=tuple(_notes(grid, groups, break_in_cycles, specimens)),
+        notes=tuple(_notes(break_in_cycles, specimens)),
+        made=()
+        if grid.cycles_pooled == 1
+        else (
+            f"a window holds too few samples of one cycle: each curve pools {grid.cycles_pooled} "
+            f"consecutive cycles ({groups.first.size} curves), and a curve by cycle is that of "
+            "the group that begins with the cycle",
+        ),
     )
 
 
-def _notes(
-    grid: StrainGrid,
-    groups: CycleGroups,
-    break_in_cycles: int,
-    specimens: Sequence[_SpecimenCurves],
-) -> list[str]:
-    notes = [f"tangent modulus by local regression in a window of {grid.window:g} of strain"]
-    if break_in_cycles:
-        notes.append(f"the first {break_in_cycles} cycles (break-in) are not in the mean")
-    if grid.cycles_pooled > 1:
-        notes.append(
-            f"a window holds too few samples of one cycle: each curve pools {grid.cycles_pooled} "
-            f"consecutive cycles ({groups.first.size} curves), and a curve by cycle is that of "
-            "the group that begins with the cycle"
-        )
+def _notes(break_in_cycles: int, specimens: Sequence[_SpecimenCurves]) -> list[Note]:
+    notes = [note("break-in-left-out", n_cycles=break_in_cycles)] if break_in_cycles else []
     notes += [
-        f"specimen {place} of the record has no tangent modulus: no window has enough samples"
+        note("no-tangent-modulus", place=place)
         for place, one in enumerate(specimens, start=1)
         if not (one.trimmed.n_curves > 0).any()
     ]
     n_outside = sum(one.n_outside for one in specimens)
     if n_outside:
-        notes.append(
-            f"{n_outside} samples of branches lie off the strain grid and are in no curve: "
-            "their strain is outside the reversals of all cycles"
-        )
+        notes.append(note("samples-off-grid", n_samples=n_outside))
     return notes

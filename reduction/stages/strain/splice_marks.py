@@ -41,6 +41,7 @@ from scipy.special import chdtrc, ndtri, stdtrit
 from reduction.record.arrays import as_finite, as_positive, as_same_shape
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Floats, SpliceMarks, read_only_arrays
+from reduction.record.notes import Note, note
 from reduction.stages.standstills import Standstills
 
 LEVEL = 0.005
@@ -55,7 +56,7 @@ class _RowScatter:
 
     variance: float
     widening: float = 1.0
-    note: str = ""
+    note: Note | None = None
 
 
 def _row_scatter(
@@ -116,27 +117,18 @@ def _row_scatter(
     return _RowScatter(
         stated * ratio**2,
         ratio,
-        f"scatter {ratio:.1f} times as much as the tape explains (chi-square {chi_square:.3g} of "
-        f"{spare} degree{'s' if spare > 1 else ''} of freedom, one in {_odds(chance)}); their "
-        "uncertainty is widened by as much",
+        note("marks-scatter", ratio=ratio, chi_square=chi_square, freedom=spare, chance=chance),
     )
 
 
 def _unstated(residual: Floats, spare: int) -> _RowScatter:
     if spare <= 0:
-        return _RowScatter(
-            0.0, note="have no stated reading error and none to spare: they count as exact"
-        )
+        return _RowScatter(0.0, note=note("marks-count-as-exact"))
     factor = float(stdtrit(spare, _CONFIDENCE) / ndtri(_CONFIDENCE))
     return _RowScatter(
         float(residual @ residual) / spare * factor**2,
-        note="have no stated reading error: their scatter is taken, with "
-        f"{spare} degree{'s' if spare > 1 else ''} of freedom",
+        note=note("marks-error-from-scatter", freedom=spare),
     )
-
-
-def _odds(chance: float) -> str:
-    return f"{1 / chance:,.0f}" if chance > 1e-6 else "a million or more"
 
 
 # free = far toe - near toe; splices = far thimble - far toe + near toe
@@ -154,13 +146,13 @@ class RelaxedLengths:
         Free length, and both splices together. [m]
     covariance : ndarray, shape (2, 2)
         Of these means. [m2]
-    note : str
-        What the rows do that the tape does not explain; empty where it does.
+    note : Note or None
+        What the rows do that the tape does not explain.
     """
 
     values: Floats
     covariance: Floats
-    note: str = ""
+    note: Note | None = None
 
 
 def relaxed_lengths(
@@ -394,15 +386,15 @@ class SpliceCalibration:
         Change of each value with the relaxed free and splice length. [SI m-1]
     residual : ndarray, shape (n_marks,)
         Of the fitted length or strain. [m] or [1]
-    note : str
-        What the marks do that the tape does not explain; empty where it does.
+    note : Note or None
+        What the marks do that the tape does not explain.
     """
 
     values: Floats
     covariance: Floats
     relaxed_sensitivity: Floats
     residual: Floats
-    note: str = ""
+    note: Note | None = None
 
 
 def line_slope(position: ArrayLike, values: ArrayLike) -> float:

@@ -23,6 +23,7 @@ from scipy.special import betainc
 
 from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats, Integers, Specimen, SpliceMarks
+from reduction.record.notes import Note, note
 from reduction.record.settings import StrainMethod, StrainSettings
 from reduction.stages.standstills import Standstills
 from reduction.stages.strain.splice_marks import (
@@ -111,10 +112,14 @@ def _with_relaxed(
 
 def _scatter_notes(
     marks: SpliceMarks, relaxed: RelaxedLengths, fit: SpliceCalibration
-) -> tuple[str, ...]:
+) -> tuple[Note, ...]:
     """What the marks do that the tape does not explain."""
     told = {"slack rows": relaxed.note, "stretched marks": fit.note}
-    return tuple(f"{marks.specimen}: the {rows} {note}" for rows, note in told.items() if note)
+    return tuple(
+        replace(one, subject=marks.specimen, numbers={"rows": rows, **one.numbers})
+        for rows, one in told.items()
+        if one
+    )
 
 
 def _fit_marks(readings: PooledMarks) -> StrainModel:
@@ -191,23 +196,25 @@ def _fit_tension_driven(readings: PooledMarks) -> StrainModel:
             relaxed_standard_uncertainty=float(np.sqrt(relaxed.covariance[1, 1])),
         )
 
-    notes: tuple[str, ...] = ()
+    made: tuple[str, ...] = ()
     wide = readings.tension_span > TENSION_SPAN and rows.size > 2
     fit = law(None) if wide else law(HELD_EXPONENT)
     if not wide:
-        notes = (
-            f"{marks.specimen}: {rows.size} marks over a factor of {readings.tension_span:.2f} in "
+        made = (
+            f"{rows.size} marks over a factor of {readings.tension_span:.2f} in "
             "tension do not fix the exponent of the splice law; it is held at 1",
         )
     elif (uncertainty := float(np.sqrt(fit.covariance[1, 1]))) > _EXPONENT_UNCERTAINTY:
-        notes = (
-            f"{marks.specimen}: the marks fix the exponent of the splice law only to "
+        made = (
+            "the marks fix the exponent of the splice law only to "
             f"{fit.values[1]:.2f} +- {uncertainty:.2f}; it is held at 1",
         )
         fit = law(HELD_EXPONENT)
-    coefficients, covariance = _with_relaxed(("splice_compliance", "splice_exponent"), relaxed, fit)
-    notes += _scatter_notes(marks, relaxed, fit)
-    return StrainModel(marks.specimen, "tension-driven", coefficients, covariance, notes=notes)
+    return StrainModel(
+        marks.specimen, "tension-driven",
+        *_with_relaxed(("splice_compliance", "splice_exponent"), relaxed, fit),
+        notes=_scatter_notes(marks, relaxed, fit), made=made,
+    )  # fmt: skip
 
 
 _FROM_MARKS: dict[StrainMethod, Callable[[PooledMarks], StrainModel]] = {
@@ -299,19 +306,9 @@ def _rms(residual: Floats) -> float:
     return sqrt(float(np.mean(residual**2)))
 
 
-def _high_or_low(ratio: float) -> str:
-    change = 1 / ratio - 1
-    return f"{100 * abs(change):.1f} % {'high' if change > 0 else 'low'}"
-
-
-def _on_constant_fraction(model: StrainModel, is_stretched: Bools) -> tuple[str, ...]:
+def _on_constant_fraction(model: StrainModel, is_stretched: Bools) -> tuple[Note, ...]:
     if model.method != "constant-fraction":
-        if abs(model.strain_slope_ratio - 1) < _SLOPE_NOTICE or np.isnan(model.strain_slope_ratio):
-            return ()
-        return (
-            f"{model.specimen}: constant-fraction, the method of WHOI-2005-10, would read moduli "
-            f"over these marks {_high_or_low(model.strain_slope_ratio)} against {model.method}",
-        )
+        return ()
     position = model.mark_position[is_stretched]
     if np.unique(position).size < 2:
         return ()
@@ -322,13 +319,17 @@ def _on_constant_fraction(model: StrainModel, is_stretched: Bools) -> tuple[str,
     if abs(ratio - 1) < _SLOPE_NOTICE:
         return ()
     return (
-        f"{model.specimen}: constant-fraction misses its own marks by "
-        f"{100 * residual.min():+.1f} to {100 * residual.max():+.1f} points of strain and reads "
-        f"moduli over them {_high_or_low(ratio)}",
+        note(
+            "constant-fraction-off",
+            model.specimen,
+            low=float(residual.min()),
+            high=float(residual.max()),
+            effect=1 / ratio - 1,
+        ),
     )
 
 
-def _on_scatter(model: StrainModel, is_stretched: Bools, expected: float) -> tuple[str, ...]:
+def _on_scatter(model: StrainModel, is_stretched: Bools, expected: float) -> tuple[Note, ...]:
     """Scatter beyond tape reading, and single marks far off; not for the legacy method."""
     if model.method == "constant-fraction":
         return ()
@@ -337,23 +338,26 @@ def _on_scatter(model: StrainModel, is_stretched: Bools, expected: float) -> tup
     notes = []
     if expected > 0 and rms > _SCATTER_NOTICE * expected:
         notes.append(
-            f"{model.specimen}: strain by {model.method} differs from the marks by "
-            f"{100 * rms:.2f} points rms, tape reading alone explains {100 * expected:.2f}"
+            note("marks-differ", model.specimen, method=model.method, rms=rms, expected=expected)
         )
     # a median does not let one misread mark hide itself
     usual = max(expected, 1.4826 * float(np.median(np.abs(residual))))
     if residual.size > 3 and usual > 0:
         rows = np.flatnonzero(is_stretched)[np.abs(residual) > _OUTLIER_NOTICE * usual]
         notes += [
-            f"{model.specimen}: the mark of test {model.mark_test[row]}, hold "
-            f"{model.mark_hold[row]}, lies {100 * model.mark_strain_residual[row]:+.1f} points off "
-            f"the fit; its tape readings want a second look"
+            note(
+                "marks-outlier",
+                model.specimen,
+                test=model.mark_test[row],
+                hold=model.mark_hold[row],
+                residual=float(model.mark_strain_residual[row]),
+            )
             for row in rows
         ]
     return tuple(notes)
 
 
-def _on_slack(marks: SpliceMarks) -> tuple[str, ...]:
+def _on_slack(marks: SpliceMarks) -> tuple[Note, ...]:
     """Growth of the slack length from test to test: permanent set, or a splice let out.
 
     A trend over the rows, since single readings scatter by more than their last digit.
@@ -368,11 +372,8 @@ def _on_slack(marks: SpliceMarks) -> tuple[str, ...]:
     if slope <= 0 or chance > _TREND_CHANCE:
         return ()
     growth = slope * (length.size - 1)
-    return (
-        f"{marks.specimen}: the slack length grows by {1e3 * growth:.0f} mm "
-        f"({100 * growth / length[0]:.1f} %) from the first test to the last "
-        "(permanent set, or a splice let out); strain counts from the mean slack length",
-    )
+    effect = float(growth / length[0])
+    return (note("slack-length-grows", marks.specimen, growth=float(growth), effect=effect),)
 
 
 def _on_reading_time(
@@ -391,7 +392,7 @@ def _on_reading_time(
         100 * _rms(entry.mark_strain_residual[is_stretched]) for entry in (model, at_start)
     )
     return (
-        f"{model.specimen}: marks are taken to be read as a hold ends, and then differ from the "
+        "marks are taken to be read as a hold ends, and then differ from the "
         f"splice law by {end:.2f} points of strain rms; read as it begins, {start:.2f} points, and "
         f"strain at the highest marked tension would be {100 * change:+.1f} points other",
     )
@@ -399,34 +400,36 @@ def _on_reading_time(
 
 def _on_left_out(
     model: StrainModel, marks: SpliceMarks, n_used: int, failed_tests: Sequence[str]
-) -> tuple[str, ...]:
+) -> tuple[Note, ...]:
     """Stretched marks that the law of tension lacks: their log failed, or shows no hold."""
     rows = np.flatnonzero(~marks.is_slack)
     tests = [marks.test[row] for row in rows if marks.test[row] in failed_tests]
-    notes: tuple[str, ...] = ()
+    notes = []
     if tests:
-        notes += (
-            f"{model.specimen}: {len(tests)} of {rows.size} stretched marks are of tests that "
-            f"failed ({', '.join(dict.fromkeys(tests))}), so that their tension is not known; the "
-            "law of tension is without them",
+        notes.append(
+            note(
+                "marks-of-failed-tests",
+                model.specimen,
+                n_marks=len(tests),
+                n_stretched=rows.size,
+                tests=", ".join(dict.fromkeys(tests)),
+            )
         )
     without_hold = rows.size - n_used - len(tests)
     if model.method == "tension-driven" and without_hold > 0:
-        notes += (
-            f"{model.specimen}: {without_hold} of {rows.size} stretched marks have no "
-            "hold in the logs and are left out",
+        notes.append(
+            note("marks-without-hold", model.specimen, n_marks=without_hold, n_stretched=rows.size)
         )
-    return notes
+    return tuple(notes)
 
 
 def _remarks_on(
     model: StrainModel,
     marks: SpliceMarks,
-    test_id: str,
+    is_stretched: Bools,
     *,
-    at_start: StrainModel | None = None,
     failed_tests: Sequence[str] = (),
-) -> tuple[str, ...]:
+) -> tuple[Note, ...]:
     """Remarks on a model fitted to marks.
 
     Examples
@@ -434,39 +437,22 @@ def _remarks_on(
     >>> model = StrainModel(
     ...     "new", "marks", {"relaxed_free_length": 2.55}, mark_test=("T-1",), mark_hold=("min",),
     ...     mark_position=np.array([5.9]), mark_strain=np.array([0.766]),
-    ...     mark_strain_residual=np.array([0.001]), strain_slope_ratio=0.873)
+    ...     mark_strain_residual=np.array([0.02]))
     >>> marks = SpliceMarks("new", ("T-1",), ("min",), np.array([0.7]), np.array([5.2]),
-    ...                     np.array([5.9]))
-    >>> print(_remarks_on(model, marks, "T-1")[0][24:])
-    the method of WHOI-2005-10, would read moduli over these marks 14.5 % high against marks
+    ...                     np.array([5.9]), reading_uncertainty=0.01)
+    >>> print(_remarks_on(model, marks, np.array([True]))[0])
+    new: strain by marks differs from the marks by 2.00 points rms, tape reading alone explains 0.68
     """
-    is_stretched = np.array([hold != "slack" for hold in model.mark_hold], dtype=bool)
-    notes: tuple[str, ...] = ()
-    if not any(
-        test == test_id and hold != "slack"
-        for test, hold in zip(marks.test, marks.hold, strict=True)
-    ):
-        tests = dict.fromkeys(np.array(model.mark_test)[is_stretched].tolist())
-        notes += (
-            f"{model.specimen}: {test_id} has no marks of its own; its strain rests on those of "
-            + ", ".join(tests),
-        )
-    notes += _on_left_out(model, marks, int(is_stretched.sum()), failed_tests)
     expected = sqrt(3) * marks.reading_uncertainty / model.coefficients["relaxed_free_length"]
-    notes += _on_constant_fraction(model, is_stretched)
-    notes += _on_scatter(model, is_stretched, expected)
-    notes += _on_slack(marks)
-    if at_start is not None:
-        notes += _on_reading_time(model, is_stretched, at_start)
-    return notes
+    return (
+        *_on_left_out(model, marks, int(is_stretched.sum()), failed_tests),
+        *_on_constant_fraction(model, is_stretched),
+        *_on_scatter(model, is_stretched, expected),
+        *_on_slack(marks),
+    )
 
 
 _BY_POSITION: tuple[StrainMethod, ...] = ("marks", "strain-ratio", "constant-fraction")
-
-_EXACT_LENGTH = (
-    "the gauge length counts as exact: its standard uncertainty is not stated, and that of strain "
-    "leaves it out"
-)
 
 
 def zero_strain_position(
@@ -509,7 +495,7 @@ def _without_marks(
         "gauge-length",
         coefficients,
         np.diag([0.0, 0.0 if spread is None else spread**2]),
-        notes=(_EXACT_LENGTH,) if spread is None else (),
+        notes=(note("gauge-length-exact"),) if spread is None else (),
     )
 
 
@@ -566,7 +552,7 @@ def fit_strain_model(
         From `reduction.stages.strain.splice_marks.measure_mark_tension`, row by row of ``marks``;
         NaN where no hold was found. [N]
     mark_tension_at_start : array_like, shape (n_marks,), optional
-        The same at the start of each hold; only the notes use it. [N]
+        The same at the start of each hold; only the history uses it. [N]
     settings : StrainSettings, optional
         ``method`` None chooses: see Notes.
     has_extensometer : bool
@@ -642,21 +628,23 @@ def fit_strain_model(
         )
     used = readings.stretched_rows(method)
     check_marks(readings.marks, tests=sorted({readings.marks.test[row] for row in used}))
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
     try:
         model = fit_to_marks(method, readings)
     except FitError as error:
         if stated is not None:
             raise
-        notes = (f"{specimen.name}: tension-driven strain was given up for marks: {error}",)
+        notes = (note("strain-by-marks-instead", specimen.name, reason=str(error)),)
         model = fit_to_marks("marks", readings)
     if model.method in _BY_POSITION:
         model = replace(model, splice_law=_splice_law(readings))
-    at_start = None
+    is_stretched = np.array([hold != "slack" for hold in model.mark_hold], dtype=bool)
+    made = model.made
     if model.method == "tension-driven" and mark_tension_at_start is not None:
         early = replace(readings, tension=np.asarray(mark_tension_at_start, dtype=np.float64))
         at_start = fit_to_marks("tension-driven", early)
+        made += _on_reading_time(model, is_stretched, at_start)
     # a method that was asked for and needs no tension loses nothing with a log
     lost = failed_tests if stated in (None, "tension-driven") else ()
-    remarks = _remarks_on(model, readings.marks, test_id, at_start=at_start, failed_tests=lost)
-    return replace(model, notes=(*notes, *model.notes, *remarks))
+    remarks = _remarks_on(model, readings.marks, is_stretched, failed_tests=lost)
+    return replace(model, notes=(*notes, *model.notes, *remarks), made=made)

@@ -44,6 +44,7 @@ from numpy.typing import ArrayLike
 from reduction.record.arrays import as_finite, as_positive, as_same_shape
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
+from reduction.record.notes import Note, note
 from reduction.record.settings import StrainMethod
 
 
@@ -85,8 +86,10 @@ class StrainModel:
         d(strain)/d(position) by ``constant-fraction`` over that of this method,
         mean over the test's own marked range: a modulus by ``constant-fraction``
         is the inverse of this times the modulus here. NaN without marks. [1]
-    notes : tuple of str
+    notes : tuple of Note
         What a reader has to know.
+    made : tuple of str
+        How it was made, with numbers that stand nowhere else: lines of the history.
     is_zero_logged : bool
         True where the position of zero strain was read from the log of the test, so that a wrong
         zero of the crosshead is in it as well.
@@ -112,7 +115,8 @@ class StrainModel:
     mark_strain_residual: Floats = field(default_factory=_empty)
     mark_load_cell: tuple[str, ...] = ()
     strain_slope_ratio: float = float("nan")
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
+    made: tuple[str, ...] = ()
     is_zero_logged: bool = False
     splice_law: dict[str, float] = field(default_factory=dict)
 
@@ -728,6 +732,6 @@ def with_free_length(model: StrainModel, free_length: float) -> StrainModel:
         mark_tension=np.empty(0),
         mark_strain_residual=np.empty(0),
         mark_load_cell=(),
-        notes=(*model.notes, f"of another free length: {length:.4g} m"),
+        notes=(*model.notes, note("other-free-length", length=length)),
         splice_law={},
     )

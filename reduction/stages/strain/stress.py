@@ -18,6 +18,7 @@ from scipy.special import stdtrit
 from reduction.record.arrays import as_positive
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, Specimen
+from reduction.record.notes import Note, note
 
 _CONFIDENCE = 0.95
 
@@ -108,7 +109,7 @@ def constant_volume_diameter(strain: ArrayLike, stretched_diameter: ArrayLike) -
     return diameter * np.sqrt(stretch)
 
 
-def check_constant_volume(specimen: Specimen) -> tuple[str, ...]:
+def check_constant_volume(specimen: Specimen) -> tuple[Note, ...]:
     """Compare the stated diameter with what the stretched diameters imply.
 
     Parameters
@@ -118,8 +119,8 @@ def check_constant_volume(specimen: Specimen) -> tuple[str, ...]:
 
     Returns
     -------
-    notes : tuple of str
-        One sentence where the two differ by more than the readings scatter
+    notes : tuple of Note
+        One where the two differ by more than the readings scatter
         (Student's t, 95 %); empty where they agree, or where fewer than two
         stretched readings give no scatter.
 
@@ -143,7 +144,7 @@ def check_constant_volume(specimen: Specimen) -> tuple[str, ...]:
     >>> at_10, at_100 = (0.997, 0.980, 0.995), (0.725, 0.739, 0.737)
     >>> readings = [(0.1, d * inch) for d in at_10] + [(1.0, d * inch) for d in at_100]
     >>> new = Specimen("new", diameter=(1.01 * inch,), stretched_diameters=tuple(readings))
-    >>> print(check_constant_volume(new)[0][:53])
+    >>> print(str(check_constant_volume(new)[0])[:53])
     new: the stretched diameters imply 26.37 mm before st
     """
     if len(specimen.stretched_diameters) < 2:
@@ -156,10 +157,13 @@ def check_constant_volume(specimen: Specimen) -> tuple[str, ...]:
     allowed = float(stdtrit(implied.size - 1, (1 + _CONFIDENCE) / 2)) * standard_error
     if abs(mean - stated) <= allowed:
         return ()
-    change = (stated / mean) ** 2 - 1
     return (
-        f"{specimen.name}: the stretched diameters imply {1e3 * mean:.2f} mm before stretch at "
-        f"constant volume, {1e3 * stated:.2f} mm is stated, and reading scatter explains no more "
-        f"than {1e3 * allowed:.2f} mm; with the implied diameter every modulus and stress of this "
-        f"specimen would be {100 * abs(change):.1f} % {'lower' if change < 0 else 'higher'}",
+        note(
+            "diameters-contradict",
+            specimen.name,
+            implied=mean,
+            stated=stated,
+            allowed=allowed,
+            effect=(stated / mean) ** 2 - 1,
+        ),
     )

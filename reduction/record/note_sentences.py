@@ -1,0 +1,861 @@
+"""What each note says: its severity and the sentence for a reader, by code.
+
+A sentence is a format of the numbers of the note; where it needs more than a format, a function of
+them.  A code never gets another meaning.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import degrees
+from typing import Literal
+
+Severity = Literal["warning", "refusal", "note"]
+
+
+def _plural(number: int) -> str:
+    return "" if number == 1 else "s"
+
+
+def _against(change: float, more: str, less: str) -> str:
+    """A change in percent without its sign, and which way it goes."""
+    return f"{100 * abs(change):.1f} % {more if change > 0 else less}"
+
+
+_OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
+    "laboratory": ("note", "{text}"),
+    "misprint-corrected": (
+        "note", "length at {reading} is {length}, printed {printed} ({erratum})",
+    ),
+    "counter-missing": (
+        "warning", "the cycle counter is missing on {n_rows} rows, -1 there",
+    ),
+    "resampled": (
+        "note",
+        "{channels}: {rate:.4g} Hz resampled to the {base_rate:.4g} Hz of {base} by linear"
+        " interpolation",
+    ),
+    "channels-not-used": ("note", "read, but not part of a record: {channels}"),
+    "record-of-pieces": ("note", "one record of {n_pieces} pieces: {files}"),
+    "reference-length-elsewhere": (
+        "warning",
+        "reference_length is stated at {stated:.4g} N, but where displacement is first zero the"
+        " tension of {specimen} is {found:.4g} N",
+    ),
+    "rows-without-time": (
+        "warning",
+        "{n_rows} rows have no time, first sample {sample}: their time is that of even steps"
+        " between the rows beside them, and their position is not used",
+    ),
+    "sampling-uneven": (
+        "warning",
+        "the sampling rate is not constant: {n_uneven} of {n_steps} time steps differ by more than"
+        " {tolerance:.0%} from their median {median:.4g} s ({shortest:.4g} to {longest:.4g} s, gaps"
+        " apart)",
+    ),
+    "channel-steps": (
+        "note",
+        lambda channel, low, high, unit, sample, time, n_more, beside: (
+            f"{channel} steps from {low:.4g} to {high:.4g} {unit} between sample {sample}"
+            f" ({time:.6g} s) and the next{f', and at {n_more} more' if n_more else ''}, and stays"
+            f" there, while {beside} not: a slip, a break, a zero that was set again, or another"
+            " unit from there on; numbers across it mix both"
+        ),
+    ),
+    "rows-flagged": (
+        "warning", "{n_read} rows read, {n_kept} kept, flagged: {flags}",
+    ),
+    "rows-resampled": (
+        "note", "{n_read} rows read, {n_kept} kept, flagged: {flags}",
+    ),
+    "lines-not-kept": ("note", "{n_lines} more lines that are not data are not kept"),
+    "blocks-read": ("note", "{n_blocks} blocks of data"),
+    "lines-between-blocks-not-kept": (
+        "note", "{n_lines} more lines between the blocks are not kept",
+    ),
+    "blocks-not-read": (
+        "note",
+        "{n_blocks} blocks of another kind with {n_rows} rows are not read, the first at row {row}",
+    ),
+    "metadata-left-out": (
+        "note", "{key!r} of the file is left out: it has {n_characters:,} characters",
+    ),
+    "blank-rows": ("note", "{n_rows} blank rows at the end of the sheet are left out"),
+    "log-cut-off": (
+        "warning", "the file ends inside a block of data: the logger was stopped or cut off",
+    ),
+    "held-load-repeats": (
+        "note",
+        "{n_samples} samples in holds at constant tension repeat one value of it: their flags stuck"
+        " and saturated are taken off, since the machine holds it there",
+    ),
+}  # fmt: skip
+
+_OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
+    "marks-count-as-exact": (
+        "note",
+        lambda rows="rows": (
+            f"the {rows} have no stated reading error and none to spare: they count as exact"
+        ),
+    ),
+    "marks-error-from-scatter": (
+        "note",
+        lambda freedom, rows="rows": (
+            f"the {rows} have no stated reading error: their scatter is taken, with {freedom}"
+            f" degree{_plural(freedom)} of freedom"
+        ),
+    ),
+    "marks-scatter": (
+        "note",
+        lambda ratio, chi_square, freedom, chance, rows="rows": (
+            f"the {rows} scatter {ratio:.1f} times as much as the tape explains (chi-square"
+            f" {chi_square:.3g} of {freedom} degree{_plural(freedom)} of freedom, one in"
+            f" {f'{1 / chance:,.0f}' if chance > 1e-6 else 'a million or more'}); their uncertainty"
+            " is widened by as much"
+        ),
+    ),
+    "constant-fraction-off": (
+        "warning",
+        lambda low, high, effect: (
+            f"constant-fraction misses its own marks by {100 * low:+.1f} to {100 * high:+.1f}"
+            f" points of strain and reads moduli over them {_against(effect, 'high', 'low')}"
+        ),
+    ),
+    "marks-differ": (
+        "warning",
+        lambda method, rms, expected: (
+            f"strain by {method} differs from the marks by {100 * rms:.2f} points rms, tape reading"
+            f" alone explains {100 * expected:.2f}"
+        ),
+    ),
+    "marks-outlier": (
+        "warning",
+        lambda test, hold, residual: (
+            f"the mark of test {test}, hold {hold}, lies {100 * residual:+.1f} points off the fit;"
+            " its tape readings want a second look"
+        ),
+    ),
+    "slack-length-grows": (
+        "warning",
+        lambda growth, effect: (
+            f"the slack length grows by {1e3 * growth:.0f} mm ({100 * effect:.1f} %) from the first"
+            " test to the last (permanent set, or a splice let out); strain counts from the mean"
+            " slack length"
+        ),
+    ),
+    "marks-of-failed-tests": (
+        "warning",
+        "{n_marks} of {n_stretched} stretched marks are of tests that failed ({tests}), so that"
+        " their tension is not known; the law of tension is without them",
+    ),
+    "marks-without-hold": (
+        "note",
+        "{n_marks} of {n_stretched} stretched marks have no hold in the logs and are left out",
+    ),
+    "strain-by-marks-instead": (
+        "warning", "tension-driven strain was given up for marks: {reason}",
+    ),
+    "gauge-length-exact": (
+        "note",
+        "the gauge length counts as exact: its standard uncertainty is not stated, and that of"
+        " strain leaves it out",
+    ),
+    "other-free-length": ("note", "of another free length: {length:.4g} m"),
+    "diameters-contradict": (
+        "warning",
+        lambda implied, stated, allowed, effect: (
+            f"the stretched diameters imply {1e3 * implied:.2f} mm before stretch at constant"
+            f" volume, {1e3 * stated:.2f} mm is stated, and reading scatter explains no more than"
+            f" {1e3 * allowed:.2f} mm; with the implied diameter every modulus and stress of this"
+            f" specimen would be {_against(effect, 'higher', 'lower')}"
+        ),
+    ),
+    "no-diameter": (
+        "refusal", "no diameter is stated: spring constants, but no stress and no modulus",
+    ),
+}  # fmt: skip
+
+_OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
+    "jumps-no-reversals": (
+        "note",
+        "{n_jumps} jumps of the control channel and back are no reversals, first at {time:g} s",
+    ),
+    "gaps-end-runs": (
+        "warning",
+        "gaps of the record longer than 30 % of a half cycle, each the end of a run: {n_gaps},"
+        " first near {time:g} s",
+    ),
+    "cycles-of-two-amplitudes": (
+        "warning",
+        "cycles between two amplitudes, one branch of each, not counted: {n_cycles}, first at"
+        " {time:g} s",
+    ),
+    "counter-constant": (
+        "note", "the machine's cycle counter never changes: reversals are counted instead",
+    ),
+    "counted-without-stroke": (
+        "note", "counted cycles without a stroke: {n_cycles}, first machine cycle {first}",
+    ),
+    "counter-skips": (
+        "note",
+        "the log holds {n_cycles} of the machine's cycles {first} to {last}: {after} follows"
+        " {before}",
+    ),
+    "counter-differs": (
+        "warning",
+        "the machine counted {n_counted} cycles with a stroke, the reversals give {n_reversals}"
+        " whole ones",
+    ),
+    "one-cycle": ("note", "one cycle only: there is no scatter from cycle to cycle"),
+    "cycles-not-as-planned": (
+        "warning", "{n_found} whole cycles found, {n_planned} planned",
+    ),
+    "no-plateau": (
+        "note",
+        "a {waveform} waveform has no plateau of rate: the trimmed branches leave out 5 % of the"
+        " stroke at each end",
+    ),
+    "branches-without-constant-rate": (
+        "note",
+        "{n_bare} of {n_branches} branches have no part at a constant rate, first near {time:g} s",
+    ),
+    "strain-impossible": (
+        "warning",
+        "strain reaches {strain:.4g}, which no specimen does; is the unit of position, or the"
+        " length that strain refers to, right?",
+    ),
+    "not-sinusoidal": (
+        "warning",
+        "declared sinusoidal, but half the range of {moved} is {effect:+.0%} off the amplitude of"
+        " its fundamental, which stands for it; is waveform right?",
+    ),
+    "answer-not-sinusoidal": (
+        "note",
+        "{moved} is a sine and {other} is none: half its range is {effect:+.0%} off the amplitude"
+        " of its fundamental, which stands for it",
+    ),
+    "cycles-drift": (
+        "warning",
+        "{n_far} of {n_cycles} cycles drift by more than {limit:.0%} of their range: their"
+        " amplitudes, slopes and energies rest on it",
+    ),
+    "sign-of-tension": (
+        "warning",
+        lambda tension, slope: (
+            " and ".join(
+                [
+                    *(
+                        [f"mean tension of the cycles is negative ({tension:.4g} N)"]
+                        if tension < 0
+                        else []
+                    ),
+                    *(
+                        [f"tension falls with stretch (median tangent modulus {slope:.4g} Pa)"]
+                        if slope <= 0
+                        else []
+                    ),
+                ]
+            )
+            + "; does the log count compression positive? Then set sign = -1 for this channel"
+        ),
+    ),
+    "slack-in-cycles": (
+        "warning",
+        "slack within {n_slack} of {n_cycles} cycles (tension at or below {slack_tension:.4g} N):"
+        " amplitudes and energies of these include the slack part",
+    ),
+    "no-snap-loads": (
+        "note",
+        "{n_taut} of {n_cycles} cycles are no snap loads: tension stays above {slack_tension:.4g}"
+        " N, so the line does not go slack in them",
+    ),
+    "not-triangular": (
+        "warning",
+        "declared triangular, but only {share:.0%} of the branches run at a constant rate; is"
+        ' waveform = "sinusoidal" right?',
+    ),
+    "stated-lag-long": (
+        "warning",
+        "the stated lag of {lag:.4g} s is more than a twentieth of {n_short} of {n_cycles} cycles,"
+        " the shortest of {shortest:.4g} s: what it does to stiffness and loss is of first order,"
+        " and their uncertainties are too small",
+    ),
+    "tension-late": (
+        "warning",
+        lambda lag, spread, stated: (
+            f"tension turns {1e3 * lag:.0f} +- {1e3 * spread:.0f} ms (k=1) later than position, and"
+            f" {f'a lag of 0 +- {1e3 * stated:g} ms is stated' if stated else 'no lag is stated'}:"
+            " it was logged late, by at least that, since damping makes it turn early; nothing is"
+            " corrected, and loops are too narrow by it"
+        ),
+    ),
+}  # fmt: skip
+
+_OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
+    "break-in-left-out": ("note", "the first {n_cycles} cycles (break-in) are not in the mean"),
+    "no-tangent-modulus": (
+        "refusal",
+        "specimen {place} of the record has no tangent modulus: no window has enough samples",
+    ),
+    "samples-off-grid": (
+        "warning",
+        "{n_samples} samples of branches lie off the strain grid and are in no curve: their strain"
+        " is outside the reversals of all cycles",
+    ),
+    "identity-open": (
+        "warning",
+        lambda effect, error, is_coarse: (
+            f"the closed-cycle identity leaves {effect:+.1%} of the stroke-mean modulus (standard"
+            f" error {error:.1%}): strain and tension may not be sampled together (lag); or tension"
+            " may change while strain stands (a dwell), or strain may not be that of the rubber"
+            " alone (slip, slack)"
+            f"{'; or a branch has few samples for its curvature' if is_coarse else ''}"
+        ),
+    ),
+    "slip-cycles-missing": (
+        "warning", "slip not looked for: {n_missing} of {n_cycles} cycles are missing",
+    ),
+    "tension-steps-up": (
+        "warning",
+        "tension steps up at cycle {cycles}; a splice cannot take up length, look at the zero of"
+        " the load cell and the set point of the crosshead",
+    ),
+    "specimens-step-together": (
+        "warning",
+        "two specimens step at cycle {cycle}: look at the crosshead before the splices",
+    ),
+    "no-common-strain": ("refusal", "{above} and {below} have no strain in common"),
+    "unequal-condition": ("note", "unequal before the campaign: condition {told}"),
+    "history-without-order": (
+        "note", "what earlier tests did to either is not known: no order is given",
+    ),
+    "history-with-failed-tests": (
+        "warning", "what earlier tests did to them is not wholly known: one of those failed",
+    ),
+    "unequal-cycles": (
+        "note",
+        "unequal histories in the campaign: {cycles:.0f} earlier cycles against {of_first:.0f}",
+    ),
+    "unequal-flex-cycles": (
+        "note", "unequal histories in the campaign: {told} earlier flex cycles",
+    ),
+    "unequal-strain": (
+        "note", "unequal histories in the campaign: greatest earlier strain {told}{softer}",
+    ),
+    "law-not-fitted": ("refusal", "not fitted: {reason}"),
+    "law-not-told-from-zero": ("note", "not told from zero: {names}"),
+    "law-not-stable": (
+        "warning",
+        lambda strain: (
+            f"the fitted law is not stable: below a strain of {100 * strain:.3g} % its stress falls"
+            " with strain in uniaxial, biaxial or shear deformation; do not use it in a model"
+        ),
+    ),
+    "law-without-pull": (
+        "refusal",
+        "no hyperelastic law: the first rise of the record is no pull from slack ({reached}); is"
+        " the kind of the test right, and where strain is zero?",
+    ),
+    "no-law": ("refusal", "no hyperelastic law from the first loading: {reason}"),
+    "law-of-softened-rubber": (
+        "note",
+        lambda strain: (
+            f"not a first loading of the specimen: earlier tests reached {100 * strain:.0f} %, and"
+            " below that the rubber is softened"
+            if strain == strain
+            else "not a first loading of the specimen: how far earlier tests reached is not known"
+        ),
+    ),
+    "stress-at-strain-not-given": (
+        "refusal",
+        lambda level, reason: f"stress at {100 * level:g} % not given: {reason}",
+    ),
+    "slack-strain-not-given": (
+        "refusal", "slack strain at unloading not given: {reason}",
+    ),
+    "gauge-length-contradicted": (
+        "warning",
+        lambda stated, low, high: (
+            f"the stated gauge length {1e3 * stated:.1f} mm is not used: it would give strains of"
+            f" {100 * low:.0f} to {100 * high:.0f} %, which the recorded elongations contradict"
+        ),
+    ),
+    "length-error-from-scatter": (
+        "note",
+        lambda scatter: (
+            "the uncertainty of a length is not stated; the scatter between length and recorded"
+            f" elongation, {1e3 * scatter:.2f} mm, is taken for it"
+        ),
+    ),
+    "reading-inconsistent": (
+        "warning",
+        lambda length, strain, recorded, corrected, speaks_for, beside: (
+            f"length {1e3 * length:.1f} mm is {100 * strain:.0f} %, recorded is"
+            f" {100 * recorded:.0f} %; the row gives no modulus. A length of"
+            f" {1e3 * corrected:.1f} mm would agree"
+            f"{f' (the eye-to-eye length speaks for the {speaks_for})' if speaks_for else ''}, and"
+            f" the intervals beside it would be"
+            f" {' and '.join(f'{one / 1e6:.2f}' for one in beside)} MPa"
+        ),
+    ),
+    "reading-of-creep": (
+        "warning",
+        lambda elapsed, weight, growth: (
+            f"in {elapsed / 60:.0f} min the weight changed by {weight:+.1f} N and the length by"
+            f" {1e3 * growth:+.1f} mm: creep, not elasticity"
+        ),
+    ),
+}  # fmt: skip
+
+_OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
+    "no-hold": (
+        "refusal",
+        lambda slack_tension, channel, tolerance, unit, duration, key: (
+            "refused: everything about holds: none is found; above the slack tension of"
+            f" {slack_tension:.3g} N {channel} nowhere keeps within {tolerance:.3g} {unit} for"
+            f" {duration:g} s (kind and control right? else state phases.{key})"
+        ),
+    ),
+    "hold-samples-left-out": ("note", "{n_left_out} of {n_samples} samples left out"),
+    "hold-empty": ("refusal", "refused: everything: {n_samples} samples in the hold"),
+    "hold-too-short": (
+        "refusal",
+        "refused: drop, rate per decade, Prony series: the hold is too short: {duration:.3g} s;"
+        " {needed:g} s or more are needed",
+    ),
+    "hold-too-few-samples": (
+        "refusal",
+        "refused: drop, rate per decade, Prony series: too few samples: {n_samples}; {needed} are"
+        " needed",
+    ),
+    "hold-slack": (
+        "refusal",
+        "refused: drop, rate per decade, Prony series: the specimen is slack: {tension:.3g} N; more"
+        " than {slack_tension:.3g} N is needed",
+    ),
+    "hold-tension-rises": (
+        "refusal",
+        "refused: drop, rate per decade, Prony series: tension rises by {rise:.2%} over the hold"
+        " (recovery after unloading, or drift)",
+    ),
+    "hold-crosshead-moves": (
+        "refusal",
+        lambda motion, worth: (
+            "refused: drop, rate per decade, Prony series: the crosshead moves by"
+            f" {motion:.2g} m in the hold{f', worth {worth:.3g} N' if worth == worth else ''}"
+        ),
+    ),
+    "hold-tension-steps": (
+        "refusal",
+        "refused: drop, rate per decade, Prony series: tension steps by {step:.3g} N at"
+        " {time:.0f} s into the hold, which relaxation does not explain (a slip of the splice?)",
+    ),
+    "rate-without-ramp": (
+        "refusal",
+        "refused: rate per decade: the record does not show the ramp, so the time since loading is"
+        " not known",
+    ),
+    "no-rate": ("refusal", "refused: rate per decade: {reason}"),
+    "rate-not-told-from-zero": (
+        "refusal",
+        "refused: rate per decade: a loss of {loss:.2%} +- {spread:.2%} (one standard uncertainty)"
+        " is not told from zero",
+    ),
+    "drop-not-told-from-zero": (
+        "refusal",
+        "refused: Prony series: a drop of {drop:.2%} +- {spread:.2%} (one standard uncertainty) is"
+        " not told from zero",
+    ),
+    "no-prony-series": ("refusal", "refused: Prony series: {reason} ({found})"),
+}  # fmt: skip
+
+_OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
+    "no-slow-pull": ("refusal", "specimen {place} has no {lacking}"),
+    "mean-tension-outside-pull": (
+        "warning",
+        "the mean tension of {mean:.4g} N lies outside the {low:.4g} to {high:.4g} N of the slow"
+        " pull of {pull}",
+    ),
+    "mean-tension-drifts": (
+        "warning",
+        "the mean tension drifts from {first:.4g} to {last:.4g} N over the run, which changes K_0"
+        " by {effect:+.0%}; K_0 is that at {mean:.4g} N",
+    ),
+    "loops-no-ellipses": (
+        "warning",
+        "the loops are no ellipses: E'' by area and amplitudes is {ratio:.2f} of E'' of the"
+        " fundamental, so K_1 and tau of the fundamental are the sounder ones",
+    ),
+    "line-uncertainty-skewed": (
+        "warning",
+        "K_1 and tau: in {n_skewed} of {n_lines} the uncertainty of K_0 is more than {limit:.0%} of"
+        " K_1; their standard uncertainties say little",
+    ),
+    "line-slack-in-loops": (
+        "warning",
+        "the line goes slack in {n_slack} of {n_loops} loops, and the model of springs and a"
+        " dashpot does not hold there",
+    ),
+    "no-line": ("refusal", "K_1 and tau: {n_lines} of {n_all} are refused: {reason}"),
+    "line-by-monte-carlo": (
+        "note",
+        "K_1 and tau: uncertainty and 95 % interval are by Monte Carlo, where linear propagation"
+        " does not hold: the linear one of {worst} is {ratio:.2f} of it",
+    ),
+    "line-draws-without-solution": (
+        "note",
+        "K_1 and tau: uncertainty and 95 % interval are by Monte Carlo, where linear propagation"
+        " does not hold: {share:.2g} of the draws of loop and slow pull have no K_1 and tau, and"
+        " the interval is that of the others",
+    ),
+    "no-pull": ("refusal", "refused: quasi-static spring constant: {reason}"),
+    "hose-pull-misfit": (
+        "refusal",
+        "refused: quasi-static spring constant: a cubic of strain misses the curve of this hose by"
+        " {misfit:.1%} of its strain (rms), more than {limit:.0%}; the curve stands in the samples,"
+        " and a comparison with a predicted hose has its slope",
+    ),
+    "pull-misfit": (
+        "warning",
+        "a cubic misses the load-strain curve by {misfit:.1%} of its strain (rms): strain and K_0"
+        " by it are no values to design by",
+    ),
+    "pull-falls": (
+        "note", "tension falls by {fall:.1%} of the rise on the way to the peak",
+    ),
+    "pull-rate-uneven": (
+        "note",
+        "the strain rate is uneven: from {low:.2g} to {high:.2g} 1/s over quarters of the range",
+    ),
+    "pull-length-not-stated": ("note", "the length at which strain is zero is not stated"),
+    "pull-off-zero": (
+        "note",
+        "strain is {strain:+.2%} at the reference tension, so the reference length was read"
+        " elsewhere, or the line has lengthened since",
+    ),
+    "pull-waiting-not-stated": (
+        "note", "the time since the last dynamic test is not stated, and K_0 depends on it",
+    ),
+    "pull-cut-at-turn": (
+        "note", "the range of use ends where the slope of the cubic turns",
+    ),
+    "level-with-few-cycles": (
+        "note", "level {level} has {n_cycles} of the {n_asked} cycles asked for",
+    ),
+    "stiffness-of-few-cycles": (
+        "note",
+        "dynamic stiffness from {n_cycles} cycles; rope.last_cycles asks for {n_asked}",
+    ),
+    "stiffness-not-settled": (
+        "warning",
+        "the dynamic stiffness has not settled: it changes by {effect:+.1%} over its last"
+        " {n_cycles} cycles",
+    ),
+    "cycles-of-another-level": (
+        "note",
+        "{n_other} of {n_cycles} cycles are of another level than the last ones, of which the"
+        " dynamic stiffness is; give each level as a step",
+    ),
+    "no-bedding-in": ("refusal", "refused: bedding-in: one cycle alone; two are needed"),
+    "first-cycle-begins-elsewhere": (
+        "note",
+        "the first cycle begins at {first:.4g} N, others at {usual:.4g} N: its stiffness and the"
+        " permanent strain hold that part of the rise too",
+    ),
+    "cycles-counted-until": ("note", "{how}"),
+    "no-static-stiffness": ("refusal", "refused: static stiffness: {reason}"),
+    "stiffness-beyond-hold": (
+        "warning",
+        "the stiffness at {reference:g} s is read off the line beyond the hold, which has readings"
+        " from {first:.3g} to {last:.3g} s",
+    ),
+    "no-break": (
+        "refusal",
+        "refused: tensile strength: {how}: the line holds {tension:.4g} N or more",
+    ),
+    "no-strain-at-failure": (
+        "refusal", "refused: strain at failure: no strain is known at the peak",
+    ),
+    "no-break-strength": (
+        "note", "no rated break strength is stated: nothing is divided by it",
+    ),
+    "no-order": (
+        "note",
+        "no place in the order of tests is given for {specimens}: what earlier tests did to them is"
+        " not known here; set order",
+    ),
+    "cycles-in-no-log": (
+        "note",
+        "{n_cycles} earlier cycles are in no log: earlier_maximum_strain and"
+        " earlier_maximum_tension are of the logged tests alone",
+    ),
+    "earlier-test-failed": (
+        "warning",
+        "earlier test {test} failed: what it did to {specimens} is not known, and earlier_cycles,"
+        " earlier_maximum_strain and earlier_maximum_tension have no number",
+    ),
+    "earlier-test-without-strain": (
+        "note",
+        "earlier test {test} has no strain of {specimens}: earlier_maximum_strain has no number",
+    ),
+}  # fmt: skip
+
+_OF_EXPERIMENTS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
+    "run-test-failed": ("warning", "its test failed"),
+    "run-without-product": ("warning", "its test gave no product"),
+    "run-without-line": ("refusal", "K_1 and tau refused: {reason}"),
+    "run-slack": ("warning", "the line goes slack in {cycles}"),
+    "same-log": (
+        "warning",
+        "{tests} have the same log, byte for byte: one run that was copied under another name?",
+    ),
+    "levels-off-plan": (
+        "warning",
+        "levels reached disagree with the plan by more than {limit:g} coded: {where}; the surfaces"
+        " are of the levels reached",
+    ),
+    "screening-levels-off-plan": (
+        "warning",
+        "levels reached disagree with the plan by more than {limit:g} coded: {where}; they count as"
+        " those of the plan",
+    ),
+    "no-main-part": ("refusal", "refused: {part}: {reason}"),
+    "no-surface": (
+        "refusal",
+        "refused: surface of {responses}: {reason} ({n_runs} runs of {n_all}, {n_terms}"
+        " terms){causes}",
+    ),
+    "no-effect": (
+        "refusal",
+        lambda responses, reason, without: (
+            f"refused: effects on {responses}: {reason}"
+            f"{f'; no value of {without}' if without else ''}"
+        ),
+    ),
+    "error-by-lenth": (
+        "note",
+        "no columns dummy_1, ..: the error is Lenth's, from the smaller effects themselves",
+    ),
+    "effects-over-blocks": (
+        "note", "the effects are over all blocks; differences of blocks are in their error",
+    ),
+    "slow-pull-error-shared": (
+        "note",
+        "t and p of the surfaces of K_1 and tau are of the scatter of the runs; the error of K_0,"
+        " which all runs of one slow pull share, is in the uncertainty of the coefficients alone",
+    ),
+    "no-reduction-of-terms": ("refusal", "refused: reduction of terms: {reason}"),
+    "terms-chosen-by-runs": (
+        "note", "the runs that are tested chose the terms: p and intervals are too small",
+    ),
+    "no-stiffness-forms": (
+        "refusal", "refused: stiffness forms of mooring codes: {reason}",
+    ),
+    "stiffness-forms-pooled": (
+        "note",
+        "stiffness forms of mooring codes pool the specimens: what sets one apart from another is"
+        " in their scatter",
+    ),
+    "no-derived-line": (
+        "refusal", "refused: K_1 and tau from surfaces of E' and E'': {reason}",
+    ),
+    "no-check-of-single-time": (
+        "refusal", "refused: check of a single relaxation time: {reason}",
+    ),
+    "single-time": ("note", "{verdict}"),
+    "runs-without-value": ("note", "runs without any value: {runs}"),
+    "responses-miss-runs": ("note", "responses that miss further runs: {responses}"),
+    "surface-not-fitted": ("refusal", "{responses}: {reason}"),
+    "surface-not-judged": ("note", "{responses}: {reason}"),
+    "runs-alike": (
+        "warning",
+        "runs {first} and {second} agree in every level and response ({n_pairs} such pairs):"
+        " repeats, or one run twice?",
+    ),
+    "repeats-differ": (
+        "warning",
+        "repeated runs differ by up to {spread:.2g} in coded levels (tolerance {tolerance:g}): pure"
+        " error is taken after the surface has moved them together",
+    ),
+    "levels-off-range": (
+        "note", "levels of {factor} {how} the plan: {low:.2f} to {high:.2f} coded",
+    ),
+    "runs-fix-terms": (
+        "note", "runs that fix a term alone and have no residual to check: {runs}",
+    ),
+    "terms-lean": (
+        "note",
+        "terms lean on each other: condition number {condition:.0f}, that of fifteen Box-Behnken"
+        " runs met exactly is 4.24",
+    ),
+    "blocks-fixed": (
+        "note",
+        "{n_specimens} specimens as fixed blocks: every term is judged by the residuals, which hold"
+        " each specimen's own answer to the factors; the mean is of these specimens",
+    ),
+    "blocks-random": (
+        "note",
+        "{n_specimens} specimens as random draws (REML): the mean is judged by the scatter between"
+        " specimens ({freedom} degrees of freedom), the other terms by the residuals within; r2,"
+        " analysis of variance, lack of fit and residuals are those of fixed blocks",
+    ),
+    "surface-below-zero": (
+        "warning",
+        "the surface of {response} goes below zero among the levels, where no run does: transform ="
+        ' "log" keeps it above',
+    ),
+    "response-drifts": (
+        "warning",
+        "{response} drifts over the order of the runs beyond its surface: {slope:+.3g} a run (p"
+        " {p:.2g})",
+    ),
+}  # fmt: skip
+
+_OF_HOSES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
+    "layer-stretched": (
+        "warning",
+        lambda layer, strain, limit, angle: (
+            f"layer {layer} is stretched by {100 * strain:.1f} % at the working load, above its"
+            f" {100 * limit:g} %: it needs {degrees(angle):.1f} degrees or more"
+        ),
+    ),
+    "layer-compressed": (
+        "warning",
+        lambda layer, strain, limit, angle: (
+            f"layer {layer} is compressed by {-100 * strain:.1f} % on the way, above its"
+            f" {100 * limit:g} %: it needs {degrees(angle):.1f} degrees or less"
+        ),
+    ),
+    "layer-without-angle": (
+        "warning",
+        "layer {layer}: no angle keeps it within both limits up to the working load",
+    ),
+    "no-slack-zone": (
+        "note",
+        lambda angle: (
+            f"at {degrees(angle):.2f} degrees there is no slack zone: the cords carry from the"
+            " first"
+        ),
+    ),
+    "cords-touch": (
+        "warning",
+        "neighbouring cords touch {where} % strain: the prediction does not hold there",
+    ),
+    "bore-too-small": (
+        "warning",
+        "the bore is below its limit {where} % strain: the prediction does not hold there",
+    ),
+    "cords-broken": (
+        "refusal",
+        lambda strain: f"the cords are broken from {100 * strain:.1f} % strain: no load is given",
+    ),
+    "hose-without-uncertainty": (
+        "note", "no number of the hose has a stated uncertainty: none is given",
+    ),
+    "working-load-uncertain": (
+        "warning",
+        lambda effect: f"the safe working load is uncertain by {100 * effect:.0f} % (k = 1)",
+    ),
+    "cycles-pooled": ("note", "each row pools {n_cycles} consecutive cycles"),
+    "one-branch": (
+        "note",
+        "one branch was measured: it is judged itself, and lies above a midline by half the loop",
+    ),
+    "numbers-not-told-apart": (
+        "warning",
+        lambda names, words, needed: (
+            f"this curve cannot tell {names} apart: {words}, less than the {100 * needed:.2g} %"
+            " that an error of the model may be; the values are one choice of many, and their"
+            " intervals are as wide as such an error makes them"
+        ),
+    ),
+    "number-not-shown": (
+        "warning",
+        lambda names, words, needed: (
+            f"this curve does not show {names}: {words}, less than the {100 * needed:.2g} % that an"
+            " error of the model may be"
+        ),
+    ),
+    "number-at-bound": (
+        "warning", "{name} was stopped at a bound: its interval does not hold",
+    ),
+    "number-not-determined": (
+        "warning",
+        "the interval of {name} is wider than half of what it was allowed: not determined",
+    ),
+    "residuals-are-model": (
+        "note",
+        "residuals are worth {n_points:.1f} independent points for {n_numbers} numbers: what is"
+        " left is an error of the model, not noise",
+    ),
+    "source-far-off": (
+        "note", "{name} would have to be {factor:+.1f} of its standard uncertainty off",
+    ),
+    "fitted-cords-broken": (
+        "warning",
+        "cords of the fitted hose are broken at {n_strains} of the measured strains: there it was"
+        " held against its tangent",
+    ),
+    "number-moved-far": (
+        "note", "{name} moved by {factor:+.1f} of its stated standard uncertainty",
+    ),
+    "pick-up-not-shown": (
+        "refusal", "where the cords of the test pick up is not shown: {reason}",
+    ),
+    "dynamic-test": (
+        "note",
+        "the test is dynamic and the cord curve static: nylon is stiffer under quick load, so that"
+        " a prediction is expected to stretch more than this test; a difference is not of the model"
+        " alone",
+    ),
+    "test-beyond-break": (
+        "warning",
+        "the test went on to strain {strain:.4g}; cords are predicted broken at {n_broken} of its"
+        " {n_strains} strains, which are in no difference",
+    ),
+    "curve-ends-early": (
+        "note",
+        "the judged curve ends at strain {strain:.4g}, before the predicted working load",
+    ),
+    "stretch-beside-reported": ("note", "{side} {words}"),
+    "prediction-counts-as-exact": (
+        "note",
+        "no uncertainty of the prediction is stated: it counts as exact, and a difference that the"
+        " angle or the cord curve would explain counts against it",
+    ),
+    "test-counts-as-unbiased": (
+        "note", "no uncertainty of the calibration is stated: the test counts as unbiased",
+    ),
+    "load-cell-counts-as-exact": (
+        "note", "nothing is stated of the load cell: its scale and its zero count as exact",
+    ),
+    "shape-differs": (
+        "warning",
+        "no strain differs by more than U, but the shape of the difference is one that the stated"
+        " errors make in {probability} of all cases alone",
+    ),
+    "difference-without-error": (
+        "warning",
+        lambda effect: (
+            f"{100 * effect:.2g} % of the squared difference lies where no stated error can be"
+        ),
+    ),
+    "taken-as-dynamic": (
+        "note", 'taken as dynamic, as {kind} tests are; a slow one has loading = "static"',
+    ),
+    "from-stored-samples": (
+        "note", "from the samples that are stored of a long record: {samples}",
+    ),
+    "no-curve-of-errors": (
+        "note",
+        "the archive of the test holds no curve with what its instruments may be wrong by (a"
+        " specimen without a diameter has none): what is stated of load and crosshead is not in the"
+        " comparison",
+    ),
+}  # fmt: skip
+
+SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
+    **_OF_READING, **_OF_STRAIN, **_OF_CYCLES, **_OF_MODULI, **_OF_HOLDS, **_OF_LINE,
+    **_OF_EXPERIMENTS, **_OF_HOSES,
+}  # fmt: skip
+"""By code: how serious a note is, and its sentence."""
