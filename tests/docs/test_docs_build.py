@@ -193,7 +193,7 @@ def test_nothing_is_fetched_from_the_network(built, pages):
 
 
 def test_formulas_are_set(built):
-    text = (built / "reference" / "api" / "predict.html").read_text(encoding="utf-8")
+    text = (built / "reference" / "api" / "prediction.html").read_text(encoding="utf-8")
     assert text.count("<math ") > 100
     assert ".. math::" not in text
 
