@@ -3,8 +3,7 @@
 import numpy as np
 
 from reduction.lines.assembly import _Tether
-from reduction.lines.composite import _composite_curve
-from reduction.lines.curve_pieces import CurvePiece
+from reduction.lines.composite import CurvePiece, _composite_curve
 from reduction.stages.strain.strain_model import StrainModel
 
 

@@ -11,8 +11,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 
 from reduction.lines.assembly import _assemble, _equal_tethers, _Tether
-from reduction.lines.composite import compose, used_of
-from reduction.lines.curve_pieces import CompositeRule
+from reduction.lines.composite import CompositeRule, compose, used_of
 from reduction.lines.deck_formats import export_line
 from reduction.lines.export_sources import line_from_composite
 from reduction.lines.published_source import published_piece_sources

@@ -10,7 +10,7 @@ what those numbers are: the diameter, the strain of the rubber between its splic
 import matplotlib.pyplot as plt
 import numpy as np
 
-from reduction.published.published_tethers import published_tethers
+from reduction.published.published_lines import published_tethers
 from reduction.published.reproduce_page import counts_of, reproduce, touched_errata
 
 PSI, LBF, INCH = 6894.757, 4.4482216, 0.0254

@@ -10,7 +10,7 @@ nothing is measured.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from reduction.prediction.morison import immerse_hose, wave_load
+from reduction.prediction.wave_load import immerse_hose, wave_load
 from reduction.prediction.wave_theory import airy_wave
 from reduction.prediction.zhang_example import WATER_DENSITY, printed_airy_wave, printed_section
 from reduction.published.printed_cells import cells_of

@@ -98,10 +98,10 @@ def _flag_text(value: int, variable: Variable) -> str:
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
     """Return a table as text of a CSV file."""
-    return _text_of(table_from_rows(header, rows))
+    return _text_of(_table_from_rows(header, rows))
 
 
-def table_from_rows(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> pd.DataFrame:
+def _table_from_rows(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> pd.DataFrame:
     """Return rows of cells as a table; texts are safe to open in a spreadsheet program."""
     cells = [[safe_cell(cell) if isinstance(cell, str) else cell for cell in row] for row in rows]
     return pd.DataFrame(cells, columns=[safe_cell(one) for one in header], dtype=object)
@@ -421,4 +421,4 @@ class TableFile:
 
     def add_rows(self, rows: Sequence[Sequence[Cell]]) -> None:
         """Add rows of cells."""
-        self.add(table_from_rows([column.header for column in self.columns], rows))
+        self.add(_table_from_rows([column.header for column in self.columns], rows))

@@ -44,7 +44,7 @@ from reduction.record.contributions import LINE_METHODS, LineSpread
 from reduction.record.measurement import Floats, Specimen
 from reduction.stages.channel_lag import LAG_REFUSALS, LagEstimate
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.holds.relaxation import HoldResult, hold_numbers
+from reduction.stages.holds.holds import HoldResult, hold_numbers
 from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair
 from reduction.stages.line.line_product import LineParameters, SlowPull
 from reduction.stages.line.rope_programme import (

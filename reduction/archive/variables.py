@@ -337,10 +337,7 @@ def note_values(notes: Sequence[Note]) -> Values:
 
 
 def read_notes(archive: xr.Dataset, *, of: tuple[str, str] | None = None) -> tuple[Note, ...]:
-    """Return the notes of an archive, or those where a variable has one value; none twice.
-
-    Those of an archive that does not know how serious they are count as what else there is to know.
-    """
+    """Return the notes of an archive, or those where a variable has one value; none twice."""
     if "note" not in archive:
         return ()
     columns = [

@@ -52,16 +52,8 @@ _TESTS = pyarrow.schema(
 
 
 @dataclass(frozen=True)
-class CatalogueEntry:
-    """What a catalogue keeps of one archive.
-
-    Parameters
-    ----------
-    rows : list of dict
-        Conditions: of the whole test, then of each specimen.
-    numbers : list of pyarrow.Table
-        Numbers that stand on the same dimensions, with which of the rows each is of.
-    """
+class _CatalogueEntry:
+    """What a catalogue keeps of one archive."""
 
     rows: list[dict[str, Any]]
     numbers: list[Any]
@@ -93,7 +85,7 @@ def rebuild(folder: Path) -> dict[str, str]:
     return left_out
 
 
-def _write(entries: Sequence[CatalogueEntry], path: Path) -> None:
+def _write(entries: Sequence[_CatalogueEntry], path: Path) -> None:
     rows: list[dict[str, Any]] = []
     numbers = []
     for entry in entries:
@@ -144,7 +136,7 @@ def _kept_cycles(n_cycles: int) -> NDArray[np.intp]:
     return np.array(sorted({n for n in numbers if n < n_cycles} | {n_cycles}), dtype=np.intp) - 1
 
 
-def _entry_of(path: Path, *, opener: Opener = reading) -> CatalogueEntry:
+def _entry_of(path: Path, *, opener: Opener = reading) -> _CatalogueEntry:
     """Read what a catalogue keeps of an archive; `ArchiveError` where it cannot be read."""
     with opener(path) as archive:
         attributes = archive.attrs
@@ -171,7 +163,7 @@ def _entry_of(path: Path, *, opener: Opener = reading) -> CatalogueEntry:
             {name: _shown_path(one) if isinstance(one, str) else one for name, one in row.items()}
             for row in (whole, *of_specimens)
         ]
-        return CatalogueEntry(rows, list(_blocks(archive, names)))
+        return _CatalogueEntry(rows, list(_blocks(archive, names)))
 
 
 def _conditions(archive: xr.Dataset, place: int) -> dict[str, str | float]:

@@ -29,8 +29,7 @@ from reduction.batch.survey import (
 from reduction.batch.test_history import instruments_of, stepwise_instruments
 from reduction.batch.workers import Task, Workers, work_on
 from reduction.campaign.plan import Campaign
-from reduction.pipeline.plausibility import check_stated_errors
-from reduction.pipeline.reduce_test import reduce_stepwise_test, reduce_test
+from reduction.pipeline.reduce_test import check_stated_errors, reduce_stepwise_test, reduce_test
 from reduction.readers.raw_log import hash_source
 from reduction.record.errors import LogError, ReductionError
 from reduction.record.notes import Note

@@ -15,7 +15,7 @@ from reduction.batch.run_lock import RunLock
 from reduction.batch.workers import Task, Workers, work_on
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan
 from reduction.pipeline.located_test import Located, locate, tension_at_marks
-from reduction.pipeline.test_extremes import Extremes, extremes_of_readings, extremes_of_test
+from reduction.pipeline.reduce_test import Extremes, extremes_of_readings, extremes_of_test
 from reduction.readers.raw_log import unreadable
 from reduction.readers.read_log import read_record, read_step_readings
 from reduction.readers.record_in_si import length_at_slack

@@ -11,7 +11,7 @@ import numpy as np
 
 from reduction.batch.survey import Survey, as_reduction_error
 from reduction.campaign.plan import Campaign
-from reduction.pipeline.test_extremes import greatest_strain, growth_of_slack_length
+from reduction.pipeline.reduce_test import greatest_strain, growth_of_slack_length
 from reduction.record.contributions import InstrumentErrors
 from reduction.record.errors import ReductionError
 from reduction.record.measurement import Floats, Specimen, SpliceMarks

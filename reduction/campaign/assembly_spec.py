@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from reduction.campaign.toml_file import Number, TableReader, in_toml, read_toml
 from reduction.lines.assembly import SeriesPart, StatedSplices, WorkingLevel
-from reduction.lines.curve_pieces import CompositeRule, PieceBranch, PieceKind
+from reduction.lines.composite import CompositeRule, PieceBranch, PieceKind
 from reduction.record.errors import SettingsError
 
 _MOST_TETHERS = 100

@@ -2,33 +2,770 @@
 
 from __future__ import annotations
 
+import math
 import re
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from math import pi
 from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
 
 from reduction.archive.open import reading
 from reduction.archive.product_files import archives_of_tests
 from reduction.campaign.experiment_plans import agree_on_pulls, plan_experiment
-from reduction.campaign.hose_plans import hose_of, plan_comparison
 from reduction.campaign.model import (
     CampaignFile,
+    ComparisonSection,
+    CordSection,
+    Defaults,
+    HoseKeys,
+    HoseSpecFile,
+    Identifier,
+    LayerSection,
+    SpecimenSection,
+    StepSection,
     TestSection,
+    apply_numbers,
     check_names,
     report_details,
     stated_errors,
     stated_limits,
 )
 from reduction.campaign.outcome_results import outcomes_of
-from reduction.campaign.plan import Campaign
-from reduction.campaign.specimens import pooled_marks, specimen_of
-from reduction.campaign.test_plans import merge_tests, plan_test, read_test_table
-from reduction.campaign.toml_file import file_inside, in_toml, read_small_text, read_toml
-from reduction.readers.remote_files import base_name, fetch, renamed, scratch_folder
+from reduction.campaign.plan import Campaign, ComparisonPlan, StepPlan, TestPlan, product_of
+from reduction.campaign.toml_file import (
+    TableReader,
+    faults_of,
+    file_inside,
+    in_toml,
+    listed,
+    quantity_of,
+    read_csv_rows,
+    read_small_text,
+    read_toml,
+)
+from reduction.prediction.cord_curve import CordCurve
+from reduction.prediction.hose_prediction import HelicalLayer, HosePlan, HoseTarget
+from reduction.prediction.hose_product import HoseDesign
+from reduction.quantities.units import Dimension, scale_to_si
+from reduction.readers.remote_files import allowed, base_name, fetch, renamed, scratch_folder
 from reduction.record.errors import ArchiveError, LogError, SettingsError
-from reduction.record.plain_text import is_address, shown_address
+from reduction.record.measurement import Specimen, SpliceMarks
+from reduction.record.plain_text import cut, is_address, shown_address
+from reduction.record.settings import CycleSettings, ReductionSettings, StrainSettings
+
+
+def _length(text: str, where: str, path: Path) -> float:
+    value = quantity_of(path, where, text, "length")
+    if not value > 0:
+        raise in_toml(path, f"{where} is not positive", found=text, needed="above zero")
+    return value
+
+
+def _linear_densities(
+    path: Path, name: str, section: SpecimenSection
+) -> tuple[float | None, float | None]:
+    """Mass a length in air and in water; in water it is less, and of what floats below zero."""
+    dry, wet = (
+        None if text is None else quantity_of(path, where, text, "linear_density")
+        for where, text in (
+            (f"specimens.{name}.linear_density", section.linear_density),
+            (f"specimens.{name}.wet_linear_density", section.wet_linear_density),
+        )
+    )
+    if dry is not None and not dry > 0:
+        raise in_toml(
+            path, f"specimens.{name}.linear_density is not positive", found=section.linear_density,
+            needed="above zero",
+        )  # fmt: skip
+    if dry is not None and wet is not None and not wet < dry:
+        raise in_toml(
+            path, f"specimens.{name}.wet_linear_density is not below linear_density",
+            found=f"{section.wet_linear_density}, {section.linear_density}",
+            needed="the mass in air less that of the displaced water",
+        )  # fmt: skip
+    return dry, wet
+
+
+def _specimen_of(path: Path, name: str, section: SpecimenSection) -> Specimen:
+    """The specimen before its first test; an error names campaign.toml and the key."""
+    readings = (section.diameter,) if isinstance(section.diameter, str) else section.diameter
+    where = f"specimens.{name}.diameter"
+    stretched = tuple(
+        (
+            quantity_of(path, f"specimens.{name}.stretched_diameter", stretch, "strain"),
+            _length(reading, f"specimens.{name}.stretched_diameter", path),
+        )
+        for stretch, at_stretch in section.stretched_diameter.items()
+        for reading in at_stretch
+    )
+    strength = section.rated_break_strength
+    dry, wet = _linear_densities(path, name, section)
+    gauge, spread = section.gauge_length, section.gauge_length_standard_uncertainty
+    if gauge is None and spread is not None:
+        raise in_toml(
+            path, f"specimens.{name}.gauge_length_standard_uncertainty stands alone",
+            found=spread, needed="gauge_length beside it",
+        )  # fmt: skip
+    return Specimen(
+        name=name,
+        kind=section.kind,
+        material=section.material,
+        construction=section.construction,
+        condition=section.condition,
+        diameter=tuple(_length(reading, where, path) for reading in readings),
+        stretched_diameters=stretched,
+        rated_break_strength=None
+        if strength is None
+        else quantity_of(path, f"specimens.{name}.rated_break_strength", strength, "force"),
+        rated_break_strength_source=section.rated_break_strength_source,
+        linear_density=dry,
+        wet_linear_density=wet,
+        gauge_length=None
+        if gauge is None
+        else _length(gauge, f"specimens.{name}.gauge_length", path),
+        gauge_length_standard_uncertainty=None
+        if spread is None
+        else _length(spread, f"specimens.{name}.gauge_length_standard_uncertainty", path),
+        earlier_cycles=section.earlier_cycles,
+        earlier_flex_cycles=section.earlier_flex_cycles,
+        notes=(section.note,) if section.note else (),
+    )
+
+
+_LENGTHS = ("near_toe", "far_toe", "far_thimble")
+
+_SUFFIXES = {"ft": "ft", "in": "inch", "m": "m", "mm": "mm", "cm": "cm"}
+
+# as a person reads a tape: the digits behind the point say how finely
+_NUMBER = re.compile(r"[-+]?([0-9]{1,9}(\.[0-9]{0,9})?|\.[0-9]{1,9})")
+
+_HOLDS = ("slack", "min", "centre", "max")
+
+
+@dataclass
+class _Rows:
+    test: list[str] = field(default_factory=list)
+    hold: list[str] = field(default_factory=list)
+    lengths: list[tuple[float, float, float]] = field(default_factory=list)
+    decimals: list[float] = field(default_factory=list)
+
+
+def _columns(path: Path, header: list[str]) -> dict[str, tuple[int, float]]:
+    """Column index and factor to metre of each length."""
+    found: dict[str, tuple[int, float]] = {}
+    for index, name in enumerate(header):
+        stem, _, suffix = name.strip().rpartition("_")
+        if stem in _LENGTHS and suffix in _SUFFIXES:
+            if stem in found:
+                raise LogError(path, f"two columns hold {stem}", row=1, channel=name)
+            found[stem] = (index, scale_to_si(_SUFFIXES[suffix], "length")[0])
+    missing = [name for name in _LENGTHS if name not in found]
+    missing += [name for name in ("test", "specimen", "hold") if name not in header]
+    if missing:
+        raise LogError(
+            path,
+            "the marks file lacks a column",
+            row=1,
+            found=", ".join(header),
+            needed="test, specimen, hold, near_toe_ft, far_toe_ft, far_thimble_ft (or _in, _m, "
+            "_mm, _cm); missing: " + ", ".join(missing),
+        )
+    return found
+
+
+def _reading(path: Path, row: int, name: str, text: str) -> float:
+    if _NUMBER.fullmatch(text) is None:
+        raise LogError(
+            path, "a mark is not a number", row=row, channel=name, found=repr(cut(text, 60)),
+            needed="a length read from the near thimble, such as 6.25",
+        )  # fmt: skip
+    return float(text)
+
+
+def _check_hold(path: Path, row: int, hold: str) -> None:
+    if hold in _HOLDS:
+        return
+    if _NUMBER.fullmatch(hold.rstrip("% ")) is None:
+        raise LogError(
+            path, "a hold has no known name", row=row, channel="hold", found=repr(cut(hold, 60)),
+            needed="slack, min, centre, max or a strain",
+        )  # fmt: skip
+
+
+def _read_marks(path: Path) -> dict[str, SpliceMarks]:
+    """Read a marks file."""
+    header, filled = read_csv_rows(path, "the marks file")
+    columns = _columns(path, header)
+    where = {name: header.index(name) for name in ("test", "specimen", "hold")}
+    rows: dict[str, _Rows] = {}
+    for number, cells in filled:
+        entry = rows.setdefault(cells[where["specimen"]].strip(), _Rows())
+        hold = cells[where["hold"]].strip()
+        _check_hold(path, number, hold)
+        entry.test.append(cells[where["test"]].strip())
+        entry.hold.append(hold)
+        values = []
+        for name in _LENGTHS:
+            index, factor = columns[name]
+            cell = cells[index].strip()
+            values.append(factor * _reading(path, number, header[index], cell))
+            decimals = len(cell.partition(".")[2])
+            entry.decimals.append(factor * 10.0**-decimals)
+        entry.lengths.append((values[0], values[1], values[2]))
+    if not rows:
+        raise LogError(path, "the marks file has no rows", needed="one row a reading")
+    marks = {}
+    for specimen, entry in rows.items():
+        table = np.array(entry.lengths)
+        marks[specimen] = SpliceMarks(
+            specimen=specimen,
+            test=tuple(entry.test),
+            hold=tuple(entry.hold),
+            near_toe=table[:, 0],
+            far_toe=table[:, 1],
+            far_thimble=table[:, 2],
+            # trailing zeros are dropped by spreadsheets, so the finest digit counts
+            reading_uncertainty=min(entry.decimals) / math.sqrt(12) * math.sqrt(2),
+        )
+    return marks
+
+
+def _pooled_marks(
+    path: Path, names: Iterable[str], specimens: Iterable[str]
+) -> dict[str, SpliceMarks]:
+    """Return all marks of each specimen over the campaign, from every marks file it names."""
+    pooled: dict[str, SpliceMarks] = {}
+    for name in dict.fromkeys(names):
+        for specimen, marks in _read_marks(path.parent / file_inside(path, name)).items():
+            if specimen not in specimens:
+                raise LogError(
+                    path.parent / name, "a mark names an unknown specimen", channel="specimen",
+                    found=repr(specimen), needed="one of " + ", ".join(specimens),
+                )  # fmt: skip
+            before = pooled.get(specimen)
+            if before is None:
+                pooled[specimen] = marks
+                continue
+            pooled[specimen] = replace(
+                before,
+                test=before.test + marks.test,
+                hold=before.hold + marks.hold,
+                near_toe=np.concatenate([before.near_toe, marks.near_toe]),
+                far_toe=np.concatenate([before.far_toe, marks.far_toe]),
+                far_thimble=np.concatenate([before.far_thimble, marks.far_thimble]),
+                reading_uncertainty=max(before.reading_uncertainty, marks.reading_uncertainty),
+            )
+    return pooled
+
+
+_LISTS = ("specimens", "target_strain")
+
+_WHOLE = ("order", "n_cycles", "unlogged_cycles", "n_flex_cycles")
+
+# as many digits as a netCDF integer holds
+_WHOLE_NUMBER = re.compile(r"[-+]?[0-9]{1,9}")
+
+_STRAIN = ("method", "marks")
+
+# tables of campaign.toml, which no cell can hold
+_TABLES = ("strain", "reduction", "steps")
+
+_COLUMNS = ("id", *(name for name in TestSection.model_fields if name not in _TABLES), *_STRAIN)
+
+
+def _in_table(
+    path: Path, problem: str, *, row: int | None = None, channel: str = "", **kwargs: Any
+) -> SettingsError:
+    """An error of the table of tests, ``FILE:ROW [COLUMN]``."""
+    place = ("" if row is None else f":{row}") + (f" [{channel}]" if channel else "")
+    return SettingsError(f"{path}{place}: {problem}", **kwargs)
+
+
+def _cells(path: Path, row: int, cells: dict[str, str]) -> dict[str, Any]:
+    """The filled cells of one row, as TOML would have given them."""
+    table: dict[str, Any] = {}
+    for name, cell in cells.items():
+        text = cell.strip()
+        if not text or name == "id":
+            continue
+        if name in _LISTS:
+            table[name] = [entry.strip() for entry in text.split(";")]
+        elif name in _STRAIN:
+            table.setdefault("strain", {})[name] = text
+        elif name in _WHOLE:
+            if not _WHOLE_NUMBER.fullmatch(text):
+                raise _in_table(
+                    path, f"{name} is not a whole number", row=row, channel=name,
+                    found=repr(cut(text, 60)), needed="a whole number",
+                )  # fmt: skip
+            table[name] = int(text)
+        else:
+            table[name] = text
+    return table
+
+
+def read_test_table(path: Path) -> dict[str, TestSection]:
+    """Read a table of tests."""
+    header, rows = read_csv_rows(path, "the table of tests", fault=_in_table)
+    if "id" not in header or "file" not in header or len(set(header)) != len(header):
+        raise _in_table(
+            path, "the table of tests has no usable header", row=1, found=", ".join(header),
+            needed="id, file and keys of [tests.ID], each once",
+        )  # fmt: skip
+    for name in header:
+        if name not in _COLUMNS:
+            raise _in_table(
+                path, "a column is no key of a test", row=1, channel=name,
+                needed="one of " + ", ".join(_COLUMNS),
+                hint=f"{' and '.join(_TABLES[1:])} stand in campaign.toml, as [tests.ID]."
+                if name in _TABLES else None,
+            )  # fmt: skip
+    tests: dict[str, TestSection] = {}
+    identifier = TypeAdapter(Identifier)
+    for number, texts in rows:
+        cells = dict(zip(header, texts, strict=True))
+        name = cells["id"].strip()
+        if name in tests:
+            raise _in_table(path, "a test stands twice", row=number, channel="id", found=repr(name))
+        filled = _cells(path, number, cells)
+        if "file" not in filled:
+            raise _in_table(path, "a test has no file", row=number, channel="file")
+        try:
+            identifier.validate_python(name)
+            tests[name] = TestSection.model_validate(filled)
+        except ValidationError as error:
+            first, *others = faults_of(error, filled)
+            raise _in_table(
+                path, "a row of tests cannot be used", row=number, channel=first.place or "id",
+                found=first.found or None, needed=first.needed.removeprefix("Input should be "),
+                hint=f"Also {', '.join(map(str, others))}." if others else None,
+            ) from error  # fmt: skip
+    return tests
+
+
+def _merge_tests(
+    path: Path, table: str, rows: dict[str, TestSection], sections: dict[str, TestSection]
+) -> dict[str, TestSection]:
+    """Tests of the table and of campaign.toml; a test may stand in both, a key of it in one."""
+    twice = [
+        f"tests.{name}.{key}"
+        for name in rows.keys() & sections.keys()
+        for key in sorted(rows[name].model_fields_set & sections[name].model_fields_set)
+    ]
+    if twice:
+        count = f"{len(twice)} settings stand" if len(twice) > 1 else "1 setting stands"
+        headline = f"{count} both in {table} and in [tests], first {min(twice)}"
+        raise in_toml(path, listed(headline, sorted(twice)))
+    tests = rows | sections
+    for name in rows.keys() & sections.keys():
+        section = sections[name]
+        own = {key: getattr(section, key) for key in section.model_fields_set}
+        tests[name] = rows[name].model_copy(update=own)
+    missing = [f"tests.{name}.file: is required" for name, test in tests.items() if not test.file]
+    if missing:
+        count = f"{len(missing)} tests have" if len(missing) > 1 else "1 test has"
+        where = f", here or as a row of {table}" if table else ""
+        raise in_toml(path, listed(f"{count} no file{where}", missing))
+    return tests
+
+
+_KEPT = (
+    "rate", "medium", "soak", "temperature", "machine", "load_cell", "calibration_due",
+    "operator", "procedure", "note",
+)  # fmt: skip
+
+_KEPT_OF_TEST = ("date", "rest", "unlogged_cycles", "n_flex_cycles", "flex_angle")
+
+
+def _range(path: Path, test: str, step: StepSection) -> dict[str, Any]:
+    if isinstance(step.start, int) and isinstance(step.end, int):
+        return {"time_range": None, "cycle_range": (step.start, step.end)}
+    if isinstance(step.start, str) and isinstance(step.end, str):
+        place = f"tests.{test}.steps '{step.name}'"
+        times = (
+            quantity_of(path, f"{place}: from", step.start, "time"),
+            quantity_of(path, f"{place}: to", step.end, "time"),
+        )
+        if times[0] < times[1]:
+            return {"time_range": times, "cycle_range": None}
+    raise in_toml(
+        path, f"step '{step.name}' of test '{test}' has no range",
+        found=f"from {step.start!r} to {step.end!r}",
+        needed='two rising times with units ("1200 s") or two cycle numbers',
+    )  # fmt: skip
+
+
+def _log_name(path: Path, test: str, entry: str, allow_remote: bool) -> str:
+    """What names a log in messages and products: a path inside the folder, or an address."""
+    try:
+        is_remote = allowed(entry, allow_remote, what=f"the log of test '{test}'")
+    except SettingsError as error:
+        raise in_toml(
+            path, error.problem, found=error.found, needed=error.needed, hint=error.hint
+        ) from error
+    return shown_address(entry) if is_remote else file_inside(path, entry, is_needed=False)
+
+
+def _plan_test(
+    path: Path,
+    name: str,
+    test: TestSection,
+    defaults: Defaults,
+    file: CampaignFile,
+    *,
+    allow_remote: bool = False,
+) -> TestPlan:
+    """Return a test with the defaults of its campaign, in SI; an error names file and key."""
+
+    def given(key: str) -> Any:
+        return getattr(test, key) if key in test.model_fields_set else getattr(defaults, key)
+
+    layout = given("layout")
+    pieces = (
+        ((test.file, layout),)
+        if isinstance(test.file, str)
+        else tuple((piece.file, piece.layout or layout) for piece in test.file)
+    )
+    for _, piece_layout in pieces:
+        if piece_layout not in file.layouts:
+            raise in_toml(
+                path, f"test '{name}' has no layout", found=repr(piece_layout),
+                needed="one of [layouts]: " + (", ".join(file.layouts) or "there are none"),
+            )  # fmt: skip
+    specimens = given("specimens")
+    unknown = [entry for entry in specimens if entry not in file.specimens]
+    if unknown or not specimens:
+        raise in_toml(
+            path, f"test '{name}' names no known specimen", found=", ".join(unknown) or "none",
+            needed="one of [specimens]: " + ", ".join(file.specimens),
+        )  # fmt: skip
+    if len(set(specimens)) < len(specimens):
+        raise in_toml(
+            path, f"test '{name}' names a specimen twice", found=", ".join(specimens),
+            needed="each specimen once, in the order of the tension channels",
+        )  # fmt: skip
+    strain = given("strain")
+    settings = ReductionSettings(
+        strain=StrainSettings(method=strain.method),
+        cycles=CycleSettings(
+            control=given("control"), waveform=given("waveform"), expected_cycles=test.n_cycles
+        ),
+    )
+    for table in (defaults.reduction, test.reduction):
+        try:
+            settings = apply_numbers(settings, table, control=given("control"))
+        except SettingsError as error:
+            raise in_toml(path, f"test '{name}': {error}") from error
+    kind = test.kind or defaults.kind
+    attributes = {key: given(key) for key in _KEPT if given(key)}
+    attributes |= {
+        key: str(getattr(test, key))
+        for key in _KEPT_OF_TEST
+        if getattr(test, key) not in (None, "")
+    }
+    if test.flex_angle is not None:
+        quantity_of(path, f"tests.{name}.flex_angle", test.flex_angle, "angle")
+    return TestPlan(
+        id=name,
+        kind=kind,
+        # a log that is not there is its test's error, and the other tests go on
+        files=tuple(
+            (_log_name(path, name, entry, allow_remote), str(used)) for entry, used in pieces
+        ),
+        specimens=specimens,
+        order=test.order,
+        control=given("control"),
+        waveform=given("waveform"),
+        target_strain=test.target_strain,
+        attributes=attributes,
+        settings=settings,
+        part_of=test.part_of,
+        log=name,
+        failed=test.failed,
+        unlogged_cycles=test.unlogged_cycles,
+        n_flex_cycles=test.n_flex_cycles,
+        steps=tuple(
+            StepPlan(
+                name=step.name,
+                kind=step.kind or kind,
+                expected_cycles=step.n_cycles,
+                target_strain=step.target_strain,
+                failed=step.failed,
+                note=step.note,
+                **_range(path, name, step),
+            )
+            for step in test.steps
+        ),
+    )
+
+
+_DIMENSIONS: dict[str, Dimension] = {
+    "wrap_angle": "angle",
+    "wrap_diameter": "length",
+    "layer_diameters": "length",
+    "inner_diameter": "length",
+    "outer_diameter": "length",
+    "cords_per_length": "per_length",
+    "rubber_modulus": "stress",
+    "cord_load_scale": "number",
+    "cord_strain_scale": "number",
+    "dead_length": "length",
+}
+
+"""Keys that may have a standard uncertainty."""
+
+_MOST_CORD_STRAIN = 1.0
+
+_PARAMETERS = {
+    "wrap_diameter": "layer_diameter",
+    "layer_diameters": "layer_diameter",
+    "dead_length": "dead_length_share",
+}
+
+
+def _hose_of(path: Path, name: str, place: str, keys: HoseKeys, cord: CordSection) -> HosePlan:
+    """A hose in SI."""
+    read = TableReader(path, place)
+    given = keys.layer_diameters if keys.wrap_diameter is None else (keys.wrap_diameter,) * 2
+    if given is None or None not in (keys.wrap_diameter, keys.layer_diameters):
+        raise in_toml(
+            path, f"{place} does not say once where its cords lie",
+            found="wrap_diameter and layer_diameters" if given else "neither",
+            needed="wrap_diameter, the mean of the two layers, or layer_diameters, one of each",
+        )  # fmt: skip
+    key = "wrap_diameter" if keys.wrap_diameter is not None else "layer_diameters"
+    inner, outer = (read.value(key, text, "length") for text in given)
+    numbers = {
+        name: read.value(name, getattr(keys, name), _DIMENSIONS[name])
+        for name in (
+            "wrap_angle", "inner_diameter", "outer_diameter", "cords_per_length",
+            "rubber_modulus", "cord_load_scale", "cord_strain_scale",
+        )
+    }  # fmt: skip
+    bore = keys.minimum_inner_diameter
+    share, length = _dead_length(read, keys)
+    try:
+        design = HoseDesign(
+            **numbers,
+            layer_diameter=(inner, outer),
+            cord_diameter=read.value("cord_diameter", keys.cord_diameter, "length"),
+            cord=_cord(read, place, cord),
+            rubber_law=keys.rubber_law,
+            working_share=read.value("working_share", keys.working_share, "number"),
+            dead_length_share=share,
+            minimum_inner_diameter=0.0
+            if bore is None
+            else read.value("minimum_inner_diameter", bore, "length"),
+        )
+    except SettingsError as error:
+        if error.problem.startswith(str(path)):
+            raise
+        problem = error.problem.replace("layer_diameter", key)
+        problem = problem.replace("dead_length_share", "dead_length over length")
+        raise in_toml(
+            path, f"{place}: {problem}", found=error.found, needed=error.needed,
+            hint=error.hint,
+        ) from error  # fmt: skip
+    step = read.value("strain_step", keys.strain_step, "strain")
+    if not 0 < step < 1:
+        raise in_toml(
+            path, f"{place}.strain_step is no step", found=f"{step:g}",
+            needed='above 0 and below 1, such as "1 %"',
+        )  # fmt: skip
+    greatest = keys.greatest_strain
+    last = np.nan if greatest is None else read.value("greatest_strain", greatest, "strain")
+    if last <= 0:
+        raise in_toml(
+            path, f"{place}.greatest_strain is not positive", found=f"{last:g}", needed="above 0"
+        )
+    return HosePlan(
+        name=name,
+        design=design,
+        standard_uncertainty=_uncertainties(read, keys, design, length),
+        strain_step=step,
+        greatest_strain=last,
+        layers=tuple(_layer(read, layer) for layer in keys.layers),
+    )
+
+
+def _layer(read: TableReader, layer: LayerSection) -> HelicalLayer:
+    place = f"layers.{layer.name}"
+    angle = read.value(place, layer.wrap_angle, "angle")
+    if not 0 < angle < pi / 2:
+        raise in_toml(
+            read.path, f"{read.place}.{place}.wrap_angle lies across the axis or along it",
+            found=layer.wrap_angle, needed="between 0 and 90 deg, from the hose axis",
+        )  # fmt: skip
+    limits = [
+        np.nan if text is None else read.value(place, text, "strain")
+        for text in (layer.strain_limit, layer.compression_limit)
+    ]
+    # a comparison with NaN is false: what is not stated is no fault
+    if limits[0] < 0 or limits[1] < 0 or limits[1] >= 1:
+        raise in_toml(
+            read.path, f"{read.place}.{place} has a limit that no layer has",
+            found=f"{limits[0]:g} in tension, {limits[1]:g} in compression",
+            needed="positive numbers, compression below 100 %",
+        )  # fmt: skip
+    return HelicalLayer(layer.name, angle, *limits)
+
+
+def _cord(read: TableReader, place: str, cord: CordSection) -> CordCurve:
+    at = TableReader(read.path, "cord" if place == "hose" else f"{place}.cord")
+    strain = [at.value("strain", text, "strain") for text in cord.strain]
+    load = [at.value("load", text, "force") for text in cord.load]
+    if max(strain, default=0.0) > _MOST_CORD_STRAIN:
+        raise in_toml(
+            at.path, f"{at.place}.strain goes beyond what a cord can be stretched",
+            found=f"{100 * max(strain):g} %", needed=f"at most {100 * _MOST_CORD_STRAIN:g} %",
+            hint='A bare number is a share: 22 % is 0.22 or "22 %".',
+        )  # fmt: skip
+    return CordCurve(np.array(strain), np.array(load))
+
+
+def _dead_length(read: TableReader, keys: HoseKeys) -> tuple[float, float]:
+    """Share of the length that does not stretch, and the length, NaN where not stated."""
+    length = np.nan if keys.length is None else read.value("length", keys.length, "length")
+    if length <= 0:
+        raise in_toml(
+            read.path, f"{read.place}.length is not positive", found=keys.length, needed="above 0"
+        )
+    if keys.dead_length is None:
+        return 0.0, length
+    if keys.length is None:
+        raise in_toml(
+            read.path, f"{read.place}.dead_length stands without length",
+            needed='length = "2.4 m", relaxed, stretch-limited ends included',
+        )  # fmt: skip
+    return read.value("dead_length", keys.dead_length, "length") / length, length
+
+
+def _uncertainties(
+    read: TableReader, keys: HoseKeys, design: HoseDesign, length: float
+) -> dict[str, float]:
+    """Standard uncertainties in SI, by parameter; % is of the value itself."""
+    found: dict[str, float] = {}
+    for key, text in keys.standard_uncertainty.items():
+        place = f"standard_uncertainty.{key}"
+        if key not in _DIMENSIONS:
+            raise in_toml(
+                read.path, f"{read.place}.{place} is no number of a hose that may be uncertain",
+                needed="one of " + ", ".join(_DIMENSIONS),
+            )  # fmt: skip
+        if key in ("wrap_diameter", "layer_diameters") and getattr(keys, key) is None:
+            raise in_toml(
+                read.path, f"{read.place}.{place} stands without {key}",
+                needed="the key that the hose has",
+            )  # fmt: skip
+        name = _PARAMETERS.get(key, key)
+        value = design.wrap_diameter if name == "layer_diameter" else getattr(design, name)
+        if isinstance(text, str) and text.strip().endswith("%"):
+            number = read.value(place, text, "strain") * float(np.mean(value))
+        else:
+            number = read.value(place, text, _DIMENSIONS[key])
+            if key == "dead_length":
+                number = number / length
+        size = abs(float(np.mean(value)))
+        # a dead length may be nil and not known well
+        if not (np.isfinite(number) and 0 <= number < (size or 1.0)):
+            raise in_toml(
+                read.path, f"{read.place}.{place} is no standard uncertainty", found=str(text),
+                needed="zero or more, below the number itself; a dead_length needs the length",
+            )  # fmt: skip
+        found[name] = number
+    return found
+
+
+def load_hose(path: Path) -> tuple[HosePlan, HoseSpecFile]:
+    """Read SPEC.toml of a hose."""
+    file = read_toml(
+        path,
+        HoseSpecFile,
+        what="the hose",
+        needed="a SPEC.toml with [hose] and [cord]",
+        keys="docs/predictions.md lists every key",
+    )
+    return _hose_of(path, path.stem, "hose", file.hose, file.cord), file
+
+
+def target_of(path: Path, file: HoseSpecFile) -> HoseTarget | None:
+    """What SPEC.toml asks of a hose, in SI; None where it asks nothing."""
+    if file.target is None:
+        return None
+    read = TableReader(path, "target")
+    return HoseTarget(
+        strain=read.value("strain", file.target.strain, "strain"),
+        tension=read.optional("tension", file.target.tension, "force"),
+    )
+
+
+_HAVE_CURVE = ("cyclic", "fatigue", "quasi-static", "tensile")
+
+
+def _plan_comparison(
+    path: Path,
+    name: str,
+    section: ComparisonSection,
+    *,
+    tests: Mapping[str, TestPlan],
+    hoses: Collection[str],
+    specimens: Mapping[str, Specimen],
+) -> ComparisonPlan:
+    """A comparison with every name in it resolved."""
+    place = f"comparison '{name}'"
+    found = product_of(section.measured, tests)
+    if found is None:
+        raise in_toml(
+            path, f"{place}: what was measured is no test of the campaign",
+            found=section.measured, needed="a test, or test/step: " + ", ".join(tests),
+        )  # fmt: skip
+    product, kind = found
+    if kind not in _HAVE_CURVE:
+        raise in_toml(
+            path, f"{place}: '{section.measured}' has no curve of tension against strain",
+            found=kind, needed="one of " + ", ".join(_HAVE_CURVE),
+        )  # fmt: skip
+    if section.predicted not in hoses:
+        raise in_toml(
+            path, f"{place}: what is predicted is no hose of the campaign",
+            found=section.predicted, needed="one of [hoses]: " + (", ".join(hoses) or "none"),
+        )  # fmt: skip
+    pulled = tests[section.measured.partition("/")[0]].specimens
+    if section.specimen is None and len(pulled) > 1:
+        raise in_toml(
+            path, f"{place}: '{section.measured}' has several specimens",
+            needed="specimen = one of " + ", ".join(pulled),
+        )  # fmt: skip
+    specimen = section.specimen or pulled[0]
+    if specimen not in pulled:
+        raise in_toml(
+            path, f"{place}: '{section.measured}' has no such specimen", found=specimen,
+            needed="one of " + ", ".join(pulled),
+        )  # fmt: skip
+    if specimens[specimen].kind != "stretch hose":
+        raise in_toml(
+            path, f"{place}: '{specimen}' is no stretch hose", found=specimens[specimen].kind,
+            needed='kind = "stretch hose" of what is held against a hose',
+        )  # fmt: skip
+    if len(set(section.calibrate)) < len(section.calibrate):
+        raise in_toml(
+            path, f"{place}: a number is to be calibrated twice",
+            found=", ".join(section.calibrate),
+        )  # fmt: skip
+    return ComparisonPlan(
+        name=name,
+        measured=product,
+        specimen=specimen,
+        predicted=section.predicted,
+        loading=section.loading,
+        calibrate=section.calibrate,
+    )
 
 
 def _hint(path: Path) -> str | None:
@@ -112,14 +849,14 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
     if table:
         tests |= read_test_table(path.parent / file_inside(path, table))
     if not isinstance(file.tests, str):
-        tests = merge_tests(path, table, tests, file.tests)
+        tests = _merge_tests(path, table, tests, file.tests)
     if not (tests or file.results or file.campaign.results or file.hoses):
         raise in_toml(
             path, "the campaign has no tests",
             needed="at least one [tests.NAME], or results, or [hoses.NAME]",
         )  # fmt: skip
     plans = {
-        name: plan_test(path, name, test, file.defaults, file, allow_remote=allow_remote)
+        name: _plan_test(path, name, test, file.defaults, file, allow_remote=allow_remote)
         for name, test in tests.items()
     }
     check_names(path, file.campaign.id, plans)
@@ -132,7 +869,7 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
     marks_files = [
         section.strain.marks for section in (file.defaults, *tests.values()) if section.strain.marks
     ]
-    marks = pooled_marks(path, marks_files, tuple(file.specimens))
+    marks = _pooled_marks(path, marks_files, tuple(file.specimens))
     for specimen, rows in marks.items():
         unknown = sorted(set(rows.test) - set(plans))
         if unknown:
@@ -147,7 +884,9 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
     }
     if file.campaign.synthetic or "synthetic" in file.campaign.source.lower():
         attributes["synthetic"] = "yes"
-    specimens = {name: specimen_of(path, name, section) for name, section in file.specimens.items()}
+    specimens = {
+        name: _specimen_of(path, name, section) for name, section in file.specimens.items()
+    }
     results, outcomes = outcomes_of(path, _results_file(path, file), specimens)
     experiments = {
         name: plan_experiment(path, name, section, tests=plans, specimens=specimens)
@@ -155,11 +894,11 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
     }
     agree_on_pulls(path, experiments, plans)
     hoses = {
-        name: hose_of(path, name, f"hoses.{name}", section, section.cord)
+        name: _hose_of(path, name, f"hoses.{name}", section, section.cord)
         for name, section in file.hoses.items()
     }
     comparisons = {
-        name: plan_comparison(path, name, section, tests=plans, hoses=hoses, specimens=specimens)
+        name: _plan_comparison(path, name, section, tests=plans, hoses=hoses, specimens=specimens)
         for name, section in file.comparisons.items()
     }
     return Campaign(

@@ -10,8 +10,12 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from reduction.campaign.toml_file import Number, TableReader, in_toml, read_toml
-from reduction.prediction.morison import CODE_OF_HYDROLOGY, SEAWATER_DENSITY, VerticalWidth
-from reduction.prediction.wave_load import AIR_DENSITY
+from reduction.prediction.wave_load import (
+    AIR_DENSITY,
+    CODE_OF_HYDROLOGY,
+    SEAWATER_DENSITY,
+    VerticalWidth,
+)
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats
 

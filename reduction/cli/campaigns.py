@@ -23,8 +23,8 @@ from reduction.archive.open import Opener, read_once, reading
 from reduction.archive.product_files import processed_folders
 from reduction.batch.campaign_status import PartStatus, TestStatus
 from reduction.batch.experiment_product import experiments_found
-from reduction.batch.other_products import results_found
 from reduction.batch.requested_products import check_campaign as check_tests
+from reduction.batch.run_campaign import results_found
 from reduction.batch.run_campaign import run_campaign as run_tests
 from reduction.campaign.plan import Campaign
 from reduction.cli.output import CommandOutput

@@ -18,8 +18,15 @@ from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.lines.archive_pieces import source_of_tests, specimens_of
 from reduction.lines.assembly import DeployedLine, WorkingState, deploy, stated_model
-from reduction.lines.composite import CompositeCurve, PieceSource, compose, used_of
-from reduction.lines.curve_pieces import CompositeRule, PieceBranch, PieceKind
+from reduction.lines.composite import (
+    CompositeCurve,
+    CompositeRule,
+    PieceBranch,
+    PieceKind,
+    PieceSource,
+    compose,
+    used_of,
+)
 from reduction.lines.deck_formats import export_table
 from reduction.lines.export_sources import assembly_table, composite_table, ranges_of
 from reduction.lines.published_source import published_piece_sources, published_sources

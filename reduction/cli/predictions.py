@@ -15,7 +15,7 @@ from reduction.archive.csv_tables import write_tables
 from reduction.archive.write import write_text_atomically
 from reduction.batch.prediction_product import compare_archive, write_hoses, write_named
 from reduction.campaign.armour_spec import load_armour_case
-from reduction.campaign.hose_plans import load_hose, target_of
+from reduction.campaign.load import load_hose, target_of
 from reduction.campaign.plan import ComparisonPlan
 from reduction.campaign.wave_spec import load_wave_case
 from reduction.cli.output import CommandOutput

@@ -303,23 +303,6 @@ def load_series(
 ) -> tuple[LoadSeries, ...]:
     """Cycles to failure of each group that was tested at a peak load.
 
-    Parameters
-    ----------
-    outcomes : iterable of Outcome
-        Rows of every quantity.
-    distribution : str
-        Law of the lives: ``lognormal`` or ``weibull``.
-
-    Returns
-    -------
-    series : tuple of LoadSeries
-        In order of appearance; groups without a peak load ratio are left out.
-
-    Raises
-    ------
-    DataError
-        If a value cannot be.
-
     Examples
     --------
     >>> cycles = {0.4: [2.2e5, 2.7e5], 0.5: [5.8e4, 7.1e4], 0.7: [7.6e3, 9.4e3]}

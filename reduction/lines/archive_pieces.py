@@ -19,10 +19,10 @@ from reduction.archive.shared_errors import components_of
 from reduction.archive.test_dataset import strain_model_of
 from reduction.archive.test_variables import STEP_MASKS
 from reduction.archive.variables import stored
-from reduction.lines.composite import PieceSource
-from reduction.lines.curve_pieces import (
+from reduction.lines.composite import (
     CurvePiece,
     PieceBranch,
+    PieceSource,
     mean_piece,
     piece_of_pull,
     piece_of_steps,

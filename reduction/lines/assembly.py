@@ -323,7 +323,7 @@ def _assemble(tethers: Sequence[_Tether], parts: Sequence[SeriesPart] = ()) -> _
     Two tethers of 100 N per unit strain, 1 m of rubber each, and 0.5 m of bridle:
 
     >>> from reduction.lines.composite import _composite_curve
-    >>> from reduction.lines.curve_pieces import CurvePiece
+    >>> from reduction.lines.composite import CurvePiece
     >>> from reduction.lines.assembly import _equal_tethers
     >>> from reduction.stages.strain.strain_model import StrainModel
     >>> at = np.linspace(0.1, 2.0, 20)
@@ -495,7 +495,7 @@ def _working_point(
     One tether of 100 N per unit strain and 1 m, between 60 and 140 N:
 
     >>> from reduction.lines.composite import _composite_curve
-    >>> from reduction.lines.curve_pieces import CurvePiece
+    >>> from reduction.lines.composite import CurvePiece
     >>> from reduction.stages.strain.strain_model import StrainModel
     >>> at = np.linspace(0.1, 2.0, 20)
     >>> curve = _composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
@@ -594,7 +594,7 @@ def _worst_sharing(
     Springs of 100 N per unit strain, 1 m within 1 %, at 100 N each:
 
     >>> from reduction.lines.composite import _composite_curve
-    >>> from reduction.lines.curve_pieces import CurvePiece
+    >>> from reduction.lines.composite import CurvePiece
     >>> from reduction.stages.strain.strain_model import StrainModel
     >>> at = np.linspace(0.1, 2.0, 20)
     >>> curve = _composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])

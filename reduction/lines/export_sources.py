@@ -363,7 +363,7 @@ def ranges_of(curve: CompositeCurve, flags: Bools) -> list[tuple[float, float]]:
     Examples
     --------
     >>> from reduction.lines.composite import _composite_curve
-    >>> from reduction.lines.curve_pieces import CurvePiece
+    >>> from reduction.lines.composite import CurvePiece
     >>> at = np.array([0.5, 1.0])
     >>> curve = _composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
     >>> ranges_of(curve, curve.is_gap)

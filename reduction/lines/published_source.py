@@ -34,8 +34,7 @@ from numpy.polynomial import polynomial
 
 from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
 from reduction.experiments.run_sheet import covariance_factor, variance_factor
-from reduction.lines.composite import PieceSource
-from reduction.lines.curve_pieces import CurvePiece
+from reduction.lines.composite import CurvePiece, PieceSource
 from reduction.lines.line_lookup import sigma_from_r2
 from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
 from reduction.published.published_lines import (
@@ -43,16 +42,18 @@ from reduction.published.published_lines import (
     PublishedCubic,
     PublishedLine,
     PublishedSurface,
+    PublishedTether,
+    TetherSegment,
     is_documentation,
     level_notes,
     line_scatter,
     own_strength,
     published_lines,
+    published_tethers,
     scatter_notes,
     strength_notes,
     strength_of,
 )
-from reduction.published.published_tethers import PublishedTether, TetherSegment, published_tethers
 from reduction.quantities.units import scale_to_si
 from reduction.record.measurement import Bools, Floats
 from reduction.stages.line.slow_pull import slope_of_cubic

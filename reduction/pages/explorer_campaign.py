@@ -38,10 +38,9 @@ from reduction.batch.requested_products import (
 )
 from reduction.batch.reuse import Basis, reusable_product
 from reduction.batch.survey import FirstPass, Survey, as_reduction_error, survey_log
-from reduction.campaign.load import load_campaign
+from reduction.campaign.load import load_campaign, read_test_table
 from reduction.campaign.model import dimension_of
 from reduction.campaign.plan import Campaign
-from reduction.campaign.test_plans import read_test_table
 from reduction.record.errors import ArchiveError, SettingsError
 from reduction.record.settings import StrainMethod
 

@@ -26,7 +26,7 @@ from reduction.record.settings import ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.standstills import Standstills, find_standstills, find_tension_stands
-from reduction.stages.strain.splice_marks import MarkReading, measure_mark_tension
+from reduction.stages.strain.strain_fit import MarkReading, measure_mark_tension
 from reduction.stages.strain.strain_model import StrainModel, extrapolated, strain_by_model
 
 CYCLIC = ("cyclic", "fatigue", "snap", "bedding-in")

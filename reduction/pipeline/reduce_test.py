@@ -1,4 +1,4 @@
-"""The way of one test: from its located record to strain, cycles, moduli and holds.
+"""The way of one test: from its located record to strain, cycles, moduli, holds and notes.
 
 Before it, for every test of a campaign: `reduction.pipeline.located_test` finds where the crosshead
 stands still and where it cycles, `reduction.pipeline.located_test` measures the tension at the
@@ -11,48 +11,702 @@ a person.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from reduction.pipeline.cyclic_test import parts_of_cycles, parts_of_first_loading
 from reduction.pipeline.located_test import (
+    HELD,
     PULLED,
     Located,
     flagged_record,
     parts_of_stress,
     strain_of_record,
 )
-from reduction.pipeline.plausibility import (
-    channel_contributions,
-    reading_spread,
-    readings_of,
-    with_readings,
-)
 from reduction.pipeline.rope_test import PullConditions, parts_of_line, pull_specimens, rope_step
-from reduction.pipeline.test_notes import notes_of_test, stage_lines
-from reduction.record.contributions import Contributions, InstrumentErrors, merged
-from reduction.record.errors import DataError
-from reduction.record.measurement import Source, Specimen, Step, StepReadings
+from reduction.quantities.names import PHASE_VALUES
+from reduction.record.contributions import (
+    Component,
+    Contributions,
+    InstrumentErrors,
+    merged,
+    stacked,
+)
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import (
+    Floats,
+    Integers,
+    Record,
+    Source,
+    Specimen,
+    Step,
+    StepReadings,
+)
+from reduction.record.notes import Note, note
+from reduction.record.samples import (
+    count_samples,
+    finite_extremes,
+    first_sample,
+    over_intervals,
+    take_samples,
+    thinned,
+)
 from reduction.record.settings import CycleSettings, ReductionSettings
+from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.cycle_search import label_phases
-from reduction.stages.holds.reduce_holds import reduce_holds
+from reduction.stages.holds.holds import HoldResult, reduce_holds
 from reduction.stages.line.line_product import SlowPull
-from reduction.stages.moduli.slack_length import slack_strain_at_unloading
-from reduction.stages.moduli.stepwise_test import reduce_stepwise
+from reduction.stages.moduli.modulus_product import ModulusCurves
+from reduction.stages.moduli.slack_length import slack_crossings, slack_strain_at_unloading
+from reduction.stages.moduli.stepwise_test import greatest_step_strain, reduce_stepwise
 from reduction.stages.reduced_test import History, ReducedTest, TestDescription
-from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.standstills import Standstills
+from reduction.stages.strain.strain_model import StrainModel, strain_by_model
 from reduction.stages.strain.stress import check_constant_volume
+from reduction.uncertainty.error_field import error_field
 from reduction.uncertainty.monte_carlo import with_line_spread
+from reduction.uncertainty.propagation import with_diameter
 from reduction.uncertainty.shared_contributions import (
     PullOrigin,
     contributions_of_test,
     lag_of_test,
     shared_uncertainty_of_cycles,
+    with_shared_ratios,
     with_shared_steps,
 )
-from reduction.uncertainty.shared_curves import with_shared_ratios
+
+_GREATEST_STRAIN = 10.0  # no rubber is stretched to eleven times its length
+
+# a sine logged thirteen times a cycle misses 1.5 % of its range, a triangle has 23 % more
+_OFF_THE_SINE = 0.05
+
+_TRIANGULAR_SHARE = 0.6  # of samples at a constant rate; a sine has a half
+
+_MOST_DRIFT = 0.2  # of the range of a cycle: a rope that creeps drifts by a hundredth
+
+_FEWEST_SAMPLES = 10  # of a branch: below, its two ends are a good part of it
+
+
+def _plausibility_notes(
+    strain: Floats,
+    *,
+    specimens: tuple[str, ...],
+    slack_tension: float,
+    waveform: Literal["triangular", "sinusoidal", "other"],
+    cycles: Cycles | None,
+    loops: Loops | None,
+    curves: ModulusCurves | None,
+    control: Literal["position", "load"] = "position",
+    is_snap: bool = False,
+) -> tuple[Note, ...]:
+    """Name what is hardly so: sign, unit of position, slack or drift in cycles, waveform."""
+    notes = []
+    greatest = [finite_extremes(one)[1] for one in strain]
+    for name, one in zip(specimens, greatest, strict=True):
+        if one > _GREATEST_STRAIN:
+            notes.append(note("strain-impossible", name, strain=one))
+    if cycles is None or loops is None:
+        return tuple(notes)
+    for index, name in enumerate(specimens):
+        slopes = None if curves is None else curves.tangent_modulus[index]
+        slack = _taut if is_snap else _slack
+        # of a channel of the wrong sign a valley says nothing about slack
+        half_strain = _half_range(strain[index], cycles)
+        if waveform == "sinusoidal":
+            notes += _shape(name, loops, index, half_strain, control)
+        else:
+            notes += _drift(name, loops, index, half_strain)
+        notes += _sign(name, loops.mean_tension[index], slopes) or slack(
+            name, loops.valley_tension[index], slack_tension
+        )
+    return (*notes, *_waveform(cycles, waveform))
+
+
+def _half_range(strain: Floats, cycles: Cycles) -> Floats:
+    """Half the range of strain within each cycle."""
+    high, low = (
+        over_intervals(extreme, strain, cycles.first, cycles.last) for extreme in (np.fmax, np.fmin)
+    )
+    return np.asarray((high - low) / 2, dtype=np.float64)
+
+
+def _shape(name: str, loops: Loops, index: int, half_strain: Floats, control: str) -> list[Note]:
+    """A sinusoidal test whose range is not that of its fundamental, from which numbers come."""
+    half_tension = (loops.peak_tension[index] - loops.valley_tension[index]) / 2
+    of_strain = _median(half_strain / loops.strain_amplitude[index]) - 1
+    of_tension = _median(half_tension / loops.tension_amplitude[index]) - 1
+    moved, excess = ("tension", of_tension) if control == "load" else ("strain", of_strain)
+    if abs(excess) > _OFF_THE_SINE:
+        return [note("not-sinusoidal", name, moved=moved, effect=excess)]
+    other, excess = ("strain", of_strain) if control == "load" else ("tension", of_tension)
+    if not abs(excess) > _OFF_THE_SINE:
+        return []
+    return [note("answer-not-sinusoidal", name, moved=moved, other=other, effect=excess)]
+
+
+def _drift(name: str, loops: Loops, index: int, half_strain: Floats) -> list[Note]:
+    """Cycles whose loop is what is left of a drift: half of it has been taken off the range."""
+    half_tension = (loops.peak_tension[index] - loops.valley_tension[index]) / 2
+    kept = [
+        amplitude[index][half > 0] / half[half > 0]
+        for amplitude, half in (
+            (loops.tension_amplitude, half_tension),
+            (loops.strain_amplitude, half_strain),
+        )
+    ]
+    # NaN, where nothing is left, is no comparison either
+    n_far = max(int(np.count_nonzero(~(share >= 1 - _MOST_DRIFT / 2))) for share in kept)
+    if not n_far:
+        return []
+    n_cycles = half_tension.size
+    return [note("cycles-drift", name, n_far=n_far, n_cycles=n_cycles, limit=_MOST_DRIFT)]
+
+
+def _sign(name: str, mean_tension: Floats, slopes: Floats | None) -> list[Note]:
+    """Tension that pushes, or falls with stretch."""
+    level = _median(mean_tension)
+    slope = np.nan if slopes is None else _median(slopes)
+    if not (level < 0 or slope <= 0):
+        return []
+    return [note("sign-of-tension", name, tension=level, slope=slope)]
+
+
+def _slack(name: str, valley_tension: Floats, slack_tension: float) -> list[Note]:
+    """Cycles that go slack: strain below it is no strain of the specimen."""
+    slack = int(np.count_nonzero(valley_tension <= slack_tension))
+    if not slack:
+        return []
+    return [
+        note(
+            "slack-in-cycles",
+            name,
+            n_slack=slack,
+            n_cycles=valley_tension.size,
+            slack_tension=slack_tension,
+        )
+    ]
+
+
+def _taut(name: str, valley_tension: Floats, slack_tension: float) -> list[Note]:
+    """Snap loads that are none: cycles in which the line stays taut."""
+    taut = int(np.count_nonzero(valley_tension > slack_tension))
+    if not taut:
+        return []
+    return [
+        note(
+            "no-snap-loads",
+            name,
+            n_taut=taut,
+            n_cycles=valley_tension.size,
+            slack_tension=slack_tension,
+        )
+    ]
+
+
+def _waveform(cycles: Cycles, waveform: str) -> list[Note]:
+    """A triangular test of which little runs at a constant rate."""
+    n_samples = cycles.branch_last - cycles.branch_first + 1
+    if waveform != "triangular" or np.median(n_samples) < _FEWEST_SAMPLES:
+        return []
+    share = count_samples(cycles.is_constant_rate) / int(n_samples.sum())
+    return [note("not-triangular", share=share)] if share < _TRIANGULAR_SHARE else []
+
+
+def _median(values: Floats) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if known.size else float("nan")
+
+
+_TIMES = 10.0  # the greatest reading of a log
+
+_RECORD = 0.25  # of a record without cycles, for a lag
+
+_LINEAR = 0.05  # of a cycle: a loop that is turned by more has lost 5 % of its stiffness
+
+
+@dataclass(frozen=True)
+class _Limit:
+    key: str
+    stated: float
+    most: float
+    unit: str
+    what: str
+
+
+def check_stated_errors(
+    located: Located, instruments: Sequence[InstrumentErrors], *, place: str
+) -> tuple[Note, ...]:
+    """Refuse standard uncertainties that a log shows to be impossible; say which are too large."""
+    for index, errors in enumerate(instruments):
+        for limit in _limits(located, index, errors):
+            if np.isfinite(limit.most) and limit.stated > limit.most:
+                raise SettingsError(
+                    f"{place}.{limit.key}: this is no standard uncertainty for test "
+                    f"'{located.record.test_id}'",
+                    found=f"{limit.stated:.4g} {limit.unit}",
+                    needed=f"at most {limit.most:.4g} {limit.unit}, {limit.what}",
+                )
+    period = _periods(located)
+    lag = max((errors.lag for errors in instruments), default=0.0)
+    is_short = lag > _LINEAR * period
+    if not is_short.any():
+        return ()
+    return (
+        note(
+            "stated-lag-long", lag=lag, n_short=int(is_short.sum()), n_cycles=period.size,
+            shortest=float(period.min()),
+        ),
+    )  # fmt: skip
+
+
+def _limits(located: Located, index: int, errors: InstrumentErrors) -> Iterator[_Limit]:
+    record, period = located.record, _periods(located)
+    tension = _TIMES * _greatest(located.tension[index])
+    position = _TIMES * _greatest(located.position)
+    of_tension = f"ten times the greatest tension of '{errors.specimen}'"
+    of_position = "ten times the greatest position"
+    yield _Limit("tension.offset", errors.tension_offset, tension, "N", of_tension)
+    yield _Limit("crosshead_position.offset", errors.position_offset, position, "m", of_position)
+    # readings as they count here; one that the layout declares is not of this table
+    declared = (*record.tension_standard_uncertainty, *len(located.tension) * (np.nan,))[index]
+    if not np.isfinite(declared):
+        yield _Limit(
+            "tension.noise and resolution", errors.tension_reading, tension, "N", of_tension
+        )
+    if not np.isfinite(record.position_standard_uncertainty):
+        yield _Limit(
+            "crosshead_position.noise and resolution",
+            errors.position_reading, position, "m", of_position,
+        )  # fmt: skip
+    if period.size:
+        yield _Limit("lag", errors.lag, float(period.max()), "s", "the longest cycle")
+    else:
+        first, last = finite_extremes(record.time)
+        most = _RECORD * (last - first)
+        yield _Limit("lag", errors.lag, most, "s", "a quarter of the record")
+
+
+def _periods(located: Located) -> Floats:
+    """How long each cycle lasts; empty where there are none. [s]."""
+    time, cycles = located.record.time, located.cycles
+    if cycles is None:
+        return np.empty(0)
+    return np.asarray(take_samples(time, cycles.last) - take_samples(time, cycles.first))
+
+
+def _greatest(values: Floats) -> float:
+    low, high = finite_extremes(values)
+    return max(-low, high) if low <= high else float("nan")
+
+
+_SAMPLES = 4096  # spread over the record: the uncertainty changes slowly with strain
+
+
+def _readings_of(
+    record: Record, instruments: Sequence[InstrumentErrors]
+) -> tuple[InstrumentErrors, ...]:
+    """Errors with that of one reading of each channel: the one rule of which statement counts."""
+    known = instruments or tuple(InstrumentErrors(name) for name in record.specimens)
+    tension = record.tension_standard_uncertainty or (np.nan,) * len(known)
+    position = record.position_standard_uncertainty
+    return tuple(
+        replace(
+            errors,
+            tension_reading=own if np.isfinite(own) else errors.tension_reading,
+            position_reading=position if np.isfinite(position) else errors.position_reading,
+        )
+        for errors, own in zip(known, tension, strict=True)
+    )
+
+
+def _with_readings(record: Record, readings: Sequence[InstrumentErrors]) -> Record:
+    """Record with the standard uncertainty of one reading; NaN where nothing says it."""
+    tension = tuple(one.tension_reading or np.nan for one in readings)
+    return replace(
+        record,
+        tension_standard_uncertainty=tension if np.isfinite(tension).any() else (),
+        position_standard_uncertainty=readings[0].position_reading or np.nan,
+    )
+
+
+def _reading_spread(
+    located: Located,
+    models: Sequence[StrainModel],
+    readings: Sequence[InstrumentErrors],
+    *,
+    phase: NDArray[np.int8],
+) -> Floats:
+    """Standard uncertainty of strain by one reading of position and tension. [1]."""
+    rows = _rows_of(phase)
+    position, tension = take_samples(located.position, rows), take_samples(located.tension, rows)
+    found = np.full(len(models), np.nan)
+    for index, (model, errors) in enumerate(zip(models, readings, strict=True)):
+        if model.method == "extensometer" or not (
+            errors.position_reading or errors.tension_reading
+        ):
+            continue
+        parts = []
+        for of_position, of_tension in (
+            (errors.position_reading, 0.0),
+            (0.0, errors.tension_reading),
+        ):
+            # a step of one standard uncertainty: finite where a law is steep near no tension
+            high, low = (
+                strain_by_model(
+                    model,
+                    position=position + way * of_position,
+                    tension=tension[index] + way * of_tension,
+                )
+                for way in (1, -1)
+            )
+            parts.append((high - low) / 2)
+        found[index] = _rms(np.hypot(*parts))
+    return found
+
+
+def _channel_contributions(
+    located: Located,
+    strain: Floats,
+    models: Sequence[StrainModel],
+    specimens: Sequence[Specimen],
+    errors: Sequence[InstrumentErrors],
+    *,
+    phase: NDArray[np.int8],
+) -> Contributions:
+    """What shared errors do to the samples, by archive name of the channel."""
+    if not errors:
+        return Contributions(())
+    rows = _rows_of(phase)
+    own = [
+        _of_specimen(
+            take_samples(located.tension[index], rows),
+            take_samples(strain[index], rows),
+            model,
+            specimen,
+            one,
+        )
+        for index, (model, specimen, one) in enumerate(zip(models, specimens, errors, strict=True))
+    ]
+    reach = _rms(take_samples(located.position, rows))
+    first = errors[0]
+    is_length = located.record.position_is_length
+    of_position = _of_channel(
+        "crosshead_position" if is_length else "crosshead_displacement",
+        {
+            Component("position_gain", first.position_instrument): first.position_gain * reach,
+            Component("position_offset", first.position_instrument): first.position_offset,
+        },
+    )
+    return merged([stacked(own), of_position])
+
+
+def _of_specimen(
+    tension: Floats,
+    strain: Floats,
+    model: StrainModel,
+    specimen: Specimen,
+    errors: InstrumentErrors,
+) -> Contributions:
+    level = _rms(tension)
+    cell = errors.tension_instrument
+    of_tension = _of_channel(
+        "tension",
+        {
+            Component("tension_gain", cell): errors.tension_gain * level,
+            Component("tension_offset", cell): errors.tension_offset,
+        },
+    )
+    field = error_field(errors, model, strain=strain, tension=tension)
+    of_strain = Contributions(
+        field.component,
+        {"strain": np.array([_signed_rms(row) for row in field.strain]).reshape(-1)},
+    )
+    if not specimen.diameter:
+        return merged([of_tension, of_strain])
+    of_stress = Contributions(
+        of_tension.component, {"nominal_stress": of_tension.values["tension"] / specimen.area}
+    )
+    value = {"nominal_stress": np.asarray(level / specimen.area)}
+    return merged(
+        [of_tension, of_strain, with_diameter(of_stress, errors, value, area=specimen.area)]
+    )
+
+
+def _of_channel(name: str, stated: dict[Component, float]) -> Contributions:
+    """Contributions to one channel, without those that are zero."""
+    kept = {one: value for one, value in stated.items() if value}
+    return Contributions(tuple(kept), {name: np.array(list(kept.values()))})
+
+
+def _rows_of(phase: NDArray[np.int8]) -> Integers:
+    """Cycling samples, or all but rests where none cycles."""
+    cycling, rest = PHASE_VALUES["cycling"], PHASE_VALUES["rest"]
+    rows = thinned(lambda part: phase[part] == cycling, phase.size, most=_SAMPLES, samples=(phase,))
+    if rows.size:
+        return rows
+    return thinned(lambda part: phase[part] != rest, phase.size, most=_SAMPLES, samples=(phase,))
+
+
+def _rms(values: Floats) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.sqrt(np.mean(known**2))) if known.size else 0.0
+
+
+def _signed_rms(values: Floats) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.copysign(_rms(known), known.mean())) if known.size else 0.0
+
+
+# share of the greatest tension up to which the first rise is kept, to tell where slack ends
+_FIRST_RISE = 0.5
+
+_MOST_KEPT = 1 << 20  # samples, or up to twice as many
+
+
+@dataclass(frozen=True)
+class _Samples:
+    """Some samples of one specimen: position [m] and tension [N], shape (n_kept,) each."""
+
+    position: Floats
+    tension: Floats
+
+
+@dataclass(frozen=True)
+class Extremes:
+    """How far one test went, by specimen; empty where it could not be read.
+
+    Parameters
+    ----------
+    greatest_tension : mapping of str to float
+        [N]
+    greatest_measured_strain : mapping of str to float
+        Of the extensometer, where there is one, or of the readings of a stepwise test. [1]
+    at_greatest_position : mapping of str to Samples
+        Samples at the greatest position: at a held length the rubber goes on stretching as its
+        splices relax, so the greatest strain is at one of them, which the strain model tells.
+    first_rise : mapping of str to Samples
+        Up to half of the peak tension.
+    slack_tension : float
+        At or below which the specimens are slack; NaN where there is no record. [N]
+    position_is_length : bool
+        False where a displacement from slack begins at zero in every test.
+    has_extensometer, is_stepwise : bool
+        Whether strain was measured on the specimen, and whether a person read it.
+    """
+
+    greatest_tension: Mapping[str, float] = field(default_factory=dict)
+    greatest_measured_strain: Mapping[str, float] = field(default_factory=dict)
+    at_greatest_position: Mapping[str, _Samples] = field(default_factory=dict)
+    first_rise: Mapping[str, _Samples] = field(default_factory=dict)
+    slack_tension: float = float("nan")
+    position_is_length: bool = True
+    has_extensometer: bool = False
+    is_stepwise: bool = False
+
+
+def extremes_of_test(located: Located) -> Extremes:
+    """How far a logged test went."""
+    record = located.record
+    measured = record.measured_strain
+    return Extremes(
+        greatest_tension=_greatest_known(record.specimens, located.tension),
+        greatest_measured_strain={}
+        if measured is None
+        else _greatest_known(record.specimens, measured),
+        at_greatest_position=_at_greatest_position(located),
+        first_rise=_first_rise(located),
+        slack_tension=located.standstills.slack_tension,
+        position_is_length=record.position_is_length,
+        has_extensometer=measured is not None,
+    )
+
+
+def extremes_of_readings(
+    readings: StepReadings, specimen: str, *, stated_gauge_length: float | None
+) -> Extremes:
+    """How far a stepwise test went; weights hang from one specimen."""
+    strain = greatest_step_strain(readings, stated_gauge_length=stated_gauge_length)
+    return Extremes(
+        greatest_tension={specimen: float(readings.tension.max())},
+        greatest_measured_strain={specimen: strain},
+        is_stepwise=True,
+    )
+
+
+def greatest_strain(extremes: Extremes, specimen: str, model: StrainModel | None) -> float:
+    """Greatest strain of a test: measured, or at one of the samples at the greatest position.
+
+    Examples
+    --------
+    >>> greatest_strain(
+    ...     Extremes(greatest_measured_strain={"hose": 0.3}, is_stepwise=True), "hose", None)
+    0.3
+    """
+    if extremes.is_stepwise or (model is not None and model.method == "extensometer"):
+        return extremes.greatest_measured_strain.get(specimen, float("nan"))
+    at_top = extremes.at_greatest_position.get(specimen)
+    if model is None or at_top is None:
+        return float("nan")
+    strain = strain_by_model(model, position=at_top.position, tension=at_top.tension)
+    return float(np.nanmax(strain))
+
+
+def growth_of_slack_length(
+    first: Extremes, later: Extremes, specimen: str, *, free_length: float
+) -> tuple[float, float, float]:
+    """Growth of the length at which a specimen becomes taut, from its first test to a later one.
+
+    Examples
+    --------
+    Taut at 3.0 m in the first test, at 3.3 m in the second.
+
+    >>> position = np.linspace(2.0, 4.0, 401)
+    >>> def rise(slack):
+    ...     tension = 100 * np.clip(position - slack, 0, None)
+    ...     return Extremes(first_rise={"hose": _Samples(position, tension)}, slack_tension=5.0)
+    >>> growth, _, _ = growth_of_slack_length(rise(3.0), rise(3.3), "hose", free_length=3.0)
+    >>> round(growth, 6)
+    0.1
+    """
+    pair, nothing = (first, later), (float("nan"), float("nan"), float("nan"))
+    # a displacement from slack begins at zero again in every test
+    if any(specimen not in one.first_rise or not one.position_is_length for one in pair):
+        return nothing
+    # one tension for both, so that the slope of the first rise does not enter
+    slack = max(one.slack_tension for one in pair)
+    lengths, spreads, compliances = [], [], []
+    for one in pair:
+        rise = one.first_rise[specimen]
+        at = slack_crossings(rise.position, rise.tension, slack_tension=slack)
+        lengths.append(at.position[0])
+        spreads.append(at.standard_uncertainty[0])
+        compliances.append(at.compliance[0])
+    spread = float(np.hypot(*spreads))
+    # a crossing through two samples alone has no residual, and so no uncertainty to give
+    if not np.isfinite(spread):
+        return nothing
+    return (
+        float(lengths[1] - lengths[0]) / free_length,
+        spread / free_length,
+        float(compliances[1] - compliances[0]) / free_length,
+    )
+
+
+def _greatest_known(specimens: tuple[str, ...], values: Floats) -> dict[str, float]:
+    """The greatest value of each specimen that has one."""
+    greatest = [finite_extremes(one)[1] for one in values]
+    return {name: most for name, most in zip(specimens, greatest, strict=True) if np.isfinite(most)}
+
+
+def _at_greatest_position(located: Located) -> dict[str, _Samples]:
+    """Samples within the tolerance of a standstill of the greatest position, some of many."""
+    position = located.position
+    near = finite_extremes(position)[1] - located.standstills.position_tolerance
+    if not np.isfinite(near):
+        return {}
+    at_top = thinned(
+        lambda part: position[part] >= near, position.size, most=_MOST_KEPT, samples=(position,)
+    )
+    place, loads = take_samples(position, at_top), take_samples(located.tension, at_top)
+    return {
+        name: _Samples(place, load)
+        for name, load in zip(located.record.specimens, loads, strict=True)
+        if np.isfinite(load).any()
+    }
+
+
+def _first_above(series: Floats, level: float) -> int | None:
+    return first_sample(lambda part: series[part] > level, 0, series.size, series)
+
+
+def _first_rise(located: Located) -> dict[str, _Samples]:
+    """Samples up to the first that is over half of the greatest tension; of many, the last."""
+    found = {}
+    for name, tension in zip(located.record.specimens, located.tension, strict=True):
+        taut = _FIRST_RISE * max(finite_extremes(tension)[1], 0.0)
+        over = _first_above(tension, taut)
+        stop = 0 if over is None else over + 1
+        rise = slice(max(stop - _MOST_KEPT, 0), stop)
+        # copies, lest the whole record is kept with its first part
+        found[name] = _Samples(np.array(located.position[rise]), np.array(tension[rise]))
+    return found
+
+
+def _notes_of_test(
+    located: Located,
+    strain: Floats,
+    *,
+    kind: str,
+    specimens: tuple[Specimen, ...],
+    settings: ReductionSettings,
+    holds: tuple[HoldResult, ...],
+    parts: Mapping[str, Any],
+    of_stages: Iterable[Note],
+    slack_remarks: Sequence[Note | None],
+) -> tuple[Note, ...]:
+    """What a reader has to know before the numbers are used, nothing twice."""
+    record, standstills = located.record, located.standstills
+    notes = [one for specimen in specimens for one in check_constant_volume(specimen)]
+    notes += of_stages
+    notes += [note("no-diameter", one.name) for one in specimens if not one.diameter]
+    if kind in HELD and not holds:
+        notes.append(_no_hold(standstills, settings))
+    notes += _plausibility_notes(
+        strain, specimens=record.specimens, slack_tension=standstills.slack_tension,
+        waveform=settings.cycles.waveform, control=settings.cycles.control, cycles=located.cycles,
+        loops=parts.get("loops"), curves=parts.get("curves"), is_snap=kind == "snap",
+    )  # fmt: skip
+    notes += [
+        replace(one, subject=name)
+        for name, one in zip(record.specimens, slack_remarks, strict=True)
+        if one
+    ]
+    return tuple(notes)
+
+
+def _stage_lines(located: Located, models: Sequence[StrainModel]) -> tuple[Step, ...]:
+    """One line a stage, with the numbers it found."""
+    record, standstills, cycles = located.record, located.standstills, located.cycles
+    lines = [
+        Step("ingest", f"{record.n_rows_read} rows read, {record.n_samples} kept"),
+        Step(
+            "phases",
+            f"{standstills.n_standstills} standstills within "
+            f"{standstills.position_tolerance:.4g} m"
+            + (
+                ""
+                if standstills.tension_tolerance is None
+                else f", holds on tension within {standstills.tension_tolerance:.4g} N"
+            )
+            + f", slack at {standstills.slack_tension:.4g} N",
+        ),
+    ]
+    for model in models:
+        numbers = ", ".join(f"{name} {value:.6g}" for name, value in model.coefficients.items())
+        lines.append(Step("strain", f"{model.specimen} by {model.method}: {numbers}"))
+    if cycles is not None:
+        lines.append(
+            Step("cycles", f"{cycles.n_cycles} by {cycles.counted_by}, band {cycles.band:.4g}")
+        )
+        lines.append(Step("moduli", "regression in a moving window on a strain grid, SI"))
+    return tuple(lines)
+
+
+def _no_hold(standstills: Standstills, settings: ReductionSettings) -> Note:
+    """Why a test that was to be held has no number of a hold."""
+    held = standstills.tension_tolerance
+    of_position = ("the crosshead", standstills.position_tolerance, "m", "position_tolerance")
+    channel, tolerance, unit, key = (
+        of_position if held is None else ("the tension", held, "N", "tension_tolerance")
+    )
+    return note(
+        "no-hold", slack_tension=standstills.slack_tension, channel=channel, tolerance=tolerance,
+        unit=unit, duration=settings.phases.minimum_duration, key=key,
+    )  # fmt: skip
 
 
 def reduce_test(
@@ -113,8 +767,8 @@ def reduce_test(
     position, tension = located.position, located.tension
     phase = label_phases(record.time, standstills=standstills, cycles=cycles)
     strain = strain_of_record(record, position, tension, models)
-    readings = readings_of(record, instruments)
-    stated = replace(located, record=with_readings(record, readings))
+    readings = _readings_of(record, instruments)
+    stated = replace(located, record=_with_readings(record, readings))
     of_cycles = parts_of_cycles(
         located, strain, tension, specimens=specimens, history=history, settings=settings,
     )  # fmt: skip
@@ -151,7 +805,7 @@ def reduce_test(
         if cycles is None
         else lag_of_test(record, position, tension, cycles, stated=[one.lag for one in instruments])
     )
-    notes = notes_of_test(
+    notes = _notes_of_test(
         located, strain, kind=description.kind, specimens=specimens, settings=settings, holds=holds,
         parts=of_cycles, of_stages=(*first_rise_notes, *refused_pulls),
         slack_remarks=slack_strain.remarks,
@@ -161,14 +815,14 @@ def reduce_test(
         specimens=specimens,
         record=flagged_record(stated, models),
         sources=sources,
-        stage_lines=stage_lines(located, models),
+        stage_lines=_stage_lines(located, models),
         settings_json=settings_json,
         notes=(*notes, *lag_notes),
         history=history,
         standstills=standstills,
         phase=phase,
         strain=strain,
-        strain_standard_uncertainty=reading_spread(located, models, readings, phase=phase),
+        strain_standard_uncertainty=_reading_spread(located, models, readings, phase=phase),
         strain_models=tuple(models),
         cycles=cycles,
         holds=holds,
@@ -191,7 +845,7 @@ def reduce_test(
         settings=settings.cycles,
         pulls=pulls,
         pull_origins=pull_origins,
-        of_channels=channel_contributions(
+        of_channels=_channel_contributions(
             located, strain, models, specimens, instruments, phase=phase
         ),
     )

@@ -17,7 +17,7 @@ from typing import Literal
 
 import numpy as np
 
-from reduction.prediction.morison import ImmersedSection
+from reduction.prediction.wave_load import ImmersedSection
 from reduction.prediction.wave_theory import WaveHarmonics
 from reduction.record.errors import SettingsError
 
@@ -56,7 +56,7 @@ def printed_section() -> ImmersedSection:
 
     Notes
     -----
-    `reduction.prediction.morison.immerse_hose` gives 95.124 mm and 0.0090994 m2 for it.
+    `reduction.prediction.wave_load.immerse_hose` gives 95.124 mm and 0.0090994 m2 for it.
 
     Examples
     --------

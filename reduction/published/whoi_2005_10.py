@@ -10,7 +10,7 @@ from math import pi, sqrt
 import numpy as np
 
 from reduction.published.printed_cells import Cell, cells_of, number_of, printed_step
-from reduction.published.published_tethers import TETHER_REPORT, published_static_test
+from reduction.published.published_lines import TETHER_REPORT, published_static_test
 from reduction.published.reproduced_item import (
     Key,
     ReproducedItem,

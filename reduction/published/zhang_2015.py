@@ -12,7 +12,7 @@ from math import log, pi, tanh
 import numpy as np
 import scipy
 
-from reduction.prediction.morison import immerse_hose, load_factors, wave_load
+from reduction.prediction.wave_load import immerse_hose, load_factors, wave_load
 from reduction.prediction.wave_theory import (
     STANDARD_GRAVITY,
     WaveHarmonics,

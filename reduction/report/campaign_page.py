@@ -35,10 +35,12 @@ from reduction.report.page_template import (
     render_page,
     render_section,
 )
-from reduction.report.test_section import TestSection, make_part, make_section
-from reduction.report.test_tables import (
+from reduction.report.test_section import (
+    TestSection,
     design_tables,
     interval_table,
+    make_part,
+    make_section,
     segment_table,
     specimen_notes,
     specimen_table,

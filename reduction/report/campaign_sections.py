@@ -16,19 +16,31 @@ from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
 from reduction.record.notes import Note
 from reduction.report.campaign_summary import SummaryFinding, Tile
-from reduction.report.experiment_tables import (
+from reduction.report.experiment_report import (
     anova_table,
     answer_table,
     block_words,
     caution_table,
     coefficient_budget_table,
     coefficient_budgets,
+    confounding_words,
+    draw_checks,
+    draw_contours,
+    draw_cube,
+    draw_derived,
+    draw_effects,
+    draw_forms,
+    draw_pareto,
+    draw_single_time,
+    draw_surface,
     effect_table,
     experiment_findings,
     form_quality_table,
     form_table,
     form_words,
     line_of_runs_table,
+    make_planes,
+    negative_inside,
     negative_words,
     quality_table,
     quality_words,
@@ -51,21 +63,12 @@ from reduction.report.figures.hose_figures import (
     draw_pressure,
     draw_tension,
 )
-from reduction.report.figures.outcome_figures import draw_exposure, draw_lives
-from reduction.report.figures.stiffness_figures import draw_derived, draw_forms, draw_single_time
-from reduction.report.figures.surface_figures import (
-    confounding_words,
-    draw_checks,
-    draw_contours,
-    draw_cube,
-    draw_effects,
-    draw_pareto,
-    draw_surface,
-)
 from reduction.report.outcome_tables import (
     answer_of_ropes,
     bedding_table,
     creep_table,
+    draw_exposure,
+    draw_lives,
     exposure_table,
     fatigue_table,
     level_table,
@@ -103,7 +106,6 @@ from reduction.report.product_views import (
     view_outcomes,
     view_ropes,
 )
-from reduction.report.surface_grid import make_planes, negative_inside
 from reduction.report.test_section import Part, TestSection, make_part, provenance_of
 from reduction.report.test_view import TestView
 from reduction.report.text_style import DEGREES, PageTable, number_text, shown

@@ -27,8 +27,13 @@ from reduction.report.campaign_summary import SummaryFinding, test_table
 from reduction.report.figure_data import Figure
 from reduction.report.figures.campaign_figures import draw_all_moduli
 from reduction.report.svg_figure import can_be_drawn, vector_of
-from reduction.report.test_section import Part, TestSection
-from reduction.report.test_tables import design_tables, specimen_notes, specimen_table
+from reduction.report.test_section import (
+    Part,
+    TestSection,
+    design_tables,
+    specimen_notes,
+    specimen_table,
+)
 from reduction.report.test_view import (
     DRAWN,
     Status,

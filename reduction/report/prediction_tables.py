@@ -7,8 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from reduction.prediction.armour import PredictedArmour
-from reduction.prediction.morison import CODE_OF_HYDROLOGY, PUBLISHED_COEFFICIENTS
-from reduction.prediction.wave_load import PredictedWaveLoad
+from reduction.prediction.wave_load import (
+    CODE_OF_HYDROLOGY,
+    PUBLISHED_COEFFICIENTS,
+    PredictedWaveLoad,
+)
 from reduction.quantities.digits import plain_number
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.report.figures.theory_figures import (

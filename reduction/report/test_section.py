@@ -1,14 +1,19 @@
-"""The section of one test."""
+"""Tables and section of one test."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from reduction.archive.schema import COEFFICIENTS
+from reduction.archive.uncertainty_budget import cycles_averaged
+from reduction.quantities.names import BRANCH_NAMES, BRANCH_VALUES, QUANTITIES
+from reduction.quantities.units import UnitSystem
 from reduction.record.measurement import Floats
 from reduction.report.answer_tables import answer_budgets, budget_sentences, budget_table
 from reduction.report.campaign_summary import brief, grouped_notes
@@ -17,37 +22,624 @@ from reduction.report.figures.budget_figures import draw_budgets
 from reduction.report.figures.cycle_figures import draw_loops, draw_trends
 from reduction.report.figures.hold_figures import draw_holds, draw_pull
 from reduction.report.figures.modulus_figures import (
+    OF_STEPS,
     draw_cycle_curves,
     draw_moduli,
     draw_mooney,
     draw_steps,
+    flagged_steps,
 )
 from reduction.report.figures.record_figures import draw_record, draw_splices, draw_tension_position
-from reduction.report.test_tables import (
-    coefficient_table,
-    elastomer_table,
-    flag_table,
-    history_table,
-    hold_table,
-    identity_table,
-    interval_table,
-    line_table,
-    mark_table,
-    prony_table,
-    pull_share_table,
-    pull_table,
-    refusals,
-    segment_table,
-    slip_table,
-    slope_sentences,
-    step_table,
-    stress_table,
-    summary_table,
+from reduction.report.sheet import Calculated, Sheet, Unit
+from reduction.report.test_view import (
+    DRAWN,
+    NORMAL,
+    TestView,
+    all_specimens,
+    any_synthetic,
+    drawn_interval,
+    expand,
+    expanded_of,
+    plus_minus,
+    plus_minus_of_tests,
+    shared_sources,
 )
-from reduction.report.test_view import TestView
-from reduction.report.text_style import PageTable
+from reduction.report.text_style import (
+    NOT_GIVEN,
+    PERCENT,
+    PageTable,
+    Shown,
+    TableCell,
+    factors_of,
+    make_table,
+    measured,
+    shown,
+    superscript,
+    within,
+    words,
+)
+from reduction.stages.line.line_product import REASONS
+from reduction.stages.moduli.local_regression import curve_at
+
+STEPS = (0.25, 0.05, 0.01)
+
+"""Strain from row to row: the first that a test of the campaign reaches; a rope is stiff. [1]"""
+
+_MEANS: tuple[tuple[str, str, Unit], ...] = (
+    ("mean strain", "test_mean_strain", PERCENT),
+    ("strain amplitude", "test_strain_amplitude", PERCENT),
+    ("mean tension", "test_mean_tension", None),
+    ("tension amplitude", "test_tension_amplitude", None),
+    ("frequency", "test_frequency", None),
+    ("apparent spring constant", "test_apparent_spring_constant", None),
+    ("E', storage spring constant", "test_storage_spring_constant", None),
+    ("E'', loss spring constant", "test_loss_spring_constant", None),
+    ("dynamic modulus", "test_dynamic_modulus", None),
+    ("loss factor", "test_loss_factor", None),
+    ("hysteresis energy", "test_hysteresis_energy", None),
+    ("peak tension per decade of cycles", "peak_tension_per_decade", None),
+    ("dynamic modulus per decade", "dynamic_modulus_per_decade", None),
+    ("change of peak tension, first to last cycle", "peak_tension_change", PERCENT),
+    ("drift of peak tension per cycle", "creep_per_cycle", None),
+    ("strain where it goes slack, unloading", "slack_strain_at_unloading", PERCENT),
+)
+
+_LINE = (
+    ("K_0, quasi-static spring constant", "test_quasi_static_spring_constant"),
+    ("K_1, dissipation spring constant", "test_dissipation_spring_constant"),
+    ("tau, relaxation time", "test_relaxation_time"),
+    ("C = K_1 tau, dashpot coefficient", "test_dashpot_coefficient"),
+)
+
+CONDITIONING = (
+    "Conditioning, K_0 / (E' - K_0): how many times a relative error of K_0 enters E' - K_0, on"
+    " which K_1 and tau stand."
+)
+
+REFUSED = "refused because"
+
+_OF_LINE = "scatter between cycles, and K_0 with the fit of its slow pull"
+
+_OF_HOLDS = "noise, regression"
+
+_OF_PULL = "scatter about the cubic"
+
+
+def specimen_table(tests: Sequence[TestView], units: UnitSystem) -> PageTable:
+    """Return the specimens of a campaign, each once, as its first test has it."""
+    names = all_specimens(tests)
+    sheets = []
+    for view in tests:
+        own = [k for k, name in enumerate(view.specimens) if name in names]
+        names = [name for name in names if name not in view.specimens]
+        sheets.append(
+            Sheet(view, ("specimen",)).keep(np.array(own, dtype=np.int64))
+            .texts("specimen", "specimen")
+            .texts("kind", "specimen_kind")
+            .texts("material", "specimen_material")
+            .texts("condition", "specimen_condition")
+            .numbers("diameter", "diameter")
+            .numbers("area at zero tension", "area")
+            .numbers("rated break strength", "rated_break_strength")
+        )  # fmt: skip
+    caption = "Specimens before their first test; the diameter is the mean of the readings."
+    empty = make_table(caption, ("specimen",), (), synthetic=any_synthetic(tests))
+    return Sheet.stack(sheets).table(caption) or empty
+
+
+def specimen_notes(tests: Sequence[TestView]) -> list[str]:
+    """Return what is to be known about each specimen, each sentence once."""
+    notes = [
+        f"{one.stage.removeprefix('specimen ')}: {one}"
+        for view in tests
+        for one in view.notes
+        if one.stage.startswith("specimen ")
+    ]
+    return list(dict.fromkeys(notes))
+
+
+def _history_table(view: TestView) -> PageTable | None:
+    """Return what each specimen had seen before the test."""
+    if "earlier_cycles" not in view.data:
+        return None
+    sheet = Sheet(view, ("specimen",)).texts("specimen", "specimen")
+    sheet.texts("earlier tests", [text or "none" for text in sheet.of("earlier_tests", "")])
+    sheet.counts("earlier cycles [1]", "earlier_cycles")
+    if "earlier_flex_cycles" in view.data:
+        sheet.counts("earlier flex cycles [1]", "earlier_flex_cycles")
+    (
+        sheet.numbers("greatest strain seen", "earlier_maximum_strain", PERCENT)
+        .numbers("greatest tension seen", "earlier_maximum_tension")
+        .numbers("permanent set", "permanent_set", PERCENT)
+    )
+    return sheet.table("What each specimen had seen before this test.")
+
+
+def _coefficient_table(view: TestView) -> PageTable | None:
+    """Return how crosshead position became strain: method, range of the marks, coefficients."""
+    methods = view.texts("strain_method")
+    if not methods:
+        return None
+    sheet = Sheet(view, ("specimen",)).texts("method", "strain_method")
+    if set(methods) == {"extensometer"}:
+        return sheet.turned(
+            "How strain was found: read off an extensometer, no splice in it.", view.specimens
+        )
+    sheet.texts("marks from", "strain_marks_from")
+    unit: Unit
+    for name in COEFFICIENTS.values():
+        if np.isfinite(sheet.of(name)).any():
+            one = QUANTITIES[name]
+            # c of c F**n goes with a force in newton; no other unit would keep its meaning
+            unit = "length" if one.unit == "m" else Shown(one.unit, 1.0)
+            spread = expand(sheet.of(f"{name}_standard_uncertainty"))
+            sheet.measured(one.long_name, name, unit, spread)
+    ranges: tuple[tuple[str, Unit, int], ...] = (("position", "length", 2), ("tension", None, 0))
+    for name, unit, places in ranges:
+        low, high = f"strain_{name}_low", f"strain_{name}_high"
+        if np.isfinite(sheet.of(low) + sheet.of(high)).any():
+            sheet.spans(f"{name} at the marks", low, high, unit, places=places)
+    return sheet.turned(
+        "Position to strain of the splice-free length: method, and what it goes by.",
+        view.specimens,
+        remarks=[
+            plus_minus(
+                [NORMAL],
+                "tape readings, regression on the splice marks",
+                left_out="load-cell calibration, position scale, the choice of strain method",
+            )
+        ],
+    )
+
+
+def _slope_sentences(view: TestView) -> list[str]:
+    """Return what a constant splice fraction would make of the moduli, one sentence a specimen."""
+    ratio = view.array("strain_slope_ratio")
+    if ratio is None or "tangent_modulus" not in view.data:
+        return []
+    found = []
+    for name, method, one in zip(view.specimens, view.texts("strain_method"), ratio, strict=True):
+        if not np.isfinite(one) or one <= 0 or method == "constant-fraction":
+            continue
+        excess = 100.0 * (1.0 / one - 1.0)
+        found.append(
+            f"{name}: a constant splice fraction, the method printed in WHOI-2005-10, reads these"
+            f" moduli {abs(excess):.1f} % {'high' if excess >= 0 else 'low'} (strain slope"
+            f" {one:.3f} of the one used here)."
+        )
+    return found
+
+
+def _mark_table(view: TestView) -> PageTable | None:
+    """Return the readings at the splice marks, and how far the method is off at each."""
+    sheet = Sheet(view, ("mark",))
+    residual = sheet.of("mark_strain_residual")
+    (
+        sheet.texts("specimen", "mark_specimen")
+        .texts("test", "mark_test")
+        .texts("hold", "mark_hold")
+        .numbers("position", "mark_position", "length")
+        .numbers("tension", "mark_tension")
+        .numbers("strain at the marks", "mark_strain", PERCENT)
+        .numbers("strain by the method", sheet.of("mark_strain") + residual, PERCENT)
+        .cells("method minus marks [points of strain %]", map(_signed, residual))
+    )
+    return sheet.table(
+        "Splice marks: what the tape read, and what the method makes of it.", tall=12
+    )
+
+
+def _signed(residual: float) -> TableCell:
+    text = f"{round(100 * residual, 2) + 0.0:+.2f}" if np.isfinite(residual) else NOT_GIVEN
+    return TableCell(text, repr(float(residual)), is_number=True)
+
+
+def design_tables(tests: Sequence[TestView]) -> list[PageTable]:
+    """Return the modulus at round strains: rows strain, columns the tests that reach one."""
+    for step in STEPS:
+        found = [_design_table(tests, specimen, step) for specimen in all_specimens(tests)]
+        tables = [table for table in found if table is not None]
+        if tables:
+            return tables
+    return []
+
+
+def _design_table(tests: Sequence[TestView], specimen: str, step: float) -> PageTable | None:
+    given = [(view, _at_round_strains(view, specimen, step)) for view in tests]
+    columns = [(view, cells) for view, cells in given if cells]
+    if not columns:
+        return None
+    unit = shown("stress", tests[0].units)
+    levels = sorted({level for _, cells in columns for level in cells})
+    sheet = Sheet(Calculated(tests[0].units, any_synthetic(tests)))
+    sheet.texts("strain [%]", [f"{100 * step * level:g}" for level in levels])
+    for view, cells in columns:
+        sheet.cells(unit.label(view.id), [cells.get(level, words("")) for level in levels])
+    return sheet.table(
+        f"{specimen}: tangent modulus at stated strains, ascending / descending, mean over the"
+        " cycles of each test; inside its tested range only.",
+        is_compact=True,
+        remarks=[
+            plus_minus_of_tests(sheet.factors, [view for view, _ in columns], ["tangent_modulus"])
+        ],
+    )
+
+
+def _at_round_strains(view: TestView, specimen: str, step: float) -> dict[int, TableCell]:
+    """Return a cell for each multiple of the step that a branch reaches."""
+    bins, modulus = view.array("strain_bin"), view.array("tangent_modulus")
+    if bins is None or modulus is None or bins.size == 0 or specimen not in view.specimens:
+        return {}
+    row = view.specimens.index(specimen)
+    spread = expanded_of(view, "tangent_modulus", modulus)
+    spacing = float(np.min(np.diff(bins))) if bins.size > 1 else 0.0
+    levels = np.arange(np.floor(bins[0] / step), np.ceil(bins[-1] / step) + 1)
+    branches = view.texts("branch_name") or BRANCH_NAMES
+    places = [branches.index(name) for name in BRANCH_NAMES]
+    curves = [
+        [curve_at(step * levels, bins, curve[row, place], spacing=spacing) for place in places]
+        for curve in (modulus, spread.half, spread.factor)
+    ]
+    found: dict[int, TableCell] = {}
+    for column in np.flatnonzero(np.isfinite(curves[0]).any(axis=0)):
+        both = [
+            measured(
+                float(value[column]), float(half[column]), shown("stress", view.units),
+                factor=float(factor[column]), is_short=True,
+            )
+            for value, half, factor in zip(*curves, strict=True)
+        ]  # fmt: skip
+        found[int(levels[column])] = TableCell(
+            " /\n".join(cell.text for cell in both),
+            " ".join(cell.value or "nan" for cell in both),
+            is_number=True,
+            factors=tuple(factors_of([both])),
+        )
+    return found
+
+
+def segment_table(tests: Sequence[TestView]) -> PageTable | None:
+    """Return the piecewise-linear moduli: the answer, in the form of Tables 5 and 6."""
+    sheet = Sheet.stack(_segments(view) for view in tests if "segment_modulus" in view.data)
+    of = " of the rubber" if any(view.is_rubber for view in tests) else ""
+    return sheet.table(
+        f"Elastic modulus{of}, piecewise linear, from trimmed branches.", tall=16,
+        remarks=[plus_minus_of_tests(sheet.factors, tests, ["segment_modulus"])],
+    )  # fmt: skip
+
+
+def _segments(view: TestView) -> Sheet:
+    sheet = Sheet(view, ("specimen", "branch_name", "segment"), where="segment_modulus")
+    averaged = np.broadcast_to(
+        cycles_averaged(view.data, "segment_modulus"), (len(view.specimens),)
+    )
+    return (
+        sheet.texts("test", [view.id] * sheet.n_rows)
+        .texts("specimen", "specimen")
+        .texts("branch", "branch_name")
+        .counts("segment", sheet.places["segment"] + 1)
+        .measured("segment modulus", "segment_modulus")
+        .spans("strain range", "segment_strain_low", "segment_strain_high", PERCENT, places=1)
+        .spans("tension range", "segment_tension_low", "segment_tension_high")
+        .counts("cycles [1]", averaged[sheet.places["specimen"]])
+        .texts("strain method", "strain_method")
+    )
+
+
+def _summary_table(view: TestView) -> PageTable | None:
+    """Return the means over the cycles of a test, and what changed over them."""
+    sheet = Sheet(view, ("specimen",)).all_of(*(one for one in _MEANS if one[1] in view.data))
+    if not any(np.isfinite(sheet.of(name)).any() for name in sheet.known):
+        return None
+    said = [sheet.about()]
+    if shared_sources([view], sheet.known):
+        own = [
+            heading.partition(" [")[0]
+            for heading, column, name in zip(
+                sheet.headings, sheet.columns, sheet.known, strict=True
+            )
+            if factors_of([column]) and not shared_sources([view], [name])
+        ]
+        said += [f"Scatter alone: {'; '.join(own)}."] if own else []
+    return sheet.turned(
+        "Means over the cycles of the test, and what changed over them.", view.specimens,
+        remarks=said,
+    )  # fmt: skip
+
+
+def _stress_table(view: TestView) -> PageTable | None:
+    """Return stress at stated elongations; it is a stress and never called a modulus."""
+    levels, stress = view.array("strain_level"), view.array("stress_at_strain")
+    if levels is None or stress is None or not np.isfinite(stress).any():
+        return None
+    sheet = Sheet(view, ("specimen",)).texts("specimen", "specimen")
+    for level, values in zip(levels, stress.T, strict=True):
+        sheet.numbers(f"stress at {100 * level:g} %", values, "stress")
+    return sheet.table(
+        "Nominal stress at stated elongations of the first loading (the rubber trade calls it"
+        " M100 and the like; it is no modulus)."
+    )
+
+
+def _slip_table(view: TestView) -> PageTable | None:
+    """Return the steps of the splices."""
+    sheet = Sheet(view, ("slip",))
+    ends = zip(sheet.of("slip_cycle_low"), sheet.of("slip_cycle_high"), strict=True)
+    (
+        sheet.texts("specimen", "slip_specimen")
+        .counts("first cycle after the step", "slip_cycle")
+        .cells(
+            "the step lies in cycles",
+            [TableCell(f"{low:.0f} to {high:.0f}", is_number=True) for low, high in ends],
+        )
+        .measured("step of peak tension", "slip_tension_step")
+        .measured("splice let out", "slip_length")
+    )
+    return sheet.table("Steps of a splice, told apart from steady creep.", remarks=[sheet.about()])
+
+
+def _identity_table(view: TestView) -> PageTable | None:
+    """Return how well the closed-cycle identity holds, over the cycles of each specimen."""
+    residual = view.array("identity_residual")
+    if residual is None or not np.isfinite(residual).any():
+        return None
+    own = [np.abs(row[np.isfinite(row)]) for row in residual]
+    ends = [row if row.size else np.array([np.nan]) for row in own]
+    return (
+        Sheet(view, ("specimen",))
+        .texts("specimen", "specimen")
+        .counts("cycles checked", [row.size for row in own])
+        .numbers("median residual", [np.median(row) for row in ends], PERCENT, 2)
+        .numbers("greatest residual", [np.max(row) for row in ends], PERCENT, 2)
+        .table(
+            "Check: stroke-mean modulus ascending minus descending equals the tension lost over"
+            " area and strain stroke, on every cycle; residual over the stroke-mean modulus."
+        )
+    )
+
+
+def _elastomer_table(view: TestView) -> PageTable | None:
+    """Return the fitted laws with their parameters, range and stability."""
+    sheet = Sheet(view, ("elastomer_fit",))
+    (
+        sheet.texts("specimen", "elastomer_specimen")
+        .texts("law", "elastomer_law")
+        .texts("parameters", ["; ".join(_parameters(view, k + 1)) for k in range(sheet.n_rows)])
+        .spans("fitted range", "elastomer_strain_low", "elastomer_strain_high", PERCENT, places=1)
+        .numbers("rms residual", "elastomer_rms_stress", digits=3)
+        .numbers("corrected Akaike criterion", "elastomer_aicc")
+        .texts("stable over the range", np.where(sheet.of("elastomer_is_stable") == 1, "yes", "no"))
+    )
+    return sheet.table(
+        "Hyperelastic laws of the first loading; a law says nothing outside its fitted range.",
+        remarks=[
+            plus_minus_of_tests(
+                [NORMAL], [view], ["elastomer_modulus", "elastomer_exponent"],
+                found_from="regression",
+            )
+        ],
+    )  # fmt: skip
+
+
+def _parameters(view: TestView, fit: int) -> Iterator[str]:
+    sheet = Sheet(view, ("elastomer_parameter",))
+    sheet.keep(sheet.of("elastomer_parameter_fit") == fit)
+    sheet.measured("", "elastomer_modulus").measured("", "elastomer_exponent", Shown("", 1.0))
+    unit = f" {shown('stress', view.units).unit}"
+    for name, *both in zip(sheet.of("elastomer_parameter_name", ""), *sheet.columns, strict=True):
+        for cell, one in zip(both, (unit, ""), strict=True):
+            if cell.text != NOT_GIVEN:
+                yield f"{str(name).replace('_', ' ')} {cell.text}{one}"
+
+
+def _flag_table(view: TestView) -> PageTable | None:
+    """Return how many samples of each channel carry each flag; only flags that occur."""
+    counts = view.array("n_flagged")
+    if counts is None or not counts.any():
+        return None
+    sheet = Sheet(view, ("channel",)).texts("channel", "channel")
+    for name, column in zip(view.texts("quality_mask"), counts.T, strict=True):
+        if column.any():
+            sheet.counts(f"{name.replace('_', ' ')} [1]", column)
+    return sheet.table(
+        f"Samples flagged, of {view.scalar('n_rows_kept'):,.0f} kept and"
+        f" {view.scalar('n_rows_read'):,.0f} read; nothing is deleted."
+    )
+
+
+def _step_table(view: TestView) -> PageTable | None:
+    """Return the readings of a stepwise test."""
+    if not view.is_stepwise or "strain" not in view.data:
+        return None
+    sheet = Sheet(view, ("step",))
+    clock = zip(sheet.of("clock", ""), sheet.of("time"), strict=True)
+    (
+        sheet.texts("clock", [text or f"{time:g} s" for text, time in clock])
+        .numbers("tension", "tension")
+        .numbers("length between the marks", "gauge_length")
+        .numbers("eye to eye", "eye_to_eye_length")
+        .numbers("elongation as recorded", "printed_strain", PERCENT)
+        .numbers("strain", "strain", PERCENT)
+        .numbers("secant modulus", "secant_modulus")
+        .texts("branch", _branches(sheet.of("branch")))
+        .texts("flag", flagged_steps(view))
+    )
+    return sheet.table("Readings of the stepwise test.")
+
+
+def interval_table(view: TestView) -> PageTable | None:
+    """Return the moduli between the readings of a stepwise test."""
+    sheet = Sheet(view, ("interval",))
+    clock = view.texts("clock") or tuple(str(place + 1) for place in range(sheet.n_rows + 1))
+    (
+        sheet.texts("between", [f"{one} to {other}" for one, other in pairwise(clock)])
+        .texts("branch", _branches(sheet.of("interval_branch")))
+        .numbers("strain in the middle", "interval_strain", PERCENT)
+        .measured("interval modulus", "interval_modulus")
+    )
+    return sheet.table(
+        "Slope of stress on strain between two readings; none where a reading is flagged or the"
+        " weights turn.",
+        remarks=[sheet.about(found_from=OF_STEPS)],
+    )
+
+
+def _branches(values: Floats) -> list[str]:
+    names = {value: name for name, value in BRANCH_VALUES.items()}
+    return [names.get(int(value), "") for value in values]
+
+
+def _hold_table(view: TestView) -> PageTable | None:
+    """Return the holds; a column that no hold fills is left out."""
+    sheet = Sheet(view, ("hold",))
+    sheet.texts("hold", "hold_number").texts("specimen", "hold_specimen").texts("kind", "hold_kind")
+    sheet.all_of(
+        ("starts at", "hold_start_time"),
+        ("lasts", "hold_duration"),
+        ("strain", "hold_strain", PERCENT),
+        ("tension at its start", "hold_initial_tension"),
+        ("tension at its end", "hold_final_tension"),
+        ("tension lost", "relaxation_drop", PERCENT),
+        ("tension lost per decade of time", "relaxation_rate_per_decade", PERCENT),
+        ("strain gained per decade of time", "creep_rate_per_decade", PERCENT),
+    )
+    return sheet.table(
+        "Holds: relaxation at constant length, creep at constant tension.", tall=12,
+        optional=sheet.headings, remarks=[sheet.about(found_from=_OF_HOLDS)],
+    )  # fmt: skip
+
+
+def _refusals(view: TestView) -> list[str]:
+    """Return the numbers that a hold does not support, each with its reason."""
+    return _of_holds(view, "hold_refusal")
+
+
+def _of_holds(view: TestView, name: str) -> list[str]:
+    """Return the texts of the holds that have one, each with its hold and specimen."""
+    sheet = Sheet(view, ("hold",))
+    columns = (sheet.of(one, "") for one in ("hold_number", "hold_specimen", name))
+    return [
+        f"hold {number}, {owner}: {text}"
+        for number, owner, text in zip(*columns, strict=True)
+        if text
+    ]
+
+
+def _prony_table(view: TestView) -> PageTable | None:
+    """Return the Prony series of the holds that support one."""
+    sheet = Sheet(view, ("hold", "prony_term"), where="prony_tension")
+    (
+        sheet.texts("hold", "hold_number")
+        .texts("specimen", "hold_specimen")
+        .counts("term", sheet.places["prony_term"] + 1)
+        .measured("tension of the term", "prony_tension")
+        .measured("relaxation time", "prony_time")
+        .measured("tension it tends to", "long_time_tension")
+    )
+    return sheet.table(
+        "Prony series of the holds.",
+        remarks=[
+            *(f"Number of terms, {text}." for text in _of_holds(view, "hold_criterion")),
+            sheet.about(found_from=_OF_HOLDS),
+        ],
+    )
+
+
+def _pull_table(view: TestView) -> PageTable | None:
+    """Return the cubic of each slow pull, its range of use, and how it was made."""
+    if "pull_strain_coefficient" not in view.data:
+        return None
+    sheet = Sheet(view, ("specimen",)).at("pull_term", 0)
+    sheet.keep(np.isfinite(sheet.of("pull_strain_coefficient")))
+    force = shown("tension", view.units)
+    for power, term in enumerate(("1", "T", "T²", "T³")):
+        sheet.at("pull_term", power)
+        both = sheet.of("pull_strain_coefficient"), sheet.expanded("pull_strain_coefficient").half
+        per = "1" if power == 0 else superscript(f"{force.unit}-{power}")
+        scale = 1.0 / force.factor**power
+        sheet.cells(
+            f"strain, coefficient of {term} [{per}]",
+            [_scaled(*one, scale) for one in zip(*both, strict=True)],
+        )
+    (
+        sheet.spans("range of use", "pull_tension_low", "pull_tension_high")
+        .numbers("residual of the cubic", "pull_residual", PERCENT)
+        .numbers("rate of strain", "pull_strain_rate", Shown("%/min", 6000.0))
+        .numbers("waiting time before the pull", "pull_waiting_time", Shown("h", 1 / 3600.0))
+        .numbers("tension at which the length was read", "pull_reference_tension")
+    )
+    return sheet.turned(
+        "Slow pull: strain as a cubic of tension T, and the conditions it holds for.",
+        map(str, sheet.of("specimen")),
+        remarks=["K_0 is the inverse slope of the cubic at the mean tension of interest; it grows"
+                 " with the rate of strain and with the waiting time.",
+                 plus_minus_of_tests([NORMAL], [view], ["pull_strain_coefficient"],
+                                     found_from=_OF_PULL)],
+    )  # fmt: skip
+
+
+def _scaled(value: float, half: float, scale: float) -> TableCell:
+    text = f"{value * scale:.6g}" + (f" ± {half * scale:.2g}" if np.isfinite(half) else "")
+    return TableCell(text, repr(float(value)), is_number=True)
+
+
+def _pull_share_table(view: TestView) -> PageTable | None:
+    """Return strain and K_0 of the slow pull at round shares of the break strength."""
+    strain = view.array("strain_at_break_share")
+    if strain is None:
+        return None
+    sheet = Sheet(view, ("break_share",)).keep(np.flatnonzero(np.isfinite(strain).any(axis=0)))
+    sheet.texts("tension [%RBS]", [f"{100 * share:g}" for share in sheet.of("break_share")])
+    for place, name in enumerate(view.specimens):
+        sheet.at("specimen", place).measured(name, "strain_at_break_share", PERCENT)
+    return sheet.table(
+        "Strain of the slow pull at round shares of the rated break strength, within its range.",
+        remarks=[sheet.about(found_from=_OF_PULL)],
+    )
+
+
+def _line_table(view: TestView) -> PageTable | None:
+    """Return the parameters of the line of each specimen of a test."""
+    if "test_relaxation_time" not in view.data:
+        return None
+    sheet = add_line(Sheet(view, ("specimen",)).texts("specimen", "specimen"), view)
+    return sheet.table(
+        "The three-parameter line: a spring K_0 beside a spring K_1 in series with a dashpot.",
+        optional=(REFUSED,), remarks=[CONDITIONING, *about_line(sheet, [view])],
+    )  # fmt: skip
+
+
+def add_line(sheet: Sheet, view: TestView) -> Sheet:
+    """Add the parameters of the line of the specimens in the rows: those drawn, as intervals."""
+    for heading, name in _LINE:
+        sheet.measured(heading, name)
+        unit, values = sheet.unit_of(name) or Shown("1", 1.0), sheet.of(name)
+        for row, place in enumerate(sheet.places["specimen"]):
+            drawn = drawn_interval(view, name, int(place))
+            if drawn is not None:
+                sheet.columns[-1][row] = within(float(values[row]), *drawn, unit)
+    reasons = (REASONS.get(int(code), "") for code in sheet.of("test_line_refusal", 0))
+    return sheet.numbers("conditioning", "test_line_conditioning", digits=3).texts(REFUSED, reasons)
+
+
+def about_line(sheet: Sheet, tests: Sequence[TestView]) -> list[str]:
+    """Say what ± and brackets hold in a table of lines."""
+    names = [name for _, name in _LINE]
+    has_fit = "quasi_static_fit" in shared_sources(tests, names)
+    said = plus_minus_of_tests(
+        sheet.factors, tests, names, found_from="scatter between cycles" if has_fit else _OF_LINE
+    )
+    is_drawn = any(
+        drawn_interval(test, name, place) is not None
+        for test in tests
+        for name in names
+        for place in range(len(test.specimens))
+    )
+    return [said, *([DRAWN] if is_drawn else [])]
+
 
 MOST = 4000
+
 """Most cycles of a test that a reader can choose from; a page has to stay small."""
 
 _DIGITS = 9
@@ -177,31 +769,33 @@ def make_part(
 def make_section(view: TestView) -> TestSection:
     """Return the section of one test; parts with nothing in them are left out."""
     parts = [
-        make_part("Stepwise readings", draw_steps(view), [step_table(view), interval_table(view)]),
-        make_part("Slow pull", draw_pull(view), [pull_table(view), pull_share_table(view)]),
+        make_part("Stepwise readings", draw_steps(view), [_step_table(view), interval_table(view)]),
+        make_part("Slow pull", draw_pull(view), [_pull_table(view), _pull_share_table(view)]),
         make_part("Modulus against strain", draw_moduli(view), [segment_table([view])]),
         make_part(
             "Record",
             [*draw_record(view), *draw_tension_position(view)],
-            [flag_table(view)],
+            [_flag_table(view)],
         ),
         make_part("Loops", draw_loops(view)),
         make_part(
             "Cycle by cycle", [*draw_trends(view), *draw_cycle_curves(view)],
-            [summary_table(view), slip_table(view), identity_table(view)],
+            [_summary_table(view), _slip_table(view), _identity_table(view)],
         ),
-        make_part("Three-parameter line", (), [line_table(view)]),
+        make_part("Three-parameter line", (), [_line_table(view)]),
         _budget_part(view),
         make_part(
-            "Holds", draw_holds(view), [hold_table(view), prony_table(view)],
-            refusals=refusals(view),
+            "Holds", draw_holds(view), [_hold_table(view), _prony_table(view)],
+            refusals=_refusals(view),
         ),
         make_part(
             "Strain and splices" if view.is_rubber else "Strain", draw_splices(view),
-            [coefficient_table(view), mark_table(view)], slope_sentences(view),
+            [_coefficient_table(view), _mark_table(view)], _slope_sentences(view),
         ),
-        make_part("First loading", draw_mooney(view), [stress_table(view), elastomer_table(view)]),
-        make_part("History of the specimens", (), [history_table(view)]),
+        make_part(
+            "First loading", draw_mooney(view), [_stress_table(view), _elastomer_table(view)],
+        ),
+        make_part("History of the specimens", (), [_history_table(view)]),
     ]  # fmt: skip
     provenance, documents = provenance_of(view.data.attrs)
     return TestSection(

@@ -148,7 +148,7 @@ from reduction.record.contributions import (
     effective_degrees_of_freedom,
 )
 from reduction.record.measurement import Floats
-from reduction.stages.holds.relaxation import HoldResult
+from reduction.stages.holds.holds import HoldResult
 from reduction.stages.line.line_model import (
     AMPLITUDE_INPUTS,
     FUNDAMENTAL_INPUTS,
@@ -362,23 +362,6 @@ def section_contributions(errors: InstrumentErrors, *, area: float) -> Contribut
     r"""Contributions to the diameter and the area of a specimen.
 
     .. math:: \delta A = 2 A \, \delta d / d
-
-    Parameters
-    ----------
-    errors : InstrumentErrors
-        For the diameter.
-    area : float
-        Nominal. [m2]
-
-    Returns
-    -------
-    contributions : Contributions
-        ``diameter`` [m] and ``area`` [m2]; no component where no error is stated.
-
-    Raises
-    ------
-    DataError
-        If the area is not positive.
 
     Notes
     -----

@@ -24,8 +24,7 @@ from reduction.lines.assembly import (
     _working_point,
     _worst_sharing,
 )
-from reduction.lines.composite import _composite_curve
-from reduction.lines.curve_pieces import CurvePiece
+from reduction.lines.composite import CurvePiece, _composite_curve
 from reduction.stages.strain.strain_model import StrainModel
 
 FOOT, LBF, PSI = 0.3048, 4.4482216152605, 6894.757293168

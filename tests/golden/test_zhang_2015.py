@@ -8,7 +8,7 @@ import pytest
 from scipy import integrate, optimize
 
 from reduction.prediction import zhang_example as zhang2015
-from reduction.prediction.morison import find_extremes, immerse_hose, wave_load
+from reduction.prediction.wave_load import _find_extremes, immerse_hose, wave_load
 from reduction.prediction.wave_theory import (
     _wave_number,
     airy_wave,
@@ -161,7 +161,7 @@ def test_table_6_is_a_grid_of_tenths_up_to_ten_seconds():
 def test_extremes_between_the_samples_of_the_grid(theory, classic, improved):
     # by a sweep of a million phases, typed to its second digit
     section = zhang2015.printed_section()
-    pair = [find_extremes(wave, section, **PRINTED) for wave in waves_of(theory)]
+    pair = [_find_extremes(wave, section, **PRINTED) for wave in waves_of(theory)]
     found = (pair[0].horizontal_classic.maximum, pair[0].vertical_classic.maximum)
     assert [float(one) for one in found] == pytest.approx(classic, abs=HALF_A_HUNDREDTH)
     found = (pair[1].horizontal.maximum, pair[1].vertical.maximum)
@@ -279,7 +279,7 @@ def test_the_physically_consistent_airy_loads_have_a_second_derivation():
         wave_height=1.25, wave_period=float(wave_period_of(number, 6.0, gravity=9.81)),
         water_depth=6.0, elevation=float(hose.centre_elevation), gravity=9.81,
     )  # fmt: skip
-    extremes = find_extremes(wave, hose, water_density=1025.0)
+    extremes = _find_extremes(wave, hose, water_density=1025.0)
     assert float(hose.immersion_depth) == pytest.approx(immersion, abs=1e-12)
     for name, (direction, width, cross) in cases.items():
         own = own_load_range(
@@ -292,7 +292,7 @@ def test_the_physically_consistent_airy_loads_have_a_second_derivation():
     own = own_load_range(
         potential, period=period, elevation=elevation, width=immersion, area=area, direction="z"
     )
-    on_h = find_extremes(wave, hose, vertical_width="immersion depth")
+    on_h = _find_extremes(wave, hose, vertical_width="immersion depth")
     assert own[0] == pytest.approx(CONSISTENT_VERTICAL_ON_H, abs=HALF_A_HUNDREDTH)
     assert float(on_h.vertical.maximum) == pytest.approx(own[0], abs=1e-6)
 
@@ -336,7 +336,7 @@ def test_the_physically_consistent_stokes_loads_have_a_second_derivation():
         wave_height=height, wave_period=period, water_depth=depth,
         elevation=float(hose.centre_elevation),
     )  # fmt: skip
-    extremes = find_extremes(wave, hose)
+    extremes = _find_extremes(wave, hose)
     for name, direction, width, cross in (
         ("horizontal", "x", immersion, area),
         ("horizontal_classic", "x", 0.114, np.pi * 0.114**2 / 4),

@@ -12,8 +12,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reduction.lines.composite import _composite_curve
-from reduction.lines.curve_pieces import CompositeRule, CurvePiece, pieces_of_branches
+from reduction.lines.composite import (
+    CompositeRule,
+    CurvePiece,
+    _composite_curve,
+    pieces_of_branches,
+)
 from reduction.record.settings import CycleSettings, ModulusSettings, PhaseSettings
 from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.moduli.tangent_modulus import tangent_curves

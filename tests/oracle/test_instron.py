@@ -12,8 +12,7 @@ import pytest
 from measured_logs import LOGS, needs_measured_logs
 
 from reduction.record.settings import CycleSettings, PhaseSettings
-from reduction.stages.cycles.cycle_search import find_cycles
-from reduction.stages.cycles.reversals import find_reversals, first_pass
+from reduction.stages.cycles.cycle_search import _find_reversals, _first_pass, find_cycles
 from reduction.stages.standstills import find_standstills
 
 FOLDER = LOGS / "instron-elastomer"
@@ -99,7 +98,7 @@ def test_the_stop_log_gives_its_row_of_the_trends_to_all_digits(name):
 def test_reversals_alone_find_the_peaks_of_every_row_with_a_stroke(name):
     tracking, trends = read(name, "steps.tracking"), read(name, "steps.trends")
     position = tracking["Position (mm)"].to_numpy()
-    reversals, _ = first_pass(position)
+    reversals, _ = _first_pass(position)
     peaks = reversals[1:][np.diff(position[reversals]) > 0]
     moving = trends[trends["Step"] == 1]
     cycle_of_peak = tracking["Total Cycles"].to_numpy()[peaks]
@@ -128,7 +127,7 @@ def test_reversals_alone_count_every_cycle_of_the_stop_log(name):
     stop = read(name, "Stop")
     moving = stop[stop["Step"] == 1]
     position = moving["Position (mm)"].to_numpy()
-    peaks = find_reversals(position, band=3.0)
+    peaks = _find_reversals(position, band=3.0)
     peaks = peaks[1:][np.diff(position[peaks]) > 0]
     counted = moving["Total Cycles"].to_numpy()[peaks]
     frequency = TESTS[name][2]

@@ -21,8 +21,8 @@ from reduction.record import samples as scratch
 from reduction.record import samples as search
 from reduction.stages import standstills as still_blocks
 from reduction.stages.cycles import cycle_pairing as runs
-from reduction.stages.holds import hold_start as ramp
-from reduction.stages.holds import reduce_holds as support
+from reduction.stages.holds import holds as ramp
+from reduction.stages.holds import holds as support
 from reduction.stages.moduli import loop_balance as tensionlevel
 
 pytestmark = pytest.mark.slow
@@ -179,7 +179,7 @@ HOLD = """
 import sys
 from pathlib import Path
 import numpy as np
-from reduction.stages.holds.reduce_holds import reduce_holds
+from reduction.stages.holds.holds import reduce_holds
 from reduction.stages.standstills import Standstills
 from reduction.record.samples import ColumnWriter
 from reduction.record.settings import HoldSettings

@@ -14,8 +14,7 @@ from export_readers import moordyn_sections, moordyn_table
 
 from reduction.cli.curves import deployed_line
 from reduction.cli.export import _with_syrope
-from reduction.lines.composite import compose
-from reduction.lines.curve_pieces import CompositeRule
+from reduction.lines.composite import CompositeRule, compose
 from reduction.lines.deck_formats import export_line
 from reduction.lines.deck_moordyn import moordyn_files
 from reduction.lines.export_sources import line_from_assembly, line_from_composite, line_from_lookup

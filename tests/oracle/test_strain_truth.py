@@ -11,12 +11,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reduction.campaign.specimens import _read_marks
+from reduction.campaign.load import _read_marks
 from reduction.record.measurement import Specimen
 from reduction.record.settings import StrainSettings
 from reduction.stages.standstills import Standstills
-from reduction.stages.strain.splice_marks import measure_mark_tension
-from reduction.stages.strain.strain_fit import fit_strain_model
+from reduction.stages.strain.strain_fit import fit_strain_model, measure_mark_tension
 from reduction.stages.strain.strain_model import extrapolated, strain_by_model
 
 RAW = Path(__file__).parents[2] / "raw" / "tmt-synthetic"

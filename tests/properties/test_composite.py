@@ -5,8 +5,7 @@ from examples import examples
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from reduction.lines.composite import _composite_curve
-from reduction.lines.curve_pieces import CompositeRule, CurvePiece
+from reduction.lines.composite import CompositeRule, CurvePiece, _composite_curve
 
 KINDS = ("cyclic", "static", "first-loading")
 

@@ -6,9 +6,13 @@ from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reduction.stages.holds.hold_start import find_ramp
+from reduction.stages.holds.holds import (
+    _find_ramp,
+    _rate_per_decade,
+    _relaxation_drop,
+    logarithmic_blocks,
+)
 from reduction.stages.holds.prony_series import _ramp_factor, prony_tension
-from reduction.stages.holds.relaxation import logarithmic_blocks, rate_per_decade, relaxation_drop
 from reduction.stages.moduli.elastomer_laws import fit_elastomers, hyperelastic_stress
 from reduction.stages.moduli.secant_modulus import slope_per_decade
 from reduction.stages.moduli.slack_length import _slack_position
@@ -19,7 +23,7 @@ positive = st.floats(1e-3, 1e3)
 
 @given(st.floats(1, 1e4), st.floats(0, 1e4), positive)
 def test_a_drop_does_not_depend_on_the_unit_of_tension(initial, final, unit):
-    one, other = relaxation_drop(initial, final), relaxation_drop(unit * initial, unit * final)
+    one, other = _relaxation_drop(initial, final), _relaxation_drop(unit * initial, unit * final)
     assert other == pytest.approx(float(one), rel=1e-9, abs=1e-12)
 
 
@@ -46,7 +50,7 @@ def test_a_prony_series_only_falls(terms, long_time_tension):
 def test_a_rate_per_decade_does_not_depend_on_the_unit_of_time(unit, decades, slope):
     time = np.geomspace(1, 10**decades, 300)
     rates = [
-        rate_per_decade(
+        _rate_per_decade(
             logarithmic_blocks(scale * time, slope * np.log10(time)), ramp_duration=0.0
         ).value
         for scale in (1.0, unit)
@@ -59,8 +63,8 @@ def test_the_centre_of_a_ramp_lies_in_it_and_moves_with_the_clock(rate, stroke, 
     time = np.arange(0, 10 + stroke / rate, 0.02)
     position = np.clip((time - 10) * rate, 0, stroke)
     tension = 100 * position**power
-    ramp = find_ramp(time, position, tension, band=stroke / 100)
-    later = find_ramp(time + clock, position, tension, band=stroke / 100)
+    ramp = _find_ramp(time, position, tension, band=stroke / 100)
+    later = _find_ramp(time + clock, position, tension, band=stroke / 100)
     assert ramp.start_time <= ramp.centre_time <= ramp.end_time
     assert 0 <= ramp.duration <= ramp.end_time - ramp.start_time
     assert later.centre_time - clock == pytest.approx(ramp.centre_time, abs=1e-6)

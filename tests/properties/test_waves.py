@@ -5,10 +5,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from reduction.prediction.morison import (
+from reduction.prediction.wave_load import (
     ImmersedSection,
+    _find_extremes,
     _immersion_depth_of,
-    find_extremes,
     wave_load,
 )
 from reduction.prediction.wave_theory import (
@@ -79,7 +79,7 @@ def test_no_sample_of_a_load_goes_beyond_its_extremes(
     hose = ImmersedSection(
         np.array(diameter), np.array(0.6 * np.pi * diameter**2 / 4), np.array(0.6 * diameter)
     )
-    extremes = find_extremes(wave, hose, current_velocity=current)
+    extremes = _find_extremes(wave, hose, current_velocity=current)
     load = wave_load(wave, hose, np.linspace(0.0, period, 2001), current_velocity=current)
     for name in ("horizontal", "vertical", "horizontal_classic", "vertical_classic"):
         found, series = getattr(extremes, name), getattr(load, name)

@@ -5,8 +5,7 @@ import pytest
 import xarray as xr
 
 from reduction.lines.archive_pieces import _pieces_of_test, source_of_tests, specimens_of
-from reduction.lines.composite import compose, used_of
-from reduction.lines.curve_pieces import CompositeRule
+from reduction.lines.composite import CompositeRule, compose, used_of
 from reduction.record.errors import DataError, SettingsError
 
 BINS = np.array([0.5, 0.6, 0.7, 0.8])

@@ -19,8 +19,8 @@ from reduction.lines.archive_source import _line_source_of_experiment
 from reduction.lines.line_lookup import look_up
 from reduction.quantities.names import RESPONSES
 from reduction.record.contributions import Component, Contributions
+from reduction.report.experiment_report import _expanded_of_coefficients, _interval_of_surfaces
 from reduction.report.product_views import ExperimentView
-from reduction.report.surface_grid import expanded_of_coefficients, interval_of_surfaces
 
 SHARED = surface_experiment()
 # of scatter alone: nothing is known that the runs share
@@ -385,7 +385,7 @@ def test_point_look_up_page_and_budget_say_one_interval(name):
     at = at_points(dataset, name)
     view = ExperimentView("k", dataset, 0)
     index = view.surfaces.response_names.index(name)
-    low, high = interval_of_surfaces(view, view.surfaces, np.zeros((1, 3)))
+    low, high = _interval_of_surfaces(view, view.surfaces, np.zeros((1, 3)))
     line = _line_source_of_experiment(dataset, "half-inch")
     centre = dict(zip(line.factor_names, (LOW + HIGH) / 2, strict=True))
     found = look_up(line, response, **centre)
@@ -406,5 +406,5 @@ def test_point_look_up_page_and_budget_say_one_interval(name):
         half = b1.expanded_uncertainty
         assert point.expanded_uncertainty == pytest.approx(half, rel=1e-9)
         assert at["confidence_high"][0] - at["value"][0] == pytest.approx(half, rel=1e-9)
-        coefficient = expanded_of_coefficients(view, view.surfaces, index)
+        coefficient = _expanded_of_coefficients(view, view.surfaces, index)
         assert coefficient.all.half[0] == pytest.approx(half, rel=1e-9)

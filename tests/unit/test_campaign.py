@@ -4,8 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from reduction.campaign.load import load_campaign
-from reduction.campaign.specimens import _read_marks
+from reduction.campaign.load import _read_marks, load_campaign
 from reduction.record.errors import DataError, LogError, SettingsError
 
 ROOT = Path(__file__).parents[2]

@@ -3,8 +3,7 @@ import tomllib
 import numpy as np
 import pytest
 
-from reduction.campaign.hose_plans import load_hose, plan_comparison
-from reduction.campaign.load import load_campaign
+from reduction.campaign.load import _plan_comparison, load_campaign, load_hose
 from reduction.campaign.model import ComparisonSection
 from reduction.record.errors import SettingsError
 
@@ -218,7 +217,7 @@ def test_steps_are_named_as_test_and_step(tmp_path):
     assert campaign.comparisons["one"].measured == "Q.slow-pull"
     section = ComparisonSection.model_validate(tomllib.loads('measured = "Q"\npredicted = "H"'))
     with pytest.raises(SettingsError, match="is no test of the campaign; found Q"):
-        plan_comparison(
+        _plan_comparison(
             campaign.path, "one", section, tests=campaign.tests, hoses=campaign.hoses,
             specimens=campaign.specimens,
         )  # fmt: skip

@@ -7,16 +7,16 @@ from hypothesis import strategies as st
 
 from reduction.record.errors import DataError
 from reduction.stages.cycles.cycle_product import Cycles
-from reduction.stages.cycles.loop_energy import (
+from reduction.stages.cycles.loops import (
+    _cycle_basis,
+    _fundamental,
+    _loop_energy,
+    _mean_drift,
+    _part_means,
     _sums_over_cycles,
-    cycle_basis,
-    fundamental,
-    loop_energy,
-    mean_drift,
-    part_means,
+    close_loops,
     reading_noise,
 )
-from reduction.stages.cycles.loops import close_loops
 
 STORAGE, LOSS, AMPLITUDE = 900.0, 100.0, 0.2
 
@@ -43,7 +43,7 @@ def ellipse(per_cycle, n_cycles, phase=0.0):
 def test_energy_of_an_ellipse_is_within_a_hundredth_of_a_percent(per_cycle, n_cycles, phase):
     _, tension, strain = ellipse(per_cycle, n_cycles, phase)
     first = np.arange(n_cycles) * per_cycle
-    energy, _ = loop_energy(tension, strain, first, first + per_cycle, waveform="sinusoidal")
+    energy, _ = _loop_energy(tension, strain, first, first + per_cycle, waveform="sinusoidal")
     assert energy == pytest.approx(np.pi * LOSS * AMPLITUDE**2, rel=1e-4)
 
 
@@ -51,7 +51,7 @@ def test_energy_of_an_ellipse_is_within_a_hundredth_of_a_percent(per_cycle, n_cy
 def test_polygon_of_an_ellipse_is_short_by_the_known_bias(per_cycle):
     _, tension, strain = ellipse(per_cycle, 1)
     first = np.array([0])
-    energy, _ = loop_energy(tension, strain, first, first + per_cycle)
+    energy, _ = _loop_energy(tension, strain, first, first + per_cycle)
     angle = 2 * np.pi / per_cycle
     assert energy[0] == pytest.approx(np.pi * LOSS * AMPLITUDE**2 * np.sin(angle) / angle)
 
@@ -65,7 +65,7 @@ def test_noise_leaves_the_energy_unbiased_and_the_scatter_as_stated(per_cycle):
     tension = tension + rng.normal(0, noise, tension.size)
     strain = strain + rng.normal(0, 0.002 * 2 * AMPLITUDE, strain.size)
     first = np.arange(n_cycles) * per_cycle
-    energy, norm = loop_energy(tension, strain, first, first + per_cycle, waveform="sinusoidal")
+    energy, norm = _loop_energy(tension, strain, first, first + per_cycle, waveform="sinusoidal")
     true = np.pi * LOSS * AMPLITUDE**2
     error = energy.std(ddof=1)
     assert abs(energy.mean() - true) < 4 * error / np.sqrt(n_cycles)
@@ -78,7 +78,7 @@ def test_noise_leaves_the_energy_unbiased_and_the_scatter_as_stated(per_cycle):
 def test_energy_of_a_parallelogram_is_exact_by_the_polygon():
     strain = np.concatenate([np.linspace(0, 1, 26), np.linspace(1, 0, 26)[1:]])
     tension = 100 * strain + np.where(np.arange(51) <= 25, 5.0, -5.0)
-    energy, _ = loop_energy(tension, strain, np.array([0]), np.array([50]))
+    energy, _ = _loop_energy(tension, strain, np.array([0]), np.array([50]))
     # 10 N over the whole stroke, less the one step of the turn at the top, whose tension
     # falls along a straight line (half of 10 N over a step of 0.04)
     assert energy[0] == pytest.approx(10 * 1 - 0.5 * 10 * 0.04)
@@ -87,7 +87,7 @@ def test_energy_of_a_parallelogram_is_exact_by_the_polygon():
 def test_a_loop_that_stays_open_is_closed_by_a_straight_line():
     strain = np.array([0.0, 1.0, 1.0, 0.5])
     tension = np.array([0.0, 0.0, 2.0, 2.0])
-    energy, _ = loop_energy(tension, strain, np.array([0]), np.array([3]))
+    energy, _ = _loop_energy(tension, strain, np.array([0]), np.array([3]))
     # quadrilateral (0,0) (1,0) (1,2) (.5,2), walked so that it gives energy: -area by shoelace
     assert energy[0] == pytest.approx(-1.5)
 
@@ -109,7 +109,7 @@ def test_a_drift_from_cycle_to_cycle_leaves_the_energy_of_the_steady_loop(which,
     loops = close_loops(turns, tension[None], strain[None], cycles, waveform=waveform)
     expected = np.pi * LOSS * AMPLITUDE**2
     assert loops.hysteresis_energy == pytest.approx(expected, rel=5e-4)
-    closed, _ = loop_energy(tension, strain, cycles.first, cycles.last)
+    closed, _ = _loop_energy(tension, strain, cycles.first, cycles.last)
     assert abs(closed[0] / expected - 1) > 0.05
 
 
@@ -138,14 +138,14 @@ def test_a_slow_log_of_a_sine_has_the_stiffness_of_the_sine(per_cycle):
 
 def test_a_short_series_is_refused():
     with pytest.raises(DataError, match="a loop is too short; found 2 samples"):
-        loop_energy([1.0, 2.0], [0.0, 1.0], np.array([0]), np.array([1]))
+        _loop_energy([1.0, 2.0], [0.0, 1.0], np.array([0]), np.array([1]))
     with pytest.raises(DataError, match="do not pair up"):
-        loop_energy([1.0, 2.0, 3.0], [0.0, 1.0], np.array([0]), np.array([1]))
+        _loop_energy([1.0, 2.0, 3.0], [0.0, 1.0], np.array([0]), np.array([1]))
 
 
 def test_no_cycles_give_no_energy():
     none = np.array([], dtype=int)
-    assert loop_energy([1.0, 2.0, 3.0], [0.0, 1.0, 2.0], none, none)[0].size == 0
+    assert _loop_energy([1.0, 2.0, 3.0], [0.0, 1.0, 2.0], none, none)[0].size == 0
     assert _sums_over_cycles(np.ones(3), none, none).size == 0
 
 
@@ -157,23 +157,23 @@ def test_cycles_apart_do_not_take_samples_from_the_gap():
 def test_fundamental_on_uneven_times():
     rng = np.random.default_rng(0)
     t = np.sort(np.concatenate([[0, 10], rng.uniform(0, 10, 4000)]))
-    basis = cycle_basis(t, np.array([0]), np.array([t.size - 1]))
-    cosine, sine, _ = fundamental(3 * np.cos(0.2 * np.pi * t) - np.sin(0.2 * np.pi * t), basis)
+    basis = _cycle_basis(t, np.array([0]), np.array([t.size - 1]))
+    cosine, sine, _ = _fundamental(3 * np.cos(0.2 * np.pi * t) - np.sin(0.2 * np.pi * t), basis)
     assert cosine[0] == pytest.approx(3, abs=2e-3) and sine[0] == pytest.approx(-1, abs=2e-3)
 
 
 def drift_of(values, first, last):
     time = np.arange(values.size, dtype=float)
     middles = np.stack([(3 * first + last) // 4, (first + 3 * last) // 4])
-    means = part_means(values, cycle_basis(time, first, last), middles)
-    return mean_drift(means, time[np.stack([first, *middles, last])])
+    means = _part_means(values, _cycle_basis(time, first, last), middles)
+    return _mean_drift(means, time[np.stack([first, *middles, last])])
 
 
 def test_a_drift_linear_in_time_is_taken_off_by_the_means_of_the_cycles():
     t = np.arange(601.0)
     wave = 5 * np.cos(2 * np.pi * t / 200) + 2 * np.sin(2 * np.pi * t / 200)
     first = np.array([0, 200, 400])
-    cosine, sine, _ = fundamental(wave + 0.01 * t, cycle_basis(t, first, first + 200))
+    cosine, sine, _ = _fundamental(wave + 0.01 * t, _cycle_basis(t, first, first + 200))
     drift = drift_of(wave + 0.01 * t, first, first + 200)
     assert drift == pytest.approx(2)
     assert sine == pytest.approx(2 - 2 / np.pi, abs=1e-3)
@@ -307,13 +307,13 @@ def test_a_frequency_is_uncertain_by_the_sampling_of_both_its_ends():
 
 def test_a_cycle_without_time_is_refused():
     with pytest.raises(DataError, match="cycle 1 takes no time"):
-        cycle_basis(np.zeros(5), np.array([0]), np.array([4]))
+        _cycle_basis(np.zeros(5), np.array([0]), np.array([4]))
 
 
 @pytest.mark.parametrize("time", [[0.0, 1.0, 2.0], [0.0, 1e-12, 2e-12, 3e-12, 1.0]])
 def test_a_cycle_whose_samples_have_too_few_phases_is_refused(time):
     with pytest.raises(DataError, match="samples of cycle 1 stand too close in time"):
-        cycle_basis(np.array(time), np.array([0]), np.array([len(time) - 1]))
+        _cycle_basis(np.array(time), np.array([0]), np.array([len(time) - 1]))
 
 
 def test_a_cycle_beside_a_jump_of_tension_has_no_slope_of_another_sign(triangle):
@@ -406,6 +406,6 @@ def test_scale_and_shift_of_tension(scale, shift, loss):
 
 def test_time_reversed_turns_the_sign_of_the_energy():
     _, tension, strain = ellipse(50, 1)
-    ahead, _ = loop_energy(tension, strain, np.array([0]), np.array([50]))
-    back, _ = loop_energy(tension[::-1], strain[::-1], np.array([0]), np.array([50]))
+    ahead, _ = _loop_energy(tension, strain, np.array([0]), np.array([50]))
+    back, _ = _loop_energy(tension[::-1], strain[::-1], np.array([0]), np.array([50]))
     assert back == pytest.approx(-ahead)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.cycles.reversals import _typical_range, find_reversals, first_pass
+from reduction.stages.cycles.cycle_search import _find_reversals, _first_pass, _typical_range
 
 
 def sequential(values, band):
@@ -50,7 +50,7 @@ def test_reversals_are_those_of_the_sequential_definition(kind):
         elif kind == "decaying":
             values = np.cumsum(values) + np.linspace(2, 0, n_samples) * (-1) ** np.arange(n_samples)
         band = generator.uniform(0.1, 4)
-        assert find_reversals(values, band=band).tolist() == sequential(values, band)
+        assert _find_reversals(values, band=band).tolist() == sequential(values, band)
 
 
 def test_levels_are_those_of_the_sequential_definition_where_values_repeat():
@@ -58,25 +58,25 @@ def test_levels_are_those_of_the_sequential_definition_where_values_repeat():
     for _ in range(500):
         values = generator.integers(0, 6, generator.integers(2, 40)).astype(float)
         band = float(generator.integers(1, 5))
-        found = find_reversals(values, band=band)
+        found = _find_reversals(values, band=band)
         assert values[found].tolist() == values[sequential(values, band)].tolist()
 
 
 def test_3000_noisy_cycles_have_exactly_6000_half_cycles():
     values = triangle(3000, 400, noise=0.002)
-    reversals = find_reversals(values, band=0.1)
+    reversals = _find_reversals(values, band=0.1)
     assert reversals.size - 1 == 6000
-    assert first_pass(values)[0].size - 1 == 6000
+    assert _first_pass(values)[0].size - 1 == 6000
 
 
 @pytest.mark.parametrize("band", [0.02, 0.1, 0.5, 0.9])
 def test_the_count_does_not_depend_on_the_band_between_noise_and_stroke(band):
-    assert find_reversals(triangle(50, 400, noise=0.002), band=band).size - 1 == 100
+    assert _find_reversals(triangle(50, 400, noise=0.002), band=band).size - 1 == 100
 
 
 def test_reversals_alternate_and_are_extremes_of_what_lies_between():
     values = triangle(20, 100, noise=0.02)
-    reversals = find_reversals(values, band=0.3)
+    reversals = _find_reversals(values, band=0.3)
     steps = np.diff(values[reversals])
     assert (steps[1:] * steps[:-1] < 0).all()
     assert (np.abs(steps) >= 0.3).all()
@@ -86,43 +86,45 @@ def test_reversals_alternate_and_are_extremes_of_what_lies_between():
 
 
 def test_a_plateau_counts_where_it_begins():
-    assert find_reversals([0, 1, 2, 2, 2, 1, 0, 0, 1], band=0.5).tolist() == [0, 2, 6, 8]
+    assert _find_reversals([0, 1, 2, 2, 2, 1, 0, 0, 1], band=0.5).tolist() == [0, 2, 6, 8]
 
 
 def test_missing_samples_are_passed_over():
     values = triangle(10, 100)
-    whole = find_reversals(values, band=0.1)
+    whole = _find_reversals(values, band=0.1)
     values[120:130] = values[333] = np.nan
-    assert find_reversals(values, band=0.1).tolist() == whole.tolist()
+    assert _find_reversals(values, band=0.1).tolist() == whole.tolist()
 
 
 @pytest.mark.parametrize("values", [[], [1.0], [1.0, 1.0, 1.0], [0.0, 0.4, 0.1], [np.nan] * 5])
 def test_a_signal_that_stays_within_the_band_has_no_reversal(values):
-    assert find_reversals(values, band=0.5).size == 0
+    assert _find_reversals(values, band=0.5).size == 0
 
 
 def test_swings_that_grow_steadily_take_few_passes():
     # one pair would go per pass: 100,000 passes of 100,000 points, were groups not merged
     n_samples = 200_000
     growing = np.linspace(0, 0.9, n_samples) * (-1) ** np.arange(n_samples)
-    assert find_reversals(growing, band=1.9).size == 0
-    assert find_reversals(growing[::-1], band=1.9).size == 0
+    assert _find_reversals(growing, band=1.9).size == 0
+    assert _find_reversals(growing[::-1], band=1.9).size == 0
 
 
 def test_blocks_of_the_scan_join_without_a_seam():
     values = np.repeat(triangle(2, 100_000), 2)  # plateaus across the seams, too
-    assert find_reversals(values, band=0.5).tolist() == find_reversals(values[:], band=0.1).tolist()
-    assert find_reversals(values, band=0.5).size == 5
+    assert (
+        _find_reversals(values, band=0.5).tolist() == _find_reversals(values[:], band=0.1).tolist()
+    )
+    assert _find_reversals(values, band=0.5).size == 5
 
 
 def test_a_band_that_is_not_positive_is_refused():
     with pytest.raises(DataError, match="values of band are not positive.*found 0; needed numbers"):
-        find_reversals([0, 1], band=0.0)
+        _find_reversals([0, 1], band=0.0)
 
 
 def test_a_table_is_no_series():
     with pytest.raises(DataError, match=r"values are not a series; found shape \(2, 2\)"):
-        find_reversals([[0, 1], [1, 0]], band=0.5)
+        _find_reversals([[0, 1], [1, 0]], band=0.5)
 
 
 def test_typical_range_is_that_of_the_cycles_and_not_of_the_way_to_them():
@@ -132,27 +134,27 @@ def test_typical_range_is_that_of_the_cycles_and_not_of_the_way_to_them():
 
 
 def test_band_is_a_tenth_of_the_stroke_above_small_noise_and_the_noise_above_large():
-    assert first_pass(triangle(30, 400, noise=0.001))[1] == pytest.approx(0.1, rel=0.02)
+    assert _first_pass(triangle(30, 400, noise=0.001))[1] == pytest.approx(0.1, rel=0.02)
     noisy = triangle(30, 400, noise=0.03)
-    reversals, band = first_pass(noisy)
+    reversals, band = _first_pass(noisy)
     assert band == pytest.approx(12 * 0.03, rel=0.1)
     assert reversals.size - 1 == 60
 
 
 def test_backward_slips_do_not_lower_the_band():
     values = triangle(30, 400) + 0.05 * (np.arange(30 * 400) // 50 % 2)
-    reversals, band = first_pass(values)
+    reversals, band = _first_pass(values)
     assert reversals.size - 1 == 60
     assert band == pytest.approx(0.1, rel=0.1)
 
 
 def test_band_of_a_hold_is_its_noise():
     level = np.random.default_rng(0).normal(5, 0.01, 5000)
-    reversals, band = first_pass(level)
+    reversals, band = _first_pass(level)
     assert reversals.size == 0
     assert band == pytest.approx(0.12, rel=0.1)
 
 
 def test_a_band_needs_samples():
     with pytest.raises(DataError, match="too few samples to tell noise from movement"):
-        first_pass([1.0, 2.0, np.nan])
+        _first_pass([1.0, 2.0, np.nan])

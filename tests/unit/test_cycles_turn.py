@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from reduction.stages.cycles.loop_energy import _cosine_and_sine
+from reduction.stages.cycles.loops import _cosine_and_sine
 
 
 def test_it_is_cosine_and_sine_over_several_turns_either_way() -> None:

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from reduction.lines.composite import PieceSource, compose
-from reduction.lines.curve_pieces import CompositeRule, CurvePiece
+from reduction.lines.composite import CompositeRule, CurvePiece, PieceSource, compose
 from reduction.lines.export_sources import composite_table, line_from_composite, ranges_of
 
 

@@ -11,8 +11,7 @@ from predicted_hoses import dataset, predicted
 
 from reduction.archive.dataset_builder import SCHEMA_VERSION
 from reduction.archive.write import write_archive
-from reduction.lines.composite import PieceSource, _composite_curve
-from reduction.lines.curve_pieces import CurvePiece
+from reduction.lines.composite import CurvePiece, PieceSource, _composite_curve
 from reduction.lines.deck_formats import export_line
 from reduction.lines.export_line import CurveSpread
 from reduction.lines.export_sources import composite_table, line_from_archive, line_from_composite

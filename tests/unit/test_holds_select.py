@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.stages.holds import reduce_holds as selected
-from reduction.stages.holds.hold_start import find_ramp
-from reduction.stages.holds.reduce_holds import select_hold
+from reduction.stages.holds import holds as selected
+from reduction.stages.holds.holds import _find_ramp, select_hold
 from reduction.stages.standstills import Standstills
 
 TIME = np.arange(0.0, 100.0, 0.5)
@@ -119,9 +118,9 @@ def test_many_cycles_before_a_hold_are_not_taken_along(monkeypatch):
 
     def find(time, *series, band):
         lengths.append(time.size)
-        return find_ramp(time, *series, band=band)
+        return _find_ramp(time, *series, band=band)
 
-    monkeypatch.setattr(selected, "find_ramp", find)
+    monkeypatch.setattr(selected, "_find_ramp", find)
     one = select(time=number / 10, position=position, tension=100 * position, stand=stand)
     assert one.ramp.end_time == 19_900.0
     assert lengths == [1 << 16]

@@ -7,12 +7,11 @@ import pytest
 
 from reduction.record.errors import DataError
 from reduction.record.settings import HoldSettings
-from reduction.stages.holds.hold_start import Ramp
-from reduction.stages.holds.reduce_holds import Hold, _hold_ends, _reasons_against
+from reduction.stages.holds.holds import Hold, _hold_ends, _Ramp, _reasons_against
 
 TIME = np.arange(0.0, 180.0, 0.1)
 RELAXING = 350 + 50 * np.exp(-TIME / 40)
-RAMP = Ramp(start_time=-5.0, end_time=0.0, centre_time=-2.5, duration=5.0, stiffness=100.0)
+RAMP = _Ramp(start_time=-5.0, end_time=0.0, centre_time=-2.5, duration=5.0, stiffness=100.0)
 
 
 def hold(tension=RELAXING, *, time=TIME, position=None, ramp=RAMP, noise=0.3):

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from reduction.lines.composite import _composite_curve
-from reduction.lines.curve_pieces import CompositeRule, CurvePiece
+from reduction.lines.composite import CompositeRule, CurvePiece, _composite_curve
 from reduction.record.errors import DataError, SettingsError
 
 

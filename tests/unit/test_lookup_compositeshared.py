@@ -7,8 +7,7 @@ import pytest
 from assemblies import DRIVEN
 
 from reduction.lines.assembly import SeriesPart, _assemble, _equal_tethers, _Tether
-from reduction.lines.composite import _composite_curve
-from reduction.lines.curve_pieces import CurvePiece
+from reduction.lines.composite import CurvePiece, _composite_curve
 from reduction.record.contributions import Component
 from reduction.stages.strain.strain_model import StrainModel
 

@@ -4,8 +4,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.lines.composite import _composite_curve
-from reduction.lines.curve_pieces import CurvePiece, piece_of_steps, pieces_of_branches
+from reduction.lines.composite import (
+    CurvePiece,
+    _composite_curve,
+    piece_of_steps,
+    pieces_of_branches,
+)
 from reduction.record.contributions import Component, Contributions, InstrumentErrors
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import StepReadings

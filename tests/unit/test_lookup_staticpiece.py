@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.lines.curve_pieces import CurvePiece, mean_piece, piece_of_pull
+from reduction.lines.composite import CurvePiece, mean_piece, piece_of_pull
 from reduction.record.contributions import Component, Contributions
 from reduction.record.errors import DataError
 

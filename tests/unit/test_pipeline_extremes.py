@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from reduction.pipeline.located_test import Located
-from reduction.pipeline.test_extremes import (
+from reduction.pipeline.reduce_test import (
     Extremes,
     _Samples,
     extremes_of_readings,

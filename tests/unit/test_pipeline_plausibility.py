@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reduction.pipeline.plausibility import plausibility_notes
+from reduction.pipeline.reduce_test import _plausibility_notes
 from reduction.record.settings import ModulusSettings
 from reduction.stages.cycles.loops import close_loops
 from reduction.stages.moduli.tangent_modulus import tangent_curves
@@ -27,7 +27,7 @@ def notes_of(triangle):
         curves = tangent_curves(
             stretch, load, area=AREA, cycles=one, settings=ModulusSettings(), break_in_cycles=0
         )
-        return tuple(map(str, plausibility_notes(
+        return tuple(map(str, _plausibility_notes(
             stretch, specimens=("new",), slack_tension=20.0, waveform=waveform, cycles=one,
             loops=close_loops(
                 0.1 * np.arange(strain.size), load, stretch, one, waveform=waveform
@@ -93,7 +93,7 @@ def test_little_at_a_constant_rate_asks_for_the_waveform(notes_of, share, n_note
 
 
 def test_a_test_without_cycles_is_judged_by_its_strain_alone():
-    notes = tuple(map(str, plausibility_notes(
+    notes = tuple(map(str, _plausibility_notes(
         np.array([[0.0, np.nan, 12.0], [0.0, 1.0, 2.0]]), specimens=("new", "used"),
         slack_tension=20.0, waveform="triangular", cycles=None, loops=None, curves=None,
     )))  # fmt: skip

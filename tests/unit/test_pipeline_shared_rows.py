@@ -9,8 +9,12 @@ from reduction.record.contributions import Component, Contributions, InstrumentE
 from reduction.stages.moduli.modulus_product import Ratio
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.uncertainty.propagation import with_shared_interval
-from reduction.uncertainty.shared_contributions import _of_slips, with_shared_steps
-from reduction.uncertainty.shared_curves import of_ratios, with_shared_ratios
+from reduction.uncertainty.shared_contributions import (
+    _of_ratios,
+    _of_slips,
+    with_shared_ratios,
+    with_shared_steps,
+)
 
 MODEL = StrainModel("new", "gauge-length", {"reference_position": 2.0, "gauge_length": 2.0})
 CELL, NEW, USED = (
@@ -38,7 +42,7 @@ def test_one_load_cell_cancels_in_a_ratio_and_two_diameters_add(rich_test):
     test = replace(
         rich_test, curves=moduli, ratios=(ratio(), ratio("new, cycles 9", "new, cycles 1"))
     )
-    (shared,) = of_ratios(test, found)
+    (shared,) = _of_ratios(test, found)
     of_ratio = shared.values["modulus_ratio"]
     assert of_ratio[:, 0, 0, 0] == pytest.approx([0.0, -0.022, 0.022])
     # two sets of cycles of one specimen share all of it
@@ -62,7 +66,7 @@ def test_few_cycles_widen_the_interval_less_where_instruments_dominate():
 def test_ratios_of_a_test_without_shared_errors_stay_as_they_are(rich_test):
     test = replace(rich_test, contributions=None)
     assert with_shared_ratios(test) is test
-    assert of_ratios(replace(rich_test, ratios=()), Contributions(())) == []
+    assert _of_ratios(replace(rich_test, ratios=()), Contributions(())) == []
 
 
 def test_a_slip_scales_with_the_cell_and_its_length_with_the_scale_of_position(rich_test):

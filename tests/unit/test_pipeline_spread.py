@@ -1,4 +1,4 @@
-"""Unit tests of reduction.pipeline.plausibility; expected values from the derivatives by hand."""
+"""Unit tests of reduction.pipeline.reduce_test; expected values from the derivatives by hand."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -6,11 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.pipeline.plausibility import (
-    channel_contributions,
-    reading_spread,
-    readings_of,
-    with_readings,
+from reduction.pipeline.reduce_test import (
+    _channel_contributions,
+    _reading_spread,
+    _readings_of,
+    _with_readings,
 )
 from reduction.quantities.names import PHASE_VALUES
 from reduction.record.contributions import InstrumentErrors
@@ -47,7 +47,9 @@ def located():
 
 
 def contributions(errors, model=MODEL, phase=PHASE):
-    found = channel_contributions(located(), POSITION[None], [model], [ROPE], [errors], phase=phase)
+    found = _channel_contributions(
+        located(), POSITION[None], [model], [ROPE], [errors], phase=phase
+    )
     sources = [one.source for one in found.component]
     return {
         name: dict(zip(sources, rows.reshape(len(sources)), strict=True))
@@ -59,30 +61,30 @@ def test_a_layout_says_what_one_reading_is_good_to_and_the_campaign_the_rest():
     stated = InstrumentErrors(
         "rope", tension_gain=0.01, tension_offset=2.0, tension_reading=3.0, position_reading=4e-3
     )
-    (found,) = readings_of(record(of_tension=(0.5,)), [stated])
+    (found,) = _readings_of(record(of_tension=(0.5,)), [stated])
     assert (found.tension_reading, found.position_reading) == (0.5, 4e-3)
     assert (found.tension_gain, found.tension_offset) == (0.01, 2.0)
-    (found,) = readings_of(record(of_position=1e-3), [stated])
+    (found,) = _readings_of(record(of_position=1e-3), [stated])
     assert (found.tension_reading, found.position_reading) == (3.0, 1e-3)
 
 
 def test_without_a_campaign_s_word_the_layout_stands_alone():
-    (found,) = readings_of(record(of_tension=(0.5,)), ())
+    (found,) = _readings_of(record(of_tension=(0.5,)), ())
     assert (found.specimen, found.tension_reading, found.tension_gain) == ("rope", 0.5, 0.0)
 
 
 def test_the_record_says_what_one_reading_is_good_to_whoever_said_it():
-    kept = with_readings(record(), [InstrumentErrors("rope", tension_reading=3.0)])
+    kept = _with_readings(record(), [InstrumentErrors("rope", tension_reading=3.0)])
     assert kept.tension_standard_uncertainty == (3.0,)
     assert np.isnan(kept.position_standard_uncertainty)
     # a gain is no error of one reading
-    kept = with_readings(record(), [InstrumentErrors("rope", tension_gain=0.01)])
+    kept = _with_readings(record(), [InstrumentErrors("rope", tension_gain=0.01)])
     assert kept.tension_standard_uncertainty == ()
 
 
 def test_a_reading_counts_by_the_slope_of_strain_on_position():
     errors = InstrumentErrors("rope", position_reading=0.003)
-    assert reading_spread(located(), [MODEL], [errors], phase=PHASE) == pytest.approx([0.003])
+    assert _reading_spread(located(), [MODEL], [errors], phase=PHASE) == pytest.approx([0.003])
 
 
 def test_readings_of_both_channels_add_as_squares_through_the_splices():
@@ -95,7 +97,7 @@ def test_readings_of_both_channels_add_as_squares_through_the_splices():
     slope = 1.2 * 0.0012 * 0.85 * 400.0 ** (0.85 - 1) / 2.5
     errors = InstrumentErrors("tether", position_reading=0.002, tension_reading=2.0)
     expected = np.hypot(0.002 / 2.5, slope * 2.0)
-    assert reading_spread(located(), [model], [errors], phase=phase) == pytest.approx([expected])
+    assert _reading_spread(located(), [model], [errors], phase=phase) == pytest.approx([expected])
 
 
 @pytest.mark.parametrize(
@@ -106,7 +108,7 @@ def test_readings_of_both_channels_add_as_squares_through_the_splices():
     ],
 )
 def test_a_reading_of_which_nothing_is_known_is_not_exact(model, errors):
-    assert np.isnan(reading_spread(located(), [model], [errors], phase=PHASE)).all()
+    assert np.isnan(_reading_spread(located(), [model], [errors], phase=PHASE)).all()
 
 
 def test_shared_errors_of_strain_are_root_mean_squares_over_the_cycles_with_their_sign():
@@ -147,7 +149,7 @@ def test_channels_have_gain_and_zero_and_stress_the_diameter_besides():
 
 def test_nothing_stated_is_no_contribution():
     assert (
-        channel_contributions(located(), POSITION[None], [BARE], [ROPE], (), phase=PHASE).component
+        _channel_contributions(located(), POSITION[None], [BARE], [ROPE], (), phase=PHASE).component
         == ()
     )
     assert contributions(InstrumentErrors("rope"), BARE)["strain"] == {}

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.pipeline.plausibility import check_stated_errors
+from reduction.pipeline.reduce_test import check_stated_errors
 from reduction.record.contributions import InstrumentErrors
 from reduction.record.errors import SettingsError
 

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from reduction.prediction.morison import (
+from reduction.prediction.wave_load import (
     CODE_OF_HYDROLOGY,
     GREATEST_DIAMETER_TO_LENGTH,
     PUBLISHED_COEFFICIENTS,
     _drag_to_inertia,
+    _flow_regime,
     _keulegan_carpenter_number,
     _reynolds_number,
-    flow_regime,
 )
 from reduction.prediction.wave_theory import airy_wave, particle_motion, stokes_wave
 from reduction.record.errors import DataError
@@ -49,7 +49,7 @@ def test_reynolds_number_takes_the_magnitude():
 @pytest.mark.parametrize("current", [0.0, 0.4, -0.9])
 def test_greatest_velocity_is_that_of_a_fine_sweep(make, current):
     wave = make(**SEA)
-    regime = flow_regime(wave, [0.114, 0.3], current_velocity=current)
+    regime = _flow_regime(wave, [0.114, 0.3], current_velocity=current)
     sweep = particle_motion(wave, np.linspace(0.0, 3.57, 200_001)).horizontal_velocity + current
     assert regime.greatest_velocity == pytest.approx(np.max(np.abs(sweep)), rel=1e-9)
     assert regime.keulegan_carpenter_number == pytest.approx(

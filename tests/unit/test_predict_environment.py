@@ -3,8 +3,13 @@
 import numpy as np
 import pytest
 
-from reduction.prediction.morison import ImmersedSection, wave_load
-from reduction.prediction.wave_load import _anchor_force, _current_load, _wind_load
+from reduction.prediction.wave_load import (
+    ImmersedSection,
+    _anchor_force,
+    _current_load,
+    _wind_load,
+    wave_load,
+)
 from reduction.prediction.wave_theory import airy_wave
 from reduction.record.errors import DataError
 

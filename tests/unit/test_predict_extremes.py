@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from reduction.prediction.morison import (
+from reduction.prediction.wave_load import (
     ImmersedSection,
+    _find_extremes,
     _load_range,
-    find_extremes,
     immerse_hose,
     wave_load,
 )
@@ -52,7 +52,7 @@ def test_times_of_the_closed_form():
 def test_no_sample_goes_beyond_and_the_time_is_right(make, depth, current):
     wave = make(**SEA, water_depth=depth)
     setting = {"current_velocity": current, "position": 1.3}
-    extremes = find_extremes(wave, HOSE, **setting)
+    extremes = _find_extremes(wave, HOSE, **setting)
     sweep = wave_load(wave, HOSE, np.linspace(0.0, 3.57, 20_001), **setting)
     for name in NAMES:
         found, series = getattr(extremes, name), getattr(sweep, name)
@@ -71,7 +71,7 @@ def test_no_sample_goes_beyond_and_the_time_is_right(make, depth, current):
 
 def test_the_load_is_flat_where_it_is_extreme():
     wave = stokes_wave(**SEA, water_depth=3.0)
-    extremes = find_extremes(wave, HOSE)
+    extremes = _find_extremes(wave, HOSE)
     step = 1e-5
     for name in NAMES:
         found = getattr(extremes, name)
@@ -89,7 +89,7 @@ def test_many_hoses_at_once():
         content_density=[0.0, 400.0, 800.0], water_density=1025.0,
     )  # fmt: skip
     wave = stokes_wave(**SEA, water_depth=4.0)
-    many = find_extremes(wave, hoses, current_velocity=0.2)
+    many = _find_extremes(wave, hoses, current_velocity=0.2)
     assert many.vertical.maximum.shape == (2, 3)
     for place in np.ndindex(2, 3):
         one = ImmersedSection(
@@ -97,7 +97,7 @@ def test_many_hoses_at_once():
             hoses.submerged_section_area[place],
             hoses.immersion_depth[place],
         )
-        alone = find_extremes(wave, one, current_velocity=0.2)
+        alone = _find_extremes(wave, one, current_velocity=0.2)
         for name in NAMES:
             assert getattr(many, name).maximum[place] == pytest.approx(
                 float(getattr(alone, name).maximum), rel=1e-12
@@ -107,8 +107,8 @@ def test_many_hoses_at_once():
 def test_numbers_that_are_none_are_refused():
     wave = airy_wave(**SEA, water_depth=3.0)
     with pytest.raises(DataError, match="current_velocity"):
-        find_extremes(wave, HOSE, current_velocity=np.nan)
+        _find_extremes(wave, HOSE, current_velocity=np.nan)
     with pytest.raises(DataError, match="position"):
-        find_extremes(wave, HOSE, position=np.inf)
+        _find_extremes(wave, HOSE, position=np.inf)
     with pytest.raises(DataError, match="drag"):
         linear_range(np.nan, 1.0)

@@ -5,8 +5,8 @@ from decimal import Decimal, localcontext
 import numpy as np
 import pytest
 
-from reduction.prediction import morison as immersion
-from reduction.prediction.morison import ImmersedSection, _immersion_depth_of, immerse_hose
+from reduction.prediction import wave_load as immersion
+from reduction.prediction.wave_load import ImmersedSection, _immersion_depth_of, immerse_hose
 from reduction.record.errors import DataError, FitError
 
 HOSE = {

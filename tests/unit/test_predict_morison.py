@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.prediction.morison import ImmersedSection, immerse_hose, load_factors, wave_load
+from reduction.prediction.wave_load import ImmersedSection, immerse_hose, load_factors, wave_load
 from reduction.prediction.wave_theory import particle_motion, stokes_wave
 from reduction.record.errors import DataError
 

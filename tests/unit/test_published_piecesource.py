@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from reduction.lines.composite import compose
-from reduction.lines.curve_pieces import CompositeRule
+from reduction.lines.composite import CompositeRule, compose
 from reduction.lines.published_source import published_piece_sources
 
 TABLE = Path(__file__).parents[1] / "golden" / "whoi_2005_10_table_6.csv"

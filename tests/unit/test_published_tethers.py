@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.published.published_tethers import (
+from reduction.published.published_lines import (
     _name_of_segment,
     published_static_test,
     published_tethers,

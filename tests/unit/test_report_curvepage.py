@@ -7,10 +7,14 @@ import pytest
 from assemblies import DRIVEN
 
 from reduction.lines.assembly import DeployedLine, SeriesPart, WorkingLevel, deploy
-from reduction.lines.composite import PieceSource, compose
-from reduction.lines.curve_pieces import CompositeRule, CurvePiece
-from reduction.report.figures.curve_figures import draw_assembly, draw_composite, draw_stiffness
-from reduction.report.single_pages import write_assembly_page, write_composite_page
+from reduction.lines.composite import CompositeRule, CurvePiece, PieceSource, compose
+from reduction.report.single_pages import (
+    _draw_assembly,
+    _draw_composite,
+    _draw_stiffness,
+    write_assembly_page,
+    write_composite_page,
+)
 
 
 def piece(name, low, high, kind="cyclic"):
@@ -44,7 +48,7 @@ def finite(trace):
 
 
 def test_the_composite_is_drawn_over_the_pieces_that_it_is_made_of():
-    figure = draw_composite(SOURCE, CURVE, "si")
+    figure = _draw_composite(SOURCE, CURVE, "si")
     by_name = {trace["name"]: trace for trace in figure.data}
     assert {"T-1, cyclic", "T-2, cyclic", "composite", "gap"} < by_name.keys()
     assert not any("static" in name for name in by_name)  # not named by the rule
@@ -59,7 +63,7 @@ def test_the_composite_is_drawn_over_the_pieces_that_it_is_made_of():
 
 
 def test_an_assembly_is_drawn_with_its_cycles_in_the_units_of_the_reader():
-    figure = draw_assembly(deployed(), "us")
+    figure = _draw_assembly(deployed(), "us")
     point = next(trace for trace in figure.data if trace["name"] == "working point 1")
     mean = 3 * 400 * 0.8
     assert point["y"] == pytest.approx(
@@ -71,7 +75,7 @@ def test_an_assembly_is_drawn_with_its_cycles_in_the_units_of_the_reader():
     # up to 50 % of strain, and between the windows
     assert 0 < finite(dotted).min() + 1 < 3 * 400 * 0.5
     assert finite(dotted).size + finite(tested).size == len(tested["y"])
-    stiffness = draw_stiffness(deployed(), "si")
+    stiffness = _draw_stiffness(deployed(), "si")
     assert finite(stiffness.data[0]).min() > 0
 
 

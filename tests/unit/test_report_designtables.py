@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.report.test_tables import design_tables
+from reduction.report.test_section import design_tables
 from reduction.report.test_view import TestView
 from reduction.report.text_style import NOT_GIVEN
 

@@ -12,17 +12,19 @@ from experiments import screening_experiment, surface_experiment
 from reduction.experiments.response_surfaces import fit_surfaces
 from reduction.experiments.surface_points import evaluate_surfaces
 from reduction.report.campaign_sections import _make_experiment_section
-from reduction.report.figures.stiffness_figures import draw_derived, draw_forms, draw_single_time
-from reduction.report.figures.surface_figures import (
+from reduction.report.experiment_report import (
+    _term_words,
     draw_checks,
     draw_contours,
     draw_cube,
+    draw_derived,
     draw_effects,
+    draw_forms,
     draw_pareto,
+    draw_single_time,
     draw_surface,
-    term_words,
+    make_planes,
 )
-from reduction.report.surface_grid import make_planes
 from reduction.stages.line.line_model import check_single_time
 
 EVERYTHING = (
@@ -152,7 +154,7 @@ def test_terms_stand_by_size_with_the_critical_t_of_five_degrees_of_freedom(lawf
     in_order = [size[y] for y in sorted(size)]
     assert in_order == sorted(in_order)
     assert figure.layout["yaxis"]["ticktext"][-1] == "mean tension B6"
-    assert term_words(np.array([1, 0, 1]), lawful.factors) == "frequency by tension amplitude"
+    assert _term_words(np.array([1, 0, 1]), lawful.factors) == "frequency by tension amplitude"
 
 
 def test_residuals_stand_in_the_order_in_which_the_tests_were_made(lawful):

@@ -8,17 +8,17 @@ import pytest
 from experiment_views import CODED, law_experiment, view_of
 from experiments import screening_experiment, surface_experiment
 
-from reduction.report.experiment_tables import (
+from reduction.report.experiment_report import (
     block_words,
+    confounding_words,
     experiment_findings,
     form_words,
+    negative_inside,
     negative_words,
     quality_words,
     single_time_words,
     stationary_words,
 )
-from reduction.report.figures.surface_figures import confounding_words
-from reduction.report.surface_grid import negative_inside
 from reduction.stages.line.line_model import check_single_time
 
 

@@ -10,8 +10,9 @@ from reduction.experiments.outcomes import Outcome
 from reduction.record.measurement import Origin, Source, Step
 from reduction.report.campaign_page import write_report
 from reduction.report.campaign_sections import _make_outcome_section
-from reduction.report.figures.outcome_figures import draw_exposure, draw_lives
 from reduction.report.outcome_tables import (
+    draw_exposure,
+    draw_lives,
     exposure_table,
     fatigue_table,
     load_life_table,

@@ -14,14 +14,14 @@ from reduction.archive.surfaces_dataset import surfaces_to_dataset
 from reduction.archive.write import write_archive
 from reduction.report.campaign_page import write_report
 from reduction.report.campaign_summary import SummaryFinding, find_faults, test_table
-from reduction.report.experiment_tables import form_quality_table, form_table, line_of_runs_table
+from reduction.report.experiment_report import form_quality_table, form_table, line_of_runs_table
 from reduction.report.figures.hold_figures import draw_pull
-from reduction.report.test_tables import (
-    line_table,
-    pull_share_table,
-    pull_table,
+from reduction.report.test_section import (
+    _line_table,
+    _pull_share_table,
+    _pull_table,
+    _summary_table,
     segment_table,
-    summary_table,
 )
 from reduction.report.test_view import TestView
 
@@ -48,7 +48,7 @@ def test_a_slow_pull_has_its_curve_its_slope_and_its_conditions(view):
     for figure in (curve, slope):
         go.Figure({"data": figure.data, "layout": figure.layout})
     assert any("range of use" in trace["name"] for trace in curve.data)
-    rows = texts(pull_table(view))
+    rows = texts(_pull_table(view))
     assert rows["waiting time before the pull [h]"] == ["24.00"]
     assert rows["tension at which the length was read [N]"] == ["5.000"]
     # the pull is strain over tension of 1 in 40 000, over 0 to 2000 N
@@ -61,13 +61,13 @@ def test_a_slow_pull_has_its_curve_its_slope_and_its_conditions(view):
 
 
 def test_a_pull_shown_in_pounds_has_coefficients_of_pounds(view):
-    rows = texts(pull_table(replace(view, units="us")))
+    rows = texts(_pull_table(replace(view, units="us")))
     slope = float(rows["strain, coefficient of T [lbf⁻¹]"][0].split()[0])
     assert slope == pytest.approx(4.4482216152605 / 4e4, rel=0.02)
 
 
 def test_strain_stands_at_round_shares_of_the_break_strength_within_the_range(view):
-    table = pull_share_table(view)
+    table = _pull_share_table(view)
     # of 3558 N the range ends at 2000 N, 56 %
     assert [row[0].text for row in table.rows] == ["5", "10", "15", "20", "25", "30", "40", "50"]
     at = {row[0].text: 100 * float(row[1].value) for row in table.rows}
@@ -75,7 +75,7 @@ def test_strain_stands_at_round_shares_of_the_break_strength_within_the_range(vi
 
 
 def test_the_line_of_a_test_has_each_parameter_and_why_one_is_refused(view):
-    table = line_table(view)
+    table = _line_table(view)
     assert table.columns[-1] == "refused because"
     assert "the storage spring constant does not exceed the quasi-static one" in [
         row[-1].text for row in table.rows
@@ -83,8 +83,8 @@ def test_the_line_of_a_test_has_each_parameter_and_why_one_is_refused(view):
     given = view.data.assign(
         test_line_refusal=("specimen", np.zeros(len(view.specimens), dtype=np.int8))
     )
-    assert "refused because" not in line_table(replace(view, data=given)).columns
-    assert line_table(replace(view, data=view.data.drop_vars("test_relaxation_time"))) is None
+    assert "refused because" not in _line_table(replace(view, data=given)).columns
+    assert _line_table(replace(view, data=view.data.drop_vars("test_relaxation_time"))) is None
 
 
 def test_the_line_of_runs_has_k1_and_tau_from_surfaces_beside(view):
@@ -131,7 +131,7 @@ def test_ropes_are_listed_by_the_tension_of_their_cycles(view):
 def test_a_table_of_means_without_a_mean_is_not_shown(view):
     data = view.data[["slack_strain_at_unloading", "specimen"]].copy()
     data["slack_strain_at_unloading"][:] = np.nan
-    assert summary_table(replace(view, data=data)) is None
+    assert _summary_table(replace(view, data=data)) is None
 
 
 def test_what_is_no_tests_fault_stands_among_those_as_serious():

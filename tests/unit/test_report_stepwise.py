@@ -10,7 +10,7 @@ from reduction.archive.test_dataset import to_dataset
 from reduction.record.contributions import InstrumentErrors
 from reduction.report.answer_tables import answer_budgets, budget_table
 from reduction.report.figures.modulus_figures import draw_steps
-from reduction.report.test_tables import interval_table
+from reduction.report.test_section import interval_table
 from reduction.report.test_view import NOTHING_STATED, TestView
 from reduction.stages.moduli.stepwise_test import StepReadings, reduce_stepwise
 from reduction.uncertainty.shared_contributions import with_shared_steps

@@ -5,12 +5,12 @@ import pytest
 from experiment_views import law_experiment, view_of
 from experiments import surface_experiment
 
-from reduction.report.surface_grid import (
+from reduction.report.experiment_report import (
     HELD,
-    extremes_in_box,
+    _extremes_in_box,
+    _runs_on_plane,
     make_planes,
     negative_inside,
-    runs_on_plane,
 )
 
 
@@ -43,11 +43,11 @@ def test_corners_of_the_cube_are_thin_and_no_point_of_the_middle_plane_is(view):
 
 def test_four_runs_stand_on_each_outer_plane_and_seven_on_the_middle_one(view):
     planes = make_planes(view, view.surfaces)
-    assert [int(runs_on_plane(view, planes, level).sum()) for level in HELD] == [4, 7, 4]
+    assert [int(_runs_on_plane(view, planes, level).sum()) for level in HELD] == [4, 7, 4]
 
 
 def test_the_extremes_of_a_surface_are_those_of_the_law_within_the_levels(view):
-    least, greatest, place = extremes_in_box(view.surfaces)
+    least, greatest, place = _extremes_in_box(view.surfaces)
     # the slope in the mean tension, 200 + 80 x, has no zero between -1 and 1
     assert least[0] == pytest.approx(law(-1, -1, 1), rel=1e-6)
     assert greatest[0] == pytest.approx(law(1, 1, -1), rel=1e-6)

@@ -11,18 +11,18 @@ from experiment_views import law_experiment, view_of
 from scipy import stats
 
 from reduction.report.answer_tables import answer_budgets, budget_sentences, budget_table
-from reduction.report.experiment_tables import answer_table, surface_coefficient_table
+from reduction.report.experiment_report import (
+    _expanded_of_coefficients,
+    _expanded_of_runs,
+    _interval_of_surfaces,
+    _shared_by_runs,
+    answer_table,
+    surface_coefficient_table,
+)
 from reduction.report.figures.budget_figures import draw_budgets
 from reduction.report.figures.cycle_figures import draw_amplitude_pairs
 from reduction.report.figures.modulus_figures import draw_moduli
-from reduction.report.surface_grid import (
-    expanded_of_coefficients,
-    expanded_of_runs,
-    interval_of_surfaces,
-    shared_by_runs,
-)
-from reduction.report.test_section import make_section
-from reduction.report.test_tables import line_table, segment_table, summary_table
+from reduction.report.test_section import _line_table, _summary_table, make_section, segment_table
 from reduction.report.test_view import (
     NORMAL,
     NOTHING_STATED,
@@ -141,7 +141,7 @@ def test_the_words_under_a_table_are_true_of_what_is_stated_and_of_what_reaches_
 
 
 def test_means_say_which_of_them_hold_scatter_alone():
-    table = summary_table(make_view())
+    table = _summary_table(make_view())
     assert table.remarks[1] == "Scatter alone: peak tension per decade of cycles."
     # a line over ten cycles: t of eight degrees of freedom is 2.306
     assert texts(table)[1] == ["peak tension per decade of cycles [N]", "7.0 ± 2.3"]
@@ -175,7 +175,7 @@ def test_where_linear_propagation_bends_the_interval_by_monte_carlo_stands_inste
         "test_line_uncertainty_method": (S, [2]),
     })  # fmt: skip
     drawn = TestView("test-0", data)
-    table = line_table(drawn)
+    table = _line_table(drawn)
     place = next(k for k, text in enumerate(table.columns) if text.startswith("tau"))
     assert texts(table)[0][place] == "4.8 (3.8 to 6.5)"
     assert any("Monte Carlo" in text for text in table.remarks)
@@ -185,8 +185,8 @@ def test_where_linear_propagation_bends_the_interval_by_monte_carlo_stands_inste
     assert texts(budget)[-1][1:4] == ["4.8 (3.8 to 6.5)", "s", NOT_GIVEN]
     assert any("Shares are of first order" in text for text in budget.remarks)
     linear = TestView("test-0", data.assign(test_line_uncertainty_method=(S, [1])))
-    assert "±" in texts(line_table(linear))[0][place]
-    assert not any("Monte Carlo" in text for text in line_table(linear).remarks)
+    assert "±" in texts(_line_table(linear))[0][place]
+    assert not any("Monte Carlo" in text for text in _line_table(linear).remarks)
 
 
 def test_bars_are_stacked_in_one_order_with_one_look_a_source_and_can_be_heard():
@@ -322,7 +322,7 @@ def test_a_coefficient_holds_what_the_runs_share_and_shows_it_beside():
     rows = np.zeros((1, 2, n_terms))
     rows[0, 0, 0], rows[0, 1, 0] = 3.0, -4.0
     view = shared_view(plain, {name: rows})
-    spread = expanded_of_coefficients(view, surfaces, 0)
+    spread = _expanded_of_coefficients(view, surfaces, 0)
     freedom = float(surfaces.term_degrees_of_freedom[0, 0])
     total = np.hypot(random[0], 5.0)
     k = stats.t.ppf(0.975, freedom * (total / random[0]) ** 4)
@@ -330,11 +330,11 @@ def test_a_coefficient_holds_what_the_runs_share_and_shows_it_beside():
     assert spread.shared[0] == pytest.approx(k * 5.0)
     assert spread.shared[1:].max() == 0
     assert spread.all.half[1] == pytest.approx(stats.t.ppf(0.975, freedom) * random[1])
-    assert shared_by_runs(view, surfaces) == ["tension_gain", "lag"]
+    assert _shared_by_runs(view, surfaces) == ["tension_gain", "lag"]
     table = surface_coefficient_table(view, surfaces, 0)
     assert table.columns[3] == "shared part of ±, coded [N]"
     assert any("tension gain, lag" in text for text in table.remarks)
-    low, high = interval_of_surfaces(view, surfaces, np.zeros((1, 3)))
+    low, high = _interval_of_surfaces(view, surfaces, np.zeros((1, 3)))
     assert (high - low)[0, 0] / 2 == pytest.approx(k * total, rel=1e-6)
     answer = answer_table(view, surfaces)
     ends = [float(end) for end in answer.rows[0][2].value.split()]
@@ -347,7 +347,7 @@ def test_surfaces_that_know_nothing_shared_have_no_such_column():
     bare = shared_view(view, {})
     table = surface_coefficient_table(bare, bare.surfaces, 0)
     assert not any("shared" in name for name in table.columns)
-    low, high = interval_of_surfaces(bare, bare.surfaces, np.zeros((1, 3)))
+    low, high = _interval_of_surfaces(bare, bare.surfaces, np.zeros((1, 3)))
     k = stats.t.ppf(0.975, bare.surfaces.term_degrees_of_freedom[0].min())
     random = bare.surfaces.coefficient_standard_uncertainty[0, 0]
     assert (high - low)[0, 0] / 2 == pytest.approx(k * random, rel=1e-6)
@@ -377,13 +377,13 @@ def test_a_run_that_is_a_test_has_the_uncertainty_of_its_archive():
     names = view.texts("run_name")
     specimen = view.texts("run_specimen")[0]
     own = make_view().data.assign_coords({S: [specimen]})
-    found = expanded_of_runs(view, "apparent_spring_constant", {names[0]: TestView("k", own)})
+    found = _expanded_of_runs(view, "apparent_spring_constant", {names[0]: TestView("k", own)})
     # 3 of scatter and 4 of the gain are 5
     assert found.half[0] == pytest.approx(5 * stats.t.ppf(0.975, 9 * (5 / 3) ** 4))
     given = view.per_run("apparent_spring_constant_measured_standard_uncertainty")
     assert found.half[1:] == pytest.approx(NORMAL * given[1:], nan_ok=True)
     elsewhere = SimpleNamespace(array=lambda _: np.array([1.0]), specimens=("another",))
-    same = expanded_of_runs(view, "apparent_spring_constant", {names[0]: elsewhere})
+    same = _expanded_of_runs(view, "apparent_spring_constant", {names[0]: elsewhere})
     assert same.half[0] == pytest.approx(NORMAL * given[0], nan_ok=True)
 
 

@@ -6,7 +6,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from reduction.prediction.morison import wave_load
+from reduction.prediction.wave_load import wave_load
 from reduction.prediction.zhang_example import printed_airy_wave, printed_section
 from reduction.published.printed_cells import cells_of, number_of
 from reduction.published.zhang_2015 import _table_answers

@@ -1,11 +1,11 @@
-"""Unit tests of reduction.stages.strain.splice_marks; expected values from printed quantiles and from draws."""
+"""Unit tests of reduction.stages.strain.strain_fit; expected values from printed quantiles and from draws."""
 
 import numpy as np
 import pytest
 from scipy import stats
 
 from reduction.record.errors import DataError
-from reduction.stages.strain.splice_marks import LEVEL, _row_scatter
+from reduction.stages.strain.strain_fit import LEVEL, _row_scatter
 
 LINE = np.stack([np.ones(3), np.arange(3.0)])
 AWAY = np.array([1.0, -2.0, 1.0]) / np.sqrt(6)  # what no line through three rows can follow

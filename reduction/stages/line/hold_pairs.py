@@ -33,12 +33,13 @@ from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 from reduction.record.notes import Note, note
 from reduction.record.samples import empty_like, finite_extremes, sample_blocks, select_samples
-from reduction.stages.holds.reduce_holds import Hold, select_hold
-from reduction.stages.holds.relaxation import (
+from reduction.stages.holds.holds import (
     RAMP_TIMES_LEFT_OUT,
+    Hold,
     HoldResult,
     end_mean,
     logarithmic_blocks,
+    select_hold,
 )
 from reduction.stages.line.line_product import one_a_specimen
 from reduction.stages.moduli.least_squares import lag_one_inflation
@@ -216,7 +217,7 @@ def creep_of_hold(hold: HoldResult, *, rated_break_strength: float = float("nan"
     Parameters
     ----------
     hold : HoldResult
-        Of kind ``creep``, from `reduction.stages.holds.reduce_holds`.
+        Of kind ``creep``, from `reduction.stages.holds.holds`.
     rated_break_strength : float, optional
         NaN where not stated. [N]
 

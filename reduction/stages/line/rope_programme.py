@@ -35,7 +35,7 @@ from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 from reduction.record.notes import Note, note
 from reduction.stages.cycles.cycle_product import Loops
-from reduction.stages.cycles.loop_energy import reading_noise
+from reduction.stages.cycles.loops import reading_noise
 from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair
 from reduction.stages.line.line_product import mean_of_rows, one_a_specimen
 from reduction.stages.moduli.least_squares import lag_one_inflation

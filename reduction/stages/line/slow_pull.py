@@ -54,7 +54,7 @@ from reduction.record.errors import DataError, FitError
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
 from reduction.stages.cycles.cycle_product import Loops
-from reduction.stages.cycles.loop_energy import reading_noise
+from reduction.stages.cycles.loops import reading_noise
 from reduction.stages.line.line_product import SlowPull
 from reduction.stages.moduli.least_squares import lag_one_inflation
 

@@ -39,8 +39,7 @@ from reduction.record.measurement import Floats
 from reduction.record.notes import note
 from reduction.record.samples import take_samples
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.cycles.loop_energy import reading_noise
-from reduction.stages.cycles.loops import slope_readings
+from reduction.stages.cycles.loops import reading_noise, slope_readings
 from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.moduli.local_regression import curve_at
 from reduction.stages.moduli.modulus_product import (

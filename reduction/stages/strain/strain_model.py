@@ -16,7 +16,7 @@ Strain of the splice-free length by position alone, one function a method.
 
 `constant-fraction` is in `reduction.stages.strain.strain_model`, strain by the tension that the
 splices carry in `reduction.stages.strain.strain_model`; how their coefficients are found
-from tape readings is in `reduction.stages.strain.splice_marks`.
+from tape readings is in `reduction.stages.strain.strain_fit`.
 
 Strain at every sample from a fitted model, and where it is an extrapolation.
 

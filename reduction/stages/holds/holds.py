@@ -1,4 +1,24 @@
-"""Holds of a record: numbers where supported, reasons where not.
+"""Holds: when one begins, relaxation at constant length, creep at constant tension.
+
+When a hold begins: the ramp before it, and its samples.
+
+To first order a ramp acts as a step at the centre of the tension that it adds, whatever
+the law of relaxation; what is left falls with the square of ramp time over elapsed time.
+
+Relaxation at constant length and creep at constant tension.
+
+What the hold stage hands on: one row a hold and specimen.
+
+Means over blocks that grow with time: a night of samples becomes a few hundred numbers.
+
+Relaxation of tension at constant length: drop, rate per decade, tension at stated times.
+
+The specimen relaxes during the ramp, too.  Rates therefore count time from the centre of
+the ramp (`reduction.stages.holds.holds`) and leave out the first three ramp times.
+
+Creep: strain gained at constant tension.
+
+Holds of a record: numbers where supported, reasons where not.
 
 One specimen in one hold, and everything that speaks against a number from it.
 
@@ -8,46 +28,544 @@ Holds of a record, one result a hold and specimen: numbers where supported, reas
 
 References
 ----------
-.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+.. [1] L. J. Zapas and J. C. Phillips, "Simple shearing flows in polyisobutylene solutions," J.
+   Res. Natl. Bur. Stand. 75A(1), 1971 (half of the ramp time as the zero of time).
+.. [2] J. D. Ferry, "Viscoelastic Properties of Polymers," 3rd ed., Wiley, 1980, ch. 3.
+.. [3] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
    Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
    MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reduction.record.arrays import as_finite, as_increasing, as_same_shape
 from reduction.record.errors import DataError, FitError
-from reduction.record.measurement import Bools, Floats
+from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 from reduction.record.notes import Note, note
 from reduction.record.samples import (
     BLOCK,
     empty_like,
+    finite_extremes,
+    last_sample,
     mean_of,
     median_step_reaches,
+    release_pages,
     sample_blocks,
     select_samples,
     shifted,
 )
 from reduction.record.settings import HoldSettings
-from reduction.stages.holds.hold_start import Ramp, begins_inside, find_ramp
+from reduction.stages.cycles.loops import reading_noise
 from reduction.stages.holds.prony_series import PronyFit, fit_prony
-from reduction.stages.holds.relaxation import (
-    HoldResult,
-    Rate,
-    creep_rate,
-    end_mean,
-    logarithmic_blocks,
-    rate_per_decade,
-    relaxation_drop,
-    value_at_times,
-)
-from reduction.stages.moduli.splice_slip import find_steps
+from reduction.stages.moduli.least_squares import lag_one_inflation
+from reduction.stages.moduli.splice_slip import find_steps, sample_noise
 from reduction.stages.standstills import Standstills
+
+
+@dataclass(frozen=True)
+class _Ramp:
+    """The ramp that led to a hold."""
+
+    start_time: float
+    end_time: float
+    centre_time: float
+    duration: float
+    stiffness: float
+
+
+def _find_ramp(
+    time: ArrayLike, position: ArrayLike, tension: ArrayLike, *, band: float
+) -> _Ramp | None:
+    r"""Last monotonic motion of a record that ends where a hold begins.
+
+    .. math:: t_c = t_1 - \int_{t_0}^{t_1} \frac{T - T_0}{T_1 - T_0} dt
+
+    is the centre of the tension that the ramp adds; the spread is its second moment.
+
+    Notes
+    -----
+    The rule of the half ramp ([1]_) is the case of tension rising evenly.  A tension that
+    stiffens with stretch puts the centre later than that.  Where the ramp does not add
+    tension (unloading), the centre of position is taken.  Both moments are integrals of
+    the record, not of its differences, so noise does not enter them.  The ramp begins at
+    the last sample within ``band`` of its far end, which is late by the time that the
+    crosshead takes for it.
+
+    Examples
+    --------
+    >>> t = np.arange(0.0, 5.0)
+    >>> ramp = _find_ramp(t, [0.0, 0.0, 1.0, 2.0, 3.0], [0.0, 0.0, 10.0, 20.0, 30.0], band=0.1)
+    >>> ramp.start_time, ramp.centre_time, ramp.duration, round(ramp.stiffness, 6)
+    (1.0, 2.5, 3.0, 10.0)
+    """
+    seconds = as_increasing("time", time)
+    seconds, place, load = as_same_shape(time=seconds, position=position, tension=tension)
+    way = _way_back(place, band)
+    if way is None:
+        return None
+    # The last sample within the band of the far end: a standstill there is no part of the ramp.
+    first = last_sample(
+        lambda part: way.sign * (place[part] - place[-1]) >= way.reach - band,
+        way.first, place.size, place,
+    )  # fmt: skip
+    seconds, place, load = seconds[first:], place[first:], load[first:]
+    end = float(seconds[-1])
+    adds = load if load[-1] > load[0] else place
+    lowest, rise = float(adds[0]), float(adds[-1] - adds[0])
+    before = square = 0.0
+    for part in sample_blocks(seconds.size, seconds, adds, overlap=1):
+        added, left = (adds[part] - lowest) / rise, end - seconds[part]
+        before += float(np.trapezoid(added, seconds[part]))
+        # Exact where both factors are straight between samples: a ramp may have few of them.
+        middle = (left[1:] + left[:-1]) * (added[1:] + added[:-1]) / 2
+        both = left[1:] * added[1:] + left[:-1] * added[:-1] + 2 * middle
+        square += float(np.diff(seconds[part]) @ both) / 3
+    centre = end - before
+    spread = max(0.0, square - before**2)
+    return _Ramp(
+        start_time=float(seconds[0]),
+        end_time=end,
+        centre_time=min(end, max(float(seconds[0]), centre)),
+        duration=min(end - float(seconds[0]), float(np.sqrt(12 * spread))),
+        stiffness=_upper_slope(place, load),
+    )
+
+
+def _begins_inside(position: ArrayLike, *, band: float) -> bool:
+    """Whether a series shows where its last motion began, so that nothing before it counts.
+
+    Examples
+    --------
+    >>> _begins_inside([0.0, 1.0, 2.0], band=0.1), _begins_inside([5.0, 0.0, 1.0, 2.0], band=0.1)
+    (False, True)
+    """
+    way = _way_back(np.asarray(position, dtype=np.float64), band)
+    return way is not None and way.turned
+
+
+@dataclass(frozen=True)
+class _Way:
+    """The last motion of a record: its first sample, or one before it, and how far it came.
+
+    ``reach`` is its greatest distance from the last sample, times ``sign`` positive in the
+    direction from which the crosshead came; ``turned`` is true where a turn begins it.
+    """
+
+    first: int
+    sign: float
+    reach: float
+    turned: bool
+
+
+def _way_back(place: Floats, band: float) -> _Way | None:
+    """The last motion, looked for backwards from the last sample; None without motion."""
+    end = place[-1]
+    distant = last_sample(lambda part: np.abs(place[part] - end) > band, 0, place.size, place)
+    if distant is None:
+        return None
+    sign, reach = float(np.sign(place[distant] - end)), -np.inf
+    for stop in range(place.size, 0, -BLOCK):
+        back = sign * (place[max(stop - BLOCK, 0) : stop] - end)[::-1]
+        reached = np.maximum(np.maximum.accumulate(back), reach)
+        release_pages(place)
+        turned = np.flatnonzero(reached - back > band)
+        if turned.size:
+            at = int(turned[0])
+            return _Way(stop - at, sign, float(reached[at]), turned=True)
+        reach = float(reached[-1])
+    return _Way(0, sign, reach, turned=False)
+
+
+def _upper_slope(place: Floats, load: Floats) -> float:
+    """Slope of tension on position over the last half of a stroke; NaN where it has none."""
+    half = 0.5 * abs(place[-1] - place[0])
+    x, y = select_samples(lambda part: np.abs(place[part] - place[-1]) <= half, place, load)
+    middle, level = mean_of(x), mean_of(y)
+    square = product = 0.0
+    for part in sample_blocks(x.size, x, y):
+        off = x[part] - middle
+        square += float(off @ off)
+        product += float(off @ (y[part] - level))
+    low, high = finite_extremes(x)
+    return product / square if high > low else float("nan")
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class HoldResult:
+    """Relaxation (constant length) or creep (constant tension) of one specimen in one hold.
+
+    A number that the record does not support is NaN, and ``refusals`` says why.
+
+    Parameters
+    ----------
+    specimen : str
+        Which specimen.
+    kind : str
+        ``relaxation`` or ``creep``.
+    hold_start_time, hold_duration : float
+        [s]
+    hold_strain, hold_initial_tension, hold_final_tension : float
+        Mean strain [1]; tension at the start and at the end of the hold, each the
+        mean of a short stretch that ``made`` names. [N]
+    relaxation_drop, relaxation_drop_standard_uncertainty : float
+        Share of the initial tension lost over the hold. [1]
+    rate_per_decade, rate_per_decade_standard_uncertainty : float
+        Share of tension (relaxation) or strain (creep) per decade of time. [1]
+    times : ndarray, shape (n_times,)
+        Times after the end of the ramp. [s]
+    tension_at_time, strain_at_time : ndarray, shape (n_times,)
+        NaN where the hold is shorter. [N], [1]
+    prony_tension, prony_time : ndarray, shape (n_terms,)
+        Terms of the series; empty where refused. [N], [s]
+    prony_tension_standard_uncertainty, prony_time_standard_uncertainty : ndarray, shape (n_terms,)
+    long_time_tension, long_time_tension_standard_uncertainty : float
+        [N]
+    criterion : str
+        How the number of terms was chosen.
+    refusals : tuple of Note
+        Numbers that are missing, each with its reason.
+    notes : tuple of Note
+        What else there is to know.
+    made : tuple of str
+        Samples of the ends, how the finite ramp was treated: lines of the history.
+    ramp_centre_time : float
+        When the ramp acts as a step: zero of the time of the rate per decade; NaN where the
+        record does not show the ramp. [s]
+    hold_strain_standard_uncertainty : float
+        Of the mean (type A), as the next ones. [1]
+    hold_initial_tension_standard_uncertainty, hold_final_tension_standard_uncertainty : float
+        [N]
+    tension_at_time_standard_uncertainty, strain_at_time_standard_uncertainty : ndarray
+        Shape (n_times,), or empty. [N], [1]
+    """
+
+    specimen: str
+    kind: str
+    hold_start_time: float
+    hold_duration: float
+    hold_strain: float
+    hold_initial_tension: float
+    hold_final_tension: float
+    relaxation_drop: float
+    relaxation_drop_standard_uncertainty: float
+    rate_per_decade: float
+    rate_per_decade_standard_uncertainty: float
+    times: Floats
+    tension_at_time: Floats
+    strain_at_time: Floats
+    prony_tension: Floats
+    prony_tension_standard_uncertainty: Floats
+    prony_time: Floats
+    prony_time_standard_uncertainty: Floats
+    long_time_tension: float
+    long_time_tension_standard_uncertainty: float
+    criterion: str = ""
+    refusals: tuple[Note, ...] = field(default=())
+    notes: tuple[Note, ...] = field(default=())
+    made: tuple[str, ...] = field(default=())
+    ramp_centre_time: float = float("nan")
+    hold_strain_standard_uncertainty: float = float("nan")
+    hold_initial_tension_standard_uncertainty: float = float("nan")
+    hold_final_tension_standard_uncertainty: float = float("nan")
+    tension_at_time_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
+    strain_at_time_standard_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
+
+    @property
+    def refused(self) -> str:
+        """Which numbers it does not give, and why; empty where it gives all."""
+        return "; ".join(str(one).removeprefix("refused: ") for one in self.refusals)
+
+
+def hold_numbers(holds: Sequence[HoldResult]) -> Integers:
+    """Number of each hold in its test, by time from 1; one for all specimens that stand.
+
+    Parameters
+    ----------
+    holds : sequence of HoldResult
+        Of one test.
+
+    Returns
+    -------
+    numbers : ndarray of int, shape (n_holds,)
+        Equal where the holds begin together. [1]
+
+    Raises
+    ------
+    AttributeError
+        If an entry is no hold.
+
+    Notes
+    -----
+    Nothing is computed from a report here ([1]_ does not number its holds).
+
+    Examples
+    --------
+    >>> hold_numbers([]).size
+    0
+
+    References
+    ----------
+    .. [1] WHOI-2005-10, sec. 4.1.
+    """
+    if not holds:
+        return np.empty(0, dtype=np.int64)
+    _, place = np.unique([hold.hold_start_time for hold in holds], return_inverse=True)
+    return np.asarray(place + 1)
+
+
+BLOCKS_PER_DECADE = 40
+
+LARGEST_WEIGHT = 64.0
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class _LogBlocks:
+    """Block means of a series, shape (n_blocks,) each."""
+
+    elapsed: Floats
+    value: Floats
+    count: Floats
+
+    @property
+    def weight(self) -> Floats:
+        """Relative inverse variance: the count, of which at most 64 are taken as independent.
+
+        Slow drift of a transducer does not average out, so a block of a million samples
+        may not outweigh all others.
+        """
+        return self.count / (1 + (self.count - 1) / LARGEST_WEIGHT)
+
+
+def logarithmic_blocks(
+    elapsed: ArrayLike, values: ArrayLike, *, per_decade: int = BLOCKS_PER_DECADE
+) -> _LogBlocks:
+    """Means over blocks of equal length in the logarithm of time.
+
+    Notes
+    -----
+    At 40 blocks a decade a block spans 6 % of its time: an exponential that decays within
+    it is off by at most 2e-4 of its size.
+
+    Examples
+    --------
+    >>> blocks = logarithmic_blocks(np.arange(1.0, 1001.0), np.ones(1000))
+    >>> bool(blocks.count.sum() == 1000), blocks.elapsed.size < 121
+    (True, True)
+    """
+    time = as_increasing("elapsed", elapsed)
+    time, series = as_same_shape(elapsed=time, values=values)
+    if time.size == 0 or time[0] <= 0:
+        raise DataError(
+            "time does not start above zero",
+            found="no samples" if time.size == 0 else f"{time[0]:g} s",
+            needed="a positive time",
+        )
+    begin = time[0]
+    last = int(np.log10(time[-1] / begin) * per_decade)
+    sums = np.zeros((3, last + 1))
+    for part in sample_blocks(time.size, time, series):
+        number = np.floor(np.log10(time[part] / begin) * per_decade).astype(np.intp)
+        first = np.flatnonzero(np.diff(number, prepend=-1))
+        here = np.minimum(number[first], last)  # rounding of a logarithm may pass the last one
+        count = np.diff(first, append=number.size)
+        np.add.at(sums[0], here, np.add.reduceat(time[part], first))
+        np.add.at(sums[1], here, np.add.reduceat(series[part], first))
+        np.add.at(sums[2], here, count)
+    elapsed_sum, value_sum, count = sums[:, sums[2] > 0]
+    return _LogBlocks(elapsed_sum / count, value_sum / count, count)
+
+
+RAMP_TIMES_LEFT_OUT = 3.0
+
+FEWEST_BLOCKS = 8
+
+SHORTEST_SPAN = 0.5
+
+
+@dataclass(frozen=True)
+class _Rate:
+    """Slope of a series against the decimal logarithm of time."""
+
+    value: float
+    standard_uncertainty: float
+    elapsed_low: float
+    elapsed_high: float
+
+
+def _relaxation_drop(initial_tension: ArrayLike, final_tension: ArrayLike) -> Floats:
+    """Share of tension lost over a hold.
+
+    Notes
+    -----
+    Source: [3]_, sec. 4.1 and Figure 24, which print it as "creep".  NaN where the
+    initial tension is not positive.
+
+    Examples
+    --------
+    WHOI-2005-10: new tether in T-6, 400 lbf falls to 325 lbf in three minutes at 275 %.
+
+    >>> print(_relaxation_drop(400.0, 325.0))
+    0.1875
+    """
+    initial, final = as_same_shape(initial_tension=initial_tension, final_tension=final_tension)
+    drop: Floats = 1 - final / np.where(initial > 0, initial, np.nan)
+    return drop
+
+
+def end_mean(values: ArrayLike, *, n_samples: int, at_end: bool) -> tuple[float, float]:
+    """Mean of a short stretch at one end of a series, with its standard uncertainty.
+
+    Examples
+    --------
+    >>> mean, _ = end_mean([5.0, 5.0, 4.0, 3.0, 3.0], n_samples=2, at_end=True)
+    >>> mean
+    3.0
+    """
+    whole = np.asarray(values, dtype=np.float64)
+    (series,) = select_samples(lambda part: np.isfinite(whole[part]), whole)
+    noise, quantum = sample_noise(series)
+    count = max(1, min(n_samples, series.size))
+    stretch = series[-count:] if at_end else series[:count]
+    variance = noise**2 / count + (quantum**2 / 12 if noise < quantum / 2 else 0.0)
+    return mean_of(stretch), float(np.sqrt(variance))
+
+
+def _rate_per_decade(blocks: _LogBlocks, *, ramp_duration: float) -> _Rate:
+    r"""Change of a series per decade of time, by regression on block means.
+
+    Notes
+    -----
+    After three ramp times what the finite ramp does to a logarithmic relaxation is below
+    half a percent of its rate (:math:`1/24 \cdot 1/9`).
+
+    Examples
+    --------
+    >>> from reduction.stages.holds.holds import logarithmic_blocks
+    >>> t = np.arange(1.0, 1001.0)
+    >>> rate = _rate_per_decade(logarithmic_blocks(t, 400 - 20 * np.log10(t)), ramp_duration=2.0)
+    >>> print(round(rate.value, 1))
+    -20.0
+    """
+    kept = blocks.elapsed >= RAMP_TIMES_LEFT_OUT * ramp_duration
+    elapsed, value, weight = blocks.elapsed[kept], blocks.value[kept], blocks.weight[kept]
+    span = float(np.log10(elapsed[-1] / elapsed[0])) if elapsed.size else 0.0
+    if elapsed.size < FEWEST_BLOCKS or span < SHORTEST_SPAN:
+        raise DataError(
+            f"the hold is too short for a rate per decade: {span:.2f} decades and {elapsed.size} "
+            f"blocks after {RAMP_TIMES_LEFT_OUT:g} ramp times of {ramp_duration:.3g} s",
+            needed=f"{SHORTEST_SPAN:g} decades and {FEWEST_BLOCKS} blocks",
+        )
+    x = np.log10(elapsed)
+    share = weight / weight.sum()
+    x = x - share @ x
+    y = value - share @ value
+    power = float(share @ (x * x))
+    slope = float(share @ (x * y)) / power
+    residual = np.sqrt(share) * (y - slope * x)
+    variance = float(residual @ residual) / (x.size - 2) * lag_one_inflation(residual) / power
+    return _Rate(slope, float(np.sqrt(variance)), float(elapsed[0]), float(elapsed[-1]))
+
+
+def _value_at_times(
+    elapsed: ArrayLike, values: ArrayLike, times: ArrayLike
+) -> tuple[Floats, Floats]:
+    """Series at stated times, each from a line through the samples within a tenth of it.
+
+    Examples
+    --------
+    >>> value, spread = _value_at_times([0.0, 1.0, 2.0, 3.0], [8.0, 6.0, 4.0, 2.0], [1.5, 5.0])
+    >>> print(value, spread)
+    [ 5. nan] [ 0. nan]
+    """
+    time = as_increasing("elapsed", elapsed)
+    time, series = as_same_shape(elapsed=time, values=as_finite("values", values))
+    found, spread = np.full((2, *np.shape(times)), np.nan)
+    noise = reading_noise(series)
+    for index, wanted in enumerate(np.asarray(times, dtype=np.float64)):
+        after = int(np.searchsorted(time, wanted))
+        if after == time.size or (after == 0 and time[0] != wanted):
+            continue
+        first, last = np.searchsorted(time, [0.9 * wanted, 1.1 * wanted])
+        if last - first < 4:
+            # Too few samples for a line of their own: the two beside the time.
+            gap = float(time[after] - time[after - 1]) if after else 0.0
+            if gap <= 0.2 * wanted or median_step_reaches(time, 1.5, gap):
+                beside = slice(max(after - 1, 0), after + 1)
+                found[index] = np.interp(wanted, time[beside], series[beside])
+                spread[index] = noise
+            continue
+        found[index], spread[index] = _on_line(
+            time[first:last], series[first:last], wanted, noise=noise
+        )
+        release_pages(time, series)
+    return found, spread
+
+
+def _on_line(time: Floats, series: Floats, wanted: float, *, noise: float) -> tuple[float, float]:
+    """Value of the regression of a series at a time, and its standard uncertainty."""
+    count = time.size
+    mean, square, product = mean_of(time) - wanted, 0.0, 0.0
+    for part in sample_blocks(count, time, series):
+        off = (time[part] - wanted) - mean
+        square += float(off @ off)
+        product += float(off @ series[part])
+    value = mean_of(series) - product / square * mean
+    return value, noise * float(np.sqrt(1 / count + mean**2 / square))
+
+
+TENSION_TOLERANCE = 0.01
+
+
+def _tension_variation(time: ArrayLike, tension: ArrayLike) -> float:
+    """Largest departure of tension from its mean over a hold, as a share of the mean.
+
+    Examples
+    --------
+    >>> print(_tension_variation([1.0, 10.0, 100.0], [100.0, 102.0, 98.0]))
+    0.02
+    """
+    blocks = logarithmic_blocks(time, tension, per_decade=20)
+    mean = float(np.mean(blocks.value))
+    if mean <= 0:
+        raise DataError("creep under no tension", found=f"{mean:.3g} N", needed="tension above 0")
+    return float(np.max(np.abs(blocks.value - mean))) / mean
+
+
+def _creep_rate(
+    time: ArrayLike, strain: ArrayLike, tension: ArrayLike, *, ramp_duration: float
+) -> _Rate:
+    """Strain gained per decade of time at constant tension.
+
+    Notes
+    -----
+    A specimen held at constant length by a moving tension does not creep; it relaxes.
+
+    Examples
+    --------
+    >>> t = np.arange(1.0, 1001.0)
+    >>> rate = _creep_rate(t, 1 + 0.02 * np.log10(t), np.full(1000, 400.0), ramp_duration=2.0)
+    >>> print(round(rate.value, 4))
+    0.02
+    """
+    seconds = as_increasing("time", time)
+    seconds, stretch, load = as_same_shape(time=seconds, strain=strain, tension=tension)
+    variation = _tension_variation(seconds, load)
+    if variation > TENSION_TOLERANCE:
+        raise DataError(
+            f"tension is not constant: it strays {variation:.1%} from its mean",
+            needed=f"{TENSION_TOLERANCE:.0%} or less",
+        )
+    return _rate_per_decade(logarithmic_blocks(seconds, stretch), ramp_duration=ramp_duration)
+
 
 SIGNIFICANT = 3.0
 
@@ -87,7 +605,7 @@ class Hold:
     tension: Floats
     strain: Floats
     start_time: float
-    ramp: Ramp | None
+    ramp: _Ramp | None
     position_tolerance: float
     slack_tension: float = 0.0
     refusals: list[Note] = field(default_factory=list)
@@ -159,7 +677,7 @@ def _hold_ends(hold: Hold) -> _Ends:
         f"initial tension is the mean of the first {n_initial}, final tension of the last "
         f"{n_final} of {hold.time.size} samples"
     )
-    drop = float(relaxation_drop(initial, final))
+    drop = float(_relaxation_drop(initial, final))
     uncertainty = float(np.hypot(u_final, (1 - drop) * u_initial) / initial)
     known = uncertainty if drop == drop else np.nan
     return _Ends(initial, final, drop, known, u_initial, u_final)
@@ -246,6 +764,7 @@ def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[No
 
 
 _LOOKED_BACK = 1 << 16
+
 """Samples before a hold in which its ramp is looked for at first: many cycles may lie between two
 holds."""
 
@@ -277,7 +796,7 @@ def _latest(time: Floats, *series: Floats) -> float:
     return float(latest)
 
 
-def _ramp_before(time: Floats, moved: Floats, answer: Floats, *, band: float) -> Ramp | None:
+def _ramp_before(time: Floats, moved: Floats, answer: Floats, *, band: float) -> _Ramp | None:
     """The ramp that ends with the last sample, out of as much as shows where it began."""
     n_looked = 0
     while n_looked < time.size:
@@ -287,9 +806,9 @@ def _ramp_before(time: Floats, moved: Floats, answer: Floats, *, band: float) ->
         looked = [one[start:] for one in whole]
         is_sound = _is_sound(*looked, after=_latest(*(one[:start] for one in whole)))
         before = select_samples(is_sound.__getitem__, *looked)
-        if before[0].size > 2 and begins_inside(before[1], band=band):
+        if before[0].size > 2 and _begins_inside(before[1], band=band):
             break
-    return find_ramp(*before, band=band) if before[0].size > 2 else None
+    return _find_ramp(*before, band=band) if before[0].size > 2 else None
 
 
 def select_hold(
@@ -346,7 +865,7 @@ def select_hold(
 _EMPTY = np.empty(0)
 
 
-def _rate(hold: Hold, ends: _Ends) -> Rate | None:
+def _rate(hold: Hold, ends: _Ends) -> _Rate | None:
     """Share of tension lost per decade, or None with a refusal."""
     if hold.ramp is None:
         hold.refusals.append(note("rate-without-ramp"))
@@ -356,7 +875,7 @@ def _rate(hold: Hold, ends: _Ends) -> Rate | None:
     blocks = logarithmic_blocks(since[later:], hold.tension[later:])
     blocks = replace(blocks, value=blocks.value / ends.initial)
     try:
-        slope = rate_per_decade(blocks, ramp_duration=hold.ramp_duration)
+        slope = _rate_per_decade(blocks, ramp_duration=hold.ramp_duration)
     except DataError as error:
         hold.refusals.append(note("no-rate", reason=error.problem))
         return None
@@ -365,7 +884,7 @@ def _rate(hold: Hold, ends: _Ends) -> Rate | None:
             note("rate-not-told-from-zero", loss=-slope.value, spread=slope.standard_uncertainty)
         )
         return None
-    return Rate(-slope.value, slope.standard_uncertainty, slope.elapsed_low, slope.elapsed_high)
+    return _Rate(-slope.value, slope.standard_uncertainty, slope.elapsed_low, slope.elapsed_high)
 
 
 def _prony(hold: Hold, ends: _Ends, settings: HoldSettings) -> PronyFit | None:
@@ -394,7 +913,7 @@ def _prony(hold: Hold, ends: _Ends, settings: HoldSettings) -> PronyFit | None:
         return None
 
 
-def _creep(hold: Hold) -> Rate | None:
+def _creep(hold: Hold) -> _Rate | None:
     """Strain per decade, or None with a refusal."""
     if hold.ramp is None:
         hold.refusals.append(note("rate-without-ramp"))
@@ -404,14 +923,14 @@ def _creep(hold: Hold) -> Rate | None:
         lambda part: (since[part] > 0) & np.isfinite(strain[part]), since, strain, hold.tension
     )
     try:
-        return creep_rate(*series, ramp_duration=hold.ramp_duration)
+        return _creep_rate(*series, ramp_duration=hold.ramp_duration)
     except DataError as error:
         hold.refusals.append(note("no-rate", reason=error.problem))
         return None
 
 
 def _describe(
-    hold: Hold, rate: Rate | None, *, n_samples: int, follows_hold: bool, on_tension: bool
+    hold: Hold, rate: _Rate | None, *, n_samples: int, follows_hold: bool, on_tension: bool
 ) -> None:
     """Say how the ramp was treated and what was left out."""
     if hold.ramp is not None:
@@ -447,8 +966,8 @@ def _result(
     """Reduce one hold of one specimen."""
     times = np.array(settings.times, dtype=np.float64)
     nothing = np.full(times.size, np.nan)
-    drop = Rate(np.nan, np.nan, np.nan, np.nan)
-    rate: Rate | None = None
+    drop = _Rate(np.nan, np.nan, np.nan, np.nan)
+    rate: _Rate | None = None
     prony: PronyFit | None = None
     tension_at = strain_at = (nothing, nothing)
     ends = _Ends(*(np.nan,) * 6)
@@ -459,19 +978,19 @@ def _result(
         hold.refusals.append(note("hold-empty", n_samples=hold.time.size))
     else:
         ends = _hold_ends(hold)
-        tension_at = value_at_times(shifted(hold.time, hold.start_time), hold.tension, times)
+        tension_at = _value_at_times(shifted(hold.time, hold.start_time), hold.tension, times)
         if known.size > 1:
-            strain_at = value_at_times(shifted(times_known, hold.start_time), known, times)
+            strain_at = _value_at_times(shifted(times_known, hold.start_time), known, times)
         reasons = _reasons_against(hold, ends, settings) if kind == "relaxation" else []
         hold.refusals.extend(reasons)
         if kind == "creep":
             rate = _creep(hold)
         elif not reasons:
-            drop = Rate(ends.drop, ends.drop_uncertainty, np.nan, np.nan)
+            drop = _Rate(ends.drop, ends.drop_uncertainty, np.nan, np.nan)
             rate = _rate(hold, ends)
             prony = _prony(hold, ends, settings)
     _describe(hold, rate, n_samples=n_samples, follows_hold=follows_hold, on_tension=on_tension)
-    shown = rate or Rate(np.nan, np.nan, np.nan, np.nan)
+    shown = rate or _Rate(np.nan, np.nan, np.nan, np.nan)
     return HoldResult(
         specimen=name,
         kind=kind,
@@ -557,7 +1076,7 @@ def reduce_holds(
 
     Notes
     -----
-    Source: WHOI-2005-10, sec. 4.1 and Figure 24 ([1]_), which calls relaxation "creep".
+    Source: WHOI-2005-10, sec. 4.1 and Figure 24 ([3]_), which calls relaxation "creep".
     The zero of time for rates is the centre of what the ramp adds, tension or, where the
     machine keeps the tension, length; for
     ``times`` it is the first sample of the hold; the Prony terms are corrected for the
