@@ -198,6 +198,7 @@ def test_a_log_four_times_as_long_takes_no_more_memory(tmp_path):
         return found
 
     peak(1000)  # what is made once
-    # 0.7 MB, 2.8 MB of text; what other threads take meanwhile is not of the log
+    # 0.7 MB, 2.8 MB of text; what other threads take meanwhile is not of the log, and is a quarter
+    # of what a log that is held whole would take more
     short, long = (min(peak(n_rows) for _ in range(3)) for n_rows in (40_000, 160_000))
-    assert long < short + 100_000
+    assert long < short + 500_000
