@@ -126,7 +126,7 @@ def chosen_workers(jobs: int | None, scheduler: str | None) -> Iterator[Workers 
             yield workers
         return
     try:
-        from reduction.batch.workers import users_cluster
+        from reduction.batch.dask_cluster import users_cluster
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
             raise

@@ -16,9 +16,10 @@ from distributed import Client, KilledWorker, LocalCluster
 from distributed.comm import CommClosedError
 from workerdeeds import add_a_line, die_slowly, double, raise_data_error, say_and_wait, variables
 
-from reduction.batch import workers as cluster
+from reduction.batch import dask_cluster as cluster
 from reduction.batch import workers as executor
-from reduction.batch.workers import Task, Workers, local_workers, users_cluster, work_on
+from reduction.batch.dask_cluster import users_cluster
+from reduction.batch.workers import Task, Workers, local_workers, work_on
 from reduction.record.errors import DataError, LogError, SettingsError, WorkerError
 
 ROOT = Path(__file__).parents[2]
