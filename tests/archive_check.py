@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from reduction.archive.dataset_builder import CONVENTIONS, SCHEMA_VERSION
 from reduction.archive.open import _schema_of_file
-from reduction.archive.variables import GROUPS, Variable
+from reduction.quantities.row import GROUPS, Quantity
 
 _BLOCK = 1 << 20  # values of a long variable that are read at a time
 _CACHE = 1 << 19  # bytes of the largest chunk
@@ -87,7 +87,7 @@ def _variable_findings(group: netCDF4.Dataset, file: netCDF4.Dataset) -> Iterato
             yield f"{name} has no long_name"
 
 
-def _type_findings(name: str, variable: netCDF4.Variable[Any], row: Variable) -> Iterator[str]:
+def _type_findings(name: str, variable: netCDF4.Variable[Any], row: Quantity) -> Iterator[str]:
     if variable.dtype is str:
         yield f"{name} holds strings of variable length"
     elif row.is_text:
@@ -112,7 +112,7 @@ def _reference_findings(
                 yield f"{name} names {other} in {attribute}, which has other dimensions"
 
 
-def _flag_findings(name: str, variable: netCDF4.Variable[Any], row: Variable) -> Iterator[str]:
+def _flag_findings(name: str, variable: netCDF4.Variable[Any], row: Quantity) -> Iterator[str]:
     kind = "flag_masks" if row.is_mask else "flag_values"
     listed = np.atleast_1d(getattr(variable, kind, np.empty(0)))
     if listed.dtype != variable.dtype:
@@ -136,7 +136,7 @@ def _parts(variable: netCDF4.Variable[Any]) -> Iterator[NDArray[Any]]:
         yield np.asarray(variable[..., start : start + _BLOCK])
 
 
-def _has_odd(stored: NDArray[Any], listed: NDArray[Any], row: Variable) -> bool:
+def _has_odd(stored: NDArray[Any], listed: NDArray[Any], row: Quantity) -> bool:
     if row.is_mask:
         allowed = np.bitwise_or.reduce(listed)
         return bool(np.bitwise_or.reduce(stored, axis=None) & ~allowed)

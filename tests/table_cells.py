@@ -4,7 +4,7 @@ import csv
 import io
 
 from reduction.archive.csv_columns import _text_of, table_blocks
-from reduction.archive.variables import TEXT
+from reduction.quantities.row import TEXT
 
 
 def table_rows(archive, table):

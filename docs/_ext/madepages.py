@@ -8,6 +8,7 @@ from typing import Any
 import apipages
 import campaignkeys
 import commandpages
+import quantitypages
 import variablepages
 from sphinx.application import Sphinx
 
@@ -18,6 +19,7 @@ def _write(app: Sphinx) -> None:
     folder = Path(app.srcdir) / "reference"
     pages = {
         **apipages.pages(), **commandpages.pages(), **campaignkeys.pages(), **variablepages.pages(),
+        **quantitypages.pages(),
     }  # fmt: skip
     for name, text in pages.items():
         path = folder / name

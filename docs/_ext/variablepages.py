@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from reduction.archive.campaign_products import OUTCOME_SCHEMA
-from reduction.archive.rope_properties import PROPERTY_SCHEMA
-from reduction.archive.schema import COMPARISON_SCHEMA, PREDICTION_SCHEMA, SCHEMA, SURFACE_SCHEMA
-from reduction.archive.variables import GROUPS, SUFFIXES, Variable
+from reduction.quantities.names import (
+    COMPARISON_SCHEMA,
+    OUTCOME_SCHEMA,
+    PREDICTION_SCHEMA,
+    PROPERTY_SCHEMA,
+    SURFACE_SCHEMA,
+    TEST_SCHEMA,
+)
+from reduction.quantities.row import GROUPS, SUFFIXES, Quantity
 
 __all__ = ["pages"]
 
 _FILES = {
-    "A reduced test: TEST.nc": SCHEMA,
+    "A reduced test: TEST.nc": TEST_SCHEMA,
     "Response surfaces: surfaces.nc": SURFACE_SCHEMA,
     "Predicted hoses: predictions.nc": PREDICTION_SCHEMA,
     "Measured against predicted: comparisons.nc": COMPARISON_SCHEMA,
@@ -19,7 +24,7 @@ _FILES = {
 }
 
 
-def _rows(schema: dict[str, Variable]) -> list[str]:
+def _rows(schema: dict[str, Quantity]) -> list[str]:
     """One row a variable; its uncertainty, count and bounds stand with it as suffixes."""
     lines: list[str] = []
     group = None

@@ -10,28 +10,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import chain
 from typing import Any, get_args
 
 import numpy as np
 import xarray as xr
 
 from reduction.archive.dataset_builder import build_dataset, part_attributes
-from reduction.archive.schema import COMPARISON_SCHEMA, HOSE_STATES, PREDICTION_SCHEMA
 from reduction.archive.shared_errors import component_values
 from reduction.archive.variables import (
-    NO_YES,
-    STATED,
     Values,
-    Variable,
-    count,
-    flag,
-    label,
     note_values,
     numbers,
     pad,
     pad_texts,
-    stated,
     texts,
 )
 from reduction.experiments.outcomes import Outcome, OutcomeQuantity, Place
@@ -41,7 +32,13 @@ from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseEvents
 from reduction.prediction.hose_tension import predict_hose
 from reduction.prediction.hose_uncertainty import EventUncertainty
 from reduction.prediction.measured_curve import CURVES
-from reduction.quantities.names import quantity
+from reduction.quantities.flags import HOSE_STATES, OUTCOME_USES
+from reduction.quantities.names import (
+    COMPARISON_SCHEMA,
+    OUTCOME_SCHEMA,
+    PREDICTION_SCHEMA,
+    quantity,
+)
 from reduction.record.contributions import combined_standard_uncertainty
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Floats, Origin
@@ -441,41 +438,16 @@ def _layer_values(hoses: Sequence[PredictedHose]) -> Values:
     return values
 
 
-_ALONG_OUTCOMES = ("outcome",)
-
 _QUANTITIES: tuple[OutcomeQuantity, ...] = get_args(OutcomeQuantity)
 
 _PLACES: tuple[Place, ...] = get_args(Place)
 
-_USES = {"value": 0, "lower_bound": 1, "excluded": 2}
 
 _TEXTS = ("test", "specimen", "line", "material", "construction", "condition", "mode", "note")
 
 _NUMBERS = (
     "diameter", "exposure", "minimum_load", "peak_load", "minimum_load_ratio", "peak_load_ratio",
 )  # fmt: skip
-
-_COMPANIONS = ("outcome_use",)
-
-OUTCOME_SCHEMA: dict[str, Variable] = {
-    row.name: row
-    for row in chain(
-        count("outcome_row", _ALONG_OUTCOMES),
-        flag(
-            "outcome_quantity",
-            _ALONG_OUTCOMES,
-            {name: code for code, name in enumerate(_QUANTITIES)},
-        ),
-        *(stated(name, _ALONG_OUTCOMES, STATED, ancillary=_COMPANIONS) for name in _QUANTITIES),
-        flag("outcome_use", _ALONG_OUTCOMES, _USES),
-        *(label(f"outcome_{name}", _ALONG_OUTCOMES) for name in _TEXTS),
-        *(stated(f"outcome_{name}", _ALONG_OUTCOMES, STATED) for name in _NUMBERS),
-        flag("outcome_place", _ALONG_OUTCOMES, {name: code for code, name in enumerate(_PLACES)}),
-        flag("outcome_is_valid", _ALONG_OUTCOMES, NO_YES),
-        flag("outcome_is_suspended", _ALONG_OUTCOMES, NO_YES),
-    )
-}
-"""Every variable that an archive of outcomes may have."""
 
 
 def outcomes_to_dataset(outcomes: Sequence[Outcome], *, origin: Origin) -> xr.Dataset:
@@ -485,7 +457,7 @@ def outcomes_to_dataset(outcomes: Sequence[Outcome], *, origin: Origin) -> xr.Da
     values: Values = {
         "outcome_row": np.array([one.row for one in outcomes]),
         "outcome_quantity": np.array([_QUANTITIES.index(one.quantity) for one in outcomes]),
-        "outcome_use": np.array([_USES[one.use] for one in outcomes]),
+        "outcome_use": np.array([OUTCOME_USES[one.use] for one in outcomes]),
         "outcome_place": np.array([_PLACES.index(one.place) for one in outcomes]),
         "outcome_is_valid": np.array([one.is_valid for one in outcomes]),
         "outcome_is_suspended": np.array([one.is_suspended for one in outcomes]),

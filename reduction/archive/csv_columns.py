@@ -17,15 +17,6 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from reduction.archive.campaign_products import outcomes_of_dataset
-from reduction.archive.rope_properties import PROPERTY_SCHEMA
-from reduction.archive.schema import (
-    COMPARISON_SCHEMA,
-    PREDICTION_SCHEMA,
-    SURFACE_SCHEMA,
-    rows_of_response,
-    schema_of,
-)
-from reduction.archive.variables import TEXT, Variable, count, label, measured, stated
 from reduction.archive.write import append_atomically
 from reduction.experiments.outcome_groups import (
     EXPOSURE_COLUMNS,
@@ -39,6 +30,18 @@ from reduction.experiments.outcome_groups import (
     load_life_rows,
     strength_rows,
 )
+from reduction.quantities.names import (
+    COMPARISON_SCHEMA,
+    PREDICTION_SCHEMA,
+    PROPERTY_SCHEMA,
+    QUANTITIES,
+    STEPWISE_SCHEMA,
+    SURFACE_SCHEMA,
+    TEST_SCHEMA,
+    rows_of_response,
+)
+from reduction.quantities.row import TEXT, Quantity, schema_from
+from reduction.quantities.table_columns import OF_TABLES
 from reduction.record.measurement import Bools
 from reduction.record.plain_text import safe_cell
 
@@ -50,7 +53,7 @@ class CsvColumn:
     """A column: name, what it holds, and the variable that its values come from."""
 
     name: str
-    variable: Variable
+    variable: Quantity
 
     @property
     def header(self) -> str:
@@ -68,14 +71,11 @@ class CsvColumn:
 
 def uncertainty_of(column: CsvColumn) -> CsvColumn:
     """Return the column that stands beside a measured one."""
-    name = f"{column.name}_standard_uncertainty"
-    source = f"{column.variable.name}_standard_uncertainty"
-    return CsvColumn(
-        name, Variable(source, column.variable.dims, "f8", no_uncertainty="is an uncertainty")
-    )
+    suffix = "_standard_uncertainty"
+    return CsvColumn(f"{column.name}{suffix}", column.variable.companion(suffix))
 
 
-def _shown_values(values: NDArray[Any], variable: Variable) -> NDArray[Any]:
+def _shown_values(values: NDArray[Any], variable: Quantity) -> NDArray[Any]:
     """Values of a column as a table has them: flags as their meanings, texts safe to open."""
     if variable.flags:
         return _each(values, lambda value: _flag_text(int(value), variable))
@@ -90,7 +90,7 @@ def _each(values: NDArray[Any], worded: Callable[[Any], str]) -> NDArray[Any]:
     return np.array([worded(one) for one in labels], dtype=object)[place]
 
 
-def _flag_text(value: int, variable: Variable) -> str:
+def _flag_text(value: int, variable: Quantity) -> str:
     if variable.is_mask:
         return " ".join(name for name, bit in variable.flags.items() if value & bit)
     return next((name for name, number in variable.flags.items() if number == value), str(value))
@@ -118,36 +118,14 @@ Product = Literal[
 Variables = Mapping[str, xr.Variable]
 """By name, as those of an archive."""
 
-TEST = CsvColumn("test", label("test")[0])
+TEST = CsvColumn("test", QUANTITIES["test"])
 
-SYNTHETIC = CsvColumn("synthetic", label("synthetic")[0])
+SYNTHETIC = CsvColumn("synthetic", QUANTITIES["synthetic"])
 
-_OWN = {
-    row.name: row
-    for row in [
-        *count("n_cycles", ()),
-        *measured("chord_modulus_ascending", ("specimen", "cycle")),
-        *measured("chord_modulus_descending", ("specimen", "cycle")),
-        *stated("strain_bin_low", ("strain_bin",), "bound"),
-        *stated("strain_bin_high", ("strain_bin",), "bound"),
-    ]
-}
-
-_OF_RESPONSES = {
-    row.name: row
-    for row in [
-        *label("response"),
-        *label("unit"),
-        *label("response_unit"),
-        *label("coefficient_engineering_unit"),
-        *rows_of_response("response", is_transformed=False),
-    ]
-}
-
-_SCHEMAS: dict[Product, dict[str, Variable]] = {
-    "test": schema_of(is_stepwise=False) | _OWN,
-    "stepwise test": schema_of(is_stepwise=True) | _OWN,
-    "experiments": SURFACE_SCHEMA | _OF_RESPONSES,
+_SCHEMAS: dict[Product, Mapping[str, Quantity]] = {
+    "test": TEST_SCHEMA | schema_from(OF_TABLES),
+    "stepwise test": STEPWISE_SCHEMA | schema_from(OF_TABLES),
+    "experiments": SURFACE_SCHEMA | schema_from(OF_TABLES, rows_of_response("response")),
     "predictions": PREDICTION_SCHEMA,
     "comparisons": COMPARISON_SCHEMA,
     "properties": PROPERTY_SCHEMA,
@@ -162,17 +140,19 @@ def _nothing(_: xr.Dataset) -> Variables:
 class CsvTable:
     """One file of tables: a row for each combination of the entries of ``dims``.
 
+    Columns are the coordinates of the dimensions, what it begins with, every number whose row
+    names the table, and what it ends with.  A measured one is followed by its uncertainty.
+
     Parameters
     ----------
     name : str
         File name without suffix.
     dims : tuple of str
         Slowest first; a dimension with a coordinate gives a column.
-    variables : tuple of str
-        Of the archive, in order; ``column=variable`` gives it another name here. A
-        measured one is followed by its standard uncertainty.
     needs : tuple of str
-        A row is written where one of these is known.
+        A row is written where one of these is known; where any number is, if none is named.
+    first, last : tuple of str
+        Of the archive, in order; ``column=variable`` gives it another name here.
     derive : callable
         From the archive to variables that the table needs beside or in place of its own.
     product : str
@@ -181,26 +161,40 @@ class CsvTable:
 
     name: str
     dims: tuple[str, ...]
-    variables: tuple[str, ...]
     needs: tuple[str, ...]
+    first: tuple[str, ...] = ()
+    last: tuple[str, ...] = ()
     derive: Callable[[xr.Dataset], Variables] = _nothing
     product: Product = "test"
+
+    @cached_property
+    def own(self) -> list[str]:
+        """Numbers whose rows name the table."""
+        return [name for name, row in _SCHEMAS[self.product].items() if self.name in row.tables]
 
     @cached_property
     def columns(self) -> list[CsvColumn]:
         """Every column, the test first and the word on synthetic data last."""
         schema = _SCHEMAS[self.product]
         columns = [TEST] if self.product in ("test", "stepwise test") else []
-        for item in (*(dim for dim in self.dims if dim in schema), *self.variables):
+        axes = (dim for dim in self.dims if dim in schema)
+        for item in dict.fromkeys((*axes, *self.first, *self.own, *self.last)):
             name, _, source = item.partition("=")
             column = _column(name, schema[source or name])
-            columns.append(column)
-            if column.variable.has_uncertainty:
-                columns.append(uncertainty_of(column))
+            columns += [column, *_companions_of(column, is_of_runs=self.product == "experiments")]
         return [*columns, SYNTHETIC]
 
 
-def _column(name: str, variable: Variable) -> CsvColumn:
+def _companions_of(column: CsvColumn, *, is_of_runs: bool) -> Iterator[CsvColumn]:
+    """Give what stands beside a number; of a surface, what its runs do not share too."""
+    row = column.variable
+    for suffix in row.companions:
+        is_part = suffix in ("_random_standard_uncertainty", "_uncertainty_contribution")
+        if not is_part or (is_of_runs and suffix.startswith("_random")):
+            yield CsvColumn(f"{column.name}{suffix}", row.companion(suffix))
+
+
+def _column(name: str, variable: Quantity) -> CsvColumn:
     # the axis is `branch_name`, since `branch` is a flag of the samples
     return CsvColumn("branch" if name == "branch_name" else name, variable)
 
@@ -213,7 +207,7 @@ def table_blocks(
     archive: xr.Dataset, table: CsvTable, *, block_rows: int = BLOCK_ROWS
 ) -> Iterator[pd.DataFrame]:
     """Give the rows that an archive gives to a table; none where it lacks the subject."""
-    needed = [name for name in table.needs if name in archive]
+    needed = [name for name in table.needs or table.own if name in archive]
     if not needed or not set(table.dims) <= set(archive.sizes):
         return
     variables = {str(name): variable for name, variable in archive.variables.items()}

@@ -38,10 +38,11 @@ from reduction.archive.csv_definitions import (
     TABLES,
 )
 from reduction.archive.open import Opener, reading
-from reduction.archive.schema import SCHEMA
 from reduction.archive.shared_errors import components_of, shared_contributions
-from reduction.archive.variables import SUFFIXES, count, label, measured, stored
-from reduction.quantities.names import BRANCH_VALUES, QUANTITIES, RESPONSE_PATTERNS, SURFACE_NAMES
+from reduction.archive.variables import stored
+from reduction.quantities.flags import BRANCH_VALUES
+from reduction.quantities.names import QUANTITIES, RESPONSE_PATTERNS, SURFACE_NAMES
+from reduction.quantities.row import SUFFIXES
 from reduction.quantities.units import combined_unit
 from reduction.record.contributions import Component, Contributions, combined_standard_uncertainty
 from reduction.record.errors import SettingsError
@@ -49,17 +50,21 @@ from reduction.record.measurement import Floats
 from reduction.stages.moduli.local_regression import curve_at
 from reduction.uncertainty.propagation import ratio_contributions
 
-_BIN = ("specimen", "branch_name", "strain_bin")
+
+def _with_uncertainty(name: str) -> tuple[CsvColumn, CsvColumn]:
+    column = CsvColumn(name, QUANTITIES[name])
+    return column, uncertainty_of(column)
+
 
 ENVELOPE_COLUMNS = (
-    CsvColumn("specimen", SCHEMA["specimen"]),
-    CsvColumn("branch", SCHEMA["branch_name"]),
-    CsvColumn("strain_bin", SCHEMA["strain_bin"]),
-    *(CsvColumn(row.name, row) for row in measured("envelope_minimum", _BIN)),
-    CsvColumn("envelope_minimum_test", label("envelope_minimum_test")[0]),
-    *(CsvColumn(row.name, row) for row in measured("envelope_maximum", _BIN)),
-    CsvColumn("envelope_maximum_test", label("envelope_maximum_test")[0]),
-    CsvColumn("n_tests", count("n_tests", ())[0]),
+    CsvColumn("specimen", QUANTITIES["specimen"]),
+    CsvColumn("branch", QUANTITIES["branch_name"]),
+    CsvColumn("strain_bin", QUANTITIES["strain_bin"]),
+    *_with_uncertainty("envelope_minimum"),
+    CsvColumn("envelope_minimum_test", QUANTITIES["envelope_minimum_test"]),
+    *_with_uncertainty("envelope_maximum"),
+    CsvColumn("envelope_maximum_test", QUANTITIES["envelope_maximum_test"]),
+    CsvColumn("n_tests", QUANTITIES["n_tests"]),
     SYNTHETIC,
 )
 
@@ -231,22 +236,16 @@ def _marked(present: NDArray[Any]) -> NDArray[Any]:
     return np.where(present, 1.0, np.nan)
 
 
-_STATIC, _DYNAMIC = (
-    CsvColumn(name, SCHEMA[name]) for name in ("interval_modulus", "tangent_modulus")
-)
-
 STATIC_DYNAMIC_COLUMNS = (
-    CsvColumn("static_test", label("static_test")[0]),
-    CsvColumn("static_specimen", label("static_specimen")[0]),
+    CsvColumn("static_test", QUANTITIES["static_test"]),
+    CsvColumn("static_specimen", QUANTITIES["static_specimen"]),
     TEST,
-    CsvColumn("specimen", SCHEMA["specimen"]),
-    CsvColumn("branch", SCHEMA["branch_name"]),
-    CsvColumn("interval_strain", SCHEMA["interval_strain"]),
-    _STATIC,
-    uncertainty_of(_STATIC),
-    _DYNAMIC,
-    uncertainty_of(_DYNAMIC),
-    *(CsvColumn(row.name, row) for row in measured("static_dynamic_ratio", ("interval",))),
+    CsvColumn("specimen", QUANTITIES["specimen"]),
+    CsvColumn("branch", QUANTITIES["branch_name"]),
+    CsvColumn("interval_strain", QUANTITIES["interval_strain"]),
+    *_with_uncertainty("interval_modulus"),
+    *_with_uncertainty("tangent_modulus"),
+    *_with_uncertainty("static_dynamic_ratio"),
     SYNTHETIC,
 )
 
@@ -348,7 +347,7 @@ _ALL = (
 )  # fmt: skip
 
 _ABOUT = tuple(
-    CsvColumn(name, label(name)[0])
+    CsvColumn(name, QUANTITIES[name])
     for name in ("table", "column", "unit", "meaning", "no_uncertainty")
 )
 

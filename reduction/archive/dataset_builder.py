@@ -17,7 +17,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from reduction.archive.variables import Values, Variable
+from reduction.archive.variables import Values
+from reduction.quantities.row import Quantity
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Origin, Source, Step
 from reduction.record.samples import release_pages
@@ -34,7 +35,7 @@ _CHUNK = 65536  # values; half a megabyte, which a cycle of a long record costs 
 
 
 def build_dataset(
-    values: Values, schema: Mapping[str, Variable], *, attributes: Mapping[str, str]
+    values: Values, schema: Mapping[str, Quantity], *, attributes: Mapping[str, str]
 ) -> xr.Dataset:
     """Bring arrays into the form of the archive, in the order of the schema."""
     unknown = sorted(set(values) - set(schema))
@@ -55,7 +56,7 @@ def build_dataset(
     )
 
 
-def _sizes(values: Values, schema: Mapping[str, Variable]) -> dict[str, int]:
+def _sizes(values: Values, schema: Mapping[str, Quantity]) -> dict[str, int]:
     """Length of every dimension; refuse an array that does not fit the others."""
     sizes: dict[str, int] = {}
     for name, array in values.items():
@@ -74,7 +75,7 @@ def _sizes(values: Values, schema: Mapping[str, Variable]) -> dict[str, int]:
     return sizes
 
 
-def _variable(array: NDArray[Any], row: Variable, present: Values, auxiliary: str) -> xr.Variable:
+def _variable(array: NDArray[Any], row: Quantity, present: Values, auxiliary: str) -> xr.Variable:
     made = xr.Variable(
         row.dims,
         array if row.is_text else array.astype(row.dtype, copy=False),
@@ -85,7 +86,7 @@ def _variable(array: NDArray[Any], row: Variable, present: Values, auxiliary: st
     return made
 
 
-def _attributes(row: Variable, present: Values) -> dict[str, Any]:
+def _attributes(row: Quantity, present: Values) -> dict[str, Any]:
     if row.is_bounds:
         return {}
     attributes: dict[str, Any] = {"long_name": row.long_name}
@@ -105,7 +106,7 @@ def _attributes(row: Variable, present: Values) -> dict[str, Any]:
     return attributes
 
 
-def _encoding(array: NDArray[Any], row: Variable, auxiliary: str) -> dict[str, Any]:
+def _encoding(array: NDArray[Any], row: Quantity, auxiliary: str) -> dict[str, Any]:
     # labels are not listed: they have the names of their dimensions, by which a reader finds
     # them, and CF advises against listing an array that shares the name of its dimension
     is_beside = auxiliary and auxiliary in row.dims and row.name != "time"

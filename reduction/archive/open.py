@@ -16,11 +16,17 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from reduction.archive.campaign_products import OUTCOME_SCHEMA
 from reduction.archive.dataset_builder import SCHEMA_VERSION
-from reduction.archive.rope_properties import PROPERTY_SCHEMA
-from reduction.archive.schema import COMPARISON_SCHEMA, PREDICTION_SCHEMA, SURFACE_SCHEMA, schema_of
-from reduction.archive.variables import GROUPS, Variable
+from reduction.quantities.names import (
+    COMPARISON_SCHEMA,
+    OUTCOME_SCHEMA,
+    PREDICTION_SCHEMA,
+    PROPERTY_SCHEMA,
+    STEPWISE_SCHEMA,
+    SURFACE_SCHEMA,
+    TEST_SCHEMA,
+)
+from reduction.quantities.row import GROUPS, Quantity
 from reduction.record.errors import ArchiveError, SettingsError
 
 Chunks = int | Mapping[str, int | Literal["auto"] | tuple[int, ...]]
@@ -53,7 +59,7 @@ _TEXTS = (
 _AGAIN = "Check the disk; take a copy that is whole, or remove it and run the campaign again."
 
 # by the dimension that its kind alone has; a reduced test compares specimens, too
-_OF_CAMPAIGN: dict[str, dict[str, Variable]] = {
+_OF_CAMPAIGN: dict[str, dict[str, Quantity]] = {
     "experiment": SURFACE_SCHEMA,
     "outcome": OUTCOME_SCHEMA,
     "comparison_point": COMPARISON_SCHEMA,
@@ -331,12 +337,12 @@ def _is_json_object(text: str) -> bool:
         return False
 
 
-def _schema_of_file(dimensions: Container[Hashable]) -> Mapping[str, Variable]:
+def _schema_of_file(dimensions: Container[Hashable]) -> Mapping[str, Quantity]:
     """What a file may hold, by the dimension that its kind alone has."""
     for dimension, schema in _OF_CAMPAIGN.items():
         if dimension in dimensions:
             return schema
-    return schema_of(is_stepwise="step" in dimensions)
+    return STEPWISE_SCHEMA if "step" in dimensions else TEST_SCHEMA
 
 
 @contextmanager

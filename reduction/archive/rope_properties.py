@@ -6,31 +6,23 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import chain
 
 import numpy as np
 import xarray as xr
 
 from reduction.archive.dataset_builder import build_dataset, part_attributes
 from reduction.archive.shared_errors import (
-    COMPONENT,
-    SHARED_ROWS,
     component_values,
     components_of,
     shared_contributions,
 )
 from reduction.archive.variables import (
     Values,
-    Variable,
-    companion,
-    count,
-    label,
-    measured,
     numbers,
-    schema_from,
-    stated,
     texts,
 )
+from reduction.quantities.names import PROPERTY_SCHEMA
+from reduction.quantities.row import COMPONENT
 from reduction.record.contributions import (
     Component,
     InstrumentErrors,
@@ -56,34 +48,7 @@ _ALONG = ("property",)
 
 _U = "_standard_uncertainty"
 
-_OF_STEP = "as the step has it"
-
 _MEASURED = ("property_stiffness", "property_stiffness_over_strength", "property_strain")
-
-PROPERTY_SCHEMA: dict[str, Variable] = schema_from(
-    chain(
-        count("property", _ALONG),
-        label("property_specimen", _ALONG),
-        label("property_name", _ALONG),
-        label("property_test", _ALONG),
-        stated("property_low_tension", _ALONG, _OF_STEP),
-        stated("property_high_tension", _ALONG, _OF_STEP),
-        stated("property_reference_time", _ALONG, "setting"),
-        *(measured(name, _ALONG) for name in _MEASURED),
-        *(stated(f"{name}_degrees_of_freedom", _ALONG, "count") for name in _MEASURED),
-        label("property_remark", _ALONG),
-        # the axis of the shared errors, and what each of them is
-        [row for row in SHARED_ROWS if row.dims == (COMPONENT,)],
-        *(
-            (
-                companion(name, "_random_standard_uncertainty", _ALONG),
-                companion(name, "_uncertainty_contribution", (COMPONENT, *_ALONG)),
-            )
-            for name in _MEASURED
-        ),
-    )
-)
-"""Every variable that an archive of change-in-length properties may have."""
 
 
 def properties_to_dataset(

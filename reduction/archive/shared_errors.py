@@ -5,24 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import fields
-from itertools import chain
 
 import numpy as np
 import xarray as xr
 
-from reduction.archive.variables import (
-    OF_UNCERTAINTY,
-    Values,
-    Variable,
-    companion,
-    count,
-    in_group,
-    label,
-    stated,
-    stored,
-    texts,
-)
+from reduction.archive.variables import Values, stored, texts
 from reduction.prediction.measured_curve import SharedErrors, constant_errors
+from reduction.quantities.names import OF_TEST
+from reduction.quantities.row import COMPONENT
+from reduction.quantities.stepwise_test import IN_PLACE_OF_RECORD
 from reduction.record.contributions import (
     Component,
     Contributions,
@@ -34,115 +25,28 @@ from reduction.record.measurement import Bools, Floats
 from reduction.record.notes import Note, note
 from reduction.record.samples import like_storage, release_pages
 
-COMPONENT = "uncertainty_component"
-
 FREEDOM = "uncertainty_source_degrees_of_freedom"
 """Of each shared error; there where one of them is from a few readings."""
 
-_S = ("specimen",)
-
-_H = ("hold",)
-
-_G = ("specimen", "branch_name", "segment")
-
-_B = ("specimen", "branch_name", "strain_bin")
-
-_F = ("specimen", "branch_name", "first_loading_strain_bin")
-
-_OF_TEST = (
-    "mean_strain", "strain_amplitude", "mean_tension", "tension_amplitude",
-    "apparent_spring_constant", "dynamic_modulus", "hysteresis_energy",
-    "storage_spring_constant", "loss_spring_constant", "loss_factor",
-    "quasi_static_spring_constant", "dissipation_spring_constant", "relaxation_time",
-    "dashpot_coefficient",
-)  # fmt: skip
-
-_OF_SPECIMEN = (
-    "diameter", "area", "slack_strain_at_unloading", "permanent_set",
-    "peak_tension_per_decade", "dynamic_modulus_per_decade", "peak_tension_change",
-    "bedding_first_stiffness", "bedding_last_stiffness", "bedding_first_stiffness_over_strength",
-    "bedding_last_stiffness_over_strength", "bedding_stiffening", "bedding_permanent_strain",
-    "dynamic_stiffness", "dynamic_stiffness_over_strength", "dynamic_stiffness_drift",
-    "dynamic_mean_tension", "dynamic_mean_tension_over_strength",
-    "dynamic_tension_amplitude", "dynamic_tension_amplitude_over_strength",
-    "pull_peak_tension", "pull_peak_tension_over_strength", "pull_peak_strain",
-    "tensile_strength", "strain_at_failure",
-)  # fmt: skip
-
-_OF_HOLD = (
-    "hold_strain", "hold_initial_tension", "hold_final_tension", "relaxation_drop",
-    "relaxation_rate_per_decade", "creep_rate_per_decade", "long_time_tension",
-    "creep_tension_over_strength", "creep_compliance_per_decade",
-)  # fmt: skip
-
-_OF_PAIR = (
-    "held_pair_low_tension", "held_pair_high_tension", "static_stiffness",
-    "static_stiffness_over_strength", "static_stiffness_per_decade",
-    "static_stiffness_per_decade_over_strength",
-)  # fmt: skip
-
 SHARED: dict[str, tuple[str, ...]] = {
-    **{f"test_{name}": _S for name in _OF_TEST},
-    "tangent_modulus": _B,
-    "tangent_modulus_untrimmed": _B,
-    "branch_tension": _B,
-    "tangent_modulus_first_loading": _F,
-    "branch_tension_first_loading": _F,
-    "segment_modulus": _G,
-    "segment_tension_low": _G,
-    "segment_tension_high": _G,
-    **dict.fromkeys(_OF_SPECIMEN, _S),
-    "quasi_static_spring_constant": ("specimen", "tension_grid"),
-    "quasi_static_strain": ("specimen", "tension_grid"),
-    "pull_strain_coefficient": ("specimen", "pull_term"),
-    "strain_at_break_share": ("specimen", "break_share"),
-    "stress_at_strain": ("specimen", "strain_level"),
-    **dict.fromkeys(_OF_HOLD, _H),
-    "tension_at_time": ("hold", "hold_time"),
-    "strain_at_time": ("hold", "hold_time"),
-    "prony_tension": ("hold", "prony_term"),
-    **dict.fromkeys(_OF_PAIR, ("held_pair",)),
-    "interval_modulus": ("interval",),
-    "slip_tension_step": ("slip",),
-    "slip_length": ("slip",),
-    "elastomer_modulus": ("elastomer_parameter",),
-    "elastomer_exponent": ("elastomer_parameter",),
-    "modulus_ratio": ("comparison", "branch_name", "ratio_strain_bin"),
+    row.name: row.contribution_dims
+    for row in OF_TEST
+    if row.shares_errors and "sample" not in row.dims
 }
 """Quantities whose contributions are kept, with their dimensions."""
 
 SHARED_OF_CHANNELS: dict[str, tuple[str, ...]] = {
-    "crosshead_position": (),
-    "crosshead_displacement": (),
-    **dict.fromkeys(("tension", "strain", "nominal_stress"), _S),
+    row.name: row.contribution_dims for row in OF_TEST if row.shares_errors and "sample" in row.dims
 }
 """Channels: one contribution for all samples of a specimen, with its dimensions."""
 
-SHARED_OF_STEPS: dict[str, tuple[str, ...]] = {"secant_modulus": ("step",)}
+SHARED_OF_STEPS: dict[str, tuple[str, ...]] = {
+    row.name: row.contribution_dims for row in IN_PLACE_OF_RECORD if row.shares_errors
+}
 """Of a stepwise test alone: in a record it is of each cycle."""
 
 # the curve of one cycle has the shared error of the mean
 _ALIKE = {"tangent_modulus_by_cycle": "tangent_modulus"}
-
-SHARED_ROWS: tuple[Variable, ...] = tuple(
-    chain(
-        in_group(
-            "uncertainty",
-            count(COMPONENT, (COMPONENT,)),
-            label("uncertainty_source", (COMPONENT,)),
-            label("uncertainty_source_of", (COMPONENT,)),
-            count("uncertainty_source_number", (COMPONENT,)),
-            stated(FREEDOM, (COMPONENT,), OF_UNCERTAINTY),
-        ),
-        *(
-            (
-                companion(name, "_random_standard_uncertainty", dims),
-                companion(name, "_uncertainty_contribution", (COMPONENT, *dims)),
-            )
-            for name, dims in (SHARED | SHARED_OF_CHANNELS).items()
-        ),
-    )
-)
 
 
 def with_shared(
@@ -158,7 +62,7 @@ def with_shared(
         raise ArchiveError(
             "the archive has no variable for contributions of shared errors",
             found=", ".join(homeless),
-            needed="quantities of reduction.archive.shared_errors.SHARED",
+            needed="quantities with shares_errors in reduction.quantities",
             hint="this is a fault of the program, not of the campaign",
         )
     found = dict(values)

@@ -12,7 +12,6 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from reduction.archive.dataset_builder import build_dataset, part_attributes
-from reduction.archive.schema import SURFACE_SCHEMA
 from reduction.archive.shared_errors import component_values
 from reduction.archive.variables import Values, note_values, pad, read_notes, stored, texts
 from reduction.experiments.block_effects import block_columns
@@ -34,7 +33,7 @@ from reduction.experiments.stationary_point import canonical_slopes, ridge_path
 from reduction.experiments.stiffness_forms import FormQuality, StiffnessForm
 from reduction.experiments.surface_points import evaluate_surfaces, plan_points
 from reduction.experiments.term_selection import ReducedSurfaces
-from reduction.quantities.names import RESPONSES, SURFACE_NAMES
+from reduction.quantities.names import RESPONSES, SURFACE_NAMES, SURFACE_SCHEMA
 from reduction.quantities.units import combined_unit
 from reduction.record.contributions import combined_standard_uncertainty
 from reduction.record.errors import ArchiveError

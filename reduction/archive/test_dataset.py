@@ -11,9 +11,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from reduction.archive.dataset_builder import build_dataset, global_attributes
-from reduction.archive.schema import COEFFICIENTS, QUALITY_MASKS, schema_of
 from reduction.archive.shared_errors import with_shared
 from reduction.archive.test_variables import (
+    COEFFICIENTS,
     amplitude_values,
     curve_values,
     cycle_values,
@@ -38,6 +38,8 @@ from reduction.archive.test_variables import (
     trend_values,
 )
 from reduction.archive.variables import Values, note_values, numbers, pad, texts
+from reduction.quantities.flags import QUALITY_MASKS
+from reduction.quantities.names import STEPWISE_SCHEMA, TEST_SCHEMA
 from reduction.record.contributions import Contributions
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import (
@@ -163,7 +165,7 @@ def _coefficient_values(models: Sequence[StrainModel]) -> Values:
             "a strain method has coefficients that the archive has no name for",
             found=", ".join(unknown),
             needed=f"names among {', '.join(COEFFICIENTS)}",
-            hint="Add the name to reduction.quantities.names and to COEFFICIENTS of the schema.",
+            hint="Add its row to reduction.quantities.reduced_test, and the name to COEFFICIENTS.",
         )
     names = [name for name in COEFFICIENTS if name in used]
     uncertainty = np.full((len(models), len(names)), np.nan)
@@ -385,7 +387,7 @@ def to_dataset(
     """Bring a reduced test into the form of the archive; no file is touched."""
     return build_dataset(
         _all_values(test, kept),
-        schema_of(is_stepwise=test.stepwise is not None),
+        TEST_SCHEMA if test.stepwise is None else STEPWISE_SCHEMA,
         attributes=global_attributes(
             test, version=version, command=command, samples="all" if kept is None else kept.words
         ),

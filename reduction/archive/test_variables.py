@@ -5,44 +5,22 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import fields
-from itertools import chain
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reduction.archive.shared_errors import COMPONENT, SHARED_OF_STEPS
 from reduction.archive.variables import (
-    AXIS,
-    BOUND,
-    CLOCK,
-    CRITERION,
-    MOVEMENT,
-    NO_YES,
-    OF_UNCERTAINTY,
-    PART,
-    SETTING,
-    SPREAD,
-    STATED,
     Values,
-    Variable,
-    companion,
-    count,
-    flag,
-    in_group,
-    label,
-    mask,
-    measured,
     numbers,
     pad,
-    schema_from,
-    stated,
     texts,
 )
-from reduction.quantities.names import BRANCH_NAMES, BRANCH_VALUES
-from reduction.record.contributions import LINE_METHODS, LineSpread
+from reduction.quantities.flags import LINE_METHODS, STEP_MASKS
+from reduction.quantities.names import BRANCH_NAMES
+from reduction.record.contributions import LineSpread
 from reduction.record.measurement import Floats, Specimen
-from reduction.stages.channel_lag import LAG_REFUSALS, LagEstimate
+from reduction.stages.channel_lag import LagEstimate
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.holds.holds import HoldResult, hold_numbers
 from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair
@@ -74,6 +52,23 @@ from reduction.stages.moduli.modulus_product import (
 )
 from reduction.stages.moduli.stepwise_test import StepwiseResult
 from reduction.stages.standstills import Standstills
+
+COEFFICIENTS = {
+    "relaxed_free_length": "relaxed_free_length",
+    "relaxed_splice_length": "relaxed_splice_length",
+    "splice_compliance": "splice_compliance",
+    "splice_exponent": "splice_exponent",
+    "splice_strain_ratio": "splice_strain_ratio",
+    "free_length_intercept": "free_length_intercept",
+    "free_length_slope": "free_length_slope",
+    "free_fraction": "free_fraction",
+    "reference_position": "reference_position",
+    "gauge_length": "strain_gauge_length",
+}
+"""Coefficient of a strain method to its name here, along ``specimen``.
+
+They differ where the name has another meaning in a product.
+"""
 
 
 def cycle_values(cycles: Cycles, *, control: str) -> Values:
@@ -148,80 +143,6 @@ def slip_values(slips: Slips, *, specimens: tuple[str, ...]) -> Values:
         "slip_length": slips.slip_length,
         "slip_length_standard_uncertainty": slips.slip_length_standard_uncertainty,
     }
-
-
-_S = ("specimen",)
-
-_B = ("specimen", "branch_name", "strain_bin")
-
-_F = ("specimen", "branch_name", "first_loading_strain_bin")
-
-_BC = ("specimen", "selected_cycle", "branch_name", "strain_bin")
-
-_G = ("specimen", "branch_name", "segment")
-
-_R = ("comparison", "branch_name", "ratio_strain_bin")
-
-CURVE_ROWS: tuple[Variable, ...] = tuple(
-    chain(
-        stated("strain_window", (), SETTING),
-        measured("tangent_modulus", _B, "_count", "_minimum", "_maximum", "_scatter"),
-        measured("branch_tension", _B, "_count"),
-        in_group(
-            "curves",
-            measured("tangent_modulus_untrimmed", _B),
-            measured("tangent_modulus_by_cycle", _BC),
-        ),
-        in_group(
-            "first_loading",
-            measured("tangent_modulus_first_loading", _F),
-            measured("branch_tension_first_loading", _F),
-        ),
-        in_group(
-            "segments",
-            measured("segment_modulus", _G),
-            stated("segment_strain_low", _G, BOUND),
-            stated("segment_strain_high", _G, BOUND),
-            measured("segment_tension_low", _G),
-            measured("segment_tension_high", _G),
-            stated("segment_misfit", _G, SPREAD),
-            label("segment_criterion"),
-        ),
-        in_group(
-            "rubber",
-            measured("stress_at_strain", ("specimen", "strain_level")),
-            measured("slack_strain_at_unloading", _S),
-        ),
-        # the ratio of two specimens
-        in_group(
-            "comparisons",
-            label("ratio_numerator", ("comparison",)),
-            label("ratio_denominator", ("comparison",)),
-            measured("modulus_ratio", _R),
-            stated("modulus_ratio_low", _R, BOUND),
-            stated("modulus_ratio_high", _R, BOUND),
-            stated("modulus_ratio_degrees_of_freedom", _R, OF_UNCERTAINTY),
-            flag("modulus_ratio_is_different", _R, NO_YES),
-        ),
-    )
-)
-
-ELASTOMER_ROWS: tuple[Variable, ...] = tuple(
-    in_group(
-        "rubber",
-        label("elastomer_specimen", ("elastomer_fit",)),
-        label("elastomer_law", ("elastomer_fit",)),
-        stated("elastomer_rms_stress", ("elastomer_fit",), SPREAD),
-        stated("elastomer_strain_low", ("elastomer_fit",), BOUND),
-        stated("elastomer_strain_high", ("elastomer_fit",), BOUND),
-        flag("elastomer_is_stable", ("elastomer_fit",), NO_YES),
-        stated("elastomer_aicc", ("elastomer_fit",), CRITERION),
-        count("elastomer_parameter_fit", ("elastomer_parameter",)),
-        label("elastomer_parameter_name", ("elastomer_parameter",)),
-        measured("elastomer_modulus", ("elastomer_parameter",)),
-        measured("elastomer_exponent", ("elastomer_parameter",)),
-    )
-)
 
 
 def curve_values(curves: ModulusCurves) -> Values:
@@ -331,31 +252,6 @@ def elastomer_values(fits: Sequence[ElastomerFit]) -> Values:
     return values
 
 
-HOLD_ROWS: tuple[Variable, ...] = tuple(
-    in_group(
-        "holds",
-        count("hold_number", ("hold",)),
-        label("hold_specimen", ("hold",)),
-        label("hold_kind", ("hold",)),
-        stated("hold_start_time", ("hold",), CLOCK),
-        stated("hold_duration", ("hold",), CLOCK),
-        stated("hold_ramp_centre_time", ("hold",), CLOCK),
-        measured("hold_strain", ("hold",)),
-        measured("hold_initial_tension", ("hold",)),
-        measured("hold_final_tension", ("hold",)),
-        measured("relaxation_drop", ("hold",)),
-        measured("relaxation_rate_per_decade", ("hold",)),
-        measured("creep_rate_per_decade", ("hold",)),
-        measured("tension_at_time", ("hold", "hold_time")),
-        measured("strain_at_time", ("hold", "hold_time")),
-        measured("prony_tension", ("hold", "prony_term")),
-        measured("prony_time", ("hold", "prony_term")),
-        measured("long_time_tension", ("hold",)),
-        label("hold_criterion", ("hold",)),
-        label("hold_refusal", ("hold",)),
-    )
-)
-
 _PLAIN = (
     "hold_start_time",
     "hold_duration",
@@ -434,16 +330,6 @@ def _on_common_times(holds: Sequence[HoldResult], name: str, times: Floats) -> F
     return table
 
 
-LAG_ROWS: tuple[Variable, ...] = tuple(
-    in_group(
-        "record",
-        measured("channel_lag", _S),
-        count("channel_lag_turns", _S),
-        flag("channel_lag_refusal", _S, LAG_REFUSALS),
-    )
-)
-
-
 def lag_values(estimate: LagEstimate) -> Values:
     """Return what the turns of the wave say of the clocks of the channels."""
     return {
@@ -454,56 +340,7 @@ def lag_values(estimate: LagEstimate) -> Values:
     }
 
 
-LINE_REFUSALS = {
-    "given": 0,
-    "quasi_static_unknown": 1,
-    "quasi_static_not_positive": 2,
-    "reading_missing": 3,
-    "reading_not_positive": 4,
-    "loss_reaches_apparent": 5,
-    "storage_not_above_quasi_static": 6,
-}
-"""Meanings of the codes of `reduction.stages.line.line_product.REASONS`, as a flag has them."""
-
 _LINE = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
-
-_C = ("specimen", "cycle")
-
-_T = ("specimen", "tension_grid")
-
-_P = ("specimen", "pull_term")
-
-LINE_ROWS: tuple[Variable, ...] = tuple(
-    in_group(
-        "line",
-        chain.from_iterable(measured(name, _C) for name in _LINE),
-        flag("line_refusal", _C, LINE_REFUSALS),
-        measured("test_quasi_static_spring_constant", _S),
-        chain.from_iterable(measured(f"test_{name}", _S) for name in _LINE),
-        stated("test_line_conditioning", _S, "a sensitivity"),
-        flag("test_line_refusal", _S, LINE_REFUSALS),
-        flag("test_line_uncertainty_method", _S, LINE_METHODS),
-        stated("test_line_without_solution_share", _S, PART),
-        chain.from_iterable(
-            stated(f"test_{name}_{end}", _S, BOUND) for name in _LINE for end in ("low", "high")
-        ),
-        stated("tension_grid", ("tension_grid",), AXIS),
-        measured("quasi_static_spring_constant", _T),
-        measured("quasi_static_strain", _T),
-        count("pull_term", ("pull_term",)),
-        measured("pull_strain_coefficient", _P),
-        stated("pull_spring_constant_coefficient", _P, "a re-expression of the load-strain cubic"),
-        stated("pull_tension_low", _S, BOUND),
-        stated("pull_tension_high", _S, BOUND),
-        stated("pull_strain_rate", _S, MOVEMENT),
-        stated("pull_waiting_time", _S, STATED),
-        label("pull_waiting", _S),
-        stated("pull_residual", _S, SPREAD),
-        stated("pull_reference_tension", _S, STATED),
-        stated("break_share", ("break_share",), SETTING),
-        measured("strain_at_break_share", ("specimen", "break_share")),
-    )
-)
 
 
 def line_values(
@@ -614,77 +451,6 @@ _HELD_POINT = ("held_pair", "held_pair_point")
 _U = "_standard_uncertainty"
 
 _OVER = re.compile("_over_strength|^creep_compliance")
-
-ROPE_ROWS: tuple[Variable, ...] = tuple(
-    in_group(
-        "programme",
-        label("programme_step"),
-        # bedding-in
-        count("bedding_cycles", _S),
-        chain.from_iterable(
-            measured(f"bedding_{name}", _S)
-            for name in (
-                "first_stiffness",
-                "last_stiffness",
-                "first_stiffness_over_strength",
-                "last_stiffness_over_strength",
-                "stiffening",
-                "permanent_strain",
-            )
-        ),
-        # dynamic stiffness
-        count("dynamic_cycles", _S),
-        measured("dynamic_stiffness", _S),
-        measured("dynamic_stiffness_over_strength", _S),
-        measured("dynamic_stiffness_drift", _S),
-        measured("dynamic_frequency", _S),
-        measured("dynamic_mean_tension", _S),
-        measured("dynamic_tension_amplitude", _S),
-        measured("dynamic_mean_tension_over_strength", _S),
-        measured("dynamic_tension_amplitude_over_strength", _S),
-        # quasi-static stiffness
-        count("held_pair", _HELD_PAIR),
-        label("held_pair_specimen", _HELD_PAIR),
-        count("held_pair_low_hold", _HELD_PAIR),
-        count("held_pair_high_hold", _HELD_PAIR),
-        measured("held_pair_low_tension", _HELD_PAIR),
-        measured("held_pair_high_tension", _HELD_PAIR),
-        stated("static_reference_time", _HELD_PAIR, SETTING),
-        measured("static_stiffness", _HELD_PAIR),
-        measured("static_stiffness_over_strength", _HELD_PAIR),
-        measured("static_stiffness_per_decade", _HELD_PAIR),
-        measured("static_stiffness_per_decade_over_strength", _HELD_PAIR),
-        label("static_refusal", _HELD_PAIR),
-        count("held_pair_point", ("held_pair_point",)),
-        stated("static_elapsed_time", _HELD_POINT, CLOCK),
-        stated(
-            "static_stiffness_at_time",
-            _HELD_POINT,
-            "mean of readings: static_stiffness has their scatter",
-        ),
-        # creep
-        measured("creep_tension_over_strength", ("hold",)),
-        measured("creep_compliance_per_decade", ("hold",)),
-        # cycles to failure
-        count("cycles_to_failure", _S),
-        flag("cycles_are_run_out", _S, NO_YES),
-        stated("failure_peak_tension", _S, "mean over the cycles; each cycle has an uncertainty"),
-        stated("failure_valley_tension", _S, "mean over the cycles; each cycle has an uncertainty"),
-        stated(
-            "failure_peak_tension_over_strength",
-            _S,
-            "mean over the cycles; each cycle has an uncertainty",
-        ),
-        label("failure_judged_by", _S),
-        # pulls to the end
-        flag("pull_is_break", _S, NO_YES),
-        measured("pull_peak_tension", _S),
-        measured("pull_peak_tension_over_strength", _S),
-        measured("pull_peak_strain", _S),
-        measured("tensile_strength", _S),
-        measured("strain_at_failure", _S),
-    )
-)
 
 
 def rope_values(step: RopeStep, specimens: tuple[Specimen, ...]) -> Values:
@@ -853,41 +619,6 @@ def _tensile_values(pull: TensilePull) -> Values:
             seen = values[f"pull_{source}{suffix}"]
             values[f"{name}{suffix}"] = np.where(pull.is_break, seen, np.nan)
     return values
-
-
-STEP_MASKS = {"length_and_elongation_disagree": 1, "creep": 2}
-
-STEP_ROWS: tuple[Variable, ...] = tuple(
-    chain(
-        label("clock", ("step",)),
-        measured("gauge_length", ("step",)),
-        stated("eye_to_eye_length", ("step",), "a tape reading"),
-        stated("printed_strain", ("step",), STATED),
-        mask("step_flag", ("step",), STEP_MASKS),
-        measured("relaxed_gauge_length", ()),
-        stated("interval_strain", ("interval",), "middle of two readings"),
-        measured("interval_modulus", ("interval",)),
-        flag("interval_branch", ("interval",), BRANCH_VALUES),
-    )
-)
-
-STEPWISE: dict[str, Variable] = schema_from(
-    chain(
-        stated("time", ("step",), CLOCK),
-        measured("tension", ("step",)),
-        measured("strain", ("step",), ancillary=("step_flag",)),
-        flag("branch", ("step",), BRANCH_VALUES),
-        measured("secant_modulus", ("step",)),
-        *(
-            (
-                companion(name, "_random_standard_uncertainty", dims),
-                companion(name, "_uncertainty_contribution", (COMPONENT, *dims)),
-            )
-            for name, dims in SHARED_OF_STEPS.items()
-        ),
-    )
-)
-"""Names that stand along ``step`` in a stepwise test."""
 
 
 def stepwise_values(result: StepwiseResult) -> Values:

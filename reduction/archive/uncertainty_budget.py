@@ -18,8 +18,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from reduction.archive.shared_errors import COMPONENT, FREEDOM, SHARED_OF_CHANNELS, components_of
+from reduction.archive.shared_errors import FREEDOM, SHARED_OF_CHANNELS, components_of
 from reduction.archive.variables import stored
+from reduction.quantities.row import COMPONENT
 from reduction.quantities.units import parse_quantity
 from reduction.record.contributions import Component, effective_degrees_of_freedom
 from reduction.record.errors import ArchiveError, SettingsError

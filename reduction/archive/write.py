@@ -34,7 +34,7 @@ from pydantic import (
 )
 
 from reduction.archive.atomic_write import atomic_file, remove_abandoned, take_away
-from reduction.archive.variables import GROUPS
+from reduction.quantities.row import GROUPS
 from reduction.record.errors import ArchiveError
 from reduction.record.samples import release_pages, sample_blocks
 from reduction.uncertainty.budget import DecisionRule

@@ -20,8 +20,8 @@ from reduction.archive.variables import stored
 from reduction.cli.lookup import name_of_quantity
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, short, table_of
+from reduction.quantities.flags import LINE_METHODS
 from reduction.quantities.units import UnitSystem, display_unit
-from reduction.record.contributions import LINE_METHODS
 from reduction.record.errors import SettingsError
 from reduction.uncertainty.budget import Budget
 from reduction.uncertainty.monte_carlo import PARAMETERS

@@ -86,7 +86,7 @@ def name_of_quantity(text: str) -> str:
     ['apparent_spring_constant', 'branch_tension', 'loss_factor']
     """
     symbols = {
-        SINGLE_QUANTITIES[name].symbol.split(",")[0].split()[-1].replace("_", ""): name
+        SINGLE_QUANTITIES[name].source.split(",")[0].split()[-1].replace("_", ""): name
         for name in _OF_CYCLES
     } | _OF_CURVES
     return symbols.get(text.replace("_", ""), text)

@@ -17,7 +17,6 @@ import xarray as xr
 
 from reduction.archive.shared_errors import components_of
 from reduction.archive.test_dataset import strain_model_of
-from reduction.archive.test_variables import STEP_MASKS
 from reduction.archive.variables import stored
 from reduction.lines.composite import (
     CurvePiece,
@@ -28,6 +27,7 @@ from reduction.lines.composite import (
     piece_of_steps,
     pieces_of_branches,
 )
+from reduction.quantities.flags import STEP_MASKS
 from reduction.record.contributions import Contributions
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats

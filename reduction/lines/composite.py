@@ -74,7 +74,8 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from reduction.quantities.names import BRANCH_NAMES, BRANCH_VALUES
+from reduction.quantities.flags import BRANCH_VALUES
+from reduction.quantities.names import BRANCH_NAMES
 from reduction.record.arrays import as_finite, as_increasing, as_same_shape
 from reduction.record.contributions import (
     Component,

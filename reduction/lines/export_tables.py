@@ -25,12 +25,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from reduction import __version__
 from reduction.archive.atomic_write import atomic_file
-from reduction.archive.shared_errors import COMPONENT
 from reduction.lines.deck_moordyn import number
 from reduction.lines.export_line import CurveSpread, ExportLine, curve_from_zero, range_of
 from reduction.lines.line_search import LineDifference
 from reduction.lines.lookup_product import DesignValues, LineSource
 from reduction.quantities.names import quantity
+from reduction.quantities.row import COMPONENT
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.record.contributions import Component
 from reduction.record.errors import ArchiveError, SettingsError

@@ -28,7 +28,7 @@ from reduction.pipeline.located_test import (
     strain_of_record,
 )
 from reduction.pipeline.rope_test import PullConditions, parts_of_line, pull_specimens, rope_step
-from reduction.quantities.names import PHASE_VALUES
+from reduction.quantities.flags import PHASE_VALUES
 from reduction.record.contributions import (
     Component,
     Contributions,

@@ -26,9 +26,6 @@ from reduction.record.arrays import as_positive
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats, Integers, read_only_arrays
 
-LINE_METHODS = {"not_given": 0, "linear": 1, "monte_carlo": 2}
-"""How the uncertainty of a line was found, by its code in `LineSpread`."""
-
 
 @dataclass(frozen=True)
 class InstrumentErrors:

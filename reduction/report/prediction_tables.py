@@ -287,22 +287,15 @@ def compared_curve_table(view: ComparisonView) -> PageTable | None:
     (
         sheet.texts(
             "curve", [f"{one}, judged" if one == view.judged else one for one in view.curves]
-        )
-        .numbers("bias", "tension_bias")
-        .numbers("RMS", "tension_rms")
-        .numbers("relative RMS", "tension_relative_rms", PERCENT)
-        .numbers("greatest difference", "worst_tension_difference")
-        .numbers("at strain", "worst_strain", PERCENT)
+        ).shown("compared curves")
     )
     if view.fitted:
-        force = shown("tension", view.units)
+        calibrated = Sheet(view).shown("calibrated curve")
+        left = dict(zip(calibrated.headings, (one for (one,) in calibrated.columns), strict=True))
         sheet.row(
             words(f"{view.judged}, calibrated"),
-            number(view.scalar("calibrated_bias"), force),
-            number(view.scalar("calibrated_rms"), force),
-            number(view.scalar("calibrated_relative_rms"), PERCENT),
-            words(""), words(""),
-        )  # fmt: skip
+            *(left.get(heading, words("")) for heading in sheet.headings[1:]),
+        )
     return sheet.table(
         f"Predicted less measured tension of each curve, {view.name}.",
         remarks=[
@@ -317,15 +310,7 @@ def compared_curve_table(view: ComparisonView) -> PageTable | None:
 def compared_event_table(view: ComparisonView) -> PageTable | None:
     """Return what happens to the cords, predicted and measured, in tension and in strain."""
     sheet = Sheet(view, ("hose_event",))
-    (
-        sheet.texts("event", [event.words for event in view.events])
-        .numbers("predicted strain", "event_strain", PERCENT)
-        .numbers("predicted tension", "event_tension")
-        .numbers("measured there", "event_measured_tension")
-        .measured("difference of tension", "event_tension_difference")
-        .numbers("strain of that tension", "event_measured_strain", PERCENT)
-        .measured("difference of strain", "event_strain_difference", PERCENT)
-    )
+    (sheet.texts("event", [event.words for event in view.events]).shown("compared events"))
     missing = not np.isfinite(sheet.of("event_measured_tension")).all()
     return sheet.table(
         f"What happens to the cords, {view.name}: at the predicted strain the tension, and at the"
@@ -342,11 +327,7 @@ def energy_table(view: ComparisonView) -> PageTable | None:
     return (
         Sheet(view, where="measured_energy")
         .spans("between strains", "energy_strain_low", "energy_strain_high", PERCENT, places=1)
-        .numbers("measured, ascending", "measured_energy")
-        .numbers("predicted", "predicted_energy")
-        .numbers("difference", "energy_difference")
-        .numbers("loop", "loop_energy")
-        .numbers("loop over measured", "loop_energy_share", PERCENT, 3)
+        .shown("compared energies")
         .table(
             f"Energy taken up by a length of hose at rest, {view.name}.",
             remarks=["The prediction has no loop, and lies below the ascending branch by about half"

@@ -14,7 +14,6 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from reduction.archive.campaign_products import outcomes_of_dataset
-from reduction.archive.shared_errors import COMPONENT
 from reduction.archive.surfaces_dataset import surface_names, surfaces_of
 from reduction.archive.variables import read_notes, stored
 from reduction.experiments.fit_results import ResponseSurfaces
@@ -22,6 +21,7 @@ from reduction.experiments.outcome_groups import Group
 from reduction.experiments.outcomes import Outcome
 from reduction.prediction.hose_geometry import NEUTRAL_ANGLE
 from reduction.quantities.names import QUANTITIES, RESPONSES
+from reduction.quantities.row import COMPONENT
 from reduction.quantities.units import UnitSystem, combined_unit, display_unit
 from reduction.record.measurement import Floats
 from reduction.record.notes import Note

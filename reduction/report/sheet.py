@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, Protocol, Self
 import numpy as np
 import xarray as xr
 
-from reduction.quantities.names import QUANTITIES
+from reduction.quantities.names import ON_PAGE, QUANTITIES
 from reduction.quantities.units import UnitSystem
 from reduction.record.measurement import Bools, Integers
 from reduction.report import text_style as htmltable
@@ -27,6 +27,7 @@ from reduction.report.test_view import (
 )
 from reduction.report.text_style import (
     NOT_GIVEN,
+    PERCENT,
     Kind,
     PageTable,
     Shown,
@@ -244,6 +245,16 @@ class Sheet:
         for heading, name, *unit in columns:
             self.measured(heading, name, *unit)  # type: ignore[arg-type]
         return self
+
+    def shown(self, page: str) -> Self:
+        """Add the columns whose rows in `reduction.quantities` name a table of the page."""
+        return self.all_of(
+            *(
+                (row.page[1], row.name, PERCENT if row.percent else None)
+                for row in ON_PAGE[page]
+                if row.name in self.data
+            )
+        )
 
     def table(
         self,

@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from reduction.archive.schema import COEFFICIENTS
+from reduction.archive.test_variables import COEFFICIENTS
 from reduction.archive.uncertainty_budget import cycles_averaged
-from reduction.quantities.names import BRANCH_NAMES, BRANCH_VALUES, QUANTITIES
+from reduction.quantities.flags import BRANCH_VALUES
+from reduction.quantities.names import BRANCH_NAMES, ON_PAGE, QUANTITIES
 from reduction.quantities.units import UnitSystem
 from reduction.record.measurement import Floats
 from reduction.report.answer_tables import answer_budgets, budget_sentences, budget_table
@@ -64,32 +65,6 @@ from reduction.stages.moduli.local_regression import curve_at
 STEPS = (0.25, 0.05, 0.01)
 
 """Strain from row to row: the first that a test of the campaign reaches; a rope is stiff. [1]"""
-
-_MEANS: tuple[tuple[str, str, Unit], ...] = (
-    ("mean strain", "test_mean_strain", PERCENT),
-    ("strain amplitude", "test_strain_amplitude", PERCENT),
-    ("mean tension", "test_mean_tension", None),
-    ("tension amplitude", "test_tension_amplitude", None),
-    ("frequency", "test_frequency", None),
-    ("apparent spring constant", "test_apparent_spring_constant", None),
-    ("E', storage spring constant", "test_storage_spring_constant", None),
-    ("E'', loss spring constant", "test_loss_spring_constant", None),
-    ("dynamic modulus", "test_dynamic_modulus", None),
-    ("loss factor", "test_loss_factor", None),
-    ("hysteresis energy", "test_hysteresis_energy", None),
-    ("peak tension per decade of cycles", "peak_tension_per_decade", None),
-    ("dynamic modulus per decade", "dynamic_modulus_per_decade", None),
-    ("change of peak tension, first to last cycle", "peak_tension_change", PERCENT),
-    ("drift of peak tension per cycle", "creep_per_cycle", None),
-    ("strain where it goes slack, unloading", "slack_strain_at_unloading", PERCENT),
-)
-
-_LINE = (
-    ("K_0, quasi-static spring constant", "test_quasi_static_spring_constant"),
-    ("K_1, dissipation spring constant", "test_dissipation_spring_constant"),
-    ("tau, relaxation time", "test_relaxation_time"),
-    ("C = K_1 tau, dashpot coefficient", "test_dashpot_coefficient"),
-)
 
 CONDITIONING = (
     "Conditioning, K_0 / (E' - K_0): how many times a relative error of K_0 enters E' - K_0, on"
@@ -328,7 +303,7 @@ def _segments(view: TestView) -> Sheet:
 
 def _summary_table(view: TestView) -> PageTable | None:
     """Return the means over the cycles of a test, and what changed over them."""
-    sheet = Sheet(view, ("specimen",)).all_of(*(one for one in _MEANS if one[1] in view.data))
+    sheet = Sheet(view, ("specimen",)).shown("means")
     if not any(np.isfinite(sheet.of(name)).any() for name in sheet.known):
         return None
     said = [sheet.about()]
@@ -493,16 +468,7 @@ def _hold_table(view: TestView) -> PageTable | None:
     """Return the holds; a column that no hold fills is left out."""
     sheet = Sheet(view, ("hold",))
     sheet.texts("hold", "hold_number").texts("specimen", "hold_specimen").texts("kind", "hold_kind")
-    sheet.all_of(
-        ("starts at", "hold_start_time"),
-        ("lasts", "hold_duration"),
-        ("strain", "hold_strain", PERCENT),
-        ("tension at its start", "hold_initial_tension"),
-        ("tension at its end", "hold_final_tension"),
-        ("tension lost", "relaxation_drop", PERCENT),
-        ("tension lost per decade of time", "relaxation_rate_per_decade", PERCENT),
-        ("strain gained per decade of time", "creep_rate_per_decade", PERCENT),
-    )
+    sheet.shown("holds")
     return sheet.table(
         "Holds: relaxation at constant length, creep at constant tension.", tall=12,
         optional=sheet.headings, remarks=[sheet.about(found_from=_OF_HOLDS)],
@@ -611,8 +577,9 @@ def _line_table(view: TestView) -> PageTable | None:
 
 def add_line(sheet: Sheet, view: TestView) -> Sheet:
     """Add the parameters of the line of the specimens in the rows: those drawn, as intervals."""
-    for heading, name in _LINE:
-        sheet.measured(heading, name)
+    for line in ON_PAGE["line"]:
+        name = line.name
+        sheet.measured(line.page[1], name)
         unit, values = sheet.unit_of(name) or Shown("1", 1.0), sheet.of(name)
         for row, place in enumerate(sheet.places["specimen"]):
             drawn = drawn_interval(view, name, int(place))
@@ -624,7 +591,7 @@ def add_line(sheet: Sheet, view: TestView) -> Sheet:
 
 def about_line(sheet: Sheet, tests: Sequence[TestView]) -> list[str]:
     """Say what ± and brackets hold in a table of lines."""
-    names = [name for _, name in _LINE]
+    names = [row.name for row in ON_PAGE["line"]]
     has_fit = "quasi_static_fit" in shared_sources(tests, names)
     said = plus_minus_of_tests(
         sheet.factors, tests, names, found_from="scatter between cycles" if has_fit else _OF_LINE

@@ -22,9 +22,9 @@ from reduction.archive.shared_errors import stated_errors_of
 from reduction.archive.test_dataset import stored_cycles
 from reduction.archive.uncertainty_budget import effective_freedom
 from reduction.archive.variables import read_notes
+from reduction.quantities.flags import LINE_METHODS
 from reduction.quantities.units import UnitSystem
 from reduction.record.contributions import (
-    LINE_METHODS,
     StatedErrors,
     coverage_factor,
     effective_degrees_of_freedom,

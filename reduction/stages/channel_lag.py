@@ -35,19 +35,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reduction.quantities.flags import LAG_REFUSALS
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, Integers, read_only_arrays
 from reduction.record.samples import BLOCK, sample_blocks, take_samples
 from reduction.stages.standstills import median_step
-
-LAG_REFUSALS = {
-    "given": 0,
-    "few_turns": 1,
-    "few_samples_a_ramp": 2,
-    "turns_not_sharp": 3,
-    "early_as_damping_makes_it": 4,
-}
-"""Why there is no lag, by its code in `LagEstimate`."""
 
 _SHARE = 0.45  # of a ramp, on either side of a turn
 

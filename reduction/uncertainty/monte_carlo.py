@@ -29,9 +29,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import gammaincinv
 
+from reduction.quantities.flags import LINE_METHODS
 from reduction.record.arrays import as_same_shape
 from reduction.record.contributions import (
-    LINE_METHODS,
     LineSpread,
     combined_standard_uncertainty,
     coverage_factor,

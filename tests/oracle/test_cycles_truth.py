@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from reduction.quantities.names import PHASE_VALUES
+from reduction.quantities.flags import PHASE_VALUES
 from reduction.record.errors import DataError
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_search import find_cycles, label_phases

@@ -50,7 +50,7 @@ def test_symbols_of_the_look_up_are_those_of_the_vocabulary():
     rows = re.findall(r"^\| (\w+) \| `(\w+)` \|", page, re.MULTILINE)
     assert len(rows) == 6
     for symbol, name in rows:
-        assert SINGLE_QUANTITIES[name].symbol.split(",")[0].split()[-1] in (
+        assert SINGLE_QUANTITIES[name].source.split(",")[0].split()[-1] in (
             symbol, symbol.replace("_", "")
         )  # fmt: skip
 

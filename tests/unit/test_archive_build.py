@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from reduction.archive.dataset_builder import build_dataset
-from reduction.archive.schema import SCHEMA
 from reduction.archive.write import _write_netcdf
+from reduction.quantities.names import TEST_SCHEMA
 
 # 65,536 doubles are half a megabyte: a few milliseconds to read, and 1,526 chunks in 1e8 samples
 LARGEST = 65536
@@ -28,7 +28,9 @@ LARGEST = 65536
 )
 def test_a_chunk_holds_the_last_dimensions_up_to_half_a_megabyte(name, shape, chunk, tmp_path):
     values = {name: np.zeros(shape)}
-    build_dataset(values, SCHEMA, attributes={}).to_netcdf(tmp_path / "long.nc", engine="netcdf4")
+    build_dataset(values, TEST_SCHEMA, attributes={}).to_netcdf(
+        tmp_path / "long.nc", engine="netcdf4"
+    )
     with netCDF4.Dataset(tmp_path / "long.nc") as file:
         stored = file[name]
         sizes = stored.chunking()
@@ -42,7 +44,9 @@ def test_a_chunk_holds_the_last_dimensions_up_to_half_a_megabyte(name, shape, ch
 
 def test_a_short_variable_is_not_cut(tmp_path):
     values = {"crosshead_position": np.zeros(4095)}
-    build_dataset(values, SCHEMA, attributes={}).to_netcdf(tmp_path / "short.nc", engine="netcdf4")
+    build_dataset(values, TEST_SCHEMA, attributes={}).to_netcdf(
+        tmp_path / "short.nc", engine="netcdf4"
+    )
     with netCDF4.Dataset(tmp_path / "short.nc") as file:
         assert file["crosshead_position"].chunking() == "contiguous"
 
@@ -55,12 +59,12 @@ def test_a_quantised_channel_is_stored_without_the_filter_that_would_make_it_lar
     tension = 400 + 100 * np.sin(np.arange(150_000) / 60) + rng.normal(0, 1, 150_000)
     if is_quantised:
         tension = np.round(tension / 1.085) * 1.085
-    dataset = build_dataset({"tension": np.stack([tension, tension])}, SCHEMA, attributes={})
+    dataset = build_dataset({"tension": np.stack([tension, tension])}, TEST_SCHEMA, attributes={})
     sizes = {}
     for shuffle in (True, False):
         dataset["tension"].encoding["shuffle"] = shuffle
         _write_netcdf(dataset, tmp_path / "tried.nc")
         sizes[shuffle] = (tmp_path / "tried.nc").stat().st_size
-    found = build_dataset({"tension": np.stack([tension, tension])}, SCHEMA, attributes={})
+    found = build_dataset({"tension": np.stack([tension, tension])}, TEST_SCHEMA, attributes={})
     assert found["tension"].encoding["shuffle"] is (sizes[True] < sizes[False])
     assert found["tension"].encoding["shuffle"] is not is_quantised

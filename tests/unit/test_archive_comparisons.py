@@ -13,10 +13,10 @@ from compared_hoses import LOOP, NOT_APART, SOURCE, TRUTH, agreeing, dataset, di
 from measured_hoses import INCH
 
 from reduction.archive.open import open_archive
-from reduction.archive.schema import COMPARISON_SCHEMA
 from reduction.archive.uncertainty_budget import budget_from_archive
 from reduction.archive.write import write_archive
 from reduction.prediction.comparison_error import EventDifference
+from reduction.quantities.names import COMPARISON_SCHEMA
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Origin
 

@@ -7,8 +7,8 @@ import pytest
 import xarray as xr
 
 from reduction.archive.open import open_archive
-from reduction.archive.schema import SCHEMA
 from reduction.archive.test_dataset import to_dataset
+from reduction.quantities.names import TEST_SCHEMA
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Quality
 
@@ -26,7 +26,7 @@ def test_every_kind_of_product_comes_back_as_it_was(any_test, write):
 
 def test_the_rich_test_fills_every_variable_that_a_log_can_have(rich_test, bare_test):
     filled = set(build(rich_test).variables) | set(build(bare_test).variables)
-    steps = {name for name, row in SCHEMA.items() if {"step", "interval"} & set(row.dims)}
+    steps = {name for name, row in TEST_SCHEMA.items() if {"step", "interval"} & set(row.dims)}
     # another datum, control, strain method or length than that of the examples
     alternatives = {
         "tension_band", "tension_rate", "measured_strain", "free_fraction", "reference_position",
@@ -34,7 +34,9 @@ def test_the_rich_test_fills_every_variable_that_a_log_can_have(rich_test, bare_
         "relaxed_gauge_length", "uncertainty_source_degrees_of_freedom", "sample_index",
         "crosshead_displacement_random", "crosshead_displacement_uncertainty_contribution",
     }  # fmt: skip
-    missing = {name.removesuffix("_standard_uncertainty") for name in set(SCHEMA) - filled - steps}
+    missing = {
+        name.removesuffix("_standard_uncertainty") for name in set(TEST_SCHEMA) - filled - steps
+    }
     assert missing <= alternatives
 
 

@@ -22,11 +22,12 @@ from predicted_hoses import (
 
 from reduction.archive.campaign_products import EVENTS
 from reduction.archive.open import open_archive
-from reduction.archive.schema import HOSE_STATES, PREDICTION_SCHEMA
 from reduction.archive.write import write_archive
 from reduction.prediction.cord_curve import CordCurve
 from reduction.prediction.hose_prediction import _LayerResponse
 from reduction.prediction.hose_product import HosePrediction
+from reduction.quantities.flags import HOSE_STATES
+from reduction.quantities.names import PREDICTION_SCHEMA
 from reduction.record.errors import ArchiveError
 
 COMPLIANCE = Path(__file__).parents[1] / "compliance.py"

@@ -10,10 +10,9 @@ from archive_check import check_archive
 from experiments import ABOUT, STRENGTH, screening_experiment, surface_experiment
 
 from reduction.archive.open import open_archive
-from reduction.archive.schema import SURFACE_SCHEMA
 from reduction.archive.surfaces_dataset import surfaces_to_dataset
 from reduction.archive.write import write_archive
-from reduction.quantities.names import RESPONSES
+from reduction.quantities.names import RESPONSES, SURFACE_SCHEMA
 from reduction.record.errors import ArchiveError
 from reduction.record.notes import Note
 

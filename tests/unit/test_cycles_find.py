@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.quantities.names import BRANCH_VALUES, PHASE_VALUES
+from reduction.quantities.flags import BRANCH_VALUES, PHASE_VALUES
 from reduction.record.errors import DataError
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_search import find_cycles, label_phases

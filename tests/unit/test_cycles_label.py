@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.quantities.names import PHASE_VALUES
+from reduction.quantities.flags import PHASE_VALUES
 from reduction.record.errors import DataError
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import label_phases

@@ -12,7 +12,7 @@ from reduction.pipeline.reduce_test import (
     _readings_of,
     _with_readings,
 )
-from reduction.quantities.names import PHASE_VALUES
+from reduction.quantities.flags import PHASE_VALUES
 from reduction.record.contributions import InstrumentErrors
 from reduction.record.measurement import Record, Specimen
 from reduction.stages.strain.strain_model import StrainModel

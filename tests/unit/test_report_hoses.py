@@ -21,9 +21,9 @@ from predicted_hoses import (
     working_tension,
 )
 
-from reduction.archive.schema import HOSE_STATES
 from reduction.archive.write import write_archive
 from reduction.prediction.cord_curve import CordCurve
+from reduction.quantities.flags import HOSE_STATES
 from reduction.record.errors import ArchiveError
 from reduction.report.campaign_page import write_report
 from reduction.report.campaign_sections import _hose_findings, _hose_tiles, _make_hose_section

@@ -11,18 +11,20 @@ from reduction.archive.csv_columns import (
     csv_text,
     uncertainty_of,
 )
-from reduction.archive.schema import SCHEMA
-from reduction.archive.variables import label
+from reduction.quantities.names import QUANTITIES, TEST_SCHEMA
 
 
 def test_a_real_has_its_unit_in_the_header_and_a_label_or_count_has_none():
-    assert CsvColumn("segment_modulus", SCHEMA["segment_modulus"]).header == "segment_modulus [Pa]"
-    assert CsvColumn("segment", SCHEMA["segment"]).header == "segment"
-    assert CsvColumn("strain_method", SCHEMA["strain_method"]).header == "strain_method"
+    assert (
+        CsvColumn("segment_modulus", TEST_SCHEMA["segment_modulus"]).header
+        == "segment_modulus [Pa]"
+    )
+    assert CsvColumn("segment", TEST_SCHEMA["segment"]).header == "segment"
+    assert CsvColumn("strain_method", TEST_SCHEMA["strain_method"]).header == "strain_method"
 
 
 def test_a_measured_column_is_followed_by_its_uncertainty():
-    column = uncertainty_of(CsvColumn("segment_modulus", SCHEMA["segment_modulus"]))
+    column = uncertainty_of(CsvColumn("segment_modulus", TEST_SCHEMA["segment_modulus"]))
     assert column.header == "segment_modulus_standard_uncertainty [Pa]"
 
 
@@ -42,9 +44,9 @@ def test_a_count_is_written_without_a_point():
 
 
 def test_flags_are_written_in_words():
-    branches = _shown_values(np.array([1, 2, 7]), SCHEMA["branch"])
+    branches = _shown_values(np.array([1, 2, 7]), TEST_SCHEMA["branch"])
     assert branches.tolist() == ["ascending", "descending", "7"]
-    flags = _shown_values(np.array([0, 33]), SCHEMA["quality_flag"])
+    flags = _shown_values(np.array([0, 33]), TEST_SCHEMA["quality_flag"])
     assert flags.tolist() == ["", "missing spike"]
 
 
@@ -53,7 +55,7 @@ def test_a_table_of_columns_is_that_of_its_rows():
     rows = [[label, 0.1 * place, None] for place, label in enumerate(labels)]
     table = pd.DataFrame(
         {
-            "a": _shown_values(np.array(labels), label("test")[0]),
+            "a": _shown_values(np.array(labels), QUANTITIES["test"]),
             "b": np.array([row[1] for row in rows]),
             "c": None,
         }
@@ -78,8 +80,8 @@ def test_text_with_commas_quotes_and_line_ends_is_quoted():
 
 
 def test_a_label_says_why_it_has_no_uncertainty():
-    assert CsvColumn("test", label("test")[0]).description == ["test", "", "test", "label"]
-    assert CsvColumn("segment_modulus", SCHEMA["segment_modulus"]).description == [
+    assert CsvColumn("test", QUANTITIES["test"]).description == ["test", "", "test", "label"]
+    assert CsvColumn("segment_modulus", TEST_SCHEMA["segment_modulus"]).description == [
         "segment_modulus [Pa]",
         "Pa",
         "slope of a piecewise-linear segment",

@@ -7,11 +7,10 @@ from table_cells import table_rows
 
 from reduction.archive.csv_definitions import EXPERIMENT_TABLES
 from reduction.archive.csv_tables import _by_response
-from reduction.archive.schema import SURFACE_SCHEMA
 from reduction.archive.surfaces_dataset import surfaces_to_dataset
 from reduction.experiments.stationary_point import ridge_path
 from reduction.experiments.surface_points import evaluate_surfaces
-from reduction.quantities.names import RESPONSE_PATTERNS, RESPONSES, SURFACE_NAMES
+from reduction.quantities.names import RESPONSE_PATTERNS, RESPONSES, SURFACE_NAMES, SURFACE_SCHEMA
 from reduction.uncertainty.surface_errors import with_shared_at_points
 
 ONE = surface_experiment()

@@ -10,11 +10,11 @@ from reduction.archive.csv_columns import (
     column_descriptions,
     uncertainty_of,
 )
-from reduction.archive.variables import measured
+from reduction.quantities.names import QUANTITIES
 
 
 def test_an_empty_cell_beside_a_number_has_a_reason_and_a_full_column_needs_none():
-    diameter = CsvColumn("diameter", measured("diameter", ("specimen",))[0])
+    diameter = CsvColumn("diameter", QUANTITIES["diameter"])
     columns = [diameter, uncertainty_of(diameter), SYNTHETIC]
     holed = _lonely_numbers(columns, pd.DataFrame([[0.02, np.nan, "no"], [0.02, 1e-4, "no"]]))
     full = _lonely_numbers(columns, pd.DataFrame([[np.nan, np.nan, "no"], [0.02, 1e-4, "no"]]))

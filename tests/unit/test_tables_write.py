@@ -9,12 +9,11 @@ from experiments import ABOUT, screening_experiment, surface_experiment
 
 from reduction.archive.csv_definitions import EXPERIMENT_TABLES, TABLES
 from reduction.archive.csv_tables import ENVELOPE_COLUMNS, STATIC_DYNAMIC_COLUMNS, write_tables
-from reduction.archive.schema import SCHEMA
 from reduction.archive.shared_errors import SHARED_OF_CHANNELS
 from reduction.archive.surfaces_dataset import surfaces_to_dataset
-from reduction.archive.variables import SUFFIXES
 from reduction.archive.write import write_archive
-from reduction.quantities.names import QUANTITIES, RESPONSES
+from reduction.quantities.names import QUANTITIES, RESPONSES, TEST_SCHEMA
+from reduction.quantities.row import SUFFIXES
 from reduction.record.errors import ArchiveError
 
 
@@ -124,7 +123,7 @@ def test_every_number_of_an_archive_but_the_samples_is_in_a_table():
     }  # fmt: skip
     missing = {
         name
-        for name, row in SCHEMA.items()
+        for name, row in TEST_SCHEMA.items()
         if "sample" not in row.dims and not name.endswith("_standard_uncertainty")
     } - sources
     assert missing <= elsewhere

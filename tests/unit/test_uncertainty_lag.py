@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from reduction.quantities.flags import LAG_REFUSALS
 from reduction.record.errors import DataError
 from reduction.stages import channel_lag as lag_module
-from reduction.stages.channel_lag import LAG_REFUSALS, lag_by_turns
+from reduction.stages.channel_lag import lag_by_turns
 
 FINE, HALF, LAST = 0.002, 5.0, 118.0
 TURNS = np.arange(HALF, LAST, HALF)

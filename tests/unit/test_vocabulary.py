@@ -4,11 +4,11 @@ import pytest
 
 from reduction.quantities.names import (
     QUANTITIES,
-    RESPONSE_PATTERNS,
     RESPONSES,
     SINGLE_QUANTITIES,
     SURFACE_NAMES,
     quantity,
+    rows_of_response,
 )
 
 
@@ -34,11 +34,7 @@ def test_unit_and_meaning_follow_the_response(name, unit, long_name):
 
 
 def test_no_made_name_hides_another():
-    made = [
-        pattern.name.replace("<response>", name)
-        for name in SURFACE_NAMES
-        for pattern in RESPONSE_PATTERNS
-    ]
+    made = [row.name for name in SURFACE_NAMES for row in rows_of_response(name)]
     assert len(set(made)) == len(made)
     assert not set(made) & set(SINGLE_QUANTITIES)
     assert set(made) <= set(QUANTITIES)

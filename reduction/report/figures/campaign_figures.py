@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from reduction.quantities.names import BRANCH_NAMES, BRANCH_VALUES
+from reduction.quantities.flags import BRANCH_VALUES
+from reduction.quantities.names import BRANCH_NAMES
 from reduction.quantities.units import UnitSystem
 from reduction.record.measurement import Floats
 from reduction.report.figure_data import Figure, Trace, axis, band, line, make_figure, plain_numbers

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from reduction.quantities.names import BRANCH_VALUES
+from reduction.quantities.flags import BRANCH_VALUES
 from reduction.record.measurement import Floats
 from reduction.report.figure_data import (
     POINTS,

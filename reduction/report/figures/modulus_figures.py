@@ -7,7 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from reduction.archive.uncertainty_budget import random_freedom
-from reduction.quantities.names import BRANCH_NAMES, BRANCH_VALUES
+from reduction.quantities.flags import BRANCH_VALUES
+from reduction.quantities.names import BRANCH_NAMES
 from reduction.record.measurement import Floats
 from reduction.report.figure_data import Figure, Trace, axis, band, line, make_figure, plain_numbers
 from reduction.report.test_view import (

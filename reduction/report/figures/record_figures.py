@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reduction.archive.schema import COEFFICIENTS
-from reduction.quantities.names import PHASE_VALUES
+from reduction.archive.test_variables import COEFFICIENTS
+from reduction.quantities.flags import PHASE_VALUES
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.report.figure_data import (
     POINTS,

@@ -35,7 +35,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reduction.quantities.names import BRANCH_NAMES, BRANCH_VALUES, PHASE_VALUES
+from reduction.quantities.flags import BRANCH_VALUES, PHASE_VALUES
+from reduction.quantities.names import BRANCH_NAMES
 from reduction.record.arrays import as_positive, as_same_shape
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers

@@ -1,44 +1,22 @@
-"""Write docs/glossary.md from `reduction.quantities.names`: ``python docs/make_glossary.py``."""
+"""The page of every number by name, made from the rows of `reduction.quantities`."""
 
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 from reduction.archive.csv_columns import OUTCOME_TABLES, GroupColumn
-from reduction.quantities.names import (
-    BRANCH_VALUES,
-    PHASE_VALUES,
-    RESPONSE_PATTERNS,
-    RESPONSES,
-    SINGLE_QUANTITIES,
-    _Quantity,
-)
-from reduction.record.measurement import Quality
+from reduction.quantities.names import RESPONSE_PATTERNS, RESPONSES, SINGLE_QUANTITIES
+from reduction.quantities.row import Quantity
 
-__all__ = ["glossary"]
+__all__ = ["pages"]
 
 _SOURCES = {"000": "WHOI-2004-06", "002": "WHOI-2005-10", "003": "CG-D-39-80"}
 _HEAD = """\
-# Glossary
+# Numbers by name
 
-<!-- Written by docs/make_glossary.py from reduction/quantities/names.py; change it there. -->
-
-One name a quantity, the same in code, archives and tables; files are SI. A variable
-`NAME_standard_uncertainty` has the unit of `NAME`. A table's header is `NAME [unit]`.
-
-| word | means |
-|---|---|
-| strain | nominal (engineering) strain of the splice-free length |
-| stretch ratio | 1 + strain |
-| amplitude | half a range |
-| spring constant | force per unit strain |
-| modulus | slope of nominal stress on strain, on the area at zero tension |
-| stress at an elongation | the M100 of the rubber trade, which is a stress and no modulus |
-| free length | splice toe to splice toe |
-| hold, rest | the crosshead stands still under tension; with every specimen slack |
-| ascending, descending | the control channel (position, or tension) rises; falls |
-| type A | found from scatter or residuals; nothing that all samples share is in it |
+Made from the rows of `reduction.quantities`. One name a number, the same in code, archives and
+tables; files are SI. `NAME_standard_uncertainty` has the unit of `NAME`. The header of a table is
+`NAME [unit]`. Words are in the [glossary](../glossary.md).
 
 ## Values of flags
 
@@ -62,9 +40,9 @@ def _row(*cells: str) -> str:
     return "|" + "|".join(f" {cell} " if cell else " " for cell in cells) + "|"
 
 
-def _quantity(one: _Quantity) -> str:
+def _quantity(one: Quantity) -> str:
     unit = f"`{one.unit}`" if "<" in one.unit else one.unit or "text"
-    return _row(f"`{one.name}`", unit, one.long_name, _symbol(one.symbol))
+    return _row(f"`{one.name}`", unit, one.long_name, _symbol(one.source))
 
 
 _OUTCOMES = """\
@@ -90,14 +68,12 @@ def _outcome_lines() -> list[str]:
 _HEADER, _RULE = _row("name", "unit", "what", "symbol in the source"), "|---|---|---|---|"
 
 
-def glossary() -> str:
-    """Text of docs/glossary.md."""
-    flags = {"phase": PHASE_VALUES, "branch": BRANCH_VALUES}
-    masks = {str(mask.name).lower(): mask.value for mask in Quality}
-    flags |= dict.fromkeys(("quality_flag", "crosshead_position_quality_flag"), masks)
+def pages() -> dict[str, str]:
+    """Name below ``reference/`` to text."""
+    flags = {one.name: one.flags for one in SINGLE_QUANTITIES.values() if one.flags}
     lines = [
         _row(f"`{name}`", ", ".join(f"{value} {word}" for word, value in values.items()))
-        for name, values in flags.items()
+        for name, values in sorted(flags.items())
     ]
     lines += ["", "## Quantities", "", _HEADER, _RULE]
     lines += [
@@ -107,8 +83,4 @@ def glossary() -> str:
     lines += [_quantity(one) for one in RESPONSE_PATTERNS]
     lines += ["", "## Columns of the tables of outcomes", "", _OUTCOMES, ""]
     lines += [_row("name", "unit", "what", "table"), _RULE, *_outcome_lines()]
-    return _HEAD + "\n".join(lines) + "\n"
-
-
-if __name__ == "__main__":
-    Path(__file__).with_name("glossary.md").write_text(glossary(), encoding="utf-8", newline="\n")
+    return {"quantities.md": _HEAD + "\n".join(lines) + "\n"}

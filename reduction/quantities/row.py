@@ -1,0 +1,286 @@
+"""One row a number: what it is, where it stands in an archive, and where it is shown.
+
+A number is declared once.  Its variable in the archive, with uncertainty and other companions,
+its columns in CSV tables, its column on the page, its line in the glossary and in the pages of
+variables are all written from its row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+TEXT = "U"
+
+COMPONENT = "uncertainty_component"
+"""Axis of the errors that numbers share."""
+
+READING = "a reading: its uncertainty is that of the channel"
+
+CLOCK = "a reading of the clock"
+
+BOUND = "bound"
+
+COUNT = "count"
+
+SETTING = "setting"
+
+STATED = "stated by the laboratory"
+
+STRENGTH = "as stated; what is stated of its error is in the numbers that are shares of it"
+
+AXIS = "axis of the curve"
+
+CHECK = "residual of a check"
+
+CRITERION = "criterion of a fit"
+
+STATISTIC = "a statistic of a test"
+
+SPREAD = "is itself a measure of spread"
+
+OF_UNCERTAINTY = "degrees of freedom of an uncertainty"
+
+PART = "is part of an uncertainty"
+
+SUFFIXES = {
+    "_random_standard_uncertainty": (
+        "random part (k=1) of the standard uncertainty of {}",
+        "f8",
+        "is an uncertainty",
+    ),
+    "_uncertainty_contribution": (
+        "signed contribution of one standard uncertainty of each shared error to {}",
+        "f8",
+        "is part of an uncertainty",
+    ),
+    "_standard_uncertainty": ("standard uncertainty (k=1) of {}", "f8", "is an uncertainty"),
+    "_count": ("number of cycles in the mean: {}", "i4", "count"),
+    "_minimum": ("least over the cycles: {}", "f8", "bound: least value seen"),
+    "_maximum": ("greatest over the cycles: {}", "f8", "bound: greatest value seen"),
+    "_scatter": ("standard deviation over the cycles: {}", "f8", "is itself a measure of spread"),
+}
+"""Suffix: its long name, type, and why it has no uncertainty of its own."""
+
+GROUPS = {
+    "specimens": "specimens: readings of the diameter, and what they went through before",
+    "record": "rows of the log, the lag between its channels, and where the test stood still",
+    "splice": "how position became strain: method, coefficients, tape readings",
+    "cycles": "cycles one by one, means over them, trends and slips",
+    "curves": "tangent modulus of each cycle, and with the ends of the branches",
+    "first_loading": "tangent modulus and tension of the first loading",
+    "segments": "piecewise-linear moduli",
+    "rubber": "stress at stated strains, slack strain, hyperelastic laws",
+    "line": "the three-parameter line, and slow pulls",
+    "programme": "steps of a rope laboratory's programme",
+    "holds": "relaxation and creep",
+    "comparisons": "specimens of the test against each other",
+    "coefficients": "coefficients in other units, with their tests; subsets of terms",
+    "quality": "how well each surface fits",
+    "anova": "analysis of variance",
+    "stationary_point": "stationary point and principal directions of each surface",
+    "runs": "runs: levels, measured, fitted, residuals",
+    "points": "values of the surfaces at points and along ridges",
+    "blocks": "effects of blocks",
+    "screening": "effects of a screening, and what they are confounded with",
+    "stiffness": "dynamic stiffness in the forms of mooring codes",
+    "single_time": "whether one relaxation time holds over frequency",
+    "design": "the hose: angles, diameters, cords, rubber",
+    "cords": "cords: load against strain, angle and spacing along the curve",
+    "layers": "helical layers that go along with the hose",
+    "events": "slack, pick-up, working load and break",
+    "energy": "energies of the measured and the predicted curve",
+    "statistics": "statistics behind the verdict",
+    "fit": "numbers that were fitted to the measured curve",
+    "uncertainty": "random parts of uncertainties, and contributions of errors that numbers share",
+    "notes": "what to know before the numbers are used",
+}
+"""Groups of archives and what they hold; the root holds what somebody looks for."""
+
+_PARTS = ("_random_standard_uncertainty", "_uncertainty_contribution")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One number, label or flag of an archive or a table.
+
+    Parameters
+    ----------
+    name : str
+        In code, archives, tables and documents.
+    unit : str
+        SI, as CF writes it; empty for text.
+    long_name : str
+        What it means, in words.
+    dims : tuple of str
+        In order; empty for a scalar.
+    dtype : str
+        ``f8``, ``i4``, ``i1``, ``u2`` or `TEXT`.
+    no_uncertainty : str
+        Why there is no standard uncertainty; empty where there is one.
+    companions : tuple of str
+        Those of `SUFFIXES` that stand beside it.
+    uncertainty_dims : tuple of str, optional
+        Of the standard uncertainty, where it has fewer.
+    uncertainty_is : str
+        What the standard uncertainty is, where the usual words would not say it.
+    qualified_by : tuple of str
+        Other variables that say how good it is.
+    flags : dict of str to int
+        Meaning to value, or to mask where ``is_mask``.
+    bounds : str
+        Name of the variable with the edges of the cells.
+    group : str
+        Of the archive; empty in the root.
+    tables : tuple of str
+        CSV tables that have it as a column.
+    page : tuple of str
+        Table of the page, and the heading of its column there.
+    percent : bool
+        Whether people are shown it in percent.
+    source : str
+        Report and symbol: 000 is WHOI-2004-06, 002 WHOI-2005-10, 003 CG-D-39-80.
+    standard_name : str, optional
+        Of CF, where its table has one.
+    """
+
+    name: str
+    unit: str
+    long_name: str
+    dims: tuple[str, ...] = ()
+    dtype: str = "f8"
+    no_uncertainty: str = ""
+    companions: tuple[str, ...] = ()
+    uncertainty_dims: tuple[str, ...] | None = None
+    uncertainty_is: str = ""
+    qualified_by: tuple[str, ...] = ()
+    flags: Mapping[str, int] = field(default_factory=dict)
+    is_mask: bool = False
+    bounds: str = ""
+    group: str = ""
+    tables: tuple[str, ...] = ()
+    page: tuple[str, str] = ("", "")
+    percent: bool = False
+    source: str = ""
+    standard_name: str | None = None
+
+    @property
+    def is_text(self) -> bool:
+        """True for labels."""
+        return self.dtype == TEXT
+
+    @property
+    def is_bounds(self) -> bool:
+        """True for the edges of cells, which take their attributes from the centres."""
+        return "bound" in self.dims
+
+    @property
+    def has_uncertainty(self) -> bool:
+        """True where a standard uncertainty belongs to the number."""
+        return "_standard_uncertainty" in self.companions
+
+    @property
+    def shares_errors(self) -> bool:
+        """True where contributions of shared errors stand beside it."""
+        return "_uncertainty_contribution" in self.companions
+
+    @property
+    def contribution_dims(self) -> tuple[str, ...]:
+        """Dimensions of those contributions, without the axis of the errors."""
+        return self.dims if self.uncertainty_dims is None else self.uncertainty_dims
+
+    @property
+    def ancillary(self) -> tuple[str, ...]:
+        """Names of the variables that qualify it; parts of the uncertainty go with that."""
+        own = (one for one in self.companions if one not in _PARTS)
+        return (*(f"{self.name}{suffix}" for suffix in own), *self.qualified_by)
+
+    def companion(self, suffix: str) -> Quantity:
+        """Return what stands beside it under a suffix."""
+        long_name, dtype, why = SUFFIXES[suffix]
+        dims = self.dims
+        if suffix in ("_standard_uncertainty", *_PARTS):
+            dims = self.contribution_dims
+        if suffix == "_uncertainty_contribution":
+            at = 1 if dims[:1] == ("experiment",) else 0
+            dims = (*dims[:at], COMPONENT, *dims[at:])
+        is_said = suffix == "_standard_uncertainty" and self.uncertainty_is
+        return Quantity(
+            f"{self.name}{suffix}",
+            "1" if suffix == "_count" else self.unit,
+            self.uncertainty_is if is_said else long_name.format(self.long_name),
+            dims,
+            dtype,
+            why,
+            group="uncertainty" if suffix in _PARTS else self.group,
+        )
+
+    def variables(self) -> Iterator[Quantity]:
+        """Give the number and what stands beside it."""
+        yield self
+        yield from map(self.companion, self.companions)
+
+
+Rows = Iterable[Quantity]
+
+
+def along(dims: tuple[str, ...], *rows: Quantity, group: str = "") -> Iterator[Quantity]:
+    """Give rows their dimensions, and the group of the archive that they stand in."""
+    if group and group not in GROUPS:
+        raise ValueError(f"there is no group {group!r} in archives")
+    return (replace(row, dims=dims, group=group) for row in rows)
+
+
+def measured(
+    name: str,
+    unit: str,
+    long_name: str,
+    *suffixes: str,
+    shares_errors: bool = False,
+    **more: Any,
+) -> Quantity:
+    """Return a real with its standard uncertainty and other companions."""
+    parts = _PARTS if shares_errors else ()
+    companions = ("_standard_uncertainty", *suffixes, *parts)
+    return Quantity(name, unit, long_name, companions=companions, **more)
+
+
+def stated(name: str, unit: str, long_name: str, why: str, **more: Any) -> Quantity:
+    """Return a real without a standard uncertainty, and the reason."""
+    return Quantity(name, unit, long_name, no_uncertainty=why, **more)
+
+
+def count(name: str, long_name: str, **more: Any) -> Quantity:
+    """Return a number that is counted."""
+    return Quantity(name, "1", long_name, dtype="i4", no_uncertainty=COUNT, **more)
+
+
+def label(name: str, long_name: str, **more: Any) -> Quantity:
+    """Return a text."""
+    return Quantity(name, "", long_name, dtype=TEXT, no_uncertainty="label", **more)
+
+
+def flag(name: str, long_name: str, values: Mapping[str, int], **more: Any) -> Quantity:
+    """Return a flag with one meaning a value."""
+    return Quantity(name, "1", long_name, dtype="i1", no_uncertainty="flag", flags=values, **more)
+
+
+def mask(name: str, long_name: str, masks: Mapping[str, int], **more: Any) -> Quantity:
+    """Return a flag in which each bit has a meaning."""
+    return replace(flag(name, long_name, masks, **more), dtype="u2", is_mask=True)
+
+
+def again(row: Quantity, why: str = "", *, shares_errors: bool = False, **more: Any) -> Quantity:
+    """Return a quantity where another product, or another table, has it too."""
+    why = why or row.no_uncertainty
+    companions = () if why else ("_standard_uncertainty", *(_PARTS if shares_errors else ()))
+    own = {"uncertainty_dims": None, "qualified_by": (), "tables": (), "page": ("", "")}
+    return replace(
+        row, no_uncertainty=why, companions=companions, dims=(), group="", **(own | more)
+    )
+
+
+def schema_from(*rows: Rows) -> dict[str, Quantity]:
+    """Return the variables of a product by name, each with what stands beside it."""
+    return {one.name: one for some in rows for row in some for one in row.variables()}
