@@ -8,12 +8,14 @@ was stopped are lower bounds.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, get_args
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from reduction.archive.dataset_builder import build_dataset, part_attributes
 from reduction.archive.shared_errors import component_values
@@ -26,7 +28,7 @@ from reduction.archive.variables import (
     texts,
 )
 from reduction.experiments.outcomes import Outcome, OutcomeQuantity, Place
-from reduction.prediction.comparison_error import Comparison, HoseCalibration
+from reduction.prediction.comparison_error import Comparison
 from reduction.prediction.hose_prediction import PredictedHose
 from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseEvents
 from reduction.prediction.hose_tension import predict_hose
@@ -44,54 +46,8 @@ from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Floats, Origin
 from reduction.record.notes import Note
 
-_OF_CURVE = {
-    "tension_bias": "bias",
-    "tension_rms": "rms",
-    "tension_relative_rms": "relative_rms",
-    "worst_strain": "worst_strain",
-    "worst_tension_difference": "worst_difference",
-}
-
-_OF_VALIDATION = {
-    "coverage_factor": "coverage_factor",
-    "largest_ratio": "ratio",
-    "largest_ratio_strain": "ratio_strain",
-    "chi_square": "chi_square",
-    "chi_square_freedom": "chi_square_freedom",
-    "chi_square_probability": "chi_square_probability",
-    "uncertainty_share": "share",
-}
-
-_OF_EVENT = {
-    "event_strain": "strain",
-    "event_tension": "tension",
-    "event_measured_tension": "measured_tension",
-    "event_tension_difference": "tension_difference",
-    "event_tension_difference_standard_uncertainty": "tension_difference_standard_uncertainty",
-    "event_measured_strain": "measured_strain",
-    "event_strain_difference": "strain_difference",
-    "event_strain_difference_standard_uncertainty": "strain_difference_standard_uncertainty",
-}
-
-_OF_ENERGY = {
-    "energy_strain_low": "strain_low",
-    "energy_strain_high": "strain_high",
-    "measured_energy": "measured",
-    "predicted_energy": "predicted",
-    "energy_difference": "difference",
-    "loop_energy": "loop",
-    "loop_energy_share": "loop_share",
-}
-
-_OF_PARAMETER = {
-    "parameter_start": "start",
-    "parameter_value": "value",
-    "parameter_value_standard_uncertainty": "standard_uncertainty",
-    "parameter_low": "low",
-    "parameter_high": "high",
-    "parameter_lower_bound": "lower_bound",
-    "parameter_upper_bound": "upper_bound",
-}
+_PREFIX = re.compile("^(tension|calibrated|event|comparison|parameter)_")
+"""Of a name in the archive that the part of a comparison which has it goes without."""
 
 _NOT_ASKED = 2
 
@@ -134,10 +90,14 @@ def comparisons_to_dataset(named: Sequence[NamedComparison], *, origin: Origin) 
         "comparison_hose": texts([one.hose for one in named]),
         "comparison_loading": texts([one.measured.loading for one in found]),
         "judged_curve": texts([one.judged for one in found]),
+        "verdict": texts([one.validation.verdict for one in found]),
         "note_comparison": texts([one.name for one in named for _ in one.notes]),
         **note_values([replace(said, stage="comparison") for one in named for said in one.notes]),
     }
-    values |= _compared_curves(found) | _judgement_values(found) | _calibration_values(found)
+    values |= _compared_curves(found)
+    for dims in ((), ("curve",), ("hose_event",), ("comparison_cycle",), ("parameter",)):
+        values |= _of_rows(found, *dims)
+    values |= _calibration_values(found)
     for axis, along in (
         ("comparison_point", "strain"),
         ("comparison_cycle", "cycle_bias"),
@@ -153,39 +113,65 @@ def comparisons_to_dataset(named: Sequence[NamedComparison], *, origin: Origin) 
     )
 
 
+def _of_rows(found: Sequence[Comparison], *dims: str) -> Values:
+    """Numbers whose rows stand along the dimensions, each from the part of it that has it."""
+    values: Values = {}
+    for row in COMPARISON_SCHEMA.values():
+        if row.dims != ("comparison", *dims) or row.is_text:
+            continue
+        given = [_numbers_of(one, row.name, *dims) for one in found]
+        if all(each is None for each in given):
+            continue
+        table = pad([[] if each is None else each for each in given])
+        table = table if row.dtype == "f8" else np.nan_to_num(table).astype(row.dtype)
+        values[row.name] = table if dims else table[:, 0]
+    return values
+
+
+def _numbers_of(one: Comparison, name: str, *dims: str) -> ArrayLike | None:
+    if dims == ("curve",):
+        return [_number_of(one.differences.get(curve), name) for curve in CURVES]
+    if dims == ("hose_event",):
+        return [_number_of(event, name) for event in one.events]
+    fit = one.calibration
+    parts = (one, one.validation, one.energy, one.cycles)
+    fitted = () if fit is None else (fit, fit.identifiability, fit.after)
+    given = (_number_of(part, name, None) for part in (*parts, *fitted))
+    return next((each for each in given if each is not None), None)
+
+
+def _number_of(part: object, name: str, otherwise: Any = np.nan) -> Any:
+    return getattr(part, name, getattr(part, _PREFIX.sub("", name), otherwise))
+
+
 def _compared_curves(found: Sequence[Comparison]) -> Values:
     length = max(one.measured.strain.size for one in found)
-    shape = (len(found), len(CURVES), length)
-    values: Values = {
-        name: np.full(shape, np.nan)
-        for name in (
-            "measured_tension",
-            f"measured_tension{_RANDOM}",
-            "tension_difference",
-        )
-    }
-    values |= {name: np.full(shape[:2], np.nan) for name in _OF_CURVE}
+    names = ("measured_tension", f"measured_tension{_RANDOM}", "tension_difference")
+    values: Values = {name: np.full((len(found), len(CURVES), length), np.nan) for name in names}
     for row, one in enumerate(found):
-        size = one.measured.strain.size
+        own = slice(one.measured.strain.size)
         for place, curve in enumerate(CURVES):
             if curve not in one.differences:
                 continue
-            difference = one.differences[curve]
-            values["measured_tension"][row, place, :size] = one.measured.tension_of(curve)
-            values[f"measured_tension{_RANDOM}"][row, place, :size] = (
-                one.measured.standard_uncertainty_of(curve)
+            curves = (
+                one.measured.tension_of(curve),
+                one.measured.standard_uncertainty_of(curve),
+                one.differences[curve].difference,
             )
-            values["tension_difference"][row, place, :size] = difference.difference
-            for name, field in _OF_CURVE.items():
-                values[name][row, place] = getattr(difference, field)
-    values |= _shared_values(found, values)
-    values["strain"] = pad([one.measured.strain for one in found])
-    values["predicted_tension"] = pad([one.prediction.tension for one in found])
-    values["predicted_tension_standard_uncertainty"] = pad(
-        [one.validation.input_standard_uncertainty for one in found]
+            for name, along in zip(names, curves, strict=True):
+                values[name][row, place, own] = along
+    return (
+        values
+        | _shared_values(found, values)
+        | {
+            "strain": pad([one.measured.strain for one in found]),
+            "predicted_tension": pad([one.prediction.tension for one in found]),
+            "predicted_tension_standard_uncertainty": pad(
+                [one.validation.input_standard_uncertainty for one in found]
+            ),
+            "validation_uncertainty": pad([one.validation.validation_uncertainty for one in found]),
+        }
     )
-    values["validation_uncertainty"] = pad([one.validation.standard_uncertainty for one in found])
-    return values
 
 
 def _shared_values(found: Sequence[Comparison], values: Values) -> Values:
@@ -205,46 +191,22 @@ def _shared_values(found: Sequence[Comparison], values: Values) -> Values:
     }
 
 
-def _judgement_values(found: Sequence[Comparison]) -> Values:
-    values: Values = {
-        name: np.array([float(getattr(one.validation, field)) for one in found])
-        for name, field in _OF_VALIDATION.items()
-    }
-    for name in ("measured_pick_up_strain", "measured_pick_up_strain_standard_uncertainty"):
-        values[name] = np.array([getattr(one, name) for one in found])
-    values |= {
-        "agrees": np.array([int(one.validation.agrees) for one in found]),
-        "is_informative": np.array([int(one.validation.is_informative) for one in found]),
-        "verdict": texts([one.validation.verdict for one in found]),
-        "cycle_bias": pad([one.cycles.bias for one in found]),
-        "cycle_rms": pad([one.cycles.rms for one in found]),
-        "bias_per_decade": np.array([one.cycles.bias_per_decade for one in found]),
-        "bias_per_decade_standard_uncertainty": np.array(
-            [one.cycles.bias_per_decade_standard_uncertainty for one in found]
-        ),
-    }
-    numbers = np.zeros(values["cycle_bias"].shape, dtype=np.int32)
-    for row, one in zip(numbers, found, strict=True):
-        row[: one.cycles.cycle_number.size] = one.cycles.cycle_number
-    values["comparison_cycle_number"] = numbers
-    for name, field in _OF_EVENT.items():
-        values[name] = np.array([[getattr(event, field) for event in one.events] for one in found])
-    for name, field in _OF_ENERGY.items():
-        values[name] = np.array([getattr(one.energy, field) for one in found])
-    return values
-
-
 def _calibration_values(found: Sequence[Comparison]) -> Values:
-    """Nothing where no number was to be fitted."""
+    """What is no number of a row by itself; nothing where no number was to be fitted."""
     fits = [one.calibration for one in found]
     most = max((len(fit.parameter) for fit in fits if fit is not None), default=0)
     if not most:
         return {}
     named = [() if fit is None else fit.parameter for fit in fits]
-    values: Values = {
+    correlation = np.full((len(fits), most, most), np.nan)
+    for table, fit in zip(correlation, fits, strict=True):
+        if fit is not None:
+            size = len(fit.parameter)
+            table[:size, :size] = fit.correlation
+    return {
         "parameter_name": pad_texts(named),
         "parameter_unit": pad_texts([[quantity(name).unit for name in names] for names in named]),
-        "parameter_is_at_bound": (_rows(fits, "is_at_bound") == 1).astype(np.int8),
+        "parameter_correlation": correlation,
         "calibrated_tension": pad(
             [
                 one.measured.strain * np.nan
@@ -260,28 +222,6 @@ def _calibration_values(found: Sequence[Comparison]) -> Values:
             ["" if fit is None else fit.identifiability.words for fit in fits]
         ),
     }
-    values |= {name: _rows(fits, field) for name, field in _OF_PARAMETER.items()}
-    correlation = np.full((len(fits), most, most), np.nan)
-    for table, fit in zip(correlation, fits, strict=True):
-        if fit is not None:
-            size = len(fit.parameter)
-            table[:size, :size] = fit.correlation
-    values["parameter_correlation"] = correlation
-    for name in ("bias", "rms", "relative_rms"):
-        values[f"calibrated_{name}"] = np.array(
-            [np.nan if fit is None else getattr(fit.after, name) for fit in fits]
-        )
-    for name in ("collinearity", "least_change", "needed_change"):
-        values[name] = np.array(
-            [np.nan if fit is None else getattr(fit.identifiability, name) for fit in fits]
-        )
-    for name in ("model_error", "effective_points"):
-        values[name] = np.array([np.nan if fit is None else getattr(fit, name) for fit in fits])
-    return values
-
-
-def _rows(fits: Sequence[HoseCalibration | None], field: str) -> Floats:
-    return pad([() if fit is None else getattr(fit, field) for fit in fits])
 
 
 EVENTS = ("deepest_slack", "pick_up", "working", "cord_break")

@@ -623,7 +623,7 @@ def _show_comparison(named: NamedComparison, output: CommandOutput, system: Unit
         table.add_row(
             f"{curve}{' (judged)' if curve == found.judged else ''}",
             short(factor * one.bias, 4), short(factor * one.rms, 4),
-            short(100 * one.relative_rms, 3), short(factor * one.worst_difference, 4),
+            short(100 * one.relative_rms, 3), short(factor * one.worst_tension_difference, 4),
             short(100 * one.worst_strain, 4),
         )  # fmt: skip
     output.show(table)
@@ -659,7 +659,7 @@ def _show_calibration(fit: HoseCalibration, output: CommandOutput, system: UnitS
         table.add_row(
             name, unit,
             short(factor * fit.start[place]), short(factor * fit.value[place], 6),
-            short(factor * fit.standard_uncertainty[place], 2),
+            short(factor * fit.value_standard_uncertainty[place], 2),
             (
                 f"{factor * fit.low[place]:.6g} to {factor * fit.high[place]:.6g}"
                 if np.isfinite(fit.high[place] - fit.low[place])
@@ -694,7 +694,7 @@ def _comparison_document(named: NamedComparison) -> dict[str, Any]:
         "relative_rms": plain(judged.relative_rms),
         "worst": {
             "strain": plain(judged.worst_strain),
-            "difference": plain(judged.worst_difference),
+            "difference": plain(judged.worst_tension_difference),
         },
         "curves": {
             curve: {
@@ -703,7 +703,7 @@ def _comparison_document(named: NamedComparison) -> dict[str, Any]:
                 "relative_rms": plain(one.relative_rms),
                 "worst": {
                     "strain": plain(one.worst_strain),
-                    "difference": plain(one.worst_difference),
+                    "difference": plain(one.worst_tension_difference),
                 },
             }
             for curve, one in found.differences.items()
@@ -719,12 +719,13 @@ def _comparison_document(named: NamedComparison) -> dict[str, Any]:
             "standard_uncertainty": plain(found.measured_pick_up_strain_standard_uncertainty),
         },
         "energy": {name: plain(value) for name, value in vars(found.energy).items()},
-        "validation_uncertainty": plain(validation.standard_uncertainty),
+        "validation_uncertainty": plain(validation.validation_uncertainty),
         "validation": {
             name: plain(getattr(validation, name))
             for name in (
-                "coverage_factor", "ratio", "ratio_strain", "chi_square", "chi_square_freedom",
-                "chi_square_probability", "share", "agrees", "is_informative",
+                "coverage_factor", "largest_ratio", "largest_ratio_strain", "chi_square",
+                "chi_square_freedom", "chi_square_probability", "uncertainty_share", "agrees",
+                "is_informative",
             )
         },
         "verdict": validation.verdict,
@@ -736,8 +737,8 @@ def _comparison_document(named: NamedComparison) -> dict[str, Any]:
         "difference": plain(judged.difference),
         "cycles": {
             "cycle": plain(found.cycles.cycle_number),
-            "bias": plain(found.cycles.bias),
-            "rms": plain(found.cycles.rms),
+            "bias": plain(found.cycles.cycle_bias),
+            "rms": plain(found.cycles.cycle_rms),
         },
         "calibrated": None if found.calibration is None else _calibrated(found.calibration),
         "units": {"strain": "1", "tension": "N", "difference": "N", "energy": "J m-1"},
@@ -752,7 +753,7 @@ def _calibrated(fit: HoseCalibration) -> dict[str, Any]:
                 "unit": quantity(name).unit,
                 "start": plain(fit.start[place]),
                 "value": plain(fit.value[place]),
-                "standard_uncertainty": plain(fit.standard_uncertainty[place]),
+                "standard_uncertainty": plain(fit.value_standard_uncertainty[place]),
                 "interval": plain(np.array([fit.low[place], fit.high[place]])),
                 "bounds": plain(np.array([fit.lower_bound[place], fit.upper_bound[place]])),
                 "is_at_bound": bool(fit.is_at_bound[place]),

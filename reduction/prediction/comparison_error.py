@@ -83,7 +83,7 @@ class _Difference:
     rms: float
     relative_rms: float
     worst_strain: float
-    worst_difference: float
+    worst_tension_difference: float
 
 
 @dataclass(frozen=True)
@@ -113,17 +113,17 @@ class EventDifference:
 class _EnergyDifference:
     """Energies per relaxed length between the same two strains. [J m-1].
 
-    The prediction is elastic and has no loop; ``loop_share`` is the measured loop over the
+    The prediction is elastic and has no loop; ``loop_energy_share`` is the measured loop over the
     measured energy under the ascending branch. [1]
     """
 
-    strain_low: float
-    strain_high: float
-    measured: float
-    predicted: float
-    difference: float
-    loop: float
-    loop_share: float
+    energy_strain_low: float
+    energy_strain_high: float
+    measured_energy: float
+    predicted_energy: float
+    energy_difference: float
+    loop_energy: float
+    loop_energy_share: float
 
 
 @dataclass(frozen=True)
@@ -137,8 +137,8 @@ class _CycleDifference:
     """
 
     cycle_number: Integers
-    bias: Floats
-    rms: Floats
+    cycle_bias: Floats
+    cycle_rms: Floats
     bias_per_decade: float
     bias_per_decade_standard_uncertainty: float
 
@@ -153,14 +153,14 @@ class _Validation:
 
     input_standard_uncertainty: Floats
     measurement_standard_uncertainty: Floats
-    standard_uncertainty: Floats
+    validation_uncertainty: Floats
     coverage_factor: float
-    ratio: float
-    ratio_strain: float
+    largest_ratio: float
+    largest_ratio_strain: float
     chi_square: float
     chi_square_freedom: int
     chi_square_probability: float
-    share: float
+    uncertainty_share: float
     agrees: bool
     is_informative: bool
     verdict: str
@@ -213,7 +213,7 @@ class HoseCalibration:
         Names, of `reduction.prediction.hose_product.HOSE_PARAMETERS`.
     start, value : ndarray
         Before and after, in the unit of each. [SI]
-    standard_uncertainty, low, high : ndarray
+    value_standard_uncertainty, low, high : ndarray
         Of the value, and its 95 % interval (not cut at the bounds); NaN where it would be wider on
         either side than all that was allowed. [SI]
     lower_bound, upper_bound : ndarray
@@ -239,7 +239,7 @@ class HoseCalibration:
     parameter: tuple[str, ...]
     start: Floats
     value: Floats
-    standard_uncertainty: Floats
+    value_standard_uncertainty: Floats
     low: Floats
     high: Floats
     lower_bound: Floats
@@ -330,8 +330,10 @@ def difference_of(
     >>> found = difference_of(
     ...     [0.0, 0.1, 0.2], [0.0, 33.0, 44.0], [0.0, 30.0, 40.0], curve="midline"
     ... )
-    >>> print(round(found.rms, 3), found.relative_rms, found.worst_strain, found.worst_difference)
-    2.887 0.1 0.2 4.0
+    >>> print(round(found.rms, 3), found.relative_rms)
+    2.887 0.1
+    >>> print(found.worst_strain, found.worst_tension_difference)
+    0.2 4.0
     """
     x, model, test = as_same_shape(strain=strain, predicted=predicted, measured=measured)
     error = model - test
@@ -355,7 +357,7 @@ def difference_of(
         rms=rms,
         relative_rms=rms / level if level > 0 else float("nan"),
         worst_strain=float(x[worst]),
-        worst_difference=float(error[worst]),
+        worst_tension_difference=float(error[worst]),
     )
 
 
@@ -400,8 +402,10 @@ def energy_difference(predicted: ArrayLike, measured: MeasuredCurve) -> _EnergyD
     >>> stroke = np.linspace(0, 1, 201)
     >>> pull = measured_curve(stroke, 100 * stroke, loading="static")
     >>> energy = energy_difference(110 * pull.strain, pull)
-    >>> print(round(energy.measured, 6), round(energy.difference, 6), energy.loop)
-    50.0 5.0 nan
+    >>> print(round(energy.measured_energy, 6), round(energy.energy_difference, 6))
+    50.0 5.0
+    >>> energy.loop_energy
+    nan
     """
     model, up = as_same_shape(predicted=predicted, measured=measured.branch_tension[0])
     down = measured.branch_tension[1]
@@ -415,13 +419,13 @@ def energy_difference(predicted: ArrayLike, measured: MeasuredCurve) -> _EnergyD
     taken, stored = (float(np.trapezoid(curve[there], x)) for curve in (up, model))
     loop = taken - float(np.trapezoid(down[there], x)) if has_loop else float("nan")
     return _EnergyDifference(
-        strain_low=float(x[0]),
-        strain_high=float(x[-1]),
-        measured=taken,
-        predicted=stored,
-        difference=stored - taken,
-        loop=loop,
-        loop_share=loop / taken if taken > 0 else float("nan"),
+        energy_strain_low=float(x[0]),
+        energy_strain_high=float(x[-1]),
+        measured_energy=taken,
+        predicted_energy=stored,
+        energy_difference=stored - taken,
+        loop_energy=loop,
+        loop_energy_share=loop / taken if taken > 0 else float("nan"),
     )
 
 
@@ -445,7 +449,7 @@ def cycle_differences(predicted: ArrayLike, measured: MeasuredCurve) -> _CycleDi
     ...     stroke, 500 * stroke - 10 * number, loading="static", cycle_number=number,
     ...     branch=np.tile(np.repeat([1, 2], 301), 3),
     ... )
-    >>> print(cycle_differences(500 * test.strain, test).bias.round(6))
+    >>> print(cycle_differences(500 * test.strain, test).cycle_bias.round(6))
     [10. 20. 30.]
     """
     model, mean = as_same_shape(predicted=predicted, measured=measured.tension_of(measured.judged))
@@ -460,8 +464,8 @@ def cycle_differences(predicted: ArrayLike, measured: MeasuredCurve) -> _CycleDi
     slope, slope_uncertainty = _slope(np.log10(measured.cycle_number), bias)
     return _CycleDifference(
         cycle_number=measured.cycle_number,
-        bias=bias,
-        rms=np.sqrt(squares),
+        cycle_bias=bias,
+        cycle_rms=np.sqrt(squares),
         bias_per_decade=slope,
         bias_per_decade_standard_uncertainty=slope_uncertainty,
     )
@@ -877,21 +881,21 @@ def verdict_words(validation: _Validation, *, unit: str = "N", factor: float = 1
     >>> print(verdict_words(found, unit="lbf", factor=1 / 4.4482216).split(" at")[0])
     differs by +10 lbf
     """
-    if not np.isfinite(validation.ratio):
+    if not np.isfinite(validation.largest_ratio):
         return "not judged: neither the test nor the prediction has an uncertainty"
     if not validation.agrees:
         difference = validation.ratio_difference
         way = "above" if difference > 0 else "below"
         return (
             f"differs by {factor * difference:+.4g} {unit} at strain "
-            f"{validation.ratio_strain:.4g}, {validation.ratio:.1f} times its standard "
-            f"uncertainty ({validation.coverage_factor:.1f} expected at most): the prediction is "
-            f"{way} the test"
+            f"{validation.largest_ratio_strain:.4g}, {validation.largest_ratio:.1f} times its "
+            f"standard uncertainty ({validation.coverage_factor:.1f} expected at most): the "
+            f"prediction is {way} the test"
         )
-    limit = factor * validation.coverage_factor * validation.standard_uncertainty
+    limit = factor * validation.coverage_factor * validation.validation_uncertainty
     size = (
-        f"{np.nanmedian(limit):.3g} {unit} or {100 * validation.share:.2g} % of the tension at "
-        "the median"
+        f"{np.nanmedian(limit):.3g} {unit} or {100 * validation.uncertainty_share:.2g} % of the "
+        "tension at the median"
     )
     words = f"agrees within U, {size}"
     if validation.chi_square_probability < LEAST_PROBABILITY:
@@ -1030,7 +1034,7 @@ def validate_curve(
     >>> found = validate_curve(
     ...     100 * pull.strain + 42, pull, input_error=np.zeros((0, pull.strain.size))
     ... )
-    >>> print(found.agrees, found.verdict.split(",")[0], round(found.ratio, 2))
+    >>> print(found.agrees, found.verdict.split(",")[0], round(found.largest_ratio, 2))
     True agrees within U 0.8
     """
     model, test = as_same_shape(predicted=predicted, measured=measured.tension_of(measured.judged))
@@ -1074,14 +1078,16 @@ def validate_curve(
     found = _Validation(
         input_standard_uncertainty=of_model,
         measurement_standard_uncertainty=np.where(there, of_test, np.nan),
-        standard_uncertainty=total,
+        validation_uncertainty=total,
         coverage_factor=factor,
-        ratio=largest,
-        ratio_strain=float(measured.strain[place]) if np.isfinite(largest) else float("nan"),
+        largest_ratio=largest,
+        largest_ratio_strain=float(measured.strain[place])
+        if np.isfinite(largest)
+        else float("nan"),
         chi_square=judged.chi_square,
         chi_square_freedom=judged.freedom,
         chi_square_probability=judged.probability,
-        share=share,
+        uncertainty_share=share,
         agrees=agrees,
         is_informative=is_informative,
         verdict="",

@@ -819,7 +819,7 @@ def _calibrate_hose(
         parameter=names,
         start=start,
         value=value,
-        standard_uncertainty=stated_deviation,
+        value_standard_uncertainty=stated_deviation,
         low=value - half,
         high=value + half,
         lower_bound=problem.low * problem.unit,

@@ -179,7 +179,7 @@ def test_intervals_hold_the_truth_where_load_and_strain_are_both_off(pulled, noi
         test = offset_record(rng, pulled=pulled, noise=noise, strain_offset=2e-3, tension_offset=60)
         found = _calibrate_hose(TRUTH.design(), test, names)
         hits.append((found.low <= truth) & (truth <= found.high))
-        ratios.append((found.value - truth) / found.standard_uncertainty)
+        ratios.append((found.value - truth) / found.value_standard_uncertainty)
     # 19 of 20; less than this in one of a thousand seeds
     assert np.all(np.sum(hits, axis=0) >= binom.ppf(1e-3, n_draws, 0.95))
     spread = np.std(ratios, axis=0)
@@ -197,7 +197,7 @@ def test_a_strain_that_is_off_by_its_uncertainty_is_not_taken_for_an_angle(error
     )  # fmt: skip
     found = _calibrate_hose(TRUTH.design(), test, ["wrap_angle", "rubber_modulus"])
     truth = np.array([TRUTH.wrap_angle, TRUTH.rubber_modulus])
-    assert np.all(np.abs(found.value - truth) < 1.5 * found.standard_uncertainty)
+    assert np.all(np.abs(found.value - truth) < 1.5 * found.value_standard_uncertainty)
     assert found.shared_error[0] == "strain_offset"
 
 
@@ -208,8 +208,8 @@ def test_what_the_curve_does_not_show_has_no_narrow_interval():
     assert not found.identifiability.is_identified
     # a step of one plausible error is less than an error of the model would do
     least = np.abs(found.identifiability.direction)
-    known = np.isfinite(found.standard_uncertainty)
-    assert np.all(found.standard_uncertainty[known] > least[known])
+    known = np.isfinite(found.value_standard_uncertainty)
+    assert np.all(found.value_standard_uncertainty[known] > least[known])
     # 0.001 degrees is what the noise alone would say
     assert not found.high[0] - found.low[0] < np.radians(0.5)
     assert np.isfinite(found.value).all()
@@ -220,7 +220,7 @@ def test_what_the_curve_does_not_show_has_no_narrow_interval():
 def test_a_number_of_which_nothing_is_seen_has_no_interval():
     test = pull(TRUTH, top=0.4, noise=5, seed=5)
     found = _calibrate_hose(TRUTH.design(), test, ["cord_load_scale"])
-    assert np.isnan([found.low[0], found.high[0], found.standard_uncertainty[0]]).all()
+    assert np.isnan([found.low[0], found.high[0], found.value_standard_uncertainty[0]]).all()
     assert np.isfinite(found.value[0])
     assert any("not determined" in text for text in map(str, found.notes))
 
@@ -253,7 +253,7 @@ def test_a_model_that_is_wrong_has_wide_intervals_that_hold_the_truth():
     )
     assert found.model_error > 5 * max(good.model_error, 1.0)
     assert found.effective_points < test.strain.size / 4
-    ratio = found.standard_uncertainty / good.standard_uncertainty
+    ratio = found.value_standard_uncertainty / good.value_standard_uncertainty
     assert np.all(ratio > 10)
     assert found.low[0] < TRUTH.wrap_angle < found.high[0]
     assert found.low[1] < TRUTH.rubber_modulus < found.high[1]
@@ -263,7 +263,7 @@ def test_a_load_cell_that_may_be_off_widens_what_it_can_imitate():
     exact = _calibrate_hose(TRUTH.design(), pull(TRUTH, noise=5, seed=8), ["rubber_modulus"])
     test = pull(TRUTH, noise=5, seed=8, tension_gain=0.02)
     unsure = _calibrate_hose(TRUTH.design(), test, ["rubber_modulus"])
-    assert unsure.standard_uncertainty[0] > 3 * exact.standard_uncertainty[0]
+    assert unsure.value_standard_uncertainty[0] > 3 * exact.value_standard_uncertainty[0]
     assert unsure.shared_error == ("tension_gain", "cord curve between its points")
     # fitted errors are the same as generalised least squares with the whole covariance
     slope = (
@@ -274,7 +274,7 @@ def test_a_load_cell_that_may_be_off_widens_what_it_can_imitate():
     (gain,) = test.contribution_of("ascending")
     covariance = np.diag(own**2) + np.outer(gain, gain)
     expected = 1 / np.sqrt(slope @ np.linalg.solve(covariance, slope))
-    assert unsure.standard_uncertainty[0] == pytest.approx(expected, rel=0.15)
+    assert unsure.value_standard_uncertainty[0] == pytest.approx(expected, rel=0.15)
 
 
 def test_numbers_that_are_not_fitted_are_uncertain_too():
@@ -282,7 +282,7 @@ def test_numbers_that_are_not_fitted_are_uncertain_too():
     alone = _calibrate_hose(TRUTH.design(), test, ["dead_length_share"])
     known = {"rubber_modulus": 0.05 * TRUTH.rubber_modulus, "dead_length_share": 0.001}
     found = _calibrate_hose(TRUTH.design(), test, ["dead_length_share"], standard_uncertainty=known)
-    assert found.standard_uncertainty[0] > 1.5 * alone.standard_uncertainty[0]
+    assert found.value_standard_uncertainty[0] > 1.5 * alone.value_standard_uncertainty[0]
     assert "rubber_modulus" in found.shared_error
     assert "dead_length_share" not in found.shared_error  # it does not hold itself back
 
@@ -366,7 +366,9 @@ def test_fitted_modulus_and_scale_trade_as_their_correlation_says():
     values = np.array([one.value for one in fits])
     stated = np.median([one.correlation[0, 1] for one in fits])
     assert np.corrcoef(values.T)[0, 1] == pytest.approx(stated, abs=0.25)
-    ratio = np.std(values, axis=0) / np.median([one.standard_uncertainty for one in fits], axis=0)
+    ratio = np.std(values, axis=0) / np.median(
+        [one.value_standard_uncertainty for one in fits], axis=0
+    )
     assert np.all(ratio > 0.75) and np.all(ratio < 1.2)
 
 

@@ -34,7 +34,7 @@ def test_a_right_prediction_lies_between_the_branches_and_agrees():
     assert found.validation.verdict.startswith("agrees within U")
     assert found.calibration is None
     assert [one.name for one in found.events] == ["pick_up", "working", "break"]
-    assert found.energy.loop == pytest.approx(300 * 1.1, rel=0.02)
+    assert found.energy.loop_energy == pytest.approx(300 * 1.1, rel=0.02)
 
 
 def test_a_softer_hose_is_called_different_and_its_modulus_is_found():

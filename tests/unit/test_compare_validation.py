@@ -31,14 +31,14 @@ def test_variances_of_test_and_prediction_add():
     middle = slice(2, -2)
     assert found.measurement_standard_uncertainty[middle] == pytest.approx(3, abs=1e-6)
     assert found.input_standard_uncertainty[middle] == pytest.approx(4, rel=0.02)
-    assert found.standard_uncertainty[middle] == pytest.approx(5, rel=0.02)
+    assert found.validation_uncertainty[middle] == pytest.approx(5, rel=0.02)
 
 
 def test_one_shared_error_is_one_degree_of_freedom_and_two_sigma():
     test = pulled(500 + 100 * STROKE, tension_offset=10.0)
     found = validate_curve(500 + 100 * test.strain + 15, test, input_error=exact(test))
     assert found.coverage_factor == pytest.approx(1.96, abs=0.06)
-    assert found.ratio == pytest.approx(1.5, abs=1e-3)
+    assert found.largest_ratio == pytest.approx(1.5, abs=1e-3)
     # noise of rounding alone is left beside the offset
     assert found.agrees and found.chi_square_probability == pytest.approx(0.1336, abs=0.02)
 
@@ -47,7 +47,7 @@ def test_errors_that_are_each_for_itself_need_a_wider_band():
     rng = np.random.default_rng(3)
     test = pulled(1000 + rng.normal(0, 10, STROKE.size))
     found = validate_curve(1000 + 0 * test.strain, test, input_error=exact(test))
-    n = np.isfinite(found.standard_uncertainty).sum()
+    n = np.isfinite(found.validation_uncertainty).sum()
     # two-sided 95 % for the largest of n independent normals
     from scipy.stats import norm
 
@@ -62,7 +62,7 @@ def test_a_difference_is_named_with_its_place_sign_and_size():
     wrong = 1000 + 0 * test.strain
     wrong[30] += 55
     found = validate_curve(wrong, test, input_error=exact(test))
-    assert not found.agrees and found.ratio == pytest.approx(5.5, rel=1e-3)
+    assert not found.agrees and found.largest_ratio == pytest.approx(5.5, rel=1e-3)
     assert found.verdict.startswith("differs by +55 N at strain 0.3, 5.5 times its standard unc")
     assert "the prediction is above the test" in found.verdict
     low = validate_curve(2000 - wrong, test, input_error=exact(test))
@@ -73,7 +73,7 @@ def test_an_uncertainty_that_swallows_everything_is_called_so():
     test = pulled(1000 + 0 * STROKE, tension_offset=300.0)
     found = validate_curve(1200 + 0 * test.strain, test, input_error=exact(test))
     assert found.agrees and not found.is_informative
-    assert found.share == pytest.approx(0.588, abs=0.02)
+    assert found.uncertainty_share == pytest.approx(0.588, abs=0.02)
     assert found.verdict.endswith("so wide that agreement says little")
     useful = validate_curve(
         1200 + 0 * test.strain, test, input_error=exact(test), largest_useful_share=0.7
@@ -92,7 +92,7 @@ def test_nothing_known_is_not_judged():
     test = pulled(0 * STROKE)  # no noise, no calibration
     found = validate_curve(5 + 0 * test.strain, test, input_error=exact(test))
     assert found.verdict.startswith("not judged") and not found.agrees
-    assert found.chi_square_freedom == 0 and np.isnan(found.ratio)
+    assert found.chi_square_freedom == 0 and np.isnan(found.largest_ratio)
 
 
 def test_a_wrong_shape_inside_the_band_is_noted():

@@ -88,7 +88,7 @@ def all_tables(one):
 
 LITTLE = {"is_informative": False, "verdict": "agrees within U, 9 N: so wide that little is said"}
 NOT_JUDGED = {
-    "ratio": np.nan, "coverage_factor": np.nan, "agrees": False,
+    "largest_ratio": np.nan, "coverage_factor": np.nan, "agrees": False,
     "verdict": "not judged: neither the test nor the prediction has an uncertainty",
 }  # fmt: skip
 
@@ -118,9 +118,9 @@ def test_the_table_of_all_has_the_numbers_of_the_judged_curve():
     ]
     assert [float(one) for one in values(table, "bias [N]")] == [one.bias for one in differences]
     assert [float(one) for one in values(table, "worst [N]")] == [
-        one.worst_difference for one in differences
+        one.worst_tension_difference for one in differences
     ]
-    ratios = [one().comparison.validation.ratio for one in (agreeing, differing, trading)]
+    ratios = [one().comparison.validation.largest_ratio for one in (agreeing, differing, trading)]
     assert [float(one) for one in values(table, "largest ratio")] == ratios
     assert column(table, "at strain [%]")[1] == "120"
 
@@ -195,7 +195,7 @@ def test_the_error_is_drawn_within_what_it_may_be():
     (figure,) = draw_error(one)
     found = traces(figure)
     validation = agreeing().comparison.validation
-    allowed = validation.coverage_factor * validation.standard_uncertainty
+    allowed = validation.coverage_factor * validation.validation_uncertainty
     edges = numbers(found["band of U"]["y"])
     assert np.nanmax(edges) == pytest.approx(np.nanmax(allowed), rel=1e-5)
     assert np.nanmin(edges) == pytest.approx(-np.nanmax(allowed), rel=1e-5)
@@ -211,18 +211,21 @@ def test_the_greatest_difference_and_the_largest_ratio_are_marked():
     both = traces(draw_error(view(differing()))[0])
     validation = differing().comparison.validation
     assert differing().comparison.differences["ascending"].worst_strain == pytest.approx(1.2)
-    assert validation.ratio_strain == pytest.approx(1.2)
+    assert validation.largest_ratio_strain == pytest.approx(1.2)
     mark = both["greatest difference and ratio"]
     apart = TRUTH.tension(1.2) - TRUTH.but(cord_load_scale=1.5).tension(1.2)
     assert (mark["x"], mark["y"]) == ([120.0], [pytest.approx(apart, rel=2e-3)])
     elsewhere = differing().comparison.measured.strain[40]
-    found = traces(draw_error(view(judged_as(differing(), ratio_strain=elsewhere)))[0])
+    found = traces(draw_error(view(judged_as(differing(), largest_ratio_strain=elsewhere)))[0])
     assert found["greatest difference"]["x"] == [120.0] and found["largest ratio"]["x"] == [40.0]
 
 
 def test_what_is_not_judged_has_no_band_and_no_ratio():
     named = judged_as(
-        agreeing(), **NOT_JUDGED, ratio_strain=np.nan, standard_uncertainty=np.full(91, np.nan)
+        agreeing(),
+        **NOT_JUDGED,
+        largest_ratio_strain=np.nan,
+        validation_uncertainty=np.full(91, np.nan),
     )
     (figure,) = draw_error(view(named))
     found = traces(figure)
@@ -262,7 +265,7 @@ def test_cycles_are_drawn_over_the_logarithm_of_their_number():
 def test_two_cycles_are_points_without_a_line():
     cycles = trading().comparison.cycles
     two = replace(
-        cycles, cycle_number=np.array([1, 20_000]), bias=cycles.bias[:2], rms=cycles.rms[:2],
+        cycles, cycle_number=np.array([1, 20_000]), cycle_bias=cycles.cycle_bias[:2], cycle_rms=cycles.cycle_rms[:2],
         bias_per_decade=np.nan, bias_per_decade_standard_uncertainty=np.nan,
     )  # fmt: skip
     named = replace(trading(), comparison=replace(trading().comparison, cycles=two))
@@ -326,7 +329,7 @@ def test_energies_stand_between_two_strains():
     assert column(energy_table(view(differing())), "loop [J/m]") == [NOT_GIVEN]
     energy = replace(
         agreeing().comparison.energy,
-        **dict.fromkeys(("measured", "predicted", "difference"), np.nan),
+        **dict.fromkeys(("measured_energy", "predicted_energy", "energy_difference"), np.nan),
     )
     named = replace(agreeing(), comparison=replace(agreeing().comparison, energy=energy))
     assert energy_table(view(named)) is None
@@ -356,7 +359,7 @@ def fitted_as(named, **changes):
 def test_a_number_that_was_stopped_says_so_and_one_without_an_interval_has_none():
     stopped = fitted_as(
         trading(), is_at_bound=np.array([True, False]),
-        standard_uncertainty=np.array([np.nan, 0.1]), low=np.array([np.nan, 0.9]),
+        value_standard_uncertainty=np.array([np.nan, 0.1]), low=np.array([np.nan, 0.9]),
         high=np.array([np.nan, 1.1]), notes=(note("number-at-bound", name="cord_load_scale"),),
     )  # fmt: skip
     one = view(stopped)
