@@ -113,8 +113,9 @@ class EventDifference:
 class _EnergyDifference:
     """Energies per relaxed length between the same two strains. [J m-1].
 
-    The prediction is elastic and has no loop; ``loop_energy_share`` is the measured loop over the
-    measured energy under the ascending branch. [1]
+    The prediction is elastic and has no loop; ``energy_difference_share`` is the difference over
+    the measured energy under the ascending branch, ``loop_energy_share`` the measured loop over
+    it. [1]
     """
 
     energy_strain_low: float
@@ -122,6 +123,7 @@ class _EnergyDifference:
     measured_energy: float
     predicted_energy: float
     energy_difference: float
+    energy_difference_share: float
     loop_energy: float
     loop_energy_share: float
 
@@ -404,8 +406,8 @@ def energy_difference(predicted: ArrayLike, measured: MeasuredCurve) -> _EnergyD
     >>> energy = energy_difference(110 * pull.strain, pull)
     >>> print(round(energy.measured_energy, 6), round(energy.energy_difference, 6))
     50.0 5.0
-    >>> energy.loop_energy
-    nan
+    >>> round(energy.energy_difference_share, 6), energy.loop_energy
+    (0.1, nan)
     """
     model, up = as_same_shape(predicted=predicted, measured=measured.branch_tension[0])
     down = measured.branch_tension[1]
@@ -414,7 +416,7 @@ def energy_difference(predicted: ArrayLike, measured: MeasuredCurve) -> _EnergyD
     if has_loop:
         there &= np.isfinite(down)
     if np.count_nonzero(there) < 2:
-        return _EnergyDifference(*[float("nan")] * 7)
+        return _EnergyDifference(*[float("nan")] * 8)
     x = measured.strain[there]
     taken, stored = (float(np.trapezoid(curve[there], x)) for curve in (up, model))
     loop = taken - float(np.trapezoid(down[there], x)) if has_loop else float("nan")
@@ -424,6 +426,7 @@ def energy_difference(predicted: ArrayLike, measured: MeasuredCurve) -> _EnergyD
         measured_energy=taken,
         predicted_energy=stored,
         energy_difference=stored - taken,
+        energy_difference_share=stored / taken - 1 if taken > 0 else float("nan"),
         loop_energy=loop,
         loop_energy_share=loop / taken if taken > 0 else float("nan"),
     )

@@ -616,6 +616,15 @@ OF_COMPARISONS: tuple[Quantity, ...] = (
             page=("compared energies", "difference"),
         ),
         stated(
+            "energy_difference_share",
+            "1",
+            "predicted less measured energy, over the measured energy",
+            "not carried through",
+            tables=("comparisons",),
+            page=("compared energies", "difference over measured"),
+            percent=True,
+        ),
+        stated(
             "loop_energy",
             "J m-1",
             "energy between the branches; the prediction has no loop",

@@ -75,6 +75,8 @@ def test_energy_of_a_loop_is_its_width_times_its_length():
     assert energy.loop_energy == pytest.approx(60 * width, rel=1e-3)
     assert energy.measured_energy == pytest.approx(middle + 30 * width, rel=1e-3)
     assert energy.energy_difference == pytest.approx(-30 * width, rel=1e-2)
+    share = -30 * width / (middle + 30 * width)
+    assert energy.energy_difference_share == pytest.approx(share, rel=1e-2)
     assert energy.loop_energy_share == pytest.approx(energy.loop_energy / energy.measured_energy)
 
 
