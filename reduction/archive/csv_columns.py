@@ -347,12 +347,19 @@ _UNKNOWN = "nothing is known of its scatter"
 
 def _lonely_numbers(columns: Sequence[CsvColumn | GroupColumn], table: pd.DataFrame) -> set[int]:
     """Find the uncertainties that are empty where a number stands beside."""
-    is_empty = table.isna() | (table == "")
     return {
         place
         for place, _ in _uncertainties(columns)
-        if (is_empty.iloc[:, place] & ~is_empty.iloc[:, place - 1]).any()
+        if (_is_empty(table, place) & ~_is_empty(table, place - 1)).any()
     }
+
+
+def _is_empty(table: pd.DataFrame, place: int) -> Bools:
+    values = table.iloc[:, place].to_numpy()
+    return np.asarray(
+        np.isnan(values) if values.dtype.kind == "f" else pd.isna(values) | (values == ""),
+        dtype=bool,
+    )
 
 
 def column_descriptions(
