@@ -26,7 +26,6 @@ LONGEST = (
 NIGHTLY_BUT = {
     "cli/test_run_workers.py": ("test_products_have_the_same_bytes_on_any_number_of_workers[2]",),
     "browser/test_design_values.py": (
-        "test_line_types_are_those_of_the_export",
         "test_questions_put_into_the_form_are_answered_in_the_same_words",
         "test_the_page_is_sound_for_everybody[dark-390]",
     ),
@@ -35,7 +34,7 @@ NIGHTLY_BUT = {
 # files that run campaigns or start servers over and over
 SLOW_FILES = (
     "cli/test_catalogue.py", "cli/test_explore.py", "cli/test_hostile_binary.py",
-    "cli/test_run_remote.py", "cli/test_verify.py", "unit/test_batch_cluster.py",
+    "cli/test_run_remote.py", "cli/test_verify.py", 
     "unit/test_catalogue.py", "unit/test_explore_server.py", "unit/test_explore_session.py",
     "unit/test_remote_transfer.py", "unit/test_report_client.py", "unit/test_verify.py",
 )  # fmt: skip
