@@ -13,21 +13,23 @@ from boundedruns import BoundedRuns
 from manytests import wait_for
 
 ROOT = Path(__file__).parents[1]
+# what a command asks of its environment when it prints
+READ_LATE = {"COLUMNS", "NO_COLOR", "TERM"}
 
 
 def reduction(*arguments, cwd=ROOT, **environment):
     """Run the command as a user would, in a process of its own.
 
     It is forked from one that has loaded the package, which saves the start, unless something of
-    the environment is another or the command starts processes itself.
+    the environment that is read at the start is another or the command starts processes itself.
     """
     words = [*map(str, arguments)]
-    if environment or {"--jobs", "--scheduler"} & set(words):
+    if environment.keys() - READ_LATE or {"--jobs", "--scheduler"} & set(words):
         return subprocess.run(
             [sys.executable, "-m", "reduction", *words], cwd=cwd, capture_output=True, text=True,
             check=False, env=os.environ | {"PYTHONPATH": str(ROOT)} | environment,
         )  # fmt: skip
-    done = _loaded().run(*words, cwd=cwd, seconds=900, environment={}, is_bounded=False)
+    done = _loaded().run(*words, cwd=cwd, seconds=900, environment=environment, is_bounded=False)
     return subprocess.CompletedProcess(words, done.status, done.out, done.errors)
 
 

@@ -34,9 +34,9 @@ NIGHTLY_BUT = {
 # files that run campaigns or start servers over and over
 SLOW_FILES = (
     "cli/test_catalogue.py", "cli/test_explore.py", "cli/test_hostile_binary.py",
-    "cli/test_run_remote.py", "cli/test_verify.py", 
-    "unit/test_catalogue.py", "unit/test_explore_server.py", "unit/test_explore_session.py",
-    "unit/test_remote_transfer.py", "unit/test_report_client.py", "unit/test_verify.py",
+    "cli/test_run_remote.py", "cli/test_verify.py", "unit/test_catalogue.py",
+    "unit/test_explore_server.py", "unit/test_explore_session.py", "unit/test_remote_transfer.py",
+    "unit/test_report_client.py", "unit/test_verify.py",
 )  # fmt: skip
 SLOW_FOLDERS = ("browser", "docs", "faults", "fuzz")
 # what a whole campaign of the project or a browser is needed for

@@ -261,10 +261,14 @@ def test_a_run_in_which_every_test_fails_has_a_page_that_says_so(small, command)
     "change",
     [
         ('source = "synthetic"', 'source = "synthetic"\nsynthetic = true\ninstitution = "x"'),
-        ("[defaults]", '[defaults]\nmachine = "linear drive"'),
-        ("[tests.A]", '[tests.A]\ndate = "2026-11-21"'),
+        pytest.param(
+            ("[defaults]", '[defaults]\nmachine = "linear drive"'), marks=pytest.mark.nightly
+        ),
+        pytest.param(("[tests.A]", '[tests.A]\ndate = "2026-11-21"'), marks=pytest.mark.nightly),
         ("[tests.A]", "[tests.A]\norder = 1"),
-        ("[tests.A]", "[tests.A]\ntarget_strain = [0.5, 1.0]"),
+        pytest.param(
+            ("[tests.A]", "[tests.A]\ntarget_strain = [0.5, 1.0]"), marks=pytest.mark.nightly
+        ),
         ("[tests.A]", "[tests.A]\n[tests.A.reduction.cycles]\nbreak_in_cycles = 1\n[tests.A.x]"),
         ('diameter = ["1.04 in"]', 'diameter = ["1.04 in"]\nnote = "cut from one length"'),
     ],

@@ -1,7 +1,7 @@
 """The documentation is built as it is published, and no warning comes of it.
 
 First every command of docs/get-started.md is run, in its order; then its products are those that the
-scripts of the gallery read, each of which is run by the build.
+scripts of the gallery read. The build runs those scripts of which a test asks: all of them nightly.
 """
 
 import contextlib
@@ -29,6 +29,14 @@ SCRIPTS = sorted(
     path.relative_to(ROOT / "docs") for path in (ROOT / "docs").glob("[et]*/plot_*.py")
     if path.parent.name in ("examples", "tutorials")
 )  # fmt: skip
+# a reader's first, one of each kind of source, and what is copied to be changed
+RUN_OFTEN = (
+    "plot_01_reading_an_archive",
+    "plot_05_hose_against_measurement",
+    "plot_07_deployed_line",
+    "plot_08_own_reader",
+    "plot_1_whoi_2005_10",
+)
 RUN_ALONE = [word for name in ("T-1", "T-2", "T-4-extended") for word in ("--test", name)]
 OPENED = (
     "index", "method", "errata", "gallery/index", "tutorial/plot_1_whoi_2005_10",
@@ -128,8 +136,18 @@ class Page(HTMLParser):
             self.fetched.append(found["href"])
 
 
+def scripts_of(items):
+    """Pattern of the scripts of which the tests ask that are run now."""
+    asked = {item.callspec.params["ran"].name for item in items if "ran" in params_of(item)}
+    return "|".join(f"/{re.escape(name)}$" for name in sorted(asked)) or "no script"
+
+
+def params_of(item):
+    return item.callspec.params if hasattr(item, "callspec") else {}
+
+
 @pytest.fixture(scope="module")
-def built(walked, tmp_path_factory):
+def built(request, walked, tmp_path_factory):
     """The folder of a build from a copy, so that nothing is written beside the sources."""
     for name in NEEDED:
         pytest.importorskip(name)
@@ -140,7 +158,8 @@ def built(walked, tmp_path_factory):
         if path.name not in ("docs", "processed", "reports") and not path.name.startswith("."):
             (folder / path.name).symlink_to(path)
     done = subprocess.run(
-        [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-j", "2", "-b", "html", "docs", "out"],
+        [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-j", "2", "-b", "html",
+         "-D", f"sphinx_gallery_conf.filename_pattern={scripts_of(request.session.items)}", "docs", "out"],
         cwd=folder, capture_output=True, text=True, check=False,
         env=os.environ | {"PYTHONPATH": str(ROOT), "REDUCTION_DOCS_WORK": str(work)},
     )  # fmt: skip
@@ -198,13 +217,21 @@ def test_formulas_are_set(built):
     assert ".. math::" not in text
 
 
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
-def test_every_script_ran_and_is_shown_with_what_it_printed_and_drew(script, built):
-    page = (built / PAGES_OF[script.parent.name] / f"{script.stem}.html").read_text(
-        encoding="utf-8"
-    )
+@pytest.mark.parametrize(
+    "ran",
+    [
+        pytest.param(
+            path,
+            id=path.stem,
+            marks=() if path.stem in RUN_OFTEN else pytest.mark.nightly,
+        )
+        for path in SCRIPTS
+    ],
+)
+def test_a_script_ran_and_is_shown_with_what_it_printed_and_drew(ran, built):
+    page = (built / PAGES_OF[ran.parent.name] / f"{ran.stem}.html").read_text(encoding="utf-8")
     assert "sphx-glr-script-out" in page
-    assert f"sphx_glr_{script.stem}_001.png" in page
+    assert f"sphx_glr_{ran.stem}_001.png" in page
     assert "Traceback" not in page
 
 
