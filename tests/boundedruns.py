@@ -66,14 +66,24 @@ class BoundedRuns:
         self._server.wait()
         self._server.stdout.close()
 
-    def run(self, *arguments, seconds=60.0, cwd=ROOT, environment=WIDE, is_bounded=True):
+    def run(
+        self, *arguments, seconds=60.0, cwd=ROOT, environment=WIDE, is_bounded=True, terminal=None
+    ):
         """``reduction ARGUMENTS``, killed after so many seconds.
 
-        ``environment`` is added to that of this process; memory and disk are not bounded where
-        ``is_bounded`` is false.
+        ``environment`` is added to that of this process, but for what is None there, which is taken
+        away; memory and disk are not bounded where ``is_bounded`` is false; what is printed goes to
+        ``terminal``, a path, where there is one.
         """
-        asked = {"arguments": [*map(str, arguments)], "is_bounded": is_bounded}
-        return self._asked(asked, seconds, str(cwd), os.environ | environment)
+        asked = {
+            "arguments": [*map(str, arguments)],
+            "is_bounded": is_bounded,
+            "terminal": terminal,
+        }
+        plain = {
+            name: text for name, text in (os.environ | environment).items() if text is not None
+        }
+        return self._asked(asked, seconds, str(cwd), plain)
 
     def read(self, path, layout, limits=None, seconds=60.0):
         """The layout of a log proposed, and the log read; both may be refused."""
@@ -123,7 +133,7 @@ def _read(path, layout, limits):
 
 def _forked(asked, seconds, cwd, environment):
     """Fork, run, wait for the end or the deadline."""
-    is_bounded = asked.pop("is_bounded", True)
+    is_bounded, terminal = asked.pop("is_bounded", True), asked.pop("terminal", None)
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as errors:
         begin, is_late = time.monotonic(), False
         child = os.fork()
@@ -131,6 +141,9 @@ def _forked(asked, seconds, cwd, environment):
             os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
             os.dup2(out.fileno(), 1)
             os.dup2(errors.fileno(), 2)
+            if terminal:
+                for place in (1, 2):
+                    os.dup2(os.open(terminal, os.O_WRONLY | os.O_NOCTTY), place)
             if is_bounded:
                 _bound(seconds)
             _child(asked, cwd, environment)

@@ -1,5 +1,6 @@
 """Cyclic tests made from a law, for the tests of the stages that reduce them."""
 
+import gc
 from pathlib import Path
 
 import hypothesis
@@ -26,7 +27,7 @@ LONGEST = (
 NIGHTLY_BUT = {
     "cli/test_run_workers.py": ("test_products_have_the_same_bytes_on_any_number_of_workers[2]",),
     "browser/test_design_values.py": (
-        "test_questions_put_into_the_form_are_answered_in_the_same_words",
+        "test_questions_put_into_the_form_are_answered_in_the_same_words[10]",
         "test_the_page_is_sound_for_everybody[dark-390]",
     ),
     "browser/test_explorer.py": ("test_a_setting_is_moved_seen_saved_and_run",),
@@ -41,6 +42,16 @@ SLOW_FILES = (
 SLOW_FOLDERS = ("browser", "docs", "faults", "fuzz")
 # what a whole campaign of the project or a browser is needed for
 SLOW_FIXTURES = {"synthetic", "static", "nylon_campaign", "hose_campaign", "campaigns", "browser"}
+
+
+def pytest_collection_finish(session):
+    """What was collected stays to the end: it is not looked through for circles again and again.
+
+    In between as seldom as the command does it.
+    """
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(100_000, 20, 50)
 
 
 def is_nightly(config):

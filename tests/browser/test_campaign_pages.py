@@ -56,6 +56,7 @@ def test_figures_in_space_are_drawn_and_make_room_for_others(campaigns, visit):
     assert shown.errors == []
 
 
+@pytest.mark.nightly
 def test_sections_of_one_kind_are_folded_and_a_single_one_is_not(campaigns, visit):
     folded = visit(campaigns("tmt-synthetic").page).page
     assert folded.locator("details.chapter").count() == 10

@@ -88,10 +88,13 @@ def test_random_questions_have_the_answers_of_the_command(made, shown, monkeypat
     assert shown.beyond == []
 
 
-def test_questions_put_into_the_form_are_answered_in_the_same_words(made, shown, monkeypatch):
+@pytest.mark.parametrize("n_asked", [10, BY_HAND])
+def test_questions_put_into_the_form_are_answered_in_the_same_words(
+    n_asked, made, shown, monkeypatch
+):
     lines = {key: (line, own) for key, line, own in made[2]}
     page = shown.page
-    for one in questions([(key, line) for key, line, _ in made[2]], BY_HAND, SEED + 1):
+    for one in questions([(key, line) for key, line, _ in made[2]], n_asked, SEED + 1):
         page.locator(f"input[name=units][value={one['system']}]").check()
         page.locator("#line").select_option(one["line"])
         page.locator("#quantity").select_option(one["quantity"])

@@ -47,6 +47,7 @@ def test_everything_that_a_record_draws_is_in_its_data(shown, small):
     assert {row[0] for row in rows} >= {"crosshead position", "tension, one", "shading: cycling"}
 
 
+@pytest.mark.nightly
 def test_a_figure_is_saved_as_a_drawing_and_as_a_picture(shown):
     name, content = take(shown, f"{KEY}-modulus-0", "SVG")
     assert name == "many_T01_modulus-0.svg"

@@ -52,6 +52,7 @@ def test_no_control_of_a_figure_sends_it_anywhere(shown):
     assert not [name for name in names if "hare" in name or "loud" in name or "ownload" in name]
 
 
+@pytest.mark.nightly
 def test_a_fold_opens_by_its_link_by_an_address_and_by_a_key(shown, small, visit):
     fold = shown.page.locator("details.chapter", has=shown.page.locator("#test-1"))
     assert fold.get_attribute("open") is None

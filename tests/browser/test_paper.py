@@ -70,6 +70,7 @@ def test_a_column_headed_by_a_long_name_is_not_cut_off(small, visit):
     assert smallest > 4  # CSS pixels
 
 
+@pytest.mark.nightly
 def test_a_reader_who_opens_the_page_and_prints_it_has_every_section_and_figure(
     small, visit, tmp_path
 ):

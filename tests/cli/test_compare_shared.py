@@ -205,7 +205,7 @@ def test_noise_of_one_reading_is_no_error_that_samples_share(tmp_path):
 @pytest.mark.parametrize(
     ("text", "source", "share"),
     [
-        (STRAIN, "strain_gain", None),
+        pytest.param(STRAIN, "strain_gain", None, marks=pytest.mark.nightly),
         pytest.param(WARM, "temperature", 0.05, marks=pytest.mark.nightly),
     ],
 )
@@ -242,6 +242,7 @@ def test_that_nothing_is_stated_is_said_where_nothing_is(tmp_path):
     )
 
 
+@pytest.mark.nightly
 def test_a_hose_without_a_diameter_says_that_its_instruments_are_left_out(tmp_path):
     campaign, processed = reduced(
         tmp_path, GAIN, edit=lambda text: text.replace('diameter = ["5 in"]\n', "")

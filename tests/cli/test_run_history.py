@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -70,8 +71,7 @@ def write_log(path, low, high, n_cycles, seed):
                comments="")  # fmt: skip
 
 
-@pytest.fixture
-def row(tmp_path):
+def write_row(tmp_path):
     write_log(tmp_path / "A.csv", 0.1, 0.3, 10, 1)
     write_log(tmp_path / "B.csv", 0.1, 0.24, 12, 2)
     write_log(tmp_path / "C.csv", 0.1, 0.2, 8, 3)
@@ -83,6 +83,24 @@ def row(tmp_path):
     (tmp_path / "weights.csv").write_text("t,F,length\n" + "".join(lines))
     (tmp_path / "campaign.toml").write_text(CAMPAIGN)
     return tmp_path
+
+
+@pytest.fixture
+def row(tmp_path):
+    return write_row(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def run_once(tmp_path_factory, command):
+    folder = write_row(tmp_path_factory.mktemp("row"))
+    assert all(test["status"] != "failed" for test in run(folder, command).values())
+    return folder
+
+
+@pytest.fixture
+def row_with_products(run_once, tmp_path):
+    """The four tests and what a run of them made, to be changed at will."""
+    return shutil.copytree(run_once, tmp_path, dirs_exist_ok=True)
 
 
 def run(folder, command, *options):
@@ -108,8 +126,8 @@ def greatest(tests):
     return strain.max(), tension.max(), cycles.sum()
 
 
-def test_weights_are_in_the_history_and_have_one(row, command):
-    assert all(test["status"] != "failed" for test in run(row, command).values())
+def test_weights_are_in_the_history_and_have_one(run_once):
+    row = run_once
     for test, earlier in (
         ("weights", ["A"]),
         ("B", ["A", "weights"]),
@@ -137,9 +155,9 @@ def test_what_a_failed_test_did_is_not_known_and_is_said(row, command):
 
 
 def test_products_are_made_anew_without_an_earlier_test_that_fails_and_with_it_when_it_is_mended(
-    row, command
+    row_with_products, command
 ):
-    run(row, command)
+    row = row_with_products
     folder = row / "processed" / "row"
     before = {path.name: path.read_bytes() for path in folder.glob("*.nc")}
     sound = (row / "A.csv").read_text()
@@ -173,16 +191,18 @@ def test_a_product_made_while_one_test_failed_does_not_stand_for_another(row, co
     assert any(note.startswith("earlier test B failed") for note in history(row, "C")[2])
 
 
-def test_a_setting_of_its_own_makes_a_product_anew_beside_a_failed_test(row, command):
-    run(row, command)
+def test_a_setting_of_its_own_makes_a_product_anew_beside_a_failed_test(row_with_products, command):
+    row = row_with_products
     break_log(row, "A.csv")
     text = (row / "campaign.toml").read_text()
     (row / "campaign.toml").write_text(text.replace('["10 mm"]', '["11 mm"]'))
     assert run(row, command)["B"]["status"] == "reduced_with_notes"
 
 
-def test_an_earlier_test_that_is_new_and_fails_makes_the_later_ones_anew(row, command):
-    run(row, command)
+def test_an_earlier_test_that_is_new_and_fails_makes_the_later_ones_anew(
+    row_with_products, command
+):
+    row = row_with_products
     (row / "new.csv").write_text("t,x,F\n0,0,ovrflw\n")
     text = (row / "campaign.toml").read_text()
     (row / "campaign.toml").write_text(text + '[tests.new]\nfile = "new.csv"\norder = 0\n')
@@ -246,9 +266,8 @@ def test_a_log_in_steps_has_each_in_the_history_and_one_that_fails_is_one_earlie
     assert names == "A, weights" and np.isnan(numbers).all()
 
 
-def test_each_product_has_the_key_of_its_settings(row, command):
-    run(row, command)
-    for path in (row / "processed" / "row").glob("*.nc"):
+def test_each_product_has_the_key_of_its_settings(run_once):
+    for path in (run_once / "processed" / "row").glob("*.nc"):
         with open_archive(path) as archive:
             settings = archive.attrs["settings"].encode()
             assert archive.attrs["key"] == hashlib.sha256(settings).hexdigest()

@@ -32,9 +32,18 @@ def truth():
     return table.rename(columns=lambda name: name.removesuffix("_lbf").removesuffix("_s"))
 
 
-def of_test(run, name, quantity):
-    with open_archive(run.processed / f"{name}.nc") as archive:
-        return float(archive[f"test_{quantity}"].to_numpy()[0])
+@pytest.fixture(scope="module")
+def archives(run, truth):
+    """The archive of each run, read once."""
+    found = {}
+    for name in truth.index:
+        with open_archive(run.processed / f"{name}.nc") as archive:
+            found[name] = archive.load()
+    return found
+
+
+def of_test(archive, quantity):
+    return float(archive[f"test_{quantity}"].to_numpy()[0])
 
 
 def test_every_test_is_reduced(run):
@@ -57,33 +66,31 @@ def test_every_test_is_reduced(run):
         ("relaxation_time", 3e-2),
     ],
 )
-def test_runs_give_back_the_line_that_made_them(run, truth, quantity, tolerance):
+def test_runs_give_back_the_line_that_made_them(archives, truth, quantity, tolerance):
     unit = 1.0 if quantity == "relaxation_time" else LBF
     for name, row in truth.iterrows():
-        assert of_test(run, name, quantity) == pytest.approx(row[quantity] * unit, rel=tolerance), (
-            name
-        )
+        expected = pytest.approx(row[quantity] * unit, rel=tolerance)
+        assert of_test(archives[name], quantity) == expected, name
 
 
-def own_uncertainty(run, test, quantity):
+def own_uncertainty(archive, quantity):
     """Without the instruments: generated channels have no error of gain, zero or lag."""
-    with open_archive(run.processed / f"{test}.nc") as archive:
-        name = f"test_{quantity}"
-        random = archive[f"{name}_random_standard_uncertainty"].to_numpy()[0]
-        fit = np.flatnonzero(archive["uncertainty_source"].to_numpy() == "quasi_static_fit")
-        shared = archive[f"{name}_uncertainty_contribution"].to_numpy()[fit, 0]
+    name = f"test_{quantity}"
+    random = archive[f"{name}_random_standard_uncertainty"].to_numpy()[0]
+    fit = np.flatnonzero(archive["uncertainty_source"].to_numpy() == "quasi_static_fit")
+    shared = archive[f"{name}_uncertainty_contribution"].to_numpy()[fit, 0]
     return np.hypot(random, np.linalg.norm(shared))
 
 
-def test_stated_uncertainties_cover_the_errors(run, truth):
+def test_stated_uncertainties_cover_the_errors(archives, truth):
     # 60 errors over their standard uncertainties: extremes of a noisy log read high, which
     # is no scatter, so K_ap is left out
     names = ("hysteresis_energy", "relaxation_time", "quasi_static_spring_constant")
     units = (LBF, 1.0, LBF)
     ratios = [
-        (of_test(run, name, quantity) / (row[quantity] * unit) - 1)
-        * of_test(run, name, quantity)
-        / own_uncertainty(run, name, quantity)
+        (of_test(archives[name], quantity) / (row[quantity] * unit) - 1)
+        * of_test(archives[name], quantity)
+        / own_uncertainty(archives[name], quantity)
         for name, row in truth.iterrows()
         for quantity, unit in zip(names, units, strict=True)
     ]

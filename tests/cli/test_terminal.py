@@ -1,13 +1,14 @@
 """At a terminal tables and progress, in a pipe plain text, with --json one object, with --quiet nothing."""
 
+import contextlib
 import json
 import os
 import re
 import shutil
-import subprocess
-import sys
+import threading
 
 import pytest
+from boundedruns import BoundedRuns
 from commandruns import ROOT, reduction
 
 pytestmark = pytest.mark.slow
@@ -20,28 +21,34 @@ ESCAPE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 COLOUR = re.compile(r"\x1b\[(?:\d+;)*(?:3[0-8]|4[0-8]|9[0-7])(?:;\d+)*m")
 
 
-def at_terminal(*arguments, columns=80, **environment):
-    """Run the command with a terminal of so many columns for its output."""
-    ours, theirs = pty.openpty()
-    fcntl.ioctl(theirs, termios.TIOCSWINSZ, bytes([50, 0, columns, 0, 0, 0, 0, 0]))
-    kept = {name: text for name, text in os.environ.items() if name not in ("COLUMNS", "NO_COLOR")}
-    done = subprocess.Popen(
-        [sys.executable, "-m", "reduction", *map(str, arguments)],
-        stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs,
-        env=kept | {"PYTHONPATH": str(ROOT), "TERM": "xterm-256color"} | environment,
-    )  # fmt: skip
-    os.close(theirs)
-    said = b""
-    while True:
-        try:
-            part = os.read(ours, 65536)
-        except OSError:  # how Linux says that the other side is closed
-            break
-        if not part:
-            break
-        said += part
-    os.close(ours)
-    return done.wait(), said.decode()
+@pytest.fixture(scope="module")
+def at_terminal():
+    """Run the command with a terminal of so many columns: its status, and what was on the screen."""
+
+    def run(*arguments, columns=80, **environment):
+        ours, theirs = pty.openpty()
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, bytes([50, 0, columns, 0, 0, 0, 0, 0]))
+        said = []
+
+        def read():
+            with contextlib.suppress(OSError):  # how Linux says that the other side is closed
+                while part := os.read(ours, 65536):
+                    said.append(part)
+
+        reader = threading.Thread(target=read)
+        reader.start()
+        plain = {"COLUMNS": None, "NO_COLOR": None, "TERM": "xterm-256color"}
+        done = runs.run(
+            *arguments, seconds=300, environment=plain | environment, is_bounded=False,
+            terminal=os.ttyname(theirs),
+        )  # fmt: skip
+        os.close(theirs)
+        reader.join()
+        os.close(ours)
+        return done.status, b"".join(said).decode()
+
+    with BoundedRuns() as runs:
+        yield run
 
 
 def places(folder):
@@ -49,7 +56,7 @@ def places(folder):
 
 
 @pytest.fixture(scope="module")
-def narrow(tmp_path_factory):
+def narrow(at_terminal, tmp_path_factory):
     return at_terminal("run", CAMPAIGN, *places(tmp_path_factory.mktemp("narrow")))
 
 
@@ -73,13 +80,15 @@ def test_what_is_left_on_the_screen_fits_it_and_is_whole(narrow):
     assert "\N{HORIZONTAL ELLIPSIS}" not in text
 
 
-def test_colours_are_left_out_where_nobody_wants_them(tmp_path, narrow):
+def test_colours_are_left_out_where_nobody_wants_them(at_terminal, tmp_path, narrow):
     assert COLOUR.search(narrow[1])
     status, said = at_terminal("run", CAMPAIGN, *places(tmp_path), NO_COLOR="1")
     assert status == 0 and not COLOUR.search(said)
 
 
-def test_an_error_of_a_test_is_said_once_on_a_screen_and_stands_in_the_table_of_a_pipe(tmp_path):
+def test_an_error_of_a_test_is_said_once_on_a_screen_and_stands_in_the_table_of_a_pipe(
+    at_terminal, tmp_path
+):
     folder = tmp_path / "campaign"
     shutil.copytree(CAMPAIGN.parent, folder)
     (folder / "table_4.csv").unlink()
@@ -89,12 +98,12 @@ def test_an_error_of_a_test_is_said_once_on_a_screen_and_stands_in_the_table_of_
     assert "the file cannot be read" in reduction("check", folder / "campaign.toml").stdout
 
 
-def test_json_at_a_terminal_is_one_object_and_nothing_else(tmp_path):
+def test_json_at_a_terminal_is_one_object_and_nothing_else(at_terminal, tmp_path):
     status, said = at_terminal("run", CAMPAIGN, *places(tmp_path), "--json")
     assert status == 0 and json.loads(said)["tests"][0]["id"] == "static"
 
 
-def test_quiet_at_a_terminal_says_nothing(tmp_path):
+def test_quiet_at_a_terminal_says_nothing(at_terminal, tmp_path):
     assert at_terminal("run", CAMPAIGN, *places(tmp_path), "--quiet") == (0, "")
 
 
@@ -110,7 +119,7 @@ def test_a_pipe_has_one_line_a_test_and_progress_beside_it(tmp_path):
     assert cells[-1].endswith("0.62 and 0.33 MPa")
 
 
-def test_help_is_drawn_at_a_terminal_and_plain_and_whole_in_a_pipe():
+def test_help_is_drawn_at_a_terminal_and_plain_and_whole_in_a_pipe(at_terminal):
     _, drawn = at_terminal("--help")
     assert "\N{BOX DRAWINGS LIGHT HORIZONTAL}" in drawn
     plain = reduction("--help", FORCE_COLOR="1").stdout
@@ -121,7 +130,7 @@ def test_help_is_drawn_at_a_terminal_and_plain_and_whole_in_a_pipe():
     assert max(map(len, plain.splitlines())) <= 80
 
 
-def test_sentences_are_broken_between_words_and_what_is_copied_is_not_broken(tmp_path):
+def test_sentences_are_broken_between_words_and_what_is_copied_is_not_broken(at_terminal, tmp_path):
     line = "rubber-tether-new-T-1", "--quantity", "tangent_modulus", "--strain", "100 %"
     status, said = at_terminal("lookup", *line, columns=60)
     said = ESCAPE.sub("", said)

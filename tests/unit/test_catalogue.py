@@ -51,15 +51,30 @@ def asked(index, **options):
     return answer(index, Query(**options)).to_pylist()
 
 
-@pytest.fixture
-def folder(archives, tmp_path):
+@pytest.fixture(scope="module")
+def catalogued_once(archives, tmp_path_factory):
     """Two campaigns: every kind of test in one, the rich test alone in the other."""
-    processed = tmp_path / "processed"
+    processed = tmp_path_factory.mktemp("two") / "processed"
     for campaign, paths in (("one", archives), ("two", archives[-1:])):
         (processed / campaign).mkdir(parents=True)
         for path in paths:
             shutil.copyfile(path, processed / campaign / path.name)
+    made(processed)
     return processed
+
+
+@pytest.fixture
+def catalogued(catalogued_once, tmp_path):
+    """The two campaigns and their catalogues, to be changed at will."""
+    return shutil.copytree(catalogued_once, tmp_path / "processed")
+
+
+@pytest.fixture
+def folder(catalogued):
+    """The two campaigns as runs left them before there were catalogues."""
+    for path in catalogued.rglob(FILE_NAME):
+        path.unlink()
+    return catalogued
 
 
 @pytest.fixture(scope="module")
@@ -284,11 +299,10 @@ def test_a_name_that_the_vocabulary_lacks_is_refused(option):
         needed_quantities(Query(**{option: ("stiffnes",)}))
 
 
-def test_what_is_known_of_a_campaign_is_what_its_archives_were_when_it_was_made(folder):
-    made(folder)
-    with netCDF4.Dataset(folder / "two" / "T-1.nc", "a") as archive:
+def test_what_is_known_of_a_campaign_is_what_its_archives_were_when_it_was_made(catalogued):
+    with netCDF4.Dataset(catalogued / "two" / "T-1.nc", "a") as archive:
         archive["cycles/test_frequency"][:] = [0.25, 0.5]
-    found = made(folder)
+    found = made(catalogued)
     rows = asked(found, names={"test": ("T-1",)})
     assert [row["test_frequency"] for row in rows if row["archive"] == "two/T-1.nc"] == [0.25, 0.5]
     others = [row["test_frequency"] for row in rows if row["archive"] == "one/T-1.nc"]
@@ -305,32 +319,29 @@ def test_numbers_of_several_campaigns_stay_with_their_own(folder):
     assert [row["archive"] for row in rows] == sorted(row["archive"] for row in rows)
 
 
-def test_an_archive_that_is_gone_is_not_answered_from(folder):
-    made(folder)
-    (folder / "one" / "hold.nc").unlink()
-    found = load_catalogue(folder)
+def test_an_archive_that_is_gone_is_not_answered_from(catalogued):
+    (catalogued / "one" / "hold.nc").unlink()
+    found = load_catalogue(catalogued)
     assert "hold" not in {row["test"] for row in asked(found)} and not found.unreadable
     assert "hold" not in {row["test"] for row in asked(found, quantity=("relaxation_drop",))}
-    (folder / "two" / "T-1.nc").unlink()
-    assert {row["archive"].split("/")[0] for row in asked(load_catalogue(folder))} == {"one"}
+    (catalogued / "two" / "T-1.nc").unlink()
+    assert {row["archive"].split("/")[0] for row in asked(load_catalogue(catalogued))} == {"one"}
 
 
-def test_an_archive_that_the_catalogue_lacks_is_named(folder):
-    made(folder)
-    shutil.copyfile(folder / "one" / "hold.nc", folder / "two" / "hold.nc")
-    found = load_catalogue(folder)
+def test_an_archive_that_the_catalogue_lacks_is_named(catalogued):
+    shutil.copyfile(catalogued / "one" / "hold.nc", catalogued / "two" / "hold.nc")
+    found = load_catalogue(catalogued)
     assert list(found.unreadable) == ["two/hold.nc"]
     assert found.unreadable["two/hold.nc"] == (
         "two/hold.nc is not in catalogue.parquet. Run the campaign again, or use --rebuild."
     )
     assert len(asked(found)) == 7
-    assert len(asked(made(folder))) == 8
+    assert len(asked(made(catalogued))) == 8
 
 
-def test_a_campaign_without_a_catalogue_is_named_and_hides_no_other(folder):
-    made(folder)
-    (folder / "two" / FILE_NAME).unlink()
-    found = load_catalogue(folder)
+def test_a_campaign_without_a_catalogue_is_named_and_hides_no_other(catalogued):
+    (catalogued / "two" / FILE_NAME).unlink()
+    found = load_catalogue(catalogued)
     assert found.unreadable == {
         "two": "two: catalogue.parquet cannot be read; found No such file or directory. Run the "
         "campaign again, or use --rebuild."
@@ -339,18 +350,16 @@ def test_a_campaign_without_a_catalogue_is_named_and_hides_no_other(folder):
 
 
 @pytest.mark.parametrize("left", [b"", b"PAR1 is not all of it PAR1"])
-def test_a_catalogue_that_is_damaged_is_named_and_made_again(folder, left):
-    made(folder)
-    (folder / "two" / FILE_NAME).write_bytes(left)
-    assert list(load_catalogue(folder).unreadable) == ["two"]
-    assert len(asked(made(folder))) == 7
+def test_a_catalogue_that_is_damaged_is_named_and_made_again(catalogued, left):
+    (catalogued / "two" / FILE_NAME).write_bytes(left)
+    assert list(load_catalogue(catalogued).unreadable) == ["two"]
+    assert len(asked(made(catalogued))) == 7
 
 
-def test_a_catalogue_of_another_program_is_named_and_made_again(folder):
-    made(folder)
-    pyarrow.parquet.write_table(pyarrow.table({"archive": ["x"]}), folder / "two" / FILE_NAME)
-    assert "another version, or of another program" in load_catalogue(folder).unreadable["two"]
-    assert len(asked(made(folder))) == 7
+def test_a_catalogue_of_another_program_is_named_and_made_again(catalogued):
+    pyarrow.parquet.write_table(pyarrow.table({"archive": ["x"]}), catalogued / "two" / FILE_NAME)
+    assert "another version, or of another program" in load_catalogue(catalogued).unreadable["two"]
+    assert len(asked(made(catalogued))) == 7
 
 
 @pytest.mark.parametrize(
@@ -448,12 +457,11 @@ def test_a_folder_that_takes_no_file_is_named(folder):
     assert not [one for one in (folder / "two").iterdir() if one.name.endswith(".part")]
 
 
-def test_a_catalogue_is_the_same_bytes_when_it_is_made_again_in_any_order(folder):
-    made(folder)
-    path = folder / "one" / FILE_NAME
+def test_a_catalogue_is_the_same_bytes_when_it_is_made_again_in_any_order(catalogued):
+    path = catalogued / "one" / FILE_NAME
     first = path.read_bytes()
     path.unlink()
-    write_catalogue(sorted((folder / "one").glob("*.nc"), reverse=True), path)
+    write_catalogue(sorted((catalogued / "one").glob("*.nc"), reverse=True), path)
     assert path.read_bytes() == first
 
 
@@ -465,9 +473,8 @@ def test_a_question_gets_the_same_answer_from_the_numbers_that_it_needs(folder):
     assert quantities_there(some).keys() == {"segment_modulus"}
 
 
-def test_the_file_of_a_campaign_can_be_read_by_itself(folder, rich_test):
-    made(folder)
-    rows = pd.read_parquet(folder / "two" / FILE_NAME)
+def test_the_file_of_a_campaign_can_be_read_by_itself(catalogued, rich_test):
+    rows = pd.read_parquet(catalogued / "two" / FILE_NAME)
     own = rows[(rows["quantity"] == "test_loss_factor") & (rows["specimen"] == "used")]
     assert own["value"].tolist() == [rich_test.amplitude.loss_factor[1]]
     assert own["test_frequency"].tolist() == [rich_test.amplitude.frequency[1]]
@@ -538,8 +545,7 @@ def test_of_many_cycles_those_that_are_not_kept_are_not_read(tmp_path):
     assert sorted(last) == [2 * n_cycles - 1, 2 * n_cycles, 2 * n_cycles + 1]
 
 
-def test_a_folder_that_is_closed_is_named_and_hides_no_other(folder, monkeypatch):
-    made(folder)
+def test_a_folder_that_is_closed_is_named_and_hides_no_other(catalogued, monkeypatch):
     whole = file.archives_in
 
     def closed(path):
@@ -548,10 +554,10 @@ def test_a_folder_that_is_closed_is_named_and_hides_no_other(folder, monkeypatch
         return whole(path)
 
     monkeypatch.setattr(file, "archives_in", closed)
-    found = load_catalogue(folder)
+    found = load_catalogue(catalogued)
     assert {row["archive"].partition("/")[0] for row in asked(found)} == {"one"}
     assert list(found.unreadable) == ["two"] and "Permission denied" in found.unreadable["two"]
-    assert list(rebuild(folder)) == ["two"]
+    assert list(rebuild(catalogued)) == ["two"]
 
 
 def test_a_folder_of_campaigns_that_is_closed_is_refused(folder, monkeypatch):

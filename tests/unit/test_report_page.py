@@ -220,6 +220,7 @@ def test_measured_data_are_not_called_synthetic(report, stepwise_test):
     assert "SYNTHETIC DATA" not in "".join([*page.text, *page.tables])
 
 
+@pytest.mark.nightly
 def test_ten_tests_stay_below_fifteen_megabytes(report, rich_test, tmp_path):
     page = report(*(renamed(rich_test, f"T-{number}") for number in range(1, 11)))
     assert (tmp_path / "reports" / "index.html").stat().st_size < 15e6

@@ -45,7 +45,7 @@ def test_a_line_of_the_record_never_joins_samples_between_which_cycles_are_left_
     assert "of the 2,451 samples 614 are stored; the line is broken" in figure.caption.lower()
 
 
-@pytest.mark.parametrize("n_cycles", [100, 20_000])
+@pytest.mark.parametrize("n_cycles", [100, 2_000, pytest.param(20_000, marks=pytest.mark.nightly)])
 def test_tension_against_position_is_drawn_piece_by_piece(n_cycles):
     cycles = cycles_of(n_cycles, rest=4)
     test = long_test(cycles=cycles)

@@ -26,7 +26,10 @@ def text_of(archive, table, block_rows):
     return "".join(_text_of(block, header=False) for block in blocks)
 
 
-@pytest.mark.parametrize("block_rows", [1, 2, 3, 7, 40])
+@pytest.mark.parametrize(
+    "block_rows",
+    [1, 7, *(pytest.param(number, marks=pytest.mark.nightly) for number in (2, 3, 40))],
+)
 def test_tables_of_tests_are_the_same_for_blocks_of_any_size(archives, block_rows):
     n_filled = 0
     for path in archives:
@@ -38,7 +41,7 @@ def test_tables_of_tests_are_the_same_for_blocks_of_any_size(archives, block_row
     assert n_filled > len(TABLES)
 
 
-@pytest.mark.parametrize("block_rows", [1, 5, 64])
+@pytest.mark.parametrize("block_rows", [pytest.param(1, marks=pytest.mark.nightly), 5, 64])
 def test_tables_of_experiments_are_the_same_for_blocks_of_any_size(block_rows):
     results = [surface_experiment(), screening_experiment()]
     dataset = _by_response(surfaces_to_dataset(results, origin=ABOUT))
@@ -61,6 +64,7 @@ def long_archive(tmp_path):
     return path
 
 
+@pytest.mark.nightly
 def test_a_table_of_many_cycles_takes_the_memory_of_a_few_blocks(long_archive, tmp_path):
     write_tables([long_archive], tmp_path / "warm")  # what stays is made before it is measured
     tracemalloc.start()
