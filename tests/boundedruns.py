@@ -4,6 +4,7 @@ The processes are forked from one that has loaded the package, which is quicker 
 what they share with it counts as theirs: the memory is what a user would see.
 """
 
+import gc
 import importlib
 import json
 import os
@@ -196,6 +197,7 @@ def _printed(file):
 def _serve():
     for name in LOADED:
         importlib.import_module(name)
+    gc.freeze()  # no command looks through what was loaded before it
 
     answers = os.fdopen(os.dup(1), "w")
     for line in sys.stdin:

@@ -124,6 +124,7 @@ def test_quiet_says_nothing_and_ends_alike(place, command):
     assert (done.returncode, done.stdout, done.stderr) == (4, "", "")
 
 
+@pytest.mark.slow
 def test_two_campaigns_are_run_and_compared(made, tmp_path, command, monkeypatch):
     monkeypatch.setattr("reduction.batch.run_campaign.write_report", lambda *given, **more: None)
     shutil.copytree(made / "raw" / NAME, tmp_path / "wider")
