@@ -50,8 +50,14 @@ def lawful():
     return view_of(law_experiment({"apparent_spring_constant": law}, noise=1e-6))
 
 
-@pytest.mark.parametrize("index", range(3))
-@pytest.mark.parametrize("units", ["si", "us"])
+@pytest.mark.parametrize(
+    ("units", "index"),
+    [
+        *(("si", index) for index in range(3)),
+        ("us", 0),
+        *(pytest.param("us", index, marks=pytest.mark.nightly) for index in (1, 2)),
+    ],
+)
 @pytest.mark.slow
 def test_every_figure_is_one_that_plotly_takes_and_says_it_is_synthetic(index, units):
     view = view_of(*EVERYTHING, index=index, units=units)
