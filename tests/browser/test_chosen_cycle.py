@@ -47,6 +47,7 @@ def test_no_cycle_is_chosen_at_first_and_the_page_says_so(shown):
     assert marks(shown, "record") == []
 
 
+@pytest.mark.nightly
 def test_a_cycle_typed_by_keyboard_is_shown_in_every_figure(shown, small):
     choose(shown, 6)
     start, last, time, stiffness = archive(

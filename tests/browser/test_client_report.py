@@ -146,6 +146,7 @@ def test_the_page_opens_without_an_error_or_a_request(campaigns, visit):
         assert shown.page.evaluate("document.documentElement.scrollWidth") <= width
 
 
+@pytest.mark.nightly
 def test_the_page_has_no_serious_fault_for_who_cannot_see_it(campaigns, visit):
     for width in (1280, 390):
         shown = visit(campaigns(TMT).reports / "client-report.html", width=width, bypass_csp=True)

@@ -105,6 +105,7 @@ def test_the_contents_of_a_long_page_are_searched(campaigns, visit):
     assert page.locator("details.chapter[open] #test-0").is_visible()
 
 
+@pytest.mark.nightly
 def test_figures_follow_the_colours_of_the_screen(shown):
     plot = shown.drawn("campaign-moduli-0")
     shown.page.emulate_media(color_scheme="dark")

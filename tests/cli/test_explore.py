@@ -27,7 +27,9 @@ def started(run, *options):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "how", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.nightly)]
+)
 def test_it_prints_its_address_answers_and_ends_when_asked(static, how):
     process = started(static)
     try:

@@ -127,6 +127,7 @@ def test_tests_that_rest_on_the_marks_of_one_that_fails_are_made_anew(pair, comm
     assert content(pair, "B") == before
 
 
+@pytest.mark.nightly
 def test_the_law_by_which_a_strain_ratio_is_judged_is_of_all_logs_with_marks(pair, command):
     by_position = ("[tests.A]\n", '[tests.A]\nstrain = { method = "strain-ratio" }\n')
     edit(pair / "campaign.toml", *by_position)
