@@ -13,7 +13,7 @@ import xarray as xr
 from reduction.archive.open import failing_reads, open_archive
 from reduction.archive.product_files import archives_of_tests
 from reduction.campaign.assembly_spec import AssemblyCase, load_assembly_case
-from reduction.campaign.toml_file import in_toml
+from reduction.campaign.toml_file import at_place, in_toml
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.lines.archive_pieces import source_of_tests, specimens_of
@@ -32,7 +32,7 @@ from reduction.lines.export_sources import assembly_table, composite_table, rang
 from reduction.lines.published_source import published_piece_sources, published_sources
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.record.contributions import Component, coverage_factor
-from reduction.record.errors import DataError, ReductionError, SettingsError
+from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats
 from reduction.report.single_pages import write_assembly_page, write_composite_page
 from reduction.stages.strain.strain_model import StrainModel
@@ -52,12 +52,8 @@ def rule_of(precedence: str | None) -> CompositeRule:
     if precedence is None:
         return CompositeRule()
     kinds = tuple(cast("PieceKind", part.strip()) for part in precedence.split(","))
-    try:
+    with at_place("--precedence: "):
         return CompositeRule(precedence=kinds)
-    except SettingsError as error:
-        raise SettingsError(
-            f"--precedence: {error.problem}", found=error.found, needed=error.needed
-        ) from error
 
 
 def piece_source(
@@ -391,10 +387,8 @@ def deployed_line(path: Path) -> DeployedLine:
     """Read SPEC.toml, find its curve and its splices, and deploy it."""
     case = load_assembly_case(path)
     source = _source(path, case)
-    try:
+    with at_place(f"{path}: assembly.curve: "):
         curve = compose(source, case.rule)
-    except DataError as error:
-        raise _at(path, "assembly.curve", error) from error
     model = _model(path, case, source)
     stated = case.rated_break_strength
     strength = stated if np.isfinite(stated) else source.rated_break_strength
@@ -412,7 +406,11 @@ def deployed_line(path: Path) -> DeployedLine:
         )
     except DataError as error:
         # a level brings its own place
-        raise _at(path, "assembly", error) from error
+        between = "." if error.problem.startswith("working.") else ": "
+        raise DataError(
+            f"{path}: assembly{between}{error.problem}", found=error.found, needed=error.needed,
+            hint=error.hint,
+        ) from error  # fmt: skip
     return DeployedLine(
         name=case.name,
         deployed=deployed,
@@ -423,23 +421,12 @@ def deployed_line(path: Path) -> DeployedLine:
     )
 
 
-def _at(path: Path, place: str, error: ReductionError) -> ReductionError:
-    """The same error with file and key in front."""
-    between = "." if error.problem.startswith("working.") else ": "
-    return type(error)(
-        f"{path}: {place}{between}{error.problem}", found=error.found, needed=error.needed,
-        hint=error.hint,
-    )  # fmt: skip
-
-
 def _source(path: Path, case: AssemblyCase) -> PieceSource:
     """Pieces of the tethers; archives and folders stand beside the specification."""
     published = published_piece_sources()
     words = [word if word in published else str(path.parent / word) for word in case.sources]
-    try:
+    with at_place(f"{path}: assembly.curve: "):
         return piece_source(words, specimen=case.specimen, branch=case.branch)
-    except ReductionError as error:
-        raise _at(path, "assembly.curve", error) from error
 
 
 def _model(path: Path, case: AssemblyCase, source: PieceSource) -> StrainModel:

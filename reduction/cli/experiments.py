@@ -11,6 +11,7 @@ from rich.markup import escape
 from reduction.archive.csv_columns import csv_text
 from reduction.archive.write import write_text_atomically
 from reduction.campaign.experiment_plans import ExperimentSpec, RunSeries, load_spec, read_runs
+from reduction.campaign.toml_file import at_place
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import ShownUnits, fitted_unit, plain, short, table_of
 from reduction.experiments.designs import Design, DesignKind, box_behnken, plackett_burman
@@ -44,7 +45,7 @@ from reduction.experiments.surface_warnings import (
     negative_surfaces,
 )
 from reduction.quantities.units import UnitSystem, combined_unit, display_unit
-from reduction.record.errors import DataError, FitError, ReductionError, SettingsError
+from reduction.record.errors import DataError, FitError, SettingsError
 
 _ROUNDING = 1e-9
 
@@ -52,7 +53,7 @@ _ROUNDING = 1e-9
 def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Print the run sheet of SPEC.toml, and write it where asked for."""
     spec = load_spec(path)
-    try:
+    with at_place(f"{path}: "):
         design = _design(kind, spec)
         sheet = make_run_sheet(
             design,
@@ -64,8 +65,6 @@ def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, output: Command
             sheet, load_limit=spec.load_limit, peak_share_limit=spec.peak_share_limit
         )
         precision = _precision(design, sheet, spec)
-    except ReductionError as error:
-        raise _in_file(path, error) from error
     if out is not None:
         write_text_atomically(out, _csv(design, sheet, spec))
     units = cast("UnitSystem", output.units)
@@ -77,13 +76,6 @@ def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, output: Command
     if out is not None:
         output.say(f"run sheet: {out}")
     output.answer(_document(kind, design, sheet, spec, cautions, precision, out))
-
-
-def _in_file(path: Path, error: ReductionError) -> ReductionError:
-    """The same error with the file in front."""
-    return type(error)(
-        f"{path}: {error.problem}", found=error.found, needed=error.needed, hint=error.hint
-    )
 
 
 def _design(kind: DesignKind, spec: ExperimentSpec) -> Design:
@@ -616,7 +608,7 @@ def fit_runs(path: Path, spec_path: Path | None, *, output: CommandOutput) -> No
     spec = None if spec_path is None else load_spec(spec_path)
     runs = read_runs(path, spec)
     units = cast("UnitSystem", output.units)
-    try:
+    with at_place(f"{path}: "):
         if spec is not None and spec.kind == "plackett-burman":
             effects, notes = _screen(runs)
             _show_effects(effects, runs, notes, output, units)
@@ -624,10 +616,6 @@ def fit_runs(path: Path, spec_path: Path | None, *, output: CommandOutput) -> No
             return
         surfaces = _fit(runs, spec)
         drift = drift_over_order(surfaces, runs.run_order)
-    except (DataError, FitError) as error:
-        raise type(error)(
-            f"{path}: {error.problem}", found=error.found, needed=error.needed, hint=error.hint
-        ) from error
     notes = (
         *runs.notes,
         *map(str, surfaces.notes),

@@ -17,6 +17,7 @@ from reduction.batch.prediction_product import compare_archive, write_hoses, wri
 from reduction.campaign.armour_spec import load_armour_case
 from reduction.campaign.load import load_hose, target_of
 from reduction.campaign.plan import ComparisonPlan
+from reduction.campaign.toml_file import at_place
 from reduction.campaign.wave_spec import load_wave_case
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, short, table_of
@@ -29,7 +30,7 @@ from reduction.prediction.wave_load import PredictedWaveLoad, predict_wave_load
 from reduction.quantities.names import quantity
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.readers.raw_log import hash_source
-from reduction.record.errors import DataError, SettingsError
+from reduction.record.errors import SettingsError
 from reduction.report.campaign_page import write_report
 from reduction.report.single_pages import write_armour_page, write_wave_page
 from reduction.report.text_style import shown
@@ -117,7 +118,7 @@ _EVENTS = {
 def predict_hose(path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Predict the hose of SPEC.toml and print it; with ``out``, write archive, tables and page."""
     plan, file = load_hose(path)
-    target = target_of(path, file)
+    target = target_of(file)
     hose = predict_from_plan(plan)
     designs = () if target is None else design_hoses(plan, target)
     units = cast("UnitSystem", output.units)
@@ -300,14 +301,10 @@ _OF_LAYER = {
 def predict_cable(path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Predict the armour of SPEC.toml and print it; with ``out``, write tables and page."""
     case = load_armour_case(path)
-    try:
+    with at_place(f"{path}: "):
         found = predict_armour_case(
             case.layers, case.strain, names=case.layer_names, tolerance=case.tolerance
         )
-    except (DataError, SettingsError) as error:
-        raise type(error)(
-            f"{path}: {error.problem}", found=error.found, needed=error.needed, hint=error.hint
-        ) from error
     units = cast("UnitSystem", output.units)
     _show_armour(found, output, units)
     if out is not None:
@@ -462,15 +459,9 @@ _UNITS = {
 
 def predict_wave(path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Predict the wave load of SPEC.toml and print it; with ``out``, write table and page."""
-    case = load_wave_case(path)
-    given = asdict(case)
-    name = given.pop("name")
-    try:
-        found = predict_wave_load(**given)
-    except DataError as error:
-        raise DataError(
-            f"{path}: {error.problem}", found=error.found, needed=error.needed, hint=error.hint
-        ) from error
+    name, case = path.stem, load_wave_case(path)
+    with at_place(f"{path}: "):
+        found = predict_wave_load(**case)
     units = cast("UnitSystem", output.units)
     _show_wave_load(found, output, units)
     if out is not None:

@@ -33,8 +33,8 @@ def written(tmp_path, table):
 
 def test_the_wave_load_that_is_shown_can_be_predicted(tmp_path):
     case = load_wave_case(written(tmp_path, "wave_load"))
-    assert (case.outer_diameter, case.content_density) == pytest.approx((0.114, 830))
-    assert case.wave_length is None and case.wave_theory == "auto"
+    assert (case["outer_diameter"], case["content_density"]) == pytest.approx((0.114, 830))
+    assert case["wave_length"] is None and case["wave_theory"] == "auto"
 
 
 def test_the_armour_that_is_shown_can_be_predicted(tmp_path):
