@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from rich.markup import escape
 from rich.table import Table
@@ -286,11 +286,9 @@ def _say_results(output: CommandOutput, results: dict[str, Any] | None) -> None:
         output.say(f"  {quantity}: {', '.join(listed)}")
 
 
-def _say_experiments(
-    output: CommandOutput, experiments: list[dict[str, Any]], units: UnitSystem
-) -> None:
+def _say_experiments(output: CommandOutput, experiments: list[dict[str, Any]]) -> None:
     """Runs, slow pulls and what would go slack, before anything is run."""
-    force, factor = display_unit("N", units)
+    force, factor = output.unit("N")
     for one in experiments:
         output.say(
             f"experiment {one['id']}: {one['kind']} of {', '.join(one['factors'])}; "
@@ -314,7 +312,6 @@ def _say_experiments(
 
 def check_campaign(campaign: Campaign, *, tests: tuple[str, ...], output: CommandOutput) -> None:
     """Read and validate everything, print what was found, write nothing."""
-    units = cast("UnitSystem", output.units)
     with campaign_progress(output) as progress:
         statuses, models = check_tests(campaign, tests=tests, progress=progress)
     if statuses or not (campaign.outcomes or campaign.hoses):
@@ -325,13 +322,13 @@ def check_campaign(campaign: Campaign, *, tests: tuple[str, ...], output: Comman
             output.say(f"  {test.test}: {channel}: samples flagged: {listed}")
         for note in test.found.get("notes", ()):
             output.say(f"  {test.test}: {note}")
-    lines = _model_lines(models, statuses, units)
+    lines = _model_lines(models, statuses, output.system)
     if lines.row_count:  # weights hung by hand, and logs that failed, have no strain model
         output.show(lines)
     results = results_found(campaign)
     _say_results(output, results)
     experiments = experiments_found(campaign, statuses)
-    _say_experiments(output, experiments, units)
+    _say_experiments(output, experiments)
     for comparison in campaign.comparisons.values():
         output.say(
             f"comparison {comparison.name}: {comparison.measured} of {comparison.specimen} "
@@ -380,7 +377,7 @@ def run_campaign(
             force=force,
             # paths, jobs and choices of tests are left out, so that equal inputs give equal bytes
             command="reduction run campaign.toml",
-            units=cast("UnitSystem", output.units),
+            units=output.system,
             values_page=_address_of_design_page(processed, reports, output),
             workers=workers,
             progress=progress,
@@ -434,7 +431,7 @@ def report_again(
     written: dict[str, list[str]] = {"reports": [], "client_reports": [], "pdfs": []}
     for folder in folders:
         page = write_report(
-            folder, reports / folder.resolve().name, units=cast("UnitSystem", output.units),
+            folder, reports / folder.resolve().name, units=output.system,
             values_page=_address_of_design_page(processed, reports, output),
             unreadable=partial(_say_unreadable, output, folder),
         )  # fmt: skip

@@ -30,7 +30,6 @@ from reduction.lines.composite import (
 from reduction.lines.deck_formats import export_table
 from reduction.lines.export_sources import assembly_table, composite_table, ranges_of
 from reduction.lines.published_source import published_piece_sources, published_sources
-from reduction.quantities.units import UnitSystem, display_unit
 from reduction.record.contributions import Component, coverage_factor
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats
@@ -178,21 +177,18 @@ def compose_tests(
     source = piece_source(sources, specimen=specimen, branch=branch)
     curve = compose(source, rule)
     source = used_of(source, curve)
-    units = cast("UnitSystem", output.units)
-    _show(source, curve, output, units)
+    _show(source, curve, output)
     if out is not None and form is not None:
         if form == PAGE:
-            write_composite_page(source, curve, out, units=units)
+            write_composite_page(source, curve, out, units=output.system)
         else:
-            export_table(composite_table(source, curve), form, out, units=units)
+            export_table(composite_table(source, curve), form, out, units=output.system)
         output.say(f"written: {out}")
     output.answer(_document(source, curve, rule) | {"out": None if out is None else str(out)})
 
 
-def _show(
-    source: PieceSource, curve: CompositeCurve, output: CommandOutput, system: UnitSystem
-) -> None:
-    unit, factor = display_unit("N", system)
+def _show(source: PieceSource, curve: CompositeCurve, output: CommandOutput) -> None:
+    unit, factor = output.unit("N")
     made = ", SYNTHETIC: nothing was tested" if source.is_synthetic else ""
     doubt = f"; DOUBTFUL: {curve.doubt}" if curve.doubt else ""
     output.say(f"{composite_table(source, curve).title}{made}{doubt}")
@@ -225,12 +221,8 @@ def _show(
             ", ".join(flags),
         )
     output.show(table)
-    for text in curve.notes:
-        output.say(f"note: {text}")
-    for text in source.notes:
-        output.say(f"note: {text}")
-    for text in source.sources:
-        output.say(f"source: {text}")
+    output.say_each("note", (*curve.notes, *source.notes))
+    output.say_each("source", source.sources)
 
 
 def _contributions(component: Sequence[Component], rows: Floats) -> list[dict[str, Any]]:
@@ -372,13 +364,12 @@ def assemble_spec(path: Path, *, out: Path | None, output: CommandOutput) -> Non
     """Print curve and work of the assembly of SPEC.toml; with ``out``, write every node."""
     form = None if out is None else _table_format(out)
     line = deployed_line(path)
-    units = cast("UnitSystem", output.units)
-    _show_assembly(line, output, units)
+    _show_assembly(line, output)
     if out is not None and form is not None:
         if form == PAGE:
-            write_assembly_page(line, out, units=units)
+            write_assembly_page(line, out, units=output.system)
         else:
-            export_table(assembly_table(line), form, out, units=units)
+            export_table(assembly_table(line), form, out, units=output.system)
         output.say(f"written: {out}")
     output.answer(_assembly_document(line) | {"out": None if out is None else str(out)})
 
@@ -458,10 +449,10 @@ def _splices_in_words(case: AssemblyCase, model: StrainModel) -> str:
     return f"length of a tether by {model.method}, {where}: {numbers}"
 
 
-def _show_assembly(line: DeployedLine, output: CommandOutput, system: UnitSystem) -> None:
+def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
     deployed, assembly = line.deployed, line.deployed.assembly
-    force, per_newton = display_unit("N", system)
-    length, per_metre = display_unit("m", system)
+    force, per_newton = output.unit("N")
+    length, per_metre = output.unit("m")
     made = ", SYNTHETIC: nothing was tested" if line.source.is_synthetic else ""
     output.say(f"assembly {line.name}: {line.words}{made}")
     slack = assembly.slack_length
@@ -507,11 +498,9 @@ def _show_assembly(line: DeployedLine, output: CommandOutput, system: UnitSystem
         )
     output.show(table)
     for number, state in enumerate(deployed.working, start=1):
-        _show_working(number, state, output, system)
-    for text in (*deployed.notes, *line.curve.notes, *line.source.notes):
-        output.say(f"note: {text}")
-    for text in (line.splices, *line.source.sources):
-        output.say(f"source: {text}")
+        _show_working(number, state, output)
+    output.say_each("note", (*deployed.notes, *line.curve.notes, *line.source.notes))
+    output.say_each("source", (line.splices, *line.source.sources))
 
 
 def _pair(values: Any, *, equal: bool) -> str:
@@ -521,11 +510,9 @@ def _pair(values: Any, *, equal: bool) -> str:
     return f"{short(float(values.max()), 4)}, {short(float(values.min()), 4)}"
 
 
-def _show_working(
-    number: int, state: WorkingState, output: CommandOutput, system: UnitSystem
-) -> None:
-    force, per_newton = display_unit("N", system)
-    length, per_metre = display_unit("m", system)
+def _show_working(number: int, state: WorkingState, output: CommandOutput) -> None:
+    force, per_newton = output.unit("N")
+    length, per_metre = output.unit("m")
     point = state.point
     told = (
         f"working.{number}: {per_newton * float(point.mean_tension):.4g} {force} "

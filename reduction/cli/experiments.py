@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from rich.markup import escape
@@ -44,7 +44,7 @@ from reduction.experiments.surface_warnings import (
     drifting_responses,
     negative_surfaces,
 )
-from reduction.quantities.units import UnitSystem, combined_unit, display_unit
+from reduction.quantities.units import combined_unit
 from reduction.record.errors import DataError, FitError, SettingsError
 
 _ROUNDING = 1e-9
@@ -67,12 +67,11 @@ def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, output: Command
         precision = _precision(design, sheet, spec)
     if out is not None:
         write_text_atomically(out, _csv(design, sheet, spec))
-    units = cast("UnitSystem", output.units)
-    _show_sheet(sheet, spec, output, units)
+    _show_sheet(sheet, spec, output)
     for caution in cautions:
         output.say(f"caution: {caution.message}. {caution.hint}")
     if precision is not None:
-        _show_precision(precision, spec, output, units)
+        _show_precision(precision, spec, output)
     if out is not None:
         output.say(f"run sheet: {out}")
     output.answer(_document(kind, design, sheet, spec, cautions, precision, out))
@@ -159,17 +158,13 @@ def _csv(design: Design, sheet: RunSheet, spec: ExperimentSpec) -> str:
     )
 
 
-def _show_sheet(
-    sheet: RunSheet, spec: ExperimentSpec, output: CommandOutput, system: UnitSystem
-) -> None:
+def _show_sheet(sheet: RunSheet, spec: ExperimentSpec, output: CommandOutput) -> None:
     columns = [
-        (name, *display_unit(unit, system), sheet.engineering[:, place])
+        (name, *output.unit(unit), sheet.engineering[:, place])
         for place, (name, unit) in enumerate(zip(sheet.names, _level_units(spec), strict=True))
     ]
     columns += [
-        (name, "%RBS", 100.0, values)
-        if unit == "1"
-        else (name, *display_unit(unit, system), values)
+        (name, "%RBS", 100.0, values) if unit == "1" else (name, *output.unit(unit), values)
         for name, (values, unit) in _loads(sheet).items()
         if name != "minimum_share"  # the room of a terminal; it is in the file
     ]
@@ -187,9 +182,8 @@ def _show_precision(
     precision: ExpectedPrecision | float,
     spec: ExperimentSpec,
     output: CommandOutput,
-    system: UnitSystem,
 ) -> None:
-    unit, scale = ("%", 100.0) if spec.sigma_unit == "1" else display_unit(spec.sigma_unit, system)
+    unit, scale = ("%", 100.0) if spec.sigma_unit == "1" else output.unit(spec.sigma_unit)
     sigma = f"{short(scale * (spec.sigma or 0.0))} {unit}"
     if isinstance(precision, float):
         output.say(
@@ -445,12 +439,11 @@ def _show_surfaces(
     runs: RunSeries,
     notes: tuple[str, ...],
     output: CommandOutput,
-    system: UnitSystem,
 ) -> None:
     """Each surface: its terms, its analysis of variance, its stationary point."""
     for index, name in enumerate(surfaces.response_names):
         transform = surfaces.transform[index]
-        shown = ShownUnits(runs.response_units[index], transform, runs.factor_units, system)
+        shown = ShownUnits(runs.response_units[index], transform, runs.factor_units, output.system)
         power = f", Box-Cox exponent {surfaces.transform_exponent[index]:.3g}"
         unit = f" [{shown.unit}]" if shown.unit else f" ({transform})" * (transform != "none")
         output.say(f"{name}{unit}{power if transform == 'box-cox' else ''}")
@@ -468,11 +461,10 @@ def _show_surfaces(
             f"{surfaces.degrees_of_freedom[index]} degrees of freedom"
         )
         _show_anova(surfaces, index, shown.scale, output)
-        _show_stationary(surfaces, index, shown, runs, output, system)
+        _show_stationary(surfaces, index, shown, runs, output)
         _show_equation(surfaces, index, shown, output)
         output.say("")
-    for note in notes:
-        output.say(f"note: {note}")
+    output.say_each("note", notes)
 
 
 def _show_terms(
@@ -539,7 +531,6 @@ def _show_stationary(
     shown: ShownUnits,
     runs: RunSeries,
     output: CommandOutput,
-    system: UnitSystem,
 ) -> None:
     canonical = surfaces.canonical
     reason = STATIONARY_REASONS[int(canonical.reason[index])]
@@ -557,7 +548,7 @@ def _show_stationary(
         runs.factor_names, runs.factor_units, canonical.stationary_point[index],
         canonical.stationary_point_engineering[index], strict=True,
     ):  # fmt: skip
-        text, scale = display_unit(unit, system)
+        text, scale = output.unit(unit)
         table.add_row(escape(name), short(coded), short(scale * engineering), escape(text))
     output.show(table)
 
@@ -567,11 +558,10 @@ def _show_effects(
     runs: RunSeries,
     notes: tuple[str, ...],
     output: CommandOutput,
-    system: UnitSystem,
 ) -> None:
     """Effects of each response, largest first, and the smallest that counts."""
     for index, name in enumerate(runs.response_names):
-        unit, scale = display_unit(runs.response_units[index], system)
+        unit, scale = output.unit(runs.response_units[index])
         output.say(f"{name} [{unit}]" if unit else name)
         if effects.reason[index]:
             output.say(f"  {effects.reason[index]}")
@@ -595,8 +585,7 @@ def _show_effects(
             f"{short(effects.degrees_of_freedom, 3)} degrees of freedom"
         )
         output.say("")
-    for note in notes:
-        output.say(f"note: {note}")
+    output.say_each("note", notes)
 
 
 _NEAR_A_LEVEL = 0.1
@@ -607,11 +596,10 @@ def fit_runs(path: Path, spec_path: Path | None, *, output: CommandOutput) -> No
     """Fit what SPEC.toml asks for to a table of runs, and print it."""
     spec = None if spec_path is None else load_spec(spec_path)
     runs = read_runs(path, spec)
-    units = cast("UnitSystem", output.units)
     with at_place(f"{path}: "):
         if spec is not None and spec.kind == "plackett-burman":
             effects, notes = _screen(runs)
-            _show_effects(effects, runs, notes, output, units)
+            _show_effects(effects, runs, notes, output)
             output.answer(_frame(runs, notes) | _effects_document(effects, runs))
             return
         surfaces = _fit(runs, spec)
@@ -623,7 +611,7 @@ def fit_runs(path: Path, spec_path: Path | None, *, output: CommandOutput) -> No
         *map(str, negative_surfaces(surfaces)),
         *map(str, drifting_responses(surfaces, drift)),
     )
-    _show_surfaces(surfaces, runs, notes, output, units)
+    _show_surfaces(surfaces, runs, notes, output)
     documents = {
         name: _surface_document(surfaces, index, runs, drift)
         for index, name in enumerate(surfaces.response_names)

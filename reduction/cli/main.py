@@ -813,42 +813,8 @@ def main(
     """Reduces cyclic tension tests of compliant mooring elements."""
 
 
-app.command()(init)
-
-app.command()(sniff)
-
-app.command()(check)
-
-app.command()(run)
-
-app.command()(experiment)
-
-app.command()(surface)
-
-app.command()(predict)
-
-app.command()(compare)
-
-app.command()(composite)
-
-app.command()(assembly)
-
-app.command()(export)
-
-app.command()(lookup)
-
-app.command()(budget)
-
-app.command()(catalogue)
-
-app.command()(report)
-
-app.command()(explore)
-
-app.command()(verify)
-
-app.command()(diff)
-
-app.command()(reproduce)
-
-app.command()(schema)
+for command in (
+    init, sniff, check, run, experiment, surface, predict, compare, composite, assembly, export,
+    lookup, budget, catalogue, report, explore, verify, diff, reproduce, schema,
+):  # fmt: skip
+    app.command()(command)

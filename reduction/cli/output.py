@@ -6,11 +6,11 @@ import json as json_module
 import os
 import sys
 import textwrap
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass, field
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO, cast
 
 import typer
 from rich.cells import cell_len
@@ -23,6 +23,9 @@ from reduction.cli.usage import grouped
 from reduction.readers.remote_files import in_words
 from reduction.record.errors import ReductionError, SettingsError, refused_by_system
 from reduction.record.plain_text import visible, without_secrets
+
+if TYPE_CHECKING:  # help is printed without the units
+    from reduction.quantities.units import UnitSystem
 
 NOTHING = "-"
 """What stands in an empty cell, so that every line has as many columns."""
@@ -99,6 +102,22 @@ class CommandOutput:
         console = Console(highlight=False)
         has_room = _least_width(table, console) <= console.width
         console.print(table if has_room else _row_by_row(table))
+
+    @property
+    def system(self) -> UnitSystem:
+        """Units of what is shown."""
+        return cast("UnitSystem", self.units)
+
+    def unit(self, si_unit: str) -> tuple[str, float]:
+        """Unit in which numbers are shown, and what those in SI are multiplied with."""
+        from reduction.quantities.units import display_unit
+
+        return display_unit(si_unit, self.system)
+
+    def say_each(self, what: str, texts: Iterable[object]) -> None:
+        """Lines of one kind: notes, sources."""
+        for text in texts:
+            self.say(f"{what}: {text}")
 
     def answer(self, document: object) -> None:
         """The JSON object of ``--json``; the only thing on standard output then."""

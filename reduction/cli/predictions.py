@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -37,11 +37,11 @@ from reduction.report.text_style import shown
 
 
 def _show_designs(
-    designs: Sequence[DesignedHose], target: HoseTarget, output: CommandOutput, system: UnitSystem
+    designs: Sequence[DesignedHose], target: HoseTarget, output: CommandOutput
 ) -> None:
     """Print each way to reach a target, and why there is none."""
-    force, per_newton = display_unit("N", system)
-    small, per_metre = ("in", 1 / 0.0254) if system == "us" else ("mm", 1e3)
+    force, per_newton = output.unit("N")
+    small, per_metre = ("in", 1 / 0.0254) if output.system == "us" else ("mm", 1e3)
     load = "" if target.tension is None else f" and {per_newton * target.tension:.5g} {force}"
     table = table_of(
         "change", "angle [deg]", f"cords [1/{small}]", f"layers [{small}]", f"bore [{small}]",
@@ -121,10 +121,9 @@ def predict_hose(path: Path, *, out: Path | None, output: CommandOutput) -> None
     target = target_of(file)
     hose = predict_from_plan(plan)
     designs = () if target is None else design_hoses(plan, target)
-    units = cast("UnitSystem", output.units)
-    _show_hose(hose, output, units)
+    _show_hose(hose, output)
     if target is not None:
-        _show_designs(designs, target, output, units)
+        _show_designs(designs, target, output)
         if all(one.refusal for one in designs):
             output.error(f"{path}: target: no hose like this one does that")
             output.raise_status(SettingsError.exit_status)
@@ -138,7 +137,7 @@ def predict_hose(path: Path, *, out: Path | None, output: CommandOutput) -> None
             command=f"reduction predict hose {path.name}",
         )
         tables = write_tables([], out / "tables", predictions=out / "predictions.nc")
-        page = write_report(out, out, units=units)
+        page = write_report(out, out, units=output.system)
         output.say(f"archive: {out / 'predictions.nc'}")
         output.say(f"tables: {len(tables)} in {out / 'tables'}")
         output.say(f"figures: {page}")
@@ -159,10 +158,10 @@ def _events(hose: PredictedHose) -> dict[str, HoseEvent]:
     }
 
 
-def _show_hose(hose: PredictedHose, output: CommandOutput, system: UnitSystem) -> None:
-    force, per_newton = display_unit("N", system)
-    pressure, per_pascal = display_unit("Pa", system)
-    small = shown("small length", system)
+def _show_hose(hose: PredictedHose, output: CommandOutput) -> None:
+    force, per_newton = output.unit("N")
+    pressure, per_pascal = output.unit("Pa")
+    small = shown("small length", output.system)
     output.say(
         f"hose {hose.plan.name}: {np.degrees(float(hose.plan.design.wrap_angle)):.4g} degrees from "
         f"the axis, {hose.number_of_cords:.1f} cords, ribbon "
@@ -206,8 +205,7 @@ def _show_hose(hose: PredictedHose, output: CommandOutput, system: UnitSystem) -
             f"{100 * layer.least_strain:.1f} to {100 * layer.greatest_strain:.1f} % up to the "
             f"working load{needed}"
         )
-    for note in hose.notes:
-        output.say(f"note: {note}")
+    output.say_each("note", hose.notes)
 
 
 def _spread(hose: PredictedHose, event: str) -> dict[str, float]:
@@ -305,13 +303,12 @@ def predict_cable(path: Path, *, out: Path | None, output: CommandOutput) -> Non
         found = predict_armour_case(
             case.layers, case.strain, names=case.layer_names, tolerance=case.tolerance
         )
-    units = cast("UnitSystem", output.units)
-    _show_armour(found, output, units)
+    _show_armour(found, output)
     if out is not None:
         wires, layers = out / "tables" / "armour_wires.csv", out / "tables" / "armour_layers.csv"
         write_text_atomically(wires, _wires_csv(found))
         write_text_atomically(layers, _layers_csv(found))
-        page = write_armour_page(found, out, name=case.name, units=units)
+        page = write_armour_page(found, out, name=case.name, units=output.system)
         output.say(f"tables: {wires}, {layers}")
         output.say(f"figures: {page}")
     output.answer(
@@ -350,10 +347,10 @@ def _layers_csv(found: PredictedArmour) -> str:
     )
 
 
-def _show_armour(found: PredictedArmour, output: CommandOutput, system: UnitSystem) -> None:
-    force, per_newton = display_unit("N", system)
-    stress, per_pascal = display_unit("Pa", system)
-    if system == "si":
+def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
+    force, per_newton = output.unit("N")
+    stress, per_pascal = output.unit("Pa")
+    if output.system == "si":
         stress, per_pascal = "MPa", 1e-6
     table = table_of(
         "layer", "theory", f"T [{force}]", f"N' [{force}]", "G' [N m]", "H [N m]",
@@ -400,8 +397,7 @@ def _show_armour(found: PredictedArmour, output: CommandOutput, system: UnitSyst
         )
     for sentence in found.use[0].statement:
         output.say(f"  {sentence}")
-    for note in found.notes:
-        output.say(f"note: {note}")
+    output.say_each("note", found.notes)
 
 
 def _armour_document(found: PredictedArmour) -> dict[str, Any]:
@@ -462,12 +458,11 @@ def predict_wave(path: Path, *, out: Path | None, output: CommandOutput) -> None
     name, case = path.stem, load_wave_case(path)
     with at_place(f"{path}: "):
         found = predict_wave_load(**case)
-    units = cast("UnitSystem", output.units)
-    _show_wave_load(found, output, units)
+    _show_wave_load(found, output)
     if out is not None:
         table = out / "tables" / "wave_load.csv"
         write_text_atomically(table, _csv(found))
-        page = write_wave_page(found, out, name=name, units=units)
+        page = write_wave_page(found, out, name=name, units=output.system)
         output.say(f"table: {table}")
         output.say(f"figures: {page}")
     output.answer(
@@ -483,9 +478,9 @@ def _csv(found: PredictedWaveLoad) -> str:
     )
 
 
-def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput, system: UnitSystem) -> None:
-    length, per_metre = display_unit("m", system)
-    force, per_newton = display_unit("N", system)
+def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput) -> None:
+    length, per_metre = output.unit("m")
+    force, per_newton = output.unit("N")
     section, theory = found.load.section, found.theory
     depth = float(section.immersion_depth)
     output.say(
@@ -528,8 +523,7 @@ def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput, system: Uni
         f"{short(per_newton * float(anchor.wave), 4)}, current "
         f"{per_newton * float(anchor.current):.4g} and wind {per_newton * float(anchor.wind):.4g}"
     )
-    for note in found.notes:
-        output.say(f"note: {note}")
+    output.say_each("note", found.notes)
 
 
 def _wave_load_document(found: PredictedWaveLoad) -> dict[str, Any]:
@@ -576,8 +570,7 @@ def compare_test(measured: Path, spec: Path, *, out: Path | None, output: Comman
         calibrate=file.comparison.calibrate,
     )
     named = compare_archive(measured, hose, plan)
-    units = cast("UnitSystem", output.units)
-    _show_comparison(named, output, units)
+    _show_comparison(named, output)
     if out is not None:
         path = out / "comparisons.nc"
         write_named(
@@ -593,16 +586,16 @@ def compare_test(measured: Path, spec: Path, *, out: Path | None, output: Comman
             command=f"reduction compare {measured.name} {spec.name}",
         )
         tables = write_tables([], out / "tables", comparisons=path)
-        page = write_report(out, out, units=units)
+        page = write_report(out, out, units=output.system)
         output.say(f"archive: {path}")
         output.say(f"tables: {len(tables)} in {out / 'tables'}")
         output.say(f"figures: {page}")
     output.answer(_comparison_document(named) | {"out": None if out is None else str(out)})
 
 
-def _show_comparison(named: NamedComparison, output: CommandOutput, system: UnitSystem) -> None:
+def _show_comparison(named: NamedComparison, output: CommandOutput) -> None:
     found = named.comparison
-    force, factor = display_unit("N", system)
+    force, factor = output.unit("N")
     output.say(
         f"{named.test} of {named.specimen} ({found.measured.loading}) against {named.hose}: "
         f"{verdict_words(found.validation, unit=force, factor=factor)}"
@@ -638,15 +631,14 @@ def _show_comparison(named: NamedComparison, output: CommandOutput, system: Unit
             f"(u {100 * spread:.2g})"
         )
     if found.calibration is not None:
-        _show_calibration(found.calibration, output, system)
-    for note in named.notes:
-        output.say(f"note: {note}")
+        _show_calibration(found.calibration, output)
+    output.say_each("note", named.notes)
 
 
-def _show_calibration(fit: HoseCalibration, output: CommandOutput, system: UnitSystem) -> None:
+def _show_calibration(fit: HoseCalibration, output: CommandOutput) -> None:
     table = table_of("calibrated", "unit", "before", "after", "u", "95 % interval", texts=2)
     for place, name in enumerate(fit.parameter):
-        unit, factor = _shown_unit(name, system)
+        unit, factor = _shown_unit(name, output.system)
         table.add_row(
             name, unit,
             short(factor * fit.start[place]), short(factor * fit.value[place], 6),
