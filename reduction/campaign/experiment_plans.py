@@ -7,16 +7,23 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Literal, NoReturn
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
-from reduction.campaign.csv_cells import CODED, CellColumn, CellSheet, read_cells
 from reduction.campaign.model import ExperimentSection
 from reduction.campaign.plan import ExperimentPlan, TestPlan, product_of
-from reduction.campaign.toml_file import in_toml, read_toml
+from reduction.campaign.toml_file import (
+    in_toml,
+    listed,
+    read_small_text,
+    read_toml,
+    split_row,
+    split_rows,
+)
 from reduction.experiments.designs import DesignKind, FactorLevels, LevelBasis
 from reduction.experiments.response_transform import Transform
 from reduction.experiments.run_sheet import RepeatPlacing
@@ -24,6 +31,10 @@ from reduction.quantities.names import QUANTITIES, quantity
 from reduction.quantities.units import Dimension, parse_quantity, scale_of_unit
 from reduction.record.errors import DataError, LogError, SettingsError
 from reduction.record.measurement import Floats, Specimen, read_only_arrays
+from reduction.record.plain_text import cut
+
+_CODED = "coded"
+"""In the place of a unit: the column holds coded levels."""
 
 NEED_PULL = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
 """Responses that rest on the quasi-static spring constant."""
@@ -236,7 +247,7 @@ class _FactorSpec:
 
     name: str
     levels: FactorLevels | None = None
-    unit: str = CODED
+    unit: str = _CODED
     si_unit: str = "1"
 
     def axis(self, strength: float | None) -> tuple[str, float, float]:
@@ -401,6 +412,148 @@ def load_spec(path: Path) -> ExperimentSpec:
     )
 
 
+_HEADER = re.compile(r"^(.*?)\s*(?:\[([^\]]*)\])?$")
+
+_MISSING = {"", "nan", "na", "n/a"}
+
+_CELL_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+
+
+@dataclass(frozen=True)
+class _CellColumn:
+    """One column: its header, the name and the unit in it, and its cells."""
+
+    header: str
+    name: str
+    unit: str
+    cells: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _CellSheet:
+    """The cells of a file, by column."""
+
+    path: Path
+    row: tuple[int, ...]
+    columns: tuple[_CellColumn, ...]
+    first: int
+
+    def fault(self, problem: str, *, header: str | None = None, needed: str) -> LogError:
+        """An error of the header line."""
+        return LogError(
+            self.path, problem, row=self.first, channel=header,
+            found=", ".join(column.header for column in self.columns), needed=needed,
+        )  # fmt: skip
+
+    def named(self, name: str) -> list[_CellColumn]:
+        """Columns of a name, whatever their unit."""
+        return [column for column in self.columns if column.name == name]
+
+    def one(self, name: str, what: str) -> _CellColumn:
+        """The column of a name; with a unit before coded, since a plan is only the plan."""
+        found = self.named(name)
+        reached = [column for column in found if column.unit != _CODED] or found
+        if len(reached) == 1:
+            return reached[0]
+        if reached:
+            raise self.fault(f"two columns hold {name}", needed="one")
+        near = get_close_matches(name, [column.name for column in self.columns], n=1)
+        raise self.fault(
+            f"{what} '{name}' has no column", needed=f"a column {name}" + (
+                f"; is it {near[0]}?" if near else ""
+            ),
+        )  # fmt: skip
+
+    def numbers(self, column: _CellColumn) -> Floats:
+        """Numbers of a column, NaN where a cell is empty."""
+        values = np.full(len(column.cells), math.nan)
+        for place, (row, cell) in enumerate(zip(self.row, column.cells, strict=True)):
+            if cell.lower() in _MISSING:
+                continue
+            if not _CELL_NUMBER.fullmatch(cell):
+                raise LogError(
+                    self.path, "a value is not a number", row=row, channel=column.header,
+                    found=repr(cell), needed="a number with a decimal point, without its unit; "
+                    "an empty cell where there is none",
+                )  # fmt: skip
+            values[place] = float(cell)
+            if not math.isfinite(values[place]):
+                raise LogError(
+                    self.path, "a value is not finite", row=row,
+                    channel=column.header, found=repr(cut(cell, 60)), needed="a finite number",
+                )  # fmt: skip
+        return values
+
+
+def _text(path: Path) -> str:
+    try:
+        return read_small_text(path)
+    except UnicodeDecodeError as error:
+        raise LogError(path, "the table of runs is not UTF-8 text", found=str(error)) from error
+    except OSError as error:
+        raise LogError(
+            path, "the table of runs cannot be read", found=error.strerror or str(error)
+        ) from error
+
+
+def _cells(path: Path, row: int, line: str, delimiter: str) -> list[str]:
+    cells = split_row(line, delimiter)
+    if cells is None:
+        raise LogError(
+            path, "a row of the table of runs cannot be parted into cells", row=row,
+            found=repr(cut(line, 60)), needed="one line a row, every quote closed in it",
+        )  # fmt: skip
+    return [cell.strip() for cell in cells]
+
+
+def _read_cells(path: Path) -> _CellSheet:
+    """Cells of the table; lines that are empty or begin with # are not of it."""
+    lines = [
+        (row, line)
+        for row, line in enumerate(split_rows(_text(path)), start=1)
+        if line.strip(" ,;\t") and not line.lstrip().startswith("#")
+    ]
+    if not lines:
+        raise LogError(path, "the table of runs is empty", needed="a header and one row a run")
+    delimiter = max(",;\t", key=lines[0][1].count)
+    table = [(row, _cells(path, row, line, delimiter)) for row, line in lines]
+    (first, header), *rows = table
+    if not all(header) or len(set(header)) < len(header):
+        raise LogError(
+            path, "the header of the runs cannot be used", row=first, found=", ".join(header),
+            needed="a name for every column, each once",
+        )  # fmt: skip
+    if all(_CELL_NUMBER.fullmatch(cell) for cell in header):
+        raise LogError(
+            path, "the table of runs has no header", row=first, found=", ".join(header),
+            needed="the names of factors and responses in the first row",
+        )  # fmt: skip
+    for row, cells in rows:
+        if len(cells) != len(header):
+            raise LogError(
+                path, "a row has another number of cells than the header", row=row,
+                found=str(len(cells)), needed=str(len(header)),
+            )  # fmt: skip
+    if not rows:
+        raise LogError(path, "the table of runs has no rows", needed="one row a run")
+    cells_by_column = zip(*(cells for _, cells in rows), strict=True)
+    columns = []
+    for name, column in zip(header, cells_by_column, strict=True):
+        match = _HEADER.match(name)
+        stem, unit = (match[1], match[2] or "") if match else (name, "")
+        columns.append(_CellColumn(name, stem, unit.strip(), tuple(column)))
+    questions = [
+        f"{path}:{row} [{column.header}]"
+        for column in columns
+        for (row, _), cell in zip(rows, column.cells, strict=True)
+        if cell == "?"
+    ]
+    if questions:
+        count = f"{len(questions)} values are" if len(questions) > 1 else "1 value is"
+        raise in_toml(path, listed(f"{count} still '?', first {questions[0]}", questions))
+    return _CellSheet(path, tuple(row for row, _ in rows), tuple(columns), first)
+
+
 _SHARE_UNIT = re.compile(r"%\s*(RBS|MBS|MBL|of mean)")
 
 _OFF_PLAN = 1.0
@@ -409,14 +562,14 @@ levels are in another unit than the plan."""
 
 
 def _levels_of_factor(
-    sheet: CellSheet, factor: _FactorSpec, spec: ExperimentSpec | None, mean: Floats | None
-) -> tuple[CellColumn, Floats]:
+    sheet: _CellSheet, factor: _FactorSpec, spec: ExperimentSpec | None, mean: Floats | None
+) -> tuple[_CellColumn, Floats]:
     """Column and coded levels of a factor."""
     column = sheet.one(factor.name, "factor")
     values = sheet.numbers(column)
-    is_coded = factor.levels is None or (spec is not None and spec.levels == CODED)
-    unit = column.unit or (CODED if is_coded else factor.unit)
-    if unit == CODED:
+    is_coded = factor.levels is None or (spec is not None and spec.levels == _CODED)
+    unit = column.unit or (_CODED if is_coded else factor.unit)
+    if unit == _CODED:
         return column, values
 
     def refuse(problem: str, needed: str) -> NoReturn:
@@ -456,7 +609,7 @@ def _is_of_mean(factor: _FactorSpec) -> bool:
 
 
 def _check_levels(
-    sheet: CellSheet, column: CellColumn, name: str, coded: Floats, *, stated: bool
+    sheet: _CellSheet, column: _CellColumn, name: str, coded: Floats, *, stated: bool
 ) -> None:
     """Refuse levels that lie beside the plan: those of another unit."""
     known = coded[np.isfinite(coded)]
@@ -524,7 +677,7 @@ class RunSeries:
 
 
 def _declared(
-    sheet: CellSheet, spec: ExperimentSpec | None
+    sheet: _CellSheet, spec: ExperimentSpec | None
 ) -> tuple[tuple[_FactorSpec, ...], tuple[_ResponseSpec, ...]]:
     """Factors and responses: as declared, else the last column and the others."""
     factors, responses = ((), ()) if spec is None else (spec.factors, spec.responses)
@@ -545,12 +698,12 @@ def _declared(
     return factors, responses
 
 
-def _labels(sheet: CellSheet, name: str) -> tuple[str, ...] | None:
+def _labels(sheet: _CellSheet, name: str) -> tuple[str, ...] | None:
     found = sheet.named(name)
     return found[0].cells if found else None
 
 
-def _same_run(sheet: CellSheet, header: str, keys: Iterable[tuple[str, ...]]) -> None:
+def _same_run(sheet: _CellSheet, header: str, keys: Iterable[tuple[str, ...]]) -> None:
     seen: dict[tuple[str, ...], int] = {}
     for row, key in zip(sheet.row, keys, strict=True):
         if key[-1] and seen.setdefault(key, row) != row:
@@ -564,7 +717,7 @@ def _same_run(sheet: CellSheet, header: str, keys: Iterable[tuple[str, ...]]) ->
 
 def read_runs(path: Path, spec: ExperimentSpec | None = None) -> RunSeries:
     """Read a table of runs."""
-    sheet = read_cells(path)
+    sheet = _read_cells(path)
     factors, responses = _declared(sheet, spec)
     strength = None if spec is None else spec.rated_break_strength
     coded = np.full((len(sheet.row), len(factors)), math.nan)
@@ -632,7 +785,7 @@ def read_runs(path: Path, spec: ExperimentSpec | None = None) -> RunSeries:
     )
 
 
-def _blocks(sheet: CellSheet) -> tuple[tuple[str, ...] | None, list[str]]:
+def _blocks(sheet: _CellSheet) -> tuple[tuple[str, ...] | None, list[str]]:
     """Blocks, by the column block before the column specimen, where there are several."""
     several = {
         name: labels
@@ -654,7 +807,7 @@ def _blocks(sheet: CellSheet) -> tuple[tuple[str, ...] | None, list[str]]:
     return labels, []
 
 
-def _run_names(sheet: CellSheet) -> tuple[str, ...]:
+def _run_names(sheet: _CellSheet) -> tuple[str, ...]:
     """Names of the runs, with the specimen where a run has several; their numbers else."""
     names, specimens = _labels(sheet, "run"), _labels(sheet, "specimen")
     apart = specimens or _labels(sheet, "block") or ("",) * len(sheet.row)
@@ -674,7 +827,7 @@ def _run_names(sheet: CellSheet) -> tuple[str, ...]:
     return tuple(f"{name} {of}" if many else name for name, of in zip(names, apart, strict=True))
 
 
-def _order(sheet: CellSheet) -> Floats:
+def _order(sheet: _CellSheet) -> Floats:
     """Place of each run in the order; each once in a block."""
     found = sheet.named("run_order")
     if not found:

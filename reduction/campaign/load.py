@@ -7,8 +7,7 @@ import re
 import tomllib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, fields, replace
-from math import pi
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,15 +17,11 @@ from pydantic import TypeAdapter, ValidationError
 from reduction.archive.open import reading
 from reduction.archive.product_files import archives_of_tests
 from reduction.campaign.experiment_plans import agree_on_pulls, plan_experiment
+from reduction.campaign.hose_spec import ComparisonSection, hose_of
 from reduction.campaign.model import (
     CampaignFile,
-    ComparisonSection,
-    CordSection,
     Defaults,
-    HoseKeys,
-    HoseSpecFile,
     Identifier,
-    LayerSection,
     SpecimenSection,
     StepSection,
     TestSection,
@@ -48,10 +43,7 @@ from reduction.campaign.toml_file import (
     read_small_text,
     read_toml,
 )
-from reduction.prediction.cord_curve import CordCurve
-from reduction.prediction.hose_prediction import HelicalLayer, HosePlan, HoseTarget
-from reduction.prediction.hose_product import HoseDesign
-from reduction.quantities.units import Dimension, scale_to_si
+from reduction.quantities.units import scale_to_si
 from reduction.readers.remote_files import allowed, base_name, fetch, renamed, scratch_folder
 from reduction.record.errors import ArchiveError, LogError, SettingsError
 from reduction.record.measurement import Specimen, SpliceMarks
@@ -451,157 +443,6 @@ def _plan_test(
     )
 
 
-_DIMENSIONS: dict[str, Dimension] = {
-    "wrap_angle": "angle",
-    "wrap_diameter": "length",
-    "layer_diameters": "length",
-    "inner_diameter": "length",
-    "outer_diameter": "length",
-    "cords_per_length": "per_length",
-    "rubber_modulus": "stress",
-    "cord_load_scale": "number",
-    "cord_strain_scale": "number",
-    "dead_length": "length",
-}
-
-"""Keys that may have a standard uncertainty."""
-
-_MOST_CORD_STRAIN = 1.0
-
-_PARAMETERS = {
-    "wrap_diameter": "layer_diameter",
-    "layer_diameters": "layer_diameter",
-    "dead_length": "dead_length_share",
-}
-
-
-def _hose_of(path: Path, name: str, place: str, keys: HoseKeys, cord: CordSection) -> HosePlan:
-    """A hose as it is predicted; an error names the file and the key."""
-    given = keys.layer_diameters if keys.wrap_diameter is None else (keys.wrap_diameter,) * 2
-    if given is None or None not in (keys.wrap_diameter, keys.layer_diameters):
-        raise in_toml(
-            path, f"{place} does not say once where its cords lie",
-            found="wrap_diameter and layer_diameters" if given else "neither",
-            needed="wrap_diameter, the mean of the two layers, or layer_diameters, one of each",
-        )  # fmt: skip
-    if keys.dead_length is not None and keys.length is None:
-        raise in_toml(
-            path, f"{place}.dead_length stands without length",
-            needed='length = "2.4 m", relaxed, stretch-limited ends included',
-        )  # fmt: skip
-    length = np.nan if keys.length is None else keys.length
-    if max(cord.strain, default=0.0) > _MOST_CORD_STRAIN:
-        where = "cord" if place == "hose" else f"{place}.cord"
-        raise in_toml(
-            path, f"{where}.strain goes beyond what a cord can be stretched",
-            found=f"{100 * max(cord.strain):g} %", needed=f"at most {100 * _MOST_CORD_STRAIN:g} %",
-            hint='A bare number is a share: 22 % is 0.22 or "22 %".',
-        )  # fmt: skip
-    names = {item.name for item in fields(HoseDesign)} & HoseKeys.model_fields.keys()
-    try:
-        design = HoseDesign(
-            **keys.model_dump(include=names, exclude_none=True),
-            layer_diameter=given,
-            cord=CordCurve(np.array(cord.strain), np.array(cord.load)),
-            dead_length_share=0.0 if keys.dead_length is None else keys.dead_length / length,
-        )
-    except SettingsError as error:
-        key = "layer_diameters" if keys.wrap_diameter is None else "wrap_diameter"
-        problem = error.problem.replace("layer_diameter", key)
-        problem = problem.replace("dead_length_share", "dead_length over length")
-        raise in_toml(
-            path, f"{place}: {problem}", found=error.found, needed=error.needed,
-            hint=error.hint,
-        ) from error  # fmt: skip
-    if not 0 < keys.strain_step < 1:
-        raise in_toml(
-            path, f"{place}.strain_step is no step", found=f"{keys.strain_step:g}",
-            needed='above 0 and below 1, such as "1 %"',
-        )  # fmt: skip
-    return HosePlan(
-        name=name,
-        design=design,
-        standard_uncertainty=_uncertainties(path, place, keys, design, length),
-        strain_step=keys.strain_step,
-        greatest_strain=np.nan if keys.greatest_strain is None else keys.greatest_strain,
-        layers=tuple(_layer(path, f"{place}.layers.{one.name}", one) for one in keys.layers),
-    )
-
-
-def _layer(path: Path, place: str, layer: LayerSection) -> HelicalLayer:
-    if not 0 < layer.wrap_angle < pi / 2:
-        raise in_toml(
-            path, f"{place}.wrap_angle lies across the axis or along it",
-            found=f"{math.degrees(layer.wrap_angle):g} deg",
-            needed="between 0 and 90 deg, from the hose axis",
-        )  # fmt: skip
-    limits = [
-        np.nan if limit is None else limit
-        for limit in (layer.strain_limit, layer.compression_limit)
-    ]
-    # a comparison with NaN is false: what is not stated is no fault
-    if limits[0] < 0 or limits[1] < 0 or limits[1] >= 1:
-        raise in_toml(
-            path, f"{place} has a limit that no layer has",
-            found=f"{limits[0]:g} in tension, {limits[1]:g} in compression",
-            needed="positive numbers, compression below 100 %",
-        )  # fmt: skip
-    return HelicalLayer(layer.name, layer.wrap_angle, *limits)
-
-
-def _uncertainties(
-    path: Path, place: str, keys: HoseKeys, design: HoseDesign, length: float
-) -> dict[str, float]:
-    """Standard uncertainties in SI, by parameter; % is of the value itself."""
-    found: dict[str, float] = {}
-    for key, text in keys.standard_uncertainty.items():
-        where = f"{place}.standard_uncertainty.{key}"
-        if key not in _DIMENSIONS:
-            raise in_toml(
-                path, f"{where} is no number of a hose that may be uncertain",
-                needed="one of " + ", ".join(_DIMENSIONS),
-            )  # fmt: skip
-        if key in ("wrap_diameter", "layer_diameters") and getattr(keys, key) is None:
-            raise in_toml(
-                path, f"{where} stands without {key}",
-                needed="the key that the hose has",
-            )  # fmt: skip
-        name = _PARAMETERS.get(key, key)
-        value = design.wrap_diameter if name == "layer_diameter" else getattr(design, name)
-        if isinstance(text, str) and text.strip().endswith("%"):
-            number = quantity_of(path, where, text, "strain") * float(np.mean(value))
-        else:
-            number = quantity_of(path, where, text, _DIMENSIONS[key])
-            if key == "dead_length":
-                number = number / length
-        size = abs(float(np.mean(value)))
-        # a dead length may be nil and not known well
-        if not (np.isfinite(number) and 0 <= number < (size or 1.0)):
-            raise in_toml(
-                path, f"{where} is no standard uncertainty", found=str(text),
-                needed="zero or more, below the number itself; a dead_length needs the length",
-            )  # fmt: skip
-        found[name] = number
-    return found
-
-
-def load_hose(path: Path) -> tuple[HosePlan, HoseSpecFile]:
-    """Read SPEC.toml of a hose."""
-    file = read_toml(
-        path,
-        HoseSpecFile,
-        what="the hose",
-        needed="a SPEC.toml with [hose] and [cord]",
-        keys="docs/predictions.md lists every key",
-    )
-    return _hose_of(path, path.stem, "hose", file.hose, file.cord), file
-
-
-def target_of(file: HoseSpecFile) -> HoseTarget | None:
-    """What SPEC.toml asks of a hose; None where it asks nothing."""
-    return None if file.target is None else HoseTarget(**file.target.model_dump())
-
-
 _HAVE_CURVE = ("cyclic", "fatigue", "quasi-static", "tensile")
 
 
@@ -791,7 +632,7 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
     }
     agree_on_pulls(path, experiments, plans)
     hoses = {
-        name: _hose_of(path, name, f"hoses.{name}", section, section.cord)
+        name: hose_of(path, name, f"hoses.{name}", section, section.cord)
         for name, section in file.hoses.items()
     }
     comparisons = {

@@ -24,23 +24,18 @@ from pydantic import (
 from reduction.archive.product_files import OF_CAMPAIGN
 from reduction.archive.uncertainty_budget import parse_place
 from reduction.archive.write import ReportDetails, ReportLimit, ReportSection, ReportText, Statement
+from reduction.campaign.hose_spec import ComparisonSection, HoseSection
 from reduction.campaign.plan import TestPlan, product_of
 from reduction.campaign.toml_file import DEVICE, at_place, in_toml
 from reduction.campaign.unit_types import (
-    Angle,
     Force,
     InSI,
-    Length,
     Number,
     PositiveLength,
-    PositiveStrain,
-    Ratio,
     ReadKey,
     Strain,
-    Stress,
     value_in_si,
 )
-from reduction.prediction.hose_product import RubberLaw
 from reduction.quantities.names import QUANTITIES, quantity
 from reduction.quantities.units import Dimension, parse_in_unit, parse_quantity
 from reduction.readers.layout import Layout
@@ -373,112 +368,6 @@ def _limit(
     return ReportLimit(
         quantity=one.quantity, test=product[0], at=at, lower=lower, upper=upper, source=one.source
     )
-
-
-_Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_ \-]{0,99}$")]
-
-Calibrated = Literal[
-    "wrap_angle",
-    "rubber_modulus",
-    "cord_load_scale",
-    "cord_strain_scale",
-    "dead_length_share",
-]
-"""What a comparison may fit; diameters and cords are measured, not fitted."""
-
-
-class _HoseSection(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class CordSection(_HoseSection):
-    """``[cord]``: measured points of one cord, the last one its break."""
-
-    strain: tuple[Strain, ...]
-    load: tuple[Force, ...]
-
-
-class LayerSection(_HoseSection):
-    """``[[hose.layers]]``: a layer that is to carry no load."""
-
-    name: _Name
-    wrap_angle: Angle
-    strain_limit: Strain | None = None
-    """Greatest tensile strain that it bears."""
-    compression_limit: Strain | None = None
-    """Greatest compressive strain that it bears, a positive number."""
-
-
-class HoseKeys(_HoseSection):
-    """``[hose]``, and ``[hoses.NAME]`` of a campaign without its cord."""
-
-    wrap_angle: Angle
-    """From the hose axis."""
-    wrap_diameter: Length | None = None
-    """Mean of the two cord layers; or ``layer_diameters``."""
-    layer_diameters: tuple[Length, Length] | None = None
-    inner_diameter: Length
-    outer_diameter: Length
-    cords_per_length: Annotated[float, InSI("per_length")]
-    cord_diameter: Length
-    rubber_modulus: Stress
-    rubber_law: RubberLaw = "neo-hookean"
-    working_share: Ratio = Field(default=1 / 3)
-    """Of the break load of a cord, at the safe working load."""
-    cord_load_scale: Ratio = 1.0
-    cord_strain_scale: Ratio = 1.0
-    minimum_inner_diameter: Length | None = None
-    length: PositiveLength | None = None
-    """Relaxed, stretch-limited ends included; needed with ``dead_length``."""
-    dead_length: Length | None = None
-    """Part of the length that does not stretch, both ends together."""
-    strain_step: Strain = Field("1 %", validate_default=True)
-    greatest_strain: PositiveStrain | None = None
-    standard_uncertainty: dict[str, Number] = Field(default_factory=dict)
-    """By key of this table, in its unit or in % of its value."""
-    layers: tuple[LayerSection, ...] = ()
-
-
-class HoseSection(HoseKeys):
-    """``[hoses.NAME]`` with ``[hoses.NAME.cord]``."""
-
-    cord: CordSection
-
-
-class _TargetSection(_HoseSection):
-    """``[target]``: what a hose like this one is to do at its safe working load."""
-
-    strain: Strain
-    tension: Force | None = None
-
-
-class _ComparisonKeys(_HoseSection):
-    """``[comparison]``: how a measured curve meets the prediction."""
-
-    specimen: str | None = None
-    """Of the measured test, where it has several."""
-    loading: Literal["static", "dynamic"] | None = None
-    """How it was pulled, where its kind does not say it: a cyclic test may be slow."""
-    calibrate: tuple[Calibrated, ...] = ()
-    """Numbers of the hose to be fitted to the measured curve."""
-
-
-class HoseSpecFile(_HoseSection):
-    """SPEC.toml of ``reduction predict hose`` and ``reduction compare``."""
-
-    hose: HoseKeys
-    cord: CordSection
-    target: _TargetSection | None = None
-    comparison: _ComparisonKeys = _ComparisonKeys()
-
-
-class ComparisonSection(_ComparisonKeys):
-    """``[comparisons.NAME]``."""
-
-    measured: str
-    """Test or test/step of the campaign."""
-    predicted: str
-    """One of ``[hoses]``."""
 
 
 _DIMENSION: dict[tuple[str, str], Dimension] = {

@@ -15,7 +15,7 @@ from reduction.archive.csv_tables import write_tables
 from reduction.archive.write import write_text_atomically
 from reduction.batch.prediction_product import compare_archive, write_hoses, write_named
 from reduction.campaign.armour_spec import load_armour_case
-from reduction.campaign.load import load_hose, target_of
+from reduction.campaign.hose_spec import load_hose
 from reduction.campaign.plan import ComparisonPlan
 from reduction.campaign.toml_file import at_place
 from reduction.campaign.wave_spec import load_wave_case
@@ -118,7 +118,7 @@ _EVENTS = {
 def predict_hose(path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Predict the hose of SPEC.toml and print it; with ``out``, write archive, tables and page."""
     plan, file = load_hose(path)
-    target = target_of(file)
+    target = None if file.target is None else HoseTarget(**file.target.model_dump())
     hose = predict_from_plan(plan)
     designs = () if target is None else design_hoses(plan, target)
     _show_hose(hose, output)

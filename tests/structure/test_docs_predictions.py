@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from reduction.campaign import model as hosemodel
+from reduction.campaign import hose_spec as hosemodel
 from reduction.campaign.armour_spec import _ArmourKeys, _ArmourLayerKeys, load_armour_case
-from reduction.campaign.load import load_hose
+from reduction.campaign.hose_spec import load_hose
 from reduction.campaign.wave_spec import _WaveLoadKeys, load_wave_case
 
 PAGE = (Path(__file__).parents[2] / "docs" / "predictions.md").read_text(encoding="utf-8")

@@ -3,8 +3,8 @@ import tomllib
 import numpy as np
 import pytest
 
-from reduction.campaign.load import _plan_comparison, load_campaign, load_hose
-from reduction.campaign.model import ComparisonSection
+from reduction.campaign.hose_spec import ComparisonSection, load_hose
+from reduction.campaign.load import _plan_comparison, load_campaign
 from reduction.record.errors import SettingsError
 
 INCH, POUND, PSI = 0.0254, 4.4482216152605, 6894.757293168
