@@ -340,12 +340,7 @@ def read_notes(archive: xr.Dataset, *, of: tuple[str, str] | None = None) -> tup
     """Return the notes of an archive, or those where a variable has one value; none twice."""
     if "note" not in archive:
         return ()
-    columns = [
-        archive.variables[row.name].values.astype(str).tolist()
-        if row.name in archive
-        else ["note" if row.name == "note_severity" else ""] * archive.variables["note"].size
-        for row in NOTE_ROWS
-    ]
+    columns = [archive.variables[row.name].values.astype(str).tolist() for row in NOTE_ROWS]
     rows = zip(*columns, strict=True)
     owners = archive.variables[of[0]].values.astype(str) if of else columns[0]
     found = (

@@ -60,11 +60,6 @@ def test_what_an_archive_lacks_is_empty():
     assert read_notes(DATA.drop_vars("note")) == ()
 
 
-def test_notes_of_an_archive_without_severities_are_told_as_notes():
-    found = read_notes(DATA.drop_vars(["note_stage", "note_code", "note_severity"]))
-    assert [(str(one), one.severity) for one in found] == [("first", "note"), ("second", "note")]
-
-
 def test_a_row_has_its_own_values_notes_and_says_that_it_is_synthetic():
     row = Row("row", DATA, 1)
     assert (row.text("name"), row.scalar("mean"), row.is_synthetic) == ("long", 8.0, True)
