@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -264,27 +264,24 @@ def _outcomes_in_one_line(campaign: Campaign) -> str:
 
 @dataclass(frozen=True)
 class _CampaignResult:
-    """What a run did: one status a test and a part, and what it wrote."""
+    """What a run did: one status a test and a part, and what it wrote.
+
+    ``parts`` are those that are no tests: ``experiments``, ``hoses`` and ``comparisons``.
+    """
 
     tests: tuple[TestStatus, ...]
-    experiments: tuple[PartStatus, ...]
-    hoses: tuple[PartStatus, ...]
-    comparisons: tuple[PartStatus, ...]
+    parts: dict[str, list[PartStatus]]
     processed: Path
     report: Path | None
     stray: tuple[str, ...]
     tables: tuple[Path, ...] = ()
 
     @property
-    def parts(self) -> tuple[PartStatus, ...]:
-        """Everything that is not a test."""
-        return (*self.experiments, *self.hoses, *self.comparisons)
-
-    @property
     def exit_status(self) -> int:
         """The highest seen."""
         seen = [test.exit_status for test in self.tests]
-        return max([*seen, *(one.exit_status for one in self.parts)], default=0)
+        seen += [one.exit_status for parts in self.parts.values() for one in parts]
+        return max(seen, default=0)
 
 
 def run_campaign(
@@ -392,7 +389,7 @@ def _run(
     failed = {status.test for status in statuses if status.status == "failed"}
     failed |= set(wanted.failed)
     asked = {survey.plan.id for survey in chosen}
-    parts = _write_parts(
+    parts, has_lengths = _write_parts(
         campaign,
         folder,
         surveys,
@@ -410,7 +407,7 @@ def _run(
     if statuses:
         write_text_atomically(folder / "status.csv", status_csv(rows))
     keep_details(folder, campaign.report)
-    products = requested_products(campaign, folder, has_lengths=parts.has_lengths)
+    products = requested_products(campaign, folder, has_lengths=has_lengths)
     if archives or products:
         tables = write_tables(archives, folder / "tables", opener=opener, **products)
         write_catalogue([*archives, *products.values()], folder / FILE_NAME, opener=opener)
@@ -428,9 +425,7 @@ def _run(
         )  # fmt: skip
     return _CampaignResult(
         tests=tuple(statuses),
-        experiments=parts.experiments,
-        hoses=parts.hoses,
-        comparisons=parts.comparisons,
+        parts=parts,
         processed=folder,
         report=report,
         stray=tuple(stray),
@@ -449,15 +444,6 @@ def _keep_pages(ours: Sequence[Path], name: str, why: str) -> None:
             )
 
 
-class _Parts(NamedTuple):
-    """What became of the parts of a campaign that are no tests."""
-
-    experiments: tuple[PartStatus, ...]
-    hoses: tuple[PartStatus, ...]
-    comparisons: tuple[PartStatus, ...]
-    has_lengths: bool
-
-
 def _write_parts(
     campaign: Campaign,
     folder: Path,
@@ -468,14 +454,18 @@ def _write_parts(
     basis: Callable[[Survey], Basis],
     command: str,
     opener: Opener,
-) -> _Parts:
-    """Write the archives of the whole campaign, from those of its tests that are up to date."""
+) -> tuple[dict[str, list[PartStatus]], bool]:
+    """Write the archives of the whole campaign, from those of its tests that are up to date.
+
+    Returns what became of its parts, and whether a rope changed its length.
+    """
     runs = {run for plan in campaign.experiments.values() for run in plan.runs}
     compared = {plan.measured for plan in campaign.comparisons.values()}
     needed = runs | compared | _tests_of_ropes(campaign, surveys)
     left_out = [entry for entry in surveys if entry.plan.id in needed - asked - failed]
     waiting = outdated_runs(folder, left_out, basis)
-    experiments = write_experiments(
+    parts = {}
+    parts["experiments"] = write_experiments(
         campaign,
         folder,
         failed=failed,
@@ -493,11 +483,11 @@ def _write_parts(
         campaign, folder, surveys, models=lambda survey: basis(survey).models,
         failed=failed, waiting=waiting, command=command, opener=opener,
     )  # fmt: skip
-    hoses = write_predictions(campaign, folder, command=command)
-    comparisons = write_comparisons(
+    parts["hoses"] = write_predictions(campaign, folder, command=command)
+    parts["comparisons"] = write_comparisons(
         campaign, folder, failed=failed, waiting=waiting, command=command, opener=opener
     )
-    return _Parts(tuple(experiments), tuple(hoses), tuple(comparisons), lengths is not None)
+    return parts, lengths is not None
 
 
 def _all_rows(

@@ -9,9 +9,10 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, replace
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -236,15 +237,11 @@ def _status_table(tests: Sequence[TestStatus]) -> Table:
     return table
 
 
-def _report_failures(
-    output: CommandOutput, tests: Sequence[TestStatus], parts: Sequence[PartStatus] = ()
-) -> None:
-    ended = [(test.exit_status, test.message) for test in tests]
-    ended += [(one.exit_status, one.message) for one in parts]
-    for exit_status, message in ended:
-        if exit_status:
-            output.error(message)
-            output.raise_status(exit_status)
+def _report_failures(output: CommandOutput, ended: Iterable[TestStatus | PartStatus]) -> None:
+    for one in ended:
+        if one.exit_status:
+            output.error(one.message)
+            output.raise_status(one.exit_status)
 
 
 def _part_table(kind: str, parts: Sequence[PartStatus]) -> Table:
@@ -387,12 +384,9 @@ def run_campaign(
     if result.tests or not (campaign.outcomes or campaign.hoses):
         output.show(_status_table(result.tests))
     _say_results(output, results_found(campaign))
-    for kind, parts in (
-        ("experiment", result.experiments), ("hose", result.hoses),
-        ("comparison", result.comparisons),
-    ):  # fmt: skip
+    for kind, parts in result.parts.items():
         if parts:
-            output.show(_part_table(kind, parts))
+            output.show(_part_table(kind.removesuffix("s"), parts))
     for name in result.stray:
         output.error(f"{result.processed / name}: belongs to no test of this campaign; left alone")
     output.say(f"products: {result.processed}")
@@ -402,9 +396,7 @@ def run_campaign(
     document: dict[str, Any] = {
         "campaign": campaign.id,
         "tests": [test.document() for test in result.tests],
-        "experiments": [asdict(one) for one in result.experiments],
-        "hoses": [asdict(one) for one in result.hoses],
-        "comparisons": [asdict(one) for one in result.comparisons],
+        **{kind: [asdict(one) for one in parts] for kind, parts in result.parts.items()},
         "results": results_found(campaign),
         "processed": str(result.processed),
         "tables": [str(path) for path in result.tables],
@@ -420,7 +412,7 @@ def run_campaign(
         processed, reports, output, made=campaign.id, opener=opener
     )
     output.answer(document)
-    _report_failures(output, result.tests, result.parts)
+    _report_failures(output, [*result.tests, *chain(*result.parts.values())])
 
 
 def report_again(
