@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from reduction.archive.write import write_text_atomically
 from reduction.campaign.experiment_plans import ExperimentSpec, RunSeries, load_spec, read_runs
 from reduction.campaign.toml_file import at_place
 from reduction.cli.output import CommandOutput
-from reduction.cli.printed_numbers import ShownUnits, fitted_unit, plain, short, table_of
+from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.experiments.designs import Design, DesignKind, box_behnken, plackett_burman
 from reduction.experiments.fit_results import (
     FIT_REASONS,
@@ -44,10 +45,36 @@ from reduction.experiments.surface_warnings import (
     drifting_responses,
     negative_surfaces,
 )
-from reduction.quantities.units import combined_unit
+from reduction.quantities.units import UnitSystem, combined_unit, display_unit
 from reduction.record.errors import DataError, FitError, SettingsError
 
 _ROUNDING = 1e-9
+
+
+def _fitted_unit(unit: str, transform: str) -> str:
+    """Unit of the coefficients of a response; empty where none is stated."""
+    names = {"none": unit, "log": f"ln({unit})"}
+    return names.get(transform, f"Box-Cox({unit})") if unit else ""
+
+
+class _ShownUnits:
+    """Units of a response and of its factors, as they are shown."""
+
+    def __init__(
+        self, response: str, transform: str, factors: tuple[str, ...], system: UnitSystem
+    ) -> None:
+        # a logarithm has no unit that could be changed
+        self.unit, self.scale = display_unit(
+            _fitted_unit(response, transform), system if transform == "none" else "si"
+        )
+        self._factors = [display_unit(unit, system) for unit in factors]
+
+    def of_term(self, powers: tuple[int, ...]) -> tuple[str, float]:
+        """Unit of an engineering coefficient and what it is multiplied with."""
+        units = [unit for unit, _ in self._factors]
+        scales = [scale for _, scale in self._factors]
+        scale = math.prod(one**power for one, power in zip(scales, powers, strict=True))
+        return combined_unit(self.unit, units, powers), self.scale / scale
 
 
 def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, output: CommandOutput) -> None:
@@ -303,7 +330,7 @@ def _surface_document(
 ) -> dict[str, Any]:
     """One response: every number of its surface."""
     anova, lack, canonical = surfaces.anova, surfaces.lack_of_fit, surfaces.canonical
-    unit = fitted_unit(runs.response_units[index], surfaces.transform[index])
+    unit = _fitted_unit(runs.response_units[index], surfaces.transform[index])
     lines = zip(
         anova.source, anova.degrees_of_freedom[index], anova.sum_of_squares[index],
         anova.mean_square[index], anova.f[index], anova.p_value[index], anova.error_term,
@@ -443,7 +470,7 @@ def _show_surfaces(
     """Each surface: its terms, its analysis of variance, its stationary point."""
     for index, name in enumerate(surfaces.response_names):
         transform = surfaces.transform[index]
-        shown = ShownUnits(runs.response_units[index], transform, runs.factor_units, output.system)
+        shown = _ShownUnits(runs.response_units[index], transform, runs.factor_units, output.system)
         power = f", Box-Cox exponent {surfaces.transform_exponent[index]:.3g}"
         unit = f" [{shown.unit}]" if shown.unit else f" ({transform})" * (transform != "none")
         output.say(f"{name}{unit}{power if transform == 'box-cox' else ''}")
@@ -485,7 +512,7 @@ def _show_terms(
 
 
 def _show_equation(
-    surfaces: ResponseSurfaces, index: int, shown: ShownUnits, output: CommandOutput
+    surfaces: ResponseSurfaces, index: int, shown: _ShownUnits, output: CommandOutput
 ) -> None:
     """The equation in the units of the factors, where they have any."""
     engineering = surfaces.coefficient_engineering[index]
@@ -528,7 +555,7 @@ def _show_anova(
 def _show_stationary(
     surfaces: ResponseSurfaces,
     index: int,
-    shown: ShownUnits,
+    shown: _ShownUnits,
     runs: RunSeries,
     output: CommandOutput,
 ) -> None:
