@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 from reduction.campaign.model import ExperimentSection
 from reduction.campaign.plan import ExperimentPlan, TestPlan, product_of
 from reduction.campaign.toml_file import (
+    at_place,
     in_toml,
     listed,
     read_small_text,
@@ -24,6 +25,7 @@ from reduction.campaign.toml_file import (
     split_row,
     split_rows,
 )
+from reduction.campaign.unit_types import PositiveForce, ReadText
 from reduction.experiments.designs import DesignKind, FactorLevels, LevelBasis
 from reduction.experiments.response_transform import Transform
 from reduction.experiments.run_sheet import RepeatPlacing
@@ -205,23 +207,44 @@ ColumnName = Annotated[
 _UNIT = re.compile(r"^\s*[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*(.*?)\s*$")
 
 
+def _written_unit(text: str) -> str:
+    match = _UNIT.match(text)
+    return match[1] if match else ""
+
+
+def _limit(text: str) -> tuple[float | None, float | None]:
+    """A load limit in newtons, or as a share of the break strength."""
+    number = parse_quantity(text, "force", rated_break_strength=1.0)
+    return (None, number) if re.search(r"%\s*(RBS|MBS|MBL)\s*$", text) else (number, None)
+
+
+def _sigma(text: str) -> tuple[float, str]:
+    """Scatter of one run and its unit; a share of the response where the unit is 1."""
+    unit = _written_unit(text)
+    number = parse_quantity(text.strip().removesuffix(unit), "number")
+    si_unit, factor, _ = scale_of_unit(unit)
+    if not number > 0:
+        raise SettingsError("sigma is not above zero", found=repr(text), needed='such as "2 %"')
+    return factor * number, si_unit
+
+
 class _ExperimentSection(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class _ExperimentKeys(_ExperimentSection):
-    """``[experiment]``."""
+    """``[experiment]``, in SI once it is read."""
 
     kind: DesignKind | None = None
     levels: Literal["engineering", "coded"] = "engineering"
     """What the columns of the factors hold in a table of runs, where no header says it."""
-    rated_break_strength: str | None = None
-    load_limit: str | None = None
+    rated_break_strength: PositiveForce | None = None
+    load_limit: Annotated[tuple[float | None, float | None], ReadText(_limit)] = (None, None)
     """Greatest tension of machine, cell or laboratory: a force or a share, ``"40 %RBS"``."""
     n_centre: int | None = Field(default=None, ge=0)
     n_runs: int | None = None
     repeats: RepeatPlacing = "together"
-    sigma: str | None = None
+    sigma: Annotated[tuple[float | None, str], ReadText(_sigma)] = (None, "1")
     """Scatter of one run: ``"2 %"`` of the response, or in its unit."""
     specimens_as: Literal["blocks", "random"] = "blocks"
 
@@ -270,29 +293,11 @@ class _ResponseSpec:
 
 @dataclass(frozen=True)
 class ExperimentSpec:
-    """An experiment in SI; factors and responses are empty where the table of runs names them.
+    """An experiment in SI; factors and responses are empty where the table of runs names them."""
 
-    ``sigma`` is a share of the response where ``sigma_unit`` is 1 [1], else in that unit.
-    """
-
-    kind: DesignKind | None
-    levels: Literal["engineering", "coded"]
-    rated_break_strength: float | None
-    load_limit: float | None
-    peak_share_limit: float | None
-    n_centre: int | None
-    n_runs: int | None
-    repeats: RepeatPlacing
-    sigma: float | None
-    sigma_unit: str
-    specimens_as: Literal["blocks", "random"]
+    keys: _ExperimentKeys
     factors: tuple[_FactorSpec, ...]
     responses: tuple[_ResponseSpec, ...]
-
-
-def _written_unit(text: str) -> str:
-    match = _UNIT.match(text)
-    return match[1] if match else ""
 
 
 def _factor(name: str, written: tuple[str | float, str | float]) -> _FactorSpec:
@@ -337,22 +342,6 @@ def _response_unit(name: str, unit: str) -> tuple[str, float, float]:
     return known, factor, offset
 
 
-def _limit(text: str, strength: float | None) -> tuple[float | None, float | None]:
-    """A load limit in newtons, or as a share of the break strength."""
-    if re.search(r"%\s*(RBS|MBS|MBL)\s*$", text):
-        return None, parse_quantity(text, "force", rated_break_strength=1.0)
-    return parse_quantity(text, "force", rated_break_strength=strength), None
-
-
-def _sigma(text: str) -> tuple[float, str]:
-    unit = _written_unit(text)
-    number = parse_quantity(text.strip().removesuffix(unit), "number")
-    si_unit, factor, _ = scale_of_unit(unit)
-    if not number > 0:
-        raise SettingsError("sigma is not above zero", found=repr(text), needed='such as "2 %"')
-    return factor * number, si_unit
-
-
 def load_spec(path: Path) -> ExperimentSpec:
     """Read SPEC.toml."""
     file = read_toml(
@@ -362,48 +351,18 @@ def load_spec(path: Path) -> ExperimentSpec:
         needed="a SPEC.toml with [experiment], [factors] and [responses]",
         keys="docs/experiments.md lists every key",
     )
-    keys = file.experiment
-    place = "experiment"
-    try:
-        strength = None
-        if keys.rated_break_strength is not None:
-            place = "experiment.rated_break_strength"
-            strength = parse_quantity(keys.rated_break_strength, "force")
-            if not strength > 0:
-                raise SettingsError("a break strength is above zero", found=f"{strength:g} N")
-        place = "experiment.load_limit"
-        limit, share = (
-            (None, None) if keys.load_limit is None else _limit(keys.load_limit, strength)
-        )
-        place = "experiment.sigma"
-        sigma, sigma_unit = (None, "1") if keys.sigma is None else _sigma(keys.sigma)
-        factors = []
-        for name, levels in file.factors.items():
-            place = f"factors.{name}"
+    factors = []
+    for name, levels in file.factors.items():
+        with at_place(f"{path}: factors.{name}: "):
             factors.append(_factor(name, levels))
-        for name, response in file.responses.items():
-            place = f"responses.{name}"
+    for name, response in file.responses.items():
+        with at_place(f"{path}: responses.{name}: "):
             _response_unit(name, response.unit)
-    except SettingsError as error:
-        raise in_toml(
-            path, f"{place}: {error.problem}", found=error.found, needed=error.needed,
-            hint=error.hint,
-        ) from error  # fmt: skip
     twice = sorted(file.factors.keys() & file.responses.keys())
     if twice:
         raise in_toml(path, "a factor is a response too", found=", ".join(twice))
     return ExperimentSpec(
-        kind=keys.kind,
-        levels=keys.levels,
-        rated_break_strength=strength,
-        load_limit=limit,
-        peak_share_limit=share,
-        n_centre=keys.n_centre,
-        n_runs=keys.n_runs,
-        repeats=keys.repeats,
-        sigma=sigma,
-        sigma_unit=sigma_unit,
-        specimens_as=keys.specimens_as,
+        keys=file.experiment,
         factors=tuple(factors),
         responses=tuple(
             _ResponseSpec(name, response.unit, response.transform)
@@ -567,7 +526,7 @@ def _levels_of_factor(
     """Column and coded levels of a factor."""
     column = sheet.one(factor.name, "factor")
     values = sheet.numbers(column)
-    is_coded = factor.levels is None or (spec is not None and spec.levels == _CODED)
+    is_coded = factor.levels is None or (spec is not None and spec.keys.levels == _CODED)
     unit = column.unit or (_CODED if is_coded else factor.unit)
     if unit == _CODED:
         return column, values
@@ -580,13 +539,13 @@ def _levels_of_factor(
 
     if factor.levels is None:
         refuse("a unit without the levels that are -1 and 1", "[factors] in a SPEC.toml")
-    axis, low, high = factor.axis(None if spec is None else spec.rated_break_strength)
+    axis, low, high = factor.axis(None if spec is None else spec.keys.rated_break_strength)
     basis = factor.levels.basis
     share = _SHARE_UNIT.fullmatch(unit)
     if share is not None:
         if basis != ("mean_tension" if share[1] == "of mean" else "rated_break_strength"):
             refuse(f"{factor.name} is no such share in the plan", f"a unit as {factor.unit}")
-        strength = spec.rated_break_strength if spec is not None and axis == "N" else None
+        strength = spec.keys.rated_break_strength if spec is not None and axis == "N" else None
         found = values / 100 * (1.0 if strength is None else strength)
     else:
         try:
@@ -719,7 +678,7 @@ def read_runs(path: Path, spec: ExperimentSpec | None = None) -> RunSeries:
     """Read a table of runs."""
     sheet = _read_cells(path)
     factors, responses = _declared(sheet, spec)
-    strength = None if spec is None else spec.rated_break_strength
+    strength = None if spec is None else spec.keys.rated_break_strength
     coded = np.full((len(sheet.row), len(factors)), math.nan)
     used: set[str] = set()
     axes = [factor.axis(strength) for factor in factors]

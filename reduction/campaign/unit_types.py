@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
 from typing import Annotated, Any
@@ -38,8 +39,8 @@ class ReadKey(ABC):
         """Type of what may stand in the file."""
 
     @abstractmethod
-    def value(self, stated: Any) -> float:
-        """The number in SI; `SettingsError` where it cannot be meant."""
+    def value(self, stated: Any) -> Any:
+        """What it means, a number in SI; `SettingsError` where it cannot be meant."""
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -73,6 +74,18 @@ class InSI(ReadKey):
         if value < self.least:
             raise SettingsError("is negative", found=f"{value:g} in SI", needed="zero or more")
         return value
+
+
+@dataclass(frozen=True)
+class ReadText(ReadKey):
+    """A text that a function reads."""
+
+    read: Callable[[str], Any]
+    written = str
+
+    def value(self, stated: str) -> Any:
+        """What the function makes of it."""
+        return self.read(stated)
 
 
 Length = Annotated[float, InSI("length")]

@@ -85,11 +85,11 @@ def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, output: Command
         sheet = make_run_sheet(
             design,
             tuple(factor.levels for factor in spec.factors if factor.levels is not None),
-            rated_break_strength=spec.rated_break_strength,
-            repeats=spec.repeats,
+            rated_break_strength=spec.keys.rated_break_strength,
+            repeats=spec.keys.repeats,
         )
         cautions = find_cautions(
-            sheet, load_limit=spec.load_limit, peak_share_limit=spec.peak_share_limit
+            sheet, load_limit=spec.keys.load_limit[0], peak_share_limit=spec.keys.load_limit[1]
         )
         precision = _precision(design, sheet, spec)
     if out is not None:
@@ -105,9 +105,9 @@ def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, output: Command
 
 
 def _design(kind: DesignKind, spec: ExperimentSpec) -> Design:
-    if spec.kind not in (None, kind):
+    if spec.keys.kind not in (None, kind):
         raise SettingsError(
-            "the design is another than that of the command", found=f'kind = "{spec.kind}"',
+            "the design is another than that of the command", found=f'kind = "{spec.keys.kind}"',
             needed=kind,
         )  # fmt: skip
     if not spec.factors:
@@ -115,28 +115,29 @@ def _design(kind: DesignKind, spec: ExperimentSpec) -> Design:
             "there are no factors", needed='[factors] with frequency = ["0.1 Hz", "0.5 Hz"]'
         )
     if kind == "box-behnken":
-        if spec.n_runs is not None:
+        if spec.keys.n_runs is not None:
             raise SettingsError(
                 "experiment.n_runs is for plackett-burman", needed="n_centre, or nothing"
             )
-        return box_behnken(len(spec.factors), n_centre=spec.n_centre)
-    if spec.n_centre is not None:
+        return box_behnken(len(spec.factors), n_centre=spec.keys.n_centre)
+    if spec.keys.n_centre is not None:
         raise SettingsError(
             "experiment.n_centre is for box-behnken", needed="n_runs, or nothing",
             hint="Two levels have no centre.",
         )  # fmt: skip
-    return plackett_burman(len(spec.factors), n_runs=spec.n_runs)
+    return plackett_burman(len(spec.factors), n_runs=spec.keys.n_runs)
 
 
 def _precision(
     design: Design, sheet: RunSheet, spec: ExperimentSpec
 ) -> ExpectedPrecision | float | None:
     """Half widths of a surface, or the smallest effect of a screening."""
-    if spec.sigma is None:
+    sigma, _ = spec.keys.sigma
+    if sigma is None:
         return None
     if design.kind == "plackett-burman":
-        return float(smallest_effect(design, sigma=spec.sigma))
-    return expected_precision(sheet.coded, sigma=spec.sigma, factor_names=sheet.names)
+        return float(smallest_effect(design, sigma=sigma))
+    return expected_precision(sheet.coded, sigma=sigma, factor_names=sheet.names)
 
 
 def _level_units(spec: ExperimentSpec) -> tuple[str, ...]:
@@ -210,8 +211,9 @@ def _show_precision(
     spec: ExperimentSpec,
     output: CommandOutput,
 ) -> None:
-    unit, scale = ("%", 100.0) if spec.sigma_unit == "1" else output.unit(spec.sigma_unit)
-    sigma = f"{short(scale * (spec.sigma or 0.0))} {unit}"
+    one, si_unit = spec.keys.sigma
+    unit, scale = ("%", 100.0) if si_unit == "1" else output.unit(si_unit)
+    sigma = f"{short(scale * (one or 0.0))} {unit}"
     if isinstance(precision, float):
         output.say(
             f"expected with sigma {sigma}: effects above {short(scale * precision)} {unit} are "
@@ -274,7 +276,7 @@ def _document(
     ]
     expected: dict[str, Any] | None = None
     if precision is not None:
-        expected = {"sigma": spec.sigma, "unit": spec.sigma_unit}
+        expected = dict(zip(("sigma", "unit"), spec.keys.sigma, strict=True))
     if isinstance(precision, float) and expected is not None:
         expected |= {"smallest_significant_effect": precision, "significance": 0.10}
     elif isinstance(precision, ExpectedPrecision) and expected is not None:
@@ -293,7 +295,11 @@ def _document(
         "kind": kind,
         "factors": [
             dict(
-                zip(("unit", "low", "high"), factor.axis(spec.rated_break_strength), strict=True),
+                zip(
+                    ("unit", "low", "high"),
+                    factor.axis(spec.keys.rated_break_strength),
+                    strict=True,
+                ),
                 name=factor.name,
                 level_unit=unit,
             )
@@ -624,7 +630,7 @@ def fit_runs(path: Path, spec_path: Path | None, *, output: CommandOutput) -> No
     spec = None if spec_path is None else load_spec(spec_path)
     runs = read_runs(path, spec)
     with at_place(f"{path}: "):
-        if spec is not None and spec.kind == "plackett-burman":
+        if spec is not None and spec.keys.kind == "plackett-burman":
             effects, notes = _screen(runs)
             _show_effects(effects, runs, notes, output)
             output.answer(_frame(runs, notes) | _effects_document(effects, runs))
@@ -665,7 +671,7 @@ def _fit(runs: RunSeries, spec: ExperimentSpec | None) -> ResponseSurfaces:
         units="coded",
         run_names=runs.run_names,
         blocks=runs.blocks,
-        block_treatment="random" if spec and spec.specimens_as == "random" else "fixed",
+        block_treatment="random" if spec and spec.keys.specimens_as == "random" else "fixed",
         transforms=[entry.transform for entry in declared] or "none",
     )
 
