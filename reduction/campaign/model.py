@@ -431,12 +431,8 @@ def limits_of(group: str, name: str) -> tuple[float, float]:
 
 def _in_si(where: str, value: str | float, dimension: Dimension) -> float:
     """A value with its unit; a refusal says which number it is."""
-    try:
+    with at_place(f"{where}: "):
         return parse_quantity(value, dimension)
-    except SettingsError as error:
-        raise SettingsError(
-            f"{where}: {error.problem}", found=repr(value), needed=error.needed, hint=error.hint
-        ) from error
 
 
 def _value(group: str, name: str, value: object, default: object, control: str) -> object:

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import tarfile
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
 from dataclasses import asdict
@@ -365,10 +366,9 @@ def _say_counted(heading: str, names: Iterable[str], output: CommandOutput) -> N
 
 def _counted(names: Iterable[str]) -> list[str]:
     """Each name once, with the number of its files."""
-    counts: dict[str, int] = {}
-    for name in names:
-        counts[name] = counts.get(name, 0) + 1
-    return [f"{name} ({_number(n, 'file')})" if n > 1 else name for name, n in counts.items()]
+    return [
+        f"{name} ({_number(n, 'file')})" if n > 1 else name for name, n in Counter(names).items()
+    ]
 
 
 def _number(n: int, name: str) -> str:

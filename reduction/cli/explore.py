@@ -34,10 +34,7 @@ def serve(
     def told_of_defect(error: Exception) -> None:
         if os.environ.get("REDUCTION_DEBUG"):
             output.error("".join(traceback.format_exception(error)))
-        output.error(
-            f"internal error, a defect of this program: {type(error).__name__}: {error}. "
-            "Set REDUCTION_DEBUG=1 to see where, and please report it."
-        )
+        output.defect(error)
 
     with in_order(), ExploreServer(session, output.system, port, told_of_defect) as server:
         output.say(f"{path}: {len(session.surveys)} tests")

@@ -133,6 +133,13 @@ class CommandOutput:
         said = visible(without_secrets(in_words(text, self.names)))
         typer.echo(_between_words(said, sys.stderr), err=True)
 
+    def defect(self, error: Exception) -> None:
+        """An error that is no fault of the person's."""
+        self.error(
+            f"internal error, a defect of this program: {type(error).__name__}: {error}. "
+            "Set REDUCTION_DEBUG=1 to see where, and please report it."
+        )
+
     def raise_status(self, status: int) -> None:
         """Keep the highest status seen."""
         self.status = max(self.status, status)
@@ -227,11 +234,11 @@ def guarded(output: CommandOutput) -> Iterator[CommandOutput]:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as error:
         if error.errno is None:
-            _say_defect(output, error)
+            _end_of_defect(output, error)
         else:
             _say_failure(output, refused_by_system(error))
     except Exception as error:
-        _say_defect(output, error)
+        _end_of_defect(output, error)
     raise typer.Exit(output.status)
 
 
@@ -243,11 +250,8 @@ def _say_failure(output: CommandOutput, error: ReductionError) -> None:
         output.answer(failed)
 
 
-def _say_defect(output: CommandOutput, error: Exception) -> None:
+def _end_of_defect(output: CommandOutput, error: Exception) -> None:
     if os.environ.get("REDUCTION_DEBUG"):
         raise error
-    output.error(
-        f"internal error, a defect of this program: {type(error).__name__}: {error}. "
-        "Set REDUCTION_DEBUG=1 to see where, and please report it."
-    )
+    output.defect(error)
     output.raise_status(1)
