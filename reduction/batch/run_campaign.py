@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -19,14 +21,7 @@ from reduction.archive.open import Opener, read_once, reading
 from reduction.archive.product_files import OF_CAMPAIGN, archives_of_tests
 from reduction.archive.rope_properties import CHANGES_LENGTH, properties_to_dataset, step_of_archive
 from reduction.archive.write import keep_details, write_archive, write_text_atomically
-from reduction.batch.campaign_status import (
-    PartStatus,
-    Progress,
-    Silent,
-    TestStatus,
-    read_status,
-    status_csv,
-)
+from reduction.batch.campaign_status import PartStatus, Progress, Silent, Status, TestStatus
 from reduction.batch.catalogue import FILE_NAME
 from reduction.batch.catalogue_entries import write_catalogue
 from reduction.batch.experiment_product import write_experiments
@@ -49,6 +44,7 @@ from reduction.readers.raw_log import hash_source
 from reduction.record.contributions import Component, InstrumentErrors
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Origin, Source, Specimen, Step
+from reduction.record.plain_text import bare_cell, safe_cell
 from reduction.report.campaign_page import write_report
 from reduction.stages.line.change_in_length import ChangeInLength, StepOfProgramme, change_in_length
 from reduction.stages.strain.strain_model import StrainModel
@@ -262,6 +258,50 @@ def _outcomes_in_one_line(campaign: Campaign) -> str:
     return f"read {listed}{sheets}"
 
 
+_COLUMNS = ("test", "status", "exit_status", "message", "raw_sha256", "seconds")
+
+
+def _status_csv(rows: Sequence[TestStatus]) -> str:
+    """Text of status.csv, one row a test."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\r\n")
+    writer.writerow(_COLUMNS)
+    for row in rows:
+        writer.writerow(
+            [
+                row.test,
+                row.status,
+                row.exit_status,
+                safe_cell(row.message),
+                row.raw_sha256,
+                f"{row.seconds:.3f}",
+            ]
+        )
+    return text.getvalue()
+
+
+def _read_status(path: Path) -> dict[str, TestStatus]:
+    """Rows of an earlier status.csv by test; empty where there is none that can be read."""
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        return {
+            row["test"]: TestStatus(
+                test=row["test"],
+                status=cast("Status", row["status"]),
+                exit_status=int(row["exit_status"]),
+                message=bare_cell(row["message"]),
+                n_rows=0,
+                n_cycles=0,
+                raw_sha256=row["raw_sha256"],
+                seconds=float(row["seconds"]),
+            )
+            for row in rows
+        }
+    except (OSError, KeyError, ValueError, TypeError):
+        return {}  # it is made anew, from what this run did
+
+
 @dataclass(frozen=True)
 class _CampaignResult:
     """What a run did: one status a test and a part, and what it wrote.
@@ -405,7 +445,7 @@ def _run(
     report, tables = None, []
     rows = _all_rows(folder / "status.csv", surveys, statuses)
     if statuses:
-        write_text_atomically(folder / "status.csv", status_csv(rows))
+        write_text_atomically(folder / "status.csv", _status_csv(rows))
     keep_details(folder, campaign.report)
     products = requested_products(campaign, folder, has_lengths=has_lengths)
     if archives or products:
@@ -495,6 +535,6 @@ def _all_rows(
 ) -> list[TestStatus]:
     """One row for each test of the campaign; a test that was not asked for keeps its own."""
     new = {status.test: status for status in statuses}
-    before = read_status(path) if len(new) < len(surveys) else {}
+    before = _read_status(path) if len(new) < len(surveys) else {}
     rows = [new.get(survey.plan.id) or before.get(survey.plan.id) for survey in surveys]
     return [row for row in rows if row is not None]

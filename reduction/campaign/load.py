@@ -8,14 +8,14 @@ import tomllib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import Any
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from reduction.archive.open import reading
-from reduction.archive.product_files import archives_of_tests
+from reduction.archive.product_files import OF_CAMPAIGN, archives_of_tests
 from reduction.campaign.experiment_plans import agree_on_pulls, plan_experiment
 from reduction.campaign.hose_spec import ComparisonSection, hose_of
 from reduction.campaign.model import (
@@ -26,7 +26,6 @@ from reduction.campaign.model import (
     StepSection,
     TestSection,
     apply_numbers,
-    check_names,
     report_details,
     stated_errors,
 )
@@ -35,7 +34,6 @@ from reduction.campaign.plan import Campaign, ComparisonPlan, StepPlan, TestPlan
 from reduction.campaign.toml_file import (
     at_place,
     faults_of,
-    file_inside,
     in_toml,
     listed,
     quantity_of,
@@ -44,11 +42,95 @@ from reduction.campaign.toml_file import (
     read_toml,
 )
 from reduction.quantities.units import scale_to_si
+from reduction.readers.layout import check_regular
 from reduction.readers.remote_files import allowed, base_name, fetch, renamed, scratch_folder
 from reduction.record.errors import ArchiveError, LogError, SettingsError
 from reduction.record.measurement import Specimen, SpliceMarks
 from reduction.record.plain_text import cut, is_address, shown_address
 from reduction.record.settings import CycleSettings, Limits, ReductionSettings, StrainSettings
+
+
+def _check_names(path: Path, campaign: str, tests: Mapping[str, TestPlan]) -> None:
+    """Refuse names under which two products would be one file somewhere."""
+    for name in (campaign, *tests):
+        if _DEVICE.fullmatch(name):
+            raise in_toml(
+                path, "a name is that of a device on Windows", found=repr(name),
+                needed="another name: it becomes one of a file or of a folder",
+            )  # fmt: skip
+    seen = dict.fromkeys(OF_CAMPAIGN, "")
+    for name in tests:
+        other = seen.setdefault(name.casefold(), name)
+        if not other:
+            raise in_toml(
+                path, f"test '{name}' has the name of a product of the campaign",
+                needed="another name than " + ", ".join(OF_CAMPAIGN),
+            )  # fmt: skip
+        if other != name:
+            raise in_toml(
+                path, "the names of two tests differ in capital letters only",
+                found=f"'{other}' and '{name}'", needed="names that are two on every disk",
+            )  # fmt: skip
+    for name, test in tests.items():
+        if len({step.product(name).casefold() for step in test.steps}) < len(test.steps):
+            raise in_toml(
+                path, f"two steps of test '{name}' have one name",
+                needed="names that are two on every disk",
+                hint="Blanks and hyphens, small and capital letters count as equal.",
+            )  # fmt: skip
+
+
+_DEVICE = re.compile(
+    r"(con|prn|aux|nul|conin\$|conout\$|com[0-9¹²³]|lpt[0-9¹²³]) *(\..*)?", re.IGNORECASE
+)
+"""Names that are devices of Windows in every folder, whatever stands behind their point."""
+
+
+def _file_inside(path: Path, name: str, *, is_needed: bool = True) -> str:
+    """A file name that stays inside the campaign folder."""
+    shown = repr(cut(name, 200))
+    if is_address(name):
+        raise in_toml(
+            path, "only the log of a test may be an address on the net",
+            found=repr(shown_address(name)), needed="a file inside the folder of campaign.toml",
+        )  # fmt: skip
+    if any(map(_DEVICE.fullmatch, re.split(r"[/\\]", name))):
+        raise _no_name(path, shown)
+    try:
+        folder = path.parent.resolve()
+        target = (folder / name).resolve()
+    except (ValueError, RuntimeError, OSError) as error:  # a null byte, links in a ring, length
+        raise _no_name(path, shown) from error
+    windows = PureWindowsPath(name)
+    is_absolute = Path(name).is_absolute() or windows.drive or windows.root
+    if not name or is_absolute or not target.is_relative_to(folder):
+        raise in_toml(
+            path, "a file lies outside the campaign folder", found=shown,
+            needed="a path inside the folder of campaign.toml, links followed",
+        )  # fmt: skip
+    if is_needed:
+        _check_there(path, target, path.parent / name)
+    return name
+
+
+def _no_name(path: Path, shown: str) -> SettingsError:
+    return in_toml(
+        path, "no file can have such a name", found=shown,
+        needed="a path inside the folder of campaign.toml, links followed",
+    )  # fmt: skip
+
+
+def _check_there(path: Path, target: Path, shown: Path) -> None:
+    try:
+        mode = target.stat().st_mode
+    except FileNotFoundError as error:
+        raise LogError(shown, "the file is not there", needed=f"as {path} says") from error
+    except OSError as error:  # a folder that is closed to this user, a name that is too long
+        raise LogError(
+            shown, "the file cannot be read", found=error.strerror or str(error),
+            needed="a file that this user may read",
+        ) from error  # fmt: skip
+    check_regular(shown, mode)
 
 
 def _specimen_of(path: Path, name: str, section: SpecimenSection) -> Specimen:
@@ -186,7 +268,7 @@ def _pooled_marks(
     """Return all marks of each specimen over the campaign, from every marks file it names."""
     pooled: dict[str, SpliceMarks] = {}
     for name in dict.fromkeys(names):
-        for specimen, marks in _read_marks(path.parent / file_inside(path, name)).items():
+        for specimen, marks in _read_marks(path.parent / _file_inside(path, name)).items():
             if specimen not in specimens:
                 raise LogError(
                     path.parent / name, "a mark names an unknown specimen", channel="specimen",
@@ -349,7 +431,7 @@ def _log_name(path: Path, test: str, entry: str, allow_remote: bool) -> str:
     """What names a log in messages and products: a path inside the folder, or an address."""
     with at_place(f"{path}: "):
         is_remote = allowed(entry, allow_remote, what=f"the log of test '{test}'")
-    return shown_address(entry) if is_remote else file_inside(path, entry, is_needed=False)
+    return shown_address(entry) if is_remote else _file_inside(path, entry, is_needed=False)
 
 
 def _plan_test(
@@ -536,7 +618,7 @@ def _results_file(path: Path, file: CampaignFile) -> str:
             path, "results stands above [campaign] and in it", found=" and ".join(sorted(names)),
             needed="one table of results",
         )  # fmt: skip
-    return file_inside(path, names.pop()) if names else ""
+    return _file_inside(path, names.pop()) if names else ""
 
 
 def _addresses(path: Path, tests: Mapping[str, TestSection]) -> dict[str, str]:
@@ -585,7 +667,7 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
     tests: dict[str, TestSection] = {}
     table = file.tests if isinstance(file.tests, str) else file.campaign.tests
     if table:
-        tests |= read_test_table(path.parent / file_inside(path, table))
+        tests |= read_test_table(path.parent / _file_inside(path, table))
     if not isinstance(file.tests, str):
         tests = _merge_tests(path, table, tests, file.tests)
     if not (tests or file.results or file.campaign.results or file.hoses):
@@ -597,7 +679,7 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
         name: _plan_test(path, name, test, file.defaults, file, allow_remote=allow_remote)
         for name, test in tests.items()
     }
-    check_names(path, file.campaign.id, plans)
+    _check_names(path, file.campaign.id, plans)
     for name, plan in plans.items():
         if plan.part_of is not None and plan.part_of not in plans:
             raise in_toml(

@@ -21,12 +21,11 @@ from pydantic import (
     field_validator,
 )
 
-from reduction.archive.product_files import OF_CAMPAIGN
 from reduction.archive.uncertainty_budget import parse_place
 from reduction.archive.write import ReportDetails, ReportLimit, ReportSection, ReportText, Statement
 from reduction.campaign.hose_spec import ComparisonSection, HoseSection
 from reduction.campaign.plan import TestPlan, product_of
-from reduction.campaign.toml_file import DEVICE, at_place, in_toml
+from reduction.campaign.toml_file import at_place, in_toml
 from reduction.campaign.unit_types import (
     Force,
     InSI,
@@ -43,37 +42,6 @@ from reduction.record.contributions import StatedErrors, of_expanded, of_half_wi
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Specimen
 from reduction.record.settings import ReductionSettings, StoredSamples, StrainMethod
-
-
-def check_names(path: Path, campaign: str, tests: Mapping[str, TestPlan]) -> None:
-    """Refuse names under which two products would be one file somewhere."""
-    for name in (campaign, *tests):
-        if DEVICE.fullmatch(name):
-            raise in_toml(
-                path, "a name is that of a device on Windows", found=repr(name),
-                needed="another name: it becomes one of a file or of a folder",
-            )  # fmt: skip
-    seen = dict.fromkeys(OF_CAMPAIGN, "")
-    for name in tests:
-        other = seen.setdefault(name.casefold(), name)
-        if not other:
-            raise in_toml(
-                path, f"test '{name}' has the name of a product of the campaign",
-                needed="another name than " + ", ".join(OF_CAMPAIGN),
-            )  # fmt: skip
-        if other != name:
-            raise in_toml(
-                path, "the names of two tests differ in capital letters only",
-                found=f"'{other}' and '{name}'", needed="names that are two on every disk",
-            )  # fmt: skip
-    for name, test in tests.items():
-        if len({step.product(name).casefold() for step in test.steps}) < len(test.steps):
-            raise in_toml(
-                path, f"two steps of test '{name}' have one name",
-                needed="names that are two on every disk",
-                hint="Blanks and hyphens, small and capital letters count as equal.",
-            )  # fmt: skip
-
 
 # of pint's many plain numbers, a turn and a percent among them, those that count bytes
 _BYTES = re.compile(r"[\d.+\-eE\s]*([kMGT]i?B|B|bytes?)\s*")

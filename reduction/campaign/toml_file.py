@@ -9,7 +9,7 @@ import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path, PureWindowsPath
+from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
@@ -19,7 +19,7 @@ from reduction.quantities.units import Dimension
 from reduction.readers.layout import check_regular
 from reduction.readers.sniff import UNKNOWN
 from reduction.record.errors import DataError, FitError, LogError, ReductionError, SettingsError
-from reduction.record.plain_text import bare_cell, cut, is_address, shown_address
+from reduction.record.plain_text import bare_cell, cut
 
 _LARGEST = 16_000_000  # bytes; a campaign of 10^5 tests has a third of it
 
@@ -301,59 +301,6 @@ def _open_questions(folder: Path, table: dict[str, Any]) -> list[str]:
         if any(map(_is_open, cell.split(";")))
     ]
     return list(dict.fromkeys(places))
-
-
-DEVICE = re.compile(
-    r"(con|prn|aux|nul|conin\$|conout\$|com[0-9¹²³]|lpt[0-9¹²³]) *(\..*)?", re.IGNORECASE
-)
-"""Names that are devices of Windows in every folder, whatever stands behind their point."""
-
-
-def file_inside(path: Path, name: str, *, is_needed: bool = True) -> str:
-    """A file name that stays inside the campaign folder."""
-    shown = repr(cut(name, 200))
-    if is_address(name):
-        raise in_toml(
-            path, "only the log of a test may be an address on the net",
-            found=repr(shown_address(name)), needed="a file inside the folder of campaign.toml",
-        )  # fmt: skip
-    if any(map(DEVICE.fullmatch, re.split(r"[/\\]", name))):
-        raise _no_name(path, shown)
-    try:
-        folder = path.parent.resolve()
-        target = (folder / name).resolve()
-    except (ValueError, RuntimeError, OSError) as error:  # a null byte, links in a ring, length
-        raise _no_name(path, shown) from error
-    windows = PureWindowsPath(name)
-    is_absolute = Path(name).is_absolute() or windows.drive or windows.root
-    if not name or is_absolute or not target.is_relative_to(folder):
-        raise in_toml(
-            path, "a file lies outside the campaign folder", found=shown,
-            needed="a path inside the folder of campaign.toml, links followed",
-        )  # fmt: skip
-    if is_needed:
-        _check_there(path, target, path.parent / name)
-    return name
-
-
-def _no_name(path: Path, shown: str) -> SettingsError:
-    return in_toml(
-        path, "no file can have such a name", found=shown,
-        needed="a path inside the folder of campaign.toml, links followed",
-    )  # fmt: skip
-
-
-def _check_there(path: Path, target: Path, shown: Path) -> None:
-    try:
-        mode = target.stat().st_mode
-    except FileNotFoundError as error:
-        raise LogError(shown, "the file is not there", needed=f"as {path} says") from error
-    except OSError as error:  # a folder that is closed to this user, a name that is too long
-        raise LogError(
-            shown, "the file cannot be read", found=error.strerror or str(error),
-            needed="a file that this user may read",
-        ) from error  # fmt: skip
-    check_regular(shown, mode)
 
 
 # what the parser takes minutes or gigabytes for, and no setting has

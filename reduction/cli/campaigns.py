@@ -9,7 +9,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 from dataclasses import asdict, replace
 from functools import partial
 from itertools import chain
@@ -27,9 +28,10 @@ from reduction.batch.experiment_product import experiments_found
 from reduction.batch.requested_products import check_campaign as check_tests
 from reduction.batch.run_campaign import results_found
 from reduction.batch.run_campaign import run_campaign as run_tests
+from reduction.batch.workers import Workers, local_workers
 from reduction.campaign.plan import Campaign
 from reduction.cli.output import CommandOutput
-from reduction.cli.progress import campaign_progress, chosen_workers
+from reduction.cli.progress import campaign_progress
 from reduction.pages.design_values import PAGE_NAME, write_design_page
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.readers.sniff import sniff_layout
@@ -307,6 +309,33 @@ def _say_experiments(output: CommandOutput, experiments: list[dict[str, Any]]) -
             output.say(f"  {note}")
 
 
+@contextmanager
+def _chosen_workers(jobs: int | None, scheduler: str | None) -> Iterator[Workers | None]:
+    """Give what ``--jobs`` or ``--scheduler`` asks for, and end it afterwards."""
+    if jobs is not None and scheduler is not None:
+        raise SettingsError(
+            "--jobs and --scheduler exclude each other",
+            found=f"--jobs {jobs} --scheduler {scheduler}",
+            hint="How many workers a scheduler has is said where they are started.",
+        )
+    if scheduler is None:
+        with local_workers(jobs) if jobs is not None and jobs > 1 else nullcontext() as workers:
+            yield workers
+        return
+    try:
+        from reduction.batch.dask_cluster import users_cluster
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
+            raise
+        raise SettingsError(
+            "--scheduler needs Dask, which is not installed",
+            found=f"no package '{error.name}'",
+            hint="Install it with: pip install 'mooring-reduction[cluster]'. --jobs needs none.",
+        ) from error
+    with users_cluster(scheduler) as workers:
+        yield workers
+
+
 def check_campaign(campaign: Campaign, *, tests: tuple[str, ...], output: CommandOutput) -> None:
     """Read and validate everything, print what was found, write nothing."""
     with campaign_progress(output) as progress:
@@ -358,7 +387,7 @@ def run_campaign(
     """Reduce a campaign and say what became of each test."""
     opener = read_once()
     with (
-        chosen_workers(jobs, scheduler) as workers,
+        _chosen_workers(jobs, scheduler) as workers,
         campaign_progress(output) as progress,
     ):
         if scheduler is not None:
