@@ -179,7 +179,8 @@ def _place(
         if isinstance(table, list | tuple) and isinstance(part, int) and part < len(table):
             table = table[part]
             name = table.get("name") if is_value and isinstance(table, dict) else None
-            place.append(str(name or part + is_value))
+            is_named = isinstance(name, str) and bool(name)
+            place.append(cut(str(name), _LONGEST_FOUND) if is_named else str(part + is_value))
         elif isinstance(table, dict) and part in table:
             table = table[part]
             place.append(str(part))
