@@ -2,18 +2,10 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
-from typing import Any, Literal, Protocol, cast
-
-from reduction.record.plain_text import bare_cell, safe_cell
+from typing import Any, Literal, Protocol
 
 Status = Literal["reduced", "reduced_with_notes", "unchanged", "no_work", "failed"]
-
-_COLUMNS = ("test", "status", "exit_status", "message", "raw_sha256", "seconds")
 
 
 @dataclass(frozen=True)
@@ -60,47 +52,6 @@ class TestStatus:
         entry = asdict(self)
         entry["id"] = entry.pop("test")
         return entry
-
-
-def status_csv(rows: Sequence[TestStatus]) -> str:
-    """Text of status.csv, one row a test."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\r\n")
-    writer.writerow(_COLUMNS)
-    for row in rows:
-        writer.writerow(
-            [
-                row.test,
-                row.status,
-                row.exit_status,
-                safe_cell(row.message),
-                row.raw_sha256,
-                f"{row.seconds:.3f}",
-            ]
-        )
-    return text.getvalue()
-
-
-def read_status(path: Path) -> dict[str, TestStatus]:
-    """Rows of an earlier status.csv by test; empty where there is none that can be read."""
-    try:
-        with path.open(encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
-        return {
-            row["test"]: TestStatus(
-                test=row["test"],
-                status=cast("Status", row["status"]),
-                exit_status=int(row["exit_status"]),
-                message=bare_cell(row["message"]),
-                n_rows=0,
-                n_cycles=0,
-                raw_sha256=row["raw_sha256"],
-                seconds=float(row["seconds"]),
-            )
-            for row in rows
-        }
-    except (OSError, KeyError, ValueError, TypeError):
-        return {}  # it is made anew, from what this run did
 
 
 @dataclass(frozen=True)

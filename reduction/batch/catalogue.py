@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -693,24 +694,29 @@ def write_answer(table: Any, path: Path) -> None:
         If the disk refuses.
     """
     check_ending(path)
+    with _whole_file(path) as part:
+        if path.suffix.lower() == ".csv":
+            units = map(unit_of, table.column_names)
+            heads = [
+                f"{name} [{unit}]" if unit else name
+                for name, unit in zip(table.column_names, units, strict=True)
+            ]
+            options = pyarrow.csv.WriteOptions(quoting_style="needed")
+            pyarrow.csv.write_csv(_safe(table).rename_columns(heads), part, options)
+        else:
+            fields = [
+                one.with_metadata({"units": unit_of(one.name), "long_name": meaning_of(one.name)})
+                for one in table.schema
+            ]
+            pyarrow.parquet.write_table(table.cast(pyarrow.schema(fields)), part)
+
+
+@contextmanager
+def _whole_file(path: Path) -> Iterator[Path]:
+    """Give a temporary name for a file; `ArchiveError` where the disk refuses."""
     try:
         with atomic_file(path) as part:
-            if path.suffix.lower() == ".csv":
-                units = map(unit_of, table.column_names)
-                heads = [
-                    f"{name} [{unit}]" if unit else name
-                    for name, unit in zip(table.column_names, units, strict=True)
-                ]
-                options = pyarrow.csv.WriteOptions(quoting_style="needed")
-                pyarrow.csv.write_csv(_safe(table).rename_columns(heads), part, options)
-            else:
-                fields = [
-                    one.with_metadata(
-                        {"units": unit_of(one.name), "long_name": meaning_of(one.name)}
-                    )
-                    for one in table.schema
-                ]
-                pyarrow.parquet.write_table(table.cast(pyarrow.schema(fields)), part)
+            yield part
     except ArchiveError:
         raise
     except OSError as error:

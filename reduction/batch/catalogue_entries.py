@@ -13,7 +13,7 @@ import pyarrow.parquet  # type: ignore[import-untyped]
 import xarray as xr
 from numpy.typing import NDArray
 
-from reduction.archive.atomic_write import atomic_file, remove_abandoned
+from reduction.archive.atomic_write import remove_abandoned
 from reduction.archive.open import Opener, reading
 from reduction.archive.product_files import OF_CAMPAIGN
 from reduction.batch.catalogue import (
@@ -27,6 +27,7 @@ from reduction.batch.catalogue import (
     _column_type,
     _mark,
     _shown_path,
+    _whole_file,
     campaigns_below,
 )
 from reduction.quantities.names import QUANTITIES
@@ -104,24 +105,14 @@ def _write(entries: Sequence[_CatalogueEntry], path: Path) -> None:
     table = table.sort_by("quantity")
     schema = table.schema.with_metadata({MARK: _mark()})
     tests = pyarrow.concat_tables([schema.empty_table(), tests], promote_options="default")
-    try:
-        remove_abandoned(path)
-        with atomic_file(path) as part:
-            # opened here: a path may be no text
-            with (
-                part.open("wb") as file,
-                pyarrow.parquet.ParquetWriter(file, schema, compression="zstd") as writer,
-            ):
-                writer.write_table(tests, max(1, tests.num_rows))  # the first group are the tests
-                writer.write_table(table, _ROWS_AT_ONCE)
-    except ArchiveError:
-        raise
-    except OSError as error:
-        raise ArchiveError(
-            f"{path} cannot be written",
-            found=getattr(error, "strerror", None) or str(error),
-            hint="What was there before is kept.",
-        ) from error
+    remove_abandoned(path)
+    with (
+        _whole_file(path) as part,
+        part.open("wb") as file,  # opened here: a path may be no text
+        pyarrow.parquet.ParquetWriter(file, schema, compression="zstd") as writer,
+    ):
+        writer.write_table(tests, max(1, tests.num_rows))  # the first group are the tests
+        writer.write_table(table, _ROWS_AT_ONCE)
 
 
 def _kept_cycles(n_cycles: int) -> NDArray[np.intp]:

@@ -18,7 +18,7 @@ from reduction.archive.surfaces_dataset import surfaces_to_dataset
 from reduction.archive.variables import stored
 from reduction.archive.write import write_archive
 from reduction.batch.campaign_status import PartStatus, TestStatus
-from reduction.batch.reuse import outdated_in_words
+from reduction.batch.reuse import NOT_REDUCED
 from reduction.batch.slow_pulls import pull_tests
 from reduction.campaign.plan import Campaign, ExperimentPlan
 from reduction.experiments.designs import FactorLevels, engineering_levels
@@ -221,6 +221,18 @@ _UNITS = {"temperature": "K", "diameter": "m"}
 _MAIN_PART = ("no-main-part", "no-effect", "no-surface")
 
 
+_MANY = 4  # runs that are named one by one
+
+
+def _outdated_in_words(waiting: Collection[str], runs: Collection[str]) -> str:
+    """What has to be run before an experiment is fitted; empty where nothing has."""
+    listed = [run for run in runs if run in waiting]
+    if not listed:
+        return ""
+    named = ", ".join(listed[:_MANY]) + (", .." if len(listed) > _MANY else "")
+    return f"{len(listed)} of its runs {NOT_REDUCED} ({named})"
+
+
 def write_experiments(
     campaign: Campaign,
     folder: Path,
@@ -235,7 +247,7 @@ def write_experiments(
     if not campaign.experiments:
         return []
     held = {
-        name: outdated_in_words(waiting, plan.runs) for name, plan in campaign.experiments.items()
+        name: _outdated_in_words(waiting, plan.runs) for name, plan in campaign.experiments.items()
     }
 
     def archive_of(run: str) -> Path | None:

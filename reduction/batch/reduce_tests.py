@@ -21,7 +21,6 @@ from reduction.batch.survey import (
     Survey,
     as_reduction_error,
     located_again,
-    note_message,
     status_row,
     with_one_log,
     with_record,
@@ -32,7 +31,8 @@ from reduction.campaign.plan import Campaign
 from reduction.pipeline.reduce_test import check_stated_errors, reduce_stepwise_test, reduce_test
 from reduction.readers.raw_log import hash_source
 from reduction.record.errors import LogError, ReductionError
-from reduction.record.notes import Note
+from reduction.record.note_sentences import Severity
+from reduction.record.notes import Note, by_severity, full_note
 from reduction.stages.line.line_product import SlowPull
 from reduction.stages.reduced_test import History, ReducedTest
 from reduction.stages.strain.strain_model import StrainModel
@@ -113,12 +113,12 @@ def _bring_up_to_date(
     if not force:
         notes = reusable_product(path, survey, basis.settings, remarks=basis.remarks)
         if notes is not None:
-            return "unchanged", note_message(notes)
+            return "unchanged", _note_message(notes)
     dataset, notes = dataset_of(campaign, survey, basis, command=command)
     _check_raw_files(campaign, survey)
     before_writing()
     write_archive(dataset, path)
-    return "reduced_with_notes" if notes else "reduced", note_message(notes)
+    return "reduced_with_notes" if notes else "reduced", _note_message(notes)
 
 
 def _check_raw_files(campaign: Campaign, survey: Survey) -> None:
@@ -144,6 +144,23 @@ class _Made:
     message: str
     error: ReductionError | None
     seconds: float
+
+
+_SERIOUS: tuple[Severity, ...] = ("warning", "refusal")
+
+
+def _note_message(notes: Sequence[Note]) -> str:
+    """How many notes there are, how many of them are serious, and the most serious of all."""
+    ranked = by_severity(notes)
+    if not ranked:
+        return ""
+    kinds = Counter(one.severity for one in ranked)
+    serious = [
+        f"{kinds[kind]} {kind}{'s' if kinds[kind] > 1 else ''}" for kind in _SERIOUS if kinds[kind]
+    ]
+    among = f" ({', '.join(serious)})" if serious else ""
+    count = f"{len(ranked)} note{'s' if len(ranked) > 1 else ''}"
+    return f"{count}{among}; first: {full_note(ranked[0].stage, str(ranked[0]))}"
 
 
 def reduce_campaign(

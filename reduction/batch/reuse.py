@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -185,8 +185,6 @@ def basis_of(
 
 NOT_REDUCED = "not reduced yet from logs and settings as they stand now"
 
-_MANY = 4  # runs that are named one by one
-
 
 def reusable_product(
     path: Path, survey: Survey, settings: str, *, remarks: Sequence[Note] = ()
@@ -222,12 +220,3 @@ def outdated_runs(
         if reusable_product(path, survey, now.settings, remarks=now.remarks) is None:
             waiting.add(survey.plan.id)
     return waiting
-
-
-def outdated_in_words(waiting: Collection[str], runs: Collection[str]) -> str:
-    """What has to be run before an experiment is fitted; empty where nothing has."""
-    listed = [run for run in runs if run in waiting]
-    if not listed:
-        return ""
-    named = ", ".join(listed[:_MANY]) + (", .." if len(listed) > _MANY else "")
-    return f"{len(listed)} of its runs {NOT_REDUCED} ({named})"

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, cast
 
 import numpy as np
 
@@ -19,14 +21,7 @@ from reduction.archive.open import Opener, read_once, reading
 from reduction.archive.product_files import OF_CAMPAIGN, archives_of_tests
 from reduction.archive.rope_properties import CHANGES_LENGTH, properties_to_dataset, step_of_archive
 from reduction.archive.write import keep_details, write_archive, write_text_atomically
-from reduction.batch.campaign_status import (
-    PartStatus,
-    Progress,
-    Silent,
-    TestStatus,
-    read_status,
-    status_csv,
-)
+from reduction.batch.campaign_status import PartStatus, Progress, Silent, Status, TestStatus
 from reduction.batch.catalogue import FILE_NAME
 from reduction.batch.catalogue_entries import write_catalogue
 from reduction.batch.experiment_product import write_experiments
@@ -49,6 +44,7 @@ from reduction.readers.raw_log import hash_source
 from reduction.record.contributions import Component, InstrumentErrors
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Origin, Source, Specimen, Step
+from reduction.record.plain_text import bare_cell, safe_cell
 from reduction.report.campaign_page import write_report
 from reduction.stages.line.change_in_length import ChangeInLength, StepOfProgramme, change_in_length
 from reduction.stages.strain.strain_model import StrainModel
@@ -262,29 +258,70 @@ def _outcomes_in_one_line(campaign: Campaign) -> str:
     return f"read {listed}{sheets}"
 
 
+_COLUMNS = ("test", "status", "exit_status", "message", "raw_sha256", "seconds")
+
+
+def _status_csv(rows: Sequence[TestStatus]) -> str:
+    """Text of status.csv, one row a test."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\r\n")
+    writer.writerow(_COLUMNS)
+    for row in rows:
+        writer.writerow(
+            [
+                row.test,
+                row.status,
+                row.exit_status,
+                safe_cell(row.message),
+                row.raw_sha256,
+                f"{row.seconds:.3f}",
+            ]
+        )
+    return text.getvalue()
+
+
+def _read_status(path: Path) -> dict[str, TestStatus]:
+    """Rows of an earlier status.csv by test; empty where there is none that can be read."""
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        return {
+            row["test"]: TestStatus(
+                test=row["test"],
+                status=cast("Status", row["status"]),
+                exit_status=int(row["exit_status"]),
+                message=bare_cell(row["message"]),
+                n_rows=0,
+                n_cycles=0,
+                raw_sha256=row["raw_sha256"],
+                seconds=float(row["seconds"]),
+            )
+            for row in rows
+        }
+    except (OSError, KeyError, ValueError, TypeError):
+        return {}  # it is made anew, from what this run did
+
+
 @dataclass(frozen=True)
 class _CampaignResult:
-    """What a run did: one status a test and a part, and what it wrote."""
+    """What a run did: one status a test and a part, and what it wrote.
+
+    ``parts`` are those that are no tests: ``experiments``, ``hoses`` and ``comparisons``.
+    """
 
     tests: tuple[TestStatus, ...]
-    experiments: tuple[PartStatus, ...]
-    hoses: tuple[PartStatus, ...]
-    comparisons: tuple[PartStatus, ...]
+    parts: dict[str, list[PartStatus]]
     processed: Path
     report: Path | None
     stray: tuple[str, ...]
     tables: tuple[Path, ...] = ()
 
     @property
-    def parts(self) -> tuple[PartStatus, ...]:
-        """Everything that is not a test."""
-        return (*self.experiments, *self.hoses, *self.comparisons)
-
-    @property
     def exit_status(self) -> int:
         """The highest seen."""
         seen = [test.exit_status for test in self.tests]
-        return max([*seen, *(one.exit_status for one in self.parts)], default=0)
+        seen += [one.exit_status for parts in self.parts.values() for one in parts]
+        return max(seen, default=0)
 
 
 def run_campaign(
@@ -392,7 +429,7 @@ def _run(
     failed = {status.test for status in statuses if status.status == "failed"}
     failed |= set(wanted.failed)
     asked = {survey.plan.id for survey in chosen}
-    parts = _write_parts(
+    parts, has_lengths = _write_parts(
         campaign,
         folder,
         surveys,
@@ -408,9 +445,9 @@ def _run(
     report, tables = None, []
     rows = _all_rows(folder / "status.csv", surveys, statuses)
     if statuses:
-        write_text_atomically(folder / "status.csv", status_csv(rows))
+        write_text_atomically(folder / "status.csv", _status_csv(rows))
     keep_details(folder, campaign.report)
-    products = requested_products(campaign, folder, has_lengths=parts.has_lengths)
+    products = requested_products(campaign, folder, has_lengths=has_lengths)
     if archives or products:
         tables = write_tables(archives, folder / "tables", opener=opener, **products)
         write_catalogue([*archives, *products.values()], folder / FILE_NAME, opener=opener)
@@ -428,9 +465,7 @@ def _run(
         )  # fmt: skip
     return _CampaignResult(
         tests=tuple(statuses),
-        experiments=parts.experiments,
-        hoses=parts.hoses,
-        comparisons=parts.comparisons,
+        parts=parts,
         processed=folder,
         report=report,
         stray=tuple(stray),
@@ -449,15 +484,6 @@ def _keep_pages(ours: Sequence[Path], name: str, why: str) -> None:
             )
 
 
-class _Parts(NamedTuple):
-    """What became of the parts of a campaign that are no tests."""
-
-    experiments: tuple[PartStatus, ...]
-    hoses: tuple[PartStatus, ...]
-    comparisons: tuple[PartStatus, ...]
-    has_lengths: bool
-
-
 def _write_parts(
     campaign: Campaign,
     folder: Path,
@@ -468,14 +494,18 @@ def _write_parts(
     basis: Callable[[Survey], Basis],
     command: str,
     opener: Opener,
-) -> _Parts:
-    """Write the archives of the whole campaign, from those of its tests that are up to date."""
+) -> tuple[dict[str, list[PartStatus]], bool]:
+    """Write the archives of the whole campaign, from those of its tests that are up to date.
+
+    Returns what became of its parts, and whether a rope changed its length.
+    """
     runs = {run for plan in campaign.experiments.values() for run in plan.runs}
     compared = {plan.measured for plan in campaign.comparisons.values()}
     needed = runs | compared | _tests_of_ropes(campaign, surveys)
     left_out = [entry for entry in surveys if entry.plan.id in needed - asked - failed]
     waiting = outdated_runs(folder, left_out, basis)
-    experiments = write_experiments(
+    parts = {}
+    parts["experiments"] = write_experiments(
         campaign,
         folder,
         failed=failed,
@@ -493,11 +523,11 @@ def _write_parts(
         campaign, folder, surveys, models=lambda survey: basis(survey).models,
         failed=failed, waiting=waiting, command=command, opener=opener,
     )  # fmt: skip
-    hoses = write_predictions(campaign, folder, command=command)
-    comparisons = write_comparisons(
+    parts["hoses"] = write_predictions(campaign, folder, command=command)
+    parts["comparisons"] = write_comparisons(
         campaign, folder, failed=failed, waiting=waiting, command=command, opener=opener
     )
-    return _Parts(tuple(experiments), tuple(hoses), tuple(comparisons), lengths is not None)
+    return parts, lengths is not None
 
 
 def _all_rows(
@@ -505,6 +535,6 @@ def _all_rows(
 ) -> list[TestStatus]:
     """One row for each test of the campaign; a test that was not asked for keeps its own."""
     new = {status.test: status for status in statuses}
-    before = read_status(path) if len(new) < len(surveys) else {}
+    before = _read_status(path) if len(new) < len(surveys) else {}
     rows = [new.get(survey.plan.id) or before.get(survey.plan.id) for survey in surveys]
     return [row for row in rows if row is not None]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -28,8 +27,6 @@ from reduction.record.errors import (
     refused_by_system,
 )
 from reduction.record.measurement import Floats, Record, Source, SpliceMarks, StepReadings
-from reduction.record.note_sentences import Severity
-from reduction.record.notes import Note, by_severity, full_note
 from reduction.stages.standstills import median_step
 from reduction.stages.strain.strain_fit import zero_strain_position
 
@@ -336,23 +333,6 @@ def with_record(survey: Survey, kept: Sequence[Survey] | None) -> Survey:
         if one.plan.id == survey.plan.id and one.sources == survey.sources:
             return replace(survey, located=one.located)
     return survey
-
-
-_SERIOUS: tuple[Severity, ...] = ("warning", "refusal")
-
-
-def note_message(notes: Sequence[Note]) -> str:
-    """How many notes there are, how many of them are serious, and the most serious of all."""
-    ranked = by_severity(notes)
-    if not ranked:
-        return ""
-    kinds = Counter(one.severity for one in ranked)
-    serious = [
-        f"{kinds[kind]} {kind}{'s' if kinds[kind] > 1 else ''}" for kind in _SERIOUS if kinds[kind]
-    ]
-    among = f" ({', '.join(serious)})" if serious else ""
-    count = f"{len(ranked)} note{'s' if len(ranked) > 1 else ''}"
-    return f"{count}{among}; first: {full_note(ranked[0].stage, str(ranked[0]))}"
 
 
 def _error_message(campaign: Campaign, survey: Survey, error: ReductionError) -> str:

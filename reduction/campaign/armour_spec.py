@@ -9,9 +9,9 @@ from typing import Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from reduction.campaign.toml_file import Number, TableReader, in_toml, read_toml
+from reduction.campaign.toml_file import at_place, in_toml, read_toml
+from reduction.campaign.unit_types import Angle, Length, PositiveStrain, Ratio, Strain, Stress
 from reduction.prediction.armour import ArmourDesign, ArmourLayers
-from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats
 
 
@@ -20,30 +20,30 @@ class _ArmourSection(BaseModel):
 
 
 class _ArmourLayerKeys(_ArmourSection):
-    """``[[armour.layers]]``."""
+    """``[[armour.layers]]``, in SI once it is read."""
 
     name: str = ""
-    winding_angle: str
+    winding_angle: Angle
     """From the axis of the cable."""
-    wire_radius: str | None = None
+    wire_radius: Length | None = None
     """Or ``wire_diameter``."""
-    wire_diameter: str | None = None
-    core_radius: str | None = None
+    wire_diameter: Length | None = None
+    core_radius: Length | None = None
     """Of what the wires lie on; or ``core_diameter``."""
-    core_diameter: str | None = None
+    core_diameter: Length | None = None
     n_wires: int = Field(default=1, ge=1)
-    elastic_modulus: str = "210 GPa"
-    poisson_ratio: Number = 0.3
+    elastic_modulus: Stress = Field("210 GPa", validate_default=True)
+    poisson_ratio: Ratio = 0.3
     lay: Literal["right", "left"] = "right"
-    yield_stress: str | None = None
+    yield_stress: Stress | None = None
 
 
 class _ArmourKeys(_ArmourSection):
-    """``[armour]``."""
+    """``[armour]``, in SI once it is read."""
 
-    axial_strain: Number
+    axial_strain: Strain
     """Of the cable along its axis."""
-    tolerance: Number = "1 %"
+    tolerance: PositiveStrain = Field("1 %", validate_default=True)
     """Error at which a theory still counts as right."""
     layers: tuple[_ArmourLayerKeys, ...] = Field(min_length=1)
 
@@ -65,66 +65,50 @@ class _ArmourCase:
     tolerance: float
 
 
-def _length(read: TableReader, layer: _ArmourLayerKeys, what: str) -> float:
-    """A radius, given as such or as a diameter."""
-    radius, diameter = getattr(layer, f"{what}_radius"), getattr(layer, f"{what}_diameter")
-    if (radius is None) == (diameter is None):
-        raise in_toml(
-            read.path, f"{read.place}: {what}_radius is not said once",
-            found="both" if radius else "neither", needed=f"{what}_radius or {what}_diameter",
-        )  # fmt: skip
-    if radius is not None:
-        return read.value(f"{what}_radius", radius, "length")
-    return read.value(f"{what}_diameter", str(diameter), "length") / 2
-
-
 def load_armour_case(path: Path) -> _ArmourCase:
     """Read SPEC.toml of an armour."""
-    file = read_toml(
+    keys = read_toml(
         path,
         _ArmourFile,
         what="the armour",
         needed="a SPEC.toml with [armour] and [[armour.layers]]",
         keys="docs/predictions.md lists every key",
-    )
-    keys = file.armour
-    rows, yields = [], []
-    for number, layer in enumerate(keys.layers, start=1):
-        read = TableReader(path, f"armour.layers.{layer.name or number}")
-        rows.append(
-            (
-                read.value("winding_angle", layer.winding_angle, "angle"),
-                _length(read, layer, "wire"),
-                _length(read, layer, "core"),
-                read.value("elastic_modulus", layer.elastic_modulus, "stress"),
-                read.value("poisson_ratio", layer.poisson_ratio, "number"),
-                float(layer.n_wires),
-            )
+    ).armour
+    rows = [
+        (
+            layer.winding_angle,
+            _radius(path, number, layer, "wire"),
+            _radius(path, number, layer, "core"),
+            layer.elastic_modulus,
+            layer.poisson_ratio,
+            float(layer.n_wires),
         )
-        stress = read.optional("yield_stress", layer.yield_stress, "stress")
-        yields.append(np.nan if stress is None else stress)
-    strain = TableReader(path, "armour").value("axial_strain", keys.axial_strain, "strain")
-    tolerance = TableReader(path, "armour").value("tolerance", keys.tolerance, "strain")
-    if not tolerance > 0:
-        raise in_toml(path, "armour.tolerance is not positive", found=f"{tolerance:g}")
-    angle, wire, core, modulus, poisson, n_wires = np.array(rows).T
-    try:
+        for number, layer in enumerate(keys.layers, start=1)
+    ]
+    with at_place(f"{path}: armour: "):
         layers = ArmourLayers(
-            ArmourDesign(angle, wire, core, modulus, poisson, n_wires),
+            ArmourDesign(*np.array(rows).T),
             tuple(layer.lay for layer in keys.layers),
-            np.array(yields),
+            np.array([layer.yield_stress for layer in keys.layers], dtype=np.float64),
         )
-    except SettingsError as error:
-        raise in_toml(
-            path, f"armour: {error.problem}", found=error.found, needed=error.needed,
-            hint=error.hint,
-        ) from error  # fmt: skip
     return _ArmourCase(
         name=path.stem,
         layer_names=tuple(
             layer.name or f"layer {number}" for number, layer in enumerate(keys.layers, start=1)
         ),
         layers=layers,
-        strain=np.array([strain]),
-        tolerance=tolerance,
+        strain=np.array([keys.axial_strain]),
+        tolerance=keys.tolerance,
     )
+
+
+def _radius(path: Path, number: int, layer: _ArmourLayerKeys, what: str) -> float:
+    """A radius, given as such or as a diameter."""
+    radius, diameter = getattr(layer, f"{what}_radius"), getattr(layer, f"{what}_diameter")
+    if (radius is None) == (diameter is None):
+        raise in_toml(
+            path, f"armour.layers.{layer.name or number}: {what}_radius is not said once",
+            found="neither" if radius is None else "both",
+            needed=f"{what}_radius or {what}_diameter",
+        )  # fmt: skip
+    return float(diameter / 2 if radius is None else radius)

@@ -4,15 +4,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from reduction.campaign.toml_file import Number, TableReader, in_toml, read_toml
+from reduction.campaign.toml_file import at_place, in_toml, read_toml
+from reduction.campaign.unit_types import (
+    Force,
+    InSI,
+    Length,
+    PositiveForce,
+    PositiveLength,
+    PositiveStrain,
+    Ratio,
+    Strain,
+)
 from reduction.lines.assembly import SeriesPart, StatedSplices, WorkingLevel
 from reduction.lines.composite import CompositeRule, PieceBranch, PieceKind
-from reduction.record.errors import SettingsError
 
 _MOST_TETHERS = 100
 
@@ -34,14 +43,14 @@ class _CurveKeys(_AssemblySection):
 class _SpliceKeys(_AssemblySection):
     """``[assembly.splices]``; without it those of the tested tether."""
 
-    length: str
+    length: Length
     """Of both together, relaxed; 0 m where there are none."""
-    strain_ratio: Number | None = None
+    strain_ratio: Strain | None = None
     """Their strain over that of the free length."""
-    strain: Number | None = None
+    strain: Strain | None = None
     """Theirs, at ``at_tension``."""
-    at_tension: str | None = None
-    exponent: Number = 1.0
+    at_tension: Force | None = None
+    exponent: Ratio = 1.0
     """Of the tension, with ``strain``."""
 
 
@@ -49,19 +58,21 @@ class _PartKeys(_AssemblySection):
     """``[[assembly.parts]]``: in line with the tethers."""
 
     name: str = ""
-    length: str
-    spring_constant: str | None = None
+    length: Length
+    spring_constant: Force | None = None
     """Force per unit strain; rigid if nothing."""
 
 
 class _WorkingKeys(_AssemblySection):
     """``[[assembly.working]]``: one of tension, total length and strain."""
 
-    tension: str | None = None
-    total_length: str | None = None
-    strain: Number | None = None
+    tension: PositiveForce | None = None
+    total_length: PositiveLength | None = None
+    strain: PositiveStrain | None = None
     """Of the free length of a tether."""
-    tension_amplitude: str = "0 N"
+    tension_amplitude: Annotated[float, InSI("force", least=0.0)] = Field(
+        "0 N", validate_default=True
+    )
 
 
 class _AssemblyKeys(_AssemblySection):
@@ -69,14 +80,14 @@ class _AssemblyKeys(_AssemblySection):
 
     n_tethers: int | None = Field(default=None, ge=1, le=_MOST_TETHERS)
     """All alike; or ``free_lengths``."""
-    free_length: str | None = None
+    free_length: PositiveLength | None = None
     """Of the rubber, relaxed; that of the tested tether if nothing."""
-    free_lengths: tuple[str, ...] | None = Field(
+    free_lengths: tuple[PositiveLength, ...] | None = Field(
         default=None, min_length=1, max_length=_MOST_TETHERS
     )
-    tolerance: Number | None = None
+    tolerance: Strain | None = None
     """Of the free lengths: the greatest and the least load of a tether follow."""
-    rated_break_strength: str | None = None
+    rated_break_strength: PositiveForce | None = None
     """Of one tether; that of the source if nothing."""
     curve: _CurveKeys
     splices: _SpliceKeys | None = None
@@ -122,42 +133,35 @@ def load_assembly_case(path: Path) -> AssemblyCase:
         needed="a SPEC.toml with [assembly] and [assembly.curve]",
         keys="docs/deployed.md lists every key",
     ).assembly
-    read = TableReader(path, "assembly")
-    n_tethers, lengths = _tethers(read, keys)
-    tolerance = read.optional("tolerance", keys.tolerance, "strain")
-    if tolerance is not None:
-        _check_tolerance(path, keys, n_tethers, tolerance)
-    strength = read.optional("rated_break_strength", keys.rated_break_strength, "force")
-    if strength is not None and not strength > 0:
-        raise _negative(path, "assembly.rated_break_strength", strength, "N")
+    n_tethers, lengths = _tethers(path, keys)
+    if keys.tolerance is not None:
+        _check_tolerance(path, keys, n_tethers, keys.tolerance)
     source = keys.curve.source
     words = (source,) if isinstance(source, str) else source
     if not words or not all(word.strip() for word in words):
         raise in_toml(
             path, "assembly.curve.source is empty", needed="a tether, archives or a folder"
         )
-    try:
-        rule = (
-            CompositeRule()
-            if keys.curve.precedence is None
-            else CompositeRule(precedence=keys.curve.precedence)
-        )
-    except SettingsError as error:
-        raise TableReader(path, "assembly.curve").fault(
-            f"precedence: {error.problem}", error
-        ) from error
+    stated = keys.curve.precedence
+    with at_place(f"{path}: assembly.curve.precedence: "):
+        rule = CompositeRule() if stated is None else CompositeRule(precedence=stated)
+    parts = []
+    for number, part in enumerate(keys.parts, start=1):
+        with at_place(f"{path}: assembly.parts.{part.name or number}: "):
+            spring = np.inf if part.spring_constant is None else part.spring_constant
+            parts.append(SeriesPart(part.name or f"part {number}", part.length, spring))
     return AssemblyCase(
         name=path.stem,
         n_tethers=n_tethers,
         free_lengths=lengths,
-        tolerance=float("nan") if tolerance is None else tolerance,
-        rated_break_strength=float("nan") if strength is None else strength,
+        tolerance=_or_nan(keys.tolerance),
+        rated_break_strength=_or_nan(keys.rated_break_strength),
         sources=words,
         specimen=keys.curve.specimen,
         branch=keys.curve.branch,
         rule=rule,
         splices=None if keys.splices is None else _splices(path, keys.splices),
-        parts=tuple(_part(path, number, one) for number, one in enumerate(keys.parts, start=1)),
+        parts=tuple(parts),
         working=tuple(
             _working(path, number, one, equal=len(set(lengths)) < 2)
             for number, one in enumerate(keys.working, start=1)
@@ -165,38 +169,26 @@ def load_assembly_case(path: Path) -> AssemblyCase:
     )
 
 
-def _negative(path: Path, place: str, value: float, unit: str) -> SettingsError:
-    return in_toml(path, f"{place} is not positive", found=f"{value:g} {unit}", needed="above zero")
+def _or_nan(value: float | None) -> float:
+    return float("nan") if value is None else value
 
 
-def _tethers(read: TableReader, keys: _AssemblyKeys) -> tuple[int, tuple[float, ...]]:
+def _tethers(path: Path, keys: _AssemblyKeys) -> tuple[int, tuple[float, ...]]:
     """How many, and the free length of each; none where it is that of the tested tether."""
     if (keys.n_tethers is None) == (keys.free_lengths is None):
         raise in_toml(
-            read.path, "assembly: how many tethers there are is not said once",
+            path, "assembly: how many tethers there are is not said once",
             found="both" if keys.n_tethers else "neither", needed="n_tethers or free_lengths",
         )  # fmt: skip
     if keys.free_lengths is not None:
         if keys.free_length is not None:
             raise in_toml(
-                read.path, "assembly.free_length and free_lengths stand beside each other",
+                path, "assembly.free_length and free_lengths stand beside each other",
                 needed="one of them",
             )  # fmt: skip
-        lengths = tuple(
-            read.value(f"free_lengths.{number}", text, "length")
-            for number, text in enumerate(keys.free_lengths, start=1)
-        )
-        for number, one in enumerate(lengths, start=1):
-            if not one > 0:
-                raise _negative(read.path, f"assembly.free_lengths.{number}", one, "m")
-        return len(lengths), lengths
+        return len(keys.free_lengths), keys.free_lengths
     n_tethers = int(keys.n_tethers or 0)
-    length = read.optional("free_length", keys.free_length, "length")
-    if length is None:
-        return n_tethers, ()
-    if not length > 0:
-        raise _negative(read.path, "assembly.free_length", length, "m")
-    return n_tethers, (length,) * n_tethers
+    return n_tethers, () if keys.free_length is None else (keys.free_length,) * n_tethers
 
 
 def _check_tolerance(path: Path, keys: _AssemblyKeys, n_tethers: int, tolerance: float) -> None:
@@ -219,7 +211,6 @@ def _check_tolerance(path: Path, keys: _AssemblyKeys, n_tethers: int, tolerance:
 
 
 def _splices(path: Path, keys: _SpliceKeys) -> StatedSplices:
-    read = TableReader(path, "assembly.splices")
     if keys.strain_ratio is not None and keys.strain is not None:
         raise in_toml(
             path, "assembly.splices: strain_ratio and strain are two laws", needed="one of them"
@@ -230,64 +221,23 @@ def _splices(path: Path, keys: _SpliceKeys) -> StatedSplices:
             found="strain alone" if keys.at_tension is None else "at_tension alone",
             needed="strain and at_tension",
         )  # fmt: skip
-    values = {
-        "length": read.value("length", keys.length, "length"),
-        "strain_ratio": read.optional("strain_ratio", keys.strain_ratio, "strain"),
-        "strain": read.optional("strain", keys.strain, "strain"),
-        "at_tension": read.optional("at_tension", keys.at_tension, "force"),
-    }
-    exponent = read.value("exponent", keys.exponent, "number")
-    try:
-        return StatedSplices(
-            length=float(values["length"] or 0.0),
-            strain_ratio=values["strain_ratio"],
-            strain=values["strain"],
-            at_tension=values["at_tension"],
-            exponent=exponent,
-        )
-    except SettingsError as error:
-        raise read.fault(error.problem, error) from error
-
-
-def _part(path: Path, number: int, keys: _PartKeys) -> SeriesPart:
-    read = TableReader(path, f"assembly.parts.{keys.name or number}")
-    length = read.value("length", keys.length, "length")
-    spring = read.optional("spring_constant", keys.spring_constant, "force")
-    try:
-        return SeriesPart(
-            keys.name or f"part {number}", length, np.inf if spring is None else spring
-        )
-    except SettingsError as error:
-        raise in_toml(
-            path, f"{read.place}: {error.problem}", found=error.found, needed=error.needed
-        ) from error
+    with at_place(f"{path}: assembly.splices."):
+        return StatedSplices(**keys.model_dump())
 
 
 def _working(path: Path, number: int, keys: _WorkingKeys, *, equal: bool) -> WorkingLevel:
-    read = TableReader(path, f"assembly.working.{number}")
-    given: dict[Literal["tension", "total_length", "strain"], float | None] = {
-        "tension": read.optional("tension", keys.tension, "force"),
-        "total_length": read.optional("total_length", keys.total_length, "length"),
-        "strain": read.optional("strain", keys.strain, "strain"),
-    }
-    named = [(name, value) for name, value in given.items() if value is not None]
-    if len(named) != 1:
+    place = f"assembly.working.{number}"
+    names: tuple[Literal["tension", "total_length", "strain"], ...]
+    names = ("tension", "total_length", "strain")
+    given = [name for name in names if getattr(keys, name) is not None]
+    if len(given) != 1:
         raise in_toml(
-            path, f"{read.place}: where the assembly stands is not said once",
-            found=", ".join(name for name, _ in named) or "nothing", needed=" or ".join(given),
+            path, f"{place}: where the assembly stands is not said once",
+            found=", ".join(given) or "nothing", needed=" or ".join(names),
         )  # fmt: skip
-    (name, value) = named[0]
-    if not value > 0:
-        raise _negative(path, f"{read.place}.{name}", value, "in SI")
-    if name == "strain" and not equal:
+    if keys.strain is not None and not equal:
         raise in_toml(
-            path, f"{read.place}.strain: the tethers differ, and so do their strains",
+            path, f"{place}.strain: the tethers differ, and so do their strains",
             needed="tension or total_length",
         )  # fmt: skip
-    amplitude = read.value("tension_amplitude", keys.tension_amplitude, "force")
-    if amplitude < 0:
-        raise in_toml(
-            path, f"{read.place}.tension_amplitude is negative", found=f"{amplitude:g} N",
-            needed="zero or above",
-        )  # fmt: skip
-    return WorkingLevel(name, value, amplitude)
+    return WorkingLevel(given[0], getattr(keys, given[0]), keys.tension_amplitude)

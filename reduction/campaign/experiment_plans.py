@@ -7,16 +7,25 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Literal, NoReturn
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
-from reduction.campaign.csv_cells import CODED, CellColumn, CellSheet, read_cells
 from reduction.campaign.model import ExperimentSection
 from reduction.campaign.plan import ExperimentPlan, TestPlan, product_of
-from reduction.campaign.toml_file import in_toml, read_toml
+from reduction.campaign.toml_file import (
+    at_place,
+    in_toml,
+    listed,
+    read_small_text,
+    read_toml,
+    split_row,
+    split_rows,
+)
+from reduction.campaign.unit_types import PositiveForce, ReadText
 from reduction.experiments.designs import DesignKind, FactorLevels, LevelBasis
 from reduction.experiments.response_transform import Transform
 from reduction.experiments.run_sheet import RepeatPlacing
@@ -24,6 +33,10 @@ from reduction.quantities.names import QUANTITIES, quantity
 from reduction.quantities.units import Dimension, parse_quantity, scale_of_unit
 from reduction.record.errors import DataError, LogError, SettingsError
 from reduction.record.measurement import Floats, Specimen, read_only_arrays
+from reduction.record.plain_text import cut
+
+_CODED = "coded"
+"""In the place of a unit: the column holds coded levels."""
 
 NEED_PULL = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
 """Responses that rest on the quasi-static spring constant."""
@@ -194,23 +207,44 @@ ColumnName = Annotated[
 _UNIT = re.compile(r"^\s*[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*(.*?)\s*$")
 
 
+def _written_unit(text: str) -> str:
+    match = _UNIT.match(text)
+    return match[1] if match else ""
+
+
+def _limit(text: str) -> tuple[float | None, float | None]:
+    """A load limit in newtons, or as a share of the break strength."""
+    number = parse_quantity(text, "force", rated_break_strength=1.0)
+    return (None, number) if re.search(r"%\s*(RBS|MBS|MBL)\s*$", text) else (number, None)
+
+
+def _sigma(text: str) -> tuple[float, str]:
+    """Scatter of one run and its unit; a share of the response where the unit is 1."""
+    unit = _written_unit(text)
+    number = parse_quantity(text.strip().removesuffix(unit), "number")
+    si_unit, factor, _ = scale_of_unit(unit)
+    if not number > 0:
+        raise SettingsError("sigma is not above zero", found=repr(text), needed='such as "2 %"')
+    return factor * number, si_unit
+
+
 class _ExperimentSection(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class _ExperimentKeys(_ExperimentSection):
-    """``[experiment]``."""
+    """``[experiment]``, in SI once it is read."""
 
     kind: DesignKind | None = None
     levels: Literal["engineering", "coded"] = "engineering"
     """What the columns of the factors hold in a table of runs, where no header says it."""
-    rated_break_strength: str | None = None
-    load_limit: str | None = None
+    rated_break_strength: PositiveForce | None = None
+    load_limit: Annotated[tuple[float | None, float | None], ReadText(_limit)] = (None, None)
     """Greatest tension of machine, cell or laboratory: a force or a share, ``"40 %RBS"``."""
     n_centre: int | None = Field(default=None, ge=0)
     n_runs: int | None = None
     repeats: RepeatPlacing = "together"
-    sigma: str | None = None
+    sigma: Annotated[tuple[float | None, str], ReadText(_sigma)] = (None, "1")
     """Scatter of one run: ``"2 %"`` of the response, or in its unit."""
     specimens_as: Literal["blocks", "random"] = "blocks"
 
@@ -236,7 +270,7 @@ class _FactorSpec:
 
     name: str
     levels: FactorLevels | None = None
-    unit: str = CODED
+    unit: str = _CODED
     si_unit: str = "1"
 
     def axis(self, strength: float | None) -> tuple[str, float, float]:
@@ -259,29 +293,11 @@ class _ResponseSpec:
 
 @dataclass(frozen=True)
 class ExperimentSpec:
-    """An experiment in SI; factors and responses are empty where the table of runs names them.
+    """An experiment in SI; factors and responses are empty where the table of runs names them."""
 
-    ``sigma`` is a share of the response where ``sigma_unit`` is 1 [1], else in that unit.
-    """
-
-    kind: DesignKind | None
-    levels: Literal["engineering", "coded"]
-    rated_break_strength: float | None
-    load_limit: float | None
-    peak_share_limit: float | None
-    n_centre: int | None
-    n_runs: int | None
-    repeats: RepeatPlacing
-    sigma: float | None
-    sigma_unit: str
-    specimens_as: Literal["blocks", "random"]
+    keys: _ExperimentKeys
     factors: tuple[_FactorSpec, ...]
     responses: tuple[_ResponseSpec, ...]
-
-
-def _written_unit(text: str) -> str:
-    match = _UNIT.match(text)
-    return match[1] if match else ""
 
 
 def _factor(name: str, written: tuple[str | float, str | float]) -> _FactorSpec:
@@ -326,22 +342,6 @@ def _response_unit(name: str, unit: str) -> tuple[str, float, float]:
     return known, factor, offset
 
 
-def _limit(text: str, strength: float | None) -> tuple[float | None, float | None]:
-    """A load limit in newtons, or as a share of the break strength."""
-    if re.search(r"%\s*(RBS|MBS|MBL)\s*$", text):
-        return None, parse_quantity(text, "force", rated_break_strength=1.0)
-    return parse_quantity(text, "force", rated_break_strength=strength), None
-
-
-def _sigma(text: str) -> tuple[float, str]:
-    unit = _written_unit(text)
-    number = parse_quantity(text.strip().removesuffix(unit), "number")
-    si_unit, factor, _ = scale_of_unit(unit)
-    if not number > 0:
-        raise SettingsError("sigma is not above zero", found=repr(text), needed='such as "2 %"')
-    return factor * number, si_unit
-
-
 def load_spec(path: Path) -> ExperimentSpec:
     """Read SPEC.toml."""
     file = read_toml(
@@ -351,54 +351,166 @@ def load_spec(path: Path) -> ExperimentSpec:
         needed="a SPEC.toml with [experiment], [factors] and [responses]",
         keys="docs/experiments.md lists every key",
     )
-    keys = file.experiment
-    place = "experiment"
-    try:
-        strength = None
-        if keys.rated_break_strength is not None:
-            place = "experiment.rated_break_strength"
-            strength = parse_quantity(keys.rated_break_strength, "force")
-            if not strength > 0:
-                raise SettingsError("a break strength is above zero", found=f"{strength:g} N")
-        place = "experiment.load_limit"
-        limit, share = (
-            (None, None) if keys.load_limit is None else _limit(keys.load_limit, strength)
-        )
-        place = "experiment.sigma"
-        sigma, sigma_unit = (None, "1") if keys.sigma is None else _sigma(keys.sigma)
-        factors = []
-        for name, levels in file.factors.items():
-            place = f"factors.{name}"
+    factors = []
+    for name, levels in file.factors.items():
+        with at_place(f"{path}: factors.{name}: "):
             factors.append(_factor(name, levels))
-        for name, response in file.responses.items():
-            place = f"responses.{name}"
+    for name, response in file.responses.items():
+        with at_place(f"{path}: responses.{name}: "):
             _response_unit(name, response.unit)
-    except SettingsError as error:
-        raise in_toml(
-            path, f"{place}: {error.problem}", found=error.found, needed=error.needed,
-            hint=error.hint,
-        ) from error  # fmt: skip
     twice = sorted(file.factors.keys() & file.responses.keys())
     if twice:
         raise in_toml(path, "a factor is a response too", found=", ".join(twice))
     return ExperimentSpec(
-        kind=keys.kind,
-        levels=keys.levels,
-        rated_break_strength=strength,
-        load_limit=limit,
-        peak_share_limit=share,
-        n_centre=keys.n_centre,
-        n_runs=keys.n_runs,
-        repeats=keys.repeats,
-        sigma=sigma,
-        sigma_unit=sigma_unit,
-        specimens_as=keys.specimens_as,
+        keys=file.experiment,
         factors=tuple(factors),
         responses=tuple(
             _ResponseSpec(name, response.unit, response.transform)
             for name, response in file.responses.items()
         ),
     )
+
+
+_HEADER = re.compile(r"^(.*?)\s*(?:\[([^\]]*)\])?$")
+
+_MISSING = {"", "nan", "na", "n/a"}
+
+_CELL_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+
+
+@dataclass(frozen=True)
+class _CellColumn:
+    """One column: its header, the name and the unit in it, and its cells."""
+
+    header: str
+    name: str
+    unit: str
+    cells: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _CellSheet:
+    """The cells of a file, by column."""
+
+    path: Path
+    row: tuple[int, ...]
+    columns: tuple[_CellColumn, ...]
+    first: int
+
+    def fault(self, problem: str, *, header: str | None = None, needed: str) -> LogError:
+        """An error of the header line."""
+        return LogError(
+            self.path, problem, row=self.first, channel=header,
+            found=", ".join(column.header for column in self.columns), needed=needed,
+        )  # fmt: skip
+
+    def named(self, name: str) -> list[_CellColumn]:
+        """Columns of a name, whatever their unit."""
+        return [column for column in self.columns if column.name == name]
+
+    def one(self, name: str, what: str) -> _CellColumn:
+        """The column of a name; with a unit before coded, since a plan is only the plan."""
+        found = self.named(name)
+        reached = [column for column in found if column.unit != _CODED] or found
+        if len(reached) == 1:
+            return reached[0]
+        if reached:
+            raise self.fault(f"two columns hold {name}", needed="one")
+        near = get_close_matches(name, [column.name for column in self.columns], n=1)
+        raise self.fault(
+            f"{what} '{name}' has no column", needed=f"a column {name}" + (
+                f"; is it {near[0]}?" if near else ""
+            ),
+        )  # fmt: skip
+
+    def numbers(self, column: _CellColumn) -> Floats:
+        """Numbers of a column, NaN where a cell is empty."""
+        values = np.full(len(column.cells), math.nan)
+        for place, (row, cell) in enumerate(zip(self.row, column.cells, strict=True)):
+            if cell.lower() in _MISSING:
+                continue
+            if not _CELL_NUMBER.fullmatch(cell):
+                raise LogError(
+                    self.path, "a value is not a number", row=row, channel=column.header,
+                    found=repr(cell), needed="a number with a decimal point, without its unit; "
+                    "an empty cell where there is none",
+                )  # fmt: skip
+            values[place] = float(cell)
+            if not math.isfinite(values[place]):
+                raise LogError(
+                    self.path, "a value is not finite", row=row,
+                    channel=column.header, found=repr(cut(cell, 60)), needed="a finite number",
+                )  # fmt: skip
+        return values
+
+
+def _text(path: Path) -> str:
+    try:
+        return read_small_text(path)
+    except UnicodeDecodeError as error:
+        raise LogError(path, "the table of runs is not UTF-8 text", found=str(error)) from error
+    except OSError as error:
+        raise LogError(
+            path, "the table of runs cannot be read", found=error.strerror or str(error)
+        ) from error
+
+
+def _cells(path: Path, row: int, line: str, delimiter: str) -> list[str]:
+    cells = split_row(line, delimiter)
+    if cells is None:
+        raise LogError(
+            path, "a row of the table of runs cannot be parted into cells", row=row,
+            found=repr(cut(line, 60)), needed="one line a row, every quote closed in it",
+        )  # fmt: skip
+    return [cell.strip() for cell in cells]
+
+
+def _read_cells(path: Path) -> _CellSheet:
+    """Cells of the table; lines that are empty or begin with # are not of it."""
+    lines = [
+        (row, line)
+        for row, line in enumerate(split_rows(_text(path)), start=1)
+        if line.strip(" ,;\t") and not line.lstrip().startswith("#")
+    ]
+    if not lines:
+        raise LogError(path, "the table of runs is empty", needed="a header and one row a run")
+    delimiter = max(",;\t", key=lines[0][1].count)
+    table = [(row, _cells(path, row, line, delimiter)) for row, line in lines]
+    (first, header), *rows = table
+    if not all(header) or len(set(header)) < len(header):
+        raise LogError(
+            path, "the header of the runs cannot be used", row=first, found=", ".join(header),
+            needed="a name for every column, each once",
+        )  # fmt: skip
+    if all(_CELL_NUMBER.fullmatch(cell) for cell in header):
+        raise LogError(
+            path, "the table of runs has no header", row=first, found=", ".join(header),
+            needed="the names of factors and responses in the first row",
+        )  # fmt: skip
+    for row, cells in rows:
+        if len(cells) != len(header):
+            raise LogError(
+                path, "a row has another number of cells than the header", row=row,
+                found=str(len(cells)), needed=str(len(header)),
+            )  # fmt: skip
+    if not rows:
+        raise LogError(path, "the table of runs has no rows", needed="one row a run")
+    cells_by_column = zip(*(cells for _, cells in rows), strict=True)
+    columns = []
+    for name, column in zip(header, cells_by_column, strict=True):
+        match = _HEADER.match(name)
+        stem, unit = (match[1], match[2] or "") if match else (name, "")
+        columns.append(_CellColumn(name, stem, unit.strip(), tuple(column)))
+    questions = [
+        f"{path}:{row} [{column.header}]"
+        for column in columns
+        for (row, _), cell in zip(rows, column.cells, strict=True)
+        if cell == "?"
+    ]
+    if questions:
+        count = f"{len(questions)} values are" if len(questions) > 1 else "1 value is"
+        raise in_toml(path, listed(f"{count} still '?', first {questions[0]}", questions))
+    return _CellSheet(path, tuple(row for row, _ in rows), tuple(columns), first)
 
 
 _SHARE_UNIT = re.compile(r"%\s*(RBS|MBS|MBL|of mean)")
@@ -409,14 +521,14 @@ levels are in another unit than the plan."""
 
 
 def _levels_of_factor(
-    sheet: CellSheet, factor: _FactorSpec, spec: ExperimentSpec | None, mean: Floats | None
-) -> tuple[CellColumn, Floats]:
+    sheet: _CellSheet, factor: _FactorSpec, spec: ExperimentSpec | None, mean: Floats | None
+) -> tuple[_CellColumn, Floats]:
     """Column and coded levels of a factor."""
     column = sheet.one(factor.name, "factor")
     values = sheet.numbers(column)
-    is_coded = factor.levels is None or (spec is not None and spec.levels == CODED)
-    unit = column.unit or (CODED if is_coded else factor.unit)
-    if unit == CODED:
+    is_coded = factor.levels is None or (spec is not None and spec.keys.levels == _CODED)
+    unit = column.unit or (_CODED if is_coded else factor.unit)
+    if unit == _CODED:
         return column, values
 
     def refuse(problem: str, needed: str) -> NoReturn:
@@ -427,13 +539,13 @@ def _levels_of_factor(
 
     if factor.levels is None:
         refuse("a unit without the levels that are -1 and 1", "[factors] in a SPEC.toml")
-    axis, low, high = factor.axis(None if spec is None else spec.rated_break_strength)
+    axis, low, high = factor.axis(None if spec is None else spec.keys.rated_break_strength)
     basis = factor.levels.basis
     share = _SHARE_UNIT.fullmatch(unit)
     if share is not None:
         if basis != ("mean_tension" if share[1] == "of mean" else "rated_break_strength"):
             refuse(f"{factor.name} is no such share in the plan", f"a unit as {factor.unit}")
-        strength = spec.rated_break_strength if spec is not None and axis == "N" else None
+        strength = spec.keys.rated_break_strength if spec is not None and axis == "N" else None
         found = values / 100 * (1.0 if strength is None else strength)
     else:
         try:
@@ -456,7 +568,7 @@ def _is_of_mean(factor: _FactorSpec) -> bool:
 
 
 def _check_levels(
-    sheet: CellSheet, column: CellColumn, name: str, coded: Floats, *, stated: bool
+    sheet: _CellSheet, column: _CellColumn, name: str, coded: Floats, *, stated: bool
 ) -> None:
     """Refuse levels that lie beside the plan: those of another unit."""
     known = coded[np.isfinite(coded)]
@@ -524,7 +636,7 @@ class RunSeries:
 
 
 def _declared(
-    sheet: CellSheet, spec: ExperimentSpec | None
+    sheet: _CellSheet, spec: ExperimentSpec | None
 ) -> tuple[tuple[_FactorSpec, ...], tuple[_ResponseSpec, ...]]:
     """Factors and responses: as declared, else the last column and the others."""
     factors, responses = ((), ()) if spec is None else (spec.factors, spec.responses)
@@ -545,12 +657,12 @@ def _declared(
     return factors, responses
 
 
-def _labels(sheet: CellSheet, name: str) -> tuple[str, ...] | None:
+def _labels(sheet: _CellSheet, name: str) -> tuple[str, ...] | None:
     found = sheet.named(name)
     return found[0].cells if found else None
 
 
-def _same_run(sheet: CellSheet, header: str, keys: Iterable[tuple[str, ...]]) -> None:
+def _same_run(sheet: _CellSheet, header: str, keys: Iterable[tuple[str, ...]]) -> None:
     seen: dict[tuple[str, ...], int] = {}
     for row, key in zip(sheet.row, keys, strict=True):
         if key[-1] and seen.setdefault(key, row) != row:
@@ -564,9 +676,9 @@ def _same_run(sheet: CellSheet, header: str, keys: Iterable[tuple[str, ...]]) ->
 
 def read_runs(path: Path, spec: ExperimentSpec | None = None) -> RunSeries:
     """Read a table of runs."""
-    sheet = read_cells(path)
+    sheet = _read_cells(path)
     factors, responses = _declared(sheet, spec)
-    strength = None if spec is None else spec.rated_break_strength
+    strength = None if spec is None else spec.keys.rated_break_strength
     coded = np.full((len(sheet.row), len(factors)), math.nan)
     used: set[str] = set()
     axes = [factor.axis(strength) for factor in factors]
@@ -632,7 +744,7 @@ def read_runs(path: Path, spec: ExperimentSpec | None = None) -> RunSeries:
     )
 
 
-def _blocks(sheet: CellSheet) -> tuple[tuple[str, ...] | None, list[str]]:
+def _blocks(sheet: _CellSheet) -> tuple[tuple[str, ...] | None, list[str]]:
     """Blocks, by the column block before the column specimen, where there are several."""
     several = {
         name: labels
@@ -654,7 +766,7 @@ def _blocks(sheet: CellSheet) -> tuple[tuple[str, ...] | None, list[str]]:
     return labels, []
 
 
-def _run_names(sheet: CellSheet) -> tuple[str, ...]:
+def _run_names(sheet: _CellSheet) -> tuple[str, ...]:
     """Names of the runs, with the specimen where a run has several; their numbers else."""
     names, specimens = _labels(sheet, "run"), _labels(sheet, "specimen")
     apart = specimens or _labels(sheet, "block") or ("",) * len(sheet.row)
@@ -674,7 +786,7 @@ def _run_names(sheet: CellSheet) -> tuple[str, ...]:
     return tuple(f"{name} {of}" if many else name for name, of in zip(names, apart, strict=True))
 
 
-def _order(sheet: CellSheet) -> Floats:
+def _order(sheet: _CellSheet) -> Floats:
     """Place of each run in the order; each once in a block."""
     found = sheet.named("run_order")
     if not found:

@@ -8,40 +8,32 @@ import tomllib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from math import pi
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import Any
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from reduction.archive.open import reading
-from reduction.archive.product_files import archives_of_tests
+from reduction.archive.product_files import OF_CAMPAIGN, archives_of_tests
 from reduction.campaign.experiment_plans import agree_on_pulls, plan_experiment
+from reduction.campaign.hose_spec import ComparisonSection, hose_of
 from reduction.campaign.model import (
     CampaignFile,
-    ComparisonSection,
-    CordSection,
     Defaults,
-    HoseKeys,
-    HoseSpecFile,
     Identifier,
-    LayerSection,
     SpecimenSection,
     StepSection,
     TestSection,
     apply_numbers,
-    check_names,
     report_details,
     stated_errors,
-    stated_limits,
 )
 from reduction.campaign.outcome_results import outcomes_of
 from reduction.campaign.plan import Campaign, ComparisonPlan, StepPlan, TestPlan, product_of
 from reduction.campaign.toml_file import (
-    TableReader,
+    at_place,
     faults_of,
-    file_inside,
     in_toml,
     listed,
     quantity_of,
@@ -49,91 +41,125 @@ from reduction.campaign.toml_file import (
     read_small_text,
     read_toml,
 )
-from reduction.prediction.cord_curve import CordCurve
-from reduction.prediction.hose_prediction import HelicalLayer, HosePlan, HoseTarget
-from reduction.prediction.hose_product import HoseDesign
-from reduction.quantities.units import Dimension, scale_to_si
+from reduction.quantities.units import scale_to_si
+from reduction.readers.layout import check_regular
 from reduction.readers.remote_files import allowed, base_name, fetch, renamed, scratch_folder
 from reduction.record.errors import ArchiveError, LogError, SettingsError
 from reduction.record.measurement import Specimen, SpliceMarks
 from reduction.record.plain_text import cut, is_address, shown_address
-from reduction.record.settings import CycleSettings, ReductionSettings, StrainSettings
+from reduction.record.settings import CycleSettings, Limits, ReductionSettings, StrainSettings
 
 
-def _length(text: str, where: str, path: Path) -> float:
-    value = quantity_of(path, where, text, "length")
-    if not value > 0:
-        raise in_toml(path, f"{where} is not positive", found=text, needed="above zero")
-    return value
+def _check_names(path: Path, campaign: str, tests: Mapping[str, TestPlan]) -> None:
+    """Refuse names under which two products would be one file somewhere."""
+    for name in (campaign, *tests):
+        if _DEVICE.fullmatch(name):
+            raise in_toml(
+                path, "a name is that of a device on Windows", found=repr(name),
+                needed="another name: it becomes one of a file or of a folder",
+            )  # fmt: skip
+    seen = dict.fromkeys(OF_CAMPAIGN, "")
+    for name in tests:
+        other = seen.setdefault(name.casefold(), name)
+        if not other:
+            raise in_toml(
+                path, f"test '{name}' has the name of a product of the campaign",
+                needed="another name than " + ", ".join(OF_CAMPAIGN),
+            )  # fmt: skip
+        if other != name:
+            raise in_toml(
+                path, "the names of two tests differ in capital letters only",
+                found=f"'{other}' and '{name}'", needed="names that are two on every disk",
+            )  # fmt: skip
+    for name, test in tests.items():
+        if len({step.product(name).casefold() for step in test.steps}) < len(test.steps):
+            raise in_toml(
+                path, f"two steps of test '{name}' have one name",
+                needed="names that are two on every disk",
+                hint="Blanks and hyphens, small and capital letters count as equal.",
+            )  # fmt: skip
 
 
-def _linear_densities(
-    path: Path, name: str, section: SpecimenSection
-) -> tuple[float | None, float | None]:
-    """Mass a length in air and in water; in water it is less, and of what floats below zero."""
-    dry, wet = (
-        None if text is None else quantity_of(path, where, text, "linear_density")
-        for where, text in (
-            (f"specimens.{name}.linear_density", section.linear_density),
-            (f"specimens.{name}.wet_linear_density", section.wet_linear_density),
-        )
-    )
-    if dry is not None and not dry > 0:
+_DEVICE = re.compile(
+    r"(con|prn|aux|nul|conin\$|conout\$|com[0-9¹²³]|lpt[0-9¹²³]) *(\..*)?", re.IGNORECASE
+)
+"""Names that are devices of Windows in every folder, whatever stands behind their point."""
+
+
+def _file_inside(path: Path, name: str, *, is_needed: bool = True) -> str:
+    """A file name that stays inside the campaign folder."""
+    shown = repr(cut(name, 200))
+    if is_address(name):
         raise in_toml(
-            path, f"specimens.{name}.linear_density is not positive", found=section.linear_density,
-            needed="above zero",
+            path, "only the log of a test may be an address on the net",
+            found=repr(shown_address(name)), needed="a file inside the folder of campaign.toml",
         )  # fmt: skip
-    if dry is not None and wet is not None and not wet < dry:
+    if any(map(_DEVICE.fullmatch, re.split(r"[/\\]", name))):
+        raise _no_name(path, shown)
+    try:
+        folder = path.parent.resolve()
+        target = (folder / name).resolve()
+    except (ValueError, RuntimeError, OSError) as error:  # a null byte, links in a ring, length
+        raise _no_name(path, shown) from error
+    windows = PureWindowsPath(name)
+    is_absolute = Path(name).is_absolute() or windows.drive or windows.root
+    if not name or is_absolute or not target.is_relative_to(folder):
         raise in_toml(
-            path, f"specimens.{name}.wet_linear_density is not below linear_density",
-            found=f"{section.wet_linear_density}, {section.linear_density}",
-            needed="the mass in air less that of the displaced water",
+            path, "a file lies outside the campaign folder", found=shown,
+            needed="a path inside the folder of campaign.toml, links followed",
         )  # fmt: skip
-    return dry, wet
+    if is_needed:
+        _check_there(path, target, path.parent / name)
+    return name
+
+
+def _no_name(path: Path, shown: str) -> SettingsError:
+    return in_toml(
+        path, "no file can have such a name", found=shown,
+        needed="a path inside the folder of campaign.toml, links followed",
+    )  # fmt: skip
+
+
+def _check_there(path: Path, target: Path, shown: Path) -> None:
+    try:
+        mode = target.stat().st_mode
+    except FileNotFoundError as error:
+        raise LogError(shown, "the file is not there", needed=f"as {path} says") from error
+    except OSError as error:  # a folder that is closed to this user, a name that is too long
+        raise LogError(
+            shown, "the file cannot be read", found=error.strerror or str(error),
+            needed="a file that this user may read",
+        ) from error  # fmt: skip
+    check_regular(shown, mode)
 
 
 def _specimen_of(path: Path, name: str, section: SpecimenSection) -> Specimen:
     """The specimen before its first test; an error names campaign.toml and the key."""
-    readings = (section.diameter,) if isinstance(section.diameter, str) else section.diameter
-    where = f"specimens.{name}.diameter"
-    stretched = tuple(
-        (
-            quantity_of(path, f"specimens.{name}.stretched_diameter", stretch, "strain"),
-            _length(reading, f"specimens.{name}.stretched_diameter", path),
-        )
-        for stretch, at_stretch in section.stretched_diameter.items()
-        for reading in at_stretch
-    )
-    strength = section.rated_break_strength
-    dry, wet = _linear_densities(path, name, section)
-    gauge, spread = section.gauge_length, section.gauge_length_standard_uncertainty
-    if gauge is None and spread is not None:
+    place = f"specimens.{name}"
+    dry, wet = section.linear_density, section.wet_linear_density
+    if dry is not None and wet is not None and not wet < dry:
         raise in_toml(
-            path, f"specimens.{name}.gauge_length_standard_uncertainty stands alone",
-            found=spread, needed="gauge_length beside it",
+            path, f"{place}.wet_linear_density is not below linear_density",
+            found=f"{wet:g} kg/m, {dry:g} kg/m",
+            needed="the mass in air less that of the displaced water",
         )  # fmt: skip
+    if section.gauge_length is None and section.gauge_length_standard_uncertainty is not None:
+        raise in_toml(
+            path, f"{place}.gauge_length_standard_uncertainty stands alone",
+            needed="gauge_length beside it",
+        )  # fmt: skip
+    given = section.model_dump(exclude={"stretched_diameter", "note"})
+    if isinstance(section.diameter, float):
+        given["diameter"] = (section.diameter,)
+    stretched = [
+        (quantity_of(path, f"{place}.stretched_diameter", stretch, "strain"), reading)
+        for stretch, readings in section.stretched_diameter.items()
+        for reading in readings
+    ]
     return Specimen(
         name=name,
-        kind=section.kind,
-        material=section.material,
-        construction=section.construction,
-        condition=section.condition,
-        diameter=tuple(_length(reading, where, path) for reading in readings),
-        stretched_diameters=stretched,
-        rated_break_strength=None
-        if strength is None
-        else quantity_of(path, f"specimens.{name}.rated_break_strength", strength, "force"),
-        rated_break_strength_source=section.rated_break_strength_source,
-        linear_density=dry,
-        wet_linear_density=wet,
-        gauge_length=None
-        if gauge is None
-        else _length(gauge, f"specimens.{name}.gauge_length", path),
-        gauge_length_standard_uncertainty=None
-        if spread is None
-        else _length(spread, f"specimens.{name}.gauge_length_standard_uncertainty", path),
-        earlier_cycles=section.earlier_cycles,
-        earlier_flex_cycles=section.earlier_flex_cycles,
+        **given,
+        stretched_diameters=tuple(stretched),
         notes=(section.note,) if section.note else (),
     )
 
@@ -242,7 +268,7 @@ def _pooled_marks(
     """Return all marks of each specimen over the campaign, from every marks file it names."""
     pooled: dict[str, SpliceMarks] = {}
     for name in dict.fromkeys(names):
-        for specimen, marks in _read_marks(path.parent / file_inside(path, name)).items():
+        for specimen, marks in _read_marks(path.parent / _file_inside(path, name)).items():
             if specimen not in specimens:
                 raise LogError(
                     path.parent / name, "a mark names an unknown specimen", channel="specimen",
@@ -403,13 +429,9 @@ def _range(path: Path, test: str, step: StepSection) -> dict[str, Any]:
 
 def _log_name(path: Path, test: str, entry: str, allow_remote: bool) -> str:
     """What names a log in messages and products: a path inside the folder, or an address."""
-    try:
+    with at_place(f"{path}: "):
         is_remote = allowed(entry, allow_remote, what=f"the log of test '{test}'")
-    except SettingsError as error:
-        raise in_toml(
-            path, error.problem, found=error.found, needed=error.needed, hint=error.hint
-        ) from error
-    return shown_address(entry) if is_remote else file_inside(path, entry, is_needed=False)
+    return shown_address(entry) if is_remote else _file_inside(path, entry, is_needed=False)
 
 
 def _plan_test(
@@ -469,8 +491,6 @@ def _plan_test(
         for key in _KEPT_OF_TEST
         if getattr(test, key) not in (None, "")
     }
-    if test.flex_angle is not None:
-        quantity_of(path, f"tests.{name}.flex_angle", test.flex_angle, "angle")
     return TestPlan(
         id=name,
         kind=kind,
@@ -502,206 +522,6 @@ def _plan_test(
             )
             for step in test.steps
         ),
-    )
-
-
-_DIMENSIONS: dict[str, Dimension] = {
-    "wrap_angle": "angle",
-    "wrap_diameter": "length",
-    "layer_diameters": "length",
-    "inner_diameter": "length",
-    "outer_diameter": "length",
-    "cords_per_length": "per_length",
-    "rubber_modulus": "stress",
-    "cord_load_scale": "number",
-    "cord_strain_scale": "number",
-    "dead_length": "length",
-}
-
-"""Keys that may have a standard uncertainty."""
-
-_MOST_CORD_STRAIN = 1.0
-
-_PARAMETERS = {
-    "wrap_diameter": "layer_diameter",
-    "layer_diameters": "layer_diameter",
-    "dead_length": "dead_length_share",
-}
-
-
-def _hose_of(path: Path, name: str, place: str, keys: HoseKeys, cord: CordSection) -> HosePlan:
-    """A hose in SI."""
-    read = TableReader(path, place)
-    given = keys.layer_diameters if keys.wrap_diameter is None else (keys.wrap_diameter,) * 2
-    if given is None or None not in (keys.wrap_diameter, keys.layer_diameters):
-        raise in_toml(
-            path, f"{place} does not say once where its cords lie",
-            found="wrap_diameter and layer_diameters" if given else "neither",
-            needed="wrap_diameter, the mean of the two layers, or layer_diameters, one of each",
-        )  # fmt: skip
-    key = "wrap_diameter" if keys.wrap_diameter is not None else "layer_diameters"
-    inner, outer = (read.value(key, text, "length") for text in given)
-    numbers = {
-        name: read.value(name, getattr(keys, name), _DIMENSIONS[name])
-        for name in (
-            "wrap_angle", "inner_diameter", "outer_diameter", "cords_per_length",
-            "rubber_modulus", "cord_load_scale", "cord_strain_scale",
-        )
-    }  # fmt: skip
-    bore = keys.minimum_inner_diameter
-    share, length = _dead_length(read, keys)
-    try:
-        design = HoseDesign(
-            **numbers,
-            layer_diameter=(inner, outer),
-            cord_diameter=read.value("cord_diameter", keys.cord_diameter, "length"),
-            cord=_cord(read, place, cord),
-            rubber_law=keys.rubber_law,
-            working_share=read.value("working_share", keys.working_share, "number"),
-            dead_length_share=share,
-            minimum_inner_diameter=0.0
-            if bore is None
-            else read.value("minimum_inner_diameter", bore, "length"),
-        )
-    except SettingsError as error:
-        if error.problem.startswith(str(path)):
-            raise
-        problem = error.problem.replace("layer_diameter", key)
-        problem = problem.replace("dead_length_share", "dead_length over length")
-        raise in_toml(
-            path, f"{place}: {problem}", found=error.found, needed=error.needed,
-            hint=error.hint,
-        ) from error  # fmt: skip
-    step = read.value("strain_step", keys.strain_step, "strain")
-    if not 0 < step < 1:
-        raise in_toml(
-            path, f"{place}.strain_step is no step", found=f"{step:g}",
-            needed='above 0 and below 1, such as "1 %"',
-        )  # fmt: skip
-    greatest = keys.greatest_strain
-    last = np.nan if greatest is None else read.value("greatest_strain", greatest, "strain")
-    if last <= 0:
-        raise in_toml(
-            path, f"{place}.greatest_strain is not positive", found=f"{last:g}", needed="above 0"
-        )
-    return HosePlan(
-        name=name,
-        design=design,
-        standard_uncertainty=_uncertainties(read, keys, design, length),
-        strain_step=step,
-        greatest_strain=last,
-        layers=tuple(_layer(read, layer) for layer in keys.layers),
-    )
-
-
-def _layer(read: TableReader, layer: LayerSection) -> HelicalLayer:
-    place = f"layers.{layer.name}"
-    angle = read.value(place, layer.wrap_angle, "angle")
-    if not 0 < angle < pi / 2:
-        raise in_toml(
-            read.path, f"{read.place}.{place}.wrap_angle lies across the axis or along it",
-            found=layer.wrap_angle, needed="between 0 and 90 deg, from the hose axis",
-        )  # fmt: skip
-    limits = [
-        np.nan if text is None else read.value(place, text, "strain")
-        for text in (layer.strain_limit, layer.compression_limit)
-    ]
-    # a comparison with NaN is false: what is not stated is no fault
-    if limits[0] < 0 or limits[1] < 0 or limits[1] >= 1:
-        raise in_toml(
-            read.path, f"{read.place}.{place} has a limit that no layer has",
-            found=f"{limits[0]:g} in tension, {limits[1]:g} in compression",
-            needed="positive numbers, compression below 100 %",
-        )  # fmt: skip
-    return HelicalLayer(layer.name, angle, *limits)
-
-
-def _cord(read: TableReader, place: str, cord: CordSection) -> CordCurve:
-    at = TableReader(read.path, "cord" if place == "hose" else f"{place}.cord")
-    strain = [at.value("strain", text, "strain") for text in cord.strain]
-    load = [at.value("load", text, "force") for text in cord.load]
-    if max(strain, default=0.0) > _MOST_CORD_STRAIN:
-        raise in_toml(
-            at.path, f"{at.place}.strain goes beyond what a cord can be stretched",
-            found=f"{100 * max(strain):g} %", needed=f"at most {100 * _MOST_CORD_STRAIN:g} %",
-            hint='A bare number is a share: 22 % is 0.22 or "22 %".',
-        )  # fmt: skip
-    return CordCurve(np.array(strain), np.array(load))
-
-
-def _dead_length(read: TableReader, keys: HoseKeys) -> tuple[float, float]:
-    """Share of the length that does not stretch, and the length, NaN where not stated."""
-    length = np.nan if keys.length is None else read.value("length", keys.length, "length")
-    if length <= 0:
-        raise in_toml(
-            read.path, f"{read.place}.length is not positive", found=keys.length, needed="above 0"
-        )
-    if keys.dead_length is None:
-        return 0.0, length
-    if keys.length is None:
-        raise in_toml(
-            read.path, f"{read.place}.dead_length stands without length",
-            needed='length = "2.4 m", relaxed, stretch-limited ends included',
-        )  # fmt: skip
-    return read.value("dead_length", keys.dead_length, "length") / length, length
-
-
-def _uncertainties(
-    read: TableReader, keys: HoseKeys, design: HoseDesign, length: float
-) -> dict[str, float]:
-    """Standard uncertainties in SI, by parameter; % is of the value itself."""
-    found: dict[str, float] = {}
-    for key, text in keys.standard_uncertainty.items():
-        place = f"standard_uncertainty.{key}"
-        if key not in _DIMENSIONS:
-            raise in_toml(
-                read.path, f"{read.place}.{place} is no number of a hose that may be uncertain",
-                needed="one of " + ", ".join(_DIMENSIONS),
-            )  # fmt: skip
-        if key in ("wrap_diameter", "layer_diameters") and getattr(keys, key) is None:
-            raise in_toml(
-                read.path, f"{read.place}.{place} stands without {key}",
-                needed="the key that the hose has",
-            )  # fmt: skip
-        name = _PARAMETERS.get(key, key)
-        value = design.wrap_diameter if name == "layer_diameter" else getattr(design, name)
-        if isinstance(text, str) and text.strip().endswith("%"):
-            number = read.value(place, text, "strain") * float(np.mean(value))
-        else:
-            number = read.value(place, text, _DIMENSIONS[key])
-            if key == "dead_length":
-                number = number / length
-        size = abs(float(np.mean(value)))
-        # a dead length may be nil and not known well
-        if not (np.isfinite(number) and 0 <= number < (size or 1.0)):
-            raise in_toml(
-                read.path, f"{read.place}.{place} is no standard uncertainty", found=str(text),
-                needed="zero or more, below the number itself; a dead_length needs the length",
-            )  # fmt: skip
-        found[name] = number
-    return found
-
-
-def load_hose(path: Path) -> tuple[HosePlan, HoseSpecFile]:
-    """Read SPEC.toml of a hose."""
-    file = read_toml(
-        path,
-        HoseSpecFile,
-        what="the hose",
-        needed="a SPEC.toml with [hose] and [cord]",
-        keys="docs/predictions.md lists every key",
-    )
-    return _hose_of(path, path.stem, "hose", file.hose, file.cord), file
-
-
-def target_of(path: Path, file: HoseSpecFile) -> HoseTarget | None:
-    """What SPEC.toml asks of a hose, in SI; None where it asks nothing."""
-    if file.target is None:
-        return None
-    read = TableReader(path, "target")
-    return HoseTarget(
-        strain=read.value("strain", file.target.strain, "strain"),
-        tension=read.optional("tension", file.target.tension, "force"),
     )
 
 
@@ -798,7 +618,7 @@ def _results_file(path: Path, file: CampaignFile) -> str:
             path, "results stands above [campaign] and in it", found=" and ".join(sorted(names)),
             needed="one table of results",
         )  # fmt: skip
-    return file_inside(path, names.pop()) if names else ""
+    return _file_inside(path, names.pop()) if names else ""
 
 
 def _addresses(path: Path, tests: Mapping[str, TestSection]) -> dict[str, str]:
@@ -847,7 +667,7 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
     tests: dict[str, TestSection] = {}
     table = file.tests if isinstance(file.tests, str) else file.campaign.tests
     if table:
-        tests |= read_test_table(path.parent / file_inside(path, table))
+        tests |= read_test_table(path.parent / _file_inside(path, table))
     if not isinstance(file.tests, str):
         tests = _merge_tests(path, table, tests, file.tests)
     if not (tests or file.results or file.campaign.results or file.hoses):
@@ -859,7 +679,7 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
         name: _plan_test(path, name, test, file.defaults, file, allow_remote=allow_remote)
         for name, test in tests.items()
     }
-    check_names(path, file.campaign.id, plans)
+    _check_names(path, file.campaign.id, plans)
     for name, plan in plans.items():
         if plan.part_of is not None and plan.part_of not in plans:
             raise in_toml(
@@ -894,7 +714,7 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
     }
     agree_on_pulls(path, experiments, plans)
     hoses = {
-        name: _hose_of(path, name, f"hoses.{name}", section, section.cord)
+        name: hose_of(path, name, f"hoses.{name}", section, section.cord)
         for name, section in file.hoses.items()
     }
     comparisons = {
@@ -916,7 +736,7 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
         comparisons=comparisons,
         uncertainty=stated_errors(path, file.uncertainty, specimens.values()),
         report=report_details(path, file.report, specimens=specimens, tests=plans),
-        limits=stated_limits(path, file.limits),
+        limits=Limits(**file.limits.model_dump(exclude_none=True)),
         addresses=_addresses(path, tests),
     )
 

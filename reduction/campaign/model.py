@@ -1,7 +1,6 @@
 """What a user may write in campaign.toml, as pydantic models; `reduction schema` prints them.
 
-Values that carry a unit are text here ("21.5 ft"); `reduction.campaign.load` turns
-them into SI.
+Values that carry a unit are text in the file ("21.5 ft") and numbers in SI once it is read.
 """
 
 from __future__ import annotations
@@ -9,69 +8,70 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints, field_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    StringConstraints,
+    field_validator,
+)
 
-from reduction.archive.product_files import OF_CAMPAIGN
 from reduction.archive.uncertainty_budget import parse_place
 from reduction.archive.write import ReportDetails, ReportLimit, ReportSection, ReportText, Statement
+from reduction.campaign.hose_spec import ComparisonSection, HoseSection
 from reduction.campaign.plan import TestPlan, product_of
-from reduction.campaign.toml_file import DEVICE, Number, TableReader, in_toml
-from reduction.prediction.hose_product import RubberLaw
+from reduction.campaign.toml_file import at_place, in_toml
+from reduction.campaign.unit_types import (
+    Force,
+    InSI,
+    Number,
+    PositiveLength,
+    ReadKey,
+    Strain,
+    value_in_si,
+)
 from reduction.quantities.names import QUANTITIES, quantity
 from reduction.quantities.units import Dimension, parse_in_unit, parse_quantity
 from reduction.readers.layout import Layout
 from reduction.record.contributions import StatedErrors, of_expanded, of_half_width, of_resolution
-from reduction.record.errors import ReductionError, SettingsError
+from reduction.record.errors import SettingsError
 from reduction.record.measurement import Specimen
-from reduction.record.settings import Limits, ReductionSettings, StoredSamples, StrainMethod
-
-
-def check_names(path: Path, campaign: str, tests: Mapping[str, TestPlan]) -> None:
-    """Refuse names under which two products would be one file somewhere."""
-    for name in (campaign, *tests):
-        if DEVICE.fullmatch(name):
-            raise in_toml(
-                path, "a name is that of a device on Windows", found=repr(name),
-                needed="another name: it becomes one of a file or of a folder",
-            )  # fmt: skip
-    seen = dict.fromkeys(OF_CAMPAIGN, "")
-    for name in tests:
-        other = seen.setdefault(name.casefold(), name)
-        if not other:
-            raise in_toml(
-                path, f"test '{name}' has the name of a product of the campaign",
-                needed="another name than " + ", ".join(OF_CAMPAIGN),
-            )  # fmt: skip
-        if other != name:
-            raise in_toml(
-                path, "the names of two tests differ in capital letters only",
-                found=f"'{other}' and '{name}'", needed="names that are two on every disk",
-            )  # fmt: skip
-    for name, test in tests.items():
-        if len({step.product(name).casefold() for step in test.steps}) < len(test.steps):
-            raise in_toml(
-                path, f"two steps of test '{name}' have one name",
-                needed="names that are two on every disk",
-                hint="Blanks and hyphens, small and capital letters count as equal.",
-            )  # fmt: skip
-
+from reduction.record.settings import ReductionSettings, StoredSamples, StrainMethod
 
 # of pint's many plain numbers, a turn and a percent among them, those that count bytes
 _BYTES = re.compile(r"[\d.+\-eE\s]*([kMGT]i?B|B|bytes?)\s*")
 
-_SIZES: dict[str, tuple[float, float, str]] = {
-    "file_size": (1e3, 1e14, '"1 kB" to "100 TB"'),
-    "unpacked_size": (1e6, 1e12, '"1 MB" to "1 TB"'),
-    "line_length": (1e3, 1e8, '"1 kB" to "100 MB"'),
-}
 
-_MOST_COLUMNS = 1_000_000
+@dataclass(frozen=True)
+class _Limit(ReadKey):
+    """How a limit is read: from a size in bytes, from a time, or as a whole number."""
 
-_TIMES = (1.0, 7 * 86400.0)
+    least: float
+    most: float
+    shown: str
+    dimension: Dimension | None = "information"
+
+    @property
+    def written(self) -> Any:
+        """A text with a unit, or a whole number."""
+        return int if self.dimension is None else str
+
+    def value(self, stated: Any) -> float:
+        """In bytes, in seconds, or as it is."""
+        needed = self.shown
+        if self.dimension == "information":
+            needed += ", in bytes (B, kB, MB, GB, TB, KiB, MiB, GiB, TiB)"
+            if _BYTES.fullmatch(stated) is None:
+                raise SettingsError("a size is not in bytes", found=repr(stated), needed=needed)
+        value = stated if self.dimension is None else value_in_si(stated, self.dimension)
+        if not self.least <= value <= self.most:
+            raise SettingsError("this is no limit", found=repr(str(stated)), needed=needed)
+        return value if self.dimension == "time" else round(value)
 
 
 class _LimitsSection(BaseModel):
@@ -79,50 +79,18 @@ class _LimitsSection(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    file_size: str | None = None
+    file_size: Annotated[int, _Limit(1e3, 1e14, '"1 kB" to "100 TB"')] | None = None
     """Of one log: ``"100 GB"`` where left out."""
-    unpacked_size: str | None = None
+    unpacked_size: Annotated[int, _Limit(1e6, 1e12, '"1 MB" to "1 TB"')] | None = None
     """What a file that is read whole, or a piece of one, may take in memory: ``"4 GB"``."""
-    line_length: str | None = None
+    line_length: Annotated[int, _Limit(1e3, 1e8, '"1 kB" to "100 MB"')] | None = None
     """Of a line of text: ``"1 MB"``."""
-    columns: int | None = None
+    columns: (
+        Annotated[int, _Limit(1, 1_000_000, "a whole number from 1 to 1000000", None)] | None
+    ) = None
     """In a log: 10000."""
-    time: str | None = None
+    time: Annotated[float, _Limit(1.0, 7 * 86400.0, '"1 s" to "7 days"', "time")] | None = None
     """To read one log: ``"1 h"``."""
-
-
-def stated_limits(path: Path, section: _LimitsSection) -> Limits:
-    """Limits in bytes and seconds, with the defaults of what is not written."""
-    reader = TableReader(path, "limits")
-    found: dict[str, int | float] = {}
-    for key, (least, most, shown) in _SIZES.items():
-        text = getattr(section, key)
-        if text is None:
-            continue
-        needed = f"{shown}, in bytes (B, kB, MB, GB, TB, KiB, MiB, GiB, TiB)"
-        if _BYTES.fullmatch(text) is None:
-            raise _refused(reader, key, "a size is not in bytes", text, needed)
-        value = reader.value(key, text, "information")
-        if not least <= value <= most:
-            raise _refused(reader, key, "this is no limit", text, needed)
-        found[key] = round(value)
-    if section.columns is not None:
-        if not 1 <= section.columns <= _MOST_COLUMNS:
-            needed = f"a whole number from 1 to {_MOST_COLUMNS}"
-            raise _refused(reader, "columns", "this is no limit", str(section.columns), needed)
-        found["columns"] = section.columns
-    if section.time is not None:
-        seconds = reader.value("time", section.time, "time")
-        if not _TIMES[0] <= seconds <= _TIMES[1]:
-            needed = '"1 s" to "7 days"'
-            raise _refused(reader, "time", "this is no limit", section.time, needed)
-        found["time"] = seconds
-    return Limits(**found)  # type: ignore[arg-type]
-
-
-def _refused(reader: TableReader, key: str, problem: str, found: str, needed: str) -> SettingsError:
-    fault = SettingsError("", found=repr(found), needed=needed)
-    return reader.fault(f"{key}: {problem}", fault)
 
 
 _HALF = 0.5
@@ -155,20 +123,57 @@ class _StatedLimits(_UncertaintySection):
     shape: Literal["rectangular", "triangular", "arcsine"] = "rectangular"
 
 
-Stated = Number | _Expanded | _StatedLimits
-"""A plain value is a standard uncertainty."""
+@dataclass(frozen=True)
+class _Standard(ReadKey):
+    """How a standard uncertainty is read: as such, as an expanded one, or from limits."""
+
+    dimension: Dimension
+    has_tables: bool = True
+
+    @property
+    def written(self) -> Any:
+        """A plain value, or one of the two tables."""
+        return Number | _Expanded | _StatedLimits if self.has_tables else Number
+
+    def value(self, stated: Number | _Expanded | _StatedLimits) -> float:
+        """In SI."""
+        if isinstance(stated, _Expanded):
+            found = of_expanded(self._part("expanded", stated.expanded), stated.k)
+        elif isinstance(stated, _StatedLimits):
+            found = of_half_width(self._part("half_width", stated.half_width), stated.shape)
+        else:
+            found = value_in_si(stated, self.dimension)
+        # a temperature in degC would be one above freezing
+        most, words = _GREATEST_OF.get(self.dimension, (math.inf, ""))
+        if not 0 <= found <= most:
+            raise SettingsError(
+                "this is no standard uncertainty", found=str(stated), needed=f"zero or more{words}"
+            )
+        return found
+
+    def _part(self, key: str, text: Number) -> float:
+        try:
+            return value_in_si(text, self.dimension)
+        except SettingsError as error:
+            error.facts["key"] = key
+            raise
+
+
+_Relative = Annotated[float, _Standard("strain")]
+_OfForce = Annotated[float, _Standard("force")]
+_OfLength = Annotated[float, _Standard("length")]
 
 
 class _TensionSection(_UncertaintySection):
     """``[uncertainty.tension]``."""
 
-    gain: Stated | None = None
+    gain: _Relative | None = None
     """Of the whole indication: ``"0.1 %"``."""
-    offset: Stated | None = None
+    offset: _OfForce | None = None
     """Of the zero."""
-    noise: Stated | None = None
+    noise: _OfForce | None = None
     """Of one reading."""
-    resolution: Number | None = None
+    resolution: Annotated[float, _Standard("force", has_tables=False)] | None = None
     """One step of the indication."""
     one_load_cell: bool = False
     """All tension channels are of one cell, or calibrated against one."""
@@ -177,18 +182,18 @@ class _TensionSection(_UncertaintySection):
 class _PositionSection(_UncertaintySection):
     """``[uncertainty.crosshead_position]``."""
 
-    gain: Stated | None = None
-    offset: Stated | None = None
-    noise: Stated | None = None
-    resolution: Number | None = None
+    gain: _Relative | None = None
+    offset: _OfLength | None = None
+    noise: _OfLength | None = None
+    resolution: Annotated[float, _Standard("length", has_tables=False)] | None = None
 
 
 class _TemperatureSection(_UncertaintySection):
     """``[uncertainty.temperature]``: both keys, or nothing can be said of it."""
 
-    value: Stated
+    value: Annotated[float, _Standard("temperature")]
     """Of the temperature of a specimen while it is tested: ``"2 K"``."""
-    stiffness_per_kelvin: Number
+    stiffness_per_kelvin: Strain
     """Relative change of its tension at one strain: ``"0.3 %"``."""
 
 
@@ -197,13 +202,13 @@ class UncertaintySection(_UncertaintySection):
 
     tension: _TensionSection = _TensionSection()
     crosshead_position: _PositionSection = _PositionSection()
-    lag: Stated | None = None
+    lag: Annotated[float, _Standard("time")] | None = None
     """Between the two channels."""
-    diameter: Stated | None = None
+    diameter: _OfLength | None = None
     """Of the mean of the readings of a specimen."""
-    strain: Stated | None = None
+    strain: _Relative | None = None
     """Relative: what the strain method itself may miss."""
-    rated_break_strength: Stated | None = None
+    rated_break_strength: _Relative | None = None
     """Relative."""
     temperature: _TemperatureSection | None = None
 
@@ -211,85 +216,46 @@ class UncertaintySection(_UncertaintySection):
 def stated_errors(
     path: Path, section: UncertaintySection, specimens: Iterable[Specimen] = ()
 ) -> StatedErrors:
-    """Standard uncertainties in SI; an error names campaign.toml and the key."""
-    reader = TableReader(path, "uncertainty")
-
-    def standard(key: str, text: Stated | None, dimension: Dimension) -> float:
-        if text is None:
-            return 0.0
-        try:
-            if isinstance(text, _Expanded):
-                found = of_expanded(
-                    reader.value(f"{key}.expanded", text.expanded, dimension), text.k
-                )
-            elif isinstance(text, _StatedLimits):
-                found = of_half_width(
-                    reader.value(f"{key}.half_width", text.half_width, dimension), text.shape
-                )
-            else:
-                found = reader.value(key, text, dimension)
-        except SettingsError:
-            raise
-        except ReductionError as error:
-            fault = SettingsError(error.problem, found=error.found, needed=error.needed)
-            raise reader.fault(f"{key}: {fault.problem}", fault) from error
-        # a temperature in degC would be one above freezing
-        most, words = _GREATEST_OF.get(dimension, (float("inf"), ""))
-        if not 0 <= found <= most:
-            fault = SettingsError(
-                "this is no standard uncertainty", found=str(text), needed=f"zero or more{words}"
-            )
-            raise reader.fault(f"{key}: {fault.problem}", fault)
-        return found
-
-    def reading(name: str, of: _TensionSection | _PositionSection, dimension: Dimension) -> float:
-        noise = standard(f"{name}.noise", of.noise, dimension)
-        step = standard(f"{name}.resolution", of.resolution, dimension)
-        return float((noise**2 + of_resolution(step) ** 2) ** 0.5)
-
+    """Standard uncertainties of a campaign; an error names campaign.toml and the key."""
     tension, position, warmth = section.tension, section.crosshead_position, section.temperature
-    stiffness = 0.0
-    if warmth is not None:
-        kelvin = standard("temperature.value", warmth.value, "temperature")
-        each = reader.value(
-            "temperature.stiffness_per_kelvin", warmth.stiffness_per_kelvin, "strain"
-        )
-        stiffness = kelvin * abs(each)
-        if stiffness > _HALF:
-            raise reader.fault(
-                "temperature: value times stiffness_per_kelvin is no standard uncertainty",
-                SettingsError(
-                    "", found=f"{100 * stiffness:,.0f} % of the stiffness", needed="at most 50 %"
-                ),
-            )
-    diameter = standard("diameter", section.diameter, "length")
+    stiffness = 0.0 if warmth is None else warmth.value * abs(warmth.stiffness_per_kelvin)
+    if stiffness > _HALF:
+        raise in_toml(
+            path,
+            "uncertainty.temperature: value times stiffness_per_kelvin is no standard uncertainty",
+            found=f"{100 * stiffness:,.0f} % of the stiffness", needed="at most 50 %",
+        )  # fmt: skip
+    diameter = section.diameter or 0.0
     for specimen in specimens:
         if specimen.diameter and diameter > _OF_DIAMETER * specimen.mean_diameter:
-            raise reader.fault(
-                f"diameter: this is no standard uncertainty of the diameter of '{specimen.name}'",
-                SettingsError(
-                    "",
-                    found=f"{1e3 * diameter:.4g} mm of {1e3 * specimen.mean_diameter:.4g} mm",
-                    needed="at most 20 % of it, which is 40 % of every modulus",
-                    hint="It is of the mean of the readings, not the diameter itself.",
-                ),
+            raise in_toml(
+                path,
+                "uncertainty.diameter: this is no standard uncertainty of the diameter of "
+                f"'{specimen.name}'",
+                found=f"{1e3 * diameter:.4g} mm of {1e3 * specimen.mean_diameter:.4g} mm",
+                needed="at most 20 % of it, which is 40 % of every modulus",
+                hint="It is of the mean of the readings, not the diameter itself.",
             )
     return StatedErrors(
-        tension_gain=standard("tension.gain", tension.gain, "strain"),
-        tension_offset=standard("tension.offset", tension.offset, "force"),
-        tension_reading=reading("tension", tension, "force"),
-        position_gain=standard("crosshead_position.gain", position.gain, "strain"),
-        position_offset=standard("crosshead_position.offset", position.offset, "length"),
-        position_reading=reading("crosshead_position", position, "length"),
-        lag=standard("lag", section.lag, "time"),
+        tension_gain=tension.gain or 0.0,
+        tension_offset=tension.offset or 0.0,
+        tension_reading=_of_reading(tension),
+        position_gain=position.gain or 0.0,
+        position_offset=position.offset or 0.0,
+        position_reading=_of_reading(position),
+        lag=section.lag or 0.0,
         diameter=diameter,
-        strain_gain=standard("strain", section.strain, "strain"),
-        rated_break_strength=standard(
-            "rated_break_strength", section.rated_break_strength, "strain"
-        ),
+        strain_gain=section.strain or 0.0,
+        rated_break_strength=section.rated_break_strength or 0.0,
         stiffness=stiffness,
         has_one_load_cell=tension.one_load_cell,
     )
+
+
+def _of_reading(section: _TensionSection | _PositionSection) -> float:
+    """Noise and resolution of one reading together."""
+    step = of_resolution(section.resolution or 0.0)
+    return float(((section.noise or 0.0) ** 2 + step**2) ** 0.5)
 
 
 class _LimitSection(ReportSection):
@@ -356,17 +322,12 @@ def _limit(
         )  # fmt: skip
     if one.lower is None and one.upper is None:
         raise in_toml(path, f"{place} has no limit", needed="lower, upper, or both")
-    try:
+    with at_place(f"{path}: {place}: "):
         lower, upper = (
             None if text is None else parse_in_unit(text, quantity(one.quantity).unit)
             for text in (one.lower, one.upper)
         )
         at = {key: parse_place(key, str(value)) for key, value in one.at.items()}
-    except SettingsError as error:
-        raise in_toml(
-            path, f"{place}: {error.problem}", found=error.found, needed=error.needed,
-            hint=error.hint,
-        ) from error  # fmt: skip
     if lower is not None and upper is not None and not lower < upper:
         raise in_toml(
             path, f"{place}: the lower limit is not below the upper one",
@@ -375,112 +336,6 @@ def _limit(
     return ReportLimit(
         quantity=one.quantity, test=product[0], at=at, lower=lower, upper=upper, source=one.source
     )
-
-
-_Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9_ \-]{0,99}$")]
-
-Calibrated = Literal[
-    "wrap_angle",
-    "rubber_modulus",
-    "cord_load_scale",
-    "cord_strain_scale",
-    "dead_length_share",
-]
-"""What a comparison may fit; diameters and cords are measured, not fitted."""
-
-
-class _HoseSection(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class CordSection(_HoseSection):
-    """``[cord]``: measured points of one cord, the last one its break."""
-
-    strain: tuple[Number, ...]
-    load: tuple[str, ...]
-
-
-class LayerSection(_HoseSection):
-    """``[[hose.layers]]``: a layer that is to carry no load."""
-
-    name: _Name
-    wrap_angle: str
-    strain_limit: Number | None = None
-    """Greatest tensile strain that it bears."""
-    compression_limit: Number | None = None
-    """Greatest compressive strain that it bears, a positive number."""
-
-
-class HoseKeys(_HoseSection):
-    """``[hose]``, and ``[hoses.NAME]`` of a campaign without its cord."""
-
-    wrap_angle: str
-    """From the hose axis."""
-    wrap_diameter: str | None = None
-    """Mean of the two cord layers; or ``layer_diameters``."""
-    layer_diameters: tuple[str, str] | None = None
-    inner_diameter: str
-    outer_diameter: str
-    cords_per_length: str
-    cord_diameter: str
-    rubber_modulus: str
-    rubber_law: RubberLaw = "neo-hookean"
-    working_share: Number = Field(default=1 / 3)
-    """Of the break load of a cord, at the safe working load."""
-    cord_load_scale: Number = 1.0
-    cord_strain_scale: Number = 1.0
-    minimum_inner_diameter: str | None = None
-    length: str | None = None
-    """Relaxed, stretch-limited ends included; needed with ``dead_length``."""
-    dead_length: str | None = None
-    """Part of the length that does not stretch, both ends together."""
-    strain_step: Number = "1 %"
-    greatest_strain: Number | None = None
-    standard_uncertainty: dict[str, Number] = Field(default_factory=dict)
-    """By key of this table, in its unit or in % of its value."""
-    layers: tuple[LayerSection, ...] = ()
-
-
-class HoseSection(HoseKeys):
-    """``[hoses.NAME]`` with ``[hoses.NAME.cord]``."""
-
-    cord: CordSection
-
-
-class _TargetSection(_HoseSection):
-    """``[target]``: what a hose like this one is to do at its safe working load."""
-
-    strain: Number
-    tension: str | None = None
-
-
-class _ComparisonKeys(_HoseSection):
-    """``[comparison]``: how a measured curve meets the prediction."""
-
-    specimen: str | None = None
-    """Of the measured test, where it has several."""
-    loading: Literal["static", "dynamic"] | None = None
-    """How it was pulled, where its kind does not say it: a cyclic test may be slow."""
-    calibrate: tuple[Calibrated, ...] = ()
-    """Numbers of the hose to be fitted to the measured curve."""
-
-
-class HoseSpecFile(_HoseSection):
-    """SPEC.toml of ``reduction predict hose`` and ``reduction compare``."""
-
-    hose: HoseKeys
-    cord: CordSection
-    target: _TargetSection | None = None
-    comparison: _ComparisonKeys = _ComparisonKeys()
-
-
-class ComparisonSection(_ComparisonKeys):
-    """``[comparisons.NAME]``."""
-
-    measured: str
-    """Test or test/step of the campaign."""
-    predicted: str
-    """One of ``[hoses]``."""
 
 
 _DIMENSION: dict[tuple[str, str], Dimension] = {
@@ -544,12 +399,8 @@ def limits_of(group: str, name: str) -> tuple[float, float]:
 
 def _in_si(where: str, value: str | float, dimension: Dimension) -> float:
     """A value with its unit; a refusal says which number it is."""
-    try:
+    with at_place(f"{where}: "):
         return parse_quantity(value, dimension)
-    except SettingsError as error:
-        raise SettingsError(
-            f"{where}: {error.problem}", found=repr(value), needed=error.needed, hint=error.hint
-        ) from error
 
 
 def _value(group: str, name: str, value: object, default: object, control: str) -> object:
@@ -691,18 +542,18 @@ class SpecimenSection(_SpecSection):
     material: Text = ""
     construction: Text = ""
     condition: Text = ""
-    diameter: tuple[str, ...] | str = ()
+    diameter: tuple[PositiveLength, ...] | PositiveLength = ()
     """Readings before stretch; the nominal area uses their mean."""
-    stretched_diameter: dict[str, tuple[str, ...]] = Field(default_factory=dict)
+    stretched_diameter: dict[str, tuple[PositiveLength, ...]] = Field(default_factory=dict)
     """Readings at a stretch, by stretch: ``{ "10 %" = ["0.997 in", "0.980 in"] }``."""
-    rated_break_strength: str | None = None
+    rated_break_strength: Force | None = None
     rated_break_strength_source: Text = ""
-    linear_density: str | None = None
+    linear_density: Annotated[float, InSI("linear_density", above=0.0)] | None = None
     """Mass a length in air."""
-    wet_linear_density: str | None = None
+    wet_linear_density: Annotated[float, InSI("linear_density")] | None = None
     """The same less the water it displaces."""
-    gauge_length: str | None = None
-    gauge_length_standard_uncertainty: str | None = None
+    gauge_length: PositiveLength | None = None
+    gauge_length_standard_uncertainty: PositiveLength | None = None
     earlier_cycles: int | None = Field(default=None, ge=0, le=_MOST)
     """Cycles of tension before the first test of the campaign; none where left out."""
     earlier_flex_cycles: int | None = Field(default=None, ge=0, le=_MOST)
@@ -773,6 +624,12 @@ class StepSection(_SpecSection):
     note: Text = ""
 
 
+def _has_angle(text: str) -> str:
+    """The text as written, which a test keeps, of what is an angle."""
+    value_in_si(text, "angle")
+    return text
+
+
 class TestSection(_Kept):
     """``[tests.ID]``: one test; keys that it leaves out come from ``[defaults]``."""
 
@@ -794,7 +651,7 @@ class TestSection(_Kept):
     """Cycles of tension between the test before and this one, of which there is no log."""
     n_flex_cycles: int | None = Field(default=None, ge=0, le=_MOST)
     """Cycles of flexing in this test, while it is pulled."""
-    flex_angle: str | None = None
+    flex_angle: Annotated[str, AfterValidator(_has_angle)] | None = None
     """Half the range of the flexing: ``30 deg`` to either side."""
     failed: bool | None = None
     """Whether the specimens broke in this test, in the laboratory's word; else the log decides."""

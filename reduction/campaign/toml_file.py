@@ -7,17 +7,19 @@ import re
 import reprlib
 import tomllib
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path, PureWindowsPath
-from typing import Annotated, Any, TypeVar
+from pathlib import Path
+from typing import Any, TypeVar
 
-from pydantic import BaseModel, Strict, ValidationError
+from pydantic import BaseModel, ValidationError
 
-from reduction.quantities.units import Dimension, parse_quantity
+from reduction.campaign.unit_types import Number, value_in_si
+from reduction.quantities.units import Dimension
 from reduction.readers.layout import check_regular
 from reduction.readers.sniff import UNKNOWN
-from reduction.record.errors import LogError, ReductionError, SettingsError
-from reduction.record.plain_text import bare_cell, cut, is_address, shown_address
+from reduction.record.errors import DataError, FitError, LogError, ReductionError, SettingsError
+from reduction.record.plain_text import bare_cell, cut
 
 _LARGEST = 16_000_000  # bytes; a campaign of 10^5 tests has a third of it
 
@@ -131,15 +133,21 @@ def in_toml(path: Path, problem: str, **kwargs: Any) -> SettingsError:
     return SettingsError(f"{path}: {problem}", **kwargs)
 
 
-def quantity_of(path: Path, place: str, text: str, dimension: Dimension) -> float:
-    """Value in SI of what stands at a place of campaign.toml; its error names file and place."""
+@contextmanager
+def at_place(place: str) -> Iterator[None]:
+    """Put a place in front of what is refused: the file, and a key where there is one."""
     try:
-        return parse_quantity(text, dimension)
-    except SettingsError as error:
-        raise in_toml(
-            path, f"{place}: {error.problem}", found=error.found, needed=error.needed,
-            hint=error.hint,
-        ) from error  # fmt: skip
+        yield
+    except (SettingsError, DataError, FitError) as error:
+        raise type(error)(
+            f"{place}{error.problem}", found=error.found, needed=error.needed, hint=error.hint
+        ) from error
+
+
+def quantity_of(path: Path, place: str, text: Number, dimension: Dimension) -> float:
+    """Value in SI of what stands at a place of a file; its error names both."""
+    with at_place(f"{path}: {place}: "):
+        return value_in_si(text, dimension)
 
 
 def listed(headline: str, entries: Sequence[object]) -> str:
@@ -159,13 +167,20 @@ def _shown(value: object) -> str:
     return text if len(text) <= _LONGEST_FOUND else text[: _LONGEST_FOUND - 3].rstrip() + "..."
 
 
-def _place(location: Sequence[str | int], table: object, *, is_missing: bool) -> tuple[str, ...]:
-    """Keys of the table on the way to a fault, without the names that pydantic gives to choices."""
+def _place(
+    location: Sequence[str | int], table: object, *, is_missing: bool, is_value: bool
+) -> tuple[str, ...]:
+    """Keys of the table on the way to a fault, without the names that pydantic gives to choices.
+
+    Of a value with a unit the entry of a list is told by its name, or counted from one.
+    """
     place: list[str] = []
     for number, part in enumerate(location, start=1):
         if isinstance(table, list | tuple) and isinstance(part, int) and part < len(table):
             table = table[part]
-            place.append(str(part))
+            name = table.get("name") if is_value and isinstance(table, dict) else None
+            is_named = isinstance(name, str) and bool(name)
+            place.append(cut(str(name), _LONGEST_FOUND) if is_named else str(part + is_value))
         elif isinstance(table, dict) and part in table:
             table = table[part]
             place.append(str(part))
@@ -181,17 +196,20 @@ def _place(location: Sequence[str | int], table: object, *, is_missing: bool) ->
 
 
 def faults_of(error: ValidationError, table: object) -> list[_Fault]:
-    """Every fault once."""
+    """Every fault once; of a value that no choice allows what is wrong with its number."""
     found: dict[tuple[str, ...], list[tuple[str, str]]] = {}
+    values: dict[tuple[str, ...], list[tuple[str, str]]] = {}
     for entry in error.errors():
-        place = _place(entry["loc"], table, is_missing=entry["type"] == "missing")
         cause = entry.get("ctx", {}).get("error")
+        is_missing, is_value = entry["type"] == "missing", isinstance(cause, ReductionError)
+        place = _place(entry["loc"], table, is_missing=is_missing, is_value=is_value)
         if isinstance(cause, ReductionError):
-            needed, value = str(cause), ""
-        else:
-            needed = _WORDS.get(entry["type"], entry["msg"].removeprefix("Value error, "))
-            value = "" if entry["type"] == "missing" else _shown(entry["input"])
-        found.setdefault(place, []).append((needed, value))
+            place += (str(cause.facts["key"]),) if "key" in cause.facts else ()
+            values[place] = [(str(cause), "")]
+        needed = _WORDS.get(entry["type"], entry["msg"].removeprefix("Value error, "))
+        shown = "" if is_missing else _shown(entry["input"])
+        found.setdefault(place, []).append((needed, shown))
+    found |= values
     faults = []
     above = {place[:length] for place in found for length in range(len(place))}
     for place, told in found.items():
@@ -286,59 +304,6 @@ def _open_questions(folder: Path, table: dict[str, Any]) -> list[str]:
     return list(dict.fromkeys(places))
 
 
-DEVICE = re.compile(
-    r"(con|prn|aux|nul|conin\$|conout\$|com[0-9¹²³]|lpt[0-9¹²³]) *(\..*)?", re.IGNORECASE
-)
-"""Names that are devices of Windows in every folder, whatever stands behind their point."""
-
-
-def file_inside(path: Path, name: str, *, is_needed: bool = True) -> str:
-    """A file name that stays inside the campaign folder."""
-    shown = repr(cut(name, 200))
-    if is_address(name):
-        raise in_toml(
-            path, "only the log of a test may be an address on the net",
-            found=repr(shown_address(name)), needed="a file inside the folder of campaign.toml",
-        )  # fmt: skip
-    if any(map(DEVICE.fullmatch, re.split(r"[/\\]", name))):
-        raise _no_name(path, shown)
-    try:
-        folder = path.parent.resolve()
-        target = (folder / name).resolve()
-    except (ValueError, RuntimeError, OSError) as error:  # a null byte, links in a ring, length
-        raise _no_name(path, shown) from error
-    windows = PureWindowsPath(name)
-    is_absolute = Path(name).is_absolute() or windows.drive or windows.root
-    if not name or is_absolute or not target.is_relative_to(folder):
-        raise in_toml(
-            path, "a file lies outside the campaign folder", found=shown,
-            needed="a path inside the folder of campaign.toml, links followed",
-        )  # fmt: skip
-    if is_needed:
-        _check_there(path, target, path.parent / name)
-    return name
-
-
-def _no_name(path: Path, shown: str) -> SettingsError:
-    return in_toml(
-        path, "no file can have such a name", found=shown,
-        needed="a path inside the folder of campaign.toml, links followed",
-    )  # fmt: skip
-
-
-def _check_there(path: Path, target: Path, shown: Path) -> None:
-    try:
-        mode = target.stat().st_mode
-    except FileNotFoundError as error:
-        raise LogError(shown, "the file is not there", needed=f"as {path} says") from error
-    except OSError as error:  # a folder that is closed to this user, a name that is too long
-        raise LogError(
-            shown, "the file cannot be read", found=error.strerror or str(error),
-            needed="a file that this user may read",
-        ) from error  # fmt: skip
-    check_regular(shown, mode)
-
-
 # what the parser takes minutes or gigabytes for, and no setting has
 _DEEP = re.compile(r"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){40}""")
 
@@ -389,47 +354,3 @@ def _tables(text: str) -> dict[str, Any]:
         line = text.count("\n", 0, deep.start()) + 1
         raise ValueError(f"a key of more than 40 parts (at line {line})")
     return tomllib.loads(text)
-
-
-Number = str | Annotated[float, Strict()]
-"""A number of TOML or text with a unit; true and false are neither."""
-
-_GREATEST = 1e15
-
-
-class TableReader:
-    """Values of one table; an error names the file and the key.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-    place : str
-        Of the table in it.
-    """
-
-    def __init__(self, path: Path, place: str) -> None:
-        self.path, self.place = path, place
-
-    def value(self, key: str, text: Number, dimension: Dimension) -> float:
-        """Value in SI of what stands under a key."""
-        try:
-            value = parse_quantity(text, dimension)
-            if not abs(value) < _GREATEST:
-                raise SettingsError(
-                    "a number is beyond anything physical", found=str(text), needed="a finite one"
-                )
-            return value
-        except SettingsError as error:
-            raise self.fault(f"{key}: {error.problem}", error) from error
-
-    def optional(self, key: str, text: Number | None, dimension: Dimension) -> float | None:
-        """Value in SI, None where nothing stands there."""
-        return None if text is None else self.value(key, text, dimension)
-
-    def fault(self, problem: str, error: SettingsError) -> SettingsError:
-        """The same error with file and key in front."""
-        return in_toml(
-            self.path, f"{self.place}.{problem}", found=error.found, needed=error.needed,
-            hint=error.hint,
-        )  # fmt: skip

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import cast
 
 import xarray as xr
 from rich.markup import escape
@@ -21,7 +20,6 @@ from reduction.cli.lookup import name_of_quantity
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.quantities.flags import LINE_METHODS
-from reduction.quantities.units import UnitSystem, display_unit
 from reduction.record.errors import SettingsError
 from reduction.uncertainty.budget import Budget
 from reduction.uncertainty.monte_carlo import PARAMETERS
@@ -55,7 +53,7 @@ def show_budget(path: Path, quantity: str, places: Sequence[str], *, output: Com
         budget = budget_from_archive(archive, _name_in(archive, quantity), _places(places))
         synthetic = archive.attrs.get("synthetic", "no") == "yes"
         drawn = _drawn_uncertainty(archive, budget)
-    unit, scale = display_unit(budget.unit, cast("UnitSystem", output.units))
+    unit, scale = output.unit(budget.unit)
     where = ", ".join(
         f"{place_name(dim)} {label}" + _in_brackets(label, budget.words.get(dim, ""))
         for dim, label in budget.place.items()

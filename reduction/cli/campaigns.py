@@ -9,11 +9,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 from dataclasses import asdict, replace
 from functools import partial
+from itertools import chain
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from rich.markup import escape
 from rich.table import Table
@@ -26,9 +28,10 @@ from reduction.batch.experiment_product import experiments_found
 from reduction.batch.requested_products import check_campaign as check_tests
 from reduction.batch.run_campaign import results_found
 from reduction.batch.run_campaign import run_campaign as run_tests
+from reduction.batch.workers import Workers, local_workers
 from reduction.campaign.plan import Campaign
 from reduction.cli.output import CommandOutput
-from reduction.cli.progress import campaign_progress, chosen_workers
+from reduction.cli.progress import campaign_progress
 from reduction.pages.design_values import PAGE_NAME, write_design_page
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.readers.sniff import sniff_layout
@@ -236,15 +239,11 @@ def _status_table(tests: Sequence[TestStatus]) -> Table:
     return table
 
 
-def _report_failures(
-    output: CommandOutput, tests: Sequence[TestStatus], parts: Sequence[PartStatus] = ()
-) -> None:
-    ended = [(test.exit_status, test.message) for test in tests]
-    ended += [(one.exit_status, one.message) for one in parts]
-    for exit_status, message in ended:
-        if exit_status:
-            output.error(message)
-            output.raise_status(exit_status)
+def _report_failures(output: CommandOutput, ended: Iterable[TestStatus | PartStatus]) -> None:
+    for one in ended:
+        if one.exit_status:
+            output.error(one.message)
+            output.raise_status(one.exit_status)
 
 
 def _part_table(kind: str, parts: Sequence[PartStatus]) -> Table:
@@ -286,11 +285,9 @@ def _say_results(output: CommandOutput, results: dict[str, Any] | None) -> None:
         output.say(f"  {quantity}: {', '.join(listed)}")
 
 
-def _say_experiments(
-    output: CommandOutput, experiments: list[dict[str, Any]], units: UnitSystem
-) -> None:
+def _say_experiments(output: CommandOutput, experiments: list[dict[str, Any]]) -> None:
     """Runs, slow pulls and what would go slack, before anything is run."""
-    force, factor = display_unit("N", units)
+    force, factor = output.unit("N")
     for one in experiments:
         output.say(
             f"experiment {one['id']}: {one['kind']} of {', '.join(one['factors'])}; "
@@ -312,9 +309,35 @@ def _say_experiments(
             output.say(f"  {note}")
 
 
+@contextmanager
+def _chosen_workers(jobs: int | None, scheduler: str | None) -> Iterator[Workers | None]:
+    """Give what ``--jobs`` or ``--scheduler`` asks for, and end it afterwards."""
+    if jobs is not None and scheduler is not None:
+        raise SettingsError(
+            "--jobs and --scheduler exclude each other",
+            found=f"--jobs {jobs} --scheduler {scheduler}",
+            hint="How many workers a scheduler has is said where they are started.",
+        )
+    if scheduler is None:
+        with local_workers(jobs) if jobs is not None and jobs > 1 else nullcontext() as workers:
+            yield workers
+        return
+    try:
+        from reduction.batch.dask_cluster import users_cluster
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
+            raise
+        raise SettingsError(
+            "--scheduler needs Dask, which is not installed",
+            found=f"no package '{error.name}'",
+            hint="Install it with: pip install 'mooring-reduction[cluster]'. --jobs needs none.",
+        ) from error
+    with users_cluster(scheduler) as workers:
+        yield workers
+
+
 def check_campaign(campaign: Campaign, *, tests: tuple[str, ...], output: CommandOutput) -> None:
     """Read and validate everything, print what was found, write nothing."""
-    units = cast("UnitSystem", output.units)
     with campaign_progress(output) as progress:
         statuses, models = check_tests(campaign, tests=tests, progress=progress)
     if statuses or not (campaign.outcomes or campaign.hoses):
@@ -325,13 +348,13 @@ def check_campaign(campaign: Campaign, *, tests: tuple[str, ...], output: Comman
             output.say(f"  {test.test}: {channel}: samples flagged: {listed}")
         for note in test.found.get("notes", ()):
             output.say(f"  {test.test}: {note}")
-    lines = _model_lines(models, statuses, units)
+    lines = _model_lines(models, statuses, output.system)
     if lines.row_count:  # weights hung by hand, and logs that failed, have no strain model
         output.show(lines)
     results = results_found(campaign)
     _say_results(output, results)
     experiments = experiments_found(campaign, statuses)
-    _say_experiments(output, experiments, units)
+    _say_experiments(output, experiments)
     for comparison in campaign.comparisons.values():
         output.say(
             f"comparison {comparison.name}: {comparison.measured} of {comparison.specimen} "
@@ -364,7 +387,7 @@ def run_campaign(
     """Reduce a campaign and say what became of each test."""
     opener = read_once()
     with (
-        chosen_workers(jobs, scheduler) as workers,
+        _chosen_workers(jobs, scheduler) as workers,
         campaign_progress(output) as progress,
     ):
         if scheduler is not None:
@@ -380,7 +403,7 @@ def run_campaign(
             force=force,
             # paths, jobs and choices of tests are left out, so that equal inputs give equal bytes
             command="reduction run campaign.toml",
-            units=cast("UnitSystem", output.units),
+            units=output.system,
             values_page=_address_of_design_page(processed, reports, output),
             workers=workers,
             progress=progress,
@@ -390,12 +413,9 @@ def run_campaign(
     if result.tests or not (campaign.outcomes or campaign.hoses):
         output.show(_status_table(result.tests))
     _say_results(output, results_found(campaign))
-    for kind, parts in (
-        ("experiment", result.experiments), ("hose", result.hoses),
-        ("comparison", result.comparisons),
-    ):  # fmt: skip
+    for kind, parts in result.parts.items():
         if parts:
-            output.show(_part_table(kind, parts))
+            output.show(_part_table(kind.removesuffix("s"), parts))
     for name in result.stray:
         output.error(f"{result.processed / name}: belongs to no test of this campaign; left alone")
     output.say(f"products: {result.processed}")
@@ -405,9 +425,7 @@ def run_campaign(
     document: dict[str, Any] = {
         "campaign": campaign.id,
         "tests": [test.document() for test in result.tests],
-        "experiments": [asdict(one) for one in result.experiments],
-        "hoses": [asdict(one) for one in result.hoses],
-        "comparisons": [asdict(one) for one in result.comparisons],
+        **{kind: [asdict(one) for one in parts] for kind, parts in result.parts.items()},
         "results": results_found(campaign),
         "processed": str(result.processed),
         "tables": [str(path) for path in result.tables],
@@ -423,7 +441,7 @@ def run_campaign(
         processed, reports, output, made=campaign.id, opener=opener
     )
     output.answer(document)
-    _report_failures(output, result.tests, result.parts)
+    _report_failures(output, [*result.tests, *chain(*result.parts.values())])
 
 
 def report_again(
@@ -434,7 +452,7 @@ def report_again(
     written: dict[str, list[str]] = {"reports": [], "client_reports": [], "pdfs": []}
     for folder in folders:
         page = write_report(
-            folder, reports / folder.resolve().name, units=cast("UnitSystem", output.units),
+            folder, reports / folder.resolve().name, units=output.system,
             values_page=_address_of_design_page(processed, reports, output),
             unreadable=partial(_say_unreadable, output, folder),
         )  # fmt: skip

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from rich.markup import escape
 
@@ -27,7 +27,6 @@ from reduction.batch.catalogue import (
 from reduction.cli.output import CommandOutput, plain_table
 from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.quantities.names import QUANTITIES
-from reduction.quantities.units import UnitSystem, display_unit
 
 _SPREAD = "_standard_uncertainty"
 
@@ -145,9 +144,7 @@ def _show(table: Any, query: Query, output: CommandOutput) -> None:
     ]
     texts = [name for name in names if not unit_of(name)]
     numbers = [name for name in names if unit_of(name)]
-    shown = {
-        name: display_unit(unit_of(name), cast("UnitSystem", output.units)) for name in numbers
-    }
+    shown = {name: output.unit(unit_of(name)) for name in numbers}
     heads = [_heading(name, shown[name][0]) for name in numbers]
     heads = [*map(_short_name, texts), *heads]
     columns = [[text or "" for text in table[name].to_pylist()] for name in texts]

@@ -13,7 +13,7 @@ import xarray as xr
 from reduction.archive.open import failing_reads, open_archive
 from reduction.archive.product_files import archives_of_tests
 from reduction.campaign.assembly_spec import AssemblyCase, load_assembly_case
-from reduction.campaign.toml_file import in_toml
+from reduction.campaign.toml_file import at_place, in_toml
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.lines.archive_pieces import source_of_tests, specimens_of
@@ -30,9 +30,8 @@ from reduction.lines.composite import (
 from reduction.lines.deck_formats import export_table
 from reduction.lines.export_sources import assembly_table, composite_table, ranges_of
 from reduction.lines.published_source import published_piece_sources, published_sources
-from reduction.quantities.units import UnitSystem, display_unit
 from reduction.record.contributions import Component, coverage_factor
-from reduction.record.errors import DataError, ReductionError, SettingsError
+from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats
 from reduction.report.single_pages import write_assembly_page, write_composite_page
 from reduction.stages.strain.strain_model import StrainModel
@@ -52,12 +51,8 @@ def rule_of(precedence: str | None) -> CompositeRule:
     if precedence is None:
         return CompositeRule()
     kinds = tuple(cast("PieceKind", part.strip()) for part in precedence.split(","))
-    try:
+    with at_place("--precedence: "):
         return CompositeRule(precedence=kinds)
-    except SettingsError as error:
-        raise SettingsError(
-            f"--precedence: {error.problem}", found=error.found, needed=error.needed
-        ) from error
 
 
 def piece_source(
@@ -182,21 +177,18 @@ def compose_tests(
     source = piece_source(sources, specimen=specimen, branch=branch)
     curve = compose(source, rule)
     source = used_of(source, curve)
-    units = cast("UnitSystem", output.units)
-    _show(source, curve, output, units)
+    _show(source, curve, output)
     if out is not None and form is not None:
         if form == PAGE:
-            write_composite_page(source, curve, out, units=units)
+            write_composite_page(source, curve, out, units=output.system)
         else:
-            export_table(composite_table(source, curve), form, out, units=units)
+            export_table(composite_table(source, curve), form, out, units=output.system)
         output.say(f"written: {out}")
     output.answer(_document(source, curve, rule) | {"out": None if out is None else str(out)})
 
 
-def _show(
-    source: PieceSource, curve: CompositeCurve, output: CommandOutput, system: UnitSystem
-) -> None:
-    unit, factor = display_unit("N", system)
+def _show(source: PieceSource, curve: CompositeCurve, output: CommandOutput) -> None:
+    unit, factor = output.unit("N")
     made = ", SYNTHETIC: nothing was tested" if source.is_synthetic else ""
     doubt = f"; DOUBTFUL: {curve.doubt}" if curve.doubt else ""
     output.say(f"{composite_table(source, curve).title}{made}{doubt}")
@@ -229,12 +221,8 @@ def _show(
             ", ".join(flags),
         )
     output.show(table)
-    for text in curve.notes:
-        output.say(f"note: {text}")
-    for text in source.notes:
-        output.say(f"note: {text}")
-    for text in source.sources:
-        output.say(f"source: {text}")
+    output.say_each("note", (*curve.notes, *source.notes))
+    output.say_each("source", source.sources)
 
 
 def _contributions(component: Sequence[Component], rows: Floats) -> list[dict[str, Any]]:
@@ -376,13 +364,12 @@ def assemble_spec(path: Path, *, out: Path | None, output: CommandOutput) -> Non
     """Print curve and work of the assembly of SPEC.toml; with ``out``, write every node."""
     form = None if out is None else _table_format(out)
     line = deployed_line(path)
-    units = cast("UnitSystem", output.units)
-    _show_assembly(line, output, units)
+    _show_assembly(line, output)
     if out is not None and form is not None:
         if form == PAGE:
-            write_assembly_page(line, out, units=units)
+            write_assembly_page(line, out, units=output.system)
         else:
-            export_table(assembly_table(line), form, out, units=units)
+            export_table(assembly_table(line), form, out, units=output.system)
         output.say(f"written: {out}")
     output.answer(_assembly_document(line) | {"out": None if out is None else str(out)})
 
@@ -391,10 +378,8 @@ def deployed_line(path: Path) -> DeployedLine:
     """Read SPEC.toml, find its curve and its splices, and deploy it."""
     case = load_assembly_case(path)
     source = _source(path, case)
-    try:
+    with at_place(f"{path}: assembly.curve: "):
         curve = compose(source, case.rule)
-    except DataError as error:
-        raise _at(path, "assembly.curve", error) from error
     model = _model(path, case, source)
     stated = case.rated_break_strength
     strength = stated if np.isfinite(stated) else source.rated_break_strength
@@ -412,7 +397,11 @@ def deployed_line(path: Path) -> DeployedLine:
         )
     except DataError as error:
         # a level brings its own place
-        raise _at(path, "assembly", error) from error
+        between = "." if error.problem.startswith("working.") else ": "
+        raise DataError(
+            f"{path}: assembly{between}{error.problem}", found=error.found, needed=error.needed,
+            hint=error.hint,
+        ) from error  # fmt: skip
     return DeployedLine(
         name=case.name,
         deployed=deployed,
@@ -423,23 +412,12 @@ def deployed_line(path: Path) -> DeployedLine:
     )
 
 
-def _at(path: Path, place: str, error: ReductionError) -> ReductionError:
-    """The same error with file and key in front."""
-    between = "." if error.problem.startswith("working.") else ": "
-    return type(error)(
-        f"{path}: {place}{between}{error.problem}", found=error.found, needed=error.needed,
-        hint=error.hint,
-    )  # fmt: skip
-
-
 def _source(path: Path, case: AssemblyCase) -> PieceSource:
     """Pieces of the tethers; archives and folders stand beside the specification."""
     published = published_piece_sources()
     words = [word if word in published else str(path.parent / word) for word in case.sources]
-    try:
+    with at_place(f"{path}: assembly.curve: "):
         return piece_source(words, specimen=case.specimen, branch=case.branch)
-    except ReductionError as error:
-        raise _at(path, "assembly.curve", error) from error
 
 
 def _model(path: Path, case: AssemblyCase, source: PieceSource) -> StrainModel:
@@ -471,10 +449,10 @@ def _splices_in_words(case: AssemblyCase, model: StrainModel) -> str:
     return f"length of a tether by {model.method}, {where}: {numbers}"
 
 
-def _show_assembly(line: DeployedLine, output: CommandOutput, system: UnitSystem) -> None:
+def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
     deployed, assembly = line.deployed, line.deployed.assembly
-    force, per_newton = display_unit("N", system)
-    length, per_metre = display_unit("m", system)
+    force, per_newton = output.unit("N")
+    length, per_metre = output.unit("m")
     made = ", SYNTHETIC: nothing was tested" if line.source.is_synthetic else ""
     output.say(f"assembly {line.name}: {line.words}{made}")
     slack = assembly.slack_length
@@ -520,11 +498,9 @@ def _show_assembly(line: DeployedLine, output: CommandOutput, system: UnitSystem
         )
     output.show(table)
     for number, state in enumerate(deployed.working, start=1):
-        _show_working(number, state, output, system)
-    for text in (*deployed.notes, *line.curve.notes, *line.source.notes):
-        output.say(f"note: {text}")
-    for text in (line.splices, *line.source.sources):
-        output.say(f"source: {text}")
+        _show_working(number, state, output)
+    output.say_each("note", (*deployed.notes, *line.curve.notes, *line.source.notes))
+    output.say_each("source", (line.splices, *line.source.sources))
 
 
 def _pair(values: Any, *, equal: bool) -> str:
@@ -534,11 +510,9 @@ def _pair(values: Any, *, equal: bool) -> str:
     return f"{short(float(values.max()), 4)}, {short(float(values.min()), 4)}"
 
 
-def _show_working(
-    number: int, state: WorkingState, output: CommandOutput, system: UnitSystem
-) -> None:
-    force, per_newton = display_unit("N", system)
-    length, per_metre = display_unit("m", system)
+def _show_working(number: int, state: WorkingState, output: CommandOutput) -> None:
+    force, per_newton = output.unit("N")
+    length, per_metre = output.unit("m")
     point = state.point
     told = (
         f"working.{number}: {per_newton * float(point.mean_tension):.4g} {force} "

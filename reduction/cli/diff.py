@@ -6,13 +6,14 @@ import os
 import subprocess
 import sys
 import tarfile
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
 from dataclasses import asdict
 from importlib.metadata import distributions
 from io import BytesIO
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from rich.markup import escape
 
@@ -184,9 +185,8 @@ def _products(path: Path, scratch: Path, output: CommandOutput) -> Path:
 
 
 def _say(found: Differences, output: CommandOutput) -> None:
-    units = cast("UnitSystem", output.units)
-    output.say(_verdict(found, units))
-    _say_numbers(found.changes, units, output)
+    output.say(_verdict(found, output.system))
+    _say_numbers(found.changes, output)
     texts = [one for one in found.changes if one.kind == "text" and one.n_changed]
     _say_counted("texts changed", (one.variable for one in texts), output)
     for heading, named in (("removed", found.removed), ("added", found.added)):
@@ -254,7 +254,7 @@ def _ranked(changes: Iterable[Change]) -> list[Change]:
     return sorted((one for one in changes if one.kind in _ORDER), key=rank)
 
 
-def _say_numbers(changes: Sequence[Change], units: UnitSystem, output: CommandOutput) -> None:
+def _say_numbers(changes: Sequence[Change], output: CommandOutput) -> None:
     """The worst of each quantity, in whatever files it changed."""
     of_name: dict[tuple[str, str], list[Change]] = {}
     for one in _ranked(one for one in changes if one.n_changed):
@@ -266,7 +266,7 @@ def _say_numbers(changes: Sequence[Change], units: UnitSystem, output: CommandOu
     )
     for same in list(of_name.values())[:_ROWS]:
         worst = same[0]
-        before, after, unit = _shown(worst, units)
+        before, after, unit = _shown(worst, output.system)
         table.add_row(
             escape(worst.variable + (f" [{unit}]" if unit else "")),
             escape(", ".join([worst.file, *_where(worst)])), before, after, _far(worst),
@@ -366,10 +366,9 @@ def _say_counted(heading: str, names: Iterable[str], output: CommandOutput) -> N
 
 def _counted(names: Iterable[str]) -> list[str]:
     """Each name once, with the number of its files."""
-    counts: dict[str, int] = {}
-    for name in names:
-        counts[name] = counts.get(name, 0) + 1
-    return [f"{name} ({_number(n, 'file')})" if n > 1 else name for name, n in counts.items()]
+    return [
+        f"{name} ({_number(n, 'file')})" if n > 1 else name for name, n in Counter(names).items()
+    ]
 
 
 def _number(n: int, name: str) -> str:

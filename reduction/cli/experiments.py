@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from rich.markup import escape
@@ -11,8 +12,9 @@ from rich.markup import escape
 from reduction.archive.csv_columns import csv_text
 from reduction.archive.write import write_text_atomically
 from reduction.campaign.experiment_plans import ExperimentSpec, RunSeries, load_spec, read_runs
+from reduction.campaign.toml_file import at_place
 from reduction.cli.output import CommandOutput
-from reduction.cli.printed_numbers import ShownUnits, fitted_unit, plain, short, table_of
+from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.experiments.designs import Design, DesignKind, box_behnken, plackett_burman
 from reduction.experiments.fit_results import (
     FIT_REASONS,
@@ -44,52 +46,68 @@ from reduction.experiments.surface_warnings import (
     negative_surfaces,
 )
 from reduction.quantities.units import UnitSystem, combined_unit, display_unit
-from reduction.record.errors import DataError, FitError, ReductionError, SettingsError
+from reduction.record.errors import DataError, FitError, SettingsError
 
 _ROUNDING = 1e-9
+
+
+def _fitted_unit(unit: str, transform: str) -> str:
+    """Unit of the coefficients of a response; empty where none is stated."""
+    names = {"none": unit, "log": f"ln({unit})"}
+    return names.get(transform, f"Box-Cox({unit})") if unit else ""
+
+
+class _ShownUnits:
+    """Units of a response and of its factors, as they are shown."""
+
+    def __init__(
+        self, response: str, transform: str, factors: tuple[str, ...], system: UnitSystem
+    ) -> None:
+        # a logarithm has no unit that could be changed
+        self.unit, self.scale = display_unit(
+            _fitted_unit(response, transform), system if transform == "none" else "si"
+        )
+        self._factors = [display_unit(unit, system) for unit in factors]
+
+    def of_term(self, powers: tuple[int, ...]) -> tuple[str, float]:
+        """Unit of an engineering coefficient and what it is multiplied with."""
+        units = [unit for unit, _ in self._factors]
+        scales = [scale for _, scale in self._factors]
+        scale = math.prod(one**power for one, power in zip(scales, powers, strict=True))
+        return combined_unit(self.unit, units, powers), self.scale / scale
 
 
 def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Print the run sheet of SPEC.toml, and write it where asked for."""
     spec = load_spec(path)
-    try:
+    with at_place(f"{path}: "):
         design = _design(kind, spec)
         sheet = make_run_sheet(
             design,
             tuple(factor.levels for factor in spec.factors if factor.levels is not None),
-            rated_break_strength=spec.rated_break_strength,
-            repeats=spec.repeats,
+            rated_break_strength=spec.keys.rated_break_strength,
+            repeats=spec.keys.repeats,
         )
         cautions = find_cautions(
-            sheet, load_limit=spec.load_limit, peak_share_limit=spec.peak_share_limit
+            sheet, load_limit=spec.keys.load_limit[0], peak_share_limit=spec.keys.load_limit[1]
         )
         precision = _precision(design, sheet, spec)
-    except ReductionError as error:
-        raise _in_file(path, error) from error
     if out is not None:
         write_text_atomically(out, _csv(design, sheet, spec))
-    units = cast("UnitSystem", output.units)
-    _show_sheet(sheet, spec, output, units)
+    _show_sheet(sheet, spec, output)
     for caution in cautions:
         output.say(f"caution: {caution.message}. {caution.hint}")
     if precision is not None:
-        _show_precision(precision, spec, output, units)
+        _show_precision(precision, spec, output)
     if out is not None:
         output.say(f"run sheet: {out}")
     output.answer(_document(kind, design, sheet, spec, cautions, precision, out))
 
 
-def _in_file(path: Path, error: ReductionError) -> ReductionError:
-    """The same error with the file in front."""
-    return type(error)(
-        f"{path}: {error.problem}", found=error.found, needed=error.needed, hint=error.hint
-    )
-
-
 def _design(kind: DesignKind, spec: ExperimentSpec) -> Design:
-    if spec.kind not in (None, kind):
+    if spec.keys.kind not in (None, kind):
         raise SettingsError(
-            "the design is another than that of the command", found=f'kind = "{spec.kind}"',
+            "the design is another than that of the command", found=f'kind = "{spec.keys.kind}"',
             needed=kind,
         )  # fmt: skip
     if not spec.factors:
@@ -97,28 +115,29 @@ def _design(kind: DesignKind, spec: ExperimentSpec) -> Design:
             "there are no factors", needed='[factors] with frequency = ["0.1 Hz", "0.5 Hz"]'
         )
     if kind == "box-behnken":
-        if spec.n_runs is not None:
+        if spec.keys.n_runs is not None:
             raise SettingsError(
                 "experiment.n_runs is for plackett-burman", needed="n_centre, or nothing"
             )
-        return box_behnken(len(spec.factors), n_centre=spec.n_centre)
-    if spec.n_centre is not None:
+        return box_behnken(len(spec.factors), n_centre=spec.keys.n_centre)
+    if spec.keys.n_centre is not None:
         raise SettingsError(
             "experiment.n_centre is for box-behnken", needed="n_runs, or nothing",
             hint="Two levels have no centre.",
         )  # fmt: skip
-    return plackett_burman(len(spec.factors), n_runs=spec.n_runs)
+    return plackett_burman(len(spec.factors), n_runs=spec.keys.n_runs)
 
 
 def _precision(
     design: Design, sheet: RunSheet, spec: ExperimentSpec
 ) -> ExpectedPrecision | float | None:
     """Half widths of a surface, or the smallest effect of a screening."""
-    if spec.sigma is None:
+    sigma, _ = spec.keys.sigma
+    if sigma is None:
         return None
     if design.kind == "plackett-burman":
-        return float(smallest_effect(design, sigma=spec.sigma))
-    return expected_precision(sheet.coded, sigma=spec.sigma, factor_names=sheet.names)
+        return float(smallest_effect(design, sigma=sigma))
+    return expected_precision(sheet.coded, sigma=sigma, factor_names=sheet.names)
 
 
 def _level_units(spec: ExperimentSpec) -> tuple[str, ...]:
@@ -167,17 +186,13 @@ def _csv(design: Design, sheet: RunSheet, spec: ExperimentSpec) -> str:
     )
 
 
-def _show_sheet(
-    sheet: RunSheet, spec: ExperimentSpec, output: CommandOutput, system: UnitSystem
-) -> None:
+def _show_sheet(sheet: RunSheet, spec: ExperimentSpec, output: CommandOutput) -> None:
     columns = [
-        (name, *display_unit(unit, system), sheet.engineering[:, place])
+        (name, *output.unit(unit), sheet.engineering[:, place])
         for place, (name, unit) in enumerate(zip(sheet.names, _level_units(spec), strict=True))
     ]
     columns += [
-        (name, "%RBS", 100.0, values)
-        if unit == "1"
-        else (name, *display_unit(unit, system), values)
+        (name, "%RBS", 100.0, values) if unit == "1" else (name, *output.unit(unit), values)
         for name, (values, unit) in _loads(sheet).items()
         if name != "minimum_share"  # the room of a terminal; it is in the file
     ]
@@ -195,10 +210,10 @@ def _show_precision(
     precision: ExpectedPrecision | float,
     spec: ExperimentSpec,
     output: CommandOutput,
-    system: UnitSystem,
 ) -> None:
-    unit, scale = ("%", 100.0) if spec.sigma_unit == "1" else display_unit(spec.sigma_unit, system)
-    sigma = f"{short(scale * (spec.sigma or 0.0))} {unit}"
+    one, si_unit = spec.keys.sigma
+    unit, scale = ("%", 100.0) if si_unit == "1" else output.unit(si_unit)
+    sigma = f"{short(scale * (one or 0.0))} {unit}"
     if isinstance(precision, float):
         output.say(
             f"expected with sigma {sigma}: effects above {short(scale * precision)} {unit} are "
@@ -261,7 +276,7 @@ def _document(
     ]
     expected: dict[str, Any] | None = None
     if precision is not None:
-        expected = {"sigma": spec.sigma, "unit": spec.sigma_unit}
+        expected = dict(zip(("sigma", "unit"), spec.keys.sigma, strict=True))
     if isinstance(precision, float) and expected is not None:
         expected |= {"smallest_significant_effect": precision, "significance": 0.10}
     elif isinstance(precision, ExpectedPrecision) and expected is not None:
@@ -280,7 +295,11 @@ def _document(
         "kind": kind,
         "factors": [
             dict(
-                zip(("unit", "low", "high"), factor.axis(spec.rated_break_strength), strict=True),
+                zip(
+                    ("unit", "low", "high"),
+                    factor.axis(spec.keys.rated_break_strength),
+                    strict=True,
+                ),
                 name=factor.name,
                 level_unit=unit,
             )
@@ -317,7 +336,7 @@ def _surface_document(
 ) -> dict[str, Any]:
     """One response: every number of its surface."""
     anova, lack, canonical = surfaces.anova, surfaces.lack_of_fit, surfaces.canonical
-    unit = fitted_unit(runs.response_units[index], surfaces.transform[index])
+    unit = _fitted_unit(runs.response_units[index], surfaces.transform[index])
     lines = zip(
         anova.source, anova.degrees_of_freedom[index], anova.sum_of_squares[index],
         anova.mean_square[index], anova.f[index], anova.p_value[index], anova.error_term,
@@ -453,12 +472,11 @@ def _show_surfaces(
     runs: RunSeries,
     notes: tuple[str, ...],
     output: CommandOutput,
-    system: UnitSystem,
 ) -> None:
     """Each surface: its terms, its analysis of variance, its stationary point."""
     for index, name in enumerate(surfaces.response_names):
         transform = surfaces.transform[index]
-        shown = ShownUnits(runs.response_units[index], transform, runs.factor_units, system)
+        shown = _ShownUnits(runs.response_units[index], transform, runs.factor_units, output.system)
         power = f", Box-Cox exponent {surfaces.transform_exponent[index]:.3g}"
         unit = f" [{shown.unit}]" if shown.unit else f" ({transform})" * (transform != "none")
         output.say(f"{name}{unit}{power if transform == 'box-cox' else ''}")
@@ -476,11 +494,10 @@ def _show_surfaces(
             f"{surfaces.degrees_of_freedom[index]} degrees of freedom"
         )
         _show_anova(surfaces, index, shown.scale, output)
-        _show_stationary(surfaces, index, shown, runs, output, system)
+        _show_stationary(surfaces, index, shown, runs, output)
         _show_equation(surfaces, index, shown, output)
         output.say("")
-    for note in notes:
-        output.say(f"note: {note}")
+    output.say_each("note", notes)
 
 
 def _show_terms(
@@ -501,7 +518,7 @@ def _show_terms(
 
 
 def _show_equation(
-    surfaces: ResponseSurfaces, index: int, shown: ShownUnits, output: CommandOutput
+    surfaces: ResponseSurfaces, index: int, shown: _ShownUnits, output: CommandOutput
 ) -> None:
     """The equation in the units of the factors, where they have any."""
     engineering = surfaces.coefficient_engineering[index]
@@ -544,10 +561,9 @@ def _show_anova(
 def _show_stationary(
     surfaces: ResponseSurfaces,
     index: int,
-    shown: ShownUnits,
+    shown: _ShownUnits,
     runs: RunSeries,
     output: CommandOutput,
-    system: UnitSystem,
 ) -> None:
     canonical = surfaces.canonical
     reason = STATIONARY_REASONS[int(canonical.reason[index])]
@@ -565,7 +581,7 @@ def _show_stationary(
         runs.factor_names, runs.factor_units, canonical.stationary_point[index],
         canonical.stationary_point_engineering[index], strict=True,
     ):  # fmt: skip
-        text, scale = display_unit(unit, system)
+        text, scale = output.unit(unit)
         table.add_row(escape(name), short(coded), short(scale * engineering), escape(text))
     output.show(table)
 
@@ -575,11 +591,10 @@ def _show_effects(
     runs: RunSeries,
     notes: tuple[str, ...],
     output: CommandOutput,
-    system: UnitSystem,
 ) -> None:
     """Effects of each response, largest first, and the smallest that counts."""
     for index, name in enumerate(runs.response_names):
-        unit, scale = display_unit(runs.response_units[index], system)
+        unit, scale = output.unit(runs.response_units[index])
         output.say(f"{name} [{unit}]" if unit else name)
         if effects.reason[index]:
             output.say(f"  {effects.reason[index]}")
@@ -603,8 +618,7 @@ def _show_effects(
             f"{short(effects.degrees_of_freedom, 3)} degrees of freedom"
         )
         output.say("")
-    for note in notes:
-        output.say(f"note: {note}")
+    output.say_each("note", notes)
 
 
 _NEAR_A_LEVEL = 0.1
@@ -615,19 +629,14 @@ def fit_runs(path: Path, spec_path: Path | None, *, output: CommandOutput) -> No
     """Fit what SPEC.toml asks for to a table of runs, and print it."""
     spec = None if spec_path is None else load_spec(spec_path)
     runs = read_runs(path, spec)
-    units = cast("UnitSystem", output.units)
-    try:
-        if spec is not None and spec.kind == "plackett-burman":
+    with at_place(f"{path}: "):
+        if spec is not None and spec.keys.kind == "plackett-burman":
             effects, notes = _screen(runs)
-            _show_effects(effects, runs, notes, output, units)
+            _show_effects(effects, runs, notes, output)
             output.answer(_frame(runs, notes) | _effects_document(effects, runs))
             return
         surfaces = _fit(runs, spec)
         drift = drift_over_order(surfaces, runs.run_order)
-    except (DataError, FitError) as error:
-        raise type(error)(
-            f"{path}: {error.problem}", found=error.found, needed=error.needed, hint=error.hint
-        ) from error
     notes = (
         *runs.notes,
         *map(str, surfaces.notes),
@@ -635,7 +644,7 @@ def fit_runs(path: Path, spec_path: Path | None, *, output: CommandOutput) -> No
         *map(str, negative_surfaces(surfaces)),
         *map(str, drifting_responses(surfaces, drift)),
     )
-    _show_surfaces(surfaces, runs, notes, output, units)
+    _show_surfaces(surfaces, runs, notes, output)
     documents = {
         name: _surface_document(surfaces, index, runs, drift)
         for index, name in enumerate(surfaces.response_names)
@@ -662,7 +671,7 @@ def _fit(runs: RunSeries, spec: ExperimentSpec | None) -> ResponseSurfaces:
         units="coded",
         run_names=runs.run_names,
         blocks=runs.blocks,
-        block_treatment="random" if spec and spec.specimens_as == "random" else "fixed",
+        block_treatment="random" if spec and spec.keys.specimens_as == "random" else "fixed",
         transforms=[entry.transform for entry in declared] or "none",
     )
 

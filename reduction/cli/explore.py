@@ -7,7 +7,6 @@ import traceback
 import webbrowser
 from contextlib import suppress
 from pathlib import Path
-from typing import cast
 
 from reduction.campaign.load import find_campaign
 from reduction.cli.output import INTERRUPTED, CommandOutput
@@ -15,7 +14,6 @@ from reduction.cli.progress import campaign_progress
 from reduction.cli.remote_paths import in_order
 from reduction.pages.explorer_campaign import Session
 from reduction.pages.explorer_server import ExploreServer
-from reduction.quantities.units import UnitSystem
 from reduction.record.errors import SettingsError
 
 
@@ -36,13 +34,9 @@ def serve(
     def told_of_defect(error: Exception) -> None:
         if os.environ.get("REDUCTION_DEBUG"):
             output.error("".join(traceback.format_exception(error)))
-        output.error(
-            f"internal error, a defect of this program: {type(error).__name__}: {error}. "
-            "Set REDUCTION_DEBUG=1 to see where, and please report it."
-        )
+        output.defect(error)
 
-    units = cast("UnitSystem", output.units)
-    with in_order(), ExploreServer(session, units, port, told_of_defect) as server:
+    with in_order(), ExploreServer(session, output.system, port, told_of_defect) as server:
         output.say(f"{path}: {len(session.surveys)} tests")
         output.say(f"Open {server.address}")
         output.say("Ctrl-C ends it. Only this machine is answered, and only with this address.")

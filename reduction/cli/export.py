@@ -31,7 +31,7 @@ from reduction.lines.export_sources import (
     line_from_lookup,
 )
 from reduction.lines.published_source import published_sources
-from reduction.quantities.units import Dimension, UnitSystem, parse_quantity
+from reduction.quantities.units import Dimension, parse_quantity
 from reduction.record.errors import SettingsError
 
 _HYDRODYNAMICS_NEEDED = 'two numbers, "1.6, 0.02": across the line, along it'
@@ -226,9 +226,8 @@ def export_source(
     )
     strength = _strength_of_shares(sources, values)
     line = _with_syrope(line, *syrope, form=form, rated_break_strength=strength)
-    units = cast("UnitSystem", output.units)
     there = set(out.parent.iterdir()) if out.parent.is_dir() else set()
-    paths = export_line(line, to, out, form=form, units=units)
+    paths = export_line(line, to, out, form=form, units=output.system)
     notes = (*guards_of(line), *closeness_of(line, to, form), *line.notes)
     output.say(f"{line.name}: {line.curve}")
     for text in (*line.sources, *(f"note: {note}" for note in notes)):

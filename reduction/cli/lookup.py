@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal, cast
+from typing import Any, Literal
 
 import numpy as np
 from rich.table import Table
@@ -293,7 +293,7 @@ def list_sources(source: str, search: Mapping[str, Any], *, output: CommandOutpu
     """Print what SOURCE holds: each line, its quantities, and over which range."""
     lines = find_lines(_lines_of(source), **search)
     unit, factor = ("in", 1 / 0.0254) if output.units == "us" else ("mm", 1e3)
-    force, scale = display_unit("N", cast("UnitSystem", output.units))
+    force, scale = output.unit("N")
     table = table_of(
         "line", "source", "material", "construction", "condition", f"diameter\n[{unit}]",
         f"%RBS are of\n[{force}]", "quantities", texts=5,
@@ -384,7 +384,7 @@ def _write_table(
     """Write the table where a file was named, and say so."""
     if out is None or form is None:
         return []
-    paths = export_table(table, form, out, units=cast("UnitSystem", output.units))
+    paths = export_table(table, form, out, units=output.system)
     for path in paths:
         output.say(f"written: {path}")
     return [str(path) for path in paths]
@@ -393,12 +393,11 @@ def _write_table(
 def _show(
     line: LineSource, found: DesignValues, points: Mapping[str, Floats], output: CommandOutput
 ) -> None:
-    system = cast("UnitSystem", output.units)
-    unit, factor = display_unit(found.unit, system)
+    unit, factor = output.unit(found.unit)
     branch = f", {found.branch} branch" if found.branch else ""
     output.say(f"{found.quantity} of {line.name}{branch}; {found.source}")
     if output.is_text:
-        output.show(_table(line, found, points, unit, factor, system))
+        output.show(_table(line, found, points, unit, factor, output.system))
     _said_of_lines(output, (line, found))
 
 
@@ -624,8 +623,7 @@ def _show_difference(
     others: Mapping[str, Floats],
     output: CommandOutput,
 ) -> None:
-    system = cast("UnitSystem", output.units)
-    unit, factor = display_unit(found.unit, system)
+    unit, factor = output.unit(found.unit)
     branch = f", {found.first.branch} branch" if found.first.branch else ""
     # one specimen in two tests has one name
     told = [
@@ -639,12 +637,12 @@ def _show_difference(
             + " and ".join(
                 f"{short(scale * line.rated_break_strength)} {force}"
                 for line in (first, second)
-                for force, scale in (display_unit("N", system),)
+                for force, scale in (output.unit("N"),)
             )
             + "; loads are those of the first"
         )
     if output.is_text:
-        output.show(_difference_table(first, found, points, unit, factor, system))
+        output.show(_difference_table(first, found, points, unit, factor, output.system))
     output.say("differ: zero is not in the 95 % interval that follows from those of both lines")
     output.say(
         "95 % of the difference is of these lines: the surfaces, or the curves, that were tested"

@@ -20,7 +20,7 @@ from reduction.cli.output import INTERRUPTED, CommandOutput, guarded
 from reduction.cli.usage import Commands, here, written_here
 
 
-def here_if_given(path: Path | None) -> Path | None:
+def _here_if_given(path: Path | None) -> Path | None:
     """A path of this machine, where one is given."""
     return None if path is None else here(path)
 
@@ -52,7 +52,7 @@ OwnCampaign = Annotated[
         metavar="CAMPAIGN.toml",
         help="Where the campaign is, if in neither raw/CAMPAIGN/ nor CAMPAIGN/.",
         show_default=False,
-        callback=here_if_given,
+        callback=_here_if_given,
     ),
 ]
 
@@ -745,7 +745,7 @@ def diff(
             metavar="B",
             help="After: the same kind of thing.",
             show_default=False,
-            callback=here_if_given,
+            callback=_here_if_given,
         ),
     ] = None,
     against: Annotated[
@@ -813,42 +813,8 @@ def main(
     """Reduces cyclic tension tests of compliant mooring elements."""
 
 
-app.command()(init)
-
-app.command()(sniff)
-
-app.command()(check)
-
-app.command()(run)
-
-app.command()(experiment)
-
-app.command()(surface)
-
-app.command()(predict)
-
-app.command()(compare)
-
-app.command()(composite)
-
-app.command()(assembly)
-
-app.command()(export)
-
-app.command()(lookup)
-
-app.command()(budget)
-
-app.command()(catalogue)
-
-app.command()(report)
-
-app.command()(explore)
-
-app.command()(verify)
-
-app.command()(diff)
-
-app.command()(reproduce)
-
-app.command()(schema)
+for command in (
+    init, sniff, check, run, experiment, surface, predict, compare, composite, assembly, export,
+    lookup, budget, catalogue, report, explore, verify, diff, reproduce, schema,
+):  # fmt: skip
+    app.command()(command)

@@ -6,11 +6,11 @@ import json as json_module
 import os
 import sys
 import textwrap
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass, field
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO, cast
 
 import typer
 from rich.cells import cell_len
@@ -23,6 +23,9 @@ from reduction.cli.usage import grouped
 from reduction.readers.remote_files import in_words
 from reduction.record.errors import ReductionError, SettingsError, refused_by_system
 from reduction.record.plain_text import visible, without_secrets
+
+if TYPE_CHECKING:  # help is printed without the units
+    from reduction.quantities.units import UnitSystem
 
 NOTHING = "-"
 """What stands in an empty cell, so that every line has as many columns."""
@@ -100,6 +103,22 @@ class CommandOutput:
         has_room = _least_width(table, console) <= console.width
         console.print(table if has_room else _row_by_row(table))
 
+    @property
+    def system(self) -> UnitSystem:
+        """Units of what is shown."""
+        return cast("UnitSystem", self.units)
+
+    def unit(self, si_unit: str) -> tuple[str, float]:
+        """Unit in which numbers are shown, and what those in SI are multiplied with."""
+        from reduction.quantities.units import display_unit
+
+        return display_unit(si_unit, self.system)
+
+    def say_each(self, what: str, texts: Iterable[object]) -> None:
+        """Lines of one kind: notes, sources."""
+        for text in texts:
+            self.say(f"{what}: {text}")
+
     def answer(self, document: object) -> None:
         """The JSON object of ``--json``; the only thing on standard output then."""
         if self.json:
@@ -113,6 +132,13 @@ class CommandOutput:
         """One error on standard error."""
         said = visible(without_secrets(in_words(text, self.names)))
         typer.echo(_between_words(said, sys.stderr), err=True)
+
+    def defect(self, error: Exception) -> None:
+        """An error that is no fault of the person's."""
+        self.error(
+            f"internal error, a defect of this program: {type(error).__name__}: {error}. "
+            "Set REDUCTION_DEBUG=1 to see where, and please report it."
+        )
 
     def raise_status(self, status: int) -> None:
         """Keep the highest status seen."""
@@ -208,11 +234,11 @@ def guarded(output: CommandOutput) -> Iterator[CommandOutput]:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except OSError as error:
         if error.errno is None:
-            _say_defect(output, error)
+            _end_of_defect(output, error)
         else:
             _say_failure(output, refused_by_system(error))
     except Exception as error:
-        _say_defect(output, error)
+        _end_of_defect(output, error)
     raise typer.Exit(output.status)
 
 
@@ -224,11 +250,8 @@ def _say_failure(output: CommandOutput, error: ReductionError) -> None:
         output.answer(failed)
 
 
-def _say_defect(output: CommandOutput, error: Exception) -> None:
+def _end_of_defect(output: CommandOutput, error: Exception) -> None:
     if os.environ.get("REDUCTION_DEBUG"):
         raise error
-    output.error(
-        f"internal error, a defect of this program: {type(error).__name__}: {error}. "
-        "Set REDUCTION_DEBUG=1 to see where, and please report it."
-    )
+    output.defect(error)
     output.raise_status(1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -15,8 +15,9 @@ from reduction.archive.csv_tables import write_tables
 from reduction.archive.write import write_text_atomically
 from reduction.batch.prediction_product import compare_archive, write_hoses, write_named
 from reduction.campaign.armour_spec import load_armour_case
-from reduction.campaign.load import load_hose, target_of
+from reduction.campaign.hose_spec import load_hose
 from reduction.campaign.plan import ComparisonPlan
+from reduction.campaign.toml_file import at_place
 from reduction.campaign.wave_spec import load_wave_case
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, short, table_of
@@ -29,18 +30,18 @@ from reduction.prediction.wave_load import PredictedWaveLoad, predict_wave_load
 from reduction.quantities.names import quantity
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.readers.raw_log import hash_source
-from reduction.record.errors import DataError, SettingsError
+from reduction.record.errors import SettingsError
 from reduction.report.campaign_page import write_report
 from reduction.report.single_pages import write_armour_page, write_wave_page
 from reduction.report.text_style import shown
 
 
 def _show_designs(
-    designs: Sequence[DesignedHose], target: HoseTarget, output: CommandOutput, system: UnitSystem
+    designs: Sequence[DesignedHose], target: HoseTarget, output: CommandOutput
 ) -> None:
     """Print each way to reach a target, and why there is none."""
-    force, per_newton = display_unit("N", system)
-    small, per_metre = ("in", 1 / 0.0254) if system == "us" else ("mm", 1e3)
+    force, per_newton = output.unit("N")
+    small, per_metre = ("in", 1 / 0.0254) if output.system == "us" else ("mm", 1e3)
     load = "" if target.tension is None else f" and {per_newton * target.tension:.5g} {force}"
     table = table_of(
         "change", "angle [deg]", f"cords [1/{small}]", f"layers [{small}]", f"bore [{small}]",
@@ -117,13 +118,12 @@ _EVENTS = {
 def predict_hose(path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Predict the hose of SPEC.toml and print it; with ``out``, write archive, tables and page."""
     plan, file = load_hose(path)
-    target = target_of(path, file)
+    target = None if file.target is None else HoseTarget(**file.target.model_dump())
     hose = predict_from_plan(plan)
     designs = () if target is None else design_hoses(plan, target)
-    units = cast("UnitSystem", output.units)
-    _show_hose(hose, output, units)
+    _show_hose(hose, output)
     if target is not None:
-        _show_designs(designs, target, output, units)
+        _show_designs(designs, target, output)
         if all(one.refusal for one in designs):
             output.error(f"{path}: target: no hose like this one does that")
             output.raise_status(SettingsError.exit_status)
@@ -137,7 +137,7 @@ def predict_hose(path: Path, *, out: Path | None, output: CommandOutput) -> None
             command=f"reduction predict hose {path.name}",
         )
         tables = write_tables([], out / "tables", predictions=out / "predictions.nc")
-        page = write_report(out, out, units=units)
+        page = write_report(out, out, units=output.system)
         output.say(f"archive: {out / 'predictions.nc'}")
         output.say(f"tables: {len(tables)} in {out / 'tables'}")
         output.say(f"figures: {page}")
@@ -158,10 +158,10 @@ def _events(hose: PredictedHose) -> dict[str, HoseEvent]:
     }
 
 
-def _show_hose(hose: PredictedHose, output: CommandOutput, system: UnitSystem) -> None:
-    force, per_newton = display_unit("N", system)
-    pressure, per_pascal = display_unit("Pa", system)
-    small = shown("small length", system)
+def _show_hose(hose: PredictedHose, output: CommandOutput) -> None:
+    force, per_newton = output.unit("N")
+    pressure, per_pascal = output.unit("Pa")
+    small = shown("small length", output.system)
     output.say(
         f"hose {hose.plan.name}: {np.degrees(float(hose.plan.design.wrap_angle)):.4g} degrees from "
         f"the axis, {hose.number_of_cords:.1f} cords, ribbon "
@@ -205,8 +205,7 @@ def _show_hose(hose: PredictedHose, output: CommandOutput, system: UnitSystem) -
             f"{100 * layer.least_strain:.1f} to {100 * layer.greatest_strain:.1f} % up to the "
             f"working load{needed}"
         )
-    for note in hose.notes:
-        output.say(f"note: {note}")
+    output.say_each("note", hose.notes)
 
 
 def _spread(hose: PredictedHose, event: str) -> dict[str, float]:
@@ -300,21 +299,16 @@ _OF_LAYER = {
 def predict_cable(path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Predict the armour of SPEC.toml and print it; with ``out``, write tables and page."""
     case = load_armour_case(path)
-    try:
+    with at_place(f"{path}: "):
         found = predict_armour_case(
             case.layers, case.strain, names=case.layer_names, tolerance=case.tolerance
         )
-    except (DataError, SettingsError) as error:
-        raise type(error)(
-            f"{path}: {error.problem}", found=error.found, needed=error.needed, hint=error.hint
-        ) from error
-    units = cast("UnitSystem", output.units)
-    _show_armour(found, output, units)
+    _show_armour(found, output)
     if out is not None:
         wires, layers = out / "tables" / "armour_wires.csv", out / "tables" / "armour_layers.csv"
         write_text_atomically(wires, _wires_csv(found))
         write_text_atomically(layers, _layers_csv(found))
-        page = write_armour_page(found, out, name=case.name, units=units)
+        page = write_armour_page(found, out, name=case.name, units=output.system)
         output.say(f"tables: {wires}, {layers}")
         output.say(f"figures: {page}")
     output.answer(
@@ -353,10 +347,10 @@ def _layers_csv(found: PredictedArmour) -> str:
     )
 
 
-def _show_armour(found: PredictedArmour, output: CommandOutput, system: UnitSystem) -> None:
-    force, per_newton = display_unit("N", system)
-    stress, per_pascal = display_unit("Pa", system)
-    if system == "si":
+def _show_armour(found: PredictedArmour, output: CommandOutput) -> None:
+    force, per_newton = output.unit("N")
+    stress, per_pascal = output.unit("Pa")
+    if output.system == "si":
         stress, per_pascal = "MPa", 1e-6
     table = table_of(
         "layer", "theory", f"T [{force}]", f"N' [{force}]", "G' [N m]", "H [N m]",
@@ -403,8 +397,7 @@ def _show_armour(found: PredictedArmour, output: CommandOutput, system: UnitSyst
         )
     for sentence in found.use[0].statement:
         output.say(f"  {sentence}")
-    for note in found.notes:
-        output.say(f"note: {note}")
+    output.say_each("note", found.notes)
 
 
 def _armour_document(found: PredictedArmour) -> dict[str, Any]:
@@ -462,21 +455,14 @@ _UNITS = {
 
 def predict_wave(path: Path, *, out: Path | None, output: CommandOutput) -> None:
     """Predict the wave load of SPEC.toml and print it; with ``out``, write table and page."""
-    case = load_wave_case(path)
-    given = asdict(case)
-    name = given.pop("name")
-    try:
-        found = predict_wave_load(**given)
-    except DataError as error:
-        raise DataError(
-            f"{path}: {error.problem}", found=error.found, needed=error.needed, hint=error.hint
-        ) from error
-    units = cast("UnitSystem", output.units)
-    _show_wave_load(found, output, units)
+    name, case = path.stem, load_wave_case(path)
+    with at_place(f"{path}: "):
+        found = predict_wave_load(**case)
+    _show_wave_load(found, output)
     if out is not None:
         table = out / "tables" / "wave_load.csv"
         write_text_atomically(table, _csv(found))
-        page = write_wave_page(found, out, name=name, units=units)
+        page = write_wave_page(found, out, name=name, units=output.system)
         output.say(f"table: {table}")
         output.say(f"figures: {page}")
     output.answer(
@@ -492,9 +478,9 @@ def _csv(found: PredictedWaveLoad) -> str:
     )
 
 
-def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput, system: UnitSystem) -> None:
-    length, per_metre = display_unit("m", system)
-    force, per_newton = display_unit("N", system)
+def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput) -> None:
+    length, per_metre = output.unit("m")
+    force, per_newton = output.unit("N")
     section, theory = found.load.section, found.theory
     depth = float(section.immersion_depth)
     output.say(
@@ -537,8 +523,7 @@ def _show_wave_load(found: PredictedWaveLoad, output: CommandOutput, system: Uni
         f"{short(per_newton * float(anchor.wave), 4)}, current "
         f"{per_newton * float(anchor.current):.4g} and wind {per_newton * float(anchor.wind):.4g}"
     )
-    for note in found.notes:
-        output.say(f"note: {note}")
+    output.say_each("note", found.notes)
 
 
 def _wave_load_document(found: PredictedWaveLoad) -> dict[str, Any]:
@@ -585,8 +570,7 @@ def compare_test(measured: Path, spec: Path, *, out: Path | None, output: Comman
         calibrate=file.comparison.calibrate,
     )
     named = compare_archive(measured, hose, plan)
-    units = cast("UnitSystem", output.units)
-    _show_comparison(named, output, units)
+    _show_comparison(named, output)
     if out is not None:
         path = out / "comparisons.nc"
         write_named(
@@ -602,16 +586,16 @@ def compare_test(measured: Path, spec: Path, *, out: Path | None, output: Comman
             command=f"reduction compare {measured.name} {spec.name}",
         )
         tables = write_tables([], out / "tables", comparisons=path)
-        page = write_report(out, out, units=units)
+        page = write_report(out, out, units=output.system)
         output.say(f"archive: {path}")
         output.say(f"tables: {len(tables)} in {out / 'tables'}")
         output.say(f"figures: {page}")
     output.answer(_comparison_document(named) | {"out": None if out is None else str(out)})
 
 
-def _show_comparison(named: NamedComparison, output: CommandOutput, system: UnitSystem) -> None:
+def _show_comparison(named: NamedComparison, output: CommandOutput) -> None:
     found = named.comparison
-    force, factor = display_unit("N", system)
+    force, factor = output.unit("N")
     output.say(
         f"{named.test} of {named.specimen} ({found.measured.loading}) against {named.hose}: "
         f"{verdict_words(found.validation, unit=force, factor=factor)}"
@@ -647,15 +631,14 @@ def _show_comparison(named: NamedComparison, output: CommandOutput, system: Unit
             f"(u {100 * spread:.2g})"
         )
     if found.calibration is not None:
-        _show_calibration(found.calibration, output, system)
-    for note in named.notes:
-        output.say(f"note: {note}")
+        _show_calibration(found.calibration, output)
+    output.say_each("note", named.notes)
 
 
-def _show_calibration(fit: HoseCalibration, output: CommandOutput, system: UnitSystem) -> None:
+def _show_calibration(fit: HoseCalibration, output: CommandOutput) -> None:
     table = table_of("calibrated", "unit", "before", "after", "u", "95 % interval", texts=2)
     for place, name in enumerate(fit.parameter):
-        unit, factor = _shown_unit(name, system)
+        unit, factor = _shown_unit(name, output.system)
         table.add_row(
             name, unit,
             short(factor * fit.start[place]), short(factor * fit.value[place], 6),

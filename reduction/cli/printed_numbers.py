@@ -11,35 +11,8 @@ from rich.markup import escape
 from rich.table import Table
 
 from reduction.quantities.digits import fixed_number, places_within, plain_number
-from reduction.quantities.units import UnitSystem, combined_unit, display_unit
 
 _LARGE, _HUGE = 1e5, 1e7
-
-
-def fitted_unit(unit: str, transform: str) -> str:
-    """Unit of the coefficients of a response; empty where none is stated."""
-    names = {"none": unit, "log": f"ln({unit})"}
-    return names.get(transform, f"Box-Cox({unit})") if unit else ""
-
-
-class ShownUnits:
-    """Units of a response and of its factors, as they are shown."""
-
-    def __init__(
-        self, response: str, transform: str, factors: tuple[str, ...], system: UnitSystem
-    ) -> None:
-        # a logarithm has no unit that could be changed
-        self.unit, self.scale = display_unit(
-            fitted_unit(response, transform), system if transform == "none" else "si"
-        )
-        self._factors = [display_unit(unit, system) for unit in factors]
-
-    def of_term(self, powers: tuple[int, ...]) -> tuple[str, float]:
-        """Unit of an engineering coefficient and what it is multiplied with."""
-        units = [unit for unit, _ in self._factors]
-        scales = [scale for _, scale in self._factors]
-        scale = math.prod(one**power for one, power in zip(scales, powers, strict=True))
-        return combined_unit(self.unit, units, powers), self.scale / scale
 
 
 def plain(values: ArrayLike) -> Any:

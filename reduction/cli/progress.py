@@ -1,10 +1,10 @@
-"""Progress of a campaign on standard error, and its worker processes."""
+"""Progress of a campaign on standard error."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 
 from rich.console import Console
 from rich.markup import escape
@@ -20,9 +20,7 @@ from rich.progress import (
 from rich.text import Text
 
 from reduction.batch.campaign_status import TestStatus
-from reduction.batch.workers import Workers, local_workers
 from reduction.cli.output import CommandOutput
-from reduction.record.errors import SettingsError
 
 _WORDS = {
     "survey": "reading", "reduce": "reducing", "tables": "writing tables",
@@ -110,30 +108,3 @@ def campaign_progress(output: CommandOutput) -> Iterator[_CampaignProgress]:
     )  # fmt: skip
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         yield _CampaignProgress(bar)
-
-
-@contextmanager
-def chosen_workers(jobs: int | None, scheduler: str | None) -> Iterator[Workers | None]:
-    """Give what ``--jobs`` or ``--scheduler`` asks for, and end it afterwards."""
-    if jobs is not None and scheduler is not None:
-        raise SettingsError(
-            "--jobs and --scheduler exclude each other",
-            found=f"--jobs {jobs} --scheduler {scheduler}",
-            hint="How many workers a scheduler has is said where they are started.",
-        )
-    if scheduler is None:
-        with local_workers(jobs) if jobs is not None and jobs > 1 else nullcontext() as workers:
-            yield workers
-        return
-    try:
-        from reduction.batch.dask_cluster import users_cluster
-    except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
-            raise
-        raise SettingsError(
-            "--scheduler needs Dask, which is not installed",
-            found=f"no package '{error.name}'",
-            hint="Install it with: pip install 'mooring-reduction[cluster]'. --jobs needs none.",
-        ) from error
-    with users_cluster(scheduler) as workers:
-        yield workers

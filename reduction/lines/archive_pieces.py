@@ -1,11 +1,4 @@
-"""Archives of one specimen as pieces of a tension-strain curve.
-
-Uncertainty of a curve of an archive in two parts: its own, and what it shares with others.
-
-A stepwise test out of its archive as pieces of a tension-strain curve.
-
-Archives of one specimen as pieces of a tension-strain curve.
-"""
+"""Archives of one specimen, of stepwise tests too, as pieces of a tension-strain curve."""
 
 from __future__ import annotations
 

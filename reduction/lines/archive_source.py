@@ -1,10 +1,7 @@
 """Archives and processed campaigns as sources of design values.
 
-Curves of a reduced test as they are looked up: moduli and tensions over strain, slow pulls.
-
-Archives as sources of design values: surfaces of an experiment, curves of a test.
-
-Lines of an archive, and of the folder of a processed campaign, as sources of design values.
+Of a reduced test there are curves, moduli and tensions over strain and slow pulls; of an experiment
+there are surfaces.
 """
 
 from __future__ import annotations

@@ -79,11 +79,7 @@ def _line_from_open_archive(
     **stated: Any,
 ) -> ExportLine:
     """One curve of an archive that is open, as `line_from_archive`."""
-    given = {
-        name: value
-        for name, value in stated.items()
-        if value is not None and not (isinstance(value, float) and math.isnan(value))
-    }
+    given, origins = _known_of(stated)
     if "hose" in archive.dims:
         if curve is not None:
             raise SettingsError("a predicted hose has one curve", found=curve, needed="no --curve")
@@ -101,9 +97,19 @@ def _line_from_open_archive(
         )
     if attributes.get("references"):
         sources.append(f"references: {attributes['references']}")
-    sources += [f"{name.replace('_', ' ')}: stated at the export" for name in given]
+    sources += origins
     is_synthetic = attributes.get("synthetic", "no") == "yes"
     return ExportLine(**fields | given, sources=tuple(sources), is_synthetic=is_synthetic)
+
+
+def _known_of(stated: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """What is stated at the export and known, and a sentence on where each is from."""
+    given = {
+        name: value
+        for name, value in stated.items()
+        if value is not None and not (isinstance(value, float) and math.isnan(value))
+    }
+    return given, [f"{name.replace('_', ' ')}: stated at the export" for name in given]
 
 
 def _place(archive: xr.Dataset, dim: str, name: str | None) -> int:
@@ -314,11 +320,7 @@ def line_from_assembly(line: DeployedLine, **stated: Any) -> ExportLine:
     Diameter and mass of several tethers side by side are not those of one, and are left to be
     stated ([2]_ prints none).
     """
-    given = {
-        name: value
-        for name, value in stated.items()
-        if value is not None and not (isinstance(value, float) and math.isnan(value))
-    }
+    given, origins = _known_of(stated)
     deployed, assembly = line.deployed, line.deployed.assembly
     reached = np.flatnonzero(assembly.is_tested)
     tested = (
@@ -336,7 +338,7 @@ def line_from_assembly(line: DeployedLine, **stated: Any) -> ExportLine:
         sources=(
             line.splices,
             *line.source.sources,
-            *(f"{name.replace('_', ' ')}: stated at the export" for name in given),
+            *origins,
         ),
         notes=(
             f"strain is of the unstretched length of the whole assembly, "
@@ -438,11 +440,7 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
     Tested from the first node of a piece to the last; a gap between is in the notes ([3]_).
     """
     source = used_of(source, curve)
-    given = {
-        name: value
-        for name, value in stated.items()
-        if value is not None and not (isinstance(value, float) and math.isnan(value))
-    }
+    given, origins = _known_of(stated)
     first = int(np.argmax(curve.piece >= 0))
     n_tests = len(set(curve.piece_names))
     tests = f"{n_tests} tests" if n_tests > 1 else "1 test"
@@ -465,7 +463,7 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
         spread=_composite_spread(curve),
         sources=(
             *source.sources,
-            *(f"{name.replace('_', ' ')}: stated at the export" for name in given),
+            *origins,
         ),
         notes=(
             *([f"DOUBTFUL: {curve.doubt}"] if curve.doubt else []),
@@ -523,12 +521,8 @@ def line_from_lookup(
         part = dynamics.part
         sources += dynamics.sources
         notes += dynamics.notes
-    given = {
-        name: value
-        for name, value in stated.items()
-        if value is not None and not (isinstance(value, float) and math.isnan(value))
-    }
-    sources += [f"{name.replace('_', ' ')}: stated at the export" for name in given]
+    given, origins = _known_of(stated)
+    sources += origins
     own = {
         name: getattr(source, name)
         for name in (

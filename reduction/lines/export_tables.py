@@ -1,10 +1,6 @@
 """Curves and look-up tables as CSV, JSON, LaTeX, Markdown and netCDF.
 
-Curves and look-up tables as CSV, JSON, LaTeX and Markdown.
-
-Design values as a table that every table format takes: levels, value, intervals, loads.
-
-Curves and look-up tables as netCDF.
+Design values are one table that every format takes: levels, value, intervals, loads.
 """
 
 from __future__ import annotations

@@ -1,8 +1,4 @@
-"""What a look-up takes and returns.
-
-A quadratic surface of a line that can be looked up.
-
-What a look-up takes and gives.
+"""What a look-up takes, a surface or a curve of a line, and what it returns.
 
 References
 ----------

@@ -12,9 +12,7 @@ A cubic is given up to the end of its range on the page.  Two things show where 
 
 The share is the scatter of new lines, 1.96 times a tenth (sec. 4.4.1).
 
-Published lines and tethers as sources of design values.
-
-Published tethers as pieces of a tension-strain curve: all windows of one of them.
+A published tether is also all its windows, as pieces of a tension-strain curve.
 
 References
 ----------

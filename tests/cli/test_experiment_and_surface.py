@@ -286,7 +286,7 @@ def test_levels_beside_the_plan_ask_for_the_unit(fit):
     [
         (('"6400 lbf"', '"?"'), "1 value is still '?', first experiment.rated_break_strength"),
         (('"6400 lbf"', '"6400 ft"'), "experiment.rated_break_strength: unit 'ft' is not a unit"),
-        (('"6400 lbf"', '"-1 lbf"'), "experiment.rated_break_strength: a break strength is above"),
+        (('"6400 lbf"', '"-1 lbf"'), "experiment.rated_break_strength: is not positive"),
         (('"2 %"', '"0 %"'), "experiment.sigma: sigma is not above zero"),
         (('"0.1 Hz"', '"0.1 furlongs_x"'), "factors.frequency: the two levels"),
         (('"0.1 Hz"', '"0.9 Hz"'), "factors.frequency: the levels of frequency do not rise"),

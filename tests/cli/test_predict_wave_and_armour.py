@@ -94,9 +94,9 @@ def test_a_wave_load_has_a_table_and_a_page(predict, tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "status", "message"),
     [
-        ('"114 mm"', '"-114 mm"', SETTINGS, "case.toml: wave_load.outer_diameter is not positive"),
+        ('"114 mm"', '"-114 mm"', SETTINGS, "wave_load.outer_diameter: is not positive"),
         ('"114 mm"', '"114"', SETTINGS, "wave_load.outer_diameter: a value has no unit"),
-        ('"20 m"', '"0 m"', SETTINGS, "wave_load.wave_length is not positive"),
+        ('"20 m"', '"0 m"', SETTINGS, "wave_load.wave_length: is not positive"),
         ('"airy"', '"linear"', SETTINGS, "wave_load.wave_theory"),
         ('"1.25 g/cm^3"', '"2.5 g/cm^3"', DATA, "case.toml: 1 of 1 hoses are heavier than water"),
         ('"1.25 m"', '"4 m"', DATA, "case.toml: a wave 20 m long breaks before it is this high"),

@@ -38,7 +38,7 @@ def run(folder, tests=(), first_factor=None):
     done = run_campaign(
         few, processed=folder / "p", reports=folder / "r", clock=lambda: 0.0, tests=tests
     )
-    return done, {one.id: one for one in done.experiments}
+    return done, {one.id: one for one in done.parts["experiments"]}
 
 
 @pytest.fixture(scope="module")

@@ -183,7 +183,7 @@ def test_a_comparison_of_a_test_that_failed_is_a_failure_of_its_own(tmp_path):
         load_campaign(folder / "campaign.toml"), processed=tmp_path / "p",
         reports=tmp_path / "r", clock=lambda: 0.0,
     )  # fmt: skip
-    by_name = {one.id: one for one in done.comparisons}
+    by_name = {one.id: one for one in done.parts["comparisons"]}
     assert by_name["H64-pull"].status == "compared_with_notes"
     assert by_name["H64-static"].status == "failed"
     assert "test 'L-64' failed" in by_name["H64-static"].message
@@ -296,7 +296,7 @@ def uncalibrated(text):
 
 def test_a_comparison_waits_for_a_test_that_is_not_reduced_yet(tmp_path):
     done = run_again(copied(tmp_path), tmp_path, tests=["B-64"])
-    statuses = {one.id: one for one in done.comparisons}
+    statuses = {one.id: one for one in done.parts["comparisons"]}
     assert done.exit_status == 0
     assert statuses["H64-break"].status == "compared_with_notes"
     assert statuses["H64-static"].status == "no_work"
@@ -309,7 +309,9 @@ def test_a_comparison_waits_for_a_test_that_is_not_reduced_yet(tmp_path):
 def test_a_test_that_is_not_as_it_would_be_made_now_is_waited_for(run, tmp_path):
     made_already(run, tmp_path)
     changed = copied(tmp_path, lambda text: uncalibrated(text).replace('"96 in"', '"80 in"', 1))
-    again = {one.id: one for one in run_again(changed, tmp_path, tests=["B-64"]).comparisons}
+    again = {
+        one.id: one for one in run_again(changed, tmp_path, tests=["B-64"]).parts["comparisons"]
+    }
     assert again["H64-static"].status == "no_work"
     assert "not reduced yet from logs and settings as they stand now" in again["H64-static"].message
     assert again["H68-static"].status == "compared_with_notes"
@@ -324,7 +326,7 @@ def test_break_in_of_the_campaign_is_none_of_a_pull(tmp_path):
     )
     done = run_again(path, tmp_path)
     assert done.exit_status == 0
-    assert {one.status for one in done.comparisons} == {"compared_with_notes"}
+    assert {one.status for one in done.parts["comparisons"]} == {"compared_with_notes"}
 
 
 def test_verdicts_of_logs_that_are_bad_now_do_not_stay(run, tmp_path):
@@ -333,7 +335,7 @@ def test_verdicts_of_logs_that_are_bad_now_do_not_stay(run, tmp_path):
     for log in path.parent.glob("*.csv"):
         log.write_text("nothing\n", encoding="utf-8")
     done = run_again(path, tmp_path)
-    assert {one.status for one in done.comparisons} == {"failed"}
+    assert {one.status for one in done.parts["comparisons"]} == {"failed"}
     assert not (done.processed / "comparisons.nc").exists()
     assert not (done.processed / "tables" / "comparisons.csv").exists()
 

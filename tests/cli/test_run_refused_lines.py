@@ -33,7 +33,7 @@ def remarks(folder, pull, cut):
     done = run_campaign(campaign, processed=folder / "p", reports=folder / "r", clock=lambda: 0.0)
     with open_archive(done.processed / "surfaces.nc") as archive:
         said = archive["run_remark"].to_numpy()[0].tolist() if "run_remark" in archive else []
-    return dict(zip(KEPT, said, strict=True)), done.experiments[0].message
+    return dict(zip(KEPT, said, strict=True)), done.parts["experiments"][0].message
 
 
 def below(lines):

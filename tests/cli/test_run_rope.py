@@ -202,7 +202,7 @@ def test_a_failed_run_leaves_fourteen_and_says_so(run, tmp_path):
         reports=tmp_path / "r", clock=lambda: 0.0,
     )  # fmt: skip
     assert again.exit_status == 3
-    assert again.experiments[0].message.startswith("nylon: 14 of 15 runs")
+    assert again.parts["experiments"][0].message.startswith("nylon: 14 of 15 runs")
     with open_archive(again.processed / "surfaces.nc") as archive:
         assert "R04: its test failed" in archive["note"].to_numpy().tolist()
     assert (again.processed / "R04.nc").exists()
@@ -223,7 +223,7 @@ def test_without_a_slow_pull_k_1_and_tau_are_refused_and_the_rest_stands(tmp_pat
         assert np.isfinite(archive["test_apparent_spring_constant"].to_numpy()).all()
     assert any("no slow pull" in note for note in notes)
     assert again.exit_status == 5
-    assert "refused: response surfaces" in again.experiments[0].message
+    assert "refused: response surfaces" in again.parts["experiments"][0].message
 
 
 def test_an_experiment_none_of_whose_runs_gave_a_product_has_nothing_to_fit(tmp_path):
@@ -239,7 +239,7 @@ def test_an_experiment_none_of_whose_runs_gave_a_product_has_nothing_to_fit(tmp_
         whole, tests={name: whole.tests[name] for name in kept}, experiments={"nylon": bare}
     )
     found = run_campaign(few, processed=tmp_path / "p", reports=tmp_path / "r", clock=lambda: 0.0)
-    (one,) = found.experiments
+    (one,) = found.parts["experiments"]
     assert (one.status, one.exit_status) == ("failed", 5)
     assert one.message.startswith("there is nothing to fit; found no product of any of its 2 runs")
     assert not (found.processed / "surfaces.nc").exists()
@@ -252,7 +252,7 @@ def test_an_experiment_waits_for_runs_that_were_not_asked_for(tmp_path):
         tests=["R01", "Q01"],
     )  # fmt: skip
     assert part.exit_status == 0
-    assert part.experiments[0].message == (
+    assert part.parts["experiments"][0].message == (
         "not fitted: 14 of its runs not reduced yet from logs and settings as they stand now (R02, R03, R04, R05, ..)"
     )
     assert not (part.processed / "surfaces.nc").exists()

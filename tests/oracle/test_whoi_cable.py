@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from export_lines import line, rubber
 
-from reduction.lines.deck_other_codes import whoicable_text
+from reduction.lines.deck_formats import _whoicable_text
 
 CABLE = shutil.which("cable")
 PROBLEM = """
@@ -40,7 +40,9 @@ Layout
 def test_the_length_under_a_force_is_that_of_the_curve(tmp_path, form):
     one = line()
     force = 400.0
-    text = PROBLEM.format(name=one.identifier, force=force, material=whoicable_text(one, form=form))
+    text = PROBLEM.format(
+        name=one.identifier, force=force, material=_whoicable_text(one, form=form)
+    )
     (tmp_path / "x.cbl").write_text(text)
     done = subprocess.run(
         [CABLE, "-in", "x.cbl", "-out", "x.crs", "-static", "-nocpp", "-quit"],

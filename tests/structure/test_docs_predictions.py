@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from reduction.campaign import model as hosemodel
+from reduction.campaign import hose_spec as hosemodel
 from reduction.campaign.armour_spec import _ArmourKeys, _ArmourLayerKeys, load_armour_case
-from reduction.campaign.load import load_hose
+from reduction.campaign.hose_spec import load_hose
 from reduction.campaign.wave_spec import _WaveLoadKeys, load_wave_case
 
 PAGE = (Path(__file__).parents[2] / "docs" / "predictions.md").read_text(encoding="utf-8")
@@ -33,8 +33,8 @@ def written(tmp_path, table):
 
 def test_the_wave_load_that_is_shown_can_be_predicted(tmp_path):
     case = load_wave_case(written(tmp_path, "wave_load"))
-    assert (case.outer_diameter, case.content_density) == pytest.approx((0.114, 830))
-    assert case.wave_length is None and case.wave_theory == "auto"
+    assert (case["outer_diameter"], case["content_density"]) == pytest.approx((0.114, 830))
+    assert case["wave_length"] is None and case["wave_theory"] == "auto"
 
 
 def test_the_armour_that_is_shown_can_be_predicted(tmp_path):

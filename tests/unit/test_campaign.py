@@ -101,7 +101,7 @@ def test_flexing_that_cannot_be_is_refused(folder, key, message):
         ('gauge_length_standard_uncertainty = "1 mm"', "stands alone"),
         ('gauge_length = "1 m"\ngauge_length_standard_uncertainty = "0 mm"', "not positive"),
         ("earlier_cycles = -1", r"specimens\.a\.earlier_cycles"),
-        ('linear_density = "0 kg/m"', r"specimens\.a\.linear_density is not positive"),
+        ('linear_density = "0 kg/m"', r"specimens\.a\.linear_density: is not positive"),
         ('linear_density = "3 lbf"', r"specimens\.a\.linear_density"),
         (
             'linear_density = "0.1 kg/m"\nwet_linear_density = "0.1 kg/m"',
@@ -222,11 +222,11 @@ def test_two_kinds_of_tests_at_one_place_are_told_where_the_table_goes(folder):
     [
         (
             'diameter = ["1 inch", "1.2 inch"]', 'diameter = ["1 inch", "20 N"]',
-            r"campaign.toml: specimens.a.diameter: unit 'N' is not a unit of length; found 'N'",
+            r"specimens.a.diameter.2: unit 'N' is not a unit of length; found 'N'",
         ),
         (
             'diameter = ["1 inch", "1.2 inch"]', 'rated_break_strength = "3 m"',
-            "campaign.toml: specimens.a.rated_break_strength: unit 'm' is not a unit of force",
+            "specimens.a.rated_break_strength: unit 'm' is not a unit of force",
         ),
         (
             'from = "2 s"', 'from = "2"',
@@ -269,7 +269,7 @@ def test_a_value_that_cannot_be_used_is_told_with_file_and_key(folder, old, new,
         ),
         (BASE + TEST + "part_of = 'U'\n", "is part of a test that the campaign lacks"),
         (BASE.replace("1 inch", "1 lbf") + TEST, "'lbf' is not a unit of length"),
-        (BASE.replace("1 inch", "-1 inch") + TEST, r"specimens.a.diameter is not positive"),
+        (BASE.replace("1 inch", "-1 inch") + TEST, r"specimens.a.diameter.1: is not positive"),
         (BASE.replace('unit = "lbf"', 'unit = "ft"') + TEST, "is not a unit of force"),
         (BASE.replace(', datum = "pin-to-pin"', "") + TEST, "the position channel has no datum"),
         (BASE + TEST + "[tests.T.reduction.cycle]\n", "reduction.cycle is not a group"),

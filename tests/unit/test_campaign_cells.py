@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.campaign.csv_cells import read_cells
+from reduction.campaign.experiment_plans import _read_cells
 from reduction.record.errors import LogError, SettingsError
 
 
@@ -12,7 +12,7 @@ def read(tmp_path):
     def read_text(text):
         path = tmp_path / "runs.csv"
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
-        return read_cells(path)
+        return _read_cells(path)
 
     return read_text
 
@@ -55,7 +55,7 @@ def test_a_table_that_cannot_be_read_is_refused(read, text, place, problem):
 
 def test_a_file_that_is_not_there_is_refused(tmp_path):
     with pytest.raises(LogError, match="the table of runs cannot be read"):
-        read_cells(tmp_path / "no.csv")
+        _read_cells(tmp_path / "no.csv")
 
 
 def test_open_values_are_named_together(read):

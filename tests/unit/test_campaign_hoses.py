@@ -3,8 +3,8 @@ import tomllib
 import numpy as np
 import pytest
 
-from reduction.campaign.load import _plan_comparison, load_campaign, load_hose
-from reduction.campaign.model import ComparisonSection
+from reduction.campaign.hose_spec import ComparisonSection, load_hose
+from reduction.campaign.load import _plan_comparison, load_campaign
 from reduction.record.errors import SettingsError
 
 INCH, POUND, PSI = 0.0254, 4.4482216152605, 6894.757293168
@@ -81,10 +81,10 @@ def test_two_layers_have_their_own_diameters(tmp_path):
         ('"0 lbf", "10 lbf"', '"0 lbf", "40 lbf"', "cord.load does not rise at point 3"),
         ('"0 lbf", "10 lbf"', '"1 lbf", "10 lbf"', "cord.load does not begin at zero"),
         ('[0.0, "10 %", 0.2]', "[0.0, 0.2]", "2 strains, 3 loads"),
-        ('[0.0, "10 %", 0.2]', '[0.0, "10 lbf", 0.2]', "cord.strain: unit 'lbf'"),
+        ('[0.0, "10 %", 0.2]', '[0.0, "10 lbf", 0.2]', "cord.strain.2: unit 'lbf'"),
         ('wrap_diameter = "3.5 in"', "", "where its cords lie; found neither"),
         ('length = "2 m"\n', "", "hose.dead_length stands without length"),
-        ('length = "2 m"', 'length = "0 m"', "hose.length is not positive"),
+        ('length = "2 m"', 'length = "0 m"', "hose.length: is not positive"),
         ('"0.1 m"', '"2.1 m"', "dead_length over length is not that of a hose"),
         ('wrap_angle = "0.5 deg"', 'wrap = "0.5 deg"', "is no number of a hose that may be"),
         ('wrap_angle = "0.5 deg"', 'wrap_angle = "-1 deg"', "is no standard uncertainty"),
@@ -94,7 +94,7 @@ def test_two_layers_have_their_own_diameters(tmp_path):
         ),
         ("[cord]", '[[hose.layers]]\nname = "K"\nwrap_angle = "1 m"\n[cord]', "hose.layers.K"),
         ("[hose.standard", "strain_step = 0\n[hose.standard", "hose.strain_step is no step"),
-        ("[hose.standard", 'greatest_strain = "-5 %"\n[hose.standard', "is not positive"),
+        ("[hose.standard", 'greatest_strain = "-5 %"\n[hose.standard', "hose.greatest_strain: is not positive"),
         ("[hose]", '[hose]\nrubber_law = "ogden"', "rubber_law"),
         ('[0.0, "10 %", 0.2]', "[0.0, 10, 22]", "beyond what a cord can be stretched; found 2200 %"),
         ('wrap_angle = "0.5 deg"', 'wrap_angle = "70 deg"', "below the number itself"),

@@ -19,8 +19,12 @@ def load(tmp_path):
 
 def test_an_empty_spec_declares_nothing(load):
     spec = load("")
-    assert spec.kind is None and spec.factors == () and spec.responses == ()
-    assert spec.levels == "engineering" and spec.sigma is None and spec.repeats == "together"
+    assert spec.keys.kind is None and spec.factors == () and spec.responses == ()
+    assert (
+        spec.keys.levels == "engineering"
+        and spec.keys.sigma == (None, "1")
+        and spec.keys.repeats == "together"
+    )
 
 
 def test_any_factor_has_the_dimension_of_its_unit(load):
@@ -43,7 +47,7 @@ def test_a_share_becomes_a_force_where_the_strength_is_known(load):
 )
 def test_a_load_limit_is_a_force_or_a_share(load, written, limits):
     spec = load(f'[experiment]\nload_limit = "{written}"\n')
-    assert (spec.load_limit, spec.peak_share_limit) == pytest.approx(limits)
+    assert spec.keys.load_limit == pytest.approx(limits)
 
 
 @pytest.mark.parametrize(
@@ -51,7 +55,7 @@ def test_a_load_limit_is_a_force_or_a_share(load, written, limits):
 )
 def test_sigma_is_a_share_or_in_a_unit(load, written, sigma):
     spec = load(f'[experiment]\nsigma = "{written}"\n')
-    assert (spec.sigma, spec.sigma_unit) == (pytest.approx(sigma[0]), sigma[1])
+    assert spec.keys.sigma == (pytest.approx(sigma[0]), sigma[1])
 
 
 def test_units_of_quantities_are_spelt_as_in_products():

@@ -1,10 +1,12 @@
 """``[uncertainty]``: every form in which it is printed, and every way to get it wrong."""
 
+import json
 from pathlib import Path
 
 import pytest
 
-from reduction.campaign.model import UncertaintySection, stated_errors
+from reduction.campaign.model import CampaignFile, UncertaintySection, stated_errors
+from reduction.campaign.toml_file import read_toml
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Specimen
 
@@ -12,8 +14,20 @@ PATH = Path("campaign.toml")
 LBF = 4.4482216152605
 
 
+CAMPAIGN = '[campaign]\nid = "c"\ntitle = "t"\n'
+
+
+def inline(value):
+    """A table of TOML in one line."""
+    if not isinstance(value, dict):
+        return json.dumps(value)
+    return "{" + ", ".join(f"{key} = {inline(one)}" for key, one in value.items()) + "}"
+
+
 def errors(**section):
-    return stated_errors(PATH, UncertaintySection.model_validate(section))
+    text = f"uncertainty = {inline(section)}\n{CAMPAIGN}"
+    file = read_toml(PATH, CampaignFile, what="it", needed="it", keys="docs", text=text)
+    return stated_errors(PATH, file.uncertainty)
 
 
 def test_what_is_not_stated_is_zero():
@@ -56,6 +70,8 @@ def test_a_temperature_moves_the_stiffness():
     [
         ({"tension": {"gain": "0.5 lbf"}}, r"uncertainty\.tension\.gain"),
         ({"tension": {"offset": "0.1 %"}}, r"uncertainty\.tension\.offset"),
+        ({"lag": {"expanded": "2 m", "k": 2}}, r"uncertainty\.lag\.expanded: unit 'm'"),
+        ({"lag": {"half_width": "2 m"}}, r"uncertainty\.lag\.half_width: unit 'm'"),
         ({"tension": {"gain": "-0.1 %"}}, "no standard uncertainty.*zero or more"),
         ({"tension": {"gain": 60}}, "at most 50 %"),
         ({"lag": {"expanded": "2 ms", "k": 0}}, r"uncertainty\.lag.*coverage_factor"),

@@ -22,7 +22,7 @@ from reduction.pages.explorer_campaign import (
     _setting_of,
     settings_of_kind,
 )
-from reduction.pages.explorer_page import campaign_document, change_document, save_document
+from reduction.pages.explorer_server import _campaign_document, _change_document, _save_document
 from reduction.record.errors import ArchiveError, SettingsError
 from reduction.record.settings import ReductionSettings
 
@@ -112,7 +112,7 @@ def test_a_test_that_cannot_be_reduced_says_why(session):
     changes = {"cycles.band": "300 ft"}
     made = session.made("T-1", session.changed("T-1", changes))
     assert made.dataset is None and "band" in made.error
-    found = change_document(session, "si", test="T-1", changes=changes)
+    found = _change_document(session, "si", test="T-1", changes=changes)
     assert found["error"] == made.error and found["section"] == ""
     assert "+reduction.cycles.band" in found["diff"]
 
@@ -315,8 +315,8 @@ def first_modulus(section):
 
 def test_the_page_is_sent_settings_the_section_of_the_report_and_the_diff(session):
     changes = {"cycles.trim_threshold": "0.8"}
-    before = change_document(session, "us", test="T-1", changes={})
-    found = change_document(session, "us", test="T-1", changes=changes)
+    before = _change_document(session, "us", test="T-1", changes={})
+    found = _change_document(session, "us", test="T-1", changes=changes)
     assert before["diff"] == "" and before["is_standing"] and before["also"] == []
     assert "+reduction.cycles.trim_threshold = 0.8" in found["diff"].splitlines()
     assert not found["is_standing"]
@@ -342,7 +342,7 @@ def test_the_page_is_sent_settings_the_section_of_the_report_and_the_diff(sessio
 
 
 def test_what_is_shown_of_the_file_is_the_section_of_the_report_of_its_run(session, campaign):
-    found = change_document(session, "si", test="T-1", changes={})
+    found = _change_document(session, "si", test="T-1", changes={})
     (page,) = campaign.parent.parent.glob("**/two-tethers/index.html")
     text = page.read_text("utf-8").partition('data-title="T-1"')[2].partition("</section>")[0]
     ours, theirs = sections(found["section"]), sections(text)
@@ -356,15 +356,15 @@ def test_what_was_shown_is_what_is_saved(place):
     text = session.path.read_text("utf-8")
     for digests in ({"before": before, "after": "other"}, {"before": "other", "after": after}):
         with pytest.raises(SettingsError, match=r"not of this file any more. Nothing was written"):
-            save_document(session, test="T-1", changes=changes, **digests)
+            _save_document(session, test="T-1", changes=changes, **digests)
     assert session.path.read_text("utf-8") == text
-    saved = save_document(session, test="T-1", changes=changes, before=before, after=after)
+    saved = _save_document(session, test="T-1", changes=changes, before=before, after=after)
     assert saved == {"saved": str(session.path)}
     assert "reduction.cycles.trim_threshold = 0.9" in session.path.read_text("utf-8")
 
 
 def test_the_page_is_told_of_every_test(session):
-    found = campaign_document(session, "si")
+    found = _campaign_document(session, "si")
     assert [one["id"] for one in found["tests"]] == ["T-1", "T-2"]
     assert found["synthetic"] is True
 
@@ -438,10 +438,10 @@ def test_a_step_of_a_log_is_moved_by_itself(tmp_path):
     assert 'to = "380 s"  # of the drive' in text.text
     after = session.made("T-1.cycles", text)
     assert 0 < after.dataset.sizes["cycle"] < before.dataset.sizes["cycle"]
-    found = change_document(session, "si", test="T-1.cycles", changes={"steps.0.to": "380 s"})
+    found = _change_document(session, "si", test="T-1.cycles", changes={"steps.0.to": "380 s"})
     steps = {one["key"]: one["value"] for one in found["settings"] if one["group"] == "Steps"}
     assert steps == {"steps.0.from": "340 s", "steps.0.to": "380 s"}
-    of_hold = change_document(session, "si", test="T-1.hold", changes={})["settings"]
+    of_hold = _change_document(session, "si", test="T-1.hold", changes={})["settings"]
     assert {"cycles.band", "waveform"}.isdisjoint(one["key"] for one in of_hold)
 
 

@@ -6,7 +6,7 @@ import yaml
 from export_lines import line, rubber
 from export_readers import orcaflex
 
-from reduction.lines.deck_other_codes import orcaflex_text
+from reduction.lines.deck_formats import _orcaflex_text
 from reduction.record.errors import SettingsError
 
 KEYS = {
@@ -16,7 +16,7 @@ KEYS = {
 
 
 def test_the_line_type_is_in_kilonewton_and_tonnes():
-    text = orcaflex_text(line())
+    text = _orcaflex_text(line())
     found, strain, tension = orcaflex(text)
     assert set(found) == KEYS
     assert found["MassPerUnitLength"] == 0.0006
@@ -27,19 +27,19 @@ def test_the_line_type_is_in_kilonewton_and_tonnes():
 
 
 def test_every_number_is_a_number_of_yaml():
-    found, *_ = orcaflex(orcaflex_text(line(diameter=1e-7, linear_density=1e12)))
+    found, *_ = orcaflex(_orcaflex_text(line(diameter=1e-7, linear_density=1e12)))
     assert isinstance(found["OD"], float)
     assert isinstance(found["MassPerUnitLength"], float)
 
 
 def test_a_line_without_mass_is_refused():
     with pytest.raises(SettingsError, match="linear density"):
-        orcaflex_text(line(linear_density=math.nan))
+        _orcaflex_text(line(linear_density=math.nan))
 
 
 @pytest.mark.parametrize("name", ["12.5", "1", "no", "null", "1e3"])
 def test_a_name_that_yaml_takes_for_something_else_stays_text(name):
-    found = yaml.safe_load(orcaflex_text(line(name=name)))
+    found = yaml.safe_load(_orcaflex_text(line(name=name)))
     (kind,) = found["LineTypes"]
     assert kind["Name"] == line(name=name).identifier
     (stiffness,) = found["VariableData"]["Axialstiffness"]

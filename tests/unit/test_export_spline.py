@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from export_lines import line, rubber
 
-from reduction.lines.deck_other_codes import fit_smooth_curve
+from reduction.lines.deck_formats import _fit_smooth_curve
 from reduction.record.errors import DataError
 
 
@@ -14,7 +14,7 @@ def value(curve, strain):
 
 def test_a_cubic_comes_back():
     one = line()
-    found = fit_smooth_curve(one.strain, one.tension)
+    found = _fit_smooth_curve(one.strain, one.tension)
     grid = np.linspace(0, 1.5, 501)
     np.testing.assert_allclose(value(found, grid), rubber(grid), atol=2e-5 * rubber(1.5))
     assert found.share < 1e-5
@@ -22,7 +22,7 @@ def test_a_cubic_comes_back():
 
 def test_it_is_smooth_and_rises_where_the_data_are_level():
     strain = np.linspace(0, 1, 101)
-    found = fit_smooth_curve(strain, np.where(strain > 0.6, 100 * (strain - 0.6), 0.0))
+    found = _fit_smooth_curve(strain, np.where(strain > 0.6, 100 * (strain - 0.6), 0.0))
     width = np.diff(np.append(found.start, found.end))[:-1]
     tension, slope, bend, third = found.coefficient[:-1].T
     ends = [
@@ -38,7 +38,7 @@ def test_it_is_smooth_and_rises_where_the_data_are_level():
 
 
 def test_the_error_is_the_greatest_anywhere():
-    found = fit_smooth_curve(np.array([0.5, 1.0]), np.array([0.0, 1.0]))
+    found = _fit_smooth_curve(np.array([0.5, 1.0]), np.array([0.0, 1.0]))
     grid = np.linspace(0, 1, 20001)
     off = np.abs(value(found, grid) - np.interp(grid, [0, 0.5, 1], [0, 0, 1]))
     assert off.max() <= found.error + 2e-6
@@ -48,4 +48,4 @@ def test_the_error_is_the_greatest_anywhere():
 
 def test_a_loop_is_refused():
     with pytest.raises(DataError, match="a loop is not exported"):
-        fit_smooth_curve(np.array([0.0, 1.0, 0.5]), np.array([0.0, 1.0, 0.2]))
+        _fit_smooth_curve(np.array([0.0, 1.0, 0.5]), np.array([0.0, 1.0, 0.2]))

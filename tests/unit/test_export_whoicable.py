@@ -6,13 +6,13 @@ import pytest
 from export_lines import line, rubber
 from export_readers import CableExpression, cable_material, cable_pairs
 
-from reduction.lines.deck_other_codes import whoicable_text
+from reduction.lines.deck_formats import _whoicable_text
 from reduction.lines.export_line import SEA_WATER
 from reduction.record.errors import SettingsError
 
 
 def test_the_three_expressions_are_the_curve_and_its_derivatives():
-    name, material = cable_material(whoicable_text(line()))
+    name, material = cable_material(_whoicable_text(line()))
     assert name == "new_tether"
     assert material["type"] == "nonlinear"
     grid = np.linspace(0.01, 1.45, 50)
@@ -26,7 +26,7 @@ def test_the_three_expressions_are_the_curve_and_its_derivatives():
 
 def test_a_straight_line_has_no_constant_derivative():
     one = line(strain=np.array([0.0, 0.5]), tension=np.array([0.0, 100.0]))
-    _, material = cable_material(whoicable_text(one))
+    _, material = cable_material(_whoicable_text(one))
     for name in ("Te", "Tee"):
         assert "e" in re.sub(r"\de[+-]?\d", "", material[name])
     assert CableExpression(material["Te"])(0.3) == pytest.approx(200)
@@ -35,7 +35,7 @@ def test_a_straight_line_has_no_constant_derivative():
 
 def test_every_number_has_a_point_since_others_are_integers_of_32_bits():
     one = line(strain=np.array([0.0, 0.5]), tension=np.array([0.0, 5e9]))
-    _, material = cable_material(whoicable_text(one))
+    _, material = cable_material(_whoicable_text(one))
     for name, text in material.items():
         if name not in ("type", "comment"):
             numbers = re.findall(r"(?<![\w.])\d[\d.]*(?:e[+-]?\d+)?", text)
@@ -44,7 +44,7 @@ def test_every_number_has_a_point_since_others_are_integers_of_32_bits():
 
 
 def test_a_table_stands_beside_the_slopes():
-    _, material = cable_material(whoicable_text(line(), form="table"))
+    _, material = cable_material(_whoicable_text(line(), form="table"))
     strain, tension = cable_pairs(material["T"])
     np.testing.assert_allclose(tension, rubber(strain), atol=1e-6 * rubber(1.5))
     assert strain.size == 100
@@ -52,7 +52,7 @@ def test_a_table_stands_beside_the_slopes():
 
 
 def test_weight_in_water_is_newton_a_metre():
-    _, material = cable_material(whoicable_text(line(rated_break_strength=3e3)))
+    _, material = cable_material(_whoicable_text(line(rated_break_strength=3e3)))
     volume = math.pi / 4 * 0.026**2
     assert float(material["wet"]) == pytest.approx((0.6 - SEA_WATER * volume) * 9.80665)
     assert material["yield"] == "3000.0"
@@ -60,6 +60,6 @@ def test_weight_in_water_is_newton_a_metre():
 
 def test_another_form_and_a_line_without_mass_are_refused():
     with pytest.raises(SettingsError, match="form of a Cable material"):
-        whoicable_text(line(), form="spline")
+        _whoicable_text(line(), form="spline")
     with pytest.raises(SettingsError, match="linear density"):
-        whoicable_text(line(linear_density=math.nan))
+        _whoicable_text(line(linear_density=math.nan))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import time
 from pathlib import Path
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 
 from reduction.campaign.load import load_campaign
-from reduction.campaign.model import _LimitsSection, stated_limits
+from reduction.campaign.model import _LimitsSection
 from reduction.readers.layout import Layout, Watch
 from reduction.readers.raw_log import hash_source
 from reduction.readers.read_log import read_log
@@ -65,11 +66,11 @@ def test_a_campaign_without_limits_has_the_defaults(tmp_path):
     )
 
 
-def test_limits_are_read_in_their_units(tmp_path):
+def test_limits_are_read_in_their_units():
     section = _LimitsSection(
         file_size="2 TB", unpacked_size="1.5 GiB", line_length="20 MB", columns=50, time="90 min"
     )
-    assert stated_limits(tmp_path, section) == Limits(
+    assert Limits(**section.model_dump()) == Limits(
         file_size=2 * 10**12,
         unpacked_size=3 * 2**29,
         line_length=20 * 10**6,
@@ -98,9 +99,11 @@ def test_limits_are_read_in_their_units(tmp_path):
     ],
 )
 def test_a_limit_that_nobody_can_mean_is_refused(tmp_path, key, value, words):
+    _log(tmp_path)
+    (tmp_path / "campaign.toml").write_text(f"{_TOML}[limits]\n{key} = {json.dumps(value)}\n")
     with pytest.raises(SettingsError) as caught:
-        stated_limits(tmp_path / "campaign.toml", _LimitsSection(**{key: value}))
-    assert f"campaign.toml: limits.{key}: " in str(caught.value)
+        load_campaign(tmp_path / "campaign.toml")
+    assert f"  limits.{key}: " in str(caught.value)
     assert words in str(caught.value)
 
 

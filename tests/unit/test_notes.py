@@ -6,7 +6,7 @@ from string import Formatter
 
 import pytest
 
-from reduction.batch.survey import note_message
+from reduction.batch.reduce_tests import _note_message
 from reduction.record.note_sentences import SENTENCES
 from reduction.record.notes import SEVERITIES, Note, by_severity, full_note, note
 
@@ -111,15 +111,15 @@ def test_warnings_come_first_and_those_alike_keep_their_order():
 
 
 def test_the_message_of_a_test_names_the_most_serious_note():
-    message = note_message([SAID, REFUSED, OPEN])
+    message = _note_message([SAID, REFUSED, OPEN])
     assert message == f"3 notes (1 warning, 1 refusal); first: identity: {OPEN}"
-    assert note_message([SAID]) == f"1 note; first: specimen new: {SAID}"
-    assert note_message([]) == ""
+    assert _note_message([SAID]) == f"1 note; first: specimen new: {SAID}"
+    assert _note_message([]) == ""
 
 
 def test_the_message_of_a_test_says_of_what_the_first_note_speaks_and_counts_each_specimen():
     found = note("law-not-stable", strain=1.25)
-    message = note_message([replace(found, stage=f"yeoh {name}") for name in ("new", "used")])
+    message = _note_message([replace(found, stage=f"yeoh {name}") for name in ("new", "used")])
     assert message == f"2 notes (2 warnings); first: yeoh new: {found}"
 
 

@@ -1,7 +1,5 @@
 """A wave load from the file's numbers on, against formulas written out here."""
 
-from dataclasses import asdict, replace
-
 import numpy as np
 import pytest
 from predicted_cases import LEAST_WAVE, WAVE
@@ -19,9 +17,7 @@ def predict(tmp_path):
     def predicted(text=WAVE, **changes):
         path = tmp_path / "w.toml"
         path.write_text(text, encoding="utf-8")
-        given = asdict(replace(load_wave_case(path), **changes))
-        given.pop("name")
-        return predict_wave_load(**given)
+        return predict_wave_load(**load_wave_case(path) | changes)
 
     return predicted
 

@@ -1,7 +1,6 @@
 """Pages of a wave load and of an armour: figures, tables, notes, the page itself."""
 
 import json
-from dataclasses import asdict, replace
 
 import numpy as np
 import plotly.graph_objects as go
@@ -44,9 +43,7 @@ def wave(tmp_path):
     def predicted(**changes):
         path = tmp_path / "w.toml"
         path.write_text(WAVE, encoding="utf-8")
-        given = asdict(replace(load_wave_case(path), **changes))
-        given.pop("name")
-        return predict_wave_load(**given)
+        return predict_wave_load(**load_wave_case(path) | changes)
 
     return predicted
 
