@@ -1,6 +1,6 @@
 """A written archive against the schema, on the file as it lies on the disk.
 
-A small part of CF, fitted to what `reduction.archive.schema` and its like promise; the whole of CF
+A small part of CF, fitted to what `reduction.quantities.names` and its like promise; the whole of CF
 is checked by an outside program.
 """
 

@@ -56,7 +56,7 @@ def effect_values(effects: ScreeningEffects, response_names: Sequence[str]) -> V
     Returns
     -------
     values : dict of str to ndarray
-        Names of `reduction.archive.schema`.
+        Names of `reduction.quantities.names`.
     """
     values: Values = {
         "effect_error_from": np.array(effects.error_from),
@@ -107,7 +107,7 @@ def alias_values(plan: Floats, factor_names: Sequence[str]) -> Values:
     Returns
     -------
     values : dict of str to ndarray
-        Names of `reduction.archive.schema`; empty for a single factor.
+        Names of `reduction.quantities.names`; empty for a single factor.
 
     Notes
     -----
@@ -173,7 +173,7 @@ def stiffness_values(forms: Sequence[StiffnessForm], quality: FormQuality) -> Va
     Returns
     -------
     values : dict of str to ndarray
-        Names of `reduction.archive.schema`, without the dimension ``experiment``; a
+        Names of `reduction.quantities.names`, without the dimension ``experiment``; a
         form that has no coefficients of its own here has quality alone.
     """
     n_forms = len(quality.forms)
@@ -231,7 +231,7 @@ def point_values(
     Returns
     -------
     values : dict of str to ndarray
-        Names of `reduction.archive.schema`.
+        Names of `reduction.quantities.names`.
     """
     points = plan_points(plan)
     found = evaluate_surfaces(
@@ -311,7 +311,7 @@ def ridge_values(surfaces: ResponseSurfaces, shared: SharedSurfaces | None = Non
     Returns
     -------
     values : dict of str to ndarray
-        Names of `reduction.archive.schema`; NaN for a response without a surface.
+        Names of `reduction.quantities.names`; NaN for a response without a surface.
 
     Notes
     -----
@@ -392,7 +392,7 @@ def experiment_values(result: ExperimentResult) -> Values:
     Returns
     -------
     values : dict of str to ndarray
-        Names of `reduction.archive.schema`.
+        Names of `reduction.quantities.names`.
 
     Raises
     ------
@@ -639,7 +639,7 @@ def surfaces_to_dataset(results: Sequence[ExperimentResult], *, origin: Origin) 
     Returns
     -------
     dataset : xarray.Dataset
-        Names, dimensions and attributes of `reduction.archive.schema`, encoding
+        Names, dimensions and attributes of `reduction.quantities.names`, encoding
         included. Equal inputs give equal datasets.
 
     Raises
