@@ -10,19 +10,20 @@ import numpy as np
 
 from reduction.cli import lookup as command
 from reduction.cli.lookup import LookupRequest
+from reduction.cli.output import CommandOutput
 from reduction.quantities.units import display_unit
 from reduction.record.errors import ReductionError
 
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 
 
-class Told:
+class Told(CommandOutput):
     """What a command shows, kept in place of being printed."""
 
     is_text = True
 
     def __init__(self, units):
-        self.units = units
+        super().__init__(units=units)
         self.tables, self.texts = [], []
 
     def show(self, table):

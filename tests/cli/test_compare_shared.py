@@ -107,6 +107,7 @@ def wrong(request, tmp_path_factory):
     return request.param, both(tmp_path_factory.mktemp("wrong"), change=WRONG[request.param])
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("test", list(PLAN))
 def test_logs_that_are_wrong_move_the_measured_curve_by_what_the_comparison_says(
     right, wrong, test

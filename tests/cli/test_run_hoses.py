@@ -317,6 +317,7 @@ def test_a_test_that_is_not_as_it_would_be_made_now_is_waited_for(run, tmp_path)
     assert again["H68-static"].status == "compared_with_notes"
 
 
+@pytest.mark.nightly
 def test_break_in_of_the_campaign_is_none_of_a_pull(tmp_path):
     path = copied(
         tmp_path,

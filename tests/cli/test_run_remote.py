@@ -84,6 +84,7 @@ def campaign(here, tmp_path):
 RUN = ("run", "raw/campaign.toml", "--allow-remote")
 
 
+@pytest.mark.nightly
 def test_logs_behind_signed_addresses_leave_no_secret_anywhere(here, command, tmp_path):
     raw = tmp_path / "raw"
     shutil.copytree(here / "raw", raw)

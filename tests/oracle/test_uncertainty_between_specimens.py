@@ -99,6 +99,7 @@ def test_a_gain_of_the_one_cell_moves_the_difference_by_what_its_interval_holds(
     assert found.is_different
 
 
+@pytest.mark.nightly
 def test_a_diameter_of_three_readings_has_two_degrees_of_freedom_in_all_that_it_enters(
     stated, at, tmp_path
 ):

@@ -55,6 +55,7 @@ def shifted(tmp_path_factory):
     return [reduced(tmp_path_factory.mktemp("shifted"), late=way * LAG) for way in (1, -1)]
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", NAMES)
 def test_a_later_load_is_lower_on_the_rise_by_its_rate(stated, shifted, name):
     above, below = (one[name].to_numpy() for one in shifted)

@@ -191,6 +191,7 @@ def compared(base, above, below, source, names):
         assert found[known] == pytest.approx(wanted[known], rel=0.01, abs=5e-5 * scale), name
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("source", WRONG)
 def test_each_number_of_a_programme_moves_as_its_contribution_says(programme, source):
     control, found = programme
