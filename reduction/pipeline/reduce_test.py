@@ -769,15 +769,15 @@ def reduce_test(
     strain = strain_of_record(record, position, tension, models)
     readings = _readings_of(record, instruments)
     stated = replace(located, record=_with_readings(record, readings))
-    of_cycles = parts_of_cycles(
+    cycle_parts = parts_of_cycles(
         located, strain, tension, specimens=specimens, history=history, settings=settings,
     )  # fmt: skip
     of_first_rise, first_rise_notes = parts_of_first_loading(
         located, strain, tension, specimens, settings, history, kind=description.kind,
     )  # fmt: skip
     of_line = (
-        parts_of_line(of_cycles["loops"], pulls, settings.cycles)
-        if pulls is not None and "loops" in of_cycles
+        parts_of_line(cycle_parts["loops"], pulls, settings.cycles)
+        if pulls is not None and "loops" in cycle_parts
         else {}
     )
     of_pulls, refused_pulls = (
@@ -807,7 +807,7 @@ def reduce_test(
     )
     notes = _notes_of_test(
         located, strain, kind=description.kind, specimens=specimens, settings=settings, holds=holds,
-        parts=of_cycles, of_stages=(*first_rise_notes, *refused_pulls),
+        parts=cycle_parts, of_stages=(*first_rise_notes, *refused_pulls),
         slack_remarks=slack_strain.remarks,
     )  # fmt: skip
     reduced = ReducedTest(
@@ -831,10 +831,10 @@ def reduce_test(
         slack_strain=slack_strain,
         rope_step=rope_step(
             located, strain, tension, kind=description.kind, specimens=specimens,
-            loops=of_cycles.get("loops"), holds=holds, failed=description.failed,
+            loops=cycle_parts.get("loops"), holds=holds, failed=description.failed,
             settings=settings.rope,
         ),
-        **of_cycles,
+        **cycle_parts,
         **of_first_rise,
         **of_line,
         **parts_of_stress(stated.record, specimens),

@@ -104,12 +104,12 @@ def parts_of_line(
         "reading": reading,
     }
     of_test = identify_run(loops, break_in_cycles=settings.break_in_cycles, **given)
-    of_cycles = identify_cycles(loops, **given)
+    line_of_cycles = identify_cycles(loops, **given)
     return {
-        "line": of_cycles,
+        "line": line_of_cycles,
         "line_of_test": of_test,
         "quasi_static_standard_uncertainty": spread,
-        "line_notes": (*notes, *of_test.notes, *refused_lines(of_cycles.reason)),
+        "line_notes": (*notes, *of_test.notes, *refused_lines(line_of_cycles.reason)),
     }
 
 
@@ -175,7 +175,7 @@ def rope_step(
             loops, last_cycles=settings.last_cycles, rated_break_strength=strength
         )
         bedding = _bedding_in(loops, strength) if kind == "bedding-in" else None
-        notes += _of_cycles(dynamic, names, settings) + _of_levels(loops, dynamic, names)
+        notes += _stiffness_notes(dynamic, names, settings) + _of_levels(loops, dynamic, names)
         if kind == "bedding-in":
             notes += _of_first_cycle(loops, names)
         step = replace(step, bedding_in=bedding, dynamic=dynamic)
@@ -243,7 +243,7 @@ def _of_first_cycle(loops: Loops, names: Sequence[str]) -> list[Note]:
     return notes
 
 
-def _of_cycles(
+def _stiffness_notes(
     dynamic: DynamicStiffness, names: Sequence[str], settings: RopeSettings
 ) -> list[Note]:
     """Too few cycles, and a stiffness that has not settled."""

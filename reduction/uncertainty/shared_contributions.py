@@ -614,7 +614,7 @@ _OF_STEP = (
 )  # fmt: skip
 
 
-def of_cycles(
+def trend_and_step_contributions(
     test: ReducedTest,
     index: int,
     errors: InstrumentErrors,
@@ -1180,7 +1180,7 @@ def shared_uncertainty_of_cycles(
         for index, one in enumerate(errors):
             pull = None if pulls is None else pulls[index]
             origin = pull_origins[index] if pull_origins else None
-            found = _of_cycles(test, part, index, one, cycles, pull, origin)
+            found = _contributions_to_cycles(test, part, index, one, cycles, pull, origin)
             for name in found.values if found.component else ():
                 spread = found.shared_standard_uncertainty(name)
                 if name not in shared:
@@ -1207,7 +1207,7 @@ def _of_specimen(
     area = float(areas_of(test.specimens)[index])
     summary = test.amplitude
     yield from _of_material(test, index, errors, model, area)
-    yield from of_cycles(test, index, errors, model, cycles, area)
+    yield from trend_and_step_contributions(test, index, errors, model, cycles, area)
     own = test.pulls[index] if test.pulls else None
     if own is not None:
         strength = test.specimens[index].rated_break_strength
@@ -1238,7 +1238,7 @@ def _of_specimen(
             yield _named(_of_line(test.line_of_test, summary, index, of_loop, rest), "test_")
 
 
-def _of_cycles(
+def _contributions_to_cycles(
     test: ReducedTest,
     part: ReducedTest,
     index: int,
