@@ -22,7 +22,7 @@ from reduction.record.contributions import LineSpread
 from reduction.record.measurement import Floats, Specimen
 from reduction.stages.channel_lag import LagEstimate
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.holds.holds import HoldResult, hold_numbers
+from reduction.stages.holds.relaxation_and_creep import HoldResult, hold_numbers
 from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair
 from reduction.stages.line.line_product import LineParameters, SlowPull
 from reduction.stages.line.rope_programme import (

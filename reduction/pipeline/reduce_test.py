@@ -58,7 +58,7 @@ from reduction.record.samples import (
 from reduction.record.settings import CycleSettings, ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.cycle_search import label_phases
-from reduction.stages.holds.holds import HoldResult, reduce_holds
+from reduction.stages.holds.relaxation_and_creep import HoldResult, reduce_holds
 from reduction.stages.line.line_product import SlowPull
 from reduction.stages.moduli.modulus_product import ModulusCurves
 from reduction.stages.moduli.slack_length import slack_crossings, slack_strain_at_unloading

@@ -15,7 +15,7 @@ from reduction.record.notes import Note, note
 from reduction.record.samples import last_sample
 from reduction.record.settings import CycleSettings, RopeSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.holds.holds import HoldResult
+from reduction.stages.holds.relaxation_and_creep import HoldResult
 from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair, creep_of_hold, held_pairs
 from reduction.stages.line.line_model import refused_lines
 from reduction.stages.line.line_of_loops import identify_cycles, identify_run

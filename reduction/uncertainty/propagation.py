@@ -148,7 +148,7 @@ from reduction.record.contributions import (
     effective_degrees_of_freedom,
 )
 from reduction.record.measurement import Floats
-from reduction.stages.holds.holds import HoldResult
+from reduction.stages.holds.relaxation_and_creep import HoldResult
 from reduction.stages.line.line_model import (
     AMPLITUDE_INPUTS,
     FUNDAMENTAL_INPUTS,

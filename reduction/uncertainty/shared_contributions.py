@@ -57,7 +57,7 @@ from reduction.record.samples import empty_like, full_like, release_pages
 from reduction.record.settings import CycleSettings
 from reduction.stages.channel_lag import LagEstimate, lag_by_turns
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.holds.holds import HoldResult, hold_numbers
+from reduction.stages.holds.relaxation_and_creep import HoldResult, hold_numbers
 from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair
 from reduction.stages.line.line_product import LineParameters, SlowPull
 from reduction.stages.line.rope_programme import BeddingIn, DynamicStiffness, TensilePull

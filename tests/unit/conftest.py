@@ -16,7 +16,7 @@ from reduction.record.measurement import Quality, Record, Source, Specimen, Step
 from reduction.record.notes import Note
 from reduction.stages.channel_lag import LagEstimate
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.holds.holds import HoldResult
+from reduction.stages.holds.relaxation_and_creep import HoldResult
 from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair, _static_stiffness
 from reduction.stages.line.line_product import LineParameters
 from reduction.stages.line.rope_programme import (

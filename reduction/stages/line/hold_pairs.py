@@ -33,7 +33,7 @@ from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 from reduction.record.notes import Note, note
 from reduction.record.samples import empty_like, finite_extremes, sample_blocks, select_samples
-from reduction.stages.holds.holds import (
+from reduction.stages.holds.relaxation_and_creep import (
     RAMP_TIMES_LEFT_OUT,
     Hold,
     HoldResult,
@@ -217,7 +217,7 @@ def creep_of_hold(hold: HoldResult, *, rated_break_strength: float = float("nan"
     Parameters
     ----------
     hold : HoldResult
-        Of kind ``creep``, from `reduction.stages.holds.holds`.
+        Of kind ``creep``, from `reduction.stages.holds.relaxation_and_creep`.
     rated_break_strength : float, optional
         NaN where not stated. [N]
 
