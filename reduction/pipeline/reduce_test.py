@@ -59,7 +59,6 @@ from reduction.record.settings import CycleSettings, ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.cycle_search import label_phases
 from reduction.stages.holds.relaxation_and_creep import HoldResult, reduce_holds
-from reduction.stages.line.line_product import SlowPull
 from reduction.stages.moduli.modulus_product import ModulusCurves
 from reduction.stages.moduli.slack_length import slack_crossings, slack_strain_at_unloading
 from reduction.stages.moduli.stepwise_test import greatest_step_strain, reduce_stepwise
@@ -67,6 +66,7 @@ from reduction.stages.reduced_test import History, ReducedTest, TestDescription
 from reduction.stages.standstills import Standstills
 from reduction.stages.strain.strain_model import StrainModel, strain_by_model
 from reduction.stages.strain.stress import check_constant_volume
+from reduction.stages.three_parameter_line.line_product import SlowPull
 from reduction.uncertainty.error_field import error_field
 from reduction.uncertainty.monte_carlo import with_line_spread
 from reduction.uncertainty.propagation import with_diameter

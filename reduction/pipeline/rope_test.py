@@ -16,11 +16,17 @@ from reduction.record.samples import last_sample
 from reduction.record.settings import CycleSettings, RopeSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.holds.relaxation_and_creep import HoldResult
-from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair, creep_of_hold, held_pairs
-from reduction.stages.line.line_model import refused_lines
-from reduction.stages.line.line_of_loops import identify_cycles, identify_run
-from reduction.stages.line.line_product import SlowPull
-from reduction.stages.line.rope_programme import (
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.hold_pairs import (
+    CreepOfHold,
+    HeldPair,
+    creep_of_hold,
+    held_pairs,
+)
+from reduction.stages.three_parameter_line.line_model import refused_lines
+from reduction.stages.three_parameter_line.line_of_loops import identify_cycles, identify_run
+from reduction.stages.three_parameter_line.line_product import SlowPull
+from reduction.stages.three_parameter_line.rope_programme import (
     BeddingIn,
     CyclesToFailure,
     DynamicStiffness,
@@ -32,8 +38,11 @@ from reduction.stages.line.rope_programme import (
     summarise_bedding_in,
     tensile_pull,
 )
-from reduction.stages.line.slow_pull import MISFIT_NOTED, fit_pull, quasi_static_of_run
-from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.slow_pull import (
+    MISFIT_NOTED,
+    fit_pull,
+    quasi_static_of_run,
+)
 
 
 @dataclass(frozen=True)

@@ -58,15 +58,6 @@ from reduction.record.settings import CycleSettings
 from reduction.stages.channel_lag import LagEstimate, lag_by_turns
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.holds.relaxation_and_creep import HoldResult, hold_numbers
-from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair
-from reduction.stages.line.line_product import LineParameters, SlowPull
-from reduction.stages.line.rope_programme import BeddingIn, DynamicStiffness, TensilePull
-from reduction.stages.line.slow_pull import (
-    BREAK_SHARES,
-    quasi_static_spring_constant,
-    strain_at_tension,
-    tension_grid,
-)
 from reduction.stages.moduli.elastomer_laws import LAWS
 from reduction.stages.moduli.modulus_product import (
     AmplitudeSummary,
@@ -78,6 +69,19 @@ from reduction.stages.moduli.modulus_product import (
 from reduction.stages.moduli.secant_modulus import FEWEST_CYCLES, cycles_at_an_end, slope_per_decade
 from reduction.stages.reduced_test import ReducedTest
 from reduction.stages.strain.strain_model import StrainModel, position_by_model
+from reduction.stages.three_parameter_line.hold_pairs import CreepOfHold, HeldPair
+from reduction.stages.three_parameter_line.line_product import LineParameters, SlowPull
+from reduction.stages.three_parameter_line.rope_programme import (
+    BeddingIn,
+    DynamicStiffness,
+    TensilePull,
+)
+from reduction.stages.three_parameter_line.slow_pull import (
+    BREAK_SHARES,
+    quasi_static_spring_constant,
+    strain_at_tension,
+    tension_grid,
+)
 from reduction.uncertainty.error_field import ErrorField, coefficient_errors, error_field
 from reduction.uncertainty.propagation import (
     by_diameter,

@@ -7,9 +7,13 @@ import pytest
 
 from reduction.record.contributions import InstrumentErrors, merged
 from reduction.record.settings import CycleSettings
-from reduction.stages.line.rope_programme import RopeStep, dynamic_stiffness, summarise_bedding_in
 from reduction.stages.moduli.secant_modulus import fit_peak_trend
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.rope_programme import (
+    RopeStep,
+    dynamic_stiffness,
+    summarise_bedding_in,
+)
 from reduction.uncertainty.shared_contributions import trend_and_step_contributions
 
 AREA = 5e-4

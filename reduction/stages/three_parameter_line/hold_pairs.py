@@ -41,9 +41,9 @@ from reduction.stages.holds.relaxation_and_creep import (
     logarithmic_blocks,
     select_hold,
 )
-from reduction.stages.line.line_product import one_a_specimen
 from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.standstills import Standstills
+from reduction.stages.three_parameter_line.line_product import one_a_specimen
 
 _FEWEST_POINTS = 4
 
