@@ -212,7 +212,7 @@ def _waveform(cycles: Cycles, waveform: str) -> list[Note]:
     n_samples = cycles.branch_last - cycles.branch_first + 1
     if waveform != "triangular" or np.median(n_samples) < _FEWEST_SAMPLES:
         return []
-    share = count_samples(cycles.is_constant_rate) / int(n_samples.sum())
+    share = count_samples(cycles.is_in_trimmed_branch) / int(n_samples.sum())
     return [note("not-triangular", share=share)] if share < _TRIANGULAR_SHARE else []
 
 

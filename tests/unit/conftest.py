@@ -116,7 +116,7 @@ def make_cycles():
         plateau_rate=np.full((N_CYCLES, 2), 0.3),
         cycle_number=np.repeat(np.arange(1, N_CYCLES + 1), 15).astype(np.int32),
         branch=branch,
-        is_constant_rate=np.ones(N_SAMPLES, dtype=bool),
+        is_in_trimmed_branch=np.ones(N_SAMPLES, dtype=bool),
         band=0.02,
         notes=(Note("fixture", "warning", text="the last cycle is broken"),),
     )

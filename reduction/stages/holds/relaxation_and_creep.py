@@ -762,15 +762,15 @@ def _finite_times(part: slice, time: Floats, *series: Floats) -> Floats:
     return np.where(finite, time[part], -np.inf)
 
 
-def _is_sound(time: Floats, *series: Floats, after: float = -np.inf) -> Bools:
+def _is_finite_and_later(time: Floats, *series: Floats, after: float = -np.inf) -> Bools:
     """Which samples have finite values and a time that is later than all before."""
-    is_sound, latest = empty_like(time, dtype=bool), after
-    for part in sample_blocks(time.size, time, *series, is_sound):
+    is_finite_and_later, latest = empty_like(time, dtype=bool), after
+    for part in sample_blocks(time.size, time, *series, is_finite_and_later):
         known = _finite_times(part, time, *series)
         reached = np.maximum.accumulate(np.concatenate([[latest], known]))
-        np.greater(known, reached[:-1], out=is_sound[part])
+        np.greater(known, reached[:-1], out=is_finite_and_later[part])
         latest = float(reached[-1])
-    return is_sound
+    return is_finite_and_later
 
 
 def _latest(time: Floats, *series: Floats) -> float:
@@ -789,8 +789,10 @@ def _ramp_before(time: Floats, moved: Floats, answer: Floats, *, band: float) ->
         start = time.size - n_looked
         whole = time, moved, answer
         looked = [one[start:] for one in whole]
-        is_sound = _is_sound(*looked, after=_latest(*(one[:start] for one in whole)))
-        before = select_samples(is_sound.__getitem__, *looked)
+        is_finite_and_later = _is_finite_and_later(
+            *looked, after=_latest(*(one[:start] for one in whole))
+        )
+        before = select_samples(is_finite_and_later.__getitem__, *looked)
         if before[0].size > 2 and _begins_inside(before[1], band=band):
             break
     return _find_ramp(*before, band=band) if before[0].size > 2 else None
@@ -829,7 +831,9 @@ def select_hold(
     begin = int(standstills.first[index - 1]) if index else 0
     inside = slice(first, last + 1)
     held = [one[inside] for one in (time, position, tension, strain)]
-    seconds, place, load, stretch = select_samples(_is_sound(*held[:3]).__getitem__, *held)
+    seconds, place, load, stretch = select_samples(
+        _is_finite_and_later(*held[:3]).__getitem__, *held
+    )
     # under load control the machine moves the tension, and the length answers
     moved, answer, band = position, tension, standstills.position_tolerance
     if standstills.tension_tolerance is not None:
