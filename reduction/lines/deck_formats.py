@@ -18,13 +18,11 @@ from reduction.lines.deck_moordyn import (
     MOST_POINTS,
     MoorDynForm,
     MoorPyForm,
-    header_lines,
     moordyn_files,
     moorpy_files,
-    one_line,
     openfast_files,
-    real_number,
 )
+from reduction.lines.deck_text import header_lines, one_line, real_number
 from reduction.lines.export_line import (
     SEA_WATER,
     ExportLine,
