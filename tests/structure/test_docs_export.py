@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 
 from reduction.cli.main import app
 from reduction.lines.deck_formats import FORMATS, FORMS
+from reduction.pages.design_values import _render_design_page
 from reduction.quantities.names import SINGLE_QUANTITIES
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -32,12 +33,37 @@ def test_commands_end_well(arguments, tmp_path, monkeypatch):
     assert (tmp_path / after(arguments, "--out")).is_file()
 
 
-def test_every_format_and_every_form_of_moordyn_and_moorpy_has_a_command():
+def test_every_format_has_a_command_and_every_form_of_what_is_run_here():
     shown = {(after(words, "--to"), after(words, "--form")) for words in commands()}
     assert {name for name, _ in shown} == set(FORMATS)
     for name in ("moordyn", "moorpy"):
         first, *others = FORMS[name]
         assert {(name, None), *((name, form) for form in others)} <= shown, first
+
+
+def test_every_format_has_a_row_with_its_forms():
+    part = TEXT.partition("| format | forms")[2].partition("\n\n")[0]
+    rows = [row.split("|")[1:3] for row in part.split("\n")[2:]]
+    forms = {
+        name: re.findall(r"`([\w-]+)`", told)
+        for names, told in rows
+        for name in re.findall(r"`([\w-]+)`", names)
+    }
+    assert set(forms) == set(FORMATS)
+    assert forms.pop("openfast") == ["moordyn"]  # the forms are told there
+    assert FORMS["openfast"] == FORMS["moordyn"]
+    assert all(tuple(told) == FORMS.get(name, ()) for name, told in forms.items())
+
+
+def test_every_format_is_in_the_help_of_the_command():
+    done = CliRunner().invoke(app, ["export", "--help"], terminal_width=400)
+    (told,) = re.findall(r"--to\b(.*?)--out\b", done.output, re.DOTALL)
+    assert set(FORMATS) <= set(re.findall(r"[\w-]+", told))
+
+
+def test_every_mooring_code_is_on_the_page_of_design_values():
+    (told,) = re.findall(r"behind --to: (.*?)\.</p>", _render_design_page())
+    assert ["moordyn", *told.split(", ")] == list(FORMS)
 
 
 def test_no_two_commands_write_the_same_file():
