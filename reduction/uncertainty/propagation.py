@@ -508,7 +508,7 @@ def segment_contributions(
     1 N more at the upper end of one segment of 0.5, on 1 cm2: 20 kPa.
 
     >>> from reduction.record.contributions import Component
-    >>> curve = Contributions((Component("tape", "new"),),
+    >>> curve = Contributions((Component("strain_calibration", "new"),),
     ...     {"branch_tension": np.array([[0.0, 0.25, 0.5, 0.75, 1.0]])})
     >>> found = segment_contributions(curve, InstrumentErrors("new"),
     ...     strain=[1.0, 1.125, 1.25, 1.375, 1.5], knot=[1.0, 1.5],
