@@ -40,9 +40,9 @@ from reduction.pipeline.reduce_test import reduce_test
 from reduction.record.contributions import InstrumentErrors
 from reduction.record.measurement import Origin, Record, Specimen
 from reduction.record.settings import CycleSettings, ReductionSettings
-from reduction.stages.line.line_product import SlowPull
 from reduction.stages.reduced_test import ReducedTest, TestDescription
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.line_product import SlowPull
 from reduction.uncertainty.shared_contributions import PullOrigin
 
 STRENGTH, LENGTH = 28.5e3, 1.8

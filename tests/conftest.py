@@ -121,7 +121,7 @@ def make_triangle(
         plateau_rate=np.ones((n_cycles, 2)),
         cycle_number=(half_number // 2 + 1).astype(np.int32),
         branch=np.where((half_number % 2 == 0) == first_is_up, 1, 2).astype(np.int8),
-        is_constant_rate=(within >= trimmed) & (within <= half - trimmed),
+        is_in_trimmed_branch=(within >= trimmed) & (within <= half - trimmed),
         band=0.01,
     )
     return strain, cycles

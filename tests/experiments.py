@@ -17,7 +17,7 @@ from reduction.quantities.names import RESPONSES
 from reduction.record.contributions import Component, Contributions
 from reduction.record.measurement import Origin, Source, Step
 from reduction.record.notes import Note, note
-from reduction.stages.line.line_model import check_single_time
+from reduction.stages.three_parameter_line.line_model import check_single_time
 from reduction.uncertainty.surface_errors import with_shared_surfaces
 
 FACTORS = ("frequency", "mean_tension", "tension_amplitude")

@@ -34,7 +34,7 @@ def cycles_of(n_cycles, *, before=BEFORE, per_cycle=PER_CYCLE, after=AFTER, rest
         plateau_rate=np.ones((n_cycles, 2)),
         cycle_number=number,
         branch=branch,
-        is_constant_rate=number > 0,
+        is_in_trimmed_branch=number > 0,
         band=0.1,
     )
 

@@ -21,7 +21,7 @@ ROOMS = {
     "stages.cycles": "reversals, cycles, loops, energy",
     "stages.moduli": "tangent, secant and chord moduli, segments, slips, elastomer laws",
     "stages.holds": "relaxation and creep",
-    "stages.line": "the three-parameter line, slow pulls, rope programmes",
+    "stages.three_parameter_line": "the three-parameter line, slow pulls, rope programmes",
     "experiments": "response surfaces, screening, stiffness forms; breaks, abrasion, lives",
     "uncertainty": "what errors that samples share do to each number",
     "prediction": "hoses, armour and waves from theory; measured against predicted",

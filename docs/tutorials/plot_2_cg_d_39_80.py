@@ -13,7 +13,10 @@ import numpy as np
 from reduction.lines.line_lookup import look_up
 from reduction.lines.published_source import published_sources
 from reduction.published.reproduce_page import counts_of, reproduce
-from reduction.stages.line.line_model import apparent_spring_constant, hysteresis_energy
+from reduction.stages.three_parameter_line.line_model import (
+    apparent_spring_constant,
+    hysteresis_energy,
+)
 
 LBF = 4.4482216
 for verdict, number in counts_of(reproduce("CG-D-39-80")["CG-D-39-80"]).items():

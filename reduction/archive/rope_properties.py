@@ -30,7 +30,8 @@ from reduction.record.contributions import (
 )
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Floats, Origin
-from reduction.stages.line.change_in_length import (
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.change_in_length import (
     MANY,
     BeddingCycles,
     ChangeInLength,
@@ -41,7 +42,6 @@ from reduction.stages.line.change_in_length import (
     StepNumber,
     StepOfProgramme,
 )
-from reduction.stages.strain.strain_model import StrainModel
 from reduction.uncertainty.error_field import error_field
 
 _ALONG = ("property",)

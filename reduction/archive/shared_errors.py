@@ -52,7 +52,7 @@ _ALIKE = {"tangent_modulus_by_cycle": "tangent_modulus"}
 def with_shared(
     values: Values,
     contributions: Contributions | None,
-    of_cycles: dict[str, Floats],
+    shared_uncertainty_of_cycles: dict[str, Floats],
     random: Values | None = None,
 ) -> Values:
     """Put the shared part of every uncertainty beside its random part, and both together."""
@@ -66,7 +66,7 @@ def with_shared(
             hint="this is a fault of the program, not of the campaign",
         )
     found = dict(values)
-    for name, shared in of_cycles.items():
+    for name, shared in shared_uncertainty_of_cycles.items():
         if random is not None and name in random:
             found[f"{name}_standard_uncertainty"] = random[name]
         _combine(found, name, shared[None])

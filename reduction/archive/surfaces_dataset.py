@@ -39,7 +39,7 @@ from reduction.record.contributions import combined_standard_uncertainty
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Floats, Integers, Origin
 from reduction.record.notes import Note
-from reduction.stages.line.line_model import VERDICTS, SingleTimeCheck
+from reduction.stages.three_parameter_line.line_model import VERDICTS, SingleTimeCheck
 from reduction.uncertainty.surface_errors import with_shared_at_points
 
 

@@ -22,23 +22,7 @@ from reduction.record.contributions import LineSpread
 from reduction.record.measurement import Floats, Specimen
 from reduction.stages.channel_lag import LagEstimate
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.holds.holds import HoldResult, hold_numbers
-from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair
-from reduction.stages.line.line_product import LineParameters, SlowPull
-from reduction.stages.line.rope_programme import (
-    BeddingIn,
-    CyclesToFailure,
-    DynamicStiffness,
-    RopeStep,
-    TensilePull,
-)
-from reduction.stages.line.slow_pull import (
-    BREAK_SHARES,
-    quasi_static_spring_constant,
-    strain_at_break_share,
-    strain_at_tension,
-    tension_grid,
-)
+from reduction.stages.holds.relaxation_and_creep import HoldResult, hold_numbers
 from reduction.stages.moduli.modulus_product import (
     AmplitudeSummary,
     CycleIdentity,
@@ -52,6 +36,22 @@ from reduction.stages.moduli.modulus_product import (
 )
 from reduction.stages.moduli.stepwise_test import StepwiseResult
 from reduction.stages.standstills import Standstills
+from reduction.stages.three_parameter_line.hold_pairs import CreepOfHold, HeldPair
+from reduction.stages.three_parameter_line.line_product import LineParameters, SlowPull
+from reduction.stages.three_parameter_line.rope_programme import (
+    BeddingIn,
+    CyclesToFailure,
+    DynamicStiffness,
+    RopeStep,
+    TensilePull,
+)
+from reduction.stages.three_parameter_line.slow_pull import (
+    BREAK_SHARES,
+    quasi_static_spring_constant,
+    strain_at_break_share,
+    strain_at_tension,
+    tension_grid,
+)
 
 COEFFICIENTS = {
     "relaxed_free_length": "relaxed_free_length",

@@ -31,7 +31,7 @@ from reduction.record.contributions import Contributions
 from reduction.record.errors import FitError
 from reduction.record.measurement import Bools, Floats, Origin, Source, Step
 from reduction.record.notes import Note, by_severity, note
-from reduction.stages.line.line_product import REASONS
+from reduction.stages.three_parameter_line.line_product import REASONS
 from reduction.uncertainty.surface_errors import with_shared_surfaces
 
 

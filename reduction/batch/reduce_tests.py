@@ -33,9 +33,9 @@ from reduction.readers.raw_log import hash_source
 from reduction.record.errors import LogError, ReductionError
 from reduction.record.note_sentences import Severity
 from reduction.record.notes import Note, by_severity, full_note
-from reduction.stages.line.line_product import SlowPull
 from reduction.stages.reduced_test import History, ReducedTest
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.line_product import SlowPull
 from reduction.uncertainty.shared_contributions import PullOrigin
 
 

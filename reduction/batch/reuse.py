@@ -19,9 +19,9 @@ from reduction.batch.test_history import EarlierTests, history_of, history_remar
 from reduction.campaign.plan import Campaign
 from reduction.record.measurement import Floats
 from reduction.record.notes import Note
-from reduction.stages.line.line_product import SlowPull
 from reduction.stages.reduced_test import History, TestDescription
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.line_product import SlowPull
 from reduction.uncertainty.shared_contributions import PullOrigin
 
 

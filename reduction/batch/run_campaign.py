@@ -46,8 +46,12 @@ from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Origin, Source, Specimen, Step
 from reduction.record.plain_text import bare_cell, safe_cell
 from reduction.report.campaign_page import write_report
-from reduction.stages.line.change_in_length import ChangeInLength, StepOfProgramme, change_in_length
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.change_in_length import (
+    ChangeInLength,
+    StepOfProgramme,
+    change_in_length,
+)
 
 _Models = Callable[[Survey], Sequence[StrainModel]]
 

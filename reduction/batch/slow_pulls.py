@@ -20,8 +20,8 @@ from reduction.pipeline.located_test import strain_of_record
 from reduction.pipeline.rope_test import PullConditions, pull_specimens
 from reduction.quantities.units import parse_quantity
 from reduction.record.errors import ReductionError
-from reduction.stages.line.line_product import SlowPull
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.line_product import SlowPull
 from reduction.uncertainty.shared_contributions import PullOrigin
 
 Pulls = Mapping[tuple[str, str], SlowPull]

@@ -18,7 +18,7 @@ from reduction.record.contributions import Component, Contributions
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats, read_only_arrays
 from reduction.record.notes import Note
-from reduction.stages.line.line_model import SingleTimeCheck
+from reduction.stages.three_parameter_line.line_model import SingleTimeCheck
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ from reduction.experiments.term_selection import ReducedSurfaces, reduce_terms
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
-from reduction.stages.line.line_model import (
+from reduction.stages.three_parameter_line.line_model import (
     VERDICTS,
     SingleTimeCheck,
     check_single_time,

@@ -212,7 +212,7 @@ CautionKind = Literal[
 
 NEAR_ZERO = 1e-9  # of the peak: 12 % less 12 % is zero though its last bit may not be
 
-MEASURED_SLACK = 0.01  # of the peak, as in reduction.stages.line.line_of_loops
+MEASURED_SLACK = 0.01  # of the peak, as in reduction.stages.three_parameter_line.line_of_loops
 
 CONFOUNDED = 0.5
 

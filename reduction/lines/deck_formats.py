@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 import scipy
@@ -16,15 +16,11 @@ import scipy
 from reduction.archive.write import write_text_atomically
 from reduction.lines.deck_moordyn import (
     MOST_POINTS,
-    MoorDynForm,
-    MoorPyForm,
-    header_lines,
     moordyn_files,
     moorpy_files,
-    one_line,
     openfast_files,
-    real_number,
 )
+from reduction.lines.deck_text import header_lines, one_line, real_number
 from reduction.lines.export_line import (
     SEA_WATER,
     ExportLine,
@@ -339,33 +335,59 @@ def _expression(curve: _SmoothCurve, powers: Floats) -> str:
 
 _TABLES = ("csv", "json", "latex", "markdown", "netcdf")
 
-FORMS: dict[str, tuple[str, ...]] = {
-    "moordyn": get_args(MoorDynForm),
-    "openfast": get_args(MoorDynForm),
-    "moorpy": get_args(MoorPyForm),
-    "whoi-cable": get_args(WhoiCableForm),
-    "orcaflex": (),
-    "abaqus": (),
-}
-"""What a format can be told, the first where nothing is said."""
+_WrittenCurve = Literal["points", "pieces", "none"]
 
-_WITH_OTHERS: dict[str, Callable[..., dict[str, str]]] = {
-    "moordyn": moordyn_files,
-    "openfast": openfast_files,
-    "moorpy": moorpy_files,
+
+@dataclass(frozen=True)
+class _MooringCode:
+    """Format of a mooring code.
+
+    ``files`` writes a line, beside a stem for the names of further files, as text by name, "" for
+    the file that was asked for.  ``forms`` are what it can be told, the first where nothing is
+    said and "" where there is one alone; with each how the curve of the line stands in it:
+    ``most_points`` at most, cubic pieces, or not at all.
+    """
+
+    files: Callable[..., dict[str, str]]
+    most_points: int
+    forms: Mapping[str, _WrittenCurve] = field(default_factory=lambda: {"": "points"})
+
+
+def _one_file(text: Callable[..., str]) -> Callable[..., dict[str, str]]:
+    """The files of a code whose deck is one file."""
+
+    def files(line: ExportLine, _stem: str, **said: str) -> dict[str, str]:
+        return {"": text(line, **said)}
+
+    return files
+
+
+_MOORDYN_FORMS: dict[str, _WrittenCurve] = {
+    "table": "points",
+    "static-dynamic": "none",
+    "load-dependent": "none",
+    "syrope": "none",
 }
 
-_ALONE: dict[str, Callable[..., str]] = {
-    "whoi-cable": _whoicable_text,
-    "orcaflex": _orcaflex_text,
-    "abaqus": _abaqus_text,
+_CODES: dict[str, _MooringCode] = {
+    "moordyn": _MooringCode(moordyn_files, MOST_POINTS, _MOORDYN_FORMS),
+    "openfast": _MooringCode(openfast_files, MOST_POINTS, _MOORDYN_FORMS),
+    "moorpy": _MooringCode(moorpy_files, MOST_POINTS, {"table": "points", "library": "none"}),
+    "whoi-cable": _MooringCode(
+        _one_file(_whoicable_text), CABLE_POINTS, {"expression": "pieces", "table": "points"}
+    ),
+    "orcaflex": _MooringCode(_one_file(_orcaflex_text), ORCAFLEX_POINTS),
+    "abaqus": _MooringCode(_one_file(_abaqus_text), ABAQUS_POINTS),
 }
+
+FORMS = {name: tuple(form for form in code.forms if form) for name, code in _CODES.items()}
+"""What the format of a mooring code can be told, the first where nothing is said."""
+
+FORMATS = (*_TABLES, *FORMS)
 
 _TAILS = ("_table", "_owc", "_syrope", "_moorpy")
 
 _DIGITS = 8
-
-FORMATS = (*_TABLES, *FORMS)
 
 
 def export_line(
@@ -379,10 +401,7 @@ def export_line(
         raise SettingsError("the format is not known", found=repr(to), needed=", ".join(FORMATS))
     _refuse_form(to, form, FORMS[to])
     said = {} if form is None else {"form": form}
-    if to in _ALONE:
-        files = {"": _ALONE[to](line, **said)}
-    else:
-        files = _WITH_OTHERS[to](line, _stem_beside(path), **said)
+    files = _CODES[to].files(line, _stem_beside(path), **said)
     beside = {path.with_name(name): text for name, text in files.items() if name}
     # what is named is there before what names it
     for place, text in {**beside, path: files[""]}.items():
@@ -447,24 +466,18 @@ def _refuse_form(to: str, form: str | None, forms: tuple[str, ...]) -> None:
 
 _CLOSE = 0.05
 
-_POINTS = {
-    "moordyn": MOST_POINTS,
-    "openfast": MOST_POINTS,
-    "moorpy": MOST_POINTS,
-    "whoi-cable": CABLE_POINTS,
-    "orcaflex": ORCAFLEX_POINTS,
-    "abaqus": ABAQUS_POINTS,
-}
-
 
 def closeness_of(line: ExportLine, to: str, form: str | None) -> tuple[str, ...]:
     """What is said of the errors of a curve in a format."""
-    if to not in _POINTS or form in ("static-dynamic", "load-dependent", "syrope", "library"):
+    if to not in _CODES:
         return ()
-    is_table = to != "whoi-cable" or form == "table"
+    code = _CODES[to]
+    curve = code.forms[next(iter(code.forms)) if form is None else form]
+    if curve == "none":
+        return ()
     found = (
-        thin_curve(line.strain, line.tension, most=_POINTS[to])
-        if is_table
+        thin_curve(line.strain, line.tension, most=code.most_points)
+        if curve == "points"
         else _fit_smooth_curve(line.strain, line.tension)
     )
     doubt = "DOUBTFUL: " if found.local > _CLOSE else ""

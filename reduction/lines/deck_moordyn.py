@@ -1,7 +1,5 @@
 """Decks in the grammar of MoorDyn: MoorDyn-C, MoorPy, OpenFAST.
 
-The lines that say where the numbers of an export are from, and over which range they hold.
-
 A deck in the grammar of MoorDyn: one line type, and one line of it to try it with.
 
 MoorDyn: look-up table, static and dynamic stiffness, stiffness that grows with load, Syrope.
@@ -46,76 +44,15 @@ References
 from __future__ import annotations
 
 import math
-import re
-import textwrap
 from typing import Literal
 
 import numpy as np
 
-from reduction import __version__
+from reduction.lines.deck_text import header_lines, number, one_line, real_number
 from reduction.lines.export_dynamics import Syrope, Viscoelasticity
-from reduction.lines.export_line import (
-    ExportLine,
-    ThinnedCurve,
-    guards_of,
-    local_words,
-    range_of,
-    thin_curve,
-)
+from reduction.lines.export_line import ExportLine, ThinnedCurve, thin_curve
 from reduction.quantities.digits import plain_number
 from reduction.record.errors import SettingsError
-
-_WIDTH = 100
-
-
-def number(value: float) -> str:
-    """Shortest of 15 digits: steps that were there before a change of unit are there after it."""
-    return f"{value:.15g}"
-
-
-def real_number(value: float) -> str:
-    """The same with a point, where a number without one is no real."""
-    head, sign, power = number(value).partition("e")
-    return (head if "." in head else f"{head}.0") + sign + power
-
-
-def one_line(text: str) -> str:
-    """Text that every grammar takes as a remark: one line, ASCII, no comment or rule signs."""
-    plain = " ".join(text.split()).encode("ascii", "replace").decode()
-    return re.sub("-{2,}", "-", re.sub(r"[#!%*\\\"|{}&]", " ", plain.replace("%", " percent")))
-
-
-def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) -> list[str]:
-    """Header of a file, without the signs that make it a remark there."""
-    told = [f"{line.name}, by reduction {__version__}"]
-    if line.is_synthetic:
-        told.append("SYNTHETIC: made from a formula, nothing was tested")
-    if curve is not None:
-        told += [
-            f"Curve: {line.curve}",
-            f"Holds as {range_of(line)}. The curve ends at strain {curve.strain[-1]:.6g} and "
-            f"tension {plain_number(curve.tension[-1], 6)} N; beyond it nothing is known; "
-            f"some codes keep the "
-            "last tension there",
-            f"{curve.strain.size} points of {line.strain.size}; greatest error "
-            f"{plain_number(curve.error, 3)} N, {curve.share:.2e} of the greatest "
-            f"tension; {local_words(curve)}",
-        ]
-        if curve.words:
-            told.append(f"At the start: {curve.words}")
-    told += [f"Source: {text}" for text in line.sources]
-    told += [f"Note: {text}" for text in line.notes]
-    told += [f"Note: {text}" for text in guards_of(line) if text.startswith("DOUBTFUL")]
-    told += [f"Remark: {text}" for text in remarks if text]
-    return [
-        part
-        for text in told
-        # a hyphen is the sign of an option too, which is nothing when it is cut
-        for part in textwrap.wrap(
-            one_line(text), _WIDTH, subsequent_indent="  ", break_on_hyphens=False
-        )
-    ]
-
 
 _LENGTH, _SEGMENTS = 10.0, 5
 

@@ -45,7 +45,7 @@ from reduction.quantities.digits import plain_number
 from reduction.record.contributions import Contributions
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats, read_only_arrays
-from reduction.stages.line.line_model import (
+from reduction.stages.three_parameter_line.line_model import (
     AMPLITUDE_INPUTS,
     OUTPUTS,
     amplitude_sensitivities,
@@ -53,7 +53,7 @@ from reduction.stages.line.line_model import (
     hysteresis_energy,
     identify_by_amplitude,
 )
-from reduction.stages.line.line_product import REASONS, LineParameters
+from reduction.stages.three_parameter_line.line_product import REASONS, LineParameters
 from reduction.uncertainty.propagation import line_contributions
 
 _STEPS = 201
@@ -515,14 +515,13 @@ def line_dynamics(
     Notes
     -----
     K_1 and tau are identified from K_ap, H and K_0 ([4]_, eqs. 1 and 4 solved at once), as
-    `reduction.stages.line.line_model.identify_by_amplitude` does for a run; so the exported line
-    gives back
-    K_ap and H at that point.  Where there is no such line (E' not above K_0, or H not above zero),
-    the printed K_1 and tau take their place as long as K_ap of them is in the 95 % interval of
-    the surface of K_ap.  How well they are known is by `reduction.lines.export_dynamics`: one load
-    cell
-    is in K_ap, H and K_0.  The growth with the mean tension is that of the straight line of least
-    squares through K_0 + K_1, found in the same way at nine means over the tested ones.
+    `reduction.stages.three_parameter_line.line_model.identify_by_amplitude` does for a run; so the
+    exported line gives back K_ap and H at that point.  Where there is no such line (E' not above
+    K_0, or H not above zero), the printed K_1 and tau take their place as long as K_ap of them is
+    in the 95 % interval of the surface of K_ap.  How well they are known is said by this module:
+    one load cell is in K_ap, H and K_0.  The growth with the mean tension is that of the straight
+    line of least squares through K_0 + K_1, found in the same way at nine means over the tested
+    ones.
     """
     if "mean_tension" not in levels:
         raise SettingsError(

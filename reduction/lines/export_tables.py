@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reduction import __version__
 from reduction.archive.atomic_write import atomic_file
-from reduction.lines.deck_moordyn import number
+from reduction.lines.deck_text import number
 from reduction.lines.export_line import CurveSpread, ExportLine, curve_from_zero, range_of
 from reduction.lines.line_search import LineDifference
 from reduction.lines.lookup_product import DesignValues, LineSource

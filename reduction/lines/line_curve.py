@@ -53,8 +53,8 @@ from reduction.record.contributions import (
 )
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
-from reduction.stages.line.slow_pull import slope_of_cubic
 from reduction.stages.moduli.local_regression import curve_at
+from reduction.stages.three_parameter_line.slow_pull import slope_of_cubic
 
 _EDGE = 1e-9
 

@@ -54,8 +54,8 @@ from reduction.published.published_lines import (
 )
 from reduction.quantities.units import scale_to_si
 from reduction.record.measurement import Bools, Floats
-from reduction.stages.line.slow_pull import slope_of_cubic
 from reduction.stages.strain.strain_fit import PooledMarks, fit_to_marks
+from reduction.stages.three_parameter_line.slow_pull import slope_of_cubic
 
 OF_CUBIC = {"quasi_static_strain": "strain"}
 """Names of cubics that are looked up by another one."""

@@ -23,6 +23,7 @@ from reduction.archive.open import Opener, reading
 from reduction.archive.write import write_text_atomically
 from reduction.experiments.surface_points import ABOVE_LEVERAGE
 from reduction.lines.archive_source import archives_of_lines, lines_of_open_archive, unique_names
+from reduction.lines.deck_formats import FORMS
 from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
 from reduction.lines.published_source import published_sources
 from reduction.published.printed_cells import REPORTS, ReportId, cells_of, errata_of
@@ -425,6 +426,7 @@ def _render_design_page(
             (room / "design_values_static" / name).read_text("utf-8") for name in _SCRIPTS
         ),
         data=_json_text(data),
+        other_codes=[name for name in FORMS if name != "moordyn"],
     )
 
 

@@ -221,7 +221,7 @@ def parts_of_first_loading(
         return (
             {},
             [],
-        )  # the slow pull of a rope or hose is `reduction.stages.line`'s, without an area
+        )  # that of a rope or hose is `stages.three_parameter_line.slow_pull`'s, without an area
     curves = first_loading_curves(
         strain, tension, area=np.where(has_area, area, 1.0), settings=settings.modulus,
         standstills=located.standstills,

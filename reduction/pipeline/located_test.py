@@ -61,12 +61,14 @@ def locate(record: Record, *, kind: str, settings: ReductionSettings) -> Located
             found=kind,
             needed="one of " + ", ".join((*CYCLIC, *PULLED, *HELD, "stepwise")),
         )
-    position = _usable(record.crosshead_position, record.crosshead_position_quality_flag)
+    position = _without_flagged_samples(
+        record.crosshead_position, record.crosshead_position_quality_flag
+    )
     if kind == "creep" or (settings.cycles.control == "load" and kind != "relaxation"):
         record, standstills = _held_on_tension(record, position, settings)
-        tension = _usable(record.tension, record.quality_flag)
+        tension = _without_flagged_samples(record.tension, record.quality_flag)
     else:
-        tension = _usable(record.tension, record.quality_flag)
+        tension = _without_flagged_samples(record.tension, record.quality_flag)
         standstills = find_standstills(record.time, position, tension, settings=settings.phases)
     if kind not in CYCLIC:
         return Located(record, position, tension, standstills, None)
@@ -88,7 +90,7 @@ def _held_on_tension(
     standstills = find_tension_stands(
         record.time,
         position,
-        _usable(record.tension, record.quality_flag, but=_REPEATS),
+        _without_flagged_samples(record.tension, record.quality_flag, but=_REPEATS),
         settings=settings.phases,
     )
     flags, freed = copied(record.quality_flag), 0
@@ -105,7 +107,7 @@ def _held_on_tension(
     return replace(record, quality_flag=flags, notes=notes), standstills
 
 
-def _usable(values: Floats, flags: NDArray[np.uint16], *, but: int = 0) -> Floats:
+def _without_flagged_samples(values: Floats, flags: NDArray[np.uint16], *, but: int = 0) -> Floats:
     """A channel without the samples that no number may rest on, NaN there."""
     masks = UNUSABLE & ~np.uint16(but)
     n_samples = values.shape[-1]
@@ -162,10 +164,10 @@ def flagged_record(located: Located, models: Sequence[StrainModel]) -> Record:
             outside = extrapolated(model, position[part], tension[index, part])
             flags[index, part][outside] |= np.uint16(Quality.EXTRAPOLATED)
         if cycles is not None:
-            uneven = (cycles.cycle_number[part] > 0) & ~cycles.is_constant_rate[part]
+            uneven = (cycles.cycle_number[part] > 0) & ~cycles.is_in_trimmed_branch[part]
             flags[:, part][:, uneven] |= np.uint16(Quality.NOT_CONSTANT_RATE)
             of_position[part][uneven] |= np.uint16(Quality.NOT_CONSTANT_RATE)
-            release_pages(cycles.cycle_number, cycles.is_constant_rate)
+            release_pages(cycles.cycle_number, cycles.is_in_trimmed_branch)
     return replace(record, quality_flag=flags, crosshead_position_quality_flag=of_position)
 
 

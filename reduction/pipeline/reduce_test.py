@@ -58,8 +58,7 @@ from reduction.record.samples import (
 from reduction.record.settings import CycleSettings, ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.cycle_search import label_phases
-from reduction.stages.holds.holds import HoldResult, reduce_holds
-from reduction.stages.line.line_product import SlowPull
+from reduction.stages.holds.relaxation_and_creep import HoldResult, reduce_holds
 from reduction.stages.moduli.modulus_product import ModulusCurves
 from reduction.stages.moduli.slack_length import slack_crossings, slack_strain_at_unloading
 from reduction.stages.moduli.stepwise_test import greatest_step_strain, reduce_stepwise
@@ -67,6 +66,7 @@ from reduction.stages.reduced_test import History, ReducedTest, TestDescription
 from reduction.stages.standstills import Standstills
 from reduction.stages.strain.strain_model import StrainModel, strain_by_model
 from reduction.stages.strain.stress import check_constant_volume
+from reduction.stages.three_parameter_line.line_product import SlowPull
 from reduction.uncertainty.error_field import error_field
 from reduction.uncertainty.monte_carlo import with_line_spread
 from reduction.uncertainty.propagation import with_diameter
@@ -212,7 +212,7 @@ def _waveform(cycles: Cycles, waveform: str) -> list[Note]:
     n_samples = cycles.branch_last - cycles.branch_first + 1
     if waveform != "triangular" or np.median(n_samples) < _FEWEST_SAMPLES:
         return []
-    share = count_samples(cycles.is_constant_rate) / int(n_samples.sum())
+    share = count_samples(cycles.is_in_trimmed_branch) / int(n_samples.sum())
     return [note("not-triangular", share=share)] if share < _TRIANGULAR_SHARE else []
 
 
@@ -769,15 +769,15 @@ def reduce_test(
     strain = strain_of_record(record, position, tension, models)
     readings = _readings_of(record, instruments)
     stated = replace(located, record=_with_readings(record, readings))
-    of_cycles = parts_of_cycles(
+    cycle_parts = parts_of_cycles(
         located, strain, tension, specimens=specimens, history=history, settings=settings,
     )  # fmt: skip
     of_first_rise, first_rise_notes = parts_of_first_loading(
         located, strain, tension, specimens, settings, history, kind=description.kind,
     )  # fmt: skip
     of_line = (
-        parts_of_line(of_cycles["loops"], pulls, settings.cycles)
-        if pulls is not None and "loops" in of_cycles
+        parts_of_line(cycle_parts["loops"], pulls, settings.cycles)
+        if pulls is not None and "loops" in cycle_parts
         else {}
     )
     of_pulls, refused_pulls = (
@@ -807,7 +807,7 @@ def reduce_test(
     )
     notes = _notes_of_test(
         located, strain, kind=description.kind, specimens=specimens, settings=settings, holds=holds,
-        parts=of_cycles, of_stages=(*first_rise_notes, *refused_pulls),
+        parts=cycle_parts, of_stages=(*first_rise_notes, *refused_pulls),
         slack_remarks=slack_strain.remarks,
     )  # fmt: skip
     reduced = ReducedTest(
@@ -831,10 +831,10 @@ def reduce_test(
         slack_strain=slack_strain,
         rope_step=rope_step(
             located, strain, tension, kind=description.kind, specimens=specimens,
-            loops=of_cycles.get("loops"), holds=holds, failed=description.failed,
+            loops=cycle_parts.get("loops"), holds=holds, failed=description.failed,
             settings=settings.rope,
         ),
-        **of_cycles,
+        **cycle_parts,
         **of_first_rise,
         **of_line,
         **parts_of_stress(stated.record, specimens),

@@ -15,12 +15,18 @@ from reduction.record.notes import Note, note
 from reduction.record.samples import last_sample
 from reduction.record.settings import CycleSettings, RopeSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.holds.holds import HoldResult
-from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair, creep_of_hold, held_pairs
-from reduction.stages.line.line_model import refused_lines
-from reduction.stages.line.line_of_loops import identify_cycles, identify_run
-from reduction.stages.line.line_product import SlowPull
-from reduction.stages.line.rope_programme import (
+from reduction.stages.holds.relaxation_and_creep import HoldResult
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.hold_pairs import (
+    CreepOfHold,
+    HeldPair,
+    creep_of_hold,
+    held_pairs,
+)
+from reduction.stages.three_parameter_line.line_model import refused_lines
+from reduction.stages.three_parameter_line.line_of_loops import identify_cycles, identify_run
+from reduction.stages.three_parameter_line.line_product import SlowPull
+from reduction.stages.three_parameter_line.rope_programme import (
     BeddingIn,
     CyclesToFailure,
     DynamicStiffness,
@@ -32,8 +38,11 @@ from reduction.stages.line.rope_programme import (
     summarise_bedding_in,
     tensile_pull,
 )
-from reduction.stages.line.slow_pull import MISFIT_NOTED, fit_pull, quasi_static_of_run
-from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.slow_pull import (
+    MISFIT_NOTED,
+    fit_pull,
+    quasi_static_of_run,
+)
 
 
 @dataclass(frozen=True)
@@ -104,12 +113,12 @@ def parts_of_line(
         "reading": reading,
     }
     of_test = identify_run(loops, break_in_cycles=settings.break_in_cycles, **given)
-    of_cycles = identify_cycles(loops, **given)
+    line_of_cycles = identify_cycles(loops, **given)
     return {
-        "line": of_cycles,
+        "line": line_of_cycles,
         "line_of_test": of_test,
         "quasi_static_standard_uncertainty": spread,
-        "line_notes": (*notes, *of_test.notes, *refused_lines(of_cycles.reason)),
+        "line_notes": (*notes, *of_test.notes, *refused_lines(line_of_cycles.reason)),
     }
 
 
@@ -175,7 +184,7 @@ def rope_step(
             loops, last_cycles=settings.last_cycles, rated_break_strength=strength
         )
         bedding = _bedding_in(loops, strength) if kind == "bedding-in" else None
-        notes += _of_cycles(dynamic, names, settings) + _of_levels(loops, dynamic, names)
+        notes += _stiffness_notes(dynamic, names, settings) + _of_levels(loops, dynamic, names)
         if kind == "bedding-in":
             notes += _of_first_cycle(loops, names)
         step = replace(step, bedding_in=bedding, dynamic=dynamic)
@@ -243,7 +252,7 @@ def _of_first_cycle(loops: Loops, names: Sequence[str]) -> list[Note]:
     return notes
 
 
-def _of_cycles(
+def _stiffness_notes(
     dynamic: DynamicStiffness, names: Sequence[str], settings: RopeSettings
 ) -> list[Note]:
     """Too few cycles, and a stiffness that has not settled."""

@@ -13,7 +13,7 @@ from reduction.published.printed_cells import Cell, number_of, printed_step
 from reduction.published.reproduced_item import ReproducedItem, judge, not_testable
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
-from reduction.stages.line.slow_pull import slope_of_cubic
+from reduction.stages.three_parameter_line.slow_pull import slope_of_cubic
 
 POLYNOMIAL_SCALES = np.array([1e4, 1.0, 1e-3, 1e-7])
 """Of A, B, C, D of Tables 6 and 7: to pounds."""

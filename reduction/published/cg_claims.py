@@ -48,7 +48,7 @@ from reduction.published.reproduced_item import (
     judge_word,
     not_testable,
 )
-from reduction.stages.line.line_model import apparent_spring_constant
+from reduction.stages.three_parameter_line.line_model import apparent_spring_constant
 
 SETTING = "a setting of the tests"
 

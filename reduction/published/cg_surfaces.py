@@ -35,12 +35,12 @@ from reduction.published.reproduced_item import (
     judge_as,
     not_testable,
 )
-from reduction.stages.line.line_model import (
+from reduction.stages.three_parameter_line.line_model import (
     apparent_spring_constant,
     hysteresis_energy,
     identify_by_amplitude,
 )
-from reduction.stages.line.slow_pull import fit_pull, spring_constant_ratio
+from reduction.stages.three_parameter_line.slow_pull import fit_pull, spring_constant_ratio
 
 REST, STRAIN = "quasi_static_spring_constant", "quasi_static_strain"
 

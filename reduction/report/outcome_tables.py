@@ -58,7 +58,7 @@ from reduction.report.text_style import (
     span,
     words,
 )
-from reduction.stages.line.change_in_length import PROPERTY_NAMES
+from reduction.stages.three_parameter_line.change_in_length import PROPERTY_NAMES
 
 _POINTS = 81
 

@@ -59,8 +59,8 @@ from reduction.report.text_style import (
     within,
     words,
 )
-from reduction.stages.line.line_product import REASONS
 from reduction.stages.moduli.local_regression import curve_at
+from reduction.stages.three_parameter_line.line_product import REASONS
 
 STEPS = (0.25, 0.05, 0.01)
 

@@ -13,9 +13,7 @@ from reduction.record.measurement import Floats, Integers, Record, Source, Speci
 from reduction.record.notes import Note, by_severity, note
 from reduction.stages.channel_lag import LagEstimate
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.holds.holds import HoldResult, hold_numbers
-from reduction.stages.line.line_product import LineParameters, SlowPull
-from reduction.stages.line.rope_programme import RopeStep
+from reduction.stages.holds.relaxation_and_creep import HoldResult, hold_numbers
 from reduction.stages.moduli.modulus_product import (
     AmplitudeSummary,
     CycleIdentity,
@@ -31,6 +29,8 @@ from reduction.stages.moduli.slack_length import SlackStrain
 from reduction.stages.moduli.stepwise_test import StepwiseResult
 from reduction.stages.standstills import Standstills
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.line_product import LineParameters, SlowPull
+from reduction.stages.three_parameter_line.rope_programme import RopeStep
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,8 @@ from reduction.record.measurement import Bools, Floats, read_only_arrays
 from reduction.record.notes import Note, note
 from reduction.record.settings import CycleSettings
 from reduction.stages.cycles.cycle_product import Loops
-from reduction.stages.line.line_model import (
+from reduction.stages.reduced_test import ReducedTest
+from reduction.stages.three_parameter_line.line_model import (
     AMPLITUDE_INPUTS,
     FUNDAMENTAL_INPUTS,
     OUTPUTS,
@@ -51,9 +52,11 @@ from reduction.stages.line.line_model import (
     identify_by_fundamental,
     line_sensitivities,
 )
-from reduction.stages.line.line_of_loops import covariance_of_means, relative_deviations
-from reduction.stages.line.line_product import LineParameters
-from reduction.stages.reduced_test import ReducedTest
+from reduction.stages.three_parameter_line.line_of_loops import (
+    covariance_of_means,
+    relative_deviations,
+)
+from reduction.stages.three_parameter_line.line_product import LineParameters
 
 PARAMETERS = ("dissipation_spring_constant", "relaxation_time", "dashpot_coefficient")
 """K_1, tau and N = K_1 tau, in the order of the arrays of `_LineDraws`."""

@@ -148,20 +148,20 @@ from reduction.record.contributions import (
     effective_degrees_of_freedom,
 )
 from reduction.record.measurement import Floats
-from reduction.stages.holds.holds import HoldResult
-from reduction.stages.line.line_model import (
+from reduction.stages.holds.relaxation_and_creep import HoldResult
+from reduction.stages.moduli.elastomer_laws import PARAMETERS, Law, even_grid, hyperelastic_stress
+from reduction.stages.moduli.modulus_product import Ratio
+from reduction.stages.moduli.stepwise_test import StepwiseResult
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.line_model import (
     AMPLITUDE_INPUTS,
     FUNDAMENTAL_INPUTS,
     OUTPUTS,
     amplitude_sensitivities,
     line_sensitivities,
 )
-from reduction.stages.line.line_product import SlowPull
-from reduction.stages.line.slow_pull import quasi_static_spring_constant
-from reduction.stages.moduli.elastomer_laws import PARAMETERS, Law, even_grid, hyperelastic_stress
-from reduction.stages.moduli.modulus_product import Ratio
-from reduction.stages.moduli.stepwise_test import StepwiseResult
-from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.line_product import SlowPull
+from reduction.stages.three_parameter_line.slow_pull import quasi_static_spring_constant
 from reduction.uncertainty.error_field import ErrorField, error_field
 
 Waveform = Literal["triangular", "sinusoidal", "other"]
@@ -508,7 +508,7 @@ def segment_contributions(
     1 N more at the upper end of one segment of 0.5, on 1 cm2: 20 kPa.
 
     >>> from reduction.record.contributions import Component
-    >>> curve = Contributions((Component("tape", "new"),),
+    >>> curve = Contributions((Component("strain_calibration", "new"),),
     ...     {"branch_tension": np.array([[0.0, 0.25, 0.5, 0.75, 1.0]])})
     >>> found = segment_contributions(curve, InstrumentErrors("new"),
     ...     strain=[1.0, 1.125, 1.25, 1.375, 1.5], knot=[1.0, 1.5],
@@ -735,8 +735,8 @@ def line_contributions(
     Returns
     -------
     contributions : Contributions
-        By name of `reduction.stages.line.line_model.OUTPUTS`; NaN where the line has no such
-        number.
+        By name of `reduction.stages.three_parameter_line.line_model.OUTPUTS`; NaN where the line
+        has no such number.
 
     Raises
     ------
@@ -745,7 +745,8 @@ def line_contributions(
 
     Notes
     -----
-    By the logarithmic derivatives of eqs. 1 and 4 of [8]_ (`reduction.stages.line.line_model`).
+    By the logarithmic derivatives of eqs. 1 and 4 of [8]_
+    (`reduction.stages.three_parameter_line.line_model`).
 
     Examples
     --------
@@ -938,7 +939,7 @@ def fit_contributions(pull: SlowPull, tension: ArrayLike, *, of: str) -> Contrib
     --------
     The squares add up to the uncertainty of the fit:
 
-    >>> from reduction.stages.line.slow_pull import fit_pull
+    >>> from reduction.stages.three_parameter_line.slow_pull import fit_pull
     >>> load = np.linspace(0, 2000.0, 400)
     >>> stretch = 1.389e-4 * load - 3.906e-8 * load**2 + 3.795e-12 * load**3
     >>> noise = 1e-4 * np.random.default_rng(1).standard_normal(400)

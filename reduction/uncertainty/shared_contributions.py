@@ -57,16 +57,7 @@ from reduction.record.samples import empty_like, full_like, release_pages
 from reduction.record.settings import CycleSettings
 from reduction.stages.channel_lag import LagEstimate, lag_by_turns
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.holds.holds import HoldResult, hold_numbers
-from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair
-from reduction.stages.line.line_product import LineParameters, SlowPull
-from reduction.stages.line.rope_programme import BeddingIn, DynamicStiffness, TensilePull
-from reduction.stages.line.slow_pull import (
-    BREAK_SHARES,
-    quasi_static_spring_constant,
-    strain_at_tension,
-    tension_grid,
-)
+from reduction.stages.holds.relaxation_and_creep import HoldResult, hold_numbers
 from reduction.stages.moduli.elastomer_laws import LAWS
 from reduction.stages.moduli.modulus_product import (
     AmplitudeSummary,
@@ -78,6 +69,19 @@ from reduction.stages.moduli.modulus_product import (
 from reduction.stages.moduli.secant_modulus import FEWEST_CYCLES, cycles_at_an_end, slope_per_decade
 from reduction.stages.reduced_test import ReducedTest
 from reduction.stages.strain.strain_model import StrainModel, position_by_model
+from reduction.stages.three_parameter_line.hold_pairs import CreepOfHold, HeldPair
+from reduction.stages.three_parameter_line.line_product import LineParameters, SlowPull
+from reduction.stages.three_parameter_line.rope_programme import (
+    BeddingIn,
+    DynamicStiffness,
+    TensilePull,
+)
+from reduction.stages.three_parameter_line.slow_pull import (
+    BREAK_SHARES,
+    quasi_static_spring_constant,
+    strain_at_tension,
+    tension_grid,
+)
 from reduction.uncertainty.error_field import ErrorField, coefficient_errors, error_field
 from reduction.uncertainty.propagation import (
     by_diameter,
@@ -614,7 +618,7 @@ _OF_STEP = (
 )  # fmt: skip
 
 
-def of_cycles(
+def trend_and_step_contributions(
     test: ReducedTest,
     index: int,
     errors: InstrumentErrors,
@@ -1180,7 +1184,7 @@ def shared_uncertainty_of_cycles(
         for index, one in enumerate(errors):
             pull = None if pulls is None else pulls[index]
             origin = pull_origins[index] if pull_origins else None
-            found = _of_cycles(test, part, index, one, cycles, pull, origin)
+            found = _contributions_to_cycles(test, part, index, one, cycles, pull, origin)
             for name in found.values if found.component else ():
                 spread = found.shared_standard_uncertainty(name)
                 if name not in shared:
@@ -1207,7 +1211,7 @@ def _of_specimen(
     area = float(areas_of(test.specimens)[index])
     summary = test.amplitude
     yield from _of_material(test, index, errors, model, area)
-    yield from of_cycles(test, index, errors, model, cycles, area)
+    yield from trend_and_step_contributions(test, index, errors, model, cycles, area)
     own = test.pulls[index] if test.pulls else None
     if own is not None:
         strength = test.specimens[index].rated_break_strength
@@ -1238,7 +1242,7 @@ def _of_specimen(
             yield _named(_of_line(test.line_of_test, summary, index, of_loop, rest), "test_")
 
 
-def _of_cycles(
+def _contributions_to_cycles(
     test: ReducedTest,
     part: ReducedTest,
     index: int,

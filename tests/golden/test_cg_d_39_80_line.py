@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reduction.stages.line.line_model import (
+from reduction.stages.three_parameter_line.line_model import (
     VERDICTS,
     apparent_spring_constant,
     check_single_time,
     hysteresis_energy,
     identify_by_amplitude,
 )
-from reduction.stages.line.slow_pull import (
+from reduction.stages.three_parameter_line.slow_pull import (
     fit_pull,
     slope_of_cubic,
     spring_constant_ratio,

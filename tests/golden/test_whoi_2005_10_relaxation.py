@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.stages.holds.holds import _relaxation_drop
+from reduction.stages.holds.relaxation_and_creep import _relaxation_drop
 
 HALF_LAST_DIGIT_LBF = 0.5
 

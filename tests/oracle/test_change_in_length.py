@@ -13,9 +13,9 @@ from reduction.pipeline.located_test import locate
 from reduction.pipeline.reduce_test import reduce_test
 from reduction.record.measurement import Record, Specimen
 from reduction.record.settings import CycleSettings, ReductionSettings, RopeSettings
-from reduction.stages.line.change_in_length import change_in_length
 from reduction.stages.reduced_test import TestDescription
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.change_in_length import change_in_length
 
 GAUGE = 10.0
 REFERENCE_TIME = 120.0

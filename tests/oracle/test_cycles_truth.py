@@ -57,7 +57,7 @@ def test_plateau_rate_is_that_of_the_path(name):
     speed = FOOT * np.abs(np.diff(path["crosshead_ft"]) / np.diff(path["time_s"]))
     assert cycles.plateau_rate == pytest.approx(np.median(speed), rel=0.02)
     n_samples = np.sum(speed > 0.97 * np.median(speed)) + 20  # one more than steps, each branch
-    assert cycles.is_constant_rate.sum() == pytest.approx(n_samples, rel=0.05)
+    assert cycles.is_in_trimmed_branch.sum() == pytest.approx(n_samples, rel=0.05)
 
 
 @pytest.mark.parametrize(

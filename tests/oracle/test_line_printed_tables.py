@@ -6,7 +6,11 @@ import numpy as np
 import pytest
 from measured_logs import LOGS
 
-from reduction.stages.line.slow_pull import fit_pull, quasi_static_spring_constant, slope_of_cubic
+from reduction.stages.three_parameter_line.slow_pull import (
+    fit_pull,
+    quasi_static_spring_constant,
+    slope_of_cubic,
+)
 
 TABLES = LOGS.parent / "reference" / "line"
 pytestmark = pytest.mark.skipif(

@@ -21,8 +21,7 @@ from reduction.record import samples as scratch
 from reduction.record import samples as search
 from reduction.stages import standstills as still_blocks
 from reduction.stages.cycles import cycle_pairing as runs
-from reduction.stages.holds import holds as ramp
-from reduction.stages.holds import holds as support
+from reduction.stages.holds import relaxation_and_creep
 from reduction.stages.moduli import loop_balance as tensionlevel
 
 pytestmark = pytest.mark.slow
@@ -131,7 +130,10 @@ def test_a_log_on_disk_gives_the_numbers_of_one_in_memory(on_disk, campaign, nam
 @pytest.mark.parametrize(("campaign", "name", "length"), with_size(997, 4096))
 def test_the_length_of_the_blocks_is_in_no_number(monkeypatch, campaign, name, length):
     expected = reduced(campaign, name)
-    cut = (blocks, intervals, search, runs, constant, tensionlevel, still_blocks, ramp, support)
+    cut = (
+        blocks, intervals, search, runs, constant, tensionlevel, still_blocks,
+        relaxation_and_creep,
+    )  # fmt: skip
     for module in cut:
         monkeypatch.setattr(module, "BLOCK", length)
     monkeypatch.setitem(blocks.sample_blocks.__kwdefaults__, "size", length)
@@ -179,7 +181,7 @@ HOLD = """
 import sys
 from pathlib import Path
 import numpy as np
-from reduction.stages.holds.holds import reduce_holds
+from reduction.stages.holds.relaxation_and_creep import reduce_holds
 from reduction.stages.standstills import Standstills
 from reduction.record.samples import ColumnWriter
 from reduction.record.settings import HoldSettings

@@ -54,7 +54,7 @@ def reduced(test):
     for cycle, row, branch in np.ndindex(cycles.n_cycles, 2, 2):
         kept = (
             (cycles.cycle_number == cycle + 1) & (cycles.branch == branch + 1)
-        ) & cycles.is_constant_rate
+        ) & cycles.is_in_trimmed_branch
         order = np.flatnonzero(kept)[np.argsort(strain[row, kept])]
         expected[cycle, row, branch] = np.interp(
             curves.strain_bin, strain[row, order], modulus[row, order], left=np.nan, right=np.nan

@@ -13,7 +13,7 @@ import pytest
 from reduction.record.settings import CycleSettings, HoldSettings, PhaseSettings, SlipSettings
 from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.cycles.loops import close_loops
-from reduction.stages.holds.holds import reduce_holds
+from reduction.stages.holds.relaxation_and_creep import reduce_holds
 from reduction.stages.moduli.loop_balance import cycle_tension_level
 from reduction.stages.moduli.splice_slip import find_slips
 from reduction.stages.standstills import find_standstills

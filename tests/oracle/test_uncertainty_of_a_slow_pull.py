@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from reduction.record.contributions import InstrumentErrors, merged
-from reduction.stages.line.slow_pull import (
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.slow_pull import (
     fit_pull,
     quasi_static_spring_constant,
     strain_at_break_share,
     strain_at_tension,
 )
-from reduction.stages.strain.strain_model import StrainModel
 from reduction.uncertainty.shared_contributions import _of_pull
 
 MODEL = StrainModel("rope", "gauge-length", {"reference_position": 0.0, "gauge_length": 2.0})

@@ -12,7 +12,7 @@ import pytest
 from reduction.record.contributions import Contributions, InstrumentErrors
 from reduction.record.measurement import StepReadings
 from reduction.record.settings import HoldSettings
-from reduction.stages.holds.holds import reduce_holds
+from reduction.stages.holds.relaxation_and_creep import reduce_holds
 from reduction.stages.moduli.elastomer_laws import PARAMETERS, fit_elastomers, hyperelastic_stress
 from reduction.stages.moduli.stepwise_test import reduce_stepwise
 from reduction.stages.standstills import Standstills

@@ -7,7 +7,7 @@ from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reduction.pipeline.located_test import _usable, locate
+from reduction.pipeline.located_test import _without_flagged_samples, locate
 from reduction.readers.sample_flags import flag_record
 from reduction.record.measurement import Quality, Record
 from reduction.record.settings import QualitySettings, ReductionSettings
@@ -47,8 +47,10 @@ CLEAN = clean_record()
 def reduced(record):
     """Located test and its loops, strain being position less 1 m."""
     located = locate(record, kind="cyclic", settings=ReductionSettings())
-    position = _usable(record.crosshead_position, record.crosshead_position_quality_flag)
-    tension = _usable(record.tension, record.quality_flag)
+    position = _without_flagged_samples(
+        record.crosshead_position, record.crosshead_position_quality_flag
+    )
+    tension = _without_flagged_samples(record.tension, record.quality_flag)
     return located, close_loops(record.time, tension, (position - 1)[None], located.cycles)
 
 

@@ -6,13 +6,13 @@ from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reduction.stages.holds.holds import (
+from reduction.stages.holds.prony_series import _ramp_factor, prony_tension
+from reduction.stages.holds.relaxation_and_creep import (
     _find_ramp,
     _rate_per_decade,
     _relaxation_drop,
     logarithmic_blocks,
 )
-from reduction.stages.holds.prony_series import _ramp_factor, prony_tension
 from reduction.stages.moduli.elastomer_laws import fit_elastomers, hyperelastic_stress
 from reduction.stages.moduli.secant_modulus import slope_per_decade
 from reduction.stages.moduli.slack_length import _slack_position

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reduction.stages.line.line_model import (
+from reduction.stages.three_parameter_line.line_model import (
     _storage_and_loss,
     apparent_spring_constant,
     hysteresis_energy,

@@ -1,5 +1,6 @@
 """What docs/ shows works, what it links to is there, and no key is left out."""
 
+import ast
 import re
 import shutil
 import tomllib
@@ -25,6 +26,7 @@ PAGES = [
     ROOT / "README.md",
     *(path for path in sorted(DOCS.rglob("*.md")) if not MADE & set(path.relative_to(DOCS).parts)),
 ]
+DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 CAMPAIGN, LAYOUTS = (
     (DOCS / name).read_text(encoding="utf-8") for name in ("campaign.md", "layouts.md")
@@ -135,3 +137,24 @@ def test_links_lead_somewhere(page):
             heads = re.findall(r"^#+ (.*)$", there.read_text(encoding="utf-8"), re.M)
             slugs = {re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") for head in heads}
             assert anchor in slugs, target
+
+
+def defined_in(path):
+    """Functions, classes, methods, and the names that the module itself gives."""
+    module = ast.parse(path.read_text(encoding="utf-8"))
+    names = {node.name for node in ast.walk(module) if isinstance(node, DEFINITIONS)}
+    for node in module.body:
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        names |= {one.id for one in targets if isinstance(one, ast.Name)}
+    return names
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "CONTRIBUTING.md"], ids=lambda page: page.name)
+def test_a_linked_name_is_defined_in_the_linked_file(page):
+    text = FENCE.sub("", page.read_text(encoding="utf-8"))
+    missing = [
+        f"{name} in {target}"
+        for name, target in re.findall(r"\[`(\w+)`\]\((?!https?:)([^)\s#]+\.py)\)", text)
+        if name not in defined_in((page.parent / target).resolve())
+    ]
+    assert not missing, "\n".join(missing)

@@ -16,7 +16,7 @@ ROOMS = [
 ]  # fmt: skip
 LAYER = {room: layer for layer, room in enumerate(ROOMS)}
 # the way of a record: each stage knows those before it
-STAGES = ["strain", "cycles", "moduli", "holds", "line"]
+STAGES = ["strain", "cycles", "moduli", "holds", "three_parameter_line"]
 EDGES = {
     "readers", "archive", "published", "lines", "campaign", "report", "batch", "pages", "cli", "__main__",
 }  # fmt: skip

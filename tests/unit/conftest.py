@@ -16,17 +16,7 @@ from reduction.record.measurement import Quality, Record, Source, Specimen, Step
 from reduction.record.notes import Note
 from reduction.stages.channel_lag import LagEstimate
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.holds.holds import HoldResult
-from reduction.stages.line.hold_pairs import CreepOfHold, HeldPair, _static_stiffness
-from reduction.stages.line.line_product import LineParameters
-from reduction.stages.line.rope_programme import (
-    BeddingIn,
-    CyclesToFailure,
-    DynamicStiffness,
-    RopeStep,
-    TensilePull,
-)
-from reduction.stages.line.slow_pull import fit_pull
+from reduction.stages.holds.relaxation_and_creep import HoldResult
 from reduction.stages.moduli.modulus_product import (
     AmplitudeSummary,
     CycleIdentity,
@@ -43,6 +33,20 @@ from reduction.stages.moduli.stepwise_test import StepwiseResult
 from reduction.stages.reduced_test import History, ReducedTest, TestDescription
 from reduction.stages.standstills import Standstills
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.hold_pairs import (
+    CreepOfHold,
+    HeldPair,
+    _static_stiffness,
+)
+from reduction.stages.three_parameter_line.line_product import LineParameters
+from reduction.stages.three_parameter_line.rope_programme import (
+    BeddingIn,
+    CyclesToFailure,
+    DynamicStiffness,
+    RopeStep,
+    TensilePull,
+)
+from reduction.stages.three_parameter_line.slow_pull import fit_pull
 from reduction.uncertainty.shared_contributions import with_shared_steps
 
 N_SAMPLES, N_CYCLES, N_BINS, N_SEGMENTS = 60, 4, 5, 3
@@ -112,7 +116,7 @@ def make_cycles():
         plateau_rate=np.full((N_CYCLES, 2), 0.3),
         cycle_number=np.repeat(np.arange(1, N_CYCLES + 1), 15).astype(np.int32),
         branch=branch,
-        is_constant_rate=np.ones(N_SAMPLES, dtype=bool),
+        is_in_trimmed_branch=np.ones(N_SAMPLES, dtype=bool),
         band=0.02,
         notes=(Note("fixture", "warning", text="the last cycle is broken"),),
     )

@@ -6,7 +6,7 @@ import numpy as np
 
 from reduction.archive.test_dataset import to_dataset
 from reduction.archive.test_variables import rope_values
-from reduction.stages.line.rope_programme import RopeStep
+from reduction.stages.three_parameter_line.rope_programme import RopeStep
 
 
 def test_a_refused_pair_keeps_its_levels_and_its_reason(rich_test):

@@ -13,8 +13,8 @@ from reduction.archive.write import write_archive
 from reduction.record.contributions import Component, InstrumentErrors
 from reduction.record.errors import ArchiveError
 from reduction.record.measurement import Origin, Source, Step
-from reduction.stages.line.change_in_length import ChangeInLength
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.three_parameter_line.change_in_length import ChangeInLength
 
 ORIGIN = Origin(
     campaign_id="ropes",

@@ -82,7 +82,7 @@ def test_labels_follow_the_branches(twenty):
         assert (cycles.cycle_number[cycles.first[i] : cycles.last[i]] == i + 1).all()
     assert cycles.cycle_number[cycles.first[1]] == 2  # a shared valley begins the next cycle
     assert cycles.cycle_number[cycles.last[-1]] == 20
-    assert (cycles.is_constant_rate <= (cycles.branch > 0)).all()
+    assert (cycles.is_in_trimmed_branch <= (cycles.branch > 0)).all()
     assert cycles.cycle_number.dtype == np.int32 and cycles.branch.dtype == np.int8
 
 
@@ -328,7 +328,7 @@ def test_19_samples_a_cycle_at_1_hz_are_enough(shape):
         position = np.round((position + noise) / 0.0037) * 0.0037
     cycles = find(time, position)
     assert cycles.n_cycles == 30
-    kept = np.add.reduceat(cycles.is_constant_rate, cycles.first)
+    kept = np.add.reduceat(cycles.is_in_trimmed_branch, cycles.first)
     assert (kept[:-1] >= 10).all()
 
 

@@ -1,7 +1,7 @@
 import numpy as np
 from export_lines import line
 
-from reduction.lines.deck_moordyn import header_lines, number, one_line, real_number
+from reduction.lines.deck_text import header_lines, number, one_line, real_number
 from reduction.lines.export_line import thin_curve
 
 

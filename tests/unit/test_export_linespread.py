@@ -10,7 +10,7 @@ from reduction.lines.export_dynamics import _half_widths, line_dynamics
 from reduction.lines.line_lookup import look_up
 from reduction.lines.lookup_product import LineCurve
 from reduction.record.contributions import Component
-from reduction.stages.line.line_model import identify_by_amplitude
+from reduction.stages.three_parameter_line.line_model import identify_by_amplitude
 
 CELL, CLOCK = Component("tension_gain", "cell"), Component("lag", "clock")
 NAMES = ("quasi_static_spring_constant", "apparent_spring_constant", "hysteresis_energy")

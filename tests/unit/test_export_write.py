@@ -1,7 +1,10 @@
+from typing import get_args
+
 import pytest
 from export_lines import constant, line
 
-from reduction.lines.deck_formats import FORMATS, FORMS, export_line
+from reduction.lines.deck_formats import FORMATS, FORMS, WhoiCableForm, export_line
+from reduction.lines.deck_moordyn import MoorDynForm, MoorPyForm
 from reduction.record.errors import SettingsError
 
 
@@ -27,6 +30,14 @@ def test_forms_are_handed_on(tmp_path):
     assert "20000|50000" in (tmp_path / "a.dat").read_text()
     export_line(one, "whoi-cable", tmp_path / "a.cbl", form="table")
     assert "T = (0.0, 0.0) (" in (tmp_path / "a.cbl").read_text()
+
+
+def test_a_format_is_told_the_forms_that_its_writer_knows():
+    known = {
+        "moordyn": MoorDynForm, "openfast": MoorDynForm, "moorpy": MoorPyForm,
+        "whoi-cable": WhoiCableForm,
+    }  # fmt: skip
+    assert FORMS == {to: get_args(known[to]) if to in known else () for to in FORMS}
 
 
 def test_unknown_formats_and_forms_are_refused(tmp_path):

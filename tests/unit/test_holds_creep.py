@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.holds.holds import _creep_rate, _tension_variation
+from reduction.stages.holds.relaxation_and_creep import _creep_rate, _tension_variation
 
 TIME = np.arange(1.0, 2001.0)
 STRAIN = 1 + 0.03 * np.log10(TIME)

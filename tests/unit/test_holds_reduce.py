@@ -5,8 +5,8 @@ import pytest
 
 from reduction.record.errors import DataError
 from reduction.record.settings import HoldSettings
-from reduction.stages.holds.holds import reduce_holds
 from reduction.stages.holds.prony_series import prony_tension
+from reduction.stages.holds.relaxation_and_creep import reduce_holds
 from reduction.stages.standstills import Standstills
 
 STEP = 0.1

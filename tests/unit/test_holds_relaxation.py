@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.holds.holds import (
+from reduction.stages.holds.relaxation_and_creep import (
     _rate_per_decade,
     _relaxation_drop,
     _value_at_times,

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.line.hold_pairs import held_pairs
 from reduction.stages.standstills import Standstills
+from reduction.stages.three_parameter_line.hold_pairs import held_pairs
 
 
 def stands(*intervals, tension, rest=()):

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.line.line_model import (
+from reduction.stages.three_parameter_line.line_model import (
     _storage_and_loss,
     apparent_spring_constant,
     hysteresis_energy,
@@ -10,7 +10,7 @@ from reduction.stages.line.line_model import (
     identify_by_fundamental,
     refused_lines,
 )
-from reduction.stages.line.line_product import REASONS
+from reduction.stages.three_parameter_line.line_product import REASONS
 
 LOOP = {
     "apparent_spring_constant": 6.317e4,

@@ -4,8 +4,11 @@ import pytest
 from reduction.record.errors import DataError
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.loops import close_loops
-from reduction.stages.line.line_model import _storage_and_loss, apparent_spring_constant
-from reduction.stages.line.line_of_loops import identify_cycles, identify_run
+from reduction.stages.three_parameter_line.line_model import (
+    _storage_and_loss,
+    apparent_spring_constant,
+)
+from reduction.stages.three_parameter_line.line_of_loops import identify_cycles, identify_run
 
 REST, SPRING, TIME, FREQUENCY = 1.2e4, 1.8e4, 2.0, 0.3
 LINE = {

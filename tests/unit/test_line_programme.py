@@ -3,10 +3,10 @@ import pytest
 
 from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.stages.cycles.cycle_product import Loops
-from reduction.stages.holds.holds import HoldResult
-from reduction.stages.line.hold_pairs import _static_stiffness, creep_of_hold
-from reduction.stages.line.line_product import mean_of_rows, one_a_specimen
-from reduction.stages.line.rope_programme import (
+from reduction.stages.holds.relaxation_and_creep import HoldResult
+from reduction.stages.three_parameter_line.hold_pairs import _static_stiffness, creep_of_hold
+from reduction.stages.three_parameter_line.line_product import mean_of_rows, one_a_specimen
+from reduction.stages.three_parameter_line.rope_programme import (
     cycles_to_failure,
     dynamic_stiffness,
     summarise_bedding_in,

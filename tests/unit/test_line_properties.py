@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import SettingsError
-from reduction.stages.line.change_in_length import (
+from reduction.stages.three_parameter_line.change_in_length import (
     PROPERTY_NAMES,
     BeddingCycles,
     CyclicLevel,

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from reduction.record.errors import DataError, FitError
 from reduction.stages.cycles.cycle_product import Loops
-from reduction.stages.line.slow_pull import (
+from reduction.stages.three_parameter_line.slow_pull import (
     _find_loading,
     _greatest_fall,
     _positive_range,

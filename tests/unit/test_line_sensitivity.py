@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.line.line_model import (
+from reduction.stages.three_parameter_line.line_model import (
     AMPLITUDE_INPUTS,
     FUNDAMENTAL_INPUTS,
     OUTPUTS,

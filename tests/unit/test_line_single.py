@@ -3,7 +3,7 @@ import pytest
 from scipy import stats
 
 from reduction.record.errors import DataError, SettingsError
-from reduction.stages.line.line_model import (
+from reduction.stages.three_parameter_line.line_model import (
     VERDICTS,
     _power_of_frequency,
     _storage_and_loss,

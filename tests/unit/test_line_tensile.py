@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.line.rope_programme import parting_sample, tensile_pull
+from reduction.stages.three_parameter_line.rope_programme import parting_sample, tensile_pull
 
 
 def pull(*, after, back=0.0, noise=0.0, n=400):

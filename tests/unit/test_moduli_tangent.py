@@ -10,7 +10,7 @@ from reduction.record.settings import ModulusSettings
 from reduction.stages.moduli import local_regression as groups
 from reduction.stages.moduli import tangent_modulus as specimencurves
 from reduction.stages.moduli.tangent_modulus import tangent_curves
-from reduction.stages.moduli.tangent_window import strain_grid
+from reduction.stages.moduli.tangent_window import choose_grid_and_window
 
 AREA = 5e-4
 SETTINGS = ModulusSettings()
@@ -140,7 +140,7 @@ def test_trimmed_ends_are_in_the_untrimmed_curve_alone(triangle):
 
 def test_test_without_a_constant_rate_still_has_an_untrimmed_curve(triangle):
     strain, cycles = triangle(per_cycle=200)
-    never = dataclasses.replace(cycles, is_constant_rate=np.zeros(strain.size, dtype=bool))
+    never = dataclasses.replace(cycles, is_in_trimmed_branch=np.zeros(strain.size, dtype=bool))
     curves = curves_of(strain, law(strain), never)
     assert np.isnan(curves.tangent_modulus).all()
     ratio = curves.tangent_modulus_untrimmed[0] * AREA / law_slope(curves.strain_bin)
@@ -204,7 +204,7 @@ def test_a_cycle_longer_than_a_part_is_summed_part_by_part(triangle, monkeypatch
 
 def test_grid_of_the_whole_record_can_be_given(triangle):
     strain, cycles = triangle()
-    grid = strain_grid(strain, cycles=cycles, settings=ModulusSettings(window=0.2))
+    grid = choose_grid_and_window(strain, cycles=cycles, settings=ModulusSettings(window=0.2))
     curves = curves_of(strain, law(strain), cycles, grid=grid)
     assert curves.window == pytest.approx(grid.window)
 

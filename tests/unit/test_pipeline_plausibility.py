@@ -22,7 +22,7 @@ def notes_of(triangle):
         one = cycles
         if share is not None:
             within = np.arange(strain.size) % 50 < 50 * share  # a branch has 51 samples
-            one = replace(cycles, is_constant_rate=within)
+            one = replace(cycles, is_in_trimmed_branch=within)
         load, stretch = np.atleast_2d(tension), np.atleast_2d(stretch)
         curves = tangent_curves(
             stretch, load, area=AREA, cycles=one, settings=ModulusSettings(), break_in_cycles=0

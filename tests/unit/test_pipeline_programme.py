@@ -10,7 +10,7 @@ from reduction.pipeline.rope_test import rope_step
 from reduction.record.measurement import Record, Specimen
 from reduction.record.settings import CycleSettings, ReductionSettings, RopeSettings
 from reduction.stages.cycles.loops import close_loops
-from reduction.stages.line.rope_programme import DynamicStiffness
+from reduction.stages.three_parameter_line.rope_programme import DynamicStiffness
 
 ROPE = Specimen("line", kind="rope", rated_break_strength=1000.0)
 TETHER = Specimen("tether", rated_break_strength=1000.0)

@@ -7,10 +7,14 @@ import pytest
 
 from reduction.record.contributions import InstrumentErrors, merged
 from reduction.record.settings import CycleSettings
-from reduction.stages.line.rope_programme import RopeStep, dynamic_stiffness, summarise_bedding_in
 from reduction.stages.moduli.secant_modulus import fit_peak_trend
 from reduction.stages.strain.strain_model import StrainModel
-from reduction.uncertainty.shared_contributions import of_cycles
+from reduction.stages.three_parameter_line.rope_programme import (
+    RopeStep,
+    dynamic_stiffness,
+    summarise_bedding_in,
+)
+from reduction.uncertainty.shared_contributions import trend_and_step_contributions
 
 AREA = 5e-4
 MODEL = StrainModel("new", "gauge-length", {"reference_position": 0.0, "gauge_length": 2.0})
@@ -62,7 +66,7 @@ def numbers(test):
 
 
 def found_by(test, errors):
-    parts = of_cycles(steps_of(test), 0, errors, MODEL, CycleSettings(), AREA)
+    parts = trend_and_step_contributions(steps_of(test), 0, errors, MODEL, CycleSettings(), AREA)
     return {name: rows.sum(axis=0) for name, rows in merged(list(parts)).values.items()}
 
 

@@ -11,8 +11,8 @@ from reduction.record.contributions import Component, Contributions
 from reduction.record.measurement import Specimen
 from reduction.record.settings import CycleSettings
 from reduction.stages.cycles.cycle_product import Loops
-from reduction.stages.line.line_of_loops import identify_run
 from reduction.stages.reduced_test import ReducedTest, TestDescription
+from reduction.stages.three_parameter_line.line_of_loops import identify_run
 from reduction.uncertainty.monte_carlo import with_line_spread
 
 STORED, LOST, RATE = 3e4, 4e3, 0.3

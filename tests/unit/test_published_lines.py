@@ -7,7 +7,7 @@ import pytest
 
 from reduction.published.printed_cells import errata_of
 from reduction.published.published_lines import published_lines
-from reduction.stages.line.slow_pull import slope_of_cubic
+from reduction.stages.three_parameter_line.slow_pull import slope_of_cubic
 
 POUND = 4.4482216152605
 LINES = {line.name: line for line in published_lines()}

@@ -25,7 +25,7 @@ from reduction.report.experiment_report import (
     draw_surface,
     make_planes,
 )
-from reduction.stages.line.line_model import check_single_time
+from reduction.stages.three_parameter_line.line_model import check_single_time
 
 EVERYTHING = (
     surface_experiment(),

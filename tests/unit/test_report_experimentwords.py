@@ -19,7 +19,7 @@ from reduction.report.experiment_report import (
     single_time_words,
     stationary_words,
 )
-from reduction.stages.line.line_model import check_single_time
+from reduction.stages.three_parameter_line.line_model import check_single_time
 
 
 def falls(frequency, mean, amplitude):

@@ -24,7 +24,7 @@ from reduction.report.outcome_tables import (
 from reduction.report.product_views import view_ropes
 from reduction.report.test_view import TestView
 from reduction.report.text_style import NOT_GIVEN
-from reduction.stages.line.change_in_length import PROPERTY_NAMES, ChangeInLength
+from reduction.stages.three_parameter_line.change_in_length import PROPERTY_NAMES, ChangeInLength
 
 FOUND = {
     "R-1": (

@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from reduction.record.errors import DataError
-from reduction.stages.line.line_model import AMPLITUDE_INPUTS, FUNDAMENTAL_INPUTS
+from reduction.stages.three_parameter_line.line_model import AMPLITUDE_INPUTS, FUNDAMENTAL_INPUTS
 from reduction.uncertainty.monte_carlo import N_DRAWS, _draw_line
 
 STORED, LOST, RATE, REST = 3e4, 4e3, 0.3, 2e4

@@ -86,7 +86,7 @@ def test_the_moduli_have_the_same_bytes_on_any_number_of_processors(
         plateau_rate=np.ones((n_cycles, 2)),
         cycle_number=np.repeat(np.arange(1, n_cycles + 1, dtype=np.int32), 2 * half),
         branch=np.tile(np.repeat(np.array([1, 2], dtype=np.int8), half), n_cycles),
-        is_constant_rate=rng.random(strain.size) > 0.1,
+        is_in_trimmed_branch=rng.random(strain.size) > 0.1,
         band=0.0,
     )
     found = []

@@ -85,7 +85,7 @@ def _dwells_of_cycles(
     holds[at[is_level]] = True
     duration[at[is_level]] = (standstills.end_time - standstills.start_time)[is_level]
     stroke = np.abs(np.diff(of_reversals))
-    of_cycles = np.zeros(reversals.size, dtype=bool)
+    is_dwell_of_cycle = np.zeros(reversals.size, dtype=bool)
     for kind in (0, 1):  # peaks among peaks, valleys among valleys
         held, lasting = holds[kind::2], duration[kind::2]
         levels = of_reversals[kind::2]
@@ -98,8 +98,8 @@ def _dwells_of_cycles(
         dwell = np.zeros(held.size, dtype=bool)
         dwell[1:] |= in_a_row >= _FEWEST_DWELLS - 1
         dwell[:-1] |= in_a_row >= _FEWEST_DWELLS - 1
-        of_cycles[kind::2] = dwell
-    return at, (at >= 0) & of_cycles[at]
+        is_dwell_of_cycle[kind::2] = dwell
+    return at, (at >= 0) & is_dwell_of_cycle[at]
 
 
 def _longest_row(true: Bools) -> Indices:

@@ -33,7 +33,7 @@ class Cycles:
         1 for the first cycle; 0 outside cycles.
     branch : ndarray of int8, shape (n_samples,)
         0 none, 1 ascending, 2 descending.
-    is_constant_rate : ndarray of bool, shape (n_samples,)
+    is_in_trimmed_branch : ndarray of bool, shape (n_samples,)
         True inside the trimmed part of a branch.
     band : float
         Smallest range of the control channel that makes a reversal. [m] or [N]
@@ -52,7 +52,7 @@ class Cycles:
     plateau_rate: Floats
     cycle_number: NDArray[np.int32]
     branch: NDArray[np.int8]
-    is_constant_rate: Bools
+    is_in_trimmed_branch: Bools
     band: float
     counted_by: str = "reversals"
     notes: tuple[Note, ...] = ()

@@ -812,7 +812,7 @@ def find_cycles(
         plateau_rate=rate.reshape(-1, 2),
         cycle_number=_labels(first, last, np.arange(1, first.size + 1, dtype=np.int32), time),
         branch=_labels(begin.ravel(), branch_last.ravel(), np.tile(_BRANCHES, first.size), time),
-        is_constant_rate=_labels(
+        is_in_trimmed_branch=_labels(
             start[kept], stop[kept], np.ones(int(kept.sum()), dtype=np.bool_), time
         ),
         band=float(band),

@@ -227,7 +227,7 @@ def check_identity(
     ...     branch_first=np.array([[0, 201]]), branch_last=np.array([[200, 401]]),
     ...     plateau_rate=np.ones((1, 2)), cycle_number=np.ones(402, dtype=np.int32),
     ...     branch=np.repeat(np.array([1, 2], dtype=np.int8), 201),
-    ...     is_constant_rate=np.ones(402, dtype=bool), band=0.0,
+    ...     is_in_trimmed_branch=np.ones(402, dtype=bool), band=0.0,
     ... )
     >>> identity = check_identity(strain, tension, area=[1e-4], cycles=cycles)
     >>> print(identity.stroke_mean_modulus_difference.round(3), identity.tension_loss_modulus)

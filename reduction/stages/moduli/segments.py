@@ -354,11 +354,11 @@ def _spread(
     curves: ModulusCurves, at: tuple[int, ...], used: Bools, inside: Bools, *, windows: float
 ) -> float:
     """Standard uncertainty of the mean modulus over the bins of a segment."""
-    of_cycles = curves.tangent_modulus_by_cycle[at[0], :, at[1]][:, used][:, inside]
-    seen = np.isfinite(of_cycles)
+    modulus_by_cycle = curves.tangent_modulus_by_cycle[at[0], :, at[1]][:, used][:, inside]
+    seen = np.isfinite(modulus_by_cycle)
     whole = seen.mean(axis=1) >= _REACHED if seen.size else np.zeros(0, dtype=bool)
     if np.count_nonzero(whole) >= _FEWEST_CYCLES:
-        means = np.nanmean(of_cycles[whole], axis=1)
+        means = np.nanmean(modulus_by_cycle[whole], axis=1)
         count = float(curves.tangent_modulus_count[at][used][inside].max())
         return float(np.std(means, ddof=1) / np.sqrt(max(count, 1.0)))
     variance = curves.tangent_modulus_standard_uncertainty[at][used][inside] ** 2

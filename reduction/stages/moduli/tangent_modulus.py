@@ -37,7 +37,7 @@ from reduction.stages.moduli.local_regression import (
     select_cycles,
 )
 from reduction.stages.moduli.modulus_product import ModulusCurves
-from reduction.stages.moduli.tangent_window import StrainGrid, strain_grid, window_blur
+from reduction.stages.moduli.tangent_window import StrainGrid, choose_grid_and_window, window_blur
 
 _PART = 1 << 18  # samples of a block of which sums are taken together
 
@@ -77,7 +77,7 @@ def _curve_of_sample(
     number, branch = cycles.cycle_number[samples], cycles.branch[samples]
     group = groups.of_cycle.take(number) - start
     curve = 2 * group + branch - 1
-    curve[~cycles.is_constant_rate[samples]] += 2 * (stop - start)
+    curve[~cycles.is_in_trimmed_branch[samples]] += 2 * (stop - start)
     outside = (group < 0) | (group >= stop - start) | (branch == 0)
     if outside.any():
         curve[outside] = -1
@@ -97,7 +97,7 @@ def _block_moments(
     """Moments of each specimen over a block, and its samples off the grid; long blocks in parts."""
     start, stop, samples = block
     found: list[tuple[BranchMoments, int]] = []
-    series = (strain, tension, cycles.cycle_number, cycles.branch, cycles.is_constant_rate)
+    series = (strain, tension, cycles.cycle_number, cycles.branch, cycles.is_in_trimmed_branch)
     for part in sample_blocks(samples.stop - samples.start, *series, size=_PART):
         here = slice(samples.start + part.start, samples.start + part.stop)
         curve = _curve_of_sample(cycles, groups, start, stop, here)
@@ -188,7 +188,7 @@ def _reduce_specimens(
             for moments, n_outside in found
         ]
 
-    samples = (strain, tension, cycles.cycle_number, cycles.branch, cycles.is_constant_rate)
+    samples = (strain, tension, cycles.cycle_number, cycles.branch, cycles.is_in_trimmed_branch)
     blocks = run_blocks(reduce_block, groups.blocks(cycles, grid.n_bins), samples=samples)
     return [reduce(add, of_specimen) for of_specimen in zip(*blocks, strict=True)]
 
@@ -240,7 +240,7 @@ def tangent_curves(
         First cycles that are left out of every mean; their own curves are kept. [1]
     grid : StrainGrid, optional
         The grid of the whole record, where a piece of it is reduced; without it
-        `strain_grid` makes it. [1]
+        `choose_grid_and_window` makes it. [1]
 
     Returns
     -------
@@ -291,7 +291,7 @@ def tangent_curves(
     ...     first=np.array([0]), last=np.array([401]),
     ...     branch_first=np.array([[0, 201]]), branch_last=np.array([[200, 401]]),
     ...     plateau_rate=np.ones((1, 2)), cycle_number=np.ones(402, dtype=np.int32),
-    ...     branch=branch, is_constant_rate=np.ones(402, dtype=bool), band=0.0,
+    ...     branch=branch, is_in_trimmed_branch=np.ones(402, dtype=bool), band=0.0,
     ... )
     >>> curves = tangent_curves(
     ...     strain, 1000 * strain, area=[1e-4], cycles=cycles, settings=ModulusSettings()
@@ -303,7 +303,7 @@ def tangent_curves(
     strain, tension, areas = pair_specimens(strain, tension, area)
     n_cycles = cycles.n_cycles
     if grid is None:
-        grid = strain_grid(strain, cycles=cycles, settings=settings)
+        grid = choose_grid_and_window(strain, cycles=cycles, settings=settings)
     if not 0 <= break_in_cycles < n_cycles:
         raise DataError(
             "no cycle is left after break-in",

@@ -128,7 +128,7 @@ def _sample_spacing(strain: Floats, cycles: Cycles, stroke: float) -> float:
     for first, last in zip(
         cycles.branch_first[chosen].ravel(), cycles.branch_last[chosen].ravel(), strict=True
     ):
-        kept = first + np.flatnonzero(cycles.is_constant_rate[first : last + 1])
+        kept = first + np.flatnonzero(cycles.is_in_trimmed_branch[first : last + 1])
         if kept.size < 2:  # nothing at constant rate: the untrimmed curve alone can be had
             kept = np.array([first, last])
         if last > first:
@@ -139,7 +139,9 @@ def _sample_spacing(strain: Floats, cycles: Cycles, stroke: float) -> float:
     return float(np.median(known)) if known.size else stroke
 
 
-def strain_grid(strain: ArrayLike, *, cycles: Cycles, settings: ModulusSettings) -> StrainGrid:
+def choose_grid_and_window(
+    strain: ArrayLike, *, cycles: Cycles, settings: ModulusSettings
+) -> StrainGrid:
     r"""Bins, window and pooling that the cycles of a test support, for all its specimens.
 
     Parameters
@@ -184,7 +186,8 @@ def strain_grid(strain: ArrayLike, *, cycles: Cycles, settings: ModulusSettings)
 
     Examples
     --------
-    A stroke of 47.5 % in 48 samples a branch: bins of 1 %, a window of nine bins.
+    A stroke of 47.5 % in 48 samples a branch: bins of 1 %, and a window of 13 of them, the
+    smallest odd number that covers a quarter of the stroke.
 
     >>> import numpy as np
     >>> stroke = np.linspace(0.775, 1.25, 48)
@@ -194,9 +197,9 @@ def strain_grid(strain: ArrayLike, *, cycles: Cycles, settings: ModulusSettings)
     ...     first=np.array([0]), last=np.array([95]),
     ...     branch_first=np.array([[0, 48]]), branch_last=np.array([[47, 95]]),
     ...     plateau_rate=np.ones((1, 2)), cycle_number=np.ones(96, dtype=np.int32),
-    ...     branch=branch, is_constant_rate=np.ones(96, dtype=bool), band=0.0,
+    ...     branch=branch, is_in_trimmed_branch=np.ones(96, dtype=bool), band=0.0,
     ... )
-    >>> grid = strain_grid(strain, cycles=cycles, settings=ModulusSettings())
+    >>> grid = choose_grid_and_window(strain, cycles=cycles, settings=ModulusSettings())
     >>> print(grid.width, round(grid.window, 3), grid.cycles_pooled)
     0.01 0.13 1
     """

@@ -26,7 +26,8 @@ from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
 from reduction.record.notes import Note, note
 from reduction.stages.cycles.cycle_product import Loops
-from reduction.stages.line.line_model import (
+from reduction.stages.moduli.least_squares import lag_one_inflation
+from reduction.stages.three_parameter_line.line_model import (
     AMPLITUDE_INPUTS,
     FUNDAMENTAL_INPUTS,
     OUTPUTS,
@@ -35,8 +36,7 @@ from reduction.stages.line.line_model import (
     identify_by_fundamental,
     line_sensitivities,
 )
-from reduction.stages.line.line_product import LineParameters
-from reduction.stages.moduli.least_squares import lag_one_inflation
+from reduction.stages.three_parameter_line.line_product import LineParameters
 
 _FEWEST_CYCLES = 3
 
@@ -218,8 +218,8 @@ def identify_cycles(
     loops : Loops
         Table of loops.
     quasi_static_spring_constant : array_like, shape (n_specimens,) or (n_specimens, n_cycles)
-        K_0 at the mean tension of the run (`reduction.stages.line.slow_pull`); NaN without a pull.
-        [N]
+        K_0 at the mean tension of the run (`reduction.stages.three_parameter_line.slow_pull`);
+        NaN without a pull. [N]
     quasi_static_standard_uncertainty : array_like, same shape
         Its standard uncertainty, which the cycles share. [N]
     reading : {"amplitude", "fundamental"}
@@ -302,8 +302,8 @@ def identify_run(
     loops : Loops
         Table of loops.
     quasi_static_spring_constant : array_like, shape (n_specimens,)
-        K_0 at the mean tension of the run (`reduction.stages.line.slow_pull`); NaN without a pull.
-        [N]
+        K_0 at the mean tension of the run (`reduction.stages.three_parameter_line.slow_pull`);
+        NaN without a pull. [N]
     quasi_static_standard_uncertainty : array_like, shape (n_specimens,)
         Its standard uncertainty. [N]
     reading : {"amplitude", "fundamental"}

@@ -49,8 +49,6 @@ Parameters of a line from the storage and loss spring constants of its loop and 
     A = E' - K_0, \quad x = \frac{A}{E''}, \quad K_1 = A + \frac{E''^2}{A}, \quad
     \tau = \frac{x}{2 \pi f}
 
-What both readings of a loop share (`reduction.stages.line.line_model`).
-
 K_1 and tau of a line from its loop and its quasi-static spring constant, in closed form.
 
 .. math::
@@ -62,7 +60,7 @@ K_1 and tau of a line from its loop and its quasi-static spring constant, in clo
 There is one root with K_1 and x positive where E'' < K_ap and E' > K_0, and none elsewhere.
 
 As printed, and as computed.  [5]_ solves its eqs. 1 and 4 at once; eq. 4 is taken with pi
-and the square on K_0 (`reduction.stages.line.line_model`).  Eq. 4 alone has two roots, x and
+and the square on K_0 (see the forward model).  Eq. 4 alone has two roots, x and
 [K_0/(K_0 + K_1)]^2/x; eq. 1 decides between them, and the printed values are the higher.
 
 Whether one relaxation time holds over frequency.
@@ -99,7 +97,7 @@ from reduction.record.arrays import as_positive, as_same_shape
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats, Integers, read_only_arrays
 from reduction.record.notes import Note, note
-from reduction.stages.line.line_product import REASONS, LineParameters
+from reduction.stages.three_parameter_line.line_product import REASONS, LineParameters
 
 
 def _at_least_zero(**named: ArrayLike) -> tuple[Floats, ...]:
@@ -511,7 +509,7 @@ def _line_of_loop(
 
     Examples
     --------
-    >>> from reduction.stages.line.line_model import line_sensitivities
+    >>> from reduction.stages.three_parameter_line.line_model import line_sensitivities
     >>> line = _line_of_loop(
     ...     np.array(2.7), np.array(0.6),
     ...     {"frequency": np.array(0.3), "quasi_static_spring_constant": np.array(1.2)},

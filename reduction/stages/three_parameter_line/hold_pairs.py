@@ -33,7 +33,7 @@ from reduction.record.errors import DataError, FitError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 from reduction.record.notes import Note, note
 from reduction.record.samples import empty_like, finite_extremes, sample_blocks, select_samples
-from reduction.stages.holds.holds import (
+from reduction.stages.holds.relaxation_and_creep import (
     RAMP_TIMES_LEFT_OUT,
     Hold,
     HoldResult,
@@ -41,9 +41,9 @@ from reduction.stages.holds.holds import (
     logarithmic_blocks,
     select_hold,
 )
-from reduction.stages.line.line_product import one_a_specimen
 from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.standstills import Standstills
+from reduction.stages.three_parameter_line.line_product import one_a_specimen
 
 _FEWEST_POINTS = 4
 
@@ -217,7 +217,7 @@ def creep_of_hold(hold: HoldResult, *, rated_break_strength: float = float("nan"
     Parameters
     ----------
     hold : HoldResult
-        Of kind ``creep``, from `reduction.stages.holds.holds`.
+        Of kind ``creep``, from `reduction.stages.holds.relaxation_and_creep`.
     rated_break_strength : float, optional
         NaN where not stated. [N]
 

@@ -55,8 +55,8 @@ from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
 from reduction.stages.cycles.cycle_product import Loops
 from reduction.stages.cycles.loops import reading_noise
-from reduction.stages.line.line_product import SlowPull
 from reduction.stages.moduli.least_squares import lag_one_inflation
+from reduction.stages.three_parameter_line.line_product import SlowPull
 
 # a rise out of slack shows above this many standard deviations of a reading
 _NOISE_FACTOR = 6.0
@@ -160,7 +160,7 @@ def tension_grid(pulls: Sequence[SlowPull | None]) -> Floats:
 
     Examples
     --------
-    >>> from reduction.stages.line.slow_pull import fit_pull
+    >>> from reduction.stages.three_parameter_line.slow_pull import fit_pull
     >>> load = np.linspace(0, 2000.0, 400)
     >>> pull = fit_pull(np.arange(400.0), load / 4e4, load)
     >>> grid = tension_grid([pull, None])
@@ -657,7 +657,7 @@ def quasi_static_spring_constant(pull: SlowPull, tension: ArrayLike) -> tuple[Fl
     Parameters
     ----------
     pull : SlowPull
-        From `reduction.stages.line.slow_pull.fit_pull`.
+        From `reduction.stages.three_parameter_line.slow_pull.fit_pull`.
     tension : array_like, shape (...)
         Mean tension of interest. [N]
 
@@ -680,7 +680,7 @@ def quasi_static_spring_constant(pull: SlowPull, tension: ArrayLike) -> tuple[Fl
 
     Examples
     --------
-    >>> from reduction.stages.line.slow_pull import fit_pull
+    >>> from reduction.stages.three_parameter_line.slow_pull import fit_pull
     >>> load = np.linspace(0, 2000.0, 400)
     >>> stretch = 1.389e-4 * load - 3.906e-8 * load**2 + 3.795e-12 * load**3
     >>> pull = fit_pull(np.arange(400.0), stretch, load)
@@ -704,7 +704,7 @@ def strain_at_tension(pull: SlowPull, tension: ArrayLike) -> tuple[Floats, Float
     Parameters
     ----------
     pull : SlowPull
-        From `reduction.stages.line.slow_pull.fit_pull`.
+        From `reduction.stages.three_parameter_line.slow_pull.fit_pull`.
     tension : array_like, shape (...)
         Tension. [N]
 
@@ -724,7 +724,7 @@ def strain_at_tension(pull: SlowPull, tension: ArrayLike) -> tuple[Floats, Float
 
     Examples
     --------
-    >>> from reduction.stages.line.slow_pull import fit_pull
+    >>> from reduction.stages.three_parameter_line.slow_pull import fit_pull
     >>> load = np.linspace(0, 2000.0, 400)
     >>> stretch = 1.389e-4 * load - 3.906e-8 * load**2 + 3.795e-12 * load**3
     >>> print(strain_at_tension(fit_pull(np.arange(400.0), stretch, load), 1920.0)[0].round(4))
@@ -744,7 +744,7 @@ def strain_at_break_share(
     Parameters
     ----------
     pull : SlowPull
-        From `reduction.stages.line.slow_pull.fit_pull`.
+        From `reduction.stages.three_parameter_line.slow_pull.fit_pull`.
     share : array_like, shape (...)
         0.3 for 30 %RBS. [1]
     rated_break_strength : float
@@ -767,7 +767,7 @@ def strain_at_break_share(
 
     Examples
     --------
-    >>> from reduction.stages.line.slow_pull import fit_pull
+    >>> from reduction.stages.three_parameter_line.slow_pull import fit_pull
     >>> load = np.linspace(0, 2000.0, 400)
     >>> stretch = -4.13e-4 + 1.389e-4 * load - 3.906e-8 * load**2 + 3.795e-12 * load**3
     >>> pull = fit_pull(np.arange(400.0), stretch, load)
@@ -807,7 +807,7 @@ def spring_constant_ratio(
 
     Examples
     --------
-    >>> from reduction.stages.line.slow_pull import fit_pull
+    >>> from reduction.stages.three_parameter_line.slow_pull import fit_pull
     >>> load = np.linspace(0, 2000.0, 400)
     >>> slow, fast = (fit_pull(np.arange(400.0), load / k, load) for k in (4.22e4, 6.33e4))
     >>> print(spring_constant_ratio(fast, slow, 1000.0)[0].round(2))
@@ -851,7 +851,7 @@ def quasi_static_of_run(
 
     Examples
     --------
-    >>> from reduction.stages.line.slow_pull import fit_pull
+    >>> from reduction.stages.three_parameter_line.slow_pull import fit_pull
     >>> one = {name: np.full((1, 2), 1000.0) for name in Loops.__dataclass_fields__}
     >>> load = np.linspace(0, 2000.0, 400)
     >>> pull = fit_pull(np.arange(400.0), load / 4e4, load)

@@ -1,30 +1,15 @@
-"""Holds: when one begins, relaxation at constant length, creep at constant tension.
+"""Relaxation at constant length and creep at constant tension, a hold and a specimen at a time.
 
-When a hold begins: the ramp before it, and its samples.
+When a hold begins and ends is found in `reduction.stages.standstills`; here are the ramp before
+it, its samples of one specimen, everything that speaks against a number from it, and the numbers
+where nothing does: drop, rate per decade and tension at stated times, or strain gained.
 
 To first order a ramp acts as a step at the centre of the tension that it adds, whatever
-the law of relaxation; what is left falls with the square of ramp time over elapsed time.
+the law of relaxation; what is left falls with the square of ramp time over elapsed time.  The
+specimen relaxes during the ramp, too: rates count time from its centre and leave out the first
+three ramp times.
 
-Relaxation at constant length and creep at constant tension.
-
-What the hold stage hands on: one row a hold and specimen.
-
-Means over blocks that grow with time: a night of samples becomes a few hundred numbers.
-
-Relaxation of tension at constant length: drop, rate per decade, tension at stated times.
-
-The specimen relaxes during the ramp, too.  Rates therefore count time from the centre of
-the ramp (`reduction.stages.holds.holds`) and leave out the first three ramp times.
-
-Creep: strain gained at constant tension.
-
-Holds of a record: numbers where supported, reasons where not.
-
-One specimen in one hold, and everything that speaks against a number from it.
-
-Samples of one specimen in one hold, and the ramp before it, out of a record.
-
-Holds of a record, one result a hold and specimen: numbers where supported, reasons where not.
+A night of samples becomes a few hundred numbers: means over blocks that grow with time.
 
 References
 ----------
@@ -449,7 +434,7 @@ def _rate_per_decade(blocks: _LogBlocks, *, ramp_duration: float) -> _Rate:
 
     Examples
     --------
-    >>> from reduction.stages.holds.holds import logarithmic_blocks
+    >>> from reduction.stages.holds.relaxation_and_creep import logarithmic_blocks
     >>> t = np.arange(1.0, 1001.0)
     >>> rate = _rate_per_decade(logarithmic_blocks(t, 400 - 20 * np.log10(t)), ramp_duration=2.0)
     >>> print(round(rate.value, 1))
@@ -777,15 +762,15 @@ def _finite_times(part: slice, time: Floats, *series: Floats) -> Floats:
     return np.where(finite, time[part], -np.inf)
 
 
-def _is_sound(time: Floats, *series: Floats, after: float = -np.inf) -> Bools:
+def _is_finite_and_later(time: Floats, *series: Floats, after: float = -np.inf) -> Bools:
     """Which samples have finite values and a time that is later than all before."""
-    is_sound, latest = empty_like(time, dtype=bool), after
-    for part in sample_blocks(time.size, time, *series, is_sound):
+    is_finite_and_later, latest = empty_like(time, dtype=bool), after
+    for part in sample_blocks(time.size, time, *series, is_finite_and_later):
         known = _finite_times(part, time, *series)
         reached = np.maximum.accumulate(np.concatenate([[latest], known]))
-        np.greater(known, reached[:-1], out=is_sound[part])
+        np.greater(known, reached[:-1], out=is_finite_and_later[part])
         latest = float(reached[-1])
-    return is_sound
+    return is_finite_and_later
 
 
 def _latest(time: Floats, *series: Floats) -> float:
@@ -804,8 +789,10 @@ def _ramp_before(time: Floats, moved: Floats, answer: Floats, *, band: float) ->
         start = time.size - n_looked
         whole = time, moved, answer
         looked = [one[start:] for one in whole]
-        is_sound = _is_sound(*looked, after=_latest(*(one[:start] for one in whole)))
-        before = select_samples(is_sound.__getitem__, *looked)
+        is_finite_and_later = _is_finite_and_later(
+            *looked, after=_latest(*(one[:start] for one in whole))
+        )
+        before = select_samples(is_finite_and_later.__getitem__, *looked)
         if before[0].size > 2 and _begins_inside(before[1], band=band):
             break
     return _find_ramp(*before, band=band) if before[0].size > 2 else None
@@ -844,7 +831,9 @@ def select_hold(
     begin = int(standstills.first[index - 1]) if index else 0
     inside = slice(first, last + 1)
     held = [one[inside] for one in (time, position, tension, strain)]
-    seconds, place, load, stretch = select_samples(_is_sound(*held[:3]).__getitem__, *held)
+    seconds, place, load, stretch = select_samples(
+        _is_finite_and_later(*held[:3]).__getitem__, *held
+    )
     # under load control the machine moves the tension, and the length answers
     moved, answer, band = position, tension, standstills.position_tolerance
     if standstills.tension_tolerance is not None:
