@@ -13,7 +13,7 @@ from reduction.archive.variables import Values, stored, texts
 from reduction.prediction.measured_curve import SharedErrors, constant_errors
 from reduction.quantities.names import OF_TEST
 from reduction.quantities.row import COMPONENT
-from reduction.quantities.stepwise_test import IN_PLACE_OF_RECORD
+from reduction.quantities.weight_readings import IN_PLACE_OF_RECORD
 from reduction.record.contributions import (
     Component,
     Contributions,

@@ -165,7 +165,8 @@ def _coefficient_values(models: Sequence[StrainModel]) -> Values:
             "a strain method has coefficients that the archive has no name for",
             found=", ".join(unknown),
             needed=f"names among {', '.join(COEFFICIENTS)}",
-            hint="Add its row to reduction.quantities.reduced_test, and the name to COEFFICIENTS.",
+            hint="Add its row to reduction.quantities.samples_and_cycles, and the name to "
+            "COEFFICIENTS.",
         )
     names = [name for name in COEFFICIENTS if name in used]
     uncertainty = np.full((len(models), len(names)), np.nan)

@@ -309,7 +309,8 @@ def condition_of(text: str) -> Condition:
             f"--where names no quantity: '{name}'",
             found=repr(text),
             needed="a name of the vocabulary",
-            hint="docs/glossary.md lists them.",
+            hint="`reduction catalogue --list` names those that there are, tables/columns.csv of a "
+            "campaign what each means.",
         )
     if not row.unit:
         if operator not in ("=", "!="):
@@ -531,8 +532,8 @@ def needed_quantities(query: Query) -> tuple[str, ...]:
                 raise SettingsError(
                     f"{option} names no quantity: '{name}'",
                     needed="a name of the vocabulary",
-                    hint="docs/glossary.md lists them; `reduction catalogue --list` says which "
-                    "there are.",
+                    hint="`reduction catalogue --list` names those that there are, "
+                    "tables/columns.csv of a campaign what each means.",
                 )
     others = (query.column(name) for name in (*(one.name for one in query.where), *query.sort))
     return (*query.asked, *(name for name in dict.fromkeys(others) if name not in query.asked))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from reduction.quantities.axes import AXES
 from reduction.quantities.flags import HOSE_STATES, NO_YES, NO_YES_NOT_ASKED
-from reduction.quantities.reduced_test import OF_RECORD
 from reduction.quantities.row import (
     BOUND,
     CRITERION,
@@ -22,6 +21,7 @@ from reduction.quantities.row import (
     measured,
     stated,
 )
+from reduction.quantities.samples_and_cycles import OF_RECORD
 
 _COMPARISON = ("comparison",)
 

@@ -1,8 +1,8 @@
 """One row a number: what it is, where it stands in an archive, and where it is shown.
 
 A number is declared once.  Its variable in the archive, with uncertainty and other companions,
-its columns in CSV tables, its column on the page, its line in the glossary and in the pages of
-variables are all written from its row.
+its columns in CSV tables, its column on the page and its line in the reference are all written
+from its row.
 """
 
 from __future__ import annotations

@@ -13,6 +13,7 @@ from compared_hoses import LOOP, NOT_APART, SOURCE, TRUTH, agreeing, dataset, di
 from measured_hoses import INCH
 
 from reduction.archive.open import open_archive
+from reduction.archive.shared_errors import FREEDOM
 from reduction.archive.uncertainty_budget import budget_from_archive
 from reduction.archive.write import write_archive
 from reduction.prediction.comparison_error import EventDifference
@@ -257,6 +258,11 @@ def test_without_any_calibration_its_variables_are_absent(tmp_path):
     assert {
         "parameter_name", "calibrated_tension", "is_identified", "identifiability", "collinearity",
     } <= absent  # fmt: skip
+
+
+def test_every_number_of_a_comparison_is_found_by_its_name(archive):
+    # a row whose name no part of a comparison has would be left out without a word
+    assert set(COMPARISON_SCHEMA) - set(archive.variables) <= {FREEDOM}
 
 
 def test_notes_stand_once_with_the_comparison_they_are_of(archive):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from reduction.quantities.flags import BRANCH_VALUES, STEP_MASKS
-from reduction.quantities.reduced_test import OF_RECORD
 from reduction.quantities.row import (
     STATED,
     Quantity,
@@ -15,6 +14,7 @@ from reduction.quantities.row import (
     measured,
     stated,
 )
+from reduction.quantities.samples_and_cycles import OF_RECORD
 
 _INTERVAL = ("interval",)
 
