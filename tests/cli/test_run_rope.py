@@ -192,6 +192,7 @@ def test_levels_are_those_reached(surfaces, truth):
     assert not np.array_equal(reached, planned * [1, LBF, LBF])
 
 
+@pytest.mark.nightly
 def test_a_failed_run_leaves_fourteen_and_says_so(run, tmp_path):
     folder = tmp_path / "raw"
     shutil.copytree(RAW, folder)

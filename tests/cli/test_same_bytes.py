@@ -43,9 +43,10 @@ def campaign(tmp_path_factory):
     [
         # with -OO Python compiles every library again
         pytest.param(replace(same_bytes.ALL_AT_ONCE, python_options=()), id="compiled before"),
-        pytest.param(same_bytes.ALL_AT_ONCE, id="all at once", marks=pytest.mark.nightly),
+        pytest.param(same_bytes.ALL_AT_ONCE, id="all at once"),
     ],
 )
+@pytest.mark.nightly
 def test_other_surroundings_change_no_byte_of_any_product(there, campaign, tmp_path):
     found = same_bytes.locales(["tr_TR.UTF-8"], tmp_path / "locales")
     environment = {"PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1", **found}

@@ -33,7 +33,6 @@ SCRIPTS = sorted(
 RUN_OFTEN = (
     "plot_01_reading_an_archive",
     "plot_05_hose_against_measurement",
-    "plot_07_deployed_line",
     "plot_08_own_reader",
     "plot_1_whoi_2005_10",
 )
