@@ -182,7 +182,14 @@ def _fault(name: str, value: object, needed: str) -> ArchiveError:
 
 
 _OF_STRAIN = frozenset(
-    {"position_gain", "position_offset", "strain_calibration", "strain_gain", "splice_method"}
+    {
+        "position_gain",
+        "position_offset",
+        "strain_calibration",
+        "strain_gain",
+        "splice_method",
+        "splice_law",
+    }
 )
 """Sources that move a point of the curve along the axis of strain alone."""
 

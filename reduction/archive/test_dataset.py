@@ -193,10 +193,12 @@ def _deviation_and_correlation(model: StrainModel) -> tuple[Floats, Floats]:
     size = len(model.coefficients)
     if model.covariance.shape != (size, size):
         return np.full(size, np.nan), np.full((size, size), np.nan)
-    deviation = np.sqrt(np.diag(model.covariance))
+    # by the tape, and by which law of the splices it is
+    covariance = model.covariance + (model.law_covariance if model.law_covariance.size else 0.0)
+    deviation = np.sqrt(np.diag(covariance))
     scale = np.outer(deviation, deviation)
     # an exact coefficient has no spread and is correlated with itself alone
-    correlation = np.divide(model.covariance, scale, out=np.eye(size), where=scale > 0)
+    correlation = np.divide(covariance, scale, out=np.eye(size), where=scale > 0)
     return deviation, correlation
 
 

@@ -59,6 +59,8 @@ COEFFICIENTS = {
     "splice_compliance": "splice_compliance",
     "splice_exponent": "splice_exponent",
     "splice_strain_ratio": "splice_strain_ratio",
+    "splice_offset": "splice_offset",
+    "splice_strain_curvature": "splice_strain_curvature",
     "free_length_intercept": "free_length_intercept",
     "free_length_slope": "free_length_slope",
     "free_fraction": "free_fraction",

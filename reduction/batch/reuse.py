@@ -57,7 +57,7 @@ def _strain_document(campaign: Campaign, model: StrainModel) -> dict[str, Any]:
     document: dict[str, Any] = {
         "method": model.method,
         "coefficients": model.coefficients,
-        "splice_law": model.splice_law,
+        "by_marks": {} if model.by_marks is None else model.by_marks.coefficients,
         "marks": [
             list(row)
             for row in zip(

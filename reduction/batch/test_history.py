@@ -17,7 +17,8 @@ from reduction.record.errors import ReductionError
 from reduction.record.measurement import Floats, Specimen, SpliceMarks
 from reduction.record.notes import Note, note
 from reduction.stages.reduced_test import History
-from reduction.stages.strain.strain_fit import fit_strain_model
+from reduction.stages.strain.splice_laws import SpliceAverage
+from reduction.stages.strain.strain_fit import PooledMarks, average_over_laws, fit_strain_model
 from reduction.stages.strain.strain_model import StrainModel
 
 Models = Mapping[tuple[str, str], StrainModel]
@@ -248,6 +249,10 @@ def fit_strain_models(
         name: _pooled(marks, surveys, lambda survey: survey.mark_tension_at_start)
         for name, marks in campaign.marks.items()
     }
+    averages = {
+        name: _average(marks, at_end[name], at_start[name])
+        for name, marks in campaign.marks.items()
+    }
     cells = {name: _load_cells(campaign, surveys, name) for name in campaign.specimens}
     failed = _failed_logs(surveys)
     models: dict[tuple[str, str], StrainModel] = {}
@@ -267,6 +272,7 @@ def fit_strain_models(
                     has_extensometer=survey.extremes.has_extensometer,
                     reference_position=survey.zero_strain_position,
                     failed_tests=failed,
+                    average=averages.get(name),
                 )
                 read_by = tuple(cells[name].get(test, "") for test in model.mark_test)
                 models[survey.plan.id, name] = replace(
@@ -278,6 +284,20 @@ def fit_strain_models(
                 # one test's failure, even where it is a defect here
                 errors.setdefault(survey.plan.id, as_reduction_error(error))
     return models, errors
+
+
+def _average(marks: SpliceMarks, tension: Floats, at_start: Floats) -> SpliceAverage | None:
+    """Average over the laws of a specimen, one for all its tests; None where each has its own.
+
+    So it is without tensions, and where there is no law, which each test then says.
+    """
+    readings = PooledMarks(marks, tension, np.zeros(tension.size, dtype=bool), at_start)
+    if not readings.knows_tension:
+        return None
+    try:
+        return average_over_laws(readings)
+    except ReductionError:
+        return None
 
 
 def instruments_of(
@@ -321,7 +341,7 @@ def _name_of(model: StrainModel, log: str) -> str:
     """Name of a strain model: models that differ in their coefficients have names that differ."""
     # constant-fraction has the relaxed length of its own slack row, wherever its share is from
     has_own_length = model.method == "constant-fraction" and log in model.mark_test
-    is_own = model.marks_from == "this test" or has_own_length
+    is_own = model.marks_from.startswith("this test") or has_own_length
     return f"{model.specimen}, {model.method}" + (f", marks of {log}" if is_own else "")
 
 

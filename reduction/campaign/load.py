@@ -690,6 +690,11 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
         section.strain.marks for section in (file.defaults, *tests.values()) if section.strain.marks
     ]
     marks = _pooled_marks(path, marks_files, tuple(file.specimens))
+    if file.uncertainty.tape is not None:
+        marks = {
+            name: replace(one, reading_uncertainty=file.uncertainty.tape, is_reading_stated=True)
+            for name, one in marks.items()
+        }
     for specimen, rows in marks.items():
         unknown = sorted(set(rows.test) - set(plans))
         if unknown:

@@ -206,6 +206,8 @@ class UncertaintySection(_UncertaintySection):
     """Between the two channels."""
     diameter: _OfLength | None = None
     """Of the mean of the readings of a specimen."""
+    tape: _OfLength | None = None
+    """Of one reading of the tape at the marks: ``"0.005 ft"``."""
     strain: _Relative | None = None
     """Relative: what the strain method itself may miss."""
     rated_break_strength: _Relative | None = None

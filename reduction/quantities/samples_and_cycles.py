@@ -415,6 +415,19 @@ OF_RECORD: tuple[Quantity, ...] = (
             tables=("splice_coefficients",),
         ),
         measured(
+            "splice_offset",
+            "1",
+            "strain of the splices by what they let out when they were first loaded, or have "
+            "slipped",
+            tables=("splice_coefficients",),
+        ),
+        measured(
+            "splice_strain_curvature",
+            "1",
+            "splice strain over the square of the strain of the free length",
+            tables=("splice_coefficients",),
+        ),
+        measured(
             "free_length_intercept",
             "m",
             "free length of the fitted line at position zero",

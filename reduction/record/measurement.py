@@ -183,6 +183,8 @@ class SpliceMarks:
         Positions of the toes and of the far thimble. [m]
     reading_uncertainty : float
         Standard uncertainty of one tape reading. [m]
+    is_reading_stated : bool
+        Whether the campaign states it; else it is that of the last digit.
     """
 
     specimen: str
@@ -192,6 +194,7 @@ class SpliceMarks:
     far_toe: Floats
     far_thimble: Floats
     reading_uncertainty: float = 0.0
+    is_reading_stated: bool = False
 
     def __post_init__(self) -> None:
         """Check that a row is 0 < near toe < far toe < far thimble."""

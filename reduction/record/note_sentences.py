@@ -152,8 +152,25 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note",
         "{n_marks} of {n_stretched} stretched marks have no hold in the logs and are left out",
     ),
-    "strain-by-marks-instead": (
-        "warning", "tension-driven strain was given up for marks: {reason}",
+    "splice-laws": (
+        "note",
+        lambda law, weight, chance, second, effect: (
+            f"splices follow the law {law} (weight {weight:.2f}, chance of its misfit {chance:.2g})"
+            + (f"; {second} would move moduli by {100 * effect:+.1f} %" if second else
+               "; no other law passes")
+        ),
+    ),
+    "mark-set-aside": (
+        "warning",
+        "the mark of test {test} at {hold} lies more than four standard errors off every law of the"
+        " splices, and is set aside",
+    ),
+    "splices-slip": (
+        "warning",
+        lambda slip: (
+            f"the splices slip between tests, by {1000 * slip:.1f} mm (standard deviation): each"
+            " test has the offset that its own marks say"
+        ),
     ),
     "gauge-length-exact": (
         "note",

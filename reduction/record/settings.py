@@ -15,6 +15,7 @@ StrainMethod = Literal[
     "marks",
     "strain-ratio",
     "tension-driven",
+    "mixed",
     "constant-fraction",
     "extensometer",
     "gauge-length",

@@ -484,6 +484,7 @@ _LOOKS: dict[str, tuple[str, str]] = {
     "lag": (_PURPLE, ""),
     "strain_calibration": (_GREEN, ""),
     "splice_method": (_GREEN, "/"),
+    "splice_law": (_GREEN, "+"),
     "strain_gain": (_GREEN, "x"),
     "gauge_length": (_GREEN, "."),
     "diameter": (_VERMILION, ""),
@@ -494,7 +495,7 @@ _LOOKS: dict[str, tuple[str, str]] = {
 _UNKNOWN = (_GREY, "x")
 
 FROM_READINGS = frozenset(
-    {"strain_calibration", "splice_method", "quasi_static_fit", "gauge_length"}
+    {"strain_calibration", "splice_method", "splice_law", "quasi_static_fit", "gauge_length"}
 )
 """Sources that follow from readings of the tests, not from what is stated of the instruments."""
 
@@ -504,7 +505,8 @@ _MEANINGS = {
     "regression": "what the surface misses of its runs beside that",
     "lag": "time between the channels",
     "strain_calibration": "fit to the readings at the splice marks",
-    "splice_method": "choice of the splice law",
+    "splice_method": "splice law that was asked for",
+    "splice_law": "which law the splices follow",
     "gauge_length": "length that strain is a share of",
     "strain_gain": "what the strain method itself may miss",
     "quasi_static_fit": "fit of the slow pull that gives K_0",

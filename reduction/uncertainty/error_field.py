@@ -43,7 +43,7 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -56,7 +56,6 @@ from reduction.stages.strain.strain_fit import HELD_EXPONENT
 from reduction.stages.strain.strain_model import (
     StrainModel,
     position_by_model,
-    splice_strain,
     strain_by_model,
     strain_sensitivity_of,
 )
@@ -89,6 +88,9 @@ def _field_rows(
 def _steps_of(load: Floats) -> Floats:
     """Steps of tension for a slope over it. [N]."""
     return np.asarray(_STEP * np.maximum(np.abs(load), 1.0))
+
+
+_BY_TENSION = ("tension-driven", "mixed")
 
 
 def _load_parts(errors: InstrumentErrors, model: StrainModel, load: Floats) -> list[FieldPart]:
@@ -127,7 +129,7 @@ def _load_parts(errors: InstrumentErrors, model: StrainModel, load: Floats) -> l
             ("tension_gain", errors.tension_gain, 0.0),
             ("tension_offset", 0.0, errors.tension_offset),
         ):
-            if not (gain or offset) or not (is_own or model.method == "tension-driven"):
+            if not (gain or offset) or not (is_own or model.method in _BY_TENSION):
                 continue
             law = _refitted(model, gain, offset, is_read)
             strain, above, below = (
@@ -168,11 +170,13 @@ def _splice_error(
     model: StrainModel, load: Floats, gain: float, offset: float, law: tuple[float, float]
 ) -> Floats:
     """Error of the strain by that of the tension and by those of ln c and n of the law."""
-    if model.method != "tension-driven":
+    if model.method not in _BY_TENSION:
         return np.zeros(load.shape)
     known = model.coefficients
     compliance, exponent = known["splice_compliance"], known["splice_exponent"]
     share = known["relaxed_splice_length"] / known["relaxed_free_length"]
+    # where the splices follow the free length too, that takes up a part of it
+    share /= 1 + share * known.get("splice_strain_ratio", 0.0)
     force = np.maximum(load, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         logarithm = np.where(force > 0, np.log(force), 0.0)
@@ -188,7 +192,7 @@ def _refitted(
 ) -> tuple[float, float]:
     """Change of ln c and n of the splice law by the marks that a wrong cell read."""
     used = _used(model)
-    if model.method != "tension-driven" or not is_read.any():
+    if model.method not in _BY_TENSION or not is_read.any():
         return 0.0, 0.0
     force = model.mark_tension[used]
     exponent = model.coefficients["splice_exponent"]
@@ -196,7 +200,8 @@ def _refitted(
     weight = force**exponent
     wanted = -exponent * (gain + offset / force) * weight * is_read[used]
     basis = np.stack([weight, np.log(force) * weight], axis=1)
-    if exponent == HELD_EXPONENT:
+    # an average over laws follows what a change of the exponent does, and more
+    if exponent == HELD_EXPONENT and model.method != "mixed":
         basis = basis[:, :1]
     solved = np.linalg.lstsq(basis, wanted, rcond=None)[0]
     return float(solved[0]), float(solved[1]) if solved.size > 1 else 0.0
@@ -209,11 +214,11 @@ def _splice_method_error(
 
     Notes
     -----
-    The splices may follow tension wholly or not at all, so that the error lies between 0 and D and
-    has one sign.  It is not corrected: its standard uncertainty is the root of its mean square
-    about zero ([4]_, F.2.4.5).  Were all of the range equally likely, that would be
-    :math:`D / \sqrt 3`.  It is not: the law of tension is the better one wherever marks can tell
-    ([3]_), and the error is D then.  On synthetic tethers whose splices follow tension, with marks
+    The law was asked for; the marks say another one, the average over the laws that they do not
+    reject.  The error lies between 0 and D, the difference of both, and has one sign.  It is not
+    corrected: its standard uncertainty is the root of its mean square about zero ([4]_, F.2.4.5).
+    Were all of the range equally likely, that would be :math:`D / \sqrt 3`.  It is not: where marks
+    can tell ([3]_), the error is D.  On synthetic tethers whose splices follow tension, with marks
     over 360-600 N, 95 % intervals held the truth of the loop energy in 70 % of cases by
     :math:`D / \sqrt 3`, and those of a segment in 87 %; by D in 100 and 94 %.  D it is.
 
@@ -222,30 +227,29 @@ def _splice_method_error(
     Splices that strain 22 % at 450 N, a line through the marks: by how much the strain of a
     branch 60 N above the marks is wrong, and the energy of a loop, relative.
 
-    >>> law = {"relaxed_free_length": 2.55, "relaxed_splice_length": 1.19,
-    ...     "splice_compliance": 0.22 / 450, "splice_exponent": 1.0}
+    >>> law = StrainModel("new", "tension-driven", {"relaxed_free_length": 2.55,
+    ...     "relaxed_splice_length": 1.19, "splice_compliance": 0.22 / 450, "splice_exponent": 1.0})
     >>> line = StrainModel("new", "marks", {"free_length_intercept": -0.835,
-    ...     "free_length_slope": 0.905, "relaxed_free_length": 2.55}, splice_law=law)
+    ...     "free_length_slope": 0.905, "relaxed_free_length": 2.55}, by_marks=law)
     >>> strain, over_strain, _ = _splice_method_error(line, strain=[1.0, 1.0],
     ...     tension=[450.0, 510.0])
     >>> print(np.diff(strain).round(4), over_strain[:1].round(3))
     [0.0137] [-0.105]
     """
-    law = model.splice_law
-    if not law:
+    if model.by_marks is None:
         return None
     at, load = as_same_shape(strain=strain, tension=tension)
-    share = law["relaxed_splice_length"] / law["relaxed_free_length"]
-    compliance, exponent = law["splice_compliance"], law["splice_exponent"]
-    by_law = StrainModel(model.specimen, "tension-driven", law)
-    position = position_by_model(model, strain=at, tension=load)
-    longer = position_by_model(model, strain=at + 1, tension=load) - position
-    error = at - strain_by_model(by_law, position=position, tension=load)
-    of_strain = 1 - longer / law["relaxed_free_length"]
-    splice = splice_strain(load, splice_compliance=compliance, splice_exponent=exponent)
+    push = _steps_of(load)
+    # the point itself, then one step of strain and one of tension to either side
+    strains = np.stack([at, at + _REACH, at - _REACH, at, at])
+    loads = np.stack([load, load, load, load + push, np.maximum(load - push, 0.0)])
+    position = position_by_model(model, strain=strains, tension=loads)
+    error = strains - strain_by_model(model.by_marks, position=position, tension=loads)
+    of_strain = (error[1] - error[2]) / (2 * _REACH)
+    between = loads[3] - loads[4]
     with np.errstate(divide="ignore", invalid="ignore"):
-        of_tension = np.where(load > 0, share * exponent * splice / load, 0.0)
-    return error, of_strain, of_tension
+        of_tension = np.where(load > 0, (error[3] - error[4]) / between, 0.0)
+    return error[0], of_strain, of_tension
 
 
 _REACH = 1e-4  # of the strain 1, for the slopes
@@ -269,10 +273,10 @@ def _position_parts(
     # all points at once: what a model costs is its call
     position, further, longer, shorter = position_by_model(
         model,
-        strain=np.stack([at, at + 1, at, at]),
+        strain=np.stack([at, at + _REACH, at, at]),
         tension=np.stack([load, load, load + step, load - step]),
     )
-    slope = 1 / (further - position)
+    slope = _REACH / (further - position)
     found: list[FieldPart] = []
     if gain:
         rows = _field_rows(
@@ -288,8 +292,8 @@ def _position_parts(
     return found
 
 
-def coefficient_errors(model: StrainModel) -> Floats:
-    """Independent errors whose sum is the covariance of the coefficients.
+def coefficient_errors(model: StrainModel, covariance: Floats | None = None) -> Floats:
+    """Independent errors whose sum is the covariance of the coefficients, or another of them.
 
     Notes
     -----
@@ -304,12 +308,13 @@ def coefficient_errors(model: StrainModel) -> Floats:
     [0.    0.002]
     """
     size = len(model.coefficients)
-    if model.covariance.shape != (size, size) or not model.covariance.any():
+    of_all = model.covariance if covariance is None else covariance
+    if of_all.shape != (size, size) or not of_all.any():
         return np.empty((size, 0))
     # of correlations: the coefficients have units many powers of ten apart
-    deviation = np.sqrt(np.diag(model.covariance))
+    deviation = np.sqrt(np.diag(of_all))
     scale = np.where(deviation > 0, deviation, 1.0)
-    variance, direction = np.linalg.eigh(model.covariance / np.outer(scale, scale))
+    variance, direction = np.linalg.eigh(of_all / np.outer(scale, scale))
     kept = variance > 1e-12 * variance.max()
     root = scale[:, None] * direction * np.sqrt(np.maximum(variance, 0))
     return np.asarray(root[:, kept])
@@ -318,14 +323,22 @@ def coefficient_errors(model: StrainModel) -> Floats:
 def _coefficient_parts(
     errors: InstrumentErrors, model: StrainModel, at: Floats, load: Floats
 ) -> list[FieldPart]:
-    """Coefficients of the strain model, their covariance taken apart into independent errors."""
-    root = coefficient_errors(model)
+    """Coefficients of the strain model, their covariance taken apart into independent errors.
+
+    What the tape leaves open, and which law of the splices it is.
+    """
+    roots = {
+        "strain_calibration": coefficient_errors(model),
+        "splice_law": coefficient_errors(model, model.law_covariance),
+    }
+    root = np.concatenate(list(roots.values()), axis=1)
     if not root.size:
         return []
+    names = [(source, number) for source, own in roots.items() for number in range(own.shape[1])]
     position, further = position_by_model(
-        model, strain=np.stack([at, at + 1]), tension=np.stack([load, load])
+        model, strain=np.stack([at, at + _REACH]), tension=np.stack([load, load])
     )
-    reach = _REACH * (further - position)
+    reach = further - position
     push = _steps_of(load)
     # the point itself, then one step of position and one of tension to either side
     place = np.stack([position, position + reach, position - reach, position, position])
@@ -343,15 +356,15 @@ def _coefficient_parts(
     of = errors.strain_model or errors.specimen
     return [
         (
-            Component("strain_calibration", of, number),
+            Component(source, of, number),
             _field_rows(
                 load,
-                strain=centre[number],
-                strain_slope=along[number],
-                strain_slope_over_tension=across[number],
+                strain=centre[column],
+                strain_slope=along[column],
+                strain_slope_over_tension=across[column],
             ),
         )
-        for number in range(root.shape[1])
+        for column, (source, number) in enumerate(names)
     ]
 
 
@@ -487,6 +500,10 @@ def _table_at(
         rows = _field_rows(load, strain=missed[0], strain_slope=missed[1],
                      strain_slope_over_tension=missed[2])  # fmt: skip
         parts.append((Component("splice_method", errors.specimen), rows))
+    if model.by_marks is not None and model.by_marks.law_covariance.size:
+        # what the marks leave open of the law that the one asked for is judged by
+        left_open = replace(model.by_marks, covariance=np.empty((0, 0)))
+        parts += _coefficient_parts(errors, left_open, at, load)
     if errors.stiffness:
         # the rubber is warmer or colder than the test says: the cell reads what there is, or the
         # specimen stretches less under what is hung on it

@@ -144,8 +144,9 @@ def test_splices_of_table_3_strain_by_a_constant_share(tether, ratio):
 @pytest.mark.parametrize("tether", TETHERS)
 def test_moduli_by_the_method_of_the_report_are_high_in_t_1_and_its_note_says_so(tether):
     model = model_of(tether, None)
-    assert model.method == "marks"
-    assert model.strain_slope_ratio == pytest.approx(SLOPE_RATIO[tether], abs=0.0005)
+    assert model.method == "mixed"
+    # by two laws of position, which differ by as much within the tape
+    assert model.strain_slope_ratio == pytest.approx(SLOPE_RATIO[tether], abs=0.01)
     assert any(
         MODULUS_EXCESS[tether] in note
         for note in map(str, model_of(tether, "constant-fraction").notes)

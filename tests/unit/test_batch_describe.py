@@ -53,7 +53,7 @@ CELLS = replace(MODEL, mark_load_cell=("A", "B"))
         {"tape": replace(TAPE, reading_uncertainty=0.002)},
         {"tape": replace(TAPE, near_toe=np.array([0.6, 0.71]))},
         {"model": CELLS},
-        {"model": replace(MODEL, splice_law={"splice_exponent": 1.0})},
+        {"model": replace(MODEL, by_marks=replace(MODEL, method="mixed"))},
         {"of_pull": CELLS},
         {"load_cell": "C"},
     ],

@@ -60,25 +60,30 @@ def fit(tests=TESTS, *, test_id="T-1", method=None, tension=True, specimen=None,
     )
 
 
-def test_a_wide_span_of_tension_chooses_tension_driven_and_finds_the_law():
+def test_the_default_is_the_average_over_the_laws_that_the_marks_do_not_reject():
     model = fit()
-    assert model.method == "tension-driven"
+    assert model.method == "mixed"
     assert model.marks_from == "pooled over the campaign"
+    np.testing.assert_allclose(model.mark_strain_residual, 0, atol=2e-3)
+    # between the marks as well as at them: strains and tensions of a test that was not marked
+    strain, force = np.array([1.15, 1.5, 1.7]), np.array([540.0, 730.0, 830.0])
+    position = L0 * (1 + strain) + LS * (1 + COMPLIANCE * force**EXPONENT)
+    found = strain_by_model(model, position=position, tension=force)
+    np.testing.assert_allclose(found, strain, atol=0.005)
+
+
+def test_marks_without_a_tension_are_judged_by_laws_of_position():
+    model = fit(tension=False)
+    assert model.method == "mixed"
+    assert model.coefficients["splice_compliance"] == 0
+    np.testing.assert_allclose(model.mark_strain_residual, 0, atol=2e-3)
+
+
+def test_tension_driven_finds_the_law():
+    model = fit(method="tension-driven")
     assert model.coefficients["splice_compliance"] == pytest.approx(COMPLIANCE, rel=1e-5)
     assert model.coefficients["splice_exponent"] == pytest.approx(EXPONENT, rel=1e-6)
     np.testing.assert_allclose(model.mark_strain_residual, 0, atol=1e-8)
-
-
-def test_a_narrow_span_of_tension_chooses_marks():
-    model = fit(NARROW)
-    assert model.method == "marks"
-    assert model.marks_from == "this test"
-
-
-def test_marks_without_tension_choose_marks():
-    model = fit(tension=False)
-    assert model.method == "marks"
-    assert set(model.mark_test) == {"T-1"}
 
 
 def test_a_stated_method_is_used():
@@ -134,27 +139,25 @@ def test_a_vague_exponent_is_held_at_one_and_the_history_gives_it():
 
 
 def test_joint_covariance_is_that_of_many_campaigns():
-    names = list(fit().coefficients)
+    law = {"method": "tension-driven"}
+    names = list(fit(**law).coefficients)
     drawn = np.array(
-        [[fit(noise=READING, seed=seed).coefficients[n] for n in names] for seed in range(300)]
+        [[fit(noise=READING, seed=one, **law).coefficients[n] for n in names] for one in range(300)]
     )
-    expected = np.sqrt(np.diag(fit().covariance))
+    expected = np.sqrt(np.diag(fit(**law).covariance))
     np.testing.assert_allclose(drawn.std(axis=0), expected, rtol=0.15)
     correlation = np.corrcoef(drawn.T)
-    covariance = fit().covariance
+    covariance = fit(**law).covariance
     stated = covariance / np.outer(expected, expected)
     np.testing.assert_allclose(correlation, stated, atol=0.2)
 
 
-def test_marks_that_no_law_fits_fall_back_to_the_line_with_a_reason():
+def test_a_law_that_was_asked_for_and_does_not_fit_is_refused():
     marks, force = campaign(TESTS)
     marks = SpliceMarks(
         "new", marks.test, marks.hold, marks.near_toe, marks.far_toe,
         marks.free_length + LS * (1 - 0.00001 * force), READING,
     )  # fmt: skip
-    model = fit_strain_model(Specimen("new"), test_id="T-1", marks=marks, mark_tension=force)
-    assert model.method == "marks"
-    assert "given up for marks: the splices do not lengthen with tension" in str(model.notes[0])
     with pytest.raises(FitError, match="do not lengthen"):
         fit_strain_model(
             Specimen("new"),
@@ -171,7 +174,7 @@ def test_tension_driven_without_a_tension_is_refused():
 
 
 def test_slack_rows_alone_are_refused():
-    with pytest.raises(DataError, match="by marks has no mark to rest on"):
+    with pytest.raises(DataError, match="splices of 'new' have no law"):
         fit({"T-1": []})
 
 
@@ -296,5 +299,5 @@ def test_fit_to_marks_is_the_same_model_without_remarks():
     marks, force = campaign(TESTS)
     own = np.array([name == "T-1" for name in marks.test])
     model = fit_to_marks("tension-driven", PooledMarks(marks, force, own))
-    assert model.coefficients == fit().coefficients
+    assert model.coefficients == fit(method="tension-driven").coefficients
     assert tuple(map(str, model.notes)) == ()

@@ -38,7 +38,7 @@ References
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import sqrt
 from typing import Literal
 
@@ -60,11 +60,24 @@ from reduction.record.measurement import (
 from reduction.record.notes import Note, note
 from reduction.record.settings import StrainMethod, StrainSettings
 from reduction.stages.standstills import Standstills
+from reduction.stages.strain.splice_laws import (
+    FittedLaw,
+    SpliceAverage,
+    SpliceReadings,
+    fit_splice_laws,
+)
 from reduction.stages.strain.strain_model import StrainModel, free_length_fraction, strain_by_model
 
 LEVEL = 0.005
 
 """Chance at which sound marks are taken to scatter too much. [1]"""
+
+# five thousandths of a foot: what a reading of a stretched tether scatters by, where nothing is
+# stated of the tape
+_USUAL_TAPE = 0.005 * 0.3048
+_USUAL_READINGS = 4.0  # that this counts for, beside those of slack rows
+
+_ANY = 12**0.5  # of a range, any value of which is as likely
 
 _CONFIDENCE = 0.975  # of one side of a 95 % interval
 
@@ -670,25 +683,35 @@ class PooledMarks:
         While each row was read; NaN where not known. [N]
     is_own : ndarray of bool, shape (n_marks,)
         Rows read in the test itself.
+    tension_at_start : ndarray, shape (n_marks,)
+        When each hold began, where the tape may have been read; empty where not known. [N]
     """
 
     marks: SpliceMarks
     tension: Floats
     is_own: Bools
+    tension_at_start: Floats = field(default_factory=lambda: np.empty(0))
 
     @property
     def has_own(self) -> bool:
         """Whether the test has stretched rows of its own."""
         return bool(np.any(self.is_own & ~self.marks.is_slack))
 
+    @property
+    def knows_tension(self) -> bool:
+        """Whether a law of tension can be asked for at two stretched rows or more."""
+        known = ~self.marks.is_slack & (np.nan_to_num(self.tension) > 0)
+        return bool(np.count_nonzero(known) > 1)
+
     def stretched_rows(self, method: StrainMethod) -> Integers:
         """Rows that fix the coefficients of a method.
 
-        ``tension-driven``: all whose tension is known, since splices are the same in
-        every test; otherwise those of the test, or all where it has none.
+        ``tension-driven`` and ``mixed``: all whose tension is known, since splices are the same
+        in every test; otherwise, and where ``mixed`` knows the tension of hardly one, those of the
+        test, or all where it has none.
         """
         stretched = ~self.marks.is_slack
-        if method == "tension-driven":
+        if method == "tension-driven" or (method == "mixed" and self.knows_tension):
             return np.flatnonzero(stretched & (np.nan_to_num(self.tension) > 0))
         return np.flatnonzero(stretched & (self.is_own if self.has_own else np.True_))
 
@@ -829,6 +852,184 @@ def _fit_tension_driven(readings: PooledMarks) -> StrainModel:
     )  # fmt: skip
 
 
+@dataclass(frozen=True)
+class _MixedFit:
+    """Average over the laws of the splices, and the model of one test that it gives."""
+
+    average: SpliceAverage
+    model: StrainModel
+    rows: Integers
+
+
+def _splice_readings(readings: PooledMarks, relaxed: _RelaxedLengths) -> SpliceReadings:
+    """Strains at every row: those whose tension is known, or all where hardly one is."""
+    marks = readings.marks
+    known = marks.is_slack.copy()
+    known[readings.stretched_rows("mixed")] = True
+    free, splice = (float(one) for one in relaxed.values)
+    lengths = np.array([free, splice])
+    tests = {name: at for at, name in enumerate(dict.fromkeys(marks.test))}
+    return SpliceReadings(
+        free=marks.free_length[known] / free - 1,
+        splice=marks.splice_length[known] / splice - 1,
+        tension=np.where(marks.is_slack, 0.0, readings.tension)[known],
+        test=np.array([tests[name] for name in marks.test])[known],
+        is_slack=marks.is_slack[known],
+        share=splice / free,
+        tape=marks.reading_uncertainty / splice,
+        relaxed=relaxed.covariance / np.outer(lengths, lengths),
+        row=np.flatnonzero(known),
+        tension_uncertainty=_tension_uncertainty(readings)[known],
+        tape_freedom=_tape_freedom(marks),
+    )
+
+
+def _tension_uncertainty(readings: PooledMarks) -> Floats:
+    """Relative, of when in its hold each mark was read: any moment is as likely. [1]."""
+    if not readings.tension_at_start.size:
+        return np.zeros(readings.tension.size)
+    change = readings.tension_at_start - readings.tension
+    is_known = ~readings.marks.is_slack & (np.nan_to_num(readings.tension) > 0) & ~np.isnan(change)
+    return np.where(is_known, np.abs(change), 0.0) / np.where(is_known, readings.tension, 1.0) / _ANY
+
+
+def average_over_laws(readings: PooledMarks) -> SpliceAverage:
+    """Average over the laws of the splices that the marks do not reject."""
+    marks = readings.marks
+    held = replace(readings, marks=replace(marks, reading_uncertainty=_tape_error(marks)))
+    return fit_splice_laws(_splice_readings(held, readings.relaxed()), specimen=marks.specimen)
+
+
+def _fit_mixed(readings: PooledMarks, average: SpliceAverage | None) -> _MixedFit:
+    """Average over the laws of the splices, as one test has it."""
+    marks, relaxed = readings.marks, readings.relaxed()
+    given = _splice_readings(readings, relaxed)
+    if average is None:
+        average = average_over_laws(readings)
+    free, splice = (float(one) for one in relaxed.values * (1 + average.values[5:]))
+    tests = list(dict.fromkeys(marks.test))
+    own = [tests.index(test) for test in dict.fromkeys(np.array(marks.test)[readings.is_own])]
+    offset, of_slip = _own_offset(average, own[0] if own else None)
+    names = (
+        "relaxed_free_length", "relaxed_splice_length", "splice_offset", "splice_strain_ratio",
+        "splice_strain_curvature", "splice_compliance", "splice_exponent",
+    )  # fmt: skip
+    strained, exponent = (float(one) for one in average.values[3:5])
+    compliance = strained * average.reference**-exponent
+    values = [free, splice, *average.values[:3].tolist(), compliance, exponent]
+    values[2] += offset
+    # from the strain at the reference tension to that at one newton, and to lengths
+    to_si = np.zeros((7, 7))
+    to_si[[0, 1], [5, 6]] = relaxed.values
+    to_si[[2, 3, 4, 5, 6], [0, 1, 2, 3, 4]] = 1.0
+    to_si[5, 3] = average.reference**-exponent
+    to_si[5, 4] = -compliance * np.log(average.reference)
+    covariance = to_si @ average.covariance @ to_si.T
+    between = to_si @ average.between @ to_si.T
+    covariance[2, 2] += of_slip
+    rows = given.row if average.set_aside is None else np.delete(given.row, average.set_aside)
+    model = StrainModel(
+        marks.specimen,
+        "mixed",
+        dict(zip(names, values, strict=True)),
+        covariance,
+        law_covariance=between if between.any() else np.empty((0, 0)),
+        notes=_scatter_notes(marks, relaxed, _NO_FIT),
+    )
+    return _MixedFit(average, model, rows)
+
+
+def _own_offset(average: SpliceAverage, place: int | None) -> tuple[float, float]:
+    """By how much the splices of one test are longer than the law says, and its variance.
+
+    Marks are read before the cycles: what the next test begins with slipped in this one, at a
+    time that nothing says.
+    """
+    if not average.slip:
+        return 0.0, 0.0
+    if place is None:
+        return 0.0, average.slip**2
+    steps = np.diff(average.test_offset)
+    if place < steps.size:
+        step = float(steps[place])
+    else:
+        step = float(np.sqrt(np.mean(steps**2))) * float(np.sign(steps.sum()))
+    variance = float(average.test_variance[place]) + (step / 2) ** 2
+    return float(average.test_offset[place]) + step / 2, variance
+
+
+def _tape_error(marks: SpliceMarks) -> float:
+    """Standard uncertainty of one reading: stated, or the usual one with what slack rows say.
+
+    Slack rows of one specimen are readings of the same lengths, test after test.
+    """
+    if marks.is_reading_stated:
+        return marks.reading_uncertainty
+    slack = np.stack([marks.near_toe, marks.far_toe, marks.far_thimble])[:, marks.is_slack]
+    scatter = float(((slack - slack.mean(axis=1, keepdims=True)) ** 2).sum())
+    found = (_USUAL_READINGS * _USUAL_TAPE**2 + scatter) / _tape_freedom(marks)
+    return max(marks.reading_uncertainty, float(np.sqrt(found)))
+
+
+def _tape_freedom(marks: SpliceMarks) -> float:
+    """Number of readings that the error of the tape rests on; infinite where it is stated."""
+    if marks.is_reading_stated:
+        return float("inf")
+    return _USUAL_READINGS + 3.0 * max(int(marks.is_slack.sum()) - 1, 0)
+
+
+_NO_FIT = _SpliceCalibration(np.empty(0), np.empty((0, 0)), np.empty((0, 2)), np.empty(0))
+
+
+def _on_laws(fit: _MixedFit, readings: PooledMarks) -> tuple[Note, ...]:
+    """Which law it is, how sure that is, and what another would do to a modulus."""
+    average, marks = fit.average, readings.marks
+    order = np.argsort(-average.weight, kind="stable")
+    best, second = average.laws[order[0]], None
+    if len(order) > 1 and average.weight[order[1]] > 0:
+        second = average.laws[order[1]]
+    notes = [
+        note(
+            "splice-laws",
+            marks.specimen,
+            law=best.name,
+            weight=float(average.weight[order[0]]),
+            chance=best.chance,
+            second="" if second is None else second.name,
+            effect=float("nan")
+            if second is None
+            else _effect_on_modulus(fit.model, second, average.reference),
+        )
+    ]
+    if average.set_aside is not None:
+        row = int(_splice_readings(readings, readings.relaxed()).row[average.set_aside])
+        notes.append(note("mark-set-aside", marks.specimen, test=marks.test[row],
+                          hold=marks.hold[row]))  # fmt: skip
+    if average.slip:
+        length = average.slip * fit.model.coefficients["relaxed_splice_length"]
+        notes.append(note("splices-slip", marks.specimen, slip=length))
+    return tuple(notes)
+
+
+def _effect_on_modulus(model: StrainModel, law: FittedLaw, reference: float) -> float:
+    """Change of a modulus by another law, over the middle of what was marked."""
+    other = dict(model.coefficients)
+    strained, exponent = (float(one) for one in law.values[3:5])
+    names = ("splice_offset", "splice_strain_ratio", "splice_strain_curvature")
+    other |= dict(zip(names, law.values[:3].tolist(), strict=True))
+    other |= {
+        "splice_compliance": strained * reference**-exponent, "splice_exponent": exponent,
+    }  # fmt: skip
+    middle = (model.position_low + model.position_high) / 2
+    force = np.full(2, model.tension_high if np.isfinite(model.tension_high) else 0.0) / 2
+    place = np.array([middle, middle + 0.01 * (model.position_high - model.position_low + 1e-9)])
+    rises = [
+        float(np.diff(strain_by_model(one, position=place, tension=force))[0])
+        for one in (model, replace(model, coefficients=other))
+    ]
+    return rises[0] / rises[1] - 1
+
+
 _FROM_MARKS: dict[StrainMethod, Callable[[PooledMarks], StrainModel]] = {
     "marks": _fit_marks,
     "strain-ratio": _fit_strain_ratio,
@@ -872,19 +1073,23 @@ def fit_to_marks(method: StrainMethod, readings: PooledMarks) -> StrainModel:
             if method == "tension-driven"
             else None,
         )
-    model = _FROM_MARKS[method](readings)
+    return _at_marks(_FROM_MARKS[method](readings), readings, stretched)
+
+
+def _at_marks(model: StrainModel, readings: PooledMarks, stretched: Integers) -> StrainModel:
+    """Say how far a model is from each mark that it used, and over which range these are."""
+    marks, by_all = readings.marks, model.method in ("tension-driven", "mixed")
     slack = marks.is_slack
-    if method != "tension-driven" and np.any(slack & readings.is_own):
+    if not by_all and np.any(slack & readings.is_own):
         slack = slack & readings.is_own
     rows = np.sort(np.concatenate([np.flatnonzero(slack), stretched]))
     tension = np.where(slack, np.nan_to_num(readings.tension), readings.tension)
     strain = marks.free_length[rows] / model.coefficients["relaxed_free_length"] - 1
     by_method = strain_by_model(model, position=marks.far_thimble[rows], tension=tension[rows])
-    if method == "tension-driven":
-        model = replace(
-            model, tension_low=0.0, tension_high=float(readings.tension[stretched].max())
-        )
-    is_own = readings.has_own and method != "tension-driven"
+    known = readings.tension[stretched]
+    if by_all and np.isfinite(known).any():
+        model = replace(model, tension_low=0.0, tension_high=float(np.nanmax(known)))
+    is_own = readings.has_own and not by_all
     return replace(
         model,
         position_low=float(marks.far_thimble[stretched].min()),
@@ -898,6 +1103,20 @@ def fit_to_marks(method: StrainMethod, readings: PooledMarks) -> StrainModel:
         mark_strain_residual=by_method - strain,
         strain_slope_ratio=_slope_ratio(model, readings),
     )
+
+
+def _average_at_marks(
+    readings: PooledMarks, average: SpliceAverage | None
+) -> tuple[StrainModel, _MixedFit]:
+    """Fit the average over the laws, and say how far it is from each mark."""
+    fit = _fit_mixed(readings, average)
+    stretched = fit.rows[~readings.marks.is_slack[fit.rows]]
+    model = _at_marks(fit.model, readings, stretched)
+    if fit.average.slip:
+        # its own offset: what the tests share is in the covariance of each
+        model = replace(model, marks_from="this test, over those of the campaign")
+    fit = replace(fit, model=model)
+    return replace(model, notes=(*model.notes, *_on_laws(fit, readings))), fit
 
 
 # a strain slope that differs by less than this is not worth a sentence
@@ -1028,7 +1247,7 @@ def _on_left_out(
             )
         )
     without_hold = rows.size - n_used - len(tests)
-    if model.method == "tension-driven" and without_hold > 0:
+    if model.method in ("tension-driven", "mixed") and without_hold > 0:
         notes.append(
             note("marks-without-hold", model.specimen, n_marks=without_hold, n_stretched=rows.size)
         )
@@ -1062,9 +1281,6 @@ def _remarks_on(
         *_on_scatter(model, is_stretched, expected),
         *_on_slack(marks),
     )
-
-
-_BY_POSITION: tuple[StrainMethod, ...] = ("marks", "strain-ratio", "constant-fraction")
 
 
 def zero_strain_position(
@@ -1115,7 +1331,7 @@ def _default_method(
     specimen: Specimen, readings: PooledMarks | None, has_extensometer: bool
 ) -> StrainMethod:
     if readings is not None:
-        return "tension-driven" if readings.tension_span > TENSION_SPAN else "marks"
+        return "mixed"
     if has_extensometer:
         return "extensometer"
     if specimen.gauge_length is not None:
@@ -1128,14 +1344,12 @@ def _default_method(
     )
 
 
-def _splice_law(readings: PooledMarks) -> dict[str, float]:
-    """Law of tension of the same splices; empty where the marks do not follow one."""
-    if readings.stretched_rows("tension-driven").size == 0:
-        return {}
+def _by_marks(readings: PooledMarks, average: SpliceAverage | None) -> StrainModel | None:
+    """Average over the laws of the same splices; None where the marks reject them all."""
     try:
-        return fit_to_marks("tension-driven", readings).coefficients
-    except FitError:
-        return {}
+        return _fit_mixed(readings, average).model
+    except DataError:
+        return None
 
 
 def fit_strain_model(
@@ -1149,6 +1363,7 @@ def fit_strain_model(
     has_extensometer: bool = False,
     reference_position: float | None = None,
     failed_tests: Sequence[str] = (),
+    average: SpliceAverage | None = None,
 ) -> StrainModel:
     """Fit the strain method of one specimen in one test.
 
@@ -1166,13 +1381,15 @@ def fit_strain_model(
     mark_tension_at_start : array_like, shape (n_marks,), optional
         The same at the start of each hold; only the history uses it. [N]
     settings : StrainSettings, optional
-        ``method`` None chooses: see Notes.
+        ``method`` None averages: see Notes.
     has_extensometer : bool
         Whether the log has a strain channel.
     reference_position : float, optional
         Crosshead position at zero strain, for ``gauge-length``. [m]
     failed_tests : sequence of str
         Tests whose log could not be read, so that their marks have no tension. [1]
+    average : SpliceAverage, optional
+        Over the laws of the splices, from `average_over_laws`; found anew where it is not given.
 
     Returns
     -------
@@ -1188,20 +1405,17 @@ def fit_strain_model(
 
     Notes
     -----
-    Without a stated method: ``tension-driven`` where the pooled marks span more
-    than a factor of 2 in tension, else ``marks``; without marks the extensometer,
-    else the gauge length.  Where the law of tension then cannot be fitted, the
-    model is ``marks`` and a note says why.
+    Without a stated method: the average over the laws of the splices that the marks do not reject
+    (`reduction.stages.strain.splice_laws`); without marks the extensometer, else the gauge length.
 
-    ``tension-driven`` uses all marks of the specimen, since its splices are the
+    ``mixed`` and ``tension-driven`` use all marks of the specimen, since its splices are the
     same in every test; the others use the test's own marks, or all where the test
     has none.  The relaxed lengths are means over all slack rows; only
     ``constant-fraction`` takes the test's own row, as the report does.
 
     The covariance holds reading errors of the tape, or the stated standard uncertainty of the
-    gauge length, which all samples share; not
-    the choice of the method, which `strain_slope_ratio` and the residuals show.  A method that
-    knows position alone keeps the law of tension of its marks as ``splice_law``.
+    gauge length, which all samples share; ``law_covariance`` which law it is.  A method that was
+    asked for keeps the average over the laws as ``by_marks``: what it misses is judged by it.
 
     Examples
     --------
@@ -1214,15 +1428,21 @@ def fit_strain_model(
     ...     far_toe=foot * np.array([10.44, 17.22, 19.48, 21.72]),
     ...     far_thimble=foot * np.array([12.26, 19.37, 21.75, 24.12]))
     >>> model = fit_strain_model(Specimen("new"), test_id="T-1", marks=marks)
-    >>> print(model.method, round(model.strain_slope_ratio, 3))
-    marks 0.873
+    >>> model.method, bool(abs(model.strain_slope_ratio - 0.873) < 0.005)
+    ('mixed', True)
     """
     stated = None if settings is None else settings.method
     readings = None
     if marks is not None:
         tension = np.full(len(marks.test), np.nan) if mark_tension is None else mark_tension
         is_own = np.array([test == test_id for test in marks.test], dtype=bool)
-        readings = PooledMarks(marks, np.asarray(tension, dtype=np.float64), is_own)
+        early = np.empty(0) if mark_tension_at_start is None else mark_tension_at_start
+        readings = PooledMarks(
+            marks,
+            np.asarray(tension, dtype=np.float64),
+            is_own,
+            np.asarray(early, dtype=np.float64),
+        )
         if readings.tension.shape != is_own.shape:
             raise DataError(
                 "tensions and marks do not pair up",
@@ -1240,23 +1460,30 @@ def fit_strain_model(
         )
     used = readings.stretched_rows(method)
     _check_marks(readings.marks, tests=sorted({readings.marks.test[row] for row in used}))
-    notes: tuple[Note, ...] = ()
-    try:
+    if method == "mixed":
+        model, fit = _average_at_marks(readings, average)
+        is_stretched = np.array([hold != "slack" for hold in model.mark_hold], dtype=bool)
+        made: tuple[str, ...] = (_laws_in_words(fit.average),)
+    else:
         model = fit_to_marks(method, readings)
-    except FitError as error:
-        if stated is not None:
-            raise
-        notes = (note("strain-by-marks-instead", specimen.name, reason=str(error)),)
-        model = fit_to_marks("marks", readings)
-    if model.method in _BY_POSITION:
-        model = replace(model, splice_law=_splice_law(readings))
-    is_stretched = np.array([hold != "slack" for hold in model.mark_hold], dtype=bool)
-    made = model.made
+        model = replace(model, by_marks=_by_marks(readings, average))
+        is_stretched = np.array([hold != "slack" for hold in model.mark_hold], dtype=bool)
+        made = model.made
     if model.method == "tension-driven" and mark_tension_at_start is not None:
-        early = replace(readings, tension=np.asarray(mark_tension_at_start, dtype=np.float64))
-        at_start = fit_to_marks("tension-driven", early)
+        at_start = fit_to_marks(
+            "tension-driven", replace(readings, tension=readings.tension_at_start)
+        )
         made += _on_reading_time(model, is_stretched, at_start)
     # a method that was asked for and needs no tension loses nothing with a log
-    lost = failed_tests if stated in (None, "tension-driven") else ()
+    lost = failed_tests if stated in (None, "tension-driven", "mixed") else ()
     remarks = _remarks_on(model, readings.marks, is_stretched, failed_tests=lost)
-    return replace(model, notes=(*notes, *model.notes, *remarks), made=made)
+    return replace(model, notes=(*model.notes, *remarks), made=made)
+
+
+def _laws_in_words(average: SpliceAverage) -> str:
+    """One line of the history: every law with its misfit and its weight."""
+    laws = (
+        f"{law.name} (chi-square {law.chi_square:.3g} of {law.freedom}, weight {weight:.2g})"
+        for law, weight in zip(average.laws, average.weight, strict=True)
+    )
+    return f"laws of the splices fitted to the marks: {', '.join(laws)}"

@@ -62,7 +62,7 @@ class StrainModel:
     specimen : str
         Name of the specimen.
     method : StrainMethod
-        Which of the six methods.
+        Which of the seven methods.
     coefficients : dict of str to float
         By full name, SI; what `strain_by_model` needs. For
         ``tension-driven``: ``relaxed_free_length`` [m], ``relaxed_splice_length``
@@ -93,9 +93,11 @@ class StrainModel:
     is_zero_logged : bool
         True where the position of zero strain was read from the log of the test, so that a wrong
         zero of the crosshead is in it as well.
-    splice_law : dict of str to float
-        Of a method that knows position alone: the coefficients of ``tension-driven`` fitted to
-        the same marks, by which its error is judged; empty where there is no such law.
+    by_marks : StrainModel, optional
+        Of a method that was asked for: ``mixed``, averaged over the laws that the same marks do
+        not reject, by which its error is judged.
+    law_covariance : ndarray, shape (n_coefficients, n_coefficients)
+        Of the coefficients, by which law of the splices it is; empty where there is one law. [SI]
     """
 
     specimen: str
@@ -118,7 +120,8 @@ class StrainModel:
     notes: tuple[Note, ...] = ()
     made: tuple[str, ...] = ()
     is_zero_logged: bool = False
-    splice_law: dict[str, float] = field(default_factory=dict)
+    by_marks: StrainModel | None = None
+    law_covariance: Floats = field(default_factory=lambda: np.empty((0, 0)))
 
     @property
     def relaxed_length(self) -> float:
@@ -357,6 +360,57 @@ def _tension_driven_strain(
     return strain
 
 
+def _mixed_strain(
+    position: ArrayLike,
+    tension: ArrayLike,
+    *,
+    relaxed_free_length: float,
+    relaxed_splice_length: float,
+    splice_offset: float,
+    splice_strain_ratio: float,
+    splice_strain_curvature: float,
+    splice_compliance: float,
+    splice_exponent: float,
+) -> Floats:
+    r"""Strain where the splices strain by what they carry, and by what the free length does.
+
+    .. math:: \ell_0 (1 + \varepsilon)
+       + \ell_s (1 + s_0 + \rho\varepsilon + \kappa\varepsilon^2 + c F^n) = p
+
+    Notes
+    -----
+    The root that is the strain of splices without curvature where there is none.  Tension below
+    zero counts as zero.  NaN in, NaN out, and NaN where the splices would be longer than all.
+
+    Examples
+    --------
+    Half of 22 % by tension, half by the free strain:
+
+    >>> strain = _mixed_strain(
+    ...     [6.5518], [450.0], relaxed_free_length=2.55, relaxed_splice_length=1.19,
+    ...     splice_offset=0.0, splice_strain_ratio=0.11, splice_strain_curvature=0.0,
+    ...     splice_compliance=0.11 / 450, splice_exponent=1.0)
+    >>> print(strain.round(4))
+    [1.]
+    """
+    as_positive("relaxed_free_length", relaxed_free_length)
+    as_positive("relaxed_splice_length", relaxed_splice_length)
+    place, load = as_same_shape(position=position, tension=tension)
+    share = relaxed_splice_length / relaxed_free_length
+    slope = 1 + share * splice_strain_ratio
+    as_positive("1 + splice_strain_ratio * splice length / free length", slope)
+    # NaN stays NaN, but of a law that knows no tension
+    by_tension = (
+        splice_compliance * np.maximum(load, 0.0) ** splice_exponent if splice_compliance else 0.0
+    )
+    excess = place * (1 / relaxed_free_length) - 1 - share * (1 + splice_offset + by_tension)
+    if splice_strain_curvature == 0:
+        return np.asarray(excess / slope)
+    root = slope**2 + 4 * share * splice_strain_curvature * excess
+    with np.errstate(invalid="ignore"):
+        return np.asarray(2 * excess / (slope + np.sqrt(root)))
+
+
 def _marked_line_strain(
     position: ArrayLike,
     *,
@@ -483,7 +537,7 @@ def strain_by_model(
     position : array_like, shape (...)
         Crosshead position. [m]
     tension : array_like, shape (...)
-        Of this specimen; used by ``tension-driven`` alone. [N]
+        Of this specimen; used by ``tension-driven`` and ``mixed`` alone. [N]
     measured_strain : array_like, shape (...), optional
         Channel of the extensometer, where that is the method. [1]
 
@@ -522,6 +576,8 @@ def strain_by_model(
         return np.asarray(measured_strain, dtype=np.float64)
     if model.method == "tension-driven":
         return _tension_driven_strain(position, tension, **model.coefficients)
+    if model.method == "mixed":
+        return _mixed_strain(position, tension, **model.coefficients)
     return _OF_POSITION[model.method](position, **model.coefficients)
 
 
@@ -544,6 +600,10 @@ def extrapolated(model: StrainModel, position: ArrayLike, tension: ArrayLike) ->
     if model.method == "tension-driven":
         values, low, high = np.asarray(tension), -np.inf, model.tension_high
         margin = _MARGIN * high
+    elif model.method == "mixed":
+        # from slack, which the marks begin at, to the highest of them
+        values, low, high = np.asarray(position), -np.inf, model.position_high
+        margin = _MARGIN * (high - model.position_low)
     else:
         values, low, high = np.asarray(position), model.position_low, model.position_high
         margin = _MARGIN * (high - low)
@@ -617,6 +677,7 @@ def strain_sensitivity_of(
 # lengths that grow with the free length; the others of a method do not, or say nothing of splices
 _SCALED = {
     "tension-driven": "relaxed_free_length",
+    "mixed": "relaxed_free_length",
     "strain-ratio": "relaxed_free_length",
     "gauge-length": "gauge_length",
 }
@@ -648,8 +709,9 @@ def position_by_model(model: StrainModel, *, strain: ArrayLike, tension: ArrayLi
 
     Notes
     -----
-    Every method is a straight line of strain on position at one tension, so that two
-    positions give its inverse exactly, and the laws of the splices stand in one place.
+    Every method but one is a straight line of strain on position at one tension, so that two
+    positions give its inverse exactly, and the laws of the splices stand in one place; of
+    ``mixed`` the length is the sum of both parts.
 
     Examples
     --------
@@ -668,9 +730,21 @@ def position_by_model(model: StrainModel, *, strain: ArrayLike, tension: ArrayLi
     stretch, load = np.broadcast_arrays(
         np.asarray(strain, dtype=np.float64), np.asarray(tension, dtype=np.float64)
     )
+    if model.method == "mixed":
+        return _mixed_length(stretch, load, model.coefficients)
     at_zero = strain_by_model(model, position=np.zeros(load.shape), tension=load)
     at_one = strain_by_model(model, position=np.ones(load.shape), tension=load)
     return np.asarray((stretch - at_zero) / (at_one - at_zero), dtype=np.float64)
+
+
+def _mixed_length(strain: Floats, tension: Floats, known: dict[str, float]) -> Floats:
+    compliance, exponent = known["splice_compliance"], known["splice_exponent"]
+    by_tension = compliance * np.maximum(tension, 0.0) ** exponent if compliance else 0.0
+    by_strain = known["splice_strain_ratio"] + known["splice_strain_curvature"] * strain
+    splices = 1 + known["splice_offset"] + by_strain * strain + by_tension
+    return np.asarray(
+        known["relaxed_free_length"] * (1 + strain) + known["relaxed_splice_length"] * splices
+    )
 
 
 def with_free_length(model: StrainModel, free_length: float) -> StrainModel:
@@ -711,7 +785,7 @@ def with_free_length(model: StrainModel, free_length: float) -> StrainModel:
     if name is None:
         raise DataError(
             f"a strain model by {model.method} holds for the length that was tested",
-            needed="tension-driven, strain-ratio or gauge-length",
+            needed="tension-driven, strain-ratio, mixed or gauge-length",
             hint="These know the splices apart from the free length.",
         )
     coefficients = {**model.coefficients, name: length}
@@ -733,5 +807,6 @@ def with_free_length(model: StrainModel, free_length: float) -> StrainModel:
         mark_strain_residual=np.empty(0),
         mark_load_cell=(),
         notes=(*model.notes, note("other-free-length", length=length)),
-        splice_law={},
+        law_covariance=np.empty((0, 0)),
+        by_marks=None,
     )

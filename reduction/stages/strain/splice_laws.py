@@ -1,0 +1,512 @@
+r"""The laws that tape readings at the splice toes can carry, each fitted, judged and weighed.
+
+Every law says by how much the splices lengthen,
+
+.. math:: \varepsilon_s = s_0 + \rho\,\varepsilon + \kappa\,\varepsilon^2 + c F^n
+
+and they differ in the terms that they have: the splices strain by the tension that they carry
+(:math:`c, n`), by a share of what the free length does (:math:`\rho`), by a share that changes
+along the stroke (:math:`\kappa`), by both, or after they have bedded in (:math:`s_0`).
+
+References
+----------
+.. [1] K. P. Burnham and D. R. Anderson, Model Selection and Multimodel Inference, 2nd ed.,
+   Springer, 2002, ch. 2 and 4 (weights by Akaike's criterion; variance of an average over models).
+.. [2] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import scipy
+from scipy.special import chdtrc
+
+from reduction.record.errors import DataError
+from reduction.record.measurement import Bools, Floats, read_only_arrays
+
+LAWS: dict[str, tuple[str, ...]] = {
+    "tension-driven": ("tension",),
+    "strain-ratio": ("strain",),
+    "mixture": ("strain", "tension"),
+    "marks-linear": ("offset", "strain"),
+    "strain-curve": ("strain", "square"),
+    "bedded tension-driven": ("offset", "tension"),
+    "bedded curve": ("offset", "strain", "square"),
+    "bedded mixture": ("offset", "strain", "tension"),
+    "mixture with curve": ("strain", "square", "tension"),
+}
+"""Laws and the terms of the splice strain that each of them has."""
+
+TERMS = ("offset", "strain", "square", "tension")
+"""Of `FittedLaw.values`: the last one is the splice strain at the reference tension."""
+
+REJECTED = 0.001
+"""A law that sound marks would miss this rarely by as much is not used. [1]"""
+
+_EXACT = 1e-14  # variance of a relative length
+
+_FAR = 4.0  # standard errors by which a mark is off every law before it is set aside
+
+_ENOUGH = 6  # loaded marks from which one may be set aside
+
+_PASSES = 3
+
+_DOUBT = 0.05  # chance of a misfit below which slip and single marks are looked for
+
+_SLIPS = np.geomspace(0.5, 100.0, 16)  # of a reading of the tape
+
+_EXPONENTS = np.linspace(0.3, 1.9, 9)
+
+_STEP = 0.01  # of the exponent, for the curvature of the misfit
+
+_NOWHERE = 1e12
+
+# of the splices' length: what splices settle by when they are first loaded; a law of position has
+# besides what its line or curve cannot follow below the lowest mark
+_BEDDING, _INTERCEPT = 0.03, 0.1
+
+_SPAN = 1.5  # of tension, from which an exponent is looked for
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class SpliceReadings:
+    """Stretched and slack rows of a specimen, as the laws need them; shape (n_rows,).
+
+    ``free`` [1] and ``splice`` [1] are strains of the free length and of both splices; ``tension``
+    [N] is NaN where it is not known and ``tension_uncertainty`` [1] its relative standard
+    uncertainty; ``test`` numbers the test of a row from 0.  ``share`` is the
+    relaxed length of the splices over that of the free length [1], ``tape`` the standard
+    uncertainty of one reading over the relaxed length of the splices [1], worth
+    ``tape_freedom`` readings where it was not stated, and ``relaxed`` the covariance of the
+    relative errors of free and splice length [1]; ``row`` is where each stands among the marks.
+    """
+
+    free: Floats
+    splice: Floats
+    tension: Floats
+    test: np.ndarray
+    is_slack: Bools
+    share: float
+    tape: float
+    relaxed: Floats
+    row: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    tension_uncertainty: Floats = field(default_factory=lambda: np.empty(0))
+    tape_freedom: float = np.inf
+
+    @property
+    def reference(self) -> float:
+        """Geometric mean of the known tensions; 1 where there is none. [N]."""
+        known = self.tension[np.nan_to_num(self.tension) > 0]
+        return float(np.exp(np.mean(np.log(known)))) if known.size else 1.0
+
+    def without(self, row: int) -> SpliceReadings:
+        """Return the readings without one row."""
+        kept = np.arange(self.free.size) != row
+        return SpliceReadings(
+            self.free[kept], self.splice[kept], self.tension[kept], self.test[kept],
+            self.is_slack[kept], self.share, self.tape, self.relaxed,
+            self.row[kept[: self.row.size]],
+            self.tension_uncertainty[kept[: self.tension_uncertainty.size]],
+            self.tape_freedom,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class FittedLaw:
+    """One law at its best: coefficients of `TERMS`, exponent and relaxed lengths, with covariance.
+
+    Shape (7,) and (7, 7), zero of a term that it lacks; the last two are by how much free and
+    splice length are longer than the slack rows say, relative.  ``chi_square`` is against the
+    stated error of the tape, with ``freedom``; ``chance`` is its probability, ``criterion`` that
+    of Akaike.
+    """
+
+    name: str
+    values: Floats
+    covariance: Floats
+    chi_square: float
+    freedom: int
+    criterion: float
+    residual: Floats
+
+    @property
+    def chance(self) -> float:
+        """Probability of a misfit as large, were the law and the stated error right. [1]."""
+        return 1.0 if self.freedom <= 0 else float(chdtrc(self.freedom, self.chi_square))
+
+    @property
+    def n_terms(self) -> int:
+        """Number of its coefficients."""
+        return len(LAWS[self.name]) + int(self.covariance[4, 4] > 0)
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class SpliceAverage:
+    """Average over the laws that the marks do not reject.
+
+    Parameters
+    ----------
+    values : ndarray, shape (7,)
+        Mean coefficients of `TERMS`, mean exponent, and by how much relaxed free and splice length
+        are longer than the slack rows say, relative. [1]
+    covariance : ndarray, shape (7, 7)
+        By the tape alone. [1]
+    between : ndarray, shape (7, 7)
+        By which law it is. [1]
+    reference : float
+        Tension at which the splices strain by the last of the coefficients. [N]
+    laws : tuple of FittedLaw
+        Every law that was fitted, best first.
+    weight : ndarray, shape (n_laws,)
+        Zero of those rejected. [1]
+    slip : float
+        Standard deviation of the splice strain between tests; zero where the marks show none. [1]
+    test_offset : ndarray, shape (n_tests,)
+        By how much the splices of each test are longer, over their length. [1]
+    test_variance : ndarray, shape (n_tests,)
+        Of these. [1]
+    set_aside : int or None
+        Row that lies far off every law.
+    """
+
+    values: Floats
+    covariance: Floats
+    between: Floats
+    reference: float
+    laws: tuple[FittedLaw, ...]
+    weight: Floats
+    slip: float
+    test_offset: Floats
+    test_variance: Floats
+    set_aside: int | None = None
+
+
+def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAverage:
+    r"""Fit every law that the marks can carry, and average those that they do not reject.
+
+    Parameters
+    ----------
+    readings : SpliceReadings
+        Of all tests of the specimen.
+    specimen : str
+        For messages.
+
+    Returns
+    -------
+    average : SpliceAverage
+        With the laws, the best first.
+
+    Raises
+    ------
+    DataError
+        If no law has a mark to rest on, or the marks reject every law.
+
+    Notes
+    -----
+    A law passes whose misfit, against the stated error of the tape, has a chance of one in a
+    thousand or more.  Laws that pass are weighed by Akaike's criterion,
+    :math:`w \propto e^{-\mathrm{AIC}/2}`; equally where one of them has fewer marks than
+    coefficients and two, since the misfit then says nothing.  What the laws differ by is a source
+    of uncertainty of its own, the second term of
+
+    .. math:: \sum w_k C_k + \sum w_k (\theta_k - \bar\theta)(\theta_k - \bar\theta)^T
+
+    ([1]_, eq. 4.9, without its square root).  Where readings of one test lie off together, the
+    splices have slipped between tests ([2]_, sec. 4.7): the variance between tests is the most
+    likely one, and each test has the offset that its own marks say, drawn towards none.
+
+    Examples
+    --------
+    Splices that strain 22 % of what the free length does, read without error:
+
+    >>> free = np.array([0.0, 0.8, 1.0, 1.2, 1.5, 1.8, 2.1])
+    >>> found = fit_splice_laws(SpliceReadings(
+    ...     free, 0.22 * free, np.array([0, 210.0, 240, 300, 380, 470, 600]), np.zeros(7, int),
+    ...     free == 0, 0.47, 1e-3, np.zeros((2, 2))))
+    >>> print(found.laws[0].name, found.values.round(3)[1])
+    strain-ratio 0.22
+    """
+    kept, set_aside = readings, None
+    n_loaded = int((~readings.is_slack).sum())
+    found = _judged(kept)
+    if n_loaded >= _ENOUGH and found.laws and found.laws[0].chance < _DOUBT:
+        row = _outlier(readings, found.slip)
+        if row is not None:
+            kept, set_aside = readings.without(row), row
+            found = _judged(kept)
+    laws, slip = found.laws, found.slip
+    if not laws:
+        raise DataError(
+            f"the splices of '{specimen}' have no law",
+            found="no stretched mark",
+            needed="a stretched row of this specimen",
+        )
+    passing = np.array([law.chance >= REJECTED for law in laws])
+    if not passing.any():
+        raise _refusal(readings, laws, specimen)
+    n_loaded = int((~kept.is_slack).sum())
+    is_known = all(
+        n_loaded >= law.n_terms + 2 for law, passes in zip(laws, passing, strict=True) if passes
+    )
+    criterion = np.array([law.criterion for law in laws])
+    weight = np.exp(-(criterion - criterion[passing].min()) / 2) if is_known else np.ones(len(laws))
+    weight = np.where(passing, weight, 0.0) / weight[passing].sum()
+    values = np.array([law.values for law in laws])
+    mean = weight @ values
+    # powers of like exponents add up to one of their mean, weighed by what each strains
+    share = weight * values[:, 3]
+    mean[4] = share @ values[:, 4] / share.sum() if share.sum() > 0 else 1.0
+    away = values - mean
+    away[values[:, 3] == 0, 4] = 0.0
+    offset, variance = _offsets(kept, laws[int(np.argmax(weight))], slip)
+    return SpliceAverage(
+        values=mean,
+        covariance=np.einsum("k,kij->ij", weight, np.array([law.covariance for law in laws])),
+        between=np.einsum("k,ki,kj->ij", weight, away, away),
+        reference=kept.reference,
+        laws=tuple(laws),
+        weight=weight,
+        slip=slip,
+        test_offset=offset,
+        test_variance=variance,
+        set_aside=set_aside,
+    )
+
+
+@dataclass(frozen=True)
+class _Judged:
+    """Laws, best first, and how far the splices slip between tests."""
+
+    laws: list[FittedLaw]
+    slip: float
+
+
+def _judged(readings: SpliceReadings) -> _Judged:
+    """Every law; with slip between tests, where the marks ask for it."""
+    laws = _fitted(readings, 0.0)
+    if not laws or np.unique(readings.test).size < 2 or laws[0].chance >= _DOUBT:
+        return _Judged(laws, 0.0)
+    best = laws[0]
+    tried = [
+        (found.criterion, float(slip))
+        for slip in readings.tape * _SLIPS
+        for name in LAWS
+        if (found := _fit(readings, name, float(best.values[4]), float(slip))) is not None
+    ]
+    criterion, slip = min(tried)
+    # one more number was found from the marks
+    if criterion + 2 >= best.criterion:
+        return _Judged(laws, 0.0)
+    return _Judged(_fitted(readings, slip), slip)
+
+
+def _fitted(readings: SpliceReadings, slip: float) -> list[FittedLaw]:
+    found = [_law(readings, name, slip) for name in LAWS]
+    return sorted((law for law in found if law is not None), key=lambda law: law.criterion)
+
+
+def _law(readings: SpliceReadings, name: str, slip: float) -> FittedLaw | None:
+    """One law; of the tension with an exponent of its own, where the marks fix one."""
+    at_one = _fit(readings, name, 1.0, slip)
+    loaded = readings.tension[~readings.is_slack]
+    if at_one is None or "tension" not in LAWS[name] or loaded.size < len(LAWS[name]) + 3:
+        return at_one
+    if loaded.max() < _SPAN * loaded.min():
+        return at_one
+
+    def criterion(exponent: float) -> float:
+        found = _fit(readings, name, exponent, slip)
+        return _NOWHERE if found is None else min(found.criterion, _NOWHERE)
+
+    # a sharp minimum lies between the points of any grid, so that it is followed down
+    grid = np.array([criterion(float(one)) for one in _EXPONENTS])
+    place = int(np.argmin(grid))
+    ends = _EXPONENTS[max(place - 1, 0)], _EXPONENTS[min(place + 1, _EXPONENTS.size - 1)]
+    search = scipy.optimize.minimize_scalar(
+        criterion, bounds=ends, method="bounded", options={"xatol": 1e-5}
+    )
+    exponent, best = float(search.x), float(search.fun)
+    # a number more than the straight line has
+    if best + 2 >= at_one.criterion:
+        return at_one
+    below, law, above = (_fit(readings, name, exponent + way, slip) for way in (-_STEP, 0.0, _STEP))
+    if below is None or law is None or above is None:
+        return at_one
+    bend = (below.criterion - 2 * best + above.criterion) / _STEP**2
+    slope = (above.values - below.values) / (2 * _STEP)
+    slope[4] = 1.0
+    return replace(
+        law,
+        covariance=law.covariance + 2 / max(bend, 1e-6) * np.outer(slope, slope),
+        criterion=law.criterion + 2.0,
+        freedom=law.freedom - 1,
+    )
+
+
+def _terms(readings: SpliceReadings, exponent: float) -> dict[str, Floats]:
+    free = readings.free
+    load = np.maximum(np.nan_to_num(readings.tension), 0.0)
+    return {
+        "offset": (~readings.is_slack).astype(np.float64),
+        "strain": np.where(readings.is_slack, 0.0, free),
+        "square": np.where(readings.is_slack, 0.0, free**2),
+        "tension": np.where(readings.is_slack, 0.0, (load / readings.reference) ** exponent),
+    }
+
+
+def _fit(readings: SpliceReadings, name: str, exponent: float, slip: float) -> FittedLaw | None:
+    """One law by generalised least squares; None where the marks cannot carry it."""
+    places = [TERMS.index(term) for term in LAWS[name]]
+    rows = np.arange(readings.free.size)
+    if "tension" in LAWS[name]:
+        is_known = readings.is_slack | (np.nan_to_num(readings.tension) > 0)
+        if not is_known.all():
+            return None
+    columns = _terms(readings, exponent)
+    design = np.stack([columns[term] for term in LAWS[name]], axis=1)
+    loaded = ~readings.is_slack
+    # columns by their size: a tension has another than a strain
+    size = np.sqrt((design**2).sum(axis=0))
+    if (size == 0).any() or np.linalg.matrix_rank(design[loaded] / size, tol=1e-3) < len(places):
+        return None
+    known = np.zeros((len(places) + 2,) * 2)
+    if "offset" in LAWS[name]:
+        # the first column: what splices settle by is small, whatever the readings would carry
+        usual = _BEDDING if "tension" in LAWS[name] else _INTERCEPT
+        known[0, 0] = (usual * size[0]) ** -2
+    # lengths that count as exact stay as they are
+    known[-2:, -2:] = np.linalg.inv(readings.relaxed + _EXACT * np.eye(2))
+    slope, per_tension = np.zeros(rows.size), np.zeros(rows.size)
+    for _ in range(_PASSES):
+        covariance = _of_rows(readings, slope, slip, per_tension)
+        # the relaxed lengths are found anew: the slack rows know them beforehand, these too
+        whole = np.concatenate([design / size, -_common(readings, slope)], axis=1)
+        weighed = np.linalg.solve(covariance, whole)
+        normal = np.linalg.inv(whole.T @ weighed + known)
+        solved = normal @ weighed.T @ readings.splice
+        values = np.append(np.zeros(len(TERMS)), exponent)
+        values[places] = solved[:-2] / size
+        slope = np.where(loaded, values[1] + 2 * values[2] * readings.free, 0.0)
+        per_tension = exponent * values[3] * columns["tension"]
+    # splices that shorten under load, or that stretch more than what they hold
+    if values[3] < 0 or (1 + readings.share * slope).min() <= 0.05:
+        return None
+    lengths = solved[-2:]
+    residual = readings.splice - whole @ solved
+    judged = np.ones(rows.size, dtype=bool) if slip > 0 else loaded
+    misfit = residual[judged]
+    chi_square = float(misfit @ np.linalg.solve(covariance[np.ix_(judged, judged)], misfit))
+    chi_square += float(solved @ known @ solved)
+    scale = np.concatenate([1 / size, np.ones(2)])
+    at = np.array([*places, 5, 6])
+    own = np.zeros((7, 7))
+    own[np.ix_(at, at)] = normal * np.outer(scale, scale)
+    spread = np.linalg.slogdet(covariance[np.ix_(judged, judged)] / readings.tape**2)[1]
+    if slip > 0:
+        slack = np.diag(_of_rows(readings, slope, 0.0))[~loaded] / readings.tape**2
+        spread -= float(np.log(slack).sum())
+    count, worth = int(judged.sum()), readings.tape_freedom
+    # of an error of the tape that is itself not well known, a larger misfit says less
+    misfit_term = (
+        chi_square if np.isinf(worth) else (worth + count) * np.log1p(chi_square / worth)
+    )
+    return FittedLaw(
+        name=name,
+        values=np.concatenate([values, lengths]),
+        covariance=own,
+        chi_square=chi_square,
+        freedom=count - len(places),
+        criterion=misfit_term + 2.0 * len(places) + spread,
+        residual=residual,
+    )
+
+
+def _of_rows(
+    readings: SpliceReadings, slope: Floats, slip: float, per_tension: Floats | None = None
+) -> Floats:
+    """Covariance of the rows: three readings of the tape each, the tension, what a test shares."""
+    # both toes are in the free length and, the other way, in the splices
+    own = readings.tape**2 * (2 * (1 + readings.share * slope) ** 2 + 1)
+    if per_tension is not None and readings.tension_uncertainty.size:
+        own = own + (per_tension * readings.tension_uncertainty) ** 2
+    together = readings.test[:, None] == readings.test[None, :]
+    return np.asarray(np.diag(own) + slip**2 * together)
+
+
+def _common(readings: SpliceReadings, slope: Floats) -> Floats:
+    """Change of the residuals with the relative errors of relaxed free and splice length."""
+    loaded = ~readings.is_slack
+    return np.stack(
+        [
+            np.where(loaded, slope * (1 + readings.free), 0.0),
+            np.where(loaded, -(1 + readings.splice), 0.0),
+        ],
+        axis=1,
+    )
+
+
+def _offsets(readings: SpliceReadings, law: FittedLaw, slip: float) -> tuple[Floats, Floats]:
+    """Offset of each test by its own marks, drawn towards none, and its variance."""
+    n_tests = int(readings.test.max(initial=-1)) + 1
+    if slip == 0.0:
+        return np.zeros(n_tests), np.zeros(n_tests)
+    own = np.diag(_of_rows(readings, np.zeros(readings.free.size), 0.0))
+    offset, variance = np.zeros(n_tests), np.full(n_tests, slip**2)
+    for one in range(n_tests):
+        at = readings.test == one
+        known = float(np.sum(1 / own[at]))
+        variance[one] = 1 / (1 / slip**2 + known)
+        offset[one] = variance[one] * float(np.sum(law.residual[at] / own[at]))
+    return offset, variance
+
+
+def _outlier(readings: SpliceReadings, slip: float) -> int | None:
+    """Return the stretched row that lies far off every law that is fitted without it."""
+    far = np.zeros(readings.free.size)
+    for row in np.flatnonzero(~readings.is_slack):
+        others = _fitted(readings.without(int(row)), slip)
+        if not others:
+            return None
+        errors = []
+        for law in others:
+            columns = _terms(readings, float(law.values[4]))
+            design = np.array([columns[term][row] for term in TERMS])
+            slope = law.values[1] + 2 * law.values[2] * readings.free[row]
+            own = readings.tape**2 * (2 * (1 + readings.share * slope) ** 2 + 1) + slip**2
+            if readings.tension_uncertainty.size:
+                of_tension = law.values[4] * law.values[3] * design[3]
+                own += (of_tension * readings.tension_uncertainty[row]) ** 2
+            of_law = float(design @ law.covariance[:4, :4] @ design)
+            away = readings.splice[row] - design @ law.values[:4]
+            errors.append(abs(away) / np.sqrt(own + of_law))
+        far[row] = min(errors)
+    worst = int(np.argmax(far))
+    if far[worst] <= _FAR:
+        return None
+    # without it the marks have to agree with a law: else it is not the mark that is wrong
+    laws = _judged(readings.without(worst)).laws
+    return worst if laws and laws[0].chance >= REJECTED else None
+
+
+def _refusal(readings: SpliceReadings, laws: Sequence[FittedLaw], specimen: str) -> DataError:
+    best = max(laws, key=lambda law: law.chance)
+    length = 1 / (1 + readings.share * np.maximum(best.values[1], 0.0))
+    points = 100 * readings.share * length * np.abs(best.residual)
+    worst = int(np.argmax(points))
+    return DataError(
+        f"no law of the splices of '{specimen}' agrees with its marks",
+        found=f"{best.name}, the best of {len(laws)}, misses them by "
+        f"{points[~readings.is_slack].mean():.2f} points of strain where the tape explains "
+        f"{100 * readings.share * length * readings.tape * np.sqrt(3):.2f}",
+        needed="marks that one of the laws passes within the stated error of the tape",
+        hint=f"Look at row {worst + 1} of its marks, off by {points[worst]:.2f} points; at holds"
+        " whose tension is not that of the marks; or state the error of the tape.",
+    )
