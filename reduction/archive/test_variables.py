@@ -149,10 +149,16 @@ def slip_values(slips: Slips, *, specimens: tuple[str, ...]) -> Values:
 
 def curve_values(curves: ModulusCurves) -> Values:
     """Return the tangent modulus curves with their companions."""
+    # what the window blurs is in the contributions
+    apart = (
+        "window",
+        "notes",
+        "made",
+        "branch_tension_count",
+        "tangent_modulus_window_uncertainty",
+    )
     values: Values = {
-        item.name: getattr(curves, item.name)
-        for item in fields(curves)
-        if item.name not in ("window", "notes", "made", "branch_tension_count")
+        item.name: getattr(curves, item.name) for item in fields(curves) if item.name not in apart
     }
     if curves.branch_tension_count is not None:
         values["branch_tension_count"] = curves.branch_tension_count

@@ -195,6 +195,8 @@ def _without_modulus(curves: ModulusCurves, lacks_area: Bools) -> ModulusCurves:
     moduli = [item.name for item in fields(curves) if item.name.startswith("tangent_modulus")]
     emptied = {}
     for name in moduli:
+        if getattr(curves, name) is None:
+            continue
         values = getattr(curves, name).copy()
         values[lacks_area] = 0 if values.dtype.kind == "i" else np.nan
         emptied[name] = values

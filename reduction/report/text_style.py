@@ -485,6 +485,7 @@ _LOOKS: dict[str, tuple[str, str]] = {
     "strain_calibration": (_GREEN, ""),
     "splice_method": (_GREEN, "/"),
     "splice_law": (_GREEN, "+"),
+    "window": (_GREY, "."),
     "strain_gain": (_GREEN, "x"),
     "gauge_length": (_GREEN, "."),
     "diameter": (_VERMILION, ""),
@@ -495,7 +496,14 @@ _LOOKS: dict[str, tuple[str, str]] = {
 _UNKNOWN = (_GREY, "x")
 
 FROM_READINGS = frozenset(
-    {"strain_calibration", "splice_method", "splice_law", "quasi_static_fit", "gauge_length"}
+    {
+        "strain_calibration",
+        "splice_method",
+        "splice_law",
+        "window",
+        "quasi_static_fit",
+        "gauge_length",
+    }
 )
 """Sources that follow from readings of the tests, not from what is stated of the instruments."""
 
@@ -507,6 +515,7 @@ _MEANINGS = {
     "strain_calibration": "fit to the readings at the splice marks",
     "splice_method": "splice law that was asked for",
     "splice_law": "which law the splices follow",
+    "window": "what the regression window blurs",
     "gauge_length": "length that strain is a share of",
     "strain_gain": "what the strain method itself may miss",
     "quasi_static_fit": "fit of the slow pull that gives K_0",

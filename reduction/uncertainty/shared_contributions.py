@@ -358,7 +358,15 @@ def _of_curves(
     for name, modulus in zip(names, known, strict=False):
         whole = np.where(np.isfinite(modulus), modulus, slope)
         values[f"{name}{suffix}"] = at_slope(whole).values["tangent_modulus"]
-    return Contributions(of_tension.component, values)
+    if curves.tangent_modulus_window_uncertainty is None:
+        return Contributions(of_tension.component, values)
+    missed = np.nan_to_num(curves.tangent_modulus_window_uncertainty[index])[None]
+    values = {
+        name: np.concatenate([rows, np.zeros_like(missed) if name == "branch_tension" else missed])
+        for name, rows in values.items()
+    }
+    window = Component("window", f"{errors.test} {errors.specimen}")
+    return Contributions((*of_tension.component, window), values)
 
 
 def _completed(

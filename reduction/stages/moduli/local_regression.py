@@ -27,7 +27,7 @@ References
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
@@ -281,6 +281,30 @@ class BranchMoments:
     def curves(self, start: int, stop: int) -> BranchMoments:
         """Moments of the curves from start to stop, stop not included."""
         return BranchMoments(self.sums[:, start:stop], self.grid, self.tension_reference)
+
+    def pooled(self, n_branches: int) -> BranchMoments:
+        """Moments of each branch over all its curves, each put on the level of the mean curve.
+
+        Curves come branch by branch within a cycle.  From cycle to cycle tension falls, and not
+        every cycle has a sample in every bin: without its own level taken off, that fall would
+        be a slope.
+        """
+        sums = self.sums.reshape(_N_SUMS, -1, n_branches, self.sums.shape[-1])
+        count, tension = sums[0], sums[5]
+        mean = tension.sum(axis=0) / np.maximum(count.sum(axis=0), 1)
+        level = (tension - count * mean).sum(axis=-1, keepdims=True)
+        level = level / np.maximum(count.sum(axis=-1, keepdims=True), 1)
+        pooled = sums.sum(axis=1)
+        pooled[5:8] -= (sums[0:3] * level).sum(axis=1)
+        pooled[8] += (level * (level * count - 2 * tension)).sum(axis=0)
+        return BranchMoments(pooled, self.grid, self.tension_reference)
+
+    def in_windows(self, half_window: int) -> BranchMoments:
+        """Return the same moments for a window that is no wider."""
+        beside = self.grid.half_window - half_window
+        inner = slice(beside, self.sums.shape[-1] - beside)
+        grid = replace(self.grid, half_window=half_window)
+        return BranchMoments(self.sums[..., inner], grid, self.tension_reference)
 
     def followed_by(self, other: BranchMoments) -> BranchMoments:
         """Curves of both, one after the other, of one grid and reference."""

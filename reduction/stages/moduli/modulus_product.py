@@ -26,7 +26,7 @@ class ModulusCurves:
     strain_bin_bounds : ndarray, shape (n_bins, 2)
         Edges. [1]
     window : float
-        Width of the regression window. [1]
+        Width of the widest regression window. [1]
     tangent_modulus, tangent_modulus_standard_uncertainty : ndarray, shape (n_specimens, 2, n_bins)
         Mean over the cycles, trimmed branches; NaN where not supported. [Pa]
     tangent_modulus_count : ndarray of int, same shape
@@ -47,6 +47,8 @@ class ModulusCurves:
         Shape (n_specimens, n_selected, 2, n_bins). [Pa]
     made : tuple of str
         How they were made, with numbers that stand nowhere else: lines of the history.
+    tangent_modulus_window_uncertainty : ndarray, shape (n_specimens, 2, n_bins), or None
+        Standard uncertainty of the modulus by what the window blurs; None of a single rise. [Pa]
     """
 
     strain_bin: Floats
@@ -68,6 +70,7 @@ class ModulusCurves:
     notes: tuple[Note, ...] = ()
     made: tuple[str, ...] = ()
     branch_tension_count: Integers | None = None
+    tangent_modulus_window_uncertainty: Floats | None = None
 
 
 @dataclass(frozen=True)

@@ -37,14 +37,24 @@ from reduction.stages.moduli.local_regression import (
     select_cycles,
 )
 from reduction.stages.moduli.modulus_product import ModulusCurves
-from reduction.stages.moduli.tangent_window import StrainGrid, choose_grid_and_window, window_blur
+from reduction.stages.moduli.tangent_window import (
+    StrainGrid,
+    adapt_window,
+    choose_grid_and_window,
+    narrower_windows,
+    sample_spacing,
+    window_blur,
+)
 
 _PART = 1 << 18  # samples of a block of which sums are taken together
 
 
 @dataclass(frozen=True)
 class _SpecimenCurves:
-    """What one specimen gives in a block: statistics (2, n_bins) [N] and selected curves."""
+    """What one specimen gives in a block: statistics (2, n_bins) [N] and selected curves.
+
+    ``pooled`` holds the moments of both branches over the cycles of each block.
+    """
 
     trimmed: RunningStatistics
     untrimmed: RunningStatistics
@@ -52,6 +62,7 @@ class _SpecimenCurves:
     selected: Floats
     selected_variance: Floats
     n_outside: int
+    pooled: BranchMoments
 
     def __add__(self, later: _SpecimenCurves) -> _SpecimenCurves:
         """Both blocks together, in the order of the record."""
@@ -62,6 +73,7 @@ class _SpecimenCurves:
             np.concatenate([self.selected, later.selected]),
             np.concatenate([self.selected_variance, later.selected_variance]),
             self.n_outside + later.n_outside,
+            self.pooled.followed_by(later.pooled).pooled(2),
         )
 
 
@@ -152,7 +164,27 @@ def _reduce_block(
         selected=slope[0, chosen],
         selected_variance=slope_variance[0, chosen],
         n_outside=n_outside,
+        pooled=moments.curves(2 * n_break_in, 2 * n_groups).pooled(2),
     )
+
+
+def _adapted(
+    specimens: Sequence[_SpecimenCurves], *, halves: Sequence[int], minimum_count: int
+) -> tuple[Floats, Floats, Floats]:
+    """`adapt_window` by all cycles together: a narrow window holds few samples of one. [N]."""
+    slopes, deviations = [], []
+    for half in halves:
+        fits = [
+            fit_windows(one.pooled.in_windows(half), minimum_count=2 * minimum_count)
+            for one in specimens
+        ]
+        slope = np.stack([fit.slope for fit in fits])
+        blur, gain = window_blur(slope, half_window=half)
+        slopes.append(slope - blur)
+        deviations.append(gain * np.sqrt(np.stack([fit.slope_variance for fit in fits])))
+        if half == halves[0]:
+            widest = blur
+    return adapt_window(slopes, deviations, widest, half_windows=halves)
 
 
 def _reduce_specimens(
@@ -271,8 +303,10 @@ def tangent_curves(
 
     *Bias.* A window of width :math:`W` blurs: a slope is high by :math:`E'' W^2 / 40`,
     0.4 % where E grows e-fold in a strain of 0.3 and W is 0.12. `window_blur` takes
-    that off, the same from every cycle, by the second difference of the mean curve;
-    terms in :math:`W^4` stay. The modulus jumps at a reversal; the untrimmed curve
+    that off, the same from every cycle, by the second difference of the mean curve.
+    Where windows of half and a quarter of the width, over all cycles together, show another
+    slope, theirs is taken, and what the window may still miss is ``tangent_modulus_window_uncertainty``
+    (`adapt_window`). The modulus jumps at a reversal; the untrimmed curve
     smears that jump over :math:`W`, the trimmed one sees only the trimmed branch and
     ends a quarter window short of it, since a slope needs samples on both sides.
 
@@ -329,6 +363,13 @@ def tangent_curves(
         np.stack([one.value() for one in trimmed]), half_window=grid.half_window
     )
 
+    change, noise, missed = _adapted(
+        specimens,
+        halves=narrower_windows(grid, spacing=_spacing(strain, cycles)),
+        minimum_count=settings.minimum_count,
+    )
+    blur = blur - change
+
     def modulus(slopes: Iterable[Floats]) -> Floats:
         return (np.stack(list(slopes)) - blur) * per_area
 
@@ -342,8 +383,10 @@ def tangent_curves(
         strain_bin_bounds=grid.bounds,
         window=grid.window,
         tangent_modulus=modulus(one.value() for one in trimmed),
-        tangent_modulus_standard_uncertainty=gain
-        * spread(one.standard_uncertainty() for one in trimmed),
+        tangent_modulus_standard_uncertainty=_not_below(
+            gain * spread(one.standard_uncertainty() for one in trimmed), noise * per_area
+        ),
+        tangent_modulus_window_uncertainty=missed * per_area,
         tangent_modulus_count=np.stack([one.count for one in trimmed]).astype(np.int64),
         tangent_modulus_minimum=modulus(one.lowest() for one in trimmed),
         tangent_modulus_maximum=modulus(one.highest() for one in trimmed),
@@ -370,6 +413,16 @@ def tangent_curves(
             "the group that begins with the cycle",
         ),
     )
+
+
+def _spacing(strain: Floats, cycles: Cycles) -> float:
+    """Strain from sample to sample of the specimen whose samples lie furthest apart. [1]."""
+    return max(sample_spacing(row[None], cycles, 0.0) for row in strain)
+
+
+def _not_below(deviation: Floats, least: Floats) -> Floats:
+    """Greater of both where both are known; a deviation that is not known stays so."""
+    return np.where(np.isfinite(least), np.maximum(deviation, least), deviation)
 
 
 def _notes(break_in_cycles: int, specimens: Sequence[_SpecimenCurves]) -> list[Note]:

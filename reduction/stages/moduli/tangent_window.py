@@ -5,7 +5,8 @@ The strain grid of a test and the window that moves along it: the stated first p
 Both are found from the ends of the branches alone, so that a record read in
 pieces gives the grid of the whole.
 
-What a moving window adds to a curved modulus, from the curve itself.
+What a moving window adds to a curved modulus, from the curve itself; and where a narrower window
+shows something else, that one.
 
 References
 ----------
@@ -16,14 +17,18 @@ References
    least squares procedures," Anal. Chem., vol. 36, 1964.
 .. [3] J. W. Tukey, *Exploratory Data Analysis*. Reading, MA: Addison-Wesley, 1977 (a smoother
    applied to what it left: "twicing").
+.. [4] O. V. Lepskii, "On a problem of adaptive estimation in Gaussian white noise," Theory
+   Probab. Appl., vol. 35, 1991 (the widest window that no narrower one contradicts).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, floor, log10, sqrt
+from math import ceil, comb, floor, log10, sqrt
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
 from reduction.record.errors import DataError, SettingsError
@@ -39,6 +44,21 @@ _WIDEST_WINDOW = 0.25  # of the stroke, to gather samples; the curve is blurred 
 _BRANCHES_READ = 25  # enough for a median, few enough to cost nothing
 
 _MAXIMUM_BINS = 5000  # a curve, not a copy of the record
+
+_FEWEST_SPACINGS = 3  # of samples, in the narrowest window that is tried
+
+_CONTRADICTED = 2.0  # standard deviations of a narrower window's slope
+
+_FEWEST_DIFFERENCES = 5
+
+_TO_DEVIATION = 1.4826  # of a normal error, over the median of its size
+
+# Halfway over a jump two windows agree on the mean of both sides; beside it they differ by a fifth
+# to a third of what each is off there at most.
+_UNSEEN = sqrt(2.0)
+
+# where one width alone is to be had: half of the second difference that its blur is a tenth of
+_UNSEEN_OF_BLUR = 5.0
 
 
 @dataclass(frozen=True)
@@ -121,7 +141,7 @@ def bins_each_side(window: float, width: float) -> int:
     return half_window
 
 
-def _sample_spacing(strain: Floats, cycles: Cycles, stroke: float) -> float:
+def sample_spacing(strain: Floats, cycles: Cycles, stroke: float) -> float:
     """Strain from sample to sample at constant rate, median over branches spread over the test."""
     chosen = np.unique(np.linspace(0, cycles.n_cycles - 1, _BRANCHES_READ).astype(int))
     spacings = []
@@ -228,7 +248,7 @@ def choose_grid_and_window(
     if not width > 0:
         raise SettingsError("modulus.strain_bin_width is not positive", found=f"{width:g}")
 
-    spacing = _sample_spacing(strain, cycles, stroke)
+    spacing = sample_spacing(strain, cycles, stroke)
     fewest, wanted = (times * settings.minimum_count * spacing for times in (2, 3))
     window = settings.window
     if window is None:
@@ -322,3 +342,140 @@ def window_blur(slope: ArrayLike, *, half_window: int) -> tuple[Floats, float]:
         - 4 * share * (1 + 2 * share) * _overlap(shift)
     )
     return blur, sqrt(variance)
+
+
+def narrower_windows(grid: StrainGrid, *, spacing: float) -> list[int]:
+    """Half windows in bins, each half of the one before, that samples so far apart can fill."""
+    halves = [grid.half_window]
+    while halves[-1] > 1:
+        narrower = halves[-1] // 2
+        if (2 * narrower + 1) * grid.width < _FEWEST_SPACINGS * spacing:
+            break
+        halves.append(narrower)
+    return halves
+
+
+def _roughness(slope: Floats, half_window: int) -> Floats:
+    """Standard deviation of window slopes by their differences, the least of three orders."""
+    found = np.full(slope.shape[:-1], np.inf)
+    for order in (2, 3, 4):
+        n_differences = slope.shape[-1] - order * (half_window + 1)
+        if n_differences < _FEWEST_DIFFERENCES:
+            continue
+        signs = [(-1) ** place * comb(order, place) for place in range(order + 1)]
+        differences = sum(
+            sign * slope[..., place * (half_window + 1) :][..., :n_differences]
+            for place, sign in enumerate(signs)
+        )
+        size = np.ma.median(np.ma.masked_invalid(np.abs(differences)), axis=-1)
+        deviation = _TO_DEVIATION * size / sqrt(sum(sign**2 for sign in signs))
+        found = np.fmin(found, np.ma.filled(deviation, np.inf))
+    return np.where(np.isfinite(found), found, 0.0)[..., None]
+
+
+def _near(values: Floats, half_window: int, *, is_highest: bool) -> Floats:
+    """Highest or mean of the known values within half a window."""
+    size = 2 * half_window + 1
+    known = np.isfinite(values)
+    if is_highest:
+        return np.asarray(scipy.ndimage.maximum_filter1d(
+            np.where(known, values, 0.0), size, axis=-1, mode="constant"
+        ))  # fmt: skip
+    total, count = (
+        scipy.ndimage.uniform_filter1d(one, size, axis=-1, mode="constant")
+        for one in (np.where(known, values, 0.0), known.astype(np.float64))
+    )
+    return np.asarray(total / np.maximum(count, 1 / size))
+
+
+def adapt_window(
+    slope: Sequence[Floats],
+    deviation: Sequence[Floats],
+    blur: Floats,
+    *,
+    half_windows: Sequence[int],
+) -> tuple[Floats, Floats, Floats]:
+    r"""Slope by the widest window that no narrower one contradicts, and what it may still miss.
+
+    Parameters
+    ----------
+    slope, deviation : sequence of ndarray, shape (..., n_bins)
+        Slopes at the bin centres, the widest window first, and their standard deviation by the
+        residuals; NaN where not supported. [SI]
+    blur : ndarray, shape (..., n_bins)
+        That was taken off the slopes of the widest window. [SI]
+    half_windows : sequence of int
+        Bins on each side of the centre bin in each window. [1]
+
+    Returns
+    -------
+    change : ndarray, shape (..., n_bins)
+        What to add to the slope of the widest window. [SI]
+    noise : ndarray, shape (..., n_bins)
+        Standard deviation of the slope that was chosen. [SI]
+    missed : ndarray, shape (..., n_bins)
+        Standard uncertainty of what the chosen window still blurs. [SI]
+
+    Notes
+    -----
+    After a reversal the modulus falls from a high value, in rubber along a curve and in a rope or
+    a braid in steps as one contact after the other begins to slip.  `window_blur` takes off what
+    a smooth bend adds; at a step no window is right.  In each bin the windows are compared ([4]_):
+    the widest is used whose slope lies within two standard deviations of that of every narrower
+    one.  A deviation is no smaller than the roughness of the curve says, as the same
+    quantisation in every cycle leaves no trace in the residuals.
+
+    What is missed is the root mean square difference from the narrower windows over the window's
+    width, less their noise.  Of the narrowest it is the greatest difference from the next wider
+    one within its width, times :math:`\sqrt 2`: on top of a jump :math:`J` every window reads
+    the mean of both sides, off by :math:`J / 2`, while two windows differ by :math:`0.2\,J` to
+    :math:`0.35\,J` beside it.
+
+    Examples
+    --------
+    A modulus of 3 that falls to 1; the widest window would read 2.33 a bin and a half from there.
+
+    >>> wide = np.array([[3.0, 3.0, 2.9, 2.33, 1.67, 1.1, 1.0, 1.0]])
+    >>> narrow = np.array([[3.0, 3.0, 3.0, 2.8, 1.2, 1.0, 1.0, 1.0]])
+    >>> change, noise, missed = adapt_window(
+    ...     [wide, narrow], [0.01 + 0 * wide] * 2, 0 * wide, half_windows=[2, 1])
+    >>> print((wide + change)[0, 3].round(2), missed[0].round(2))
+    2.8 [0.   0.14 0.66 0.66 0.66 0.66 0.14 0.  ]
+    """
+    noises = [
+        np.fmax(one, _roughness(values, half))
+        for values, one, half in zip(slope, deviation, half_windows, strict=True)
+    ]
+    last = len(slope) - 1
+    if last == 0:
+        missed = _UNSEEN_OF_BLUR * _near(np.abs(blur), half_windows[0], is_highest=True)
+        return np.zeros_like(slope[0]), noises[0], missed
+    squares = {
+        (wide, narrow): (slope[wide] - slope[narrow]) ** 2 - noises[narrow] ** 2
+        for wide in range(last + 1)
+        for narrow in range(wide + 1, last + 1)
+    }
+    chosen = np.zeros(slope[0].shape, dtype=np.int64)
+    for wide in range(last, -1, -1):
+        is_sound = np.isfinite(slope[wide])
+        for narrow in range(wide + 1, last + 1):
+            # a square less the noise's
+            limit = (_CONTRADICTED**2 - 1) * noises[narrow] ** 2
+            is_sound &= ~(squares[wide, narrow] > limit)
+        chosen = np.where(is_sound, wide, chosen)
+    missed = np.zeros(chosen.shape)
+    for wide, half in enumerate(half_windows):
+        if wide < last:
+            of_window = np.maximum.reduce([
+                _near(squares[wide, narrow], half, is_highest=False)
+                for narrow in range(wide + 1, last + 1)
+            ])  # fmt: skip
+        else:
+            of_window = _UNSEEN**2 * _near(squares[last - 1, last], half, is_highest=True)
+        missed = np.where(chosen == wide, of_window, missed)
+    change = np.choose(chosen, slope) - slope[0]
+    return (
+        np.where(np.isfinite(change), change, 0.0),
+        np.choose(chosen, noises),
+        np.sqrt(np.maximum(missed, 0.0)),
+    )
