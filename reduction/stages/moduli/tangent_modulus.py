@@ -172,19 +172,18 @@ def _adapted(
     specimens: Sequence[_SpecimenCurves], *, halves: Sequence[int], minimum_count: int
 ) -> tuple[Floats, Floats, Floats]:
     """`adapt_window` by all cycles together: a narrow window holds few samples of one. [N]."""
-    slopes, deviations = [], []
+    slopes, deviations, blurs = [], [], []
     for half in halves:
         fits = [
-            fit_windows(one.pooled.in_windows(half), minimum_count=2 * minimum_count)
+            fit_windows(one.pooled.in_windows(half), minimum_count=minimum_count)
             for one in specimens
         ]
         slope = np.stack([fit.slope for fit in fits])
         blur, gain = window_blur(slope, half_window=half)
         slopes.append(slope - blur)
         deviations.append(gain * np.sqrt(np.stack([fit.slope_variance for fit in fits])))
-        if half == halves[0]:
-            widest = blur
-    return adapt_window(slopes, deviations, widest, half_windows=halves)
+        blurs.append(blur)
+    return adapt_window(slopes, deviations, blurs, half_windows=halves)
 
 
 def _reduce_specimens(

@@ -391,7 +391,7 @@ def _near(values: Floats, half_window: int, *, is_highest: bool) -> Floats:
 def adapt_window(
     slope: Sequence[Floats],
     deviation: Sequence[Floats],
-    blur: Floats,
+    blur: Sequence[Floats],
     *,
     half_windows: Sequence[int],
 ) -> tuple[Floats, Floats, Floats]:
@@ -402,8 +402,8 @@ def adapt_window(
     slope, deviation : sequence of ndarray, shape (..., n_bins)
         Slopes at the bin centres, the widest window first, and their standard deviation by the
         residuals; NaN where not supported. [SI]
-    blur : ndarray, shape (..., n_bins)
-        That was taken off the slopes of the widest window. [SI]
+    blur : sequence of ndarray, shape (..., n_bins)
+        That was taken off the slopes. [SI]
     half_windows : sequence of int
         Bins on each side of the centre bin in each window. [1]
 
@@ -438,7 +438,7 @@ def adapt_window(
     >>> wide = np.array([[3.0, 3.0, 2.9, 2.33, 1.67, 1.1, 1.0, 1.0]])
     >>> narrow = np.array([[3.0, 3.0, 3.0, 2.8, 1.2, 1.0, 1.0, 1.0]])
     >>> change, noise, missed = adapt_window(
-    ...     [wide, narrow], [0.01 + 0 * wide] * 2, 0 * wide, half_windows=[2, 1])
+    ...     [wide, narrow], [0.01 + 0 * wide] * 2, [0 * wide] * 2, half_windows=[2, 1])
     >>> print((wide + change)[0, 3].round(2), missed[0].round(2))
     2.8 [0.   0.14 0.66 0.66 0.66 0.66 0.14 0.  ]
     """
@@ -447,35 +447,52 @@ def adapt_window(
         for values, one, half in zip(slope, deviation, half_windows, strict=True)
     ]
     last = len(slope) - 1
-    if last == 0:
-        missed = _UNSEEN_OF_BLUR * _near(np.abs(blur), half_windows[0], is_highest=True)
-        return np.zeros_like(slope[0]), noises[0], missed
-    squares = {
-        (wide, narrow): (slope[wide] - slope[narrow]) ** 2 - noises[narrow] ** 2
-        for wide in range(last + 1)
-        for narrow in range(wide + 1, last + 1)
-    }
-    chosen = np.zeros(slope[0].shape, dtype=np.int64)
+    chosen, finest = (np.zeros(slope[0].shape, dtype=np.int64) for _ in range(2))
     for wide in range(last, -1, -1):
         is_sound = np.isfinite(slope[wide])
+        finest = np.where(is_sound & (finest == 0), wide, finest)
         for narrow in range(wide + 1, last + 1):
-            # a square less the noise's
-            limit = (_CONTRADICTED**2 - 1) * noises[narrow] ** 2
-            is_sound &= ~(squares[wide, narrow] > limit)
+            away = np.abs(slope[wide] - slope[narrow])
+            is_sound &= ~(away > _CONTRADICTED * noises[narrow])
         chosen = np.where(is_sound, wide, chosen)
-    missed = np.zeros(chosen.shape)
-    for wide, half in enumerate(half_windows):
-        if wide < last:
-            of_window = np.maximum.reduce([
-                _near(squares[wide, narrow], half, is_highest=False)
-                for narrow in range(wide + 1, last + 1)
-            ])  # fmt: skip
-        else:
-            of_window = _UNSEEN**2 * _near(squares[last - 1, last], half, is_highest=True)
-        missed = np.where(chosen == wide, of_window, missed)
-    change = np.choose(chosen, slope) - slope[0]
+    missed = (_UNSEEN_OF_BLUR * _near(np.abs(blur[0]), half_windows[0], is_highest=True)) ** 2
+    for wide, half in enumerate(half_windows[:-1]):
+        squares = {n: (slope[wide] - slope[n]) ** 2 for n in range(wide + 1, last + 1)}
+        of_wide = np.maximum.reduce([
+            _near(square - noises[narrow] ** 2, half, is_highest=False)
+            for narrow, square in squares.items()
+        ])  # fmt: skip
+        missed = np.where((chosen == wide) & (finest > wide), of_wide, missed)
+        for narrow, square in squares.items():
+            beside = 2 * half_windows[narrow]
+            of_narrow = _UNSEEN**2 * _near(square, beside, is_highest=True) + blur[narrow] ** 2
+            missed = np.where((chosen == narrow) & (finest == narrow), of_narrow, missed)
+    adapted = np.choose(chosen, slope)
+    change = adapted - slope[0]
     return (
         np.where(np.isfinite(change), change, 0.0),
         np.choose(chosen, noises),
-        np.sqrt(np.maximum(missed, 0.0)),
+        np.sqrt(np.maximum(missed, 0.0) + _missed_at_ends(adapted, half_windows[0]) ** 2),
     )
+
+
+def _missed_at_ends(slope: Floats, half_window: int) -> Floats:
+    """Half of what the bins next to a reversal rise above the line of those further inside.
+
+    A jump at the reversal itself, which reaches the first windows through the noise of strain, has
+    no bins on its other side by which it could be told from a modulus that rises.
+    """
+    missed = np.zeros_like(slope)
+    for curve in np.ndindex(slope.shape[:-1]):
+        known = np.flatnonzero(np.isfinite(slope[curve]))
+        if known.size <= 3 * half_window:
+            continue
+        for inwards in (known, known[::-1]):
+            near, inner, further = (
+                slope[curve][inwards[k * half_window : (k + 1) * half_window]] for k in range(3)
+            )
+            share = 1 - np.arange(half_window) / half_window
+            rise = share * np.abs(near - 2 * inner + further) / 2
+            at = (*curve, inwards[:half_window])
+            missed[at] = np.maximum(missed[at], rise)
+    return missed
