@@ -54,9 +54,24 @@ def with_size(size, larger):
     ]
 
 
+def of_test(marks, test):
+    kept = [row for row, one in enumerate(marks.test) if one == test]
+    rows = {
+        field.name: tuple(value[row] for row in kept) if isinstance(value, tuple) else value[kept]
+        for field in dataclasses.fields(marks)
+        if isinstance(value := getattr(marks, field.name), (tuple, np.ndarray))
+    }
+    return dataclasses.replace(marks, **rows)
+
+
 def reduced(campaign, name):
-    """The test, with models of its own marks alone where it has any."""
+    """The test, with models of its own marks alone where it has any, else of those of T-1."""
     loaded = load_campaign(RAW / campaign / "campaign.toml")
+    marks = {
+        specimen: of_test(rows, name if name in rows.test else "T-1")
+        for specimen, rows in loaded.marks.items()
+    }
+    loaded = dataclasses.replace(loaded, marks=marks)
     surveys = survey_log(loaded, name)
     for survey in surveys:
         if survey.error is not None:

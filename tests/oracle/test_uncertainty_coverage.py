@@ -51,8 +51,9 @@ def test_errors_are_of_the_size_that_is_stated(found, n_tests, name):
 def test_shared_errors_are_most_of_what_the_energy_may_be_off_by(found):
     shared = np.array([row[4] for row in found["hysteresis_energy"]])
     random = np.array([row[3] for row in found["hysteresis_energy"]])
-    # a lag of 5 ms over ramps of 0.1 1/s, by 246 N and the splices' share, and 0.5 % of gain
-    assert np.median(shared) == pytest.approx(0.27, rel=0.05)
+    # a lag of 5 ms over ramps of 0.1 1/s, by 246 N and the splices' share, and 0.5 % of gain; and
+    # what three marks leave open of the splices, a loop of which may be theirs
+    assert 0.27 < np.median(shared) < 3 * 0.27
     assert np.median(shared / random) > 5
 
 

@@ -76,7 +76,9 @@ def test_marks_without_a_tension_are_judged_by_laws_of_position():
     model = fit(tension=False)
     assert model.method == "mixed"
     assert model.coefficients["splice_compliance"] == 0
-    np.testing.assert_allclose(model.mark_strain_residual, 0, atol=2e-3)
+    # below its lowest mark a law of position is an extrapolation, and splices bend there
+    is_stretched = np.array(model.mark_hold) != "slack"
+    np.testing.assert_allclose(model.mark_strain_residual[is_stretched], 0, atol=2e-3)
 
 
 def test_tension_driven_finds_the_law():

@@ -358,18 +358,25 @@ def narrower_windows(grid: StrainGrid, *, spacing: float) -> list[int]:
 def _roughness(slope: Floats, half_window: int) -> Floats:
     """Standard deviation of window slopes by their differences, the least of three orders."""
     found = np.full(slope.shape[:-1], np.inf)
+    step = half_window + 1
     for order in (2, 3, 4):
-        n_differences = slope.shape[-1] - order * (half_window + 1)
+        n_differences = slope.shape[-1] - order * step
         if n_differences < _FEWEST_DIFFERENCES:
             continue
-        signs = [(-1) ** place * comb(order, place) for place in range(order + 1)]
-        differences = sum(
-            sign * slope[..., place * (half_window + 1) :][..., :n_differences]
-            for place, sign in enumerate(signs)
+        signs = np.array([(-1) ** place * comb(order, place) for place in range(order + 1)])
+        differences = np.sum(
+            [sign * slope[..., k * step :][..., :n_differences] for k, sign in enumerate(signs)],
+            axis=0,
         )
-        size = np.ma.median(np.ma.masked_invalid(np.abs(differences)), axis=-1)
-        deviation = _TO_DEVIATION * size / sqrt(sum(sign**2 for sign in signs))
-        found = np.fmin(found, np.ma.filled(deviation, np.inf))
+        # windows that overlap have errors in common
+        shifts = np.abs(np.subtract.outer(np.arange(order + 1), np.arange(order + 1)))
+        common = np.vectorize(_overlap)(shifts * step / (2 * half_window + 1))
+        # a curve without a known difference stays as it is
+        known = np.where(np.isfinite(differences), np.abs(differences), np.inf)
+        known.sort(axis=-1)
+        middle = np.maximum(np.isfinite(known).sum(axis=-1, keepdims=True) - 1, 0) // 2
+        size = np.take_along_axis(known, middle, axis=-1)[..., 0]
+        found = np.minimum(found, _TO_DEVIATION * size / sqrt(signs @ common @ signs))
     return np.where(np.isfinite(found), found, 0.0)[..., None]
 
 
@@ -433,19 +440,21 @@ def adapt_window(
 
     Examples
     --------
-    A modulus of 3 that falls to 1; the widest window would read 2.33 a bin and a half from there.
+    A modulus of 3 that falls to 1, of which the wide window reads 2.33 where the narrow one reads
+    2.8; within two bins of the narrow one's own bins half of the jump may be missed.
 
-    >>> wide = np.array([[3.0, 3.0, 2.9, 2.33, 1.67, 1.1, 1.0, 1.0]])
-    >>> narrow = np.array([[3.0, 3.0, 3.0, 2.8, 1.2, 1.0, 1.0, 1.0]])
+    >>> before, after = np.full(8, 3.0), np.ones(8)
+    >>> wide = np.concatenate([before, [2.9, 2.33, 1.67, 1.1], after])[None]
+    >>> narrow = np.concatenate([before, [3.0, 2.8, 1.2, 1.0], after])[None]
     >>> change, noise, missed = adapt_window(
     ...     [wide, narrow], [0.01 + 0 * wide] * 2, [0 * wide] * 2, half_windows=[2, 1])
-    >>> print((wide + change)[0, 3].round(2), missed[0].round(2))
-    2.8 [0.   0.14 0.66 0.66 0.66 0.66 0.14 0.  ]
+    >>> print((wide + change)[0, 9].round(2), missed[0, 5:11].round(2))
+    2.8 [0.   0.04 0.21 0.66 0.66 0.66]
     """
-    noises = [
-        np.fmax(one, _roughness(values, half))
-        for values, one, half in zip(slope, deviation, half_windows, strict=True)
-    ]
+    roughness = [_roughness(values, half) for values, half in zip(slope, half_windows, strict=True)]
+    noises = [np.fmax(*both) for both in zip(deviation, roughness, strict=True)]
+    # of the widest window the scatter of the cycles says what the residuals of all together do not
+    rough = [0 * slope[0] + roughness[0], *noises[1:]]
     last = len(slope) - 1
     chosen, finest = (np.zeros(slope[0].shape, dtype=np.int64) for _ in range(2))
     for wide in range(last, -1, -1):
@@ -471,7 +480,7 @@ def adapt_window(
     change = adapted - slope[0]
     return (
         np.where(np.isfinite(change), change, 0.0),
-        np.choose(chosen, noises),
+        np.choose(chosen, rough),
         np.sqrt(np.maximum(missed, 0.0) + _missed_at_ends(adapted, half_windows[0]) ** 2),
     )
 

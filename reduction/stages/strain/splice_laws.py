@@ -415,9 +415,7 @@ def _fit(readings: SpliceReadings, name: str, exponent: float, slip: float) -> F
         spread -= float(np.log(slack).sum())
     count, worth = int(judged.sum()), readings.tape_freedom
     # of an error of the tape that is itself not well known, a larger misfit says less
-    misfit_term = (
-        chi_square if np.isinf(worth) else (worth + count) * np.log1p(chi_square / worth)
-    )
+    misfit_term = chi_square if np.isinf(worth) else (worth + count) * np.log1p(chi_square / worth)
     return FittedLaw(
         name=name,
         values=np.concatenate([values, lengths]),

@@ -890,7 +890,9 @@ def _tension_uncertainty(readings: PooledMarks) -> Floats:
         return np.zeros(readings.tension.size)
     change = readings.tension_at_start - readings.tension
     is_known = ~readings.marks.is_slack & (np.nan_to_num(readings.tension) > 0) & ~np.isnan(change)
-    return np.where(is_known, np.abs(change), 0.0) / np.where(is_known, readings.tension, 1.0) / _ANY
+    return (
+        np.where(is_known, np.abs(change), 0.0) / np.where(is_known, readings.tension, 1.0) / _ANY
+    )
 
 
 def average_over_laws(readings: PooledMarks) -> SpliceAverage:
