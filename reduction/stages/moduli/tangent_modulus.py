@@ -303,11 +303,12 @@ def tangent_curves(
     *Bias.* A window of width :math:`W` blurs: a slope is high by :math:`E'' W^2 / 40`,
     0.4 % where E grows e-fold in a strain of 0.3 and W is 0.12. `window_blur` takes
     that off, the same from every cycle, by the second difference of the mean curve.
-    Where windows of half and a quarter of the width, over all cycles together, show another
-    slope, theirs is taken, and what the window may still miss is ``tangent_modulus_window_uncertainty``
-    (`adapt_window`). The modulus jumps at a reversal; the untrimmed curve
-    smears that jump over :math:`W`, the trimmed one sees only the trimmed branch and
-    ends a quarter window short of it, since a slope needs samples on both sides.
+    Where windows of half and a quarter of the width, over all cycles together, show
+    another slope, theirs is taken; what the window may still miss is
+    ``tangent_modulus_window_uncertainty`` (`adapt_window`). The modulus jumps at a
+    reversal; the untrimmed curve smears that jump over :math:`W`, the trimmed one sees
+    only the trimmed branch and ends a quarter window short of it, since a slope needs
+    samples on both sides.
 
     NaN: a sample missing in strain or tension is skipped; a bin without support is
     NaN in that cycle and left out of the mean, as its count says.
