@@ -267,8 +267,17 @@ def _model_lines(
         if test in shown:
             low, high = factor * model.position_low, factor * model.position_high
             marked = "-" if math.isnan(low) else f"{low:.3f} to {high:.3f}"
-            table.add_row(test, specimen, model.method, model.marks_from, marked)
+            table.add_row(test, specimen, _method(model), model.marks_from, marked)
     return table
+
+
+def _method(model: StrainModel) -> str:
+    """Method of strain; of an average the law with the greatest weight, and the second."""
+    for one in model.notes:
+        if one.code == "splice-laws":
+            laws = [str(one.numbers["law"]), str(one.numbers["second"])]
+            return f"{model.method}: {', '.join(filter(None, laws))}"
+    return model.method
 
 
 def _say_results(output: CommandOutput, results: dict[str, Any] | None) -> None:

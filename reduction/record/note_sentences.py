@@ -106,7 +106,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         ),
     ),
     "marks-scatter": (
-        "note",
+        "warning",
         lambda ratio, chi_square, freedom, chance, rows="rows": (
             f"the {rows} scatter {ratio:.1f} times as much as the tape explains (chi-square"
             f" {chi_square:.3g} of {freedom} degree{_plural(freedom)} of freedom, one in"

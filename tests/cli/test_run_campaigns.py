@@ -173,7 +173,7 @@ def test_a_check_lists_strain_models_where_there_are_some(process):
     cyclic = process("check", ROOT / "raw" / "tmt-synthetic" / "campaign.toml", "--test", "T-1")
     assert "strain method" in cyclic.stdout
     assert "rate [Hz]" in cyclic.stdout
-    assert "tension-driven" in cyclic.stdout
+    assert "mixed: tension-driven" in cyclic.stdout
 
 
 def test_static_test_is_reduced_and_its_odd_rows_are_flagged(static):

@@ -423,6 +423,11 @@ def adapt_window(
     missed : ndarray, shape (..., n_bins)
         Standard uncertainty of what the chosen window still blurs. [SI]
 
+    Raises
+    ------
+    DataError
+        If windows and slopes do not pair up.
+
     Notes
     -----
     After a reversal the modulus falls from a high value, in rubber along a curve and in a rope or
