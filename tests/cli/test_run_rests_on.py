@@ -150,11 +150,11 @@ def test_strain_methods_of_one_specimen_share_no_error_and_one_method_of_two_tes
     pair, command
 ):
     owners = [set(shared_of(pair, test, "strain_calibration")) for test in "AB"]
-    assert owners[0] == owners[1] == {"new, tension-driven"}
+    assert owners[0] == owners[1] == {"new, mixed"}
     by_length = ("[tests.B]\n", '[tests.B]\nstrain = { method = "gauge-length" }\n')
     edit(pair / "campaign.toml", *by_length)
     assert run(pair, command)["B"] == "reduced_with_notes"
-    assert set(shared_of(pair, "A", "strain_calibration")) == {"new, tension-driven"}
+    assert set(shared_of(pair, "A", "strain_calibration")) == {"new, mixed"}
     assert set(shared_of(pair, "B", "strain_calibration")) == {"new, gauge-length"}
     # a gauge length rests on no mark
     before = content(pair, "B")
