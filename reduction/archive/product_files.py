@@ -10,6 +10,9 @@ from reduction.record.errors import ArchiveError
 OF_CAMPAIGN = ("surfaces", "predictions", "comparisons", "outcomes", "change_in_length")
 """Archives of a whole campaign, by their file names; no test may be called so."""
 
+SUPERSEDED = "superseded"
+"""Folder, beside the archives of a campaign, of those that it no longer makes."""
+
 
 def archives_in(folder: Path) -> list[Path]:
     """All archives in a folder, by name; `OSError` where the system refuses it."""

@@ -18,7 +18,7 @@ from reduction import __version__
 from reduction.archive.campaign_products import outcomes_to_dataset
 from reduction.archive.csv_tables import write_tables
 from reduction.archive.open import Opener, read_once, reading
-from reduction.archive.product_files import OF_CAMPAIGN, archives_of_tests
+from reduction.archive.product_files import OF_CAMPAIGN, SUPERSEDED, archives_of_tests
 from reduction.archive.rope_properties import CHANGES_LENGTH, properties_to_dataset, step_of_archive
 from reduction.archive.write import keep_details, write_archive, write_text_atomically
 from reduction.batch.campaign_status import PartStatus, Progress, Silent, Status, TestStatus
@@ -311,6 +311,8 @@ class _CampaignResult:
     """What a run did: one status a test and a part, and what it wrote.
 
     ``parts`` are those that are no tests: ``experiments``, ``hoses`` and ``comparisons``.
+    ``superseded`` are archives of earlier runs that nothing in the campaign makes now, where they
+    were put; ``stray`` those that stay, since a log could not be read.
     """
 
     tests: tuple[TestStatus, ...]
@@ -318,6 +320,7 @@ class _CampaignResult:
     processed: Path
     report: Path | None
     stray: tuple[str, ...]
+    superseded: tuple[Path, ...] = ()
     tables: tuple[Path, ...] = ()
 
     @property
@@ -452,19 +455,20 @@ def _run(
         write_text_atomically(folder / "status.csv", _status_csv(rows))
     keep_details(folder, campaign.report)
     products = requested_products(campaign, folder, has_lengths=has_lengths)
+    gone = [path for path in archives_of_tests(folder) if path not in ours]
+    gone += [folder / f"{name}.nc" for name in OF_CAMPAIGN if name not in products]
+    # of a log that failed nobody knows which steps it has now
+    unknown = tuple(f"{survey.plan.id}." for survey in surveys if survey.error is not None)
+    stray = [path.name for path in gone if path.stem.startswith(unknown)]
+    superseded = _put_aside([path for path in gone if path.name not in stray], folder)
     if archives or products:
         tables = write_tables(archives, folder / "tables", opener=opener, **products)
         write_catalogue([*archives, *products.values()], folder / FILE_NAME, opener=opener)
-    stray = sorted(path.name for path in archives_of_tests(folder) if path not in ours)
-    stray += [
-        f"{name}.nc"
-        for name in OF_CAMPAIGN
-        if name not in products and (folder / f"{name}.nc").exists()
-    ]
     if archives or products or statuses:  # where all tests failed the page says that and why
         progress.stage("report", 0)
         report = write_report(
-            folder, reports / campaign.id, units=units, values_page=values_page, stray=stray,
+            folder, reports / campaign.id, units=units, values_page=values_page,
+            stray=stray,
             unreadable=partial(_keep_pages, [*ours, *products.values()]), opener=opener,
         )  # fmt: skip
     return _CampaignResult(
@@ -472,9 +476,21 @@ def _run(
         parts=parts,
         processed=folder,
         report=report,
+        superseded=tuple(superseded),
         stray=tuple(stray),
         tables=tuple(tables),
     )
+
+
+def _put_aside(products: Sequence[Path], folder: Path) -> list[Path]:
+    """Move products that the campaign no longer makes to where nothing answers from them."""
+    moved = []
+    for path in filter(Path.is_file, products):
+        target = folder / SUPERSEDED / path.name
+        target.parent.mkdir(exist_ok=True)
+        path.replace(target)
+        moved.append(target)
+    return moved
 
 
 def _keep_pages(ours: Sequence[Path], name: str, why: str) -> None:

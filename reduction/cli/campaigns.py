@@ -426,7 +426,13 @@ def run_campaign(
         if parts:
             output.show(_part_table(kind.removesuffix("s"), parts))
     for name in result.stray:
-        output.error(f"{result.processed / name}: belongs to no test of this campaign; left alone")
+        output.error(
+            f"{result.processed / name}: a step of a log that failed in this run; left where it is"
+        )
+    for path in result.superseded:
+        output.error(
+            f"{path}: nothing in this campaign makes it now; moved there, and no answer rests on it"
+        )
     output.say(f"products: {result.processed}")
     if result.tables:
         number, folder = len(result.tables) - 1, result.tables[0].parent
@@ -437,6 +443,7 @@ def run_campaign(
         **{kind: [asdict(one) for one in parts] for kind, parts in result.parts.items()},
         "results": results_found(campaign),
         "processed": str(result.processed),
+        "superseded": [str(path) for path in result.superseded],
         "tables": [str(path) for path in result.tables],
         "report": None if result.report is None else str(result.report),
         "client_report": None if client is None else str(client),

@@ -158,7 +158,7 @@ def test_a_report_is_made_again_from_the_archive_alone(command, run, folder, tmp
     assert page.read_bytes() == Path(run["report"]).read_bytes()
 
 
-def test_outcomes_stand_beside_tests_and_are_left_alone_without_their_table(command, tmp_path):
+def test_outcomes_stand_beside_tests_and_are_put_aside_without_their_table(command, tmp_path):
     folder = shutil.copytree(RAW, tmp_path / "raw")
     toml = folder / "campaign.toml"
     text = toml.read_text(encoding="utf-8")
@@ -174,7 +174,9 @@ def test_outcomes_stand_beside_tests_and_are_left_alone_without_their_table(comm
     assert 'id="outcomes"' in page and 'id="tested"' in page
     toml.write_text(text, encoding="utf-8")
     done = command(*arguments, cwd=tmp_path)
-    assert "outcomes.nc: belongs to no test of this campaign; left alone" in done.stderr
+    assert "superseded/outcomes.nc: nothing in this campaign makes it now" in done.stderr
+    assert (products / "superseded" / "outcomes.nc").is_file()
+    assert not (products / "outcomes.nc").exists()
     assert not (products / "tables" / "strength.csv").exists()
 
 

@@ -161,3 +161,20 @@ def test_strain_methods_of_one_specimen_share_no_error_and_one_method_of_two_tes
     edit(pair / "marks.csv", ",2.06,", ",2.060,")
     assert run(pair, command) == {"A": "reduced_with_notes", "B": "unchanged"}
     assert content(pair, "B") == before
+
+
+def test_a_test_that_is_parted_into_steps_is_put_aside_and_nothing_answers_from_it(pair, command):
+    steps = "".join(
+        f'[[tests.B.steps]]\nname = "{name}"\nfrom = "{low} s"\nto = "{high} s"\n'
+        for name, low, high in (("first", 0, 300), ("second", 300, 2000))
+    )
+    with (pair / "campaign.toml").open("a", encoding="utf-8") as stream:
+        stream.write(steps)
+    run(pair, command)
+    products = pair / "processed" / "pair"
+    assert (products / "superseded" / "B.nc").is_file()
+    found = command("lookup", products, "--line", "B new", "--quantity", "tangent_modulus",
+                    "--strain", "100 %", cwd=pair)  # fmt: skip
+    assert found.returncode != 0 and "superseded" not in found.stdout
+    page = (pair / "reports" / "pair" / "index.html").read_text(encoding="utf-8")
+    assert 'id="B"' not in page
