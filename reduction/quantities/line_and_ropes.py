@@ -316,7 +316,7 @@ OF_LINE: tuple[Quantity, ...] = (
         stated(
             "hold_logged_peak_tension",
             "N",
-            "greatest tension of the log, a mean of three readings, beside the end of the ramp",
+            "greatest reading of tension beside the end of the ramp",
             READING,
             tables=("relaxation",),
             page=("holds", "peak of the log"),

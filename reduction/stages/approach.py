@@ -16,12 +16,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reduction.record.measurement import Floats
+from reduction.record.measurement import Bools, Floats
 from reduction.record.samples import BLOCK, finite_extremes, last_sample, release_pages
 
 NEAR_SHARE = 0.02
 """Distance from a standstill, as a share of the stroke to it, within which settling is looked for.
 [1]"""
+
+OVERRUN_SHARE = 0.1
+"""Distance beyond a standstill, as a share of the stroke to it, from which a channel that has run
+over settles back. [1]"""
 
 SLOW_SHARE = 0.1
 """Rate at which an approach ends, as a share of its mean rate. [1]"""
@@ -122,10 +126,10 @@ def find_approach(
     -----
     Time of a relaxation counts from when the constraint is first obtained ([1]_).  The approach
     ends at the first sample from which the channel keeps within 2 % of the stroke of the
-    standstill and advances, over the next chord, at less than a tenth of the mean rate of the
-    approach.  The chord is the shortest over which noise cannot advance that far; a sharp end,
-    found early by up to a fifth of it, is where the lines before and after it meet.  A target
-    that is run over ends the approach where the channel turns.
+    standstill (10 % beyond it) and advances, over the next chord, at less than a tenth of the
+    mean rate of the approach.  The chord is the shortest over which noise cannot advance that
+    far; a sharp end, found early by up to a fifth of it, is where the lines before and after it
+    meet.  A target that is run over ends the approach where the channel turns.
 
     Examples
     --------
@@ -143,7 +147,11 @@ def find_approach(
     extent = max(high - level, level - low)
     if not extent > _RESOLVED * noise_range:
         return None
-    motion = last_motion(np.append(before, level), max(NEAR_SHARE * extent, noise_range))
+    motion = None
+    for share in (NEAR_SHARE, OVERRUN_SHARE):  # a small last motion settles back from the approach
+        if motion is None or motion.reach < OVERRUN_SHARE * extent:
+            band = max(share * extent, noise_range)
+            motion = last_motion(np.append(before, level), band) or motion
     if motion is None:
         return None
     start = begin + motion.first
@@ -153,7 +161,13 @@ def find_approach(
         return np.asarray(motion.sign * (values[part] - level))
 
     far = last_sample(lambda part: distance(part) >= motion.reach - near, start, first + 1, values)
-    away = last_sample(lambda part: np.abs(distance(part)) > near, start, first + 1, values)
+    over = max(OVERRUN_SHARE * motion.reach, near)
+
+    def is_away(part: slice) -> Bools:
+        left = distance(part)
+        return np.asarray((left > near) | (left < -over))
+
+    away = last_sample(is_away, start, first + 1, values)
     if far is None or away is None:
         return None
     (travelled,) = distance(slice(far, far + 1)) - distance(slice(away, away + 1))
@@ -178,28 +192,33 @@ def find_approach(
     slow = left - left[ahead] < SLOW_SHARE * rate * passed
     slow &= (passed > 0) & (seconds <= latest)
     end = int(known[np.argmax(slow)]) if slow.any() else first
-    return Approach(_at_corner(time, values, end, start, last, chord), motion.reach, rate)
+    return Approach(_at_corner(time, values, end, start, last, chord, rate), motion.reach, rate)
 
 
-def _at_corner(time: Floats, values: Floats, end: int, start: int, last: int, chord: float) -> int:
+def _at_corner(
+    time: Floats, values: Floats, end: int, start: int, last: int, chord: float, rate: float
+) -> int:
     """First sample after the lines of a chord before and after the end of an approach meet.
 
-    Noise makes the end early, by up to a fifth of a chord; beyond that it is left as it is.
+    Noise makes the end early, by so much of a chord as the rate that counts as slow is of the
+    last rate, or twice that; beyond it is left as it is.
     """
-    low, high = np.searchsorted(
-        time[: last + 1], [time[end] - 0.8 * chord, time[end] + 1.5 * chord]
-    )
+    low, high = np.searchsorted(time[: last + 1], [time[end] - 0.8 * chord, time[end] + 2 * chord])
     low, high = max(int(low), start), min(int(high), last + 1)
     seconds, place = time[low:high] - time[end], values[low:high]
     known = np.isfinite(place)
-    rising, standing = known & (seconds <= 0), known & (seconds >= 0.3 * chord)
-    if min(np.count_nonzero(rising), np.count_nonzero(standing)) < _FEWEST_ON_LINE:
+    rising = known & (seconds <= 0)
+    if np.count_nonzero(rising) < _FEWEST_ON_LINE:
         return end
     slope, level = np.polyfit(seconds[rising], place[rising], 1)
+    early = chord * min(2 * SLOW_SHARE * rate / max(abs(slope), SLOW_SHARE * rate), 1.0)
+    standing = known & (seconds >= early)
+    if np.count_nonzero(standing) < _FEWEST_ON_LINE:
+        return end
     later_slope, later_level = np.polyfit(seconds[standing], place[standing], 1)
     if slope == later_slope:
         return end
-    meets = float(np.clip((later_level - level) / (slope - later_slope), 0.0, 0.2 * chord))
+    meets = float(np.clip((later_level - level) / (slope - later_slope), 0.0, early))
     corner = int(np.searchsorted(time[: last + 1], time[end] + meets))
     return min(max(corner, end), last)
 

@@ -501,6 +501,7 @@ def _held_intervals(
     """
     clock, series, index = _evenly(time, values, minimum_duration)
     low, high = finite_extremes(series)
+    tolerance = max(tolerance, _FINEST_SHARE * (high - low))
     found: list[tuple[int, int]] = []
     work = [(0, series.size, max(tolerance, NEAR_SHARE * (high - low)))]
     while work:
@@ -516,6 +517,12 @@ def _held_intervals(
                 found.append((first, last))
             else:
                 work.append((first, last + 1, max(tolerance, width / 4)))
+        if width > tolerance:  # between them are holds that are one at this width, or none
+            starts, stops = [begin, *(begin + lasts + 1).tolist()], [*(begin + firsts), stop]
+            work += [
+                (start, int(end), max(tolerance, width / 4))
+                for start, end in zip(starts, stops, strict=True)
+            ]
     both = np.array(sorted(found), dtype=np.intp).reshape(-1, 2)
     return index[both[:, 0]], index[both[:, 1]]
 
@@ -539,6 +546,8 @@ def _evenly(
     at = np.minimum(np.searchsorted(time, clock), time.size - 1)
     return clock, np.interp(clock, time[known], values[known]), at
 
+
+_FINEST_SHARE = 1e-4  # of the range of the record: an exact encoder shows any drift
 
 _UNEVEN = 1.5  # mean step over median step
 
@@ -581,14 +590,18 @@ def _stands(
     settings: PhaseSettings,
     is_held: bool,
 ) -> tuple[Integers, Integers]:
-    """First and last sample of every standstill, from the end of its approach."""
+    """First and last sample of every standstill; of a held record from the end of its approach.
+
+    Between cycles a standstill keeps the edges that its noise gives it: what is slow and near
+    before it is part of the cycle.
+    """
     duration = settings.minimum_duration
-    found = (
-        _held_intervals(time, values, tolerance=tolerance, noise=noise, minimum_duration=duration)
-        if is_held
-        else _still_intervals(time, values, tolerance=tolerance, minimum_duration=duration)
+    if not is_held:
+        return _still_intervals(time, values, tolerance=tolerance, minimum_duration=duration)
+    first, last = _held_intervals(
+        time, values, tolerance=tolerance, noise=noise, minimum_duration=duration
     )
-    return _from_approaches(time, values, *found, noise=noise)
+    return _from_approaches(time, values, first, last, noise=noise)
 
 
 _SLACK_SHARE = 0.02

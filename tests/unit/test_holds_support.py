@@ -141,7 +141,7 @@ def test_the_initial_tension_is_that_of_the_end_of_the_ramp(relaxation_time):
     series = 300 + 100 * np.exp(-TIME / relaxation_time)
     ends = _hold_ends(hold(series, noise=0.3))
     assert abs(ends.initial - 400) < 3 * ends.initial_uncertainty
-    assert ends.initial_uncertainty < 1
+    assert ends.initial_uncertainty < 2
 
 
 def test_the_end_of_a_slow_ramp_is_known_to_where_it_slowed_down():
@@ -153,9 +153,13 @@ def test_the_end_of_a_slow_ramp_is_known_to_where_it_slowed_down():
 
 
 def test_a_log_that_peaks_above_the_found_start_is_refused():
-    assert reasons(replace(hold(), logged_peak=402.0)) == []
-    (reason,) = reasons(replace(hold(), logged_peak=430.0))
-    assert reason.startswith("the log peaks at 430 N")
+    # beside the end of the ramp a machine may ring: that far the tension is not known
+    rung = replace(hold(), logged_peak=430.0)
+    assert reasons(rung) == []
+    assert _hold_ends(rung).initial_uncertainty == pytest.approx(29 / np.sqrt(3), rel=0.05)
+    for peaks in ({"logged_peak": 450.0}, {"earlier_peak": 450.0}):
+        (reason,) = reasons(replace(hold(), **peaks))
+        assert reason.startswith("the log peaks at 450 N")
 
 
 def test_a_hold_without_samples_is_refused():

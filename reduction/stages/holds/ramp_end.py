@@ -26,6 +26,8 @@ _GROWTH = 1.4
 
 _AGREEING = 2.0  # standard uncertainties
 
+_LARGEST_SPREAD = 3.0  # of so many fewer samples in noise; more is a line across a ringing
+
 _STEPS_BACK = 3  # a third of the samples has an eighth of the bias of a parabola
 
 _STEPS_BEFORE = 5
@@ -107,7 +109,9 @@ class LevelAtEnd:
     n_samples: int
 
 
-def level_at_end(since: Floats, values: Floats, *, noise: float) -> LevelAtEnd:
+def level_at_end(
+    since: Floats, values: Floats, *, noise: float, shortest: float = 0.0
+) -> LevelAtEnd:
     """A series at time zero, of the longest line through its first samples that it follows.
 
     Parameters
@@ -118,6 +122,8 @@ def level_at_end(since: Floats, values: Floats, *, noise: float) -> LevelAtEnd:
         Series, such as tension. [any unit]
     noise : float
         Standard deviation of one sample. [unit of the series]
+    shortest : float, optional
+        Time over which a machine may ring: the shortest line is as long. [s]
 
     Returns
     -------
@@ -131,11 +137,12 @@ def level_at_end(since: Floats, values: Floats, *, noise: float) -> LevelAtEnd:
 
     Notes
     -----
-    Method of [1]_: lines through 3, 4, 6, 8, ... samples, each half as long again, until the
+    Method of [1]_: lines through 3, 5, 7, 10, ... samples, each 1.4 times as long, until the
     value at zero of one differs from that of any before by more than twice their standard
     uncertainties together.  That of a third as many samples as the last before it is taken, and
     a third of what the two differ by, more than its bias where the series bends evenly, is
-    carried.
+    carried.  A machine that rings scatters its first samples more than their noise: the scatter
+    about a line counts where it is greater.
 
     Examples
     --------
@@ -148,20 +155,24 @@ def level_at_end(since: Floats, values: Floats, *, noise: float) -> LevelAtEnd:
         return LevelAtEnd(float(np.mean(values[:n_samples])), noise, 0.0, n_samples)
     origin = float(values[0])
     x, y = since[:n_samples], values[:n_samples] - origin
-    sums = [np.cumsum(one) for one in (x, y, x * x, x * y)]
+    sums = [np.cumsum(one) for one in (x, y, x * x, x * y, y * y)]
     found: list[LevelAtEnd] = []
-    count = FEWEST_ON_LINE
+    count = min(max(FEWEST_ON_LINE, int(np.searchsorted(x, shortest))), n_samples)
     while True:
-        sx, sy, sxx, sxy = (float(one[count - 1]) for one in sums)
+        sx, sy, sxx, sxy, syy = (float(one[count - 1]) for one in sums)
         power = sxx - sx * sx / count
         slope = (sxy - sx * sy / count) / power
         value = (sy - slope * sx) / count
-        spread = noise * float(np.sqrt(1 / count + (sx / count) ** 2 / power))
+        left = max(syy - sy * sy / count - slope * slope * power, 0.0) / (count - 2)
+        scatter = max(noise, float(np.sqrt(left)))
+        spread = scatter * float(np.sqrt(1 / count + (sx / count) ** 2 / power))
         if any(
             abs(value - one.value) > _AGREEING * (spread + one.standard_uncertainty)
             for one in found
         ):
-            chosen = found[max(len(found) - 1 - _STEPS_BACK, 0)]
+            largest = _LARGEST_SPREAD * found[-1].standard_uncertainty
+            back = found[-1 - _STEPS_BACK :] if len(found) > _STEPS_BACK else found
+            chosen = next(one for one in back if one.standard_uncertainty <= largest)
             break
         chosen = LevelAtEnd(value, spread, slope, count)
         found.append(chosen)

@@ -47,7 +47,7 @@ from reduction.record.samples import (
     shifted,
 )
 from reduction.record.settings import HoldSettings
-from reduction.stages.approach import last_motion
+from reduction.stages.approach import find_approach, last_motion
 from reduction.stages.cycles.loops import reading_noise
 from reduction.stages.holds.prony_series import PronyFit, fit_prony, prony_tension
 from reduction.stages.holds.ramp_end import (
@@ -71,6 +71,11 @@ class _Ramp:
     duration: float
     stiffness: float
     end_uncertainty: float = 0.0
+
+    @property
+    def length(self) -> float:
+        """From its first sample to its end. [s]."""
+        return self.end_time - self.start_time
 
 
 def _find_ramp(
@@ -112,6 +117,10 @@ def _find_ramp(
     end = float(seconds[-1])
     adds = load if load[-1] > load[0] else place
     lowest, rise = float(adds[0]), float(adds[-1] - adds[0])
+    if adds is load:
+        # a machine that rings as it stops may read far below what the ramp has added
+        highest = float(np.max(load[-1 - _SAMPLES_BESIDE :])) - lowest
+        rise = highest if highest - rise > _RINGS * highest else rise
     before = square = 0.0
     for part in sample_blocks(seconds.size, seconds, adds, overlap=1):
         added, left = (adds[part] - lowest) / rise, end - seconds[part]
@@ -131,6 +140,9 @@ def _find_ramp(
         stiffness=_upper_slope(place, load),
         end_uncertainty=end_uncertainty,
     )
+
+
+_RINGS = 0.02  # of the tension that a ramp adds
 
 
 def _begins_inside(position: ArrayLike, *, band: float) -> bool:
@@ -559,16 +571,18 @@ class Hold:
     time, position, tension, strain : ndarray, shape (n_samples,)
         Samples of the hold. [s], [m], [N], [1]
     start_time : float
-        First time of the standstill. [s]
+        End of the approach to it. [s]
     ramp : Ramp or None
         None where the record does not show it.
     position_tolerance : float
         Range of position that was allowed inside the standstill. [m]
     slack_tension : float
         Tension at or below which the specimen is slack. [N]
-    logged_peak : float
-        Greatest mean of three readings of tension from the centre of the ramp to as long after
-        its end; NaN where the ramp does not add tension. [N]
+    logged_peak, earlier_peak : float
+        Greatest reading of tension beside the end of the ramp, and in its last half before
+        that; NaN where the ramp does not add tension. [N]
+    n_logged : int
+        How many samples the log has of it, those that are left out included. [1]
     refusals, notes : list of Note
         Filled as the hold is reduced; ``made``, how, too.
     """
@@ -582,6 +596,8 @@ class Hold:
     position_tolerance: float
     slack_tension: float = 0.0
     logged_peak: float = float("nan")
+    earlier_peak: float = float("nan")
+    n_logged: int = 0
     refusals: list[Note] = field(default_factory=list)
     notes: list[Note] = field(default_factory=list)
     made: list[str] = field(default_factory=list)
@@ -637,7 +653,9 @@ def _hold_ends(hold: Hold) -> _Ends:
     -----
     The first is that of a line through so many samples as follow one (`level_at_end`); when the
     ramp ended is known to a step of the log or to the noise of the position, at the rate of
-    the tension.  The last is the mean of 5 % of the samples, at least three.
+    the tension.  A log that peaks higher beside it may mean the tension to be as high.  The line
+    is no shorter than a twentieth of the ramp: what relaxes faster has done so within it, and a
+    machine rings.  The last is the mean of 5 % of the samples, at least three.
 
     Examples
     --------
@@ -652,7 +670,10 @@ def _hold_ends(hold: Hold) -> _Ends:
     n_final = max(3, int(FINAL_SHARE * hold.time.size))
     final, u_final = end_mean(hold.tension, n_samples=n_final, at_end=True)
     first = level_at_end(
-        shifted(hold.time, hold.ramp_end_time), hold.tension, noise=_noise_of(hold.tension)
+        shifted(hold.time, hold.ramp_end_time),
+        hold.tension,
+        noise=_noise_of(hold.tension),
+        shortest=0.0 if hold.ramp is None else _BESIDE * hold.ramp.length,
     )
     u_initial = first.standard_uncertainty
     if hold.ramp is not None:
@@ -662,6 +683,10 @@ def _hold_ends(hold: Hold) -> _Ends:
             u_initial = float(
                 np.hypot(u_initial, hold.ramp.stiffness * reading_noise(hold.position))
             )
+    above = hold.logged_peak - SIGNIFICANT * _noise_of(hold.tension) - first.value
+    # it has not settled at once: the tension is somewhere between the two
+    if SIGNIFICANT * u_initial < above < LARGEST_DISAGREEMENT * first.value:
+        u_initial = float(np.hypot(u_initial, above / np.sqrt(3)))
     drop = float(_relaxation_drop(first.value, final))
     uncertainty = float(np.hypot(u_final, (1 - drop) * u_initial) / first.value)
     known = uncertainty if drop == drop else np.nan
@@ -783,13 +808,24 @@ def _motion_reason(hold: Hold, ends: _Ends) -> Note | None:
 
 
 def _start_reason(hold: Hold, ends: _Ends) -> Note | None:
-    """Name a peak of the log that the tension found at the end of the ramp does not reach."""
+    """Name a peak of the log, before the end of the ramp, that the tension there does not reach.
+
+    A peak beside the end is within what is known of the tension there, unless that is too little.
+    """
     noise = _noise_of(hold.tension)
     spread = np.hypot(ends.initial_uncertainty, START_KNOWN_TO * ends.initial)
-    if not hold.logged_peak - ends.initial > SIGNIFICANT * np.hypot(spread, noise):
+    limits = {
+        hold.logged_peak: (1 + LARGEST_DISAGREEMENT) * ends.initial,
+        hold.earlier_peak: ends.initial + SIGNIFICANT * float(np.hypot(spread, noise)),
+    }
+    above = [peak for peak, limit in limits.items() if peak > limit]
+    if not above:
         return None
-    return note("hold-start-contradicted", peak=hold.logged_peak, initial=ends.initial)
+    return note("hold-start-contradicted", peak=max(above), initial=ends.initial)
 
+
+LARGEST_DISAGREEMENT = 0.1
+"""Share by which a log may peak above the tension that its hold leads back to. [1]"""
 
 START_KNOWN_TO = 0.005
 """Standard uncertainty of a tension at the end of a ramp beyond its noise, as a share: the ramp
@@ -913,42 +949,64 @@ def select_hold(
     """
     first, last = int(standstills.first[index]), int(standstills.last[index])
     begin = int(standstills.first[index - 1]) if index else 0
+    # under load control the machine moves the tension, and the length answers
+    moved, answer, band = position, tension, standstills.position_tolerance
+    if standstills.tension_tolerance is not None:
+        moved, answer, band = tension, position, standstills.tension_tolerance
+    else:  # the edge of a standstill is where noise hides the rest of the approach
+        after = int(standstills.last[index - 1]) + 1 if index else 0
+        approach = find_approach(
+            time, position, begin=after, first=first, last=last, noise_range=band
+        )
+        first = first if approach is None else approach.end
     inside = slice(first, last + 1)
     held = [one[inside] for one in (time, position, tension, strain)]
     seconds, place, load, stretch = select_samples(
         _is_finite_and_later(*held[:3]).__getitem__, *held
     )
-    # under load control the machine moves the tension, and the length answers
-    moved, answer, band = position, tension, standstills.position_tolerance
-    if standstills.tension_tolerance is not None:
-        moved, answer, band = tension, position, standstills.tension_tolerance
     ramp = _ramp_before(*(one[begin : first + 1] for one in (time, moved, answer)), band=band)
-    peak = np.nan if ramp is None else _logged_peak(time, tension, ramp, first, last)
+    earlier, peak = (
+        (np.nan, np.nan) if ramp is None else _logged_peaks(time, tension, ramp, first, last)
+    )
     return Hold(
         time=seconds,
         position=place,
         tension=load,
         strain=stretch,
-        start_time=float(standstills.start_time[index]),
+        start_time=float(time[first]),
         ramp=ramp,
         position_tolerance=standstills.position_tolerance,
         slack_tension=standstills.slack_tension,
         logged_peak=peak,
+        earlier_peak=earlier,
+        n_logged=last + 1 - first,
     )
 
 
-def _logged_peak(time: Floats, tension: Floats, ramp: _Ramp, first: int, last: int) -> float:
-    """Greatest mean of three readings beside the end of a ramp; NaN where it adds no tension."""
-    half = ramp.end_time - ramp.centre_time
-    low, centre, high = np.searchsorted(
-        time[: last + 1], [ramp.start_time, ramp.centre_time, ramp.end_time + half]
-    )
-    load = tension[centre : max(high, first + 1) + 1]
-    load = load[np.isfinite(load)]
-    if load.size < 3 or not load[-1] > tension[low]:
-        return float("nan")
-    return float(np.convolve(load, np.full(3, 1 / 3), mode="valid").max())
+def _logged_peaks(
+    time: Floats, tension: Floats, ramp: _Ramp, first: int, last: int
+) -> tuple[float, float]:
+    """Greatest reading of tension before the end of a ramp, and beside it.
 
+    Beside it is within a twentieth of the ramp and five samples; NaN where it adds no tension.
+    """
+    beside = _BESIDE * ramp.length
+    clock = time[: last + 1]
+    begin, centre, low, high = np.searchsorted(
+        clock,
+        [ramp.start_time, ramp.centre_time, ramp.end_time - beside, ramp.end_time + beside],
+    )
+    low = max(min(int(low), first - _SAMPLES_BESIDE), int(begin))
+    high = min(max(int(high), first + _SAMPLES_BESIDE), last) + 1
+    near, before = (
+        one[np.isfinite(one)] for one in (tension[low:high], tension[int(centre) : low])
+    )
+    if not near.size or not near[-1] > tension[begin]:
+        return float("nan"), float("nan")
+    return float(np.max(before)) if before.size else float("nan"), float(np.max(near))
+
+
+_BESIDE, _SAMPLES_BESIDE = 0.05, 5
 
 _EMPTY = np.empty(0)
 
@@ -975,7 +1033,7 @@ def _rate(hold: Hold, ends: _Ends) -> _Rate | None:
     return _Rate(-slope.value, slope.standard_uncertainty, slope.elapsed_low, slope.elapsed_high)
 
 
-def _prony(hold: Hold, ends: _Ends, settings: HoldSettings) -> PronyFit | None:
+def _prony(hold: Hold, ends: _Ends, settings: HoldSettings, *, known_to: float) -> PronyFit | None:
     """Prony series, or None with a refusal."""
     if ends.drop < SIGNIFICANT * ends.drop_uncertainty:
         hold.refusals.append(
@@ -992,6 +1050,7 @@ def _prony(hold: Hold, ends: _Ends, settings: HoldSettings) -> PronyFit | None:
             ramp_duration=hold.ramp_duration,
             maximum_terms=settings.maximum_terms,
             weights=blocks.weight,
+            known_to=known_to,
         )
     except FitError as error:
         hold.refusals.append(note("no-prony-series", reason=error.problem, found=error.found))
@@ -1041,9 +1100,7 @@ def _creep(hold: Hold) -> _Rate | None:
         return None
 
 
-def _describe(
-    hold: Hold, rate: _Rate | None, *, n_samples: int, follows_hold: bool, on_tension: bool
-) -> None:
+def _describe(hold: Hold, rate: _Rate | None, *, follows_hold: bool, on_tension: bool) -> None:
     """Say how the ramp was treated and what was left out."""
     if hold.ramp is not None:
         added = "length" if on_tension else "tension"
@@ -1058,9 +1115,11 @@ def _describe(
             f"rate per decade from {rate.elapsed_low:.3g} to {rate.elapsed_high:.3g} s after "
             "the centre of the ramp"
         )
-    if hold.time.size < n_samples:
-        left_out = n_samples - hold.time.size
-        hold.notes.append(note("hold-samples-left-out", n_left_out=left_out, n_samples=n_samples))
+    left_out = hold.n_logged - hold.time.size
+    if left_out > 0:
+        hold.notes.append(
+            note("hold-samples-left-out", n_left_out=left_out, n_samples=hold.n_logged)
+        )
     if follows_hold:
         hold.made.append("what an earlier hold has left to relax goes on under this one")
 
@@ -1092,7 +1151,6 @@ def _result(
     name: str,
     kind: str,
     settings: HoldSettings,
-    n_samples: int,
     follows_hold: bool,
     on_tension: bool,
 ) -> HoldResult:
@@ -1130,11 +1188,11 @@ def _result(
                 ends = _with_motion(ends, _hold_ends(kept), unknown)
             drop = _Rate(ends.drop, ends.drop_uncertainty, np.nan, np.nan)
             rate = _rate(kept, ends)
-            prony = _prony(kept, ends, settings)
+            prony = _prony(kept, ends, settings, known_to=unknown)
             if prony is not None:
                 modelled = _at_ramp_end(kept, prony)
                 prony = _less_known(prony, unknown)
-    _describe(hold, rate, n_samples=n_samples, follows_hold=follows_hold, on_tension=on_tension)
+    _describe(hold, rate, follows_hold=follows_hold, on_tension=on_tension)
     shown = rate or _Rate(np.nan, np.nan, np.nan, np.nan)
     return HoldResult(
         specimen=name,
@@ -1259,7 +1317,6 @@ def reduce_holds(
     results = []
     for index in np.flatnonzero(~standstills.is_rest):
         earlier = bool(index) and not standstills.is_rest[index - 1]
-        n_samples = int(standstills.last[index] - standstills.first[index]) + 1
         for name, load, stretch in zip(specimens, loads, stretches, strict=True):
             hold = select_hold(seconds, place, load, stretch, standstills, int(index))
             results.append(
@@ -1268,7 +1325,6 @@ def reduce_holds(
                     name=name,
                     kind=kind,
                     settings=settings,
-                    n_samples=n_samples,
                     follows_hold=earlier,
                     on_tension=standstills.tension_tolerance is not None,
                 )
