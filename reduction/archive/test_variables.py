@@ -275,6 +275,14 @@ _PLAIN = (
     "long_time_tension_standard_uncertainty",
 )
 
+_OF_RAMP = (
+    "ramp_centre_time",
+    "ramp_end_time",
+    "ramp_duration",
+    "logged_peak_tension",
+    "ramp_end_tension",
+)
+
 _PRONY = (
     "prony_tension",
     "prony_tension_standard_uncertainty",
@@ -311,7 +319,8 @@ def hold_values(holds: Sequence[HoldResult]) -> Values:
     }
     for name in _PLAIN:
         values[name] = numbers([getattr(one, name) for one in holds])
-    values["hold_ramp_centre_time"] = numbers([one.ramp_centre_time for one in holds])
+    for name in _OF_RAMP:
+        values[f"hold_{name}"] = numbers([getattr(one, name) for one in holds])
     for kind in ("relaxation", "creep"):
         # share of tension and gain of strain are two quantities, so two names
         chosen = [one.kind == kind for one in holds]

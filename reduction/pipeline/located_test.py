@@ -65,11 +65,13 @@ def locate(record: Record, *, kind: str, settings: ReductionSettings) -> Located
         record.crosshead_position, record.crosshead_position_quality_flag
     )
     if kind == "creep" or (settings.cycles.control == "load" and kind != "relaxation"):
-        record, standstills = _held_on_tension(record, position, settings)
+        record, standstills = _held_on_tension(record, position, settings, is_held=kind in HELD)
         tension = _without_flagged_samples(record.tension, record.quality_flag)
     else:
         tension = _without_flagged_samples(record.tension, record.quality_flag)
-        standstills = find_standstills(record.time, position, tension, settings=settings.phases)
+        standstills = find_standstills(
+            record.time, position, tension, settings=settings.phases, is_held=kind in HELD
+        )
     if kind not in CYCLIC:
         return Located(record, position, tension, standstills, None)
     cycles = find_cycles(
@@ -84,7 +86,7 @@ def locate(record: Record, *, kind: str, settings: ReductionSettings) -> Located
 
 
 def _held_on_tension(
-    record: Record, position: Floats, settings: ReductionSettings
+    record: Record, position: Floats, settings: ReductionSettings, *, is_held: bool
 ) -> tuple[Record, Standstills]:
     """Holds at constant tension, in which a load that repeats one value is no fault."""
     standstills = find_tension_stands(
@@ -92,6 +94,7 @@ def _held_on_tension(
         position,
         _without_flagged_samples(record.tension, record.quality_flag, but=_REPEATS),
         settings=settings.phases,
+        is_held=is_held,
     )
     flags, freed = copied(record.quality_flag), 0
     for first, last, is_rest in zip(

@@ -462,6 +462,22 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f" {motion:.2g} m in the hold{f', worth {worth:.3g} N' if worth == worth else ''}"
         ),
     ),
+    "hold-settles": (
+        "warning",
+        "the crosshead moves on by {motion:.2g} m after the ramp, worth {worth:.3g} N ({share:.1%}"
+        " of what is lost): drop, rate per decade and Prony series are those of the length at the"
+        " end of the ramp, and carry half of it",
+    ),
+    "hold-start-contradicted": (
+        "refusal",
+        "refused: drop, rate per decade, Prony series: the log peaks at {peak:.4g} N beside the"
+        " end of the ramp, where {initial:.4g} N are found: when the hold begins is not known",
+    ),
+    "prony-misses-ramp-end": (
+        "refusal",
+        "refused: Prony series: it gives {modelled:.4g} N at the end of the ramp, where the log"
+        " has {initial:.4g} N +- {spread:.2g} N (one standard uncertainty)",
+    ),
     "hold-tension-steps": (
         "refusal",
         "refused: drop, rate per decade, Prony series: tension steps by {step:.3g} N at"

@@ -31,12 +31,14 @@ from reduction.record.measurement import Bools, Floats, Integers, read_only_arra
 from reduction.record.samples import (
     BLOCK,
     empty_like,
+    finite_extremes,
     mean_of_rows,
     over_intervals,
     sample_blocks,
     take_samples,
 )
 from reduction.record.settings import PhaseSettings
+from reduction.stages.approach import NEAR_SHARE, SLOW_SHARE, find_approach
 
 _STRETCHES, _STRETCH_SAMPLES = 64, 1024
 
@@ -451,6 +453,157 @@ def _still_intervals(
     return first[long_enough], last[long_enough]
 
 
+def _from_approaches(
+    time: Floats, values: Floats, first: Integers, last: Integers, *, noise: float
+) -> tuple[Integers, Integers]:
+    """Standstills from the end of the approach to each.
+
+    Examples
+    --------
+    A pull of 10 s to 1 m, of which half a centimetre is left to settle.
+
+    >>> time = np.arange(0.0, 60.0)
+    >>> values = np.where(time < 10, 0.0995 * time, 1 - 0.005 * np.exp(-(time - 10) / 3))
+    >>> print(_from_approaches(time, values, np.array([24]), np.array([59]), noise=1e-5))
+    (array([10]), array([59]))
+    """
+    starts = first.copy()
+    for index, (one, end) in enumerate(zip(first.tolist(), last.tolist(), strict=True)):
+        begin = int(last[index - 1]) + 1 if index else 0
+        approach = find_approach(time, values, begin=begin, first=one, last=end, noise_range=noise)
+        if approach is not None:
+            starts[index] = approach.end
+    return starts, last
+
+
+def _held_intervals(
+    time: Floats, values: Floats, *, tolerance: float, noise: float, minimum_duration: float
+) -> tuple[Integers, Integers]:
+    """First and last sample of every hold of a record that is made of ramps and holds.
+
+    Notes
+    -----
+    A channel that is held may settle, creep and drift by more than its noise.  Intervals are
+    looked for with a tolerance of 2 % of the range of the record, and one is a hold where it
+    keeps within 2 % of the stroke of its own approach and, once it is slow, stays slow
+    (`_stays_slow`); what is none is looked through with a quarter of the tolerance, down to that
+    of the noise.
+
+    Examples
+    --------
+    A pull to 1 m, which then drifts by 6 mm.
+
+    >>> time = np.arange(0.0, 200.0)
+    >>> values = np.interp(time, [0, 20, 30, 200], [0, 0, 1, 1.006])
+    >>> found = _held_intervals(time, values, tolerance=1e-5, noise=1e-5, minimum_duration=3.0)
+    >>> print(found)
+    (array([ 0, 30]), array([ 20, 199]))
+    """
+    clock, series, index = _evenly(time, values, minimum_duration)
+    low, high = finite_extremes(series)
+    tolerance = max(tolerance, _FINEST_SHARE * (high - low))
+    found: list[tuple[int, int]] = []
+    work = [(0, series.size, max(tolerance, NEAR_SHARE * (high - low)))]
+    while work:
+        begin, stop, width = work.pop()
+        if stop - begin < FEWEST_SAMPLES:
+            continue
+        firsts, lasts = _still_intervals(
+            clock[begin:stop], series[begin:stop],
+            tolerance=width, minimum_duration=minimum_duration,
+        )  # fmt: skip
+        for first, last in zip((begin + firsts).tolist(), (begin + lasts).tolist(), strict=True):
+            if width <= tolerance or _stays_slow(clock, series, begin, first, last, noise=noise):
+                found.append((first, last))
+            else:
+                work.append((first, last + 1, max(tolerance, width / 4)))
+        if width > tolerance:  # between them are holds that are one at this width, or none
+            starts, stops = [begin, *(begin + lasts + 1).tolist()], [*(begin + firsts), stop]
+            work += [
+                (start, int(end), max(tolerance, width / 4))
+                for start, end in zip(starts, stops, strict=True)
+            ]
+    both = np.array(sorted(found), dtype=np.intp).reshape(-1, 2)
+    return index[both[:, 0]], index[both[:, 1]]
+
+
+def _evenly(
+    time: Floats, values: Floats, minimum_duration: float
+) -> tuple[Floats, Floats, Integers]:
+    """A series at even steps, with the sample of each; as it is where its steps are nearly even.
+
+    A log that is dense in its ramp and sparse in its hold has few samples in the time that the
+    steps of its ramp would fill.
+    """
+    step = median_step(time)
+    duration = float(time[-1] - time[0])
+    if duration <= _UNEVEN * step * time.size:
+        return time, values, np.arange(time.size)
+    known = np.flatnonzero(np.isfinite(values))
+    advances = np.diff(time[known], prepend=-np.inf) > 0
+    known = known[advances]
+    clock = np.arange(time[0], time[-1], max(step, minimum_duration / _STEPS_OF_SHORTEST))
+    at = np.minimum(np.searchsorted(time, clock), time.size - 1)
+    return clock, np.interp(clock, time[known], values[known]), at
+
+
+_FINEST_SHARE = 1e-4  # of the range of the record: an exact encoder shows any drift
+
+_UNEVEN = 1.5  # mean step over median step
+
+_STEPS_OF_SHORTEST = 8
+
+
+def _stays_slow(
+    time: Floats, values: Floats, begin: int, first: int, last: int, *, noise: float
+) -> bool:
+    """Whether an interval keeps near the end of its approach and never moves fast once slow."""
+    approach = find_approach(time, values, begin=begin, first=first, last=last, noise_range=noise)
+    if approach is None:
+        return False
+    held = values[approach.end : last + 1]
+    low, high = finite_extremes(held)
+    if not high - low <= NEAR_SHARE * approach.stroke + noise:
+        return False
+    step = median_step(time)
+    length = max(ceil(noise / (2 * SLOW_SHARE * approach.rate * step)), 1)
+    least, greatest = _block_extremes(held, length)
+    if least.size < 2:
+        return True
+    spread = np.maximum(greatest[1:], greatest[:-1]) - np.minimum(least[1:], least[:-1])
+    is_slow = spread <= 2 * SLOW_SHARE * approach.rate * length * step + noise
+    return bool(is_slow[int(np.argmax(is_slow)) :].all()) and bool(is_slow.any())
+
+
+def _tolerances(values: Floats, stated: float | None) -> tuple[float, float]:
+    """Range that is allowed inside a standstill, and what noise alone spans."""
+    noise = noise_range(values)
+    return (noise, noise) if stated is None else (stated, min(noise, stated))
+
+
+def _stands(
+    time: Floats,
+    values: Floats,
+    *,
+    tolerance: float,
+    noise: float,
+    settings: PhaseSettings,
+    is_held: bool,
+) -> tuple[Integers, Integers]:
+    """First and last sample of every standstill; of a held record from the end of its approach.
+
+    Between cycles a standstill keeps the edges that its noise gives it: what is slow and near
+    before it is part of the cycle.
+    """
+    duration = settings.minimum_duration
+    if not is_held:
+        return _still_intervals(time, values, tolerance=tolerance, minimum_duration=duration)
+    first, last = _held_intervals(
+        time, values, tolerance=tolerance, noise=noise, minimum_duration=duration
+    )
+    return _from_approaches(time, values, first, last, noise=noise)
+
+
 _SLACK_SHARE = 0.02
 
 
@@ -554,7 +707,12 @@ def _describe_standstills(
 
 
 def find_standstills(
-    time: ArrayLike, position: ArrayLike, tension: ArrayLike, *, settings: PhaseSettings
+    time: ArrayLike,
+    position: ArrayLike,
+    tension: ArrayLike,
+    *,
+    settings: PhaseSettings,
+    is_held: bool = False,
 ) -> Standstills:
     """Find every interval in which the crosshead stands still, and say which are rests.
 
@@ -604,15 +762,13 @@ def find_standstills(
             found=f"0 positions in {time.size} rows",
             needed="a position channel that follows the crosshead",
         )
-    tolerance = settings.position_tolerance
-    if tolerance is None:
-        tolerance = noise_range(position)
+    tolerance, noise = _tolerances(position, settings.position_tolerance)
     slack = settings.slack_tension
     if slack is None:
         slack = _slack_tension(tension)
 
-    first, last = _still_intervals(
-        time, position, tolerance=tolerance, minimum_duration=settings.minimum_duration
+    first, last = _stands(
+        time, position, tolerance=tolerance, noise=noise, settings=settings, is_held=is_held
     )
     return _describe_standstills(
         time, position, tension, first, last, position_tolerance=tolerance, slack_tension=slack
@@ -620,7 +776,12 @@ def find_standstills(
 
 
 def find_tension_stands(
-    time: ArrayLike, position: ArrayLike, tension: ArrayLike, *, settings: PhaseSettings
+    time: ArrayLike,
+    position: ArrayLike,
+    tension: ArrayLike,
+    *,
+    settings: PhaseSettings,
+    is_held: bool = False,
 ) -> Standstills:
     """Find every hold at constant tension, and every rest.
 
@@ -647,11 +808,9 @@ def find_tension_stands(
     seconds, place, _ = as_same_shape(time=time, position=position, tension=loads[0])
     crosshead = find_standstills(seconds, place, loads, settings=settings)
     mean = mean_of_rows(loads)
-    tolerance = settings.tension_tolerance
-    if tolerance is None:
-        tolerance = noise_range(mean)
-    first, last = _still_intervals(
-        seconds, mean, tolerance=tolerance, minimum_duration=settings.minimum_duration
+    tolerance, noise = _tolerances(mean, settings.tension_tolerance)
+    first, last = _stands(
+        seconds, mean, tolerance=tolerance, noise=noise, settings=settings, is_held=is_held
     )
     limits = {
         "position_tolerance": crosshead.position_tolerance,

@@ -87,6 +87,7 @@ class Piece:
             "kind": self.kind,
             "material": "elastomer (synthetic)",
             "diameter": [self.stated_diameter],
+            "gauge_length": f"{self.length * 1e3:.6g} mm",
         }
 
 

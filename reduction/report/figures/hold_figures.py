@@ -87,7 +87,7 @@ def _one_hold(
     level = "" if held is None or np.isnan(held[hold]) else f", strain {100 * held[hold]:.0f} %"
     number = view.hold_numbers[hold]
     name, order = f"hold {number}{level}", number - 1
-    fit = None if is_creep else _prony(view, hold, since)
+    fit = None if is_creep else _prony(view, hold, since, start)
     traces = [
         line(
             since[kept], y[kept], name=name, colour=colour(order), width=1.2, legendgroup=name,
@@ -106,15 +106,21 @@ def _one_hold(
     return traces
 
 
-def _prony(view: TestView, hold: int, since: Floats) -> tuple[Floats, Floats] | None:
+def _prony(view: TestView, hold: int, since: Floats, start: float) -> tuple[Floats, Floats] | None:
     tension, times = view.array("prony_tension"), view.array("prony_time")
     long_time = view.array("long_time_tension")
     if tension is None or times is None or long_time is None or np.isnan(long_time[hold]):
         return None
     given = np.isfinite(tension[hold]) & np.isfinite(times[hold])
     moments = np.geomspace(since[0], since[-1], FIT_POINTS)
+    # the ramp that the terms are corrected for ends half its duration after its centre
+    centre, duration = (
+        float(np.nan_to_num(view.array_like(name, long_time)[hold], nan=missing))
+        for name, missing in (("hold_ramp_centre_time", start), ("hold_ramp_duration", 0.0))
+    )
     series = prony_tension(
-        moments,
+        moments + start - (centre + duration / 2),
+        ramp_duration=duration,
         tension=tension[hold, given],
         relaxation_time=times[hold, given],
         long_time_tension=float(long_time[hold]),

@@ -181,6 +181,7 @@ def fit_prony(
     ramp_duration: float = 0.0,
     maximum_terms: int = 3,
     weights: ArrayLike | None = None,
+    known_to: float = 0.0,
 ) -> PronyFit:
     r"""Prony series of a relaxation with as many terms as the record supports.
 
@@ -197,6 +198,8 @@ def fit_prony(
         Largest number of terms tried. [1]
     weights : array_like, shape (n_samples,), optional
         Inverse relative variances. [1]
+    known_to : float, optional
+        Standard uncertainty of tension that is no noise: what a correction leaves. [N]
 
     Returns
     -------
@@ -217,11 +220,12 @@ def fit_prony(
     :math:`n' \ln(S/n) + p \ln n'`, where :math:`n' = n (1 - r_1)/(1 + r_1)` counts
     independent samples, with :math:`r_1` the correlation of neighbouring residuals of
     the fit in which it is least; :math:`S/n` counts as at least 2e-4 of the range of
-    tension, squared, which is what block means leave out.  A fit is out where a term is
-    negative, a time is more than twice the record or not resolved at its start, or a term
-    or its time is uncertain by more than half; and none is reported where one that is
-    out has a criterion lower by more than 10, for then the record itself says that the
-    shorter series is wrong.  Uncertainties are widened by the correlation.
+    tension, squared, which is what block means leave out, and as at least ``known_to``
+    squared.  A fit is out where a term is negative, a time is more than twice the record or
+    not resolved at its start, or a term or its time is uncertain by more than half; and none
+    is reported where one that is out has a criterion lower by more than 10, for then the
+    record itself says that the shorter series is wrong.  Uncertainties are widened by the
+    correlation.
 
     The long-time tension is what the series tends to, not an equilibrium: a longer hold
     would show slower terms.
@@ -267,7 +271,7 @@ def fit_prony(
         default=1.0,
     )
     independent = time.size / inflation
-    floor = max((BLOCK_ERROR * float(np.ptp(load))) ** 2, np.finfo(float).tiny)
+    floor = max((BLOCK_ERROR * float(np.ptp(load))) ** 2, known_to**2, np.finfo(float).tiny)
     scores: dict[int, float] = {}
     supported: list[int] = []
     for n_terms, fit in sorted(fits.items()):

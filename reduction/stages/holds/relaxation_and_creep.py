@@ -47,8 +47,15 @@ from reduction.record.samples import (
     shifted,
 )
 from reduction.record.settings import HoldSettings
+from reduction.stages.approach import find_approach, last_motion
 from reduction.stages.cycles.loops import reading_noise
-from reduction.stages.holds.prony_series import PronyFit, fit_prony
+from reduction.stages.holds.prony_series import PronyFit, fit_prony, prony_tension
+from reduction.stages.holds.ramp_end import (
+    MOTION_KNOWN_TO,
+    at_length_of_ramp_end,
+    level_at_end,
+    ramp_end_time,
+)
 from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.moduli.splice_slip import find_steps, sample_noise
 from reduction.stages.standstills import Standstills
@@ -63,6 +70,12 @@ class _Ramp:
     centre_time: float
     duration: float
     stiffness: float
+    end_uncertainty: float = 0.0
+
+    @property
+    def length(self) -> float:
+        """From its first sample to its end. [s]."""
+        return self.end_time - self.start_time
 
 
 def _find_ramp(
@@ -81,7 +94,7 @@ def _find_ramp(
     tension (unloading), the centre of position is taken.  Both moments are integrals of
     the record, not of its differences, so noise does not enter them.  The ramp begins at
     the last sample within ``band`` of its far end, which is late by the time that the
-    crosshead takes for it.
+    crosshead takes for it.  It ends between two samples (`ramp_end_time`).
 
     Examples
     --------
@@ -92,7 +105,7 @@ def _find_ramp(
     """
     seconds = as_increasing("time", time)
     seconds, place, load = as_same_shape(time=seconds, position=position, tension=tension)
-    way = _way_back(place, band)
+    way = last_motion(place, band)
     if way is None:
         return None
     # The last sample within the band of the far end: a standstill there is no part of the ramp.
@@ -104,6 +117,10 @@ def _find_ramp(
     end = float(seconds[-1])
     adds = load if load[-1] > load[0] else place
     lowest, rise = float(adds[0]), float(adds[-1] - adds[0])
+    if adds is load:
+        # a machine that rings as it stops may read far below what the ramp has added
+        highest = float(np.max(load[-1 - _SAMPLES_BESIDE :])) - lowest
+        rise = highest if highest - rise > _RINGS * highest else rise
     before = square = 0.0
     for part in sample_blocks(seconds.size, seconds, adds, overlap=1):
         added, left = (adds[part] - lowest) / rise, end - seconds[part]
@@ -114,13 +131,18 @@ def _find_ramp(
         square += float(np.diff(seconds[part]) @ both) / 3
     centre = end - before
     spread = max(0.0, square - before**2)
+    ended, end_uncertainty = ramp_end_time(seconds, place, band=band)
     return _Ramp(
         start_time=float(seconds[0]),
-        end_time=end,
+        end_time=ended,
         centre_time=min(end, max(float(seconds[0]), centre)),
         duration=min(end - float(seconds[0]), float(np.sqrt(12 * spread))),
         stiffness=_upper_slope(place, load),
+        end_uncertainty=end_uncertainty,
     )
+
+
+_RINGS = 0.02  # of the tension that a ramp adds
 
 
 def _begins_inside(position: ArrayLike, *, band: float) -> bool:
@@ -131,41 +153,8 @@ def _begins_inside(position: ArrayLike, *, band: float) -> bool:
     >>> _begins_inside([0.0, 1.0, 2.0], band=0.1), _begins_inside([5.0, 0.0, 1.0, 2.0], band=0.1)
     (False, True)
     """
-    way = _way_back(np.asarray(position, dtype=np.float64), band)
+    way = last_motion(np.asarray(position, dtype=np.float64), band)
     return way is not None and way.turned
-
-
-@dataclass(frozen=True)
-class _Way:
-    """The last motion of a record: its first sample, or one before it, and how far it came.
-
-    ``reach`` is its greatest distance from the last sample, times ``sign`` positive in the
-    direction from which the crosshead came; ``turned`` is true where a turn begins it.
-    """
-
-    first: int
-    sign: float
-    reach: float
-    turned: bool
-
-
-def _way_back(place: Floats, band: float) -> _Way | None:
-    """The last motion, looked for backwards from the last sample; None without motion."""
-    end = place[-1]
-    distant = last_sample(lambda part: np.abs(place[part] - end) > band, 0, place.size, place)
-    if distant is None:
-        return None
-    sign, reach = float(np.sign(place[distant] - end)), -np.inf
-    for stop in range(place.size, 0, -BLOCK):
-        back = sign * (place[max(stop - BLOCK, 0) : stop] - end)[::-1]
-        reached = np.maximum(np.maximum.accumulate(back), reach)
-        release_pages(place)
-        turned = np.flatnonzero(reached - back > band)
-        if turned.size:
-            at = int(turned[0])
-            return _Way(stop - at, sign, float(reached[at]), turned=True)
-        reach = float(reached[-1])
-    return _Way(0, sign, reach, turned=False)
 
 
 def _upper_slope(place: Floats, load: Floats) -> float:
@@ -224,6 +213,12 @@ class HoldResult:
     ramp_centre_time : float
         When the ramp acts as a step: zero of the time of the rate per decade; NaN where the
         record does not show the ramp. [s]
+    ramp_end_time, ramp_duration : float
+        When the ramp ends, between two samples; duration of the constant-rate ramp that stands
+        for it in the Prony terms. [s]
+    logged_peak_tension, ramp_end_tension : float
+        Greatest tension of the log beside the end of the ramp, and that of the Prony series at
+        it. [N]
     hold_strain_standard_uncertainty : float
         Of the mean (type A), as the next ones. [1]
     hold_initial_tension_standard_uncertainty, hold_final_tension_standard_uncertainty : float
@@ -257,6 +252,10 @@ class HoldResult:
     notes: tuple[Note, ...] = field(default=())
     made: tuple[str, ...] = field(default=())
     ramp_centre_time: float = float("nan")
+    ramp_end_time: float = float("nan")
+    ramp_duration: float = float("nan")
+    logged_peak_tension: float = float("nan")
+    ramp_end_tension: float = float("nan")
     hold_strain_standard_uncertainty: float = float("nan")
     hold_initial_tension_standard_uncertainty: float = float("nan")
     hold_final_tension_standard_uncertainty: float = float("nan")
@@ -558,8 +557,6 @@ FEWEST_SAMPLES = 20
 
 FINAL_SHARE = 0.05
 
-INITIAL_SHARE = 0.005
-
 STEP_BLOCKS = 4096
 
 STEP_FALSE_ALARM = 1e-3
@@ -574,13 +571,18 @@ class Hold:
     time, position, tension, strain : ndarray, shape (n_samples,)
         Samples of the hold. [s], [m], [N], [1]
     start_time : float
-        First time of the standstill. [s]
+        End of the approach to it. [s]
     ramp : Ramp or None
         None where the record does not show it.
     position_tolerance : float
         Range of position that was allowed inside the standstill. [m]
     slack_tension : float
         Tension at or below which the specimen is slack. [N]
+    logged_peak, earlier_peak : float
+        Greatest reading of tension beside the end of the ramp, and in its last half before
+        that; NaN where the ramp does not add tension. [N]
+    n_logged : int
+        How many samples the log has of it, those that are left out included. [1]
     refusals, notes : list of Note
         Filled as the hold is reduced; ``made``, how, too.
     """
@@ -593,6 +595,9 @@ class Hold:
     ramp: _Ramp | None
     position_tolerance: float
     slack_tension: float = 0.0
+    logged_peak: float = float("nan")
+    earlier_peak: float = float("nan")
+    n_logged: int = 0
     refusals: list[Note] = field(default_factory=list)
     notes: list[Note] = field(default_factory=list)
     made: list[str] = field(default_factory=list)
@@ -609,6 +614,11 @@ class Hold:
         if known.size < 2:
             return float("nan")
         return end_mean(known, n_samples=known.size, at_end=True)[1]
+
+    @property
+    def ramp_end_time(self) -> float:
+        """When the ramp ends, or of the first sample where none is known. [s]."""
+        return float(self.time[0]) if self.ramp is None else self.ramp.end_time
 
     @property
     def since_centre(self) -> Floats:
@@ -632,40 +642,121 @@ class _Ends:
     drop_uncertainty: float
     initial_uncertainty: float
     final_uncertainty: float
+    n_initial: int = 0
+    n_final: int = 0
 
 
 def _hold_ends(hold: Hold) -> _Ends:
-    """Tension at both ends of a hold; the stretches are named in ``made``.
+    """Tension at the end of the ramp and at the end of a hold.
 
     Notes
     -----
-    The first stretch is a tenth of the ramp time, at least 0.5 % of the hold and three
-    samples; the last is 5 % of the samples, at least three.
+    The first is that of a line through so many samples as follow one (`level_at_end`); when the
+    ramp ended is known to a step of the log or to the noise of the position, at the rate of
+    the tension.  A log that peaks higher beside it may mean the tension to be as high.  The line
+    is no shorter than a twentieth of the ramp: what relaxes faster has done so within it, and a
+    machine rings.  The last is the mean of 5 % of the samples, at least three.
 
     Examples
     --------
     WHOI-2005-10, sec. 4.1: 400 lbf falls to 325 lbf in three minutes.
 
     >>> t = np.linspace(0, 180, 361)
-    >>> load = np.where(t < 2, 400.0, 325.0)
+    >>> load = np.interp(t, [0, 120, 180], [400, 325, 325])
     >>> hold = Hold(t, 0 * t, load, 2.75 + 0 * t, 0.0, None, 0.01)
     >>> round(_hold_ends(hold).drop, 4)
     0.1875
     """
-    step = hold.duration / max(1, hold.time.size - 1)
-    stretch = max(INITIAL_SHARE * hold.duration, 0.1 * hold.ramp_duration)
-    n_initial = max(3, int(stretch / step)) if step > 0 else 3
     n_final = max(3, int(FINAL_SHARE * hold.time.size))
-    initial, u_initial = end_mean(hold.tension, n_samples=n_initial, at_end=False)
     final, u_final = end_mean(hold.tension, n_samples=n_final, at_end=True)
-    hold.made.append(
-        f"initial tension is the mean of the first {n_initial}, final tension of the last "
-        f"{n_final} of {hold.time.size} samples"
+    first = level_at_end(
+        shifted(hold.time, hold.ramp_end_time),
+        hold.tension,
+        noise=_noise_of(hold.tension),
+        shortest=0.0 if hold.ramp is None else _BESIDE * hold.ramp.length,
     )
-    drop = float(_relaxation_drop(initial, final))
-    uncertainty = float(np.hypot(u_final, (1 - drop) * u_initial) / initial)
+    u_initial = first.standard_uncertainty
+    if hold.ramp is not None:
+        # on its way down the tension is known by when, on its way up by where, it is read
+        u_initial = float(np.hypot(u_initial, first.slope * hold.ramp.end_uncertainty))
+        if np.isfinite(hold.ramp.stiffness):
+            u_initial = float(
+                np.hypot(u_initial, hold.ramp.stiffness * reading_noise(hold.position))
+            )
+    above = hold.logged_peak - SIGNIFICANT * _noise_of(hold.tension) - first.value
+    # it has not settled at once: the tension is somewhere between the two
+    if SIGNIFICANT * u_initial < above < LARGEST_DISAGREEMENT * first.value:
+        u_initial = float(np.hypot(u_initial, above / np.sqrt(3)))
+    drop = float(_relaxation_drop(first.value, final))
+    uncertainty = float(np.hypot(u_final, (1 - drop) * u_initial) / first.value)
     known = uncertainty if drop == drop else np.nan
-    return _Ends(initial, final, drop, known, u_initial, u_final)
+    return _Ends(first.value, final, drop, known, u_initial, u_final, first.n_samples, n_final)
+
+
+def _noise_of(series: Floats) -> float:
+    """Standard deviation of one reading, its quantum included."""
+    noise, quantum = reading_noise(series), sample_noise(series)[1]
+    return float(np.hypot(noise, quantum / np.sqrt(12))) if noise < quantum / 2 else noise
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """What the crosshead does after the end of its ramp.
+
+    ``time`` and ``distance``, shape (n_blocks,), are block means [s], [m]; ``greatest`` the
+    greatest of them, signed, zero where none is told from noise [m].
+    """
+
+    time: Floats
+    distance: Floats
+    greatest: float
+
+
+def _motion_of(hold: Hold) -> _Motion:
+    """Motion of the crosshead since the end of the ramp, on blocks in the logarithm of time."""
+    noise = _noise_of(hold.position)
+    since = shifted(hold.time, hold.ramp_end_time)
+    begin = level_at_end(since, hold.position, noise=noise)
+    later = int(np.searchsorted(since, 0.0, side="right"))
+    if since.size - later < 2:
+        return _Motion(np.empty(0), np.empty(0), 0.0)
+    blocks = logarithmic_blocks(since[later:], hold.position[later:], per_decade=10)
+    quantum = sample_noise(hold.position)[1]
+    spread = np.hypot(
+        np.hypot(noise / np.sqrt(blocks.count), begin.standard_uncertainty),
+        quantum / np.sqrt(12) if noise < quantum / 2 else 0.0,
+    )
+    distance = blocks.value - begin.value
+    told = np.where(np.abs(distance) > _MOTION_TOLD * spread, distance, 0.0)
+    return _Motion(
+        blocks.elapsed + hold.ramp_end_time, distance, float(told[np.argmax(np.abs(told))])
+    )
+
+
+_MOTION_TOLD = 5.0  # standard uncertainties: some fifty blocks are looked at
+
+_MOTION_WORTH = 0.005  # of the tension that is lost: less changes no number
+
+
+def _at_one_length(hold: Hold, ends: _Ends) -> tuple[Hold, float]:
+    """The hold at the length of the end of its ramp, and what is not known of that. [N]."""
+    motion = _motion_of(hold)
+    stiffness = np.nan if hold.ramp is None else hold.ramp.stiffness
+    worth = stiffness * motion.greatest
+    if not abs(worth) > _MOTION_WORTH * abs(ends.initial - ends.final):
+        return hold, 0.0
+    distance = np.interp(hold.time, motion.time, motion.distance)
+    lost = min(max(ends.drop, 0.0), 1.0)
+    hold.notes.append(
+        note(
+            "hold-settles",
+            motion=motion.greatest,
+            worth=worth,
+            share=abs(worth) / abs(ends.initial - ends.final),
+        )
+    )
+    kept = at_length_of_ramp_end(hold.tension, distance, stiffness=stiffness, lost_share=lost)
+    return replace(hold, tension=kept), float(MOTION_KNOWN_TO * abs(worth))
 
 
 def _step_reason(hold: Hold) -> Note | None:
@@ -673,6 +764,10 @@ def _step_reason(hold: Hold) -> Note | None:
     if hold.time.size < FEWEST_SAMPLES or not median_step_reaches(
         hold.time, 3, _longest_step(hold.time)
     ):
+        return None
+    # where a log thins out the rate a sample changes, and that is no step
+    early, late = np.diff(hold.time[:9]), np.diff(hold.time[-9:])
+    if not 1 / 3 < np.median(early) / np.median(late) < 3:
         return None
     size = -(-hold.time.size // STEP_BLOCKS)
     whole = hold.time.size // size * size
@@ -696,22 +791,45 @@ def _longest_step(time: Floats) -> float:
 
 
 def _motion_reason(hold: Hold, ends: _Ends) -> Note | None:
-    """Name a motion of the crosshead that is worth more than a tenth of the drop."""
-    n_samples = max(3, int(FINAL_SHARE * hold.time.size))
-    before, u_before = end_mean(hold.position, n_samples=n_samples, at_end=False)
-    after, u_after = end_mean(hold.position, n_samples=n_samples, at_end=True)
-    motion, noise = after - before, float(np.hypot(u_before, u_after))
+    """Name a motion of the crosshead of which too much is not known to take it off.
+
+    It may be off by a tenth of the drop; without a ramp nothing says what it is worth.
+    """
+    motion = _motion_of(hold).greatest
     if hold.ramp is None or not np.isfinite(hold.ramp.stiffness):
-        moved = abs(motion) > max(SIGNIFICANT * noise, 0.5 * hold.position_tolerance)
-        worth = float("nan")
+        moved, worth = abs(motion) > 0.5 * hold.position_tolerance, float("nan")
     else:
-        stiffness = abs(hold.ramp.stiffness)
-        lost = abs(ends.initial - ends.final)
-        moved = abs(motion) > SIGNIFICANT * noise and stiffness * abs(motion) > max(
-            0.1 * lost, SIGNIFICANT * ends.drop_uncertainty * ends.initial
+        worth = abs(hold.ramp.stiffness * motion)
+        moved = MOTION_KNOWN_TO * worth > max(
+            0.1 * abs(ends.initial - ends.final),
+            SIGNIFICANT * ends.drop_uncertainty * ends.initial,
         )
-        worth = stiffness * abs(motion)
     return note("hold-crosshead-moves", motion=motion, worth=worth) if moved else None
+
+
+def _start_reason(hold: Hold, ends: _Ends) -> Note | None:
+    """Name a peak of the log, before the end of the ramp, that the tension there does not reach.
+
+    A peak beside the end is within what is known of the tension there, unless that is too little.
+    """
+    noise = _noise_of(hold.tension)
+    spread = np.hypot(ends.initial_uncertainty, START_KNOWN_TO * ends.initial)
+    limits = {
+        hold.logged_peak: (1 + LARGEST_DISAGREEMENT) * ends.initial,
+        hold.earlier_peak: ends.initial + SIGNIFICANT * float(np.hypot(spread, noise)),
+    }
+    above = [peak for peak, limit in limits.items() if peak > limit]
+    if not above:
+        return None
+    return note("hold-start-contradicted", peak=max(above), initial=ends.initial)
+
+
+LARGEST_DISAGREEMENT = 0.1
+"""Share by which a log may peak above the tension that its hold leads back to. [1]"""
+
+START_KNOWN_TO = 0.005
+"""Standard uncertainty of a tension at the end of a ramp beyond its noise, as a share: the ramp
+rounds its corner. [1]"""
 
 
 def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[Note]:
@@ -720,9 +838,10 @@ def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[No
     Notes
     -----
     Too short; too few samples; a slack specimen; tension that rises by more than three standard
-    uncertainties; a crosshead that moves by more than three standard uncertainties where
-    the motion is worth more than a tenth of the drop (by the stiffness of the ramp); a
-    step of tension that relaxation does not explain (`find_steps`, false alarm 0.1 %).
+    uncertainties; a crosshead that moves by so much that what is not known of it is more than
+    a tenth of the drop (by the stiffness of the ramp); a log that peaks above the tension found
+    at the end of the ramp; a step of tension that relaxation does not explain (`find_steps`, false
+    alarm 0.1 %).
 
     Examples
     --------
@@ -744,7 +863,8 @@ def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[No
         reasons.append(note("hold-slack", tension=ends.final, slack_tension=hold.slack_tension))
     elif ends.drop < -SIGNIFICANT * ends.drop_uncertainty:
         reasons.append(note("hold-tension-rises", rise=-ends.drop))
-    reasons += [reason for reason in (_motion_reason(hold, ends), _step_reason(hold)) if reason]
+    found = _motion_reason(hold, ends), _start_reason(hold, ends), _step_reason(hold)
+    reasons += [reason for reason in found if reason]
     return reasons
 
 
@@ -829,27 +949,64 @@ def select_hold(
     """
     first, last = int(standstills.first[index]), int(standstills.last[index])
     begin = int(standstills.first[index - 1]) if index else 0
+    # under load control the machine moves the tension, and the length answers
+    moved, answer, band = position, tension, standstills.position_tolerance
+    if standstills.tension_tolerance is not None:
+        moved, answer, band = tension, position, standstills.tension_tolerance
+    else:  # the edge of a standstill is where noise hides the rest of the approach
+        after = int(standstills.last[index - 1]) + 1 if index else 0
+        approach = find_approach(
+            time, position, begin=after, first=first, last=last, noise_range=band
+        )
+        first = first if approach is None else approach.end
     inside = slice(first, last + 1)
     held = [one[inside] for one in (time, position, tension, strain)]
     seconds, place, load, stretch = select_samples(
         _is_finite_and_later(*held[:3]).__getitem__, *held
     )
-    # under load control the machine moves the tension, and the length answers
-    moved, answer, band = position, tension, standstills.position_tolerance
-    if standstills.tension_tolerance is not None:
-        moved, answer, band = tension, position, standstills.tension_tolerance
     ramp = _ramp_before(*(one[begin : first + 1] for one in (time, moved, answer)), band=band)
+    earlier, peak = (
+        (np.nan, np.nan) if ramp is None else _logged_peaks(time, tension, ramp, first, last)
+    )
     return Hold(
         time=seconds,
         position=place,
         tension=load,
         strain=stretch,
-        start_time=float(standstills.start_time[index]),
+        start_time=float(time[first]),
         ramp=ramp,
         position_tolerance=standstills.position_tolerance,
         slack_tension=standstills.slack_tension,
+        logged_peak=peak,
+        earlier_peak=earlier,
+        n_logged=last + 1 - first,
     )
 
+
+def _logged_peaks(
+    time: Floats, tension: Floats, ramp: _Ramp, first: int, last: int
+) -> tuple[float, float]:
+    """Greatest reading of tension before the end of a ramp, and beside it.
+
+    Beside it is within a twentieth of the ramp and five samples; NaN where it adds no tension.
+    """
+    beside = _BESIDE * ramp.length
+    clock = time[: last + 1]
+    begin, centre, low, high = np.searchsorted(
+        clock,
+        [ramp.start_time, ramp.centre_time, ramp.end_time - beside, ramp.end_time + beside],
+    )
+    low = max(min(int(low), first - _SAMPLES_BESIDE), int(begin))
+    high = min(max(int(high), first + _SAMPLES_BESIDE), last) + 1
+    near, before = (
+        one[np.isfinite(one)] for one in (tension[low:high], tension[int(centre) : low])
+    )
+    if not near.size or not near[-1] > tension[begin]:
+        return float("nan"), float("nan")
+    return float(np.max(before)) if before.size else float("nan"), float(np.max(near))
+
+
+_BESIDE, _SAMPLES_BESIDE = 0.05, 5
 
 _EMPTY = np.empty(0)
 
@@ -876,30 +1033,55 @@ def _rate(hold: Hold, ends: _Ends) -> _Rate | None:
     return _Rate(-slope.value, slope.standard_uncertainty, slope.elapsed_low, slope.elapsed_high)
 
 
-def _prony(hold: Hold, ends: _Ends, settings: HoldSettings) -> PronyFit | None:
+def _prony(hold: Hold, ends: _Ends, settings: HoldSettings, *, known_to: float) -> PronyFit | None:
     """Prony series, or None with a refusal."""
     if ends.drop < SIGNIFICANT * ends.drop_uncertainty:
         hold.refusals.append(
             note("drop-not-told-from-zero", drop=ends.drop, spread=ends.drop_uncertainty)
         )
         return None
-    # The constant-rate ramp of the same centre and spread ends half its duration later.
-    ramp_end = float(hold.time[0])
-    if hold.ramp is not None:
-        ramp_end = max(ramp_end, hold.ramp.centre_time + hold.ramp.duration / 2)
+    ramp_end = _equivalent_end(hold)
     later = int(np.searchsorted(hold.time, ramp_end, side="right"))
     blocks = logarithmic_blocks(shifted(hold.time[later:], ramp_end), hold.tension[later:])
     try:
-        return fit_prony(
+        fit = fit_prony(
             blocks.elapsed,
             blocks.value,
             ramp_duration=hold.ramp_duration,
             maximum_terms=settings.maximum_terms,
             weights=blocks.weight,
+            known_to=known_to,
         )
     except FitError as error:
         hold.refusals.append(note("no-prony-series", reason=error.problem, found=error.found))
         return None
+    modelled = _at_ramp_end(hold, fit)
+    spread = float(np.hypot(ends.initial_uncertainty, START_KNOWN_TO * ends.initial))
+    if abs(modelled - ends.initial) > SIGNIFICANT * spread:
+        hold.refusals.append(
+            note("prony-misses-ramp-end", modelled=modelled, initial=ends.initial, spread=spread)
+        )
+        return None
+    return fit
+
+
+def _at_ramp_end(hold: Hold, fit: PronyFit) -> float:
+    """Tension of a series at the end of the ramp. [N]."""
+    (modelled,) = prony_tension(
+        [hold.ramp_end_time - _equivalent_end(hold)],
+        tension=fit.tension,
+        relaxation_time=fit.time,
+        long_time_tension=fit.long_time_tension,
+        ramp_duration=hold.ramp_duration,
+    )
+    return float(modelled)
+
+
+def _equivalent_end(hold: Hold) -> float:
+    """When the constant-rate ramp of the same centre and spread ends: half its duration later."""
+    if hold.ramp is None:
+        return float(hold.time[0])
+    return max(hold.ramp_end_time, hold.ramp.centre_time + hold.ramp.duration / 2)
 
 
 def _creep(hold: Hold) -> _Rate | None:
@@ -918,9 +1100,7 @@ def _creep(hold: Hold) -> _Rate | None:
         return None
 
 
-def _describe(
-    hold: Hold, rate: _Rate | None, *, n_samples: int, follows_hold: bool, on_tension: bool
-) -> None:
+def _describe(hold: Hold, rate: _Rate | None, *, follows_hold: bool, on_tension: bool) -> None:
     """Say how the ramp was treated and what was left out."""
     if hold.ramp is not None:
         added = "length" if on_tension else "tension"
@@ -935,11 +1115,34 @@ def _describe(
             f"rate per decade from {rate.elapsed_low:.3g} to {rate.elapsed_high:.3g} s after "
             "the centre of the ramp"
         )
-    if hold.time.size < n_samples:
-        left_out = n_samples - hold.time.size
-        hold.notes.append(note("hold-samples-left-out", n_left_out=left_out, n_samples=n_samples))
+    left_out = hold.n_logged - hold.time.size
+    if left_out > 0:
+        hold.notes.append(
+            note("hold-samples-left-out", n_left_out=left_out, n_samples=hold.n_logged)
+        )
     if follows_hold:
         hold.made.append("what an earlier hold has left to relax goes on under this one")
+
+
+def _with_motion(read: _Ends, kept: _Ends, unknown: float) -> _Ends:
+    """Ends as they are read, with the drop at one length and what is not known of that."""
+    spread = float(np.hypot(kept.drop_uncertainty, unknown / read.initial))
+    return replace(read, drop=kept.drop, drop_uncertainty=spread)
+
+
+def _less_known(fit: PronyFit, unknown: float) -> PronyFit:
+    """A series with what is not known of a motion in the hold, in all that it tends to and loses.
+
+    The motion goes on within the times of the terms, so it is shared out by their size.
+    """
+    share = fit.tension / fit.tension.sum()
+    return replace(
+        fit,
+        tension_standard_uncertainty=np.hypot(fit.tension_standard_uncertainty, share * unknown),
+        long_time_tension_standard_uncertainty=float(
+            np.hypot(fit.long_time_tension_standard_uncertainty, unknown)
+        ),
+    )
 
 
 def _result(
@@ -948,7 +1151,6 @@ def _result(
     name: str,
     kind: str,
     settings: HoldSettings,
-    n_samples: int,
     follows_hold: bool,
     on_tension: bool,
 ) -> HoldResult:
@@ -958,6 +1160,7 @@ def _result(
     drop = _Rate(np.nan, np.nan, np.nan, np.nan)
     rate: _Rate | None = None
     prony: PronyFit | None = None
+    modelled = np.nan
     tension_at = strain_at = (nothing, nothing)
     ends = _Ends(*(np.nan,) * 6)
     times_known, known = select_samples(
@@ -967,6 +1170,11 @@ def _result(
         hold.refusals.append(note("hold-empty", n_samples=hold.time.size))
     else:
         ends = _hold_ends(hold)
+        hold.made.append(
+            f"initial tension is that of a line through the first {ends.n_initial} samples at the "
+            f"end of the ramp, final tension the mean of the last {ends.n_final} of "
+            f"{hold.time.size}"
+        )
         tension_at = _value_at_times(shifted(hold.time, hold.start_time), hold.tension, times)
         if known.size > 1:
             strain_at = _value_at_times(shifted(times_known, hold.start_time), known, times)
@@ -975,10 +1183,16 @@ def _result(
         if kind == "creep":
             rate = _creep(hold)
         elif not reasons:
+            kept, unknown = _at_one_length(hold, ends)
+            if kept is not hold:
+                ends = _with_motion(ends, _hold_ends(kept), unknown)
             drop = _Rate(ends.drop, ends.drop_uncertainty, np.nan, np.nan)
-            rate = _rate(hold, ends)
-            prony = _prony(hold, ends, settings)
-    _describe(hold, rate, n_samples=n_samples, follows_hold=follows_hold, on_tension=on_tension)
+            rate = _rate(kept, ends)
+            prony = _prony(kept, ends, settings, known_to=unknown)
+            if prony is not None:
+                modelled = _at_ramp_end(kept, prony)
+                prony = _less_known(prony, unknown)
+    _describe(hold, rate, follows_hold=follows_hold, on_tension=on_tension)
     shown = rate or _Rate(np.nan, np.nan, np.nan, np.nan)
     return HoldResult(
         specimen=name,
@@ -1012,6 +1226,10 @@ def _result(
         notes=tuple(hold.notes),
         made=tuple(hold.made),
         ramp_centre_time=np.nan if hold.ramp is None else hold.ramp.centre_time,
+        ramp_end_time=np.nan if hold.ramp is None else hold.ramp.end_time,
+        ramp_duration=np.nan if hold.ramp is None else hold.ramp.duration,
+        logged_peak_tension=hold.logged_peak,
+        ramp_end_tension=modelled,
         hold_strain_standard_uncertainty=hold.strain_uncertainty,
         hold_initial_tension_standard_uncertainty=ends.initial_uncertainty,
         hold_final_tension_standard_uncertainty=ends.final_uncertainty,
@@ -1099,7 +1317,6 @@ def reduce_holds(
     results = []
     for index in np.flatnonzero(~standstills.is_rest):
         earlier = bool(index) and not standstills.is_rest[index - 1]
-        n_samples = int(standstills.last[index] - standstills.first[index]) + 1
         for name, load, stretch in zip(specimens, loads, stretches, strict=True):
             hold = select_hold(seconds, place, load, stretch, standstills, int(index))
             results.append(
@@ -1108,7 +1325,6 @@ def reduce_holds(
                     name=name,
                     kind=kind,
                     settings=settings,
-                    n_samples=n_samples,
                     follows_hold=earlier,
                     on_tension=standstills.tension_tolerance is not None,
                 )

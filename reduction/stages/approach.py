@@ -1,0 +1,234 @@
+"""The motion that leads to a standstill: where it began, how fast it came, where it ends.
+
+A servo reaches its target in two ways: it approaches it, and then it settles.  What of both is
+noise says nothing of where one becomes the other: an approach ends where it is slow and near,
+compared with itself.
+
+References
+----------
+.. [1] ASTM E328-13, "Standard Test Methods for Stress Relaxation for Materials and Structures,"
+   ASTM International, 2013 (zero time: when the constraint is first obtained).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from reduction.record.measurement import Bools, Floats
+from reduction.record.samples import BLOCK, finite_extremes, last_sample, release_pages
+
+NEAR_SHARE = 0.02
+"""Distance from a standstill, as a share of the stroke to it, within which settling is looked for.
+[1]"""
+
+OVERRUN_SHARE = 0.1
+"""Distance beyond a standstill, as a share of the stroke to it, from which a channel that has run
+over settles back. [1]"""
+
+SLOW_SHARE = 0.1
+"""Rate at which an approach ends, as a share of its mean rate. [1]"""
+
+_LONGEST_CHORD = 0.2  # of the time of the approach: beyond it noise hides the rate
+
+_LEVEL_SAMPLES, _LEVEL_SAMPLES_MOST = 8, 1024
+
+_RESOLVED = 4.0  # noise ranges
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The last motion of a record: its first sample, or one before it, and how far it came.
+
+    ``reach`` is its greatest distance from the last sample, times ``sign`` positive in the
+    direction from which the channel came; ``turned`` is true where a turn begins it.
+    """
+
+    first: int
+    sign: float
+    reach: float
+    turned: bool
+
+
+def last_motion(place: Floats, band: float) -> Motion | None:
+    """The last motion, looked for backwards from the last sample; None without motion.
+
+    Examples
+    --------
+    >>> last_motion(np.array([5.0, 0.0, 1.0, 2.0]), 0.1)
+    Motion(first=1, sign=-1.0, reach=2.0, turned=True)
+    """
+    end = place[-1]
+    distant = last_sample(lambda part: np.abs(place[part] - end) > band, 0, place.size, place)
+    if distant is None:
+        return None
+    sign, reach = float(np.sign(place[distant] - end)), -np.inf
+    for stop in range(place.size, 0, -BLOCK):
+        back = sign * (place[max(stop - BLOCK, 0) : stop] - end)[::-1]
+        # a missing sample is no turn
+        reached = np.fmax(np.fmax.accumulate(back), reach)
+        release_pages(place)
+        turned = np.flatnonzero(reached - back > band)
+        if turned.size:
+            at = int(turned[0])
+            return Motion(stop - at, sign, float(reached[at]), turned=True)
+        reach = float(reached[-1])
+    return Motion(0, sign, reach, turned=False)
+
+
+@dataclass(frozen=True)
+class Approach:
+    """An approach to a standstill.
+
+    Parameters
+    ----------
+    end : int
+        Its last sample, which is the first of the standstill.
+    stroke : float
+        Distance from its far end to the standstill. [unit of the channel]
+    rate : float
+        Mean rate, positive. [unit of the channel / s]
+    """
+
+    end: int
+    stroke: float
+    rate: float
+
+
+def find_approach(
+    time: Floats, values: Floats, *, begin: int, first: int, last: int, noise_range: float
+) -> Approach | None:
+    """Where a channel that comes to a stand ends its approach and begins to settle.
+
+    Parameters
+    ----------
+    time, values : ndarray, shape (n_samples,)
+        Record, NaN where a sample is missing. [s], [any unit]
+    begin : int
+        First sample after the standstill before. [1]
+    first, last : int
+        Samples in which the channel surely stands. [1]
+    noise_range : float
+        Range that noise alone spans in the channel. [unit of the channel]
+
+    Returns
+    -------
+    approach : Approach or None
+        None where noise hides it or the record does not show it.
+
+    Raises
+    ------
+    IndexError
+        If the standstill is outside of the record.
+
+    Notes
+    -----
+    Time of a relaxation counts from when the constraint is first obtained ([1]_).  The approach
+    ends at the first sample from which the channel keeps within 2 % of the stroke of the
+    standstill (10 % beyond it) and advances, over the next chord, at less than a tenth of the
+    mean rate of the approach.  The chord is the shortest over which noise cannot advance that
+    far; a sharp end, found early by up to a fifth of it, is where the lines before and after it
+    meet.  A target that is run over ends the approach where the channel turns.
+
+    Examples
+    --------
+    A pull of 15 s to 1 m less a centimetre, which takes some seconds.
+
+    >>> time = np.arange(0.0, 60.0, 0.5)
+    >>> place = np.where(time < 15, 0.066 * time, 1 - 0.01 * np.exp(-(time - 15) / 3))
+    >>> found = find_approach(time, place, begin=0, first=60, last=119, noise_range=1e-6)
+    >>> print(time[found.end], round(found.stroke, 2), round(found.rate, 3))
+    15.0 1.0 0.066
+    """
+    level = _early_level(values[first : last + 1])
+    before = values[begin : first + 1]
+    low, high = finite_extremes(before)
+    extent = max(high - level, level - low)
+    if not extent > _RESOLVED * noise_range:
+        return None
+    motion = None
+    for share in (NEAR_SHARE, OVERRUN_SHARE):  # a small last motion settles back from the approach
+        if motion is None or motion.reach < OVERRUN_SHARE * extent:
+            band = max(share * extent, noise_range)
+            motion = last_motion(np.append(before, level), band) or motion
+    if motion is None:
+        return None
+    start = begin + motion.first
+    near = max(NEAR_SHARE * motion.reach, noise_range / 2)
+
+    def distance(part: slice) -> Floats:
+        return np.asarray(motion.sign * (values[part] - level))
+
+    far = last_sample(lambda part: distance(part) >= motion.reach - near, start, first + 1, values)
+    over = max(OVERRUN_SHARE * motion.reach, near)
+
+    def is_away(part: slice) -> Bools:
+        left = distance(part)
+        return np.asarray((left > near) | (left < -over))
+
+    away = last_sample(is_away, start, first + 1, values)
+    if far is None or away is None:
+        return None
+    (travelled,) = distance(slice(far, far + 1)) - distance(slice(away, away + 1))
+    duration = time[away] - time[far]
+    if not (travelled > 0 and duration > 0):  # the ramp is one step of the log
+        step = min(away + 1, first)
+        travelled, duration = motion.reach, time[step] - time[far]
+        if not duration > 0:
+            return None
+    rate = float(travelled / duration)
+    chord = min(noise_range / (2 * SLOW_SHARE * rate), _LONGEST_CHORD * motion.reach / rate)
+    # so long what is left within the near band may take at more than the slow rate
+    latest = min(time[first] + near / (SLOW_SHARE * rate) + chord, time[last])
+    stop = int(np.searchsorted(time[: last + 1], latest + chord, side="right")) + 1
+    known = away + 1 + np.flatnonzero(np.isfinite(values[away + 1 : min(stop, last) + 1]))
+    if known.size < 2:
+        return Approach(min(away + 1, first), motion.reach, rate)
+    seconds, left = time[known], motion.sign * (values[known] - level)
+    ahead = np.maximum(np.searchsorted(seconds, seconds + chord), np.arange(known.size) + 1)
+    ahead = np.minimum(ahead, known.size - 1)
+    passed = seconds[ahead] - seconds
+    slow = left - left[ahead] < SLOW_SHARE * rate * passed
+    slow &= (passed > 0) & (seconds <= latest)
+    end = int(known[np.argmax(slow)]) if slow.any() else first
+    return Approach(_at_corner(time, values, end, start, last, chord, rate), motion.reach, rate)
+
+
+def _at_corner(
+    time: Floats, values: Floats, end: int, start: int, last: int, chord: float, rate: float
+) -> int:
+    """First sample after the lines of a chord before and after the end of an approach meet.
+
+    Noise makes the end early, by so much of a chord as the rate that counts as slow is of the
+    last rate, or twice that; beyond it is left as it is.
+    """
+    low, high = np.searchsorted(time[: last + 1], [time[end] - 0.8 * chord, time[end] + 2 * chord])
+    low, high = max(int(low), start), min(int(high), last + 1)
+    seconds, place = time[low:high] - time[end], values[low:high]
+    known = np.isfinite(place)
+    rising = known & (seconds <= 0)
+    if np.count_nonzero(rising) < _FEWEST_ON_LINE:
+        return end
+    slope, level = np.polyfit(seconds[rising], place[rising], 1)
+    early = chord * min(2 * SLOW_SHARE * rate / max(abs(slope), SLOW_SHARE * rate), 1.0)
+    standing = known & (seconds >= early)
+    if np.count_nonzero(standing) < _FEWEST_ON_LINE:
+        return end
+    later_slope, later_level = np.polyfit(seconds[standing], place[standing], 1)
+    if slope == later_slope:
+        return end
+    meets = float(np.clip((later_level - level) / (slope - later_slope), 0.0, early))
+    corner = int(np.searchsorted(time[: last + 1], time[end] + meets))
+    return min(max(corner, end), last)
+
+
+_FEWEST_ON_LINE = 4
+
+
+def _early_level(held: Floats) -> float:
+    """Median of the first tenth of a standstill: it may begin with the end of its approach."""
+    n_early = max(held.size // 10, min(held.size, _LEVEL_SAMPLES))
+    early = held[: n_early : max(n_early // _LEVEL_SAMPLES_MOST, 1)]
+    early = early[np.isfinite(early)]
+    return float(np.median(early)) if early.size else float("nan")

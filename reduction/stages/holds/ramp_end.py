@@ -1,0 +1,234 @@
+"""What is true of the end of a ramp: when it was between two samples, and the tension then.
+
+A mean over the first stretch of a hold is a tension that has relaxed.  The tension at the end of
+the ramp is that of a line through so many samples as follow one, and what the crosshead does
+afterwards is taken off by the stiffness of the ramp.
+
+References
+----------
+.. [1] O. V. Lepski, "On a problem of adaptive estimation in Gaussian white noise," Theory
+   Probab. Appl. 35(3), 1991.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from reduction.record.measurement import Floats
+from reduction.record.samples import empty_like, sample_blocks
+from reduction.stages.approach import NEAR_SHARE
+
+FEWEST_ON_LINE, MOST_ON_LINE = 3, 1 << 14
+
+_GROWTH = 1.4
+
+_AGREEING = 2.0  # standard uncertainties
+
+_LARGEST_SPREAD = 3.0  # of so many fewer samples in noise; more is a line across a ringing
+
+_STEPS_BACK = 3  # a third of the samples has an eighth of the bias of a parabola
+
+_STEPS_BEFORE = 5
+
+MOTION_KNOWN_TO = 0.5 / 3**0.5
+"""Standard uncertainty of what a motion in a hold is worth, as a share of it: a half either way.
+[1]"""
+
+
+def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, float]:
+    """When a ramp ends, between its last two samples, and the standard uncertainty of that.
+
+    Parameters
+    ----------
+    time, place : ndarray, shape (n_samples,)
+        A ramp, its last sample at the end or after it. [s], [m]
+    band : float
+        Range that noise may span in it. [m]
+
+    Returns
+    -------
+    end_time, standard_uncertainty : float
+        The last time where a step of the log is within the noise. [s], [s]
+
+    Raises
+    ------
+    IndexError
+        If there is no sample.
+
+    Notes
+    -----
+    No source: the last step of a ramp sampled at even steps is cut short where the ramp ends
+    between two samples.  A ramp that slows down has no corner: what its last fiftieth takes
+    longer than at its mean rate is the width in which it may have ended, and so is a step of the
+    log that does not show the corner.
+
+    Examples
+    --------
+    The crosshead stands after half the last step.
+
+    >>> print(ramp_end_time(np.arange(4.0), np.array([0.0, 1.0, 2.0, 2.5]), band=0.01))
+    (2.5, 0.0)
+    """
+    end = float(time[-1])
+    if time.size < 3:
+        return end, float(end - time[0]) / 12**0.5
+    left = np.abs(place - place[-1])
+    stroke, duration = float(left[0]), end - float(time[0])
+    near = max(NEAR_SHARE * stroke, band / 2)
+    entered = int(time.size - np.argmax((left > near)[::-1]))
+    slowing = end - float(time[min(entered, time.size - 1)]) - near / stroke * duration
+    first = max(time.size - 2 - _STEPS_BEFORE, 0)
+    rate = (place[-2] - place[first]) / (time[-2] - time[first])
+    last = place[-1] - place[-2]
+    step = float(time[-1] - time[-2])
+    width = max(slowing, 0.0)
+    if abs(rate) * step > band:
+        end = float(time[-2]) + step * float(np.clip(last / (rate * step), 0.0, 1.0))
+    else:
+        width = max(width, step)
+    return end, width / 12**0.5
+
+
+@dataclass(frozen=True)
+class LevelAtEnd:
+    """A series at the end of its ramp.
+
+    Parameters
+    ----------
+    value, standard_uncertainty, slope : float
+        [unit], [unit], [unit / s]
+    n_samples : int
+        How many are on the line. [1]
+    """
+
+    value: float
+    standard_uncertainty: float
+    slope: float
+    n_samples: int
+
+
+def level_at_end(
+    since: Floats, values: Floats, *, noise: float, shortest: float = 0.0
+) -> LevelAtEnd:
+    """A series at time zero, of the longest line through its first samples that it follows.
+
+    Parameters
+    ----------
+    since : ndarray, shape (n_samples,)
+        Time after the end of the ramp. [s]
+    values : ndarray, shape (n_samples,)
+        Series, such as tension. [any unit]
+    noise : float
+        Standard deviation of one sample. [unit of the series]
+    shortest : float, optional
+        Time over which a machine may ring: the shortest line is as long. [s]
+
+    Returns
+    -------
+    level : LevelAtEnd
+        Of the mean where there are fewer than three samples. [unit of the series]
+
+    Raises
+    ------
+    IndexError
+        If there is no sample.
+
+    Notes
+    -----
+    Method of [1]_: lines through 3, 5, 7, 10, ... samples, each 1.4 times as long, until the
+    value at zero of one differs from that of any before by more than twice their standard
+    uncertainties together.  That of a third as many samples as the last before it is taken, and
+    a third of what the two differ by, more than its bias where the series bends evenly, is
+    carried.  A machine that rings scatters its first samples more than their noise: the scatter
+    about a line counts where it is greater.
+
+    Examples
+    --------
+    >>> since = np.arange(0.5, 100.0)
+    >>> print(round(level_at_end(since, 300 + 100 * np.exp(-since / 40), noise=0.5).value))
+    400
+    """
+    n_samples = min(since.size, MOST_ON_LINE)
+    if n_samples < FEWEST_ON_LINE:
+        return LevelAtEnd(float(np.mean(values[:n_samples])), noise, 0.0, n_samples)
+    origin = float(values[0])
+    x, y = since[:n_samples], values[:n_samples] - origin
+    sums = [np.cumsum(one) for one in (x, y, x * x, x * y, y * y)]
+    found: list[LevelAtEnd] = []
+    count = min(max(FEWEST_ON_LINE, int(np.searchsorted(x, shortest))), n_samples)
+    while True:
+        sx, sy, sxx, sxy, syy = (float(one[count - 1]) for one in sums)
+        power = sxx - sx * sx / count
+        slope = (sxy - sx * sy / count) / power
+        value = (sy - slope * sx) / count
+        left = max(syy - sy * sy / count - slope * slope * power, 0.0) / (count - 2)
+        scatter = max(noise, float(np.sqrt(left)))
+        spread = scatter * float(np.sqrt(1 / count + (sx / count) ** 2 / power))
+        if any(
+            abs(value - one.value) > _AGREEING * (spread + one.standard_uncertainty)
+            for one in found
+        ):
+            largest = _LARGEST_SPREAD * found[-1].standard_uncertainty
+            back = found[-1 - _STEPS_BACK :] if len(found) > _STEPS_BACK else found
+            chosen = next(one for one in back if one.standard_uncertainty <= largest)
+            break
+        chosen = LevelAtEnd(value, spread, slope, count)
+        found.append(chosen)
+        if count == n_samples:
+            break
+        count = min(int(np.ceil(_GROWTH * count)), n_samples)
+    bias = (found[-1].value - chosen.value) / 3
+    return LevelAtEnd(
+        origin + chosen.value,
+        float(np.hypot(chosen.standard_uncertainty, bias)),
+        chosen.slope,
+        chosen.n_samples,
+    )
+
+
+def at_length_of_ramp_end(
+    tension: Floats, motion: Floats, *, stiffness: float, lost_share: float
+) -> Floats:
+    """Tension less what a motion after the ramp is worth.
+
+    Parameters
+    ----------
+    tension : ndarray, shape (n_samples,)
+        As read. [N]
+    motion : ndarray, shape (n_samples,)
+        Of the crosshead since the end of the ramp, without its noise. [m]
+    stiffness : float
+        Of the end of the ramp. [N/m]
+    lost_share : float
+        Share of tension that relaxes in the hold. [1]
+
+    Returns
+    -------
+    tension : ndarray, shape (n_samples,)
+        At the length of the end of the ramp. [N]
+
+    Raises
+    ------
+    ValueError
+        If the series do not pair up.
+
+    Notes
+    -----
+    First order: what the motion adds relaxes by up to the share that the ramp loses, and half
+    of that is taken.
+
+    Examples
+    --------
+    A hundredth of a stroke of 1 m that took 400 N, half of which relaxes.
+
+    >>> print(at_length_of_ramp_end(
+    ...     np.array([203.0]), np.array([0.01]), stiffness=400.0, lost_share=0.5))
+    [200.]
+    """
+    worth = stiffness * (1 - lost_share / 2)
+    corrected = empty_like(tension)
+    for part in sample_blocks(tension.size, tension, motion, corrected):
+        corrected[part] = tension[part] - worth * motion[part]
+    return corrected

@@ -1,0 +1,137 @@
+"""Where an approach ends: shapes of a ramp whose end is known."""
+
+import numpy as np
+import pytest
+
+from reduction.record.settings import HoldSettings, PhaseSettings
+from reduction.stages.approach import find_approach
+from reduction.stages.holds.ramp_end import ramp_end_time
+from reduction.stages.holds.relaxation_and_creep import reduce_holds
+from reduction.stages.standstills import find_standstills
+
+END, RAMP, DURATION = 20.0, 15.0, 300.0
+
+
+def ramp(time, shape):
+    """Share of the stroke, for a ramp from 5 to 20 s."""
+    share = np.clip((time - END + RAMP) / RAMP, 0, 1)
+    after = np.clip(time - END, 0, None)
+    left = 1 - share
+    return {
+        "sharp": share,
+        "settles": share * 0.99 + 0.01 * (1 - np.exp(-after / 3)),
+        "overruns": share * 1.015 - 0.015 * (1 - np.exp(-after / 2)),
+        "rings": share + 0.004 * np.exp(-after) * np.sin(5 * after),
+        # the last tenth of the time takes a twentieth of the way, at a rate that falls to nothing
+        "slows": np.where(left > 0.1, (1 - left) * 0.95 / 0.9, 1 - 0.05 * (left / 0.1) ** 2),
+        "two rates": np.where(share < 0.5, share * 1.8, 0.9 + (share - 0.5) * 0.2),
+        "drifts": share + 0.006 * after / DURATION,
+    }[shape]
+
+
+SHAPES = ("sharp", "settles", "overruns", "rings", "slows", "two rates", "drifts")
+
+
+def encoder(place, kind):
+    noise = np.random.default_rng(1).standard_normal(place.size)
+    return {
+        "exact": place,
+        "fine": place + 1e-4 * noise,
+        "coarse": np.round(place * 1000) / 1000,
+        "noisy": place + 2e-3 * noise,
+    }[kind]
+
+
+@pytest.mark.parametrize("kind", ["exact", "fine", "coarse", "noisy"])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_hold_begins_at_the_end_of_its_approach(shape, kind):
+    time = np.arange(0.0, END + DURATION, 0.1)
+    place = encoder(ramp(time, shape), kind)
+    tension = 100 * ramp(time, "sharp") * np.exp(-np.clip(time - END, 0, None) / 200)
+    found = find_standstills(time, place, [tension], settings=PhaseSettings(), is_held=True)
+    assert found.is_rest.tolist() == [True, False]
+    # 2 % of a ramp of 15 s; what slows down has no corner, and half its slowing is the ramp's
+    assert found.start_time[-1] == pytest.approx(END, abs=0.5)
+    assert found.end_time[-1] > END + DURATION - 1
+
+
+def test_a_log_that_thins_out_shows_its_hold():
+    time = np.concatenate([np.arange(0, 25, 0.02), 25 + np.geomspace(0.1, 275, 120)])
+    place = ramp(time, "settles")
+    tension = 100 * np.clip(place, 0, 1)
+    found = find_standstills(time, place, [tension], settings=PhaseSettings(), is_held=True)
+    assert found.start_time[-1] == pytest.approx(END, abs=0.1)
+    assert found.end_time[-1] > 299
+
+
+def test_small_steps_are_holds_of_their_own():
+    # steps of half a percent of the first ramp, each made at its rate
+    time = np.arange(0.0, 200.0, 0.1)
+    corners = [0, 5, 20, 60, 60.1, 100, 100.1, 140, 140.1, 200]
+    place = np.interp(time, corners, [0, 0, 1, 1, 1.005, 1.005, 1.010, 1.010, 1.015, 1.015])
+    found = find_standstills(time, place, [100 * place], settings=PhaseSettings(), is_held=True)
+    assert found.start_time == pytest.approx([0, 20, 60.1, 100.1, 140.1], abs=0.11)
+
+
+def test_between_cycles_a_standstill_keeps_its_edges():
+    time = np.arange(0.0, END + DURATION, 0.1)
+    place = ramp(time, "settles")
+    found = find_standstills(time, place, [100 * place], settings=PhaseSettings())
+    assert found.start_time[-1] > END + 5
+
+
+def test_noise_that_hides_an_approach_gives_none():
+    time = np.arange(0.0, 40.0, 0.1)
+    place = ramp(time, "sharp")
+    limits = {"begin": 0, "first": 250, "last": 399}
+    assert find_approach(time, place, noise_range=0.3, **limits) is None
+    assert find_approach(time, np.ones(400), noise_range=1e-6, **limits) is None
+
+
+@pytest.mark.parametrize("late", [0.1, 0.5, 0.9])
+def test_a_ramp_ends_between_two_samples(late):
+    time = np.arange(0.0, 11.0)
+    place = np.minimum(time, 9 + late)
+    end, uncertainty = ramp_end_time(time, place, band=1e-6)
+    assert end == pytest.approx(9 + late)
+    assert uncertainty <= 1 / np.sqrt(12)
+
+
+def test_the_end_of_a_ramp_that_slows_down_is_known_to_its_slowing():
+    time = np.linspace(0.0, 20.0, 2001)
+    _, sharp = ramp_end_time(time, ramp(time + 0.0, "sharp"), band=1e-6)
+    _, slows = ramp_end_time(time, ramp(time, "slows"), band=1e-6)
+    # the last fiftieth takes 0.95 s (root of 0.02 over 0.05, of 1.5 s), 0.3 s at the mean rate
+    assert sharp < 0.05
+    assert slows == pytest.approx((0.95 - 0.3) / np.sqrt(12), rel=0.25)
+
+
+def one_hold(shape):
+    """A Maxwell element of 40 % and 30 s beside a spring, 100 N, and its drop at one length."""
+    time = np.arange(0.0, END + DURATION, 0.05)
+    place = ramp(time, shape)
+    state = np.zeros(time.size)
+    decay = np.exp(-0.05 / 30)
+    for i in range(1, time.size):
+        state[i] = decay * state[i - 1] + (place[i] - place[i - 1]) * 30 / 0.05 * (1 - decay)
+    tension = 100 * (0.6 * place + 0.4 * state)
+    rng = np.random.default_rng(2)
+    tension += 0.05 * rng.standard_normal(time.size)
+    place = place + 1e-5 * rng.standard_normal(time.size)
+    stand = find_standstills(time, place, [tension], settings=PhaseSettings(), is_held=True)
+    (hold,) = reduce_holds(
+        time, place, [tension], [place], stand, specimens=("piece",), settings=HoldSettings()
+    )
+    relaxing = 40 * 2 * (1 - np.exp(-0.5))  # at the end of the ramp, of 60 N that stay
+    return hold, relaxing / (60 + relaxing)
+
+
+@pytest.mark.parametrize("shape", ["sharp", "settles", "overruns", "drifts"])
+def test_a_drop_is_that_of_one_length(shape):
+    hold, true = one_hold(shape)
+    assert abs(hold.relaxation_drop - true) < 3 * hold.relaxation_drop_standard_uncertainty
+    assert hold.relaxation_drop == pytest.approx(true, abs=0.005)
+    settled = [one for one in hold.notes if one.code == "hold-settles"]
+    assert bool(settled) is (shape != "sharp")
+    assert hold.ramp_end_tension == pytest.approx(hold.logged_peak_tension, rel=0.02)
+    assert hold.prony_time == pytest.approx([30], rel=0.1)
