@@ -260,7 +260,14 @@ TABLES = (
     CsvTable(
         "trend",
         ("specimen",),
-        ("peak_tension_per_decade", "dynamic_modulus_per_decade", "peak_tension_change", "n_slips"),
+        (
+            "peak_tension_per_decade",
+            "dynamic_modulus_per_decade",
+            "mean_strain_per_decade",
+            "mean_strain_drift",
+            "peak_tension_change",
+            "n_slips",
+        ),
     ),
     CsvTable(
         "elastomer",

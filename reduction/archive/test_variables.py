@@ -150,10 +150,8 @@ def curve_values(curves: ModulusCurves) -> Values:
     values: Values = {
         item.name: getattr(curves, item.name)
         for item in fields(curves)
-        if item.name not in ("window", "notes", "made", "branch_tension_count")
+        if item.name not in ("window", "notes", "made") and getattr(curves, item.name) is not None
     }
-    if curves.branch_tension_count is not None:
-        values["branch_tension_count"] = curves.branch_tension_count
     return values | {
         "branch_name": texts(BRANCH_NAMES),
         "strain_window": np.array(curves.window),
