@@ -265,6 +265,7 @@ TABLES = (
             "dynamic_modulus_per_decade",
             "mean_strain_per_decade",
             "mean_strain_drift",
+            "alignment_strain",
             "peak_tension_change",
             "n_slips",
         ),

@@ -19,6 +19,7 @@ from reduction.stages.cycles.loops import close_loops
 from reduction.stages.moduli.cycle_alignment import (
     aligned_strain,
     alignment_moves,
+    is_shift_of_curve,
     strain_shifts,
 )
 from reduction.stages.moduli.elastomer_laws import fit_elastomers
@@ -122,7 +123,10 @@ def _curves_of_cycles(
     shift, reference = strain_shifts(loops.mean_strain, break_in_cycles=break_in)
     moves = alignment_moves(
         curves, shift[:, break_in:], loops.strain_amplitude[:, break_in:], reference, area=area
-    )
+    ) & is_shift_of_curve(
+        shift[:, break_in:], loops.mean_tension[:, break_in:],
+        loops.apparent_spring_constant[:, break_in:],
+    )  # fmt: skip
     laid_on = np.where(moves, reference, np.nan)
     if not moves.any():
         return replace(curves, alignment_strain=laid_on)

@@ -1,6 +1,11 @@
 """Levels of one record: runs of cycles at one mean, amplitude and period of the control channel.
 
 A mean over cycles at several levels is that of none of them.
+
+References
+----------
+.. [1] ISO 18692-1:2018, "Fibre ropes for offshore stationkeeping - Part 1: General
+   specification" (cycles at one mean load and range after another).
 """
 
 from __future__ import annotations
@@ -16,7 +21,9 @@ from reduction.record.measurement import Floats
 from reduction.record.samples import take_samples
 from reduction.stages.cycles.cycle_product import Cycles
 
-_STEP = 0.1  # of the range of a cycle, or as a ratio of ranges or periods: what makes a level
+_STEP = 0.1  # of the range of a cycle: what makes a level, in the mean or in the range
+
+_STEP_OF_PERIOD = 0.25  # of itself: noise puts the turns of a slow wave samples early or late
 
 _NOISE = 5.0  # times the scatter from cycle to cycle, where that is more
 
@@ -73,11 +80,11 @@ def find_levels(time: ArrayLike, control: ArrayLike, cycles: Cycles) -> tuple[Le
     Notes
     -----
     Of each cycle mean, half range and period are read at its turns.  A *step* is a change of
-    the mean by a tenth of the range, or of range or period by a tenth of itself, and by five
-    times the scatter from cycle to cycle where that is more.  Neighbours that differ by less
-    than half a step belong together; three cycles that do are a run.  Two runs are two
-    levels where the medians of the three cycles on both sides differ by a step, and by five
-    times as much as the cycles beside them change from one to the next: a ramp of the
+    the mean by a tenth of the range, of the range by a tenth or of the period by a quarter of
+    itself, and by five times the scatter from cycle to cycle where that is more.  Neighbours
+    that differ by less than half a step belong together; three cycles that do are a run.  Two
+    runs are two levels where the medians of the three cycles on both sides differ by a step, and
+    by five times as much as the cycles beside them change from one to the next: a ramp of the
     amplitude, slow or fast, has no such place and is not cut, nor is a single cycle that
     differs.  Cycles between two levels belong to neither.
 
@@ -145,7 +152,8 @@ def find_levels(time: ArrayLike, control: ArrayLike, cycles: Cycles) -> tuple[Le
 def _in_steps(one: Floats, other: Floats, noise: Floats) -> Floats:
     """How many steps two cycles lie apart, in the one of three numbers that differs most."""
     least = np.minimum(np.exp(one[1]), np.exp(other[1]))
-    size = np.stack([2 * _STEP * least, *2 * [np.full_like(least, np.log1p(_STEP))]])
+    ratios = [np.full_like(least, np.log1p(step)) for step in (_STEP, _STEP_OF_PERIOD)]
+    size = np.stack([2 * _STEP * least, *ratios])
     floor = np.reshape(noise, (3,) + (1,) * least.ndim)
     return np.asarray((np.abs(other - one) / np.maximum(size, floor)).max(axis=0))
 

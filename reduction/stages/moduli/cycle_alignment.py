@@ -3,6 +3,11 @@
 A rope in load control creeps: each cycle is that of the one before, further along the strain axis.
 The mean tension at one strain is then of other cycles at every strain, and its slope is that of no
 cycle.
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 2.2 (modulus of a loop).
 """
 
 from __future__ import annotations
@@ -16,6 +21,8 @@ from reduction.record.samples import empty_like, sample_blocks
 from reduction.stages.moduli.modulus_product import ModulusCurves
 
 _NEGLIGIBLE = 0.1  # of the standard uncertainty of the mean
+
+_ALONG = 0.5  # of the shifts, that mean tension may explain
 
 
 def strain_shifts(mean_strain: Floats, *, break_in_cycles: int = 0) -> tuple[Floats, Floats]:
@@ -71,6 +78,58 @@ def strain_shifts(mean_strain: Floats, *, break_in_cycles: int = 0) -> tuple[Flo
         reference[row] = one[break_in_cycles:][known[break_in_cycles:]].mean()
         shift[row] = np.interp(number, number[known], one[known]) - reference[row]
     return shift, reference
+
+
+def is_shift_of_curve(
+    shift: Floats, mean_tension: Floats, spring_constant: Floats
+) -> NDArray[np.bool_]:
+    r"""Whether the curve itself lies further along from cycle to cycle, as it does in creep.
+
+    .. math:: \mathrm{rms}(\bar T_i - \bar T) / K < \mathrm{rms}(s_i) / 2
+
+    Parameters
+    ----------
+    shift : ndarray, shape (n_specimens, n_cycles)
+        From `strain_shifts`; those in the mean. [1]
+    mean_tension, spring_constant : ndarray, same shape
+        Mean tension of each cycle, and its apparent spring constant; NaN where missing. [N]
+
+    Returns
+    -------
+    is_shift : ndarray of bool, shape (n_specimens,)
+        False where the mean tension goes with the strain, or falls while the crosshead keeps
+        the strain: such cycles lie where they were measured. [1]
+
+    Raises
+    ------
+    ValueError
+        If the arrays do not have one shape.
+
+    Notes
+    -----
+    In load control the machine brings the same tensions back, and a specimen that creeps has
+    them at more strain.  In position control tension relaxes, and what strain changes, as
+    splices give, it changes along the curve of the specimen: to shift such cycles would move
+    them off it.
+
+    Examples
+    --------
+    >>> shift = np.array([[-0.001, 0.0, 0.001]])
+    >>> steady, falling = np.full((1, 3), 500.0), np.array([[520.0, 500.0, 480.0]])
+    >>> is_shift_of_curve(shift, steady, np.full((1, 3), 1e4))
+    array([ True])
+    >>> is_shift_of_curve(shift, falling, np.full((1, 3), 1e4))
+    array([False])
+    """
+    found = np.zeros(shift.shape[0], dtype=bool)
+    for row, (apart, load, slope) in enumerate(
+        zip(shift, mean_tension, spring_constant, strict=True)
+    ):
+        known = np.isfinite(load) & np.isfinite(slope)
+        if known.any():
+            along = np.std(load[known]) / abs(float(np.median(slope[known])))
+            found[row] = bool(along < _ALONG * np.sqrt(np.mean(apart[known] ** 2)))
+    return found
 
 
 def alignment_moves(
