@@ -115,6 +115,7 @@ OF_MODULI: tuple[Quantity, ...] = (
             page=("means", "mean strain that the cycles are laid on"),
             percent=True,
         ),
+        group="curves",
     ),
     *along(
         _BIN,
