@@ -260,7 +260,15 @@ TABLES = (
     CsvTable(
         "trend",
         ("specimen",),
-        ("peak_tension_per_decade", "dynamic_modulus_per_decade", "peak_tension_change", "n_slips"),
+        (
+            "peak_tension_per_decade",
+            "dynamic_modulus_per_decade",
+            "mean_strain_per_decade",
+            "mean_strain_drift",
+            "alignment_strain",
+            "peak_tension_change",
+            "n_slips",
+        ),
     ),
     CsvTable(
         "elastomer",

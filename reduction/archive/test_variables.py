@@ -154,14 +154,13 @@ def curve_values(curves: ModulusCurves) -> Values:
         "window",
         "notes",
         "made",
-        "branch_tension_count",
         "tangent_modulus_window_uncertainty",
     )
     values: Values = {
-        item.name: getattr(curves, item.name) for item in fields(curves) if item.name not in apart
+        item.name: getattr(curves, item.name)
+        for item in fields(curves)
+        if item.name not in apart and getattr(curves, item.name) is not None
     }
-    if curves.branch_tension_count is not None:
-        values["branch_tension_count"] = curves.branch_tension_count
     return values | {
         "branch_name": texts(BRANCH_NAMES),
         "strain_window": np.array(curves.window),

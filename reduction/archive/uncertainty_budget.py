@@ -52,7 +52,7 @@ _LINES = ("_per_decade", "_per_cycle", "_change", "_drift")
 _SINGLE = "tension_amplitude"
 
 # from the differences of neighbouring cycles, of which each cycle is in two
-_OF_NEIGHBOURS = frozenset({"peak_tension_change"})
+_OF_NEIGHBOURS = frozenset({"peak_tension_change", "mean_strain_drift"})
 
 _READINGS = {"diameter": "diameter_reading", "area": "diameter_reading"}
 

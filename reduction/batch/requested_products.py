@@ -84,7 +84,9 @@ def refuse_unknown_tests(campaign: Campaign, tests: Sequence[str]) -> None:
     """Refuse names that are of no test and of no step, before anything is read or written."""
     known = set(campaign.tests)
     known |= {step.product(name) for name, plan in campaign.tests.items() for step in plan.steps}
-    unknown = sorted(set(tests) - known)
+    # a level that is found in a log has the log's name before its own
+    unstated = {name for name, plan in campaign.tests.items() if not plan.steps}
+    unknown = sorted(name for name in set(tests) - known if name.rpartition(".")[0] not in unstated)
     if unknown:
         raise SettingsError(
             "--test names a test that the campaign lacks",
@@ -97,11 +99,23 @@ def selected_surveys(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Su
     """The surveys that were asked for; a test's name stands for all its steps."""
     if not tests:
         return list(surveys)
-    return [
-        survey
-        for survey in surveys
-        if survey.plan.id in tests or survey.plan.id.rpartition(".")[0] in tests
-    ]
+    missing = set(tests) - {survey.plan.id for survey in surveys}
+    missing -= {survey.plan.log for survey in surveys}
+    of_log = {survey.plan.log for survey in surveys if survey.error is None}
+    for name in sorted(missing):
+        if name.rpartition(".")[0] in of_log:
+            raise SettingsError(
+                "--test names a level that was not found in its log",
+                found=name,
+                needed="one of " + ", ".join(survey.plan.id for survey in surveys),
+            )
+    return [survey for survey in surveys if {survey.plan.id, survey.plan.log} & set(tests)]
+
+
+def _ready(survey: Survey) -> str:
+    """What a checked test is told; of a level that was found how to state it."""
+    told = [one for one in survey.remarks if one.code in ("levels-found", "cycles-unlike")]
+    return "; ".join(["ready for a run", *map(str, told)])
 
 
 def check_campaign(
@@ -115,7 +129,7 @@ def check_campaign(
     for survey in selected_surveys(surveys, tests):
         error = survey.error or errors.get(survey.plan.id)
         statuses.append(
-            status_row(campaign, survey, "no_work", message="ready for a run")
+            status_row(campaign, survey, "no_work", message=_ready(survey))
             if error is None
             else status_row(campaign, survey, "failed", error=error)
         )

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from reduction.batch.campaign_status import Progress, Silent, Status, TestStatus
+from reduction.batch.found_steps import FOUND, find_steps
 from reduction.batch.run_lock import RunLock
 from reduction.batch.workers import Task, Workers, work_on
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan
@@ -27,6 +28,7 @@ from reduction.record.errors import (
     refused_by_system,
 )
 from reduction.record.measurement import Floats, Record, Source, SpliceMarks, StepReadings
+from reduction.record.notes import Note
 from reduction.stages.standstills import median_step
 from reduction.stages.strain.strain_fit import zero_strain_position
 
@@ -113,7 +115,7 @@ class Survey:
 
     ``mark_tension`` and ``mark_tension_at_start`` hold, by specimen, one tension [N] for each
     pooled mark that was read in this test, in the order of the marks.  ``extremes`` is how far
-    the test went; ``found`` what a person is told of the log.
+    the test went; ``found`` what a person is told of the log, ``remarks`` what of its levels.
     """
 
     plan: TestPlan
@@ -128,6 +130,7 @@ class Survey:
     is_zero_logged: bool = False
     extremes: Extremes = field(default_factory=Extremes)
     found: dict[str, Any] = field(default_factory=dict)
+    remarks: tuple[Note, ...] = ()
     error: ReductionError | None = None
 
 
@@ -157,12 +160,22 @@ def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_reco
         length_needed=_needs_length(campaign, plan),
         limits=campaign.limits,
     )
+    found = None
     if not plan.steps:
         survey = _located(plan, record, sources)
-        if survey.located is not None:
-            _find_zero_strain(survey, survey.located, campaign, plan)
-        _measure_marks(survey, survey.located, campaign.marks)
-        return [survey]
+        found = find_steps(plan, survey.located, campaign)
+        if found.remark is not None:
+            record = replace(record, notes=(*record.notes, found.remark))
+        if not found.steps:
+            if survey.located is not None:
+                located = replace(survey.located, record=record)
+                if found.remark is not None:
+                    survey = replace(survey, located=located, found=_log_summary(located))
+                    survey.remarks = (found.remark,)
+                _find_zero_strain(survey, located, campaign, plan)
+            _measure_marks(survey, survey.located, campaign.marks)
+            return [survey]
+        plan = replace(plan, steps=found.steps, attributes=plan.attributes | FOUND)
     # a mark, and the position of zero strain, belong to the whole log and not to a step of it
     whole = locate(record, kind="relaxation", settings=plan.settings)
     surveys = []
@@ -171,6 +184,7 @@ def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_reco
         try:
             record_of_step = replace(_step_record(record, step, plan), test_id=part.id)
             survey = _located(part, record_of_step, sources)
+            survey.remarks = () if found is None or found.remark is None else (found.remark,)
         except ReductionError as error:
             survey = Survey(part, sources, n_rows=record.n_samples, error=error)
         _find_zero_strain(survey, whole, campaign, plan)

@@ -93,8 +93,9 @@ def verify_campaign(campaign: Campaign, folder: Path, *, progress: Progress) -> 
     differing = {one.product for one in of_sources}
     findings += of_sources
     as_they_were = {name: one for name, one in attributes.items() if f"{name}.nc" not in differing}
-    findings += _of_settings(campaign, folder, as_they_were, progress)
-    tests = _tests_of(campaign)
+    wanted = find_reduction_inputs(campaign, progress=progress)
+    findings += _of_settings(campaign, folder, as_they_were, wanted)
+    tests = _tests_of(campaign, wanted)
     findings += [
         _Finding(f"{name}.nc", "missing", "it is not there, and the campaign asks for it")
         for name in (*tests, *sorted(requested_parts(campaign)))
@@ -116,12 +117,15 @@ def verify_campaign(campaign: Campaign, folder: Path, *, progress: Progress) -> 
     )
 
 
-def _tests_of(campaign: Campaign) -> list[str]:
+def _tests_of(campaign: Campaign, wanted: ReductionInputs) -> list[str]:
     """Ids of the products of tests and steps, in the order of the campaign."""
+    found: dict[str, list[str]] = {}
+    for survey in wanted.first.surveys:
+        found.setdefault(survey.plan.log, []).append(survey.plan.id)
     return [
         product
         for plan in campaign.tests.values()
-        for product in ([step.product(plan.id) for step in plan.steps] or [plan.id])
+        for product in ([step.product(plan.id) for step in plan.steps] or found[plan.id])
     ]
 
 
@@ -194,10 +198,12 @@ class _Sources:
 
 
 def _of_settings(
-    campaign: Campaign, folder: Path, archives: Mapping[str, Mapping[str, Any]], progress: Progress
+    campaign: Campaign,
+    folder: Path,
+    archives: Mapping[str, Mapping[str, Any]],
+    wanted: ReductionInputs,
 ) -> Iterator[_Finding]:
     """Archives that a run would make again from the same files: logs are read as a run does."""
-    wanted = find_reduction_inputs(campaign, progress=progress)
     for survey in wanted.first.surveys:
         if survey.plan.id in archives:
             yield from _of_test(survey, wanted, folder, archives[survey.plan.id])

@@ -30,6 +30,20 @@ from reduction.stages.strain.strain_model import StrainModel
 _ROWS = "_uncertainty_contribution"
 
 
+def alignment_words(dataset: xr.Dataset, place: int) -> tuple[str, ...]:
+    """Where the curves of one specimen lie, if its cycles drift; nothing if they do not."""
+    laid_on = stored(dataset, "alignment_strain")
+    if laid_on is None or np.isnan(laid_on.values[place]):
+        return ()
+    drift = float(dataset.variables["mean_strain_drift"].values[place])
+    at = float(laid_on.values[place])
+    return (
+        f"the cycles are laid on a mean strain of {100 * at:.3f} %, and theirs drifts by"
+        f" {100 * drift:+.3f} % from the first to the last: at one strain the tension of a cycle"
+        " differs from this curve by that much strain",
+    )
+
+
 def parts_of(
     dataset: xr.Dataset, name: str, specimen: int | None = None, *, of: str
 ) -> tuple[Floats, Contributions | None]:

@@ -23,6 +23,7 @@ from reduction.archive.uncertainty_budget import random_freedom
 from reduction.archive.variables import stored
 from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.surface_points import greatest_leverage
+from reduction.lines.archive_pieces import alignment_words
 from reduction.lines.line_lookup import Branch
 from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
 from reduction.quantities.names import RESPONSES, quantity
@@ -80,9 +81,14 @@ def _branches(dataset: xr.Dataset, name: str, place: int) -> list[LineCurve]:
                 spread_of="the mean over the cycles of this one test",
                 gaps=np.stack([at[missing], at[missing + 1]], axis=1),
                 branch=branch,
-                notes=(f"gaps between bins, where nothing was measured: {missing.size}",)
-                if missing.size
-                else (),
+                notes=(
+                    *(
+                        [f"gaps between bins, where nothing was measured: {missing.size}"]
+                        if missing.size
+                        else []
+                    ),
+                    *alignment_words(dataset, place),
+                ),
             )
         )
     return curves

@@ -30,10 +30,11 @@ from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from reduction.archive.open import reading
 from reduction.archive.variables import stored
-from reduction.lines.archive_pieces import parts_of
+from reduction.lines.archive_pieces import alignment_words, parts_of
 from reduction.lines.assembly import DeployedLine
 from reduction.lines.composite import CompositeCurve, PieceSource, used_of
 from reduction.lines.export_dynamics import line_dynamics
@@ -182,6 +183,7 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
         for key in ("specimen_material", "specimen_condition")
         if key in archive and str(archive[key].values[place])
     ]
+    notes += alignment_words(archive, place)
     if curve == "mean":
         gap = np.nanmax(np.abs(np.diff(by_branch[[branches.index(b) for b in _BRANCHES]], axis=0)))
         notes.append(
@@ -190,15 +192,27 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
     if np.flatnonzero(known).size <= np.ptp(np.flatnonzero(known)):
         notes.append("strain bins without a mean lie within the curve: a straight line joins them")
     strain, tension = strain[known], tension[known]
+    tested = (float(strain[0]), float(strain[-1]))
     spread = _spread_of(archive, place, rows, known)
     if spread is not None and spread.random is None:
         notes.append(_NOT_APART)
+    if curve == "mean":
+        turns = _turns(archive, place)
+        strain, tension, added = _to_turns(strain, tension, turns)
+        if added.any():
+            spread = None if spread is None else _with_ends(spread, added)
+            notes.append(
+                f"the branches are known from strain {plain_number(tested[0], 4)} to"
+                f" {plain_number(tested[1], 4)}; beyond, the curve goes on with its own slope and"
+                f" bend to the turns of the mean cycle, {plain_number(strain[0], 4)} and"
+                f" {plain_number(strain[-1], 4)}"
+            )
     return {
         "name": specimen,
         "spread": spread,
         **_rising(strain, tension),
         "curve": words,
-        "tested": (float(strain[0]), float(strain[-1])),
+        "tested": tested,
         "diameter": _number(archive, "diameter", place),
         "rated_break_strength": _number(archive, "rated_break_strength", place),
         "linear_density": _number(archive, "linear_density", place),
@@ -210,6 +224,78 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
         ),
         "notes": tuple(notes),
     }
+
+
+def _turns(archive: xr.Dataset, place: int) -> tuple[float, float]:
+    """Strain at the two turns of the mean cycle, where the curve lies; NaN where not known."""
+    middle = _number(archive, "alignment_strain", place)
+    if math.isnan(middle):
+        middle = _number(archive, "test_mean_strain", place)
+    half = _number(archive, "test_strain_amplitude", place)
+    return middle - half, middle + half
+
+
+_END_SHARE = 0.25  # of the points of a curve, which say how it goes on
+
+_FARTHEST = 0.2  # of the range of the curve, at each end
+
+
+def _to_turns(
+    strain: Floats, tension: Floats, turns: tuple[float, float]
+) -> tuple[Floats, Floats, NDArray[np.int64]]:
+    """A mean curve that goes on to the turns of the cycles, and how many points that added.
+
+    Branches are trimmed at their ends, and a slope needs samples on both sides; a mooring code
+    that moves the line by the whole cycle would find no stiffness there.  The mean of both
+    branches is smooth up to the turns, where they meet.
+
+    Examples
+    --------
+    A parabola from 1 to 2 whose cycles turn at 0.9 and 2.1.
+
+    >>> strain = np.linspace(1, 2, 21)
+    >>> longer, tension, added = _to_turns(strain, strain**2, (0.9, 2.1))
+    >>> print(longer[[0, -1]], tension[[0, -1]].round(6), added)
+    [0.9 2.1] [0.81 4.41] [1 1]
+    """
+    count = max(int(np.ceil(_END_SHARE * strain.size)), 3)
+    added = np.zeros(2, dtype=np.int64)
+    if strain.size < count + 1:
+        return strain, tension, added
+    reach = _FARTHEST * float(strain[-1] - strain[0])
+    points, values = [strain], [tension]
+    for end, (turn, part) in enumerate(
+        zip(turns, (slice(count), slice(-count, None)), strict=True)
+    ):
+        edge = float(strain[0] if end == 0 else strain[-1])
+        beyond = edge - turn if end == 0 else turn - edge
+        if not 0 < beyond <= reach:
+            continue
+        x, y = strain[part] - edge, tension[part]
+        goes_on = float(np.polyval(np.polyfit(x, y, 2), turn - edge))
+        inner = float(tension[0] if end == 0 else tension[-1])
+        if (goes_on - inner) * (1 if end else -1) <= 0:
+            continue
+        place = 0 if end == 0 else len(points)
+        points.insert(place, np.array([turn]))
+        values.insert(place, np.array([goes_on]))
+        added[end] = 1
+    return np.concatenate(points), np.concatenate(values), added
+
+
+def _with_ends(spread: CurveSpread, added: NDArray[np.int64]) -> CurveSpread:
+    """Errors of the last points for those that were added beyond them."""
+
+    def longer(values: Floats) -> Floats:
+        padding = [(0, 0)] * (values.ndim - 1) + [(int(added[0]), int(added[1]))]
+        return np.asarray(np.pad(values, padding, mode="edge"))
+
+    return replace(
+        spread,
+        standard=longer(spread.standard),
+        random=None if spread.random is None else longer(spread.random),
+        contribution=longer(spread.contribution) if spread.component else spread.contribution,
+    )
 
 
 def _spread_of(

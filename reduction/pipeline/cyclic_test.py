@@ -14,11 +14,23 @@ from reduction.record.measurement import Bools, Floats, Specimen, areas_of
 from reduction.record.notes import Note, note
 from reduction.record.samples import first_sample
 from reduction.record.settings import ReductionSettings
+from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.loops import close_loops
+from reduction.stages.moduli.cycle_alignment import (
+    aligned_strain,
+    alignment_moves,
+    is_shift_of_curve,
+    strain_shifts,
+)
 from reduction.stages.moduli.elastomer_laws import fit_elastomers
 from reduction.stages.moduli.first_loading import first_loading_curves, stress_at_strain
 from reduction.stages.moduli.loop_balance import check_identity, cycle_tension_level
-from reduction.stages.moduli.modulus_product import ElastomerFit, ModulusCurves, Ratio
+from reduction.stages.moduli.modulus_product import (
+    ElastomerFit,
+    ModulusCurves,
+    PeakTrend,
+    Ratio,
+)
 from reduction.stages.moduli.secant_modulus import (
     compare_curves,
     compare_cycles,
@@ -84,6 +96,62 @@ def _unequal(first: Specimen, other: Specimen, index: int, history: History | No
     return found
 
 
+_DRIFT_NOTED = 0.02  # of the range of strain of a cycle
+
+
+def _curves_of_cycles(
+    strain: Floats,
+    tension: Floats,
+    cycles: Cycles,
+    loops: Loops,
+    trend: PeakTrend,
+    *,
+    names: tuple[str, ...],
+    area: Floats,
+    settings: ReductionSettings,
+) -> ModulusCurves:
+    """Curves over the cycles, which are laid on each other where their mean strain drifts."""
+    break_in = settings.cycles.break_in_cycles
+
+    def curves_of(series: Floats) -> ModulusCurves:
+        return tangent_curves(
+            series, tension, area=area, cycles=cycles, settings=settings.modulus,
+            break_in_cycles=break_in,
+        )  # fmt: skip
+
+    curves = curves_of(strain)
+    shift, reference = strain_shifts(loops.mean_strain, break_in_cycles=break_in)
+    moves = alignment_moves(
+        curves, shift[:, break_in:], loops.strain_amplitude[:, break_in:], reference, area=area
+    ) & is_shift_of_curve(
+        shift[:, break_in:], loops.mean_tension[:, break_in:],
+        loops.apparent_spring_constant[:, break_in:],
+    )  # fmt: skip
+    laid_on = np.where(moves, reference, np.nan)
+    if not moves.any():
+        return replace(curves, alignment_strain=laid_on)
+    shift[~moves] = 0.0
+    curves = curves_of(aligned_strain(strain, shift, cycles.cycle_number))
+    far = np.abs(trend.mean_strain_drift) / (2 * np.nanmedian(loops.strain_amplitude, axis=1))
+    notes = [
+        note(
+            "cycles-aligned", names[index], drift=float(trend.mean_strain_drift[index]),
+            effect=float(far[index]), per_decade=float(trend.mean_strain_per_decade[index]),
+            reference=float(reference[index]),
+        )
+        for index in np.flatnonzero(moves & (far > _DRIFT_NOTED)).tolist()
+    ]  # fmt: skip
+    laid = ", ".join(
+        f"{names[index]} {reference[index]:.6g}" for index in np.flatnonzero(moves).tolist()
+    )
+    return replace(
+        curves,
+        alignment_strain=laid_on,
+        notes=(*curves.notes, *notes),
+        made=(*curves.made, f"cycles laid on each other, shifted to a mean strain of: {laid}"),
+    )
+
+
 # cycles at each end of a long test of which the kept curves are compared
 ENDS = 6
 
@@ -109,10 +177,10 @@ def parts_of_cycles(
     if np.isnan(area).any():
         # a rope without a diameter has spring constants alone
         return {"loops": loops, "amplitude": amplitude}
-    curves = tangent_curves(
-        strain, tension, area=area, cycles=cycles, settings=settings.modulus,
-        break_in_cycles=break_in,
-    )  # fmt: skip
+    trend = fit_peak_trend(loops, area=area, break_in_cycles=break_in)
+    curves = _curves_of_cycles(
+        strain, tension, cycles, loops, trend, names=record.specimens, area=area, settings=settings
+    )
     parts: dict[str, Any] = {
         "loops": loops,
         "curves": curves,
@@ -122,7 +190,7 @@ def parts_of_cycles(
             strain, tension, area=area, cycles=cycles, names=record.specimens
         ),
         "amplitude": amplitude,
-        "trend": fit_peak_trend(loops, area=area, break_in_cycles=break_in),
+        "trend": trend,
     }
     loops.release_pages()
     ratios = _compare_specimens(curves, specimens, history)

@@ -105,6 +105,19 @@ OF_MODULI: tuple[Quantity, ...] = (
         ),
     ),
     *along(
+        _SPECIMEN,
+        stated(
+            "alignment_strain",
+            "1",
+            "mean strain on which the cycles were laid before the mean curve was taken",
+            "a choice of where the curve lies; mean_strain_drift is how far the cycles lie apart",
+            tables=("trend",),
+            page=("means", "mean strain that the cycles are laid on"),
+            percent=True,
+        ),
+        group="curves",
+    ),
+    *along(
         _BIN,
         measured(
             "tangent_modulus_untrimmed",

@@ -22,6 +22,11 @@ def _against(change: float, more: str, less: str) -> str:
     return f"{100 * abs(change):.1f} % {more if change > 0 else less}"
 
 
+def _left_out(n_cycles: int) -> str:
+    """How many cycles lie between levels, as a part of a sentence."""
+    return f" ({n_cycles} cycle{_plural(n_cycles)} between them in none)" if n_cycles else ""
+
+
 _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "laboratory": ("note", "{text}"),
     "misprint-corrected": (
@@ -83,6 +88,22 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "blank-rows": ("note", "{n_rows} blank rows at the end of the sheet are left out"),
     "log-cut-off": (
         "warning", "the file ends inside a block of data: the logger was stopped or cut off",
+    ),
+    "levels-found": (
+        "warning",
+        lambda n_levels, steps, n_left_out: (
+            f"the log holds {n_levels} levels and states no steps: each was found in the record and"
+            f" is reduced by itself{_left_out(n_left_out)}; to keep or change them, paste into the"
+            f" table of the test in campaign.toml: {steps}"
+        ),
+    ),
+    "cycles-unlike": (
+        "warning",
+        lambda mean, ratio, steps: (
+            f"the cycles are unlike (nine tenths of their means lie {100 * mean:.0f} % of a range"
+            f" apart, their ranges a factor of {ratio:.2f}): a mean of the test is of none of them"
+            + (f"; its levels are {steps}" if steps else "")
+        ),
     ),
     "held-load-repeats": (
         "note",
@@ -313,6 +334,19 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "no-tangent-modulus": (
         "refusal",
         "specimen {place} of the record has no tangent modulus: no window has enough samples",
+    ),
+    "cycles-aligned": (
+        "warning",
+        "the mean strain of the cycles drifts by {drift:+.3%} from the first to the last"
+        " ({effect:.0%} of the range of a cycle; {per_decade:+.3%} per decade of cycles): curves"
+        " are those of cycles shifted to a mean strain of {reference:.3%}, and tension at a strain"
+        " is that of such a cycle",
+    ),
+    "bins-of-some-cycles": (
+        "refusal",
+        "specimen {place} of the record: curves are given at {n_given} of {n_bins} strains (of both"
+        " branches together); fewer than {least:.0%} of the cycles reach the others, and a mean"
+        " over some cycles is no curve of the test",
     ),
     "samples-off-grid": (
         "warning",

@@ -66,7 +66,11 @@ from reduction.stages.moduli.modulus_product import (
     PeakTrend,
     Segments,
 )
-from reduction.stages.moduli.secant_modulus import FEWEST_CYCLES, cycles_at_an_end, slope_per_decade
+from reduction.stages.moduli.secant_modulus import (
+    cycles_at_an_end,
+    first_of_trend,
+    slope_per_decade,
+)
 from reduction.stages.reduced_test import ReducedTest
 from reduction.stages.strain.strain_model import StrainModel, position_by_model
 from reduction.stages.three_parameter_line.hold_pairs import CreepOfHold, HeldPair
@@ -619,10 +623,10 @@ _DYNAMIC = {
 
 """Means over the last cycles of a step, and the quantity of a cycle that they are of."""
 
-_OF_TREND = ("peak_tension", "apparent_spring_constant")
+_OF_TREND = ("peak_tension", "apparent_spring_constant", "mean_strain")
 
 _OF_STEP = (
-    "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude", "valley_tension",
+    "mean_tension", "tension_amplitude", "strain_amplitude", "valley_tension",
 )  # fmt: skip
 
 
@@ -745,7 +749,10 @@ def _of_trend(
     """The slopes of `fit_peak_trend`, over the cycles that it takes."""
     peak = _of_series(loops, index, of_each, "peak_tension")
     modulus = _of_series(loops, index, of_each, "apparent_spring_constant") / area
-    start = min(break_in, max(0, peak.shape[1] - FEWEST_CYCLES))
+    strain = _of_series(loops, index, of_each, "mean_strain")
+    n_ends = cycles_at_an_end(strain.shape[1])
+    start = first_of_trend(peak.shape[1], break_in)
+    settled = first_of_trend(peak.shape[1], break_in, is_creep=True)
     found = Contributions(
         of_each.component,
         {
@@ -753,6 +760,10 @@ def _of_trend(
             "dynamic_modulus_per_decade": slope_per_decade(
                 modulus[:, start:], first_cycle=start + 1
             )[0],
+            "mean_strain_per_decade": slope_per_decade(
+                strain[:, settled:], first_cycle=settled + 1
+            )[0],
+            "mean_strain_drift": strain[:, -n_ends:].mean(axis=1) - strain[:, :n_ends].mean(axis=1),
             "peak_tension_change": _of_change(loops.peak_tension[index], peak),
         },
     )

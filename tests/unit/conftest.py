@@ -150,6 +150,7 @@ def make_curves(rng, n_specimens):
         tangent_modulus_by_cycle=array(rng, n_specimens, 2, 2, N_BINS),
         tangent_modulus_by_cycle_standard_uncertainty=array(rng, n_specimens, 2, 2, N_BINS),
         notes=(Note("fixture", "note", text="few samples in the window"),),
+        alignment_strain=np.linspace(0.2, 0.3, n_specimens),
         **values,
     )
 
@@ -401,8 +402,12 @@ def rich_test():
         pulls=(make_pull(np.random.default_rng(3)), None),
         rope_step=make_rope_step(np.random.default_rng(4)),
         trend=PeakTrend(
-            **{item.name: array(rng, 2) for item in fields(PeakTrend)[:-1]},
+            **{item.name: array(rng, 2) for item in fields(PeakTrend)[:5]},
             peak_tension_change_standard_uncertainty=np.array([0.01, 0.02]),
+            mean_strain_per_decade=np.array([0.002, 0.003]),
+            mean_strain_per_decade_standard_uncertainty=np.array([1e-4, 2e-4]),
+            mean_strain_drift=np.array([0.004, 0.005]),
+            mean_strain_drift_standard_uncertainty=np.array([2e-4, 3e-4]),
         ),
         slips=make_slips(rng),
         ratios=(make_ratio(rng), make_ratio(rng)),

@@ -637,7 +637,8 @@ _HINT = (
 _BRANCHES = np.array([BRANCH_VALUES[name] for name in BRANCH_NAMES], dtype=np.int8)
 
 
-def _control_channel(position: Floats, tension: Floats, settings: CycleSettings) -> Floats:
+def control_channel(position: Floats, tension: Floats, settings: CycleSettings) -> Floats:
+    """The channel that the machine controls: position, or the mean tension of the specimens."""
     if settings.control == "position":
         return position
     return mean_of_rows(tension)
@@ -754,7 +755,7 @@ def find_cycles(
     """
     tension = np.atleast_2d(np.asarray(tension, dtype=np.float64))
     time, position, _ = as_same_shape(time=time, position=position, tension=tension[0])
-    values = _control_channel(position, tension, settings)
+    values = control_channel(position, tension, settings)
     notes: list[Note] = []
     made: tuple[str, ...] = ()
     reversals, band = _reversals(values, settings)

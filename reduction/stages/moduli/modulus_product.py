@@ -45,6 +45,9 @@ class ModulusCurves:
         Numbers of the cycles whose curves are kept.
     tangent_modulus_by_cycle, tangent_modulus_by_cycle_standard_uncertainty : ndarray
         Shape (n_specimens, n_selected, 2, n_bins). [Pa]
+    alignment_strain : ndarray, shape (n_specimens,), or None
+        Mean strain that the cycles were laid on before the mean was taken; NaN of a specimen
+        whose cycles are as they lie, None of a single rise. [1]
     made : tuple of str
         How they were made, with numbers that stand nowhere else: lines of the history.
     tangent_modulus_window_uncertainty : ndarray, shape (n_specimens, 2, n_bins), or None
@@ -71,6 +74,7 @@ class ModulusCurves:
     made: tuple[str, ...] = ()
     branch_tension_count: Integers | None = None
     tangent_modulus_window_uncertainty: Floats | None = None
+    alignment_strain: Floats | None = None
 
 
 @dataclass(frozen=True)
@@ -160,11 +164,12 @@ class AmplitudeSummary:
 @dataclass(frozen=True)
 @read_only_arrays
 class PeakTrend:
-    """Peak tension and modulus against the logarithm of cycle number, shape (n_specimens,).
+    """Peak tension, modulus and strain against log10 of cycle number, shape (n_specimens,).
 
-    ``peak_tension_per_decade`` [N] and ``dynamic_modulus_per_decade`` [Pa] are
-    slopes against log10(cycle number); ``peak_tension_change`` [1] is the
-    mean of the last tenth of the cycles over that of the first, minus 1.
+    ``peak_tension_per_decade`` [N], ``dynamic_modulus_per_decade`` [Pa] and
+    ``mean_strain_per_decade`` [1] are slopes; ``peak_tension_change`` [1] is the
+    mean of the last tenth of the cycles over that of the first, minus 1, and
+    ``mean_strain_drift`` [1] the mean strain of the last tenth less that of the first.
     """
 
     peak_tension_per_decade: Floats
@@ -173,6 +178,10 @@ class PeakTrend:
     dynamic_modulus_per_decade_standard_uncertainty: Floats
     peak_tension_change: Floats
     peak_tension_change_standard_uncertainty: Floats
+    mean_strain_per_decade: Floats
+    mean_strain_per_decade_standard_uncertainty: Floats
+    mean_strain_drift: Floats
+    mean_strain_drift_standard_uncertainty: Floats
 
 
 @dataclass(frozen=True)

@@ -586,8 +586,23 @@ def cycles_at_an_end(n_cycles: int) -> int:
     return min(max(n_cycles // 10, 1), 10)
 
 
-def _change_of_ends(values: ArrayLike) -> tuple[Floats, Floats]:
-    r"""Mean of the last tenth of the cycles over that of the first, minus one.
+_SETTLING = 2  # first cycles, in which a specimen still follows the ramp to its mean load
+
+
+def first_of_trend(n_cycles: int, break_in_cycles: int, *, is_creep: bool = False) -> int:
+    """Return how many first cycles a slope per decade leaves out; creep those that settle too.
+
+    Examples
+    --------
+    >>> first_of_trend(100, 0), first_of_trend(100, 0, is_creep=True), first_of_trend(4, 3)
+    (0, 2, 1)
+    """
+    first = max(break_in_cycles, _SETTLING) if is_creep else break_in_cycles
+    return min(first, max(0, n_cycles - FEWEST_CYCLES))
+
+
+def _means_at_ends(values: ArrayLike) -> tuple[Floats, Floats, Floats]:
+    r"""Mean of the first tenth of the cycles, of the last, and the scatter of such a mean.
 
     Notes
     -----
@@ -598,20 +613,35 @@ def _change_of_ends(values: ArrayLike) -> tuple[Floats, Floats]:
 
     Examples
     --------
-    Ten cycles that lose 5 %, and whose neighbours differ by 1 N:
+    Ten cycles whose neighbours differ by 1 N; a mean is of one cycle:
 
-    >>> change, uncertainty = _change_of_ends([[100, 98, 97, 96, 96, 95, 96, 95, 96, 95]])
-    >>> print(change.round(3), uncertainty.round(3))
-    [-0.05] [0.011]
+    >>> parts = _means_at_ends([[100, 98, 97, 96, 96, 95, 96, 95, 96, 95]])
+    >>> print(*(part.round(2) for part in parts))
+    [100.] [95.] [0.78]
     """
     series = np.atleast_2d(np.asarray(values, dtype=np.float64))
     n_ends = cycles_at_an_end(series.shape[1])
     steps = np.diff(series, axis=1)
     pairs = np.isfinite(steps).sum(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        first, last = series[:, :n_ends].mean(axis=1), series[:, -n_ends:].mean(axis=1)
         variance = np.nansum(steps**2, axis=1) / np.where(pairs < FEWEST_CYCLES - 1, np.nan, pairs)
         scatter = np.sqrt(variance / 2 / n_ends)
+    return series[:, :n_ends].mean(axis=1), series[:, -n_ends:].mean(axis=1), scatter
+
+
+def _change_of_ends(values: ArrayLike) -> tuple[Floats, Floats]:
+    """Mean of the last tenth of the cycles over that of the first, minus one.
+
+    Examples
+    --------
+    Ten cycles that lose 5 %, and whose neighbours differ by 1 N:
+
+    >>> change, uncertainty = _change_of_ends([[100, 98, 97, 96, 96, 95, 96, 95, 96, 95]])
+    >>> print(change.round(3), uncertainty.round(3))
+    [-0.05] [0.011]
+    """
+    first, last, scatter = _means_at_ends(values)
+    with np.errstate(invalid="ignore", divide="ignore"):
         return last / first - 1, scatter / np.abs(first) * np.hypot(1.0, last / first)
 
 
@@ -630,8 +660,9 @@ def fit_peak_trend(loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0) -
     Returns
     -------
     trend : PeakTrend
-        Slopes per decade of cycles with standard uncertainties (type A), and peak of the
-        last cycle over the first, minus one. [N], [Pa], [1]
+        Slopes per decade of cycles with standard uncertainties (type A), peak of the last
+        cycles over the first, minus one, and their mean strain less that of the first. [N], [Pa],
+        [1]
 
     Raises
     ------
@@ -642,8 +673,11 @@ def fit_peak_trend(loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0) -
     -----
     Source: [1]_, sec. 4.1 ("the maximum peak can be seen to still decreasing with time");
     the straight line in the logarithm is [4]_.  The dynamic modulus is the apparent spring
-    constant over the area.  The change from first to last cycle is that of `_change_of_ends`,
-    and counts from the first cycle whatever the break-in.
+    constant over the area.  The changes from the first to the last cycles are of a tenth of
+    them each, and count from the first cycle whatever the break-in.  The slope of the mean
+    strain is the creep of a rope in load control.  It begins with the third cycle: in the first
+    two a specimen still follows the ramp to its mean load, and with the weights of
+    `slope_per_decade` they would be most of it.
 
     Examples
     --------
@@ -660,11 +694,17 @@ def fit_peak_trend(loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0) -
             "areas do not fit the loops", found=f"{areas.size} areas", needed=f"{peaks.shape[0]}"
         )
     as_positive("area", areas[np.isfinite(areas)])
-    start = min(break_in_cycles, max(0, peaks.shape[1] - FEWEST_CYCLES))
+    start = first_of_trend(peaks.shape[1], break_in_cycles)
     peak_slope, peak_uncertainty = slope_per_decade(peaks[:, start:], first_cycle=start + 1)
     modulus = np.atleast_2d(loops.apparent_spring_constant) / areas[:, None]
     modulus_slope, modulus_uncertainty = slope_per_decade(modulus[:, start:], first_cycle=start + 1)
+    strain = np.atleast_2d(loops.mean_strain)
+    settled = first_of_trend(peaks.shape[1], break_in_cycles, is_creep=True)
+    strain_slope, strain_uncertainty = slope_per_decade(
+        strain[:, settled:], first_cycle=settled + 1
+    )
     change, change_uncertainty = _change_of_ends(peaks)
+    first_strain, last_strain, strain_scatter = _means_at_ends(strain)
     return PeakTrend(
         peak_tension_per_decade=peak_slope,
         peak_tension_per_decade_standard_uncertainty=peak_uncertainty,
@@ -672,4 +712,8 @@ def fit_peak_trend(loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0) -
         dynamic_modulus_per_decade_standard_uncertainty=modulus_uncertainty,
         peak_tension_change=change,
         peak_tension_change_standard_uncertainty=change_uncertainty,
+        mean_strain_per_decade=strain_slope,
+        mean_strain_per_decade_standard_uncertainty=strain_uncertainty,
+        mean_strain_drift=last_strain - first_strain,
+        mean_strain_drift_standard_uncertainty=np.sqrt(2) * strain_scatter,
     )

@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 
 from reduction.record.arrays import as_positive, as_same_shape, run_blocks
 from reduction.record.errors import DataError
-from reduction.record.measurement import Floats, Integers
+from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
 from reduction.record.samples import sample_blocks, take_samples
 from reduction.record.settings import ModulusSettings
@@ -49,6 +49,77 @@ from reduction.stages.moduli.tangent_window import (
 _PART = 1 << 18  # samples of a block of which sums are taken together
 
 
+# of the curves of a branch: a mean over fewer is that of some cycles, not of the test
+_REACHED = 0.9
+
+_REFUSED = 0.1  # of the bins that some cycles reach, before a reader is told which are not given
+
+
+@dataclass(frozen=True)
+class _CycleMeans:
+    """Means along a branch over the cycles, shape (2, n_bins), and over the steps between bins.
+
+    ``n_seen`` (2,) is how many curves have a value in any bin.
+    """
+
+    level: RunningStatistics
+    step: RunningStatistics
+    n_seen: Floats
+
+    @classmethod
+    def of(cls, values: Floats, variance: Floats, *, weight: Floats) -> _CycleMeans:
+        """Means over the first axis of curves (n_curves, 2, n_bins)."""
+        steps = np.diff(values, axis=-1)
+        return cls(
+            RunningStatistics.of(values, variance, weight=weight),
+            RunningStatistics.of(steps, np.zeros_like(steps), weight=weight),
+            np.isfinite(values).any(axis=-1).sum(axis=0).astype(np.float64),
+        )
+
+    def __add__(self, later: _CycleMeans) -> _CycleMeans:
+        """Both blocks together."""
+        return _CycleMeans(
+            self.level + later.level, self.step + later.step, self.n_seen + later.n_seen
+        )
+
+    def is_reached(self) -> Bools:
+        """Bins in which nearly all curves of the branch have a value."""
+        n_curves = self.level.n_curves
+        reached: Bools = (n_curves > 0) & (n_curves >= _REACHED * self.n_seen[:, None])
+        return reached
+
+    def value(self) -> Floats:
+        """Mean curve: from the bin that most cycles reach, by the mean step to the next bin.
+
+        Where all cycles reach both bins that is the mean of the cycles.  Where some do not, the
+        mean of the others stands higher or lower by what these differ, which is no slope of the
+        specimen; a step between two bins is of cycles that reach both.
+        """
+        n_curves, mean = self.level.n_curves, self.level.value()
+        curve = np.full_like(mean, np.nan)
+        for branch in range(mean.shape[0]):
+            joined = self.step.n_curves[branch] > 0
+            ends = np.flatnonzero(np.diff(np.concatenate([[False], joined, [False]]).astype(int)))
+            alone = np.flatnonzero(n_curves[branch] > 0)
+            curve[branch, alone] = mean[branch, alone]
+            for first, last in zip(ends[::2], ends[1::2], strict=True):
+                part = slice(first, last + 1)
+                most = int(np.argmax(n_curves[branch, part]))
+                if self.step.n_curves[branch, first:last].min() == n_curves[branch, part].max():
+                    continue  # one population: the mean as it is
+                rise = np.concatenate([[0.0], np.cumsum(self.step.mean[branch, first:last])])
+                curve[branch, part] = mean[branch, part][most] + rise - rise[most]
+        return self.given(curve)
+
+    def given(self, values: Floats) -> Floats:
+        """Values without those of the bins that too few cycles reach."""
+        return np.where(self.is_reached(), values, np.nan)
+
+    def count(self) -> Integers:
+        """Cycles in the mean."""
+        return np.where(self.is_reached(), self.level.count, 0).astype(np.int64)
+
+
 @dataclass(frozen=True)
 class _SpecimenCurves:
     """What one specimen gives in a block: statistics (2, n_bins) [N] and selected curves.
@@ -56,9 +127,9 @@ class _SpecimenCurves:
     ``pooled`` holds the moments of both branches over the cycles of each block.
     """
 
-    trimmed: RunningStatistics
-    untrimmed: RunningStatistics
-    tension: RunningStatistics
+    trimmed: _CycleMeans
+    untrimmed: _CycleMeans
+    tension: _CycleMeans
     selected: Floats
     selected_variance: Floats
     n_outside: int
@@ -150,8 +221,8 @@ def _reduce_block(
     fits = fit_windows(trimmed.followed_by(whole), minimum_count=minimum_count)
     slope, slope_variance = fits.slope.reshape(shape), fits.slope_variance.reshape(shape)
 
-    def statistics(values: Floats, variance: Floats, which: int) -> RunningStatistics:
-        return RunningStatistics.of(
+    def statistics(values: Floats, variance: Floats, which: int) -> _CycleMeans:
+        return _CycleMeans.of(
             values.reshape(shape)[which, n_break_in:],
             variance.reshape(shape)[which, n_break_in:],
             weight=weight[n_break_in:],
@@ -310,6 +381,11 @@ def tangent_curves(
     only the trimmed branch and ends a quarter window short of it, since a slope needs
     samples on both sides.
 
+    *One population.* A bin that fewer than nine tenths of the curves reach is not given: a
+    mean over some cycles beside one over all is a step that no cycle has. Along the bins
+    that are given the mean curve goes by the mean step from bin to bin, over the curves
+    that reach both; where all reach all, that is the mean of the curves.
+
     NaN: a sample missing in strain or tension is skipped; a bin without support is
     NaN in that cycle and left out of the mean, as its count says.
 
@@ -359,6 +435,7 @@ def tangent_curves(
     per_area = 1 / areas[:, None, None]
     trimmed = [one.trimmed for one in specimens]
     untrimmed = [one.untrimmed for one in specimens]
+    tensions = [one.tension for one in specimens]
     blur, gain = window_blur(
         np.stack([one.value() for one in trimmed]), half_window=grid.half_window
     )
@@ -370,11 +447,13 @@ def tangent_curves(
     )
     blur = blur - change
 
-    def modulus(slopes: Iterable[Floats]) -> Floats:
-        return (np.stack(list(slopes)) - blur) * per_area
+    def modulus(means: Sequence[_CycleMeans], slopes: Iterable[Floats]) -> Floats:
+        given = [one.given(values) for one, values in zip(means, slopes, strict=True)]
+        return (np.stack(given) - blur) * per_area
 
-    def spread(deviations: Iterable[Floats]) -> Floats:
-        return np.stack(list(deviations)) * per_area
+    def spread(means: Sequence[_CycleMeans], deviations: Iterable[Floats]) -> Floats:
+        given = [one.given(values) for one, values in zip(means, deviations, strict=True)]
+        return np.stack(given) * per_area
 
     by_cycle = np.stack([one.selected for one in specimens]) - blur[:, None]
     by_cycle_variance = np.stack([one.selected_variance for one in specimens])
@@ -382,23 +461,24 @@ def tangent_curves(
         strain_bin=grid.centres,
         strain_bin_bounds=grid.bounds,
         window=grid.window,
-        tangent_modulus=modulus(one.value() for one in trimmed),
+        tangent_modulus=modulus(trimmed, (one.value() for one in trimmed)),
         tangent_modulus_standard_uncertainty=_not_below(
-            gain * spread(one.standard_uncertainty() for one in trimmed), noise * per_area
+            gain * spread(trimmed, (one.level.standard_uncertainty() for one in trimmed)),
+            noise * per_area,
         ),
         tangent_modulus_window_uncertainty=missed * per_area,
-        tangent_modulus_count=np.stack([one.count for one in trimmed]).astype(np.int64),
-        tangent_modulus_minimum=modulus(one.lowest() for one in trimmed),
-        tangent_modulus_maximum=modulus(one.highest() for one in trimmed),
-        tangent_modulus_scatter=spread(one.scatter() for one in trimmed),
-        tangent_modulus_untrimmed=modulus(one.value() for one in untrimmed),
+        tangent_modulus_count=np.stack([one.count() for one in trimmed]),
+        tangent_modulus_minimum=modulus(trimmed, (one.level.lowest() for one in trimmed)),
+        tangent_modulus_maximum=modulus(trimmed, (one.level.highest() for one in trimmed)),
+        tangent_modulus_scatter=spread(trimmed, (one.level.scatter() for one in trimmed)),
+        tangent_modulus_untrimmed=modulus(untrimmed, (one.value() for one in untrimmed)),
         tangent_modulus_untrimmed_standard_uncertainty=gain
-        * spread(one.standard_uncertainty() for one in untrimmed),
-        branch_tension=np.stack([one.tension.value() for one in specimens]),
+        * spread(untrimmed, (one.level.standard_uncertainty() for one in untrimmed)),
+        branch_tension=np.stack([one.value() for one in tensions]),
         branch_tension_standard_uncertainty=np.stack(
-            [one.tension.standard_uncertainty() for one in specimens]
+            [one.given(one.level.standard_uncertainty()) for one in tensions]
         ),
-        branch_tension_count=np.stack([one.tension.count for one in specimens]).astype(np.int64),
+        branch_tension_count=np.stack([one.count() for one in tensions]),
         selected_cycle=groups.first[selected] + 1,
         tangent_modulus_by_cycle=by_cycle * per_area[..., None],
         tangent_modulus_by_cycle_standard_uncertainty=gain
@@ -427,11 +507,17 @@ def _not_below(deviation: Floats, least: Floats) -> Floats:
 
 def _notes(break_in_cycles: int, specimens: Sequence[_SpecimenCurves]) -> list[Note]:
     notes = [note("break-in-left-out", n_cycles=break_in_cycles)] if break_in_cycles else []
-    notes += [
-        note("no-tangent-modulus", place=place)
-        for place, one in enumerate(specimens, start=1)
-        if not (one.trimmed.n_curves > 0).any()
-    ]
+    for place, one in enumerate(specimens, start=1):
+        reached, seen = one.trimmed.is_reached(), one.trimmed.level.n_curves > 0
+        if not seen.any():
+            notes.append(note("no-tangent-modulus", place=place))
+        elif np.count_nonzero(seen & ~reached) > _REFUSED * np.count_nonzero(seen):
+            notes.append(
+                note(
+                    "bins-of-some-cycles", place=place, n_given=int(reached.sum()),
+                    n_bins=int(seen.sum()), least=_REACHED,
+                )
+            )  # fmt: skip
     n_outside = sum(one.n_outside for one in specimens)
     if n_outside:
         notes.append(note("samples-off-grid", n_samples=n_outside))

@@ -1,0 +1,124 @@
+"""Steps of a log that states none: its levels, as they would stand in campaign.toml."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from reduction.campaign.plan import Campaign, StepPlan, TestPlan
+from reduction.pipeline.located_test import Located
+from reduction.record.errors import DataError
+from reduction.record.notes import Note, note
+from reduction.stages.cycles.cycle_search import control_channel
+from reduction.stages.cycles.levels import Level, find_levels, spread_of_cycles
+from reduction.stages.standstills import median_step
+
+FOUND = {"step_origin": "found in the record, where campaign.toml states no steps"}
+"""Attribute of the product of a step that was found."""
+
+_CUT = ("cyclic",)  # the cycles of a fatigue test are counted to the failure, over its levels
+
+_LOOKED_AT = (*_CUT, "fatigue")
+
+_UNLIKE = 0.5  # of the range of a cycle; of the ratio of ranges, less one
+
+
+@dataclass(frozen=True)
+class FoundSteps:
+    """Steps that were found, none in a log of one level, and what is to be said of the log."""
+
+    steps: tuple[StepPlan, ...] = ()
+    remark: Note | None = None
+
+
+def find_steps(plan: TestPlan, located: Located | None, campaign: Campaign) -> FoundSteps:
+    """Find the levels of a cyclic log that states no steps.
+
+    Raises
+    ------
+    DataError
+        If the log has several and the campaign names the test as one.
+    """
+    if located is None or located.cycles is None or plan.kind not in _LOOKED_AT:
+        return FoundSteps()
+    time, cycles = located.record.time, located.cycles
+    control = control_channel(located.position, located.tension, plan.settings.cycles)
+    levels = find_levels(time, control, cycles)
+    ranges = [_written(level, median_step(time)) for level in levels]
+    steps = _in_toml(ranges)
+    if levels and plan.kind in _CUT:
+        _refuse_one_name(plan, levels, steps, campaign)
+        left_out = cycles.n_cycles - sum(one.last - one.first + 1 for one in levels)
+        found = note("levels-found", n_levels=len(levels), steps=steps, n_left_out=left_out)
+        return FoundSteps(_as_steps(plan, ranges), found)
+    mean, ratio = spread_of_cycles(time, control, cycles)
+    if levels or mean > _UNLIKE or ratio > 1 + _UNLIKE:
+        return FoundSteps(remark=note("cycles-unlike", mean=mean, ratio=ratio, steps=steps))
+    return FoundSteps()
+
+
+def _refuse_one_name(
+    plan: TestPlan, levels: Sequence[Level], steps: str, campaign: Campaign
+) -> None:
+    """Refuse several levels where the campaign names the test as one."""
+    named = [
+        f"experiment '{name}'" for name, one in campaign.experiments.items() if plan.id in one.runs
+    ]
+    named += [
+        f"comparison '{name}'"
+        for name, one in campaign.comparisons.items()
+        if one.measured == plan.id
+    ]
+    if named:
+        raise DataError(
+            f"the log of test '{plan.id}' holds several levels, and {named[0]} names it as one",
+            found=", ".join(
+                f"{one.last - one.first + 1} cycles from {one.start:g} to {one.stop:g} s"
+                for one in levels
+            ),
+            needed=f"the level that is meant, as a step of [tests.{plan.id}], and its name there",
+            hint=f"Found: {steps}",
+        )
+
+
+def _written(level: Level, step: float) -> tuple[str, str]:
+    """From and to in seconds, with digits enough that the rows of the level and no others lie in.
+
+    Examples
+    --------
+    >>> _written(Level(0, 9, 15.0503, 591.0503, 0.0, 1.0, 0.1), 0.05)
+    ('15.050', '591.051')
+    """
+    digits = max(0, 1 - math.floor(math.log10(step)))
+    unit = 10.0**-digits
+    # a time on a boundary is kept by a thousandth of a unit, whichever way it is off
+    low = math.floor(level.start / unit + 1e-3) * unit
+    high = math.ceil(level.stop / unit - 1e-3) * unit
+    return f"{low:.{digits}f}", f"{high:.{digits}f}"
+
+
+def _name(place: int) -> str:
+    return f"level {place}"
+
+
+def _in_toml(ranges: Sequence[tuple[str, str]]) -> str:
+    """One line for the table of a test in campaign.toml; empty without levels."""
+    steps = (
+        f'{{ name = "{_name(place)}", from = "{start} s", to = "{stop} s" }}'
+        for place, (start, stop) in enumerate(ranges, start=1)
+    )
+    return f"steps = [{', '.join(steps)}]" if ranges else ""
+
+
+def _as_steps(plan: TestPlan, ranges: Sequence[tuple[str, str]]) -> tuple[StepPlan, ...]:
+    return tuple(
+        StepPlan(
+            name=_name(place),
+            kind=plan.kind,
+            time_range=(float(start), float(stop)),
+            cycle_range=None,
+            expected_cycles=None,
+        )
+        for place, (start, stop) in enumerate(ranges, start=1)
+    )

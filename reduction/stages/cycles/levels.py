@@ -1,0 +1,234 @@
+"""Levels of one record: runs of cycles at one mean, amplitude and period of the control channel.
+
+A mean over cycles at several levels is that of none of them.
+
+References
+----------
+.. [1] ISO 18692-1:2018, "Fibre ropes for offshore stationkeeping - Part 1: General
+   specification" (cycles at one mean load and range after another).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reduction.record.errors import DataError
+from reduction.record.measurement import Floats
+from reduction.record.samples import take_samples
+from reduction.stages.cycles.cycle_product import Cycles
+
+_STEP = 0.1  # of the range of a cycle: what makes a level, in the mean or in the range
+
+_STEP_OF_PERIOD = 0.25  # of itself: noise puts the turns of a slow wave samples early or late
+
+_NOISE = 5.0  # times the scatter from cycle to cycle, where that is more
+
+_ABRUPT = 5.0  # times what the cycles beside it change from one to the next
+
+_FEWEST = 3  # cycles of a level: two that agree may do so by chance
+
+_BESIDE = 5  # cycles on either side of a step that say how steady its levels are
+
+_MOST = 20  # levels; a record with more is a spectrum
+
+_SAME_PERIOD = 0.25  # by which the first cycle after a ramp may differ from the next
+
+
+@dataclass(frozen=True)
+class Level:
+    """Cycles at one level: from ``start`` to ``stop`` [s], mean and half range of the control.
+
+    ``first`` and ``last`` are places among the cycles of the record, both inside.
+    """
+
+    first: int
+    last: int
+    start: float
+    stop: float
+    mean: float
+    amplitude: float
+    frequency: float
+
+
+def find_levels(time: ArrayLike, control: ArrayLike, cycles: Cycles) -> tuple[Level, ...]:
+    r"""Levels of the cycles of a record, in the order of time.
+
+    Parameters
+    ----------
+    time : array_like, shape (n_samples,)
+        Elapsed time. [s]
+    control : array_like, shape (n_samples,)
+        The channel that the machine controls, on which the cycles were found. [m] or [N]
+    cycles : Cycles
+        From `reduction.stages.cycles.cycle_search.find_cycles`.
+
+    Returns
+    -------
+    levels : tuple of Level
+        Empty where the record is of one level, of more than 20, or where the level goes on
+        from cycle to cycle.
+
+    Raises
+    ------
+    DataError
+        If time and channel are not of one length.
+
+    Notes
+    -----
+    Of each cycle mean, half range and period are read at its turns.  A *step* is a change of
+    the mean by a tenth of the range, of the range by a tenth or of the period by a quarter of
+    itself, and by five times the scatter from cycle to cycle where that is more.  Neighbours
+    that differ by less than half a step belong together; three cycles that do are a run.  Two
+    runs are two levels where the medians of the three cycles on both sides differ by a step, and
+    by five times as much as the cycles beside them change from one to the next: a ramp of the
+    amplitude, slow or fast, has no such place and is not cut, nor is a single cycle that
+    differs.  Cycles between two levels belong to neither.
+
+    The machine's own channel is looked at, so that creep of strain in load control, or
+    slips of a splice in position control, which change the other channel, make no level.
+
+    Where a ramp leads into the first cycle without a turn, that cycle begins as the ramp
+    passes the valley, if it is then as long as those that follow.
+
+    Examples
+    --------
+    Four cycles about 10, then four about 20, on the way from one to the other a ramp.
+
+    >>> turns = [9, 11, 9, 11, 9, 11, 9, 11, 9, 19, 21, 19, 21, 19, 21, 19, 21, 19]
+    >>> time = np.arange(0.0, 17.01, 0.1)
+    >>> control = np.interp(time, np.arange(18), turns)
+    >>> at = np.array([0, 20, 40, 60, 90, 110, 130, 150])
+    >>> ends = np.column_stack([at, at + 10])
+    >>> cycles = Cycles(
+    ...     at, at + 20, ends, ends + 10, np.ones((8, 2)), np.zeros(171, np.int32),
+    ...     np.zeros(171, np.int8), np.zeros(171, bool), 0.2,
+    ... )
+    >>> for one in find_levels(time, control, cycles):
+    ...     print(round(one.start, 6), round(one.stop, 6), round(one.mean, 6))
+    0.0 8.0 10.0
+    9.0 17.0 20.0
+    """
+    times, values = np.asarray(time, dtype=np.float64), np.asarray(control, dtype=np.float64)
+    if times.shape != values.shape or times.ndim != 1:
+        raise DataError(
+            "time and channel do not pair up", found=f"{times.shape} and {values.shape}"
+        )
+    n_cycles = cycles.n_cycles
+    if n_cycles < 2 * _FEWEST:
+        return ()
+    read = _of_cycles(times, values, cycles)
+    if not np.isfinite(read).all():
+        return ()
+    noise = _NOISE * np.median(np.abs(np.diff(read, axis=1)), axis=1) * 1.4826 / np.sqrt(2)
+    change = _in_steps(read[:, :-1], read[:, 1:], noise)
+    runs: list[tuple[int, int]] = []
+    for first, last in _runs(change < 0.5):
+        if runs and not _is_step(read, change, noise, (runs[-1][1], first)):
+            runs[-1] = (runs[-1][0], last)
+        else:
+            runs.append((first, last))
+    if not 2 <= len(runs) <= _MOST:
+        return ()
+    stops = [-1, *(int(cycles.last[last]) for _, last in runs)]
+    mean, half, period = read[0], np.exp(read[1]), np.exp(read[2])
+    return tuple(
+        Level(
+            first=first,
+            last=last,
+            start=_start(times, values, cycles, first, after=stop, period=float(period[first])),
+            stop=float(times[cycles.last[last]]),
+            mean=float(np.median(mean[first : last + 1])),
+            amplitude=float(np.median(half[first : last + 1])),
+            frequency=float(1 / np.median(period[first : last + 1])),
+        )
+        for (first, last), stop in zip(runs, stops, strict=False)
+    )
+
+
+def _in_steps(one: Floats, other: Floats, noise: Floats) -> Floats:
+    """How many steps two cycles lie apart, in the one of three numbers that differs most."""
+    least = np.minimum(np.exp(one[1]), np.exp(other[1]))
+    ratios = [np.full_like(least, np.log1p(step)) for step in (_STEP, _STEP_OF_PERIOD)]
+    size = np.stack([2 * _STEP * least, *ratios])
+    floor = np.reshape(noise, (3,) + (1,) * least.ndim)
+    return np.asarray((np.abs(other - one) / np.maximum(size, floor)).max(axis=0))
+
+
+def _runs(is_joined: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
+    """First and last cycle of runs in which neighbours belong together, long enough for a level."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], is_joined, [False]]).astype(int)))
+    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        if last - first + 1 >= _FEWEST:
+            yield first, last
+
+
+def _is_step(read: Floats, change: Floats, noise: Floats, between: tuple[int, int]) -> bool:
+    """Whether the cycles up to one and those from another on are of two levels."""
+    last, first = between
+    before = np.median(read[:, last + 1 - _FEWEST : last + 1], axis=1)
+    after = np.median(read[:, first : first + _FEWEST], axis=1)
+    step = float(_in_steps(before, after, noise))
+    beside = max(
+        float(np.median(change[max(last - _BESIDE, 0) : last])),
+        float(np.median(change[first : first + _BESIDE])),
+    )
+    return step >= 1 and step >= _ABRUPT * beside
+
+
+def _start(
+    time: Floats, values: Floats, cycles: Cycles, first: int, *, after: int, period: float
+) -> float:
+    """When the first cycle of a level begins, which may be that before the first that was found."""
+    begin = int(cycles.first[first])
+    valley = float(values[begin])
+    earliest = int(np.searchsorted(time, time[begin] - (1 + _SAME_PERIOD) * period))
+    latest = int(np.searchsorted(time, time[begin] - (1 - _SAME_PERIOD) * period, side="right"))
+    earliest = max(earliest, after + 1)
+    if latest <= earliest:
+        return float(time[begin])
+    before = values[earliest : latest + 1]
+    passes = np.flatnonzero((before[:-1] < valley) & (before[1:] >= valley))
+    # a level that is reached from above has its valley found
+    is_reached_from_below = passes.size and np.nanmin(values[after + 1 : earliest + 1]) < valley
+    return float(time[earliest + passes[-1]] if is_reached_from_below else time[begin])
+
+
+def spread_of_cycles(time: Floats, control: Floats, cycles: Cycles) -> tuple[float, float]:
+    """Range of the means of nine tenths of the cycles over a cycle's range; ratio of their ranges.
+
+    Examples
+    --------
+    Twenty cycles of range 2, then twenty of range 4, about one mean.
+
+    >>> time = np.arange(0.0, 161.0)
+    >>> control = np.tile([-1.0, 0.0, 1.0, 0.0], 41)[:161] * np.where(time < 80, 1, 2)
+    >>> at = 4 * np.arange(40)
+    >>> ends = np.column_stack([at, at + 2])
+    >>> cycles = Cycles(
+    ...     at, at + 4, ends, ends + 2, np.ones((40, 2)), np.zeros(161, np.int32),
+    ...     np.zeros(161, np.int8), np.zeros(161, bool), 0.2,
+    ... )
+    >>> mean, ratio = spread_of_cycles(time, control, cycles)
+    >>> print(round(mean, 3), round(ratio, 3))
+    0.0 2.0
+    """
+    read = _of_cycles(time, control, cycles)
+    low, high = np.quantile(read[:2], [0.05, 0.95], axis=1)
+    of_range = 2 * np.exp(np.median(read[1]))
+    return float((high[0] - low[0]) / of_range), float(np.exp(high[1] - low[1]))
+
+
+def _of_cycles(time: Floats, values: Floats, cycles: Cycles) -> Floats:
+    """Mean, logarithm of half the range and of the period of each cycle, shape (3, n_cycles)."""
+    turns = np.stack(
+        [cycles.branch_first[:, 0], cycles.branch_last[:, 0], cycles.branch_last[:, 1]]
+    )
+    begin, peak, end = take_samples(values, turns)
+    valley = (begin + end) / 2
+    start, stop = take_samples(time, np.stack([cycles.first, cycles.last]))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.stack([(peak + valley) / 2, np.log((peak - valley) / 2), np.log(stop - start)])

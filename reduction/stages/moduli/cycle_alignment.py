@@ -1,0 +1,263 @@
+"""Cycles of a test laid over each other by their mean strain.
+
+A rope in load control creeps: each cycle is that of the one before, further along the strain axis.
+The mean tension at one strain is then of other cycles at every strain, and its slope is that of no
+cycle.
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 2.2 (modulus of a loop).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reduction.record.errors import DataError
+from reduction.record.measurement import Floats
+from reduction.record.samples import empty_like, sample_blocks
+from reduction.stages.moduli.modulus_product import ModulusCurves
+
+_NEGLIGIBLE = 0.1  # of the standard uncertainty of the mean
+
+_ALONG = 0.5  # of the shifts, that mean tension may explain
+
+
+def strain_shifts(mean_strain: Floats, *, break_in_cycles: int = 0) -> tuple[Floats, Floats]:
+    r"""How far each cycle lies along the strain axis from the mean of all of them.
+
+    .. math:: s_i = \bar\varepsilon_i - \varepsilon_0, \qquad
+              \varepsilon_0 = \frac{1}{n} \sum_i \bar\varepsilon_i
+
+    Parameters
+    ----------
+    mean_strain : ndarray, shape (n_specimens, n_cycles)
+        Mean strain of each cycle; NaN where a cycle has none. [1]
+    break_in_cycles : int
+        First cycles, which are in no mean and not in the reference. [1]
+
+    Returns
+    -------
+    shift : ndarray, shape (n_specimens, n_cycles)
+        Of a cycle without a mean strain that of its neighbours, by straight lines. [1]
+    reference : ndarray, shape (n_specimens,)
+        The mean strain that the cycles are laid on; NaN where no cycle has one. [1]
+
+    Raises
+    ------
+    DataError
+        If no cycle is left after break-in.
+
+    Notes
+    -----
+    With the mean over the same cycles as reference the curve stays amid the strains of the
+    test: it is neither that of the first cycle nor that of the last.
+
+    Examples
+    --------
+    >>> shift, reference = strain_shifts(np.array([[0.10, np.nan, 0.14]]))
+    >>> print(shift.round(3), reference.round(3))
+    [[-0.02  0.    0.02]] [0.12]
+    """
+    strains = np.atleast_2d(np.asarray(mean_strain, dtype=np.float64))
+    n_cycles = strains.shape[1]
+    if not 0 <= break_in_cycles < n_cycles:
+        raise DataError(
+            "no cycle is left after break-in",
+            found=f"{n_cycles} cycles, {break_in_cycles} of them break-in",
+            needed="at least one cycle more than cycles.break_in_cycles",
+        )
+    shift, reference = np.zeros_like(strains), np.full(strains.shape[0], np.nan)
+    number = np.arange(n_cycles)
+    for row, one in enumerate(strains):
+        known = np.isfinite(one)
+        if not known[break_in_cycles:].any():
+            continue
+        reference[row] = one[break_in_cycles:][known[break_in_cycles:]].mean()
+        shift[row] = np.interp(number, number[known], one[known]) - reference[row]
+    return shift, reference
+
+
+def is_shift_of_curve(
+    shift: Floats, mean_tension: Floats, spring_constant: Floats
+) -> NDArray[np.bool_]:
+    r"""Whether the curve itself lies further along from cycle to cycle, as it does in creep.
+
+    .. math:: \mathrm{rms}(\bar T_i - \bar T) / K < \mathrm{rms}(s_i) / 2
+
+    Parameters
+    ----------
+    shift : ndarray, shape (n_specimens, n_cycles)
+        From `strain_shifts`; those in the mean. [1]
+    mean_tension, spring_constant : ndarray, same shape
+        Mean tension of each cycle, and its apparent spring constant; NaN where missing. [N]
+
+    Returns
+    -------
+    is_shift : ndarray of bool, shape (n_specimens,)
+        False where the mean tension goes with the strain, or falls while the crosshead keeps
+        the strain: such cycles lie where they were measured. [1]
+
+    Raises
+    ------
+    ValueError
+        If the arrays do not have one shape.
+
+    Notes
+    -----
+    In load control the machine brings the same tensions back, and a specimen that creeps has
+    them at more strain.  In position control tension relaxes, and what strain changes, as
+    splices give, it changes along the curve of the specimen: to shift such cycles would move
+    them off it.
+
+    Examples
+    --------
+    >>> shift = np.array([[-0.001, 0.0, 0.001]])
+    >>> steady, falling = np.full((1, 3), 500.0), np.array([[520.0, 500.0, 480.0]])
+    >>> is_shift_of_curve(shift, steady, np.full((1, 3), 1e4))
+    array([ True])
+    >>> is_shift_of_curve(shift, falling, np.full((1, 3), 1e4))
+    array([False])
+    """
+    found = np.zeros(shift.shape[0], dtype=bool)
+    for row, (apart, load, slope) in enumerate(
+        zip(shift, mean_tension, spring_constant, strict=True)
+    ):
+        known = np.isfinite(load) & np.isfinite(slope)
+        if known.any():
+            along = np.std(load[known]) / abs(float(np.median(slope[known])))
+            found[row] = bool(along < _ALONG * np.sqrt(np.mean(apart[known] ** 2)))
+    return found
+
+
+def alignment_moves(
+    curves: ModulusCurves, shift: Floats, half_range: Floats, reference: Floats, *, area: Floats
+) -> NDArray[np.bool_]:
+    r"""Whether aligned cycles would have another mean than cycles as they lie.
+
+    .. math:: \Delta T = T' (\bar s_b - \bar s) + T'' \overline{s^2} / 2
+
+    Parameters
+    ----------
+    curves : ModulusCurves
+        Over the cycles as they lie. [SI]
+    shift, half_range : ndarray, shape (n_specimens, n_cycles)
+        From `strain_shifts`, and half the range of strain of each cycle; those in the mean. [1]
+    reference : ndarray, shape (n_specimens,)
+        From `strain_shifts`. [1]
+    area : ndarray, shape (n_specimens,)
+        Cross-section at zero tension. [m2]
+
+    Returns
+    -------
+    moves : ndarray of bool, shape (n_specimens,)
+        True where the mean tension of some bin would move by a tenth of its standard uncertainty
+        or more, where the cycles lie further apart than a bin is wide, so that bins at the ends
+        belong to some of them, and where the cycles as they lie have no mean. [1]
+
+    Raises
+    ------
+    ValueError
+        If the arrays do not have a row a specimen.
+
+    Notes
+    -----
+    A cycle that lies further along by :math:`s` has, at one strain, the tension less
+    :math:`T' s`.  Over the cycles that reach a bin that is :math:`\bar s_b`, which is not zero
+    where some do not reach it; the second term is what a bend makes of cycles on both sides.
+
+    Examples
+    --------
+    Four cycles of a straight line, 1000 N per unit strain, of which the first two lie lower.
+
+    >>> x = np.arange(0.0, 1.0, 0.1) + 0.05
+    >>> load = np.broadcast_to(1000 * x, (1, 2, 10))
+    >>> blank = dict.fromkeys(ModulusCurves.__dataclass_fields__, np.zeros((1, 2, 10)))
+    >>> curves = ModulusCurves(**blank | {
+    ...     "strain_bin": x, "strain_bin_bounds": np.column_stack([x - 0.05, x + 0.05]),
+    ...     "branch_tension": load, "tangent_modulus": 0 * load + 1e7, "window": 0.3,
+    ...     "branch_tension_standard_uncertainty": 0 * load + 1.0,
+    ... })
+    >>> shift = np.array([[-0.2, -0.2, 0.2, 0.2]])
+    >>> lies = {"half_range": np.full((1, 4), 0.3), "reference": np.array([0.5])}
+    >>> print(alignment_moves(curves, shift, area=np.array([1e-4]), **lies))
+    [ True]
+    >>> print(alignment_moves(curves, 1e-5 * shift, area=np.array([1e-4]), **lies))
+    [False]
+    """
+    width = float(np.diff(curves.strain_bin_bounds[0])[0])
+    moves = np.zeros(shift.shape[0], dtype=bool)
+    for row, (apart, half) in enumerate(zip(shift, half_range, strict=True)):
+        if not np.isfinite(reference[row]):
+            continue
+        tension = curves.branch_tension[row]
+        if np.ptp(apart) > width or not np.isfinite(tension).any():
+            moves[row] = True
+            continue
+        middle = reference[row] + apart
+        slope = curves.tangent_modulus[row] * area[row]
+        bend = np.gradient(slope, curves.strain_bin, axis=-1) if slope.shape[-1] > 1 else 0 * slope
+        of_bin = _mean_shift(apart, middle - half, middle + half, curves)
+        change = np.abs(slope * of_bin) + np.abs(np.nan_to_num(bend)) * np.mean(apart**2) / 2
+        spread = curves.branch_tension_standard_uncertainty[row]
+        moves[row] = bool((change >= _NEGLIGIBLE * spread)[np.isfinite(change * spread)].any())
+    return moves
+
+
+def _mean_shift(shift: Floats, low: Floats, high: Floats, curves: ModulusCurves) -> Floats:
+    """Mean shift of the cycles that reach each bin, shape (n_bins,); NaN where none does."""
+    edges = np.append(curves.strain_bin_bounds[:, 0], curves.strain_bin_bounds[-1, 1])
+    n_bins = curves.strain_bin.size
+    known = np.isfinite(low) & np.isfinite(high)
+    begin = np.clip(np.searchsorted(edges, low[known]), 0, n_bins)
+    end = np.clip(np.searchsorted(edges, high[known], side="right") - 1, begin, n_bins)
+
+    def over_bins(weights: Floats) -> Floats:
+        entered = np.bincount(begin, weights, n_bins + 1) - np.bincount(end, weights, n_bins + 1)
+        return np.asarray(np.cumsum(entered)[:n_bins])
+
+    count = over_bins(np.ones(begin.size))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(count > 0.5, over_bins(shift[known]) / count, np.nan)
+
+
+def aligned_strain(strain: Floats, shift: Floats, cycle_number: NDArray[np.int32]) -> Floats:
+    """Strain with each cycle shifted onto the mean strain of all.
+
+    Parameters
+    ----------
+    strain : ndarray, shape (n_specimens, n_samples)
+        As measured. [1]
+    shift : ndarray, shape (n_specimens, n_cycles)
+        From `strain_shifts`; zero where nothing is to be shifted. [1]
+    cycle_number : ndarray of int32, shape (n_samples,)
+        From 1; samples outside cycles, 0, stay as they are. [1]
+
+    Returns
+    -------
+    aligned : ndarray, shape (n_specimens, n_samples)
+        Beside ``strain``, in memory or on disk. [1]
+
+    Raises
+    ------
+    IndexError
+        If a sample is of a cycle that has no shift.
+
+    Notes
+    -----
+    A constant is taken off within a cycle, so that no slope and no loop changes.
+
+    Examples
+    --------
+    >>> number = np.array([0, 1, 1, 2, 2], dtype=np.int32)
+    >>> strain = np.array([[0.0, 0.1, 0.2, 0.3, 0.4]])
+    >>> print(aligned_strain(strain, np.array([[-0.1, 0.1]]), number))
+    [[0.  0.2 0.3 0.2 0.3]]
+    """
+    by_number = np.concatenate([np.zeros((shift.shape[0], 1)), shift], axis=1)
+    aligned = empty_like(strain)
+    for part in sample_blocks(strain.shape[1], strain, cycle_number, aligned):
+        aligned[:, part] = strain[:, part] - by_number[:, cycle_number[part]]
+    return np.asarray(aligned)

@@ -1,0 +1,131 @@
+"""Curves of cycles that creep, and of cycles of which some reach further than others."""
+
+import numpy as np
+import pytest
+
+from reduction.record.settings import ModulusSettings
+from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.moduli.cycle_alignment import (
+    aligned_strain,
+    alignment_moves,
+    is_shift_of_curve,
+    strain_shifts,
+)
+from reduction.stages.moduli.segments import find_segments
+from reduction.stages.moduli.tangent_modulus import tangent_curves
+
+PER, AREA = 100, np.array([1e-3])
+SLOPE, BEND = 2e6, 6e6  # [N]
+
+
+def law(relative):
+    return 5e4 + SLOPE * relative + BEND * relative**2
+
+
+def cycles_of(half, middle, tension_of):
+    """Triangular cycles, half range and middle by cycle: strain, tension and the cycles."""
+    n = half.size
+    phase = np.arange(n * PER + 1)
+    number = np.minimum(phase // PER, n - 1)
+    share = 1 - np.abs(1 - 2 * (phase - PER * number) / PER)
+    relative = half[number] * (2 * share - 1)
+    first = PER * np.arange(n)
+    ends = np.column_stack([first, first + PER // 2])
+    branch = np.where(phase - PER * number <= PER // 2, 1, 2).astype(np.int8)
+    found = Cycles(
+        first, first + PER, ends, ends + PER // 2, np.ones((n, 2)),
+        (number + 1).astype(np.int32), branch, np.ones(phase.size, dtype=bool), 0.001,
+    )  # fmt: skip
+    return (relative + middle[number])[None], tension_of(relative, number)[None], found
+
+
+def curves_of(strain, tension, cycles):
+    settings = ModulusSettings()
+    return tangent_curves(strain, tension, area=AREA, cycles=cycles, settings=settings)
+
+
+def slope_of(curves, branch):
+    known = np.isfinite(curves.branch_tension[0, branch])
+    x, y = curves.strain_bin[known], curves.branch_tension[0, branch][known]
+    return np.polyfit(x - x.mean(), y, 2)[1], np.ptp(x)
+
+
+def test_the_curve_of_creeping_cycles_is_that_of_each():
+    creep = 0.1 + 0.005 * np.log10(np.arange(1, 81))
+    half = np.full(80, 0.02)
+    strain, tension, cycles = cycles_of(half, creep, lambda relative, _: law(relative))
+    shift, reference = strain_shifts(creep[None])
+    assert reference[0] == pytest.approx(creep.mean())
+    plain = curves_of(strain, tension, cycles)
+    assert alignment_moves(plain, shift, half[None], reference, area=AREA).all()
+    curves = curves_of(aligned_strain(strain, shift, cycles.cycle_number), tension, cycles)
+    for branch in (0, 1):
+        known = np.isfinite(curves.branch_tension[0, branch])
+        expected = law(curves.strain_bin - reference[0])[known]
+        np.testing.assert_allclose(curves.branch_tension[0, branch][known], expected, rtol=2e-4)
+        assert known.sum() > 0.85 * 0.04 / np.diff(curves.strain_bin_bounds[0])[0]
+    segments = find_segments(curves, area=AREA, settings=ModulusSettings())
+    low, high = segments.segment_strain_low[0, 0, 0], segments.segment_strain_high[0, 0, 0]
+    chord = (law(high - reference[0]) - law(low - reference[0])) / (high - low)
+    assert segments.segment_modulus[0, 0, 0] * AREA[0] == pytest.approx(chord, rel=0.005)
+
+
+def test_cycles_that_hardly_drift_stay_as_they_lie():
+    rng = np.random.default_rng(2)
+    creep, half = 0.1 + 1e-6 * np.arange(40.0), np.full(40, 0.02)
+
+    def noisy(relative, _):
+        return law(relative) + 300 * rng.standard_normal(relative.size)
+
+    strain, tension, cycles = cycles_of(half, creep, noisy)
+    shift, reference = strain_shifts(creep[None])
+    plain = curves_of(strain, tension, cycles)
+    assert not alignment_moves(plain, shift, half[None], reference, area=AREA).any()
+
+
+@pytest.mark.parametrize(("of_tension", "is_creep"), [(0.0, True), (1.0, False), (-3.0, False)])
+def test_strain_that_goes_with_the_tension_is_no_creep(of_tension, is_creep):
+    shift = np.linspace(-0.003, 0.003, 30)[None]
+    mean = 5e4 + of_tension * SLOPE * shift
+    assert is_shift_of_curve(shift, mean, np.full_like(shift, SLOPE))[0] == is_creep
+
+
+def test_a_mean_has_no_step_where_some_cycles_end():
+    # half of the cycles reach further, and lie a tenth higher
+    half = np.where(np.arange(20) % 2, 0.020, 0.024)
+    strain, tension, cycles = cycles_of(
+        half,
+        np.full(20, 0.1),
+        lambda relative, number: law(relative) * np.where(number % 2, 1, 1.1),
+    )
+    curves = curves_of(strain, tension, cycles)
+    counts = curves.branch_tension_count[0]
+    assert set(np.unique(counts)) == {0, 20}
+    assert np.isnan(curves.branch_tension[0][counts == 0]).all()
+    assert [one.code for one in curves.notes] == ["bins-of-some-cycles"]
+    for branch in (0, 1):
+        slope, covered = slope_of(curves, branch)
+        assert slope == pytest.approx(1.05 * SLOPE, rel=0.01)
+        assert covered > 0.03
+
+
+def test_one_cycle_of_many_that_ends_early_makes_no_step():
+    half = np.full(20, 0.02)
+    half[0] = 0.0185
+    strain, tension, cycles = cycles_of(
+        half, np.full(20, 0.1), lambda relative, number: law(relative) * np.where(number, 1, 1.5)
+    )
+    curves = curves_of(strain, tension, cycles)
+    assert {19, 20} <= set(np.unique(curves.branch_tension_count[0]))
+    known = np.isfinite(curves.branch_tension[0, 0])
+    step = np.diff(curves.branch_tension[0, 0][known]) / np.diff(curves.strain_bin[known])
+    middle = (curves.strain_bin[known][1:] + curves.strain_bin[known][:-1]) / 2 - 0.1
+    # the plain mean of 19 beside one of 20 would be off by a fortieth of 5e4 N over a bin
+    np.testing.assert_allclose(step, 1.025 * (SLOPE + 2 * BEND * middle), rtol=0.03)
+
+
+def test_shifts_of_cycles_without_a_mean_strain_are_those_beside():
+    shift, reference = strain_shifts(np.array([[np.nan, 0.1, np.nan, 0.3], 4 * [np.nan]]))
+    np.testing.assert_allclose(shift, [[-0.1, -0.1, 0.0, 0.1], [0, 0, 0, 0]], atol=1e-15)
+    assert reference[0] == pytest.approx(0.2)
+    assert np.isnan(reference[1])

@@ -1,0 +1,103 @@
+"""Levels of a record are found where there are some, and nothing else is cut."""
+
+import numpy as np
+import pytest
+
+from reduction.record.settings import CycleSettings, PhaseSettings
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.cycles.levels import find_levels
+from reduction.stages.standstills import find_standstills
+
+PER = 40  # samples a cycle
+
+STEP = 0.05  # [s]
+
+
+def wave(mean, amplitude, n_cycles, *, per=PER):
+    """Cycles from valley to valley; mean and amplitude are numbers or one value a cycle."""
+    phase = np.arange(n_cycles * per) / per
+    of_cycle = phase.astype(int)
+    middle = np.broadcast_to(mean, n_cycles)[of_cycle]
+    half = np.broadcast_to(amplitude, n_cycles)[of_cycle]
+    return middle - half * np.cos(2 * np.pi * phase)
+
+
+def ramp(start, stop, n=60):
+    return np.linspace(start, stop, n, endpoint=False)
+
+
+def levels_of(*pieces, noise=0.02, seed=1):
+    control = np.concatenate(pieces)
+    control = control + noise * np.random.default_rng(seed).standard_normal(control.size)
+    time = STEP * np.arange(control.size)
+    settings = CycleSettings(control="load", waveform="sinusoidal")
+    stand = find_standstills(time, control / 10, control[None], settings=PhaseSettings())
+    cycles = find_cycles(time, control / 10, control[None], stand, settings=settings)
+    return time, cycles, find_levels(time, control, cycles)
+
+
+def test_levels_of_unequal_length_are_found_from_the_first_cycle_to_the_last():
+    pieces = [
+        ramp(0, 8),
+        wave(10, 2, 50),
+        ramp(8, 18),
+        wave(20, 2, 7),
+        ramp(18, 28),
+        wave(30, 2, 25),
+    ]
+    *_, levels = levels_of(*pieces, ramp(28, 0))
+    starts = STEP * np.cumsum([one.size for one in pieces])[::2]
+    assert [round(one.mean) for one in levels] == [10, 20, 30]
+    assert [one.amplitude for one in levels] == pytest.approx([2, 2, 2], rel=0.03)
+    assert [one.frequency for one in levels] == pytest.approx([1 / (PER * STEP)] * 3, rel=0.01)
+    for one, start, count in zip(levels, starts, (50, 7, 25), strict=True):
+        # to a quarter of a cycle, ramp and cycle are one rise; the last fall may go on in a ramp
+        assert one.start == pytest.approx(start, abs=PER * STEP / 4)
+        assert one.stop == pytest.approx(start + PER * STEP * count, abs=1.25 * PER * STEP)
+
+
+def test_levels_that_fall_are_found():
+    *_, levels = levels_of(
+        ramp(0, 28), wave(30, 2, 12), ramp(28, 18), wave(20, 2, 40), ramp(18, 8), wave(10, 2, 9)
+    )
+    assert [round(one.mean) for one in levels] == [30, 20, 10]
+
+
+@pytest.mark.parametrize(
+    ("second", "what"),
+    [
+        ({"amplitude": 3.0}, "amplitude"),
+        ({"per": 20}, "frequency"),
+    ],
+)
+def test_a_step_of_amplitude_or_frequency_is_a_level(second, what):
+    changed = {"mean": 10.0, "amplitude": 2.0, "n_cycles": 20} | second
+    *_, levels = levels_of(ramp(0, 8), wave(10, 2, 20), wave(**changed))
+    first, last = (getattr(one, what) for one in levels)
+    assert last / first == pytest.approx(1.5 if what == "amplitude" else 2.0, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    "cycles",
+    [
+        wave(10, 2, 100),
+        wave(10, np.linspace(1, 4, 100), 100),  # slow ramp of the amplitude
+        wave(10, np.linspace(1, 4, 12), 12),  # fast ramp
+        wave(10, np.geomspace(0.5, 4, 40), 40),  # 5.5 % a cycle
+        wave(np.linspace(10, 20, 60), 2, 60),  # ramp of the mean
+        wave(10 + 0.6 * np.log10(np.arange(1, 101)), 2, 100),  # creep of the controlled channel
+        wave(10, np.where(np.arange(60) == 30, 3.0, 2.0), 60),  # one cycle that differs
+        wave(10, np.where(np.arange(60) < 2, 1.2, 2.0), 60),  # two cycles to get there
+        wave(10, 2 * np.random.default_rng(3).uniform(0.8, 1.2, 60), 60),  # no two alike
+    ],
+    ids=["one", "slow", "fast", "middling", "mean", "creep", "odd", "begin", "scatter"],
+)
+def test_what_is_no_step_is_not_cut(cycles):
+    *_, levels = levels_of(ramp(0, cycles[0]), cycles, ramp(cycles[-1], 0))
+    assert levels == ()
+
+
+def test_a_spectrum_is_not_cut():
+    blocks = [wave(10 + 4 * (place % 2), 2, 5) for place in range(30)]
+    *_, levels = levels_of(ramp(0, 8), *blocks)
+    assert levels == ()
