@@ -547,7 +547,9 @@ def _evenly(
     return clock, np.interp(clock, time[known], values[known]), at
 
 
-_FINEST_SHARE = 1e-4  # of the range of the record: an exact encoder shows any drift
+_LASTS = 0.3  # of the time of an approach
+
+_FINEST_SHARE = 1e-6  # of the range of the record: an exact encoder shows any drift
 
 _UNEVEN = 1.5  # mean step over median step
 
@@ -557,9 +559,14 @@ _STEPS_OF_SHORTEST = 8
 def _stays_slow(
     time: Floats, values: Floats, begin: int, first: int, last: int, *, noise: float
 ) -> bool:
-    """Whether an interval keeps near the end of its approach and never moves fast once slow."""
+    """Whether an interval keeps near the end of its approach and never moves fast once slow.
+
+    The turn of a sine is slow and near, too, for less than a fifth of the time of its approach.
+    """
     approach = find_approach(time, values, begin=begin, first=first, last=last, noise_range=noise)
     if approach is None:
+        return False
+    if time[last] - time[approach.end] < _LASTS * approach.stroke / approach.rate:
         return False
     held = values[approach.end : last + 1]
     low, high = finite_extremes(held)
