@@ -12,6 +12,7 @@ from reduction.experiments.stiffness_forms import (
     fit_del_vecchio_stiffness,
     fit_mean_load_stiffness,
 )
+from reduction.experiments.surface_discrepancy import SurfaceDiscrepancy
 from reduction.experiments.term_selection import reduce_terms
 from reduction.quantities.names import RESPONSES
 from reduction.record.contributions import Component, Contributions
@@ -19,6 +20,15 @@ from reduction.record.measurement import Origin, Source, Step
 from reduction.record.notes import Note, note
 from reduction.stages.three_parameter_line.line_model import check_single_time
 from reduction.uncertainty.surface_errors import with_shared_surfaces
+
+
+def nothing_missed(surfaces):
+    """What a quadratic may miss of laws that are known to be quadratic."""
+    count, n_terms = surfaces.coefficient.shape
+    return SurfaceDiscrepancy(
+        surfaces.exponents, np.zeros((count, n_terms, n_terms)), np.full(count, np.inf)
+    )
+
 
 FACTORS = ("frequency", "mean_tension", "tension_amplitude")
 UNITS = ("Hz", "N", "N")

@@ -252,6 +252,8 @@ def point_values(
             f"{name}_point_mean_value": found.mean_value[index],
             f"{name}_point_variance_factor": found.variance_factor[index],
             f"{name}_point_is_above_leverage": found.above_leverage[index],
+            f"{name}_point_discrepancy": both.discrepancy[index],
+            f"{name}_point_value_degrees_of_freedom": both.degrees_of_freedom[index],
         }
         values |= both_parts(
             f"{name}_point_value",

@@ -158,7 +158,7 @@ def plan_experiment(
         runs=runs,
         quasi_static=pulls,
         responses=section.responses,
-        transform={key: value for key, value in section.transform.items() if value != "none"},
+        transform={str(key): value for key, value in section.transform.items()},
         specimens_as=section.specimens_as,
         term_reduction=section.term_reduction,
     )

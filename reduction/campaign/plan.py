@@ -78,7 +78,7 @@ class ExperimentPlan:
 
     ``runs`` holds the coded levels as planned, by the id of the test or step; levels beyond
     the factors are those of dummy columns.  ``quasi_static`` is the test with the slow pull
-    of each specimen, ``transform`` that of each response that has one.
+    of each specimen, ``transform`` the scale of each response of which one is stated.
     """
 
     name: str

@@ -15,6 +15,7 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.special import fdtrc
 
 from reduction.experiments.designs import Design, FactorLevels, coded_from_engineering
 from reduction.experiments.experiment import ExperimentResult, RunTable
@@ -360,7 +361,9 @@ def fit_experiment(
                 refusal_status = FitError.exit_status
         else:
             notes += _surface_levels_off_plan(runs, coded, names)
-            surfaces = _surfaces(runs, names, low, high, response_names, transform, specimens_as)
+            scales, remarks = _scales(runs, names, low, high, response_names, transform)
+            notes += remarks
+            surfaces = _surfaces(runs, names, low, high, response_names, scales, specimens_as)
     except REFUSALS as error:
         what = "effects" if kind == "plackett-burman" else "response surfaces"
         notes.append(note("no-main-part", part=what, reason=str(error)))
@@ -435,6 +438,65 @@ def _screening(
     return effects, notes + screening_remarks(
         design.dummy.shape[1], _specimen_blocks(runs) is not None
     )
+
+
+_LOGARITHMIC = ("hysteresis_energy", "relaxation_time")
+"""Above zero by nature and spread over decades: fitted as logarithms, unless the runs object."""
+
+_OBJECTS = 0.05
+"""Probability of a ratio of variances from which the runs object to a scale."""
+
+
+def _scales(
+    runs: RunTable,
+    names: tuple[str, ...],
+    low: Floats,
+    high: Floats,
+    response_names: tuple[str, ...],
+    stated: Mapping[str, str],
+) -> tuple[dict[str, str], list[Note]]:
+    """Scale of each response: the stated one, else the usual one unless the runs object to it.
+
+    Scatter about a surface of logarithms is compared with that about a surface as measured over
+    the geometric mean of the runs (Box and Cox): where the usual scale has so much more that a
+    ratio of two variances of equal degrees of freedom would be as large in one case of twenty, the
+    other scale is taken.
+    """
+    scales = dict(stated)
+    notes: list[Note] = []
+    free = [index for index, one in enumerate(response_names) if one not in stated]
+    values = runs.response[free]
+    has = np.isfinite(values).any(axis=1) & ~np.any(values <= 0, axis=1)
+    free = [index for index, one in zip(free, has.tolist(), strict=True) if one]
+    if not free:
+        return scales, notes
+    as_measured: Transform = "none"
+    bent: Transform = "log"
+    both = [*(as_measured for _ in free), *(bent for _ in free)]
+    chosen = [f"{scale} {index}" for scale, index in zip(both, 2 * free, strict=True)]
+    trial = fit_surfaces(
+        runs.level, runs.response[2 * free], factor_names=names, response_names=chosen,
+        low=low, high=high, run_names=runs.names, blocks=_specimen_blocks(runs),
+        transforms=both, with_tests=False,
+    )  # fmt: skip
+    mean = np.exp(np.nanmean(np.log(runs.response[free]), axis=1))
+    measured, logarithm = trial.sigma[: len(free)] / mean, trial.sigma[len(free) :]
+    for row, index in enumerate(free):
+        name, freedom = response_names[index], float(trial.degrees_of_freedom[row])
+        usual: Transform = "log" if name in _LOGARITHMIC else "none"
+        own, other = (
+            (logarithm[row], measured[row]) if usual == "log" else (measured[row], logarithm[row])
+        )
+        p = 1.0
+        if trial.reason[row] == 0 and trial.reason[row + len(free)] == 0:
+            p = float(fdtrc(freedom, freedom, (own / other) ** 2))
+        objects = p < _OBJECTS
+        scales[name] = {"none": "log", "log": "none"}[usual] if objects else usual
+        if objects:
+            to = "its logarithm" if usual == "none" else "the response as measured"
+            ratio = float(own / other)
+            notes.append(note("scale-by-runs", response=name, scale=to, ratio=ratio, p=p))
+    return scales, notes
 
 
 def _surfaces(

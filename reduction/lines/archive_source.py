@@ -22,6 +22,7 @@ from reduction.archive.surfaces_dataset import surface_names, surfaces_of
 from reduction.archive.uncertainty_budget import random_freedom
 from reduction.archive.variables import stored
 from reduction.experiments.fit_results import ResponseSurfaces
+from reduction.experiments.surface_discrepancy import discrepancy_of
 from reduction.experiments.surface_points import greatest_leverage
 from reduction.lines.archive_pieces import alignment_words
 from reduction.lines.line_lookup import Branch
@@ -264,6 +265,7 @@ def _surface(
     notes = [] if name == response else [f"from the surface of {name}, brought back"]
     component, rows = shared
     sigma = float(fitted.sigma[index])
+    missed = discrepancy_of(fitted)
     if np.isfinite(fitted.coefficient[index]).all() and np.isnan(rows).any():
         component, rows, sigma = (), rows[:0], float("nan")
         notes.append(
@@ -287,6 +289,9 @@ def _surface(
         degrees_of_freedom=float(fitted.degrees_of_freedom[index]),
         greatest_leverage=float(greatest_leverage(fitted, plan)[index]),
         exponent=float(fitted.transform_exponent[index]),
+        discrepancy=np.array(missed.moment[index]),
+        discrepancy_exponents=np.array(missed.exponents),
+        discrepancy_degrees_of_freedom=float(missed.degrees_of_freedom[index]),
         component=component,
         contribution=rows,
         notes=tuple(notes),

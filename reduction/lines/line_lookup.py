@@ -51,6 +51,7 @@ from reduction.experiments.designs import (
 )
 from reduction.experiments.response_transform import back_transform, back_transformed_change
 from reduction.experiments.run_sheet import variance_factor
+from reduction.experiments.surface_discrepancy import discrepancy_at
 from reduction.experiments.surface_points import ABOVE_LEVERAGE, is_within_levels
 from reduction.lines.line_curve import (
     End,
@@ -331,7 +332,8 @@ class _SurfacePoints:
     ``surface_high`` the surface itself; NaN where sigma is not known. [unit of the quantity]
     ``contribution``, of shape (n_components, n_points), is what each error that the runs share adds
     to the value; ``random`` and ``run_random`` are one standard uncertainty of what is of the
-    surface alone, and of one more run beside that. [unit of the quantity]
+    surface alone, and of one more run beside that. [unit of the quantity]  ``random_freedom`` are
+    the degrees of freedom of the first. [1]
     """
 
     value: Floats
@@ -342,6 +344,7 @@ class _SurfacePoints:
     leverage: Floats
     contribution: Floats
     random: Floats
+    random_freedom: Floats
     run_random: Floats
     is_inside: Bools
 
@@ -375,7 +378,7 @@ def _evaluate_surface(surface: LineSurface, points: ArrayLike) -> _SurfacePoints
         )  # fmt: skip
     size = given.shape[0]
     names = ("value", "low", "high", "surface_low", "surface_high", "leverage", "random",
-             "run_random")  # fmt: skip
+             "random_freedom", "run_random")  # fmt: skip
     out = {name: np.empty(size) for name in names}
     moved = np.empty((surface.contribution.shape[0], size))
     inside = np.empty(size, dtype=bool)
@@ -385,12 +388,22 @@ def _evaluate_surface(surface: LineSurface, points: ArrayLike) -> _SurfacePoints
     rounded = surface.rounding if surface.rounding.size else np.zeros(surface.low.size)
     allowed = 2 * rounded / (surface.high - surface.low)
 
-    def half_of(random: Floats, rows: Floats) -> Floats:
+    def with_missed(scatter: Floats, missed: Floats) -> tuple[Floats, Floats]:
+        """Scatter with what a quadratic may miss, and the degrees of freedom of both."""
+        freedom = effective_degrees_of_freedom(
+            scatter,
+            surface.degrees_of_freedom,
+            contribution=missed[None],
+            of_contribution=[surface.discrepancy_degrees_of_freedom],
+        )
+        return np.hypot(scatter, missed), freedom
+
+    def half_of(random: Floats, freedom: Floats, rows: Floats) -> Floats:
         """Half width of a 95 % interval."""
         if not rows.size:
-            return coverage_factor(surface.degrees_of_freedom) * random
+            return coverage_factor(freedom) * random
         effective = effective_degrees_of_freedom(
-            random, surface.degrees_of_freedom, contribution=rows, of_contribution=few
+            random, freedom, contribution=rows, of_contribution=few
         )
         return coverage_factor(effective) * combined_standard_uncertainty(rows, random)
 
@@ -401,8 +414,13 @@ def _evaluate_surface(surface: LineSurface, points: ArrayLike) -> _SurfacePoints
         centre = terms @ surface.coefficient
         # one error of all runs moves the whole surface, and the next run with it
         rows = surface.contribution @ terms.T if surface.component else np.empty((0, centre.size))
-        random, run_random = sigma * np.sqrt(leverage), sigma * np.sqrt(1 + leverage)
-        half, own = half_of(run_random, rows), half_of(random, rows)
+        missed = np.zeros(centre.size)
+        if surface.discrepancy.size:
+            more = model_matrix(coded, surface.discrepancy_exponents)
+            missed = discrepancy_at(more, surface.discrepancy)
+        random, freedom = with_missed(sigma * np.sqrt(leverage), missed)
+        run_random, run_freedom = with_missed(sigma * np.sqrt(1 + leverage), missed)
+        half, own = half_of(run_random, run_freedom, rows), half_of(random, freedom, rows)
         for name, values in (
             ("value", centre),
             ("low", centre - half),
@@ -411,6 +429,7 @@ def _evaluate_surface(surface: LineSurface, points: ArrayLike) -> _SurfacePoints
             ("surface_high", centre + own),
             ("leverage", leverage),
             ("random", random),
+            ("random_freedom", freedom),
             ("run_random", run_random),
         ):
             out[name][block] = values
@@ -644,7 +663,7 @@ def _values_of_surface(
         component=surface.component,
         contribution=points.contribution.reshape(len(surface.component), *shape),
         random_standard_uncertainty=part(points.random),
-        random_degrees_of_freedom=part(np.full(points.random.shape, surface.degrees_of_freedom)),
+        random_degrees_of_freedom=part(points.random_freedom),
         run_standard_uncertainty=part(points.run_random),
         value=value,
         low=low,

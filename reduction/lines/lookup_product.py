@@ -48,6 +48,13 @@ class LineSurface:
         Of any run: where a point has more, nothing was tested. [1]
     exponent : float
         Of Box and Cox; 1 where the quantity was fitted as it is, 0 for its logarithm. [1]
+    discrepancy : ndarray, shape (n_all, n_all)
+        Moment of what a quadratic may miss, over ``discrepancy_exponents``; empty where the runs
+        are not known. [as coefficient, squared]
+    discrepancy_exponents : ndarray of int, shape (n_all, n_factors)
+        Terms of the surface and those that it does without.
+    discrepancy_degrees_of_freedom : float
+        Of the discrepancy. [1]
     component : tuple of Component, length n_components
         Errors that the runs share; none where nothing is known of any.
     contribution : ndarray, shape (n_components, n_terms)
@@ -81,6 +88,9 @@ class LineSurface:
     degrees_of_freedom: float
     greatest_leverage: float
     exponent: float = 1.0
+    discrepancy: Floats = field(default_factory=lambda: np.empty((0, 0)))
+    discrepancy_exponents: Integers = field(default_factory=lambda: np.empty((0, 0), dtype=np.intp))
+    discrepancy_degrees_of_freedom: float = float("inf")
     component: tuple[Component, ...] = ()
     contribution: Floats = field(default_factory=lambda: np.empty((0, 0)))
     alternatives: Floats = field(default_factory=lambda: np.empty((0, 0)))

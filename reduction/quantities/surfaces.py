@@ -1044,6 +1044,20 @@ OF_EVERY_SURFACE: tuple[Quantity, ...] = (
             tables=("surface_points",),
         ),
         stated(
+            "<response>_point_discrepancy",
+            "<response unit>",
+            "standard uncertainty of what a quadratic may miss at the point; in that of the value",
+            SPREAD,
+            tables=("surface_points",),
+        ),
+        stated(
+            "<response>_point_value_degrees_of_freedom",
+            "1",
+            "of the random part of the uncertainty of the value: scatter and discrepancy",
+            COUNT,
+            tables=("surface_points",),
+        ),
+        stated(
             "<response>_point_mean_value",
             "<response unit>",
             "mean response at the point",

@@ -706,6 +706,11 @@ _OF_EXPERIMENTS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "effects-over-blocks": (
         "note", "the effects are over all blocks; differences of blocks are in their error",
     ),
+    "scale-by-runs": (
+        "note",
+        "{response} is read from the surface of {scale}: about that of the usual scale the runs"
+        " scatter {ratio:.3g} times as much (p = {p:.2g})",
+    ),
     "slow-pull-error-shared": (
         "note",
         "t and p of the surfaces of K_1 and tau are of the scatter of the runs; the error of K_0,"

@@ -11,11 +11,11 @@ Surfaces at points with what their runs share: uncertainty, and intervals by one
 
 .. math::
 
-    u^2 = s^2 h + \sum_k (x^T c_k)^2, \qquad \hat y \pm t_{\nu_{eff}} u, \qquad
+    u^2 = s^2 h + \delta^2 + \sum_k (x^T c_k)^2, \qquad \hat y \pm t_{\nu_{eff}} u, \qquad
     \hat y \pm \sqrt{p F_{p, \nu_{eff}}}\, u
 
-with the contribution c_k of each shared error to the coefficients, and the degrees of freedom of
-Welch and Satterthwaite.
+with what a quadratic may miss at the point, delta, the contribution c_k of each shared error to the
+coefficients, and the degrees of freedom of Welch and Satterthwaite.
 
 Errors that the runs of an experiment share, in the coefficients of its surfaces.
 
@@ -42,6 +42,7 @@ from reduction.experiments.designs import model_matrix
 from reduction.experiments.experiment import ExperimentResult, SharedSurfaces
 from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.response_transform import back_transform, back_transformed_change
+from reduction.experiments.surface_discrepancy import discrepancy_of
 from reduction.experiments.surface_points import SurfaceValues
 from reduction.record.contributions import (
     combined_standard_uncertainty,
@@ -126,6 +127,8 @@ class _SharedAtPoints:
 
     standard_uncertainty: Floats
     random_standard_uncertainty: Floats
+    discrepancy: Floats
+    degrees_of_freedom: Floats
     contribution: Floats
     confidence_interval: Floats
     prediction_interval: Floats
@@ -138,7 +141,7 @@ def with_shared_at_points(
     contribution: ArrayLike,
     of_contribution: ArrayLike,
 ) -> _SharedAtPoints:
-    """Put what the runs share beside the scatter of the runs, at points of their surfaces.
+    """Put what the runs share, and what a quadratic may miss, beside the scatter of the runs.
 
     Parameters
     ----------
@@ -155,7 +158,9 @@ def with_shared_at_points(
     Returns
     -------
     shared : SharedAtPoints
-        NaN for a response without a surface, or of whose runs it is not known what they share.
+        NaN for a response without a surface, or of whose runs it is not known what they share. The
+        random part is of the scatter and of the discrepancy, which stands beside it by itself;
+        degrees of freedom are those of the random part.
 
     Raises
     ------
@@ -164,16 +169,19 @@ def with_shared_at_points(
 
     Notes
     -----
-    [3]_ with the degrees of freedom of the scatter for its part.  The next run has the instruments
-    of the others: what is shared is in its interval in full.  Everywhere at once, as [4]_, with the
+    [3]_ with the degrees of freedom of scatter and discrepancy for their parts
+    (`reduction.experiments.surface_discrepancy.discrepancy_of`).  The next run has the instruments
+    of the others, and a point where the surface misses what it misses here: both are in its
+    interval in full.  Everywhere at once, as [4]_, with the
     same uncertainty and degrees of freedom: an error of the coefficients is one of them all.  Ends
     of intervals are brought back from the scale of the fit; an uncertainty is half of what lies
     between the two ends of one standard uncertainty.
 
     Examples
     --------
-    Six runs in pairs that differ by 1, at one of the pairs: 0.5 of scatter by three degrees of
-    freedom, and a load cell that is known to 1, are together 1.118 by 75 of them.
+    Six runs in pairs that differ by 1, at one of the pairs, where a parabola misses nothing: 0.5 of
+    scatter by three degrees of freedom, and a load cell that is known to 1, are together 1.118 by
+    75 of them.
 
     >>> from reduction.experiments.surface_points import evaluate_surfaces
     >>> from reduction.experiments.response_surfaces import fit_surfaces
@@ -188,7 +196,8 @@ def with_shared_at_points(
     terms = model_matrix(values.coded, surfaces.exponents)
     fitted = surfaces.coefficient @ terms.T
     rows = np.asarray(contribution, dtype=np.float64) @ terms.T
-    freedom = values.degrees_of_freedom[:, None]
+    missed = discrepancy_of(surfaces)
+    between = missed.at(values.coded)
     kind = np.array(surfaces.transform) == "none"
     exponent = np.where(kind, 1.0, surfaces.transform_exponent)[:, None]
 
@@ -198,7 +207,17 @@ def with_shared_at_points(
     def change(moved: Floats) -> Floats:
         return np.where(kind[:, None], moved, back_transformed_change(fitted, moved, exponent))
 
-    def interval(random: Floats, *, is_everywhere: bool = False) -> Floats:
+    def with_missed(scatter: Floats) -> tuple[Floats, Floats]:
+        few = effective_degrees_of_freedom(
+            scatter,
+            values.degrees_of_freedom[:, None],
+            contribution=between[None],
+            of_contribution=missed.degrees_of_freedom[None, :, None],
+        )
+        return np.hypot(scatter, between), few
+
+    def interval(scatter: Floats, *, is_everywhere: bool = False) -> Floats:
+        random, freedom = with_missed(scatter)
         effective = effective_degrees_of_freedom(
             random, freedom, contribution=rows, of_contribution=of_contribution
         )
@@ -211,10 +230,13 @@ def with_shared_at_points(
         return np.stack([back(fitted - half), back(fitted + half)], axis=-1)
 
     own = values.fitted_standard_uncertainty
-    random, moved = change(own), np.asarray([change(one) for one in rows]).reshape(rows.shape)
+    both, freedom = with_missed(own)
+    random, moved = change(both), np.asarray([change(one) for one in rows]).reshape(rows.shape)
     return _SharedAtPoints(
         standard_uncertainty=combined_standard_uncertainty(moved, random),
         random_standard_uncertainty=random,
+        discrepancy=change(between),
+        degrees_of_freedom=freedom,
         contribution=moved,
         confidence_interval=interval(own),
         prediction_interval=interval(values.run_standard_uncertainty),

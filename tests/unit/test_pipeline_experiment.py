@@ -65,7 +65,7 @@ def without(runs, *places):
 
 
 def test_a_surface_a_response_and_one_more_on_another_scale():
-    result = fit(*made(), transform={"hysteresis_energy": "log"})
+    result = fit(*made(), transform={"hysteresis_energy": "log", "relaxation_time": "none"})
     surfaces = result.surfaces
     assert surfaces.response_names == (*NAMES, "log_hysteresis_energy")
     assert surfaces.transform == ("none", "none", "none", "log")
@@ -74,6 +74,28 @@ def test_a_surface_a_response_and_one_more_on_another_scale():
     # the mean of the three centre runs is B1
     centre = np.all(result.runs.coded_plan == 0, axis=1)
     assert surfaces.coefficient[:2, 0] == pytest.approx(result.runs.response[:2, centre].mean(1))
+
+
+def test_energy_and_time_are_read_from_logarithms_where_nothing_is_stated():
+    surfaces = fit(*made()).surfaces
+    assert surfaces.response_names[3:] == ("log_hysteresis_energy", "log_relaxation_time")
+    stated = fit(*made(), transform=dict.fromkeys(NAMES, "none")).surfaces
+    assert stated.response_names == NAMES
+
+
+@pytest.mark.parametrize(("place", "law"), [(1, lambda plane: plane), (0, np.exp)])
+def test_runs_that_object_to_the_usual_scale_choose_the_other(place, law):
+    """A plane over the levels has no logarithm that is quadratic, its exponential no other scale."""
+    runs, line = made()
+    plane = 1.6 + runs.coded_plan @ [0.7, 0.3, 0.5]
+    noise = 1e-4 * np.random.default_rng(2).normal(size=15)
+    response = runs.response.copy()
+    response[place] = law(plane + noise)
+    result = fit(RunTable(**{**vars(runs), "response": response}), line)
+    of = NAMES[place]
+    assert (f"log_{of}" in result.surfaces.response_names) == (law is np.exp)
+    (said,) = [str(one) for one in result.notes if f"{of} is read from the surface of" in str(one)]
+    assert ("its logarithm" if law is np.exp else "as measured") in said
 
 
 def test_one_time_of_every_run_is_said_to_hold():
@@ -108,7 +130,7 @@ def test_forms_are_refused_without_a_break_strength_and_the_surfaces_stand():
 def test_fourteen_of_fifteen_runs_still_make_surfaces():
     whole, line = made()
     result = fit(without(whole, 3), line)
-    assert result.surfaces.degrees_of_freedom.tolist() == [4, 4, 4]
+    assert result.surfaces.degrees_of_freedom.tolist() == [4] * 5
     assert result.surfaces.coefficient[2, 0] == pytest.approx(TIME)
 
 
@@ -179,7 +201,7 @@ def test_terms_are_left_out_only_where_it_is_asked_for():
     assert result.reduced.is_kept[2].tolist() == [True, *[False] * 9]
     # K_ap rises with the mean tension by far the most
     assert result.reduced.is_kept[0, 5]
-    assert result.surfaces.coefficient.shape == (3, 10)
+    assert result.surfaces.coefficient.shape == (5, 10)
 
 
 def test_specimens_drawn_from_many_keep_all_terms_with_a_note():

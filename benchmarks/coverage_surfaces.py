@@ -1,0 +1,128 @@
+"""Coverage of surfaces between their runs: laws that are not quadratic, at random points.
+
+    python benchmarks/coverage_surfaces.py 24
+
+Each realisation is one line at the points of a Box-Behnken design with one to three centre runs.
+K_ap and H of the runs follow a law but for their scatter, K_1 and tau are made from them; surfaces
+are fitted as a campaign fits them where no scale is stated, and held against the law at 40 random
+points within the levels.  Nothing is shared by the runs.  The lines of three parameters are those
+of tests/strangers.  Printed by law and response: how often the 95 % interval holds the law, and
+its half width over that which would just have held 95 %.  Everything is synthetic.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from reduction.experiments.designs import box_behnken
+from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.surface_points import evaluate_surfaces
+from reduction.record.measurement import Floats
+from reduction.uncertainty.surface_errors import with_shared_at_points
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+from strangers.ropes import _closed_form, draw_line, line_response
+
+RESPONSES = ("K_ap", "H", "K_1", "tau")
+LOW, HIGH = np.array([0.1, 0.12, 0.05]), np.array([0.5, 0.30, 0.12])
+N_POINTS = 40
+
+Law = Callable[[Floats], tuple[Floats, Floats, Floats]]
+"""K_ap, H and K_0 at frequency [Hz], mean and amplitude [share of a strength of 1 N]."""
+
+
+def line(rng: np.random.Generator, damping: str) -> Law:
+    """Draw a line of three parameters, or of a constant loss angle."""
+    c = draw_line(rng, damping)
+
+    def at(levels: Floats) -> tuple[Floats, Floats, Floats]:
+        frequency, mean, swing = levels.T
+        found = line_response(frequency, mean * c["strength"], swing * c["strength"], c)
+        names = ("apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant")
+        return tuple(found[name] / c["strength"] for name in names)  # type: ignore[return-value]
+
+    return at
+
+
+def relaxing(rng: np.random.Generator) -> Law:
+    """Draw three relaxation times between 0.1 and 5 s, softer with amplitude."""
+    time, share = np.exp(rng.uniform(np.log(0.1), np.log(5), 3)), rng.uniform(0.3, 1.5, 3)
+    stiffer, softer = rng.uniform(1, 3), rng.uniform(-2, 0)
+
+    def at(levels: Floats) -> tuple[Floats, Floats, Floats]:
+        frequency, mean, swing = levels.T
+        static = 1.5 * (1 + stiffer * (mean - 0.21) + 4 * (mean - 0.21) ** 2)
+        turn = 2 * np.pi * frequency[:, None] * time
+        load = np.exp(4 * softer * (swing - 0.085)) * (1 + stiffer * (mean - 0.21))
+        storage = static + load * (share * turn**2 / (1 + turn**2)).sum(axis=1)
+        loss = load * (share * turn / (1 + turn**2)).sum(axis=1)
+        spring = np.hypot(storage, loss)
+        return spring, np.pi * (swing / spring) ** 2 * loss, static
+
+    return at
+
+
+LAWS: dict[str, Callable[[np.random.Generator], Law]] = {
+    "line, tau falling": lambda rng: line(rng, "falling"),
+    "line, tau constant": lambda rng: line(rng, "constant"),
+    "constant loss angle": lambda rng: line(rng, "angle"),
+    "three relaxation times": relaxing,
+}
+
+
+def realisation(law: str, seed: int) -> tuple[Floats, Floats]:
+    """Error over half width, by response and point: stated, and by the scatter alone."""
+    rng = np.random.default_rng([seed, sum(law.encode())])
+    at = LAWS[law](rng)
+    plan = box_behnken(3).coded
+    plan = np.vstack([plan[(plan != 0).any(axis=1)], np.zeros((int(rng.integers(1, 4)), 3))])
+    coded = plan + 0.003 * rng.standard_normal(plan.shape)
+    levels = (LOW + HIGH) / 2 + coded * (HIGH - LOW) / 2
+    points = rng.uniform(-1, 1, (N_POINTS, 3))
+    there = (LOW + HIGH) / 2 + points * (HIGH - LOW) / 2
+
+    def responses(levels: Floats, scatter: tuple[float, float]) -> Floats:
+        spring, energy, static = at(levels)
+        spring = spring * (1 + scatter[0] * rng.standard_normal(len(levels)))
+        energy = energy * (1 + scatter[1] * rng.standard_normal(len(levels)))
+        two = _closed_form(spring, energy, levels[:, 2] / spring, static, levels[:, 0])
+        return np.stack([spring, energy, *two])
+
+    scatter = np.exp(rng.uniform(np.log([2e-4, 1e-3]), np.log([4e-3, 1e-2])))
+    truth = responses(there, (0.0, 0.0))
+    surfaces = fit_surfaces(
+        coded, responses(levels, tuple(scatter)), factor_names=("f", "m", "a"),
+        response_names=RESPONSES, low=LOW, high=HIGH, units="coded", with_tests=False,
+        transforms=("none", "log", "none", "log"),
+    )  # fmt: skip
+    values = evaluate_surfaces(surfaces, points, units="coded")
+    stated = with_shared_at_points(surfaces, values, np.zeros((0, *surfaces.coefficient.shape)), [])
+    error = truth - values.value
+
+    def over(interval: Floats) -> Floats:
+        half = np.where(error > 0, interval[..., 1] - values.value, values.value - interval[..., 0])
+        return np.asarray(np.abs(error) / half)
+
+    return over(stated.confidence_interval), over(values.confidence_interval)
+
+
+def main(n_realisations: int = 24) -> None:
+    """Print the table."""
+    print("| law | response | held | half width over that of 95 % | held by scatter alone |")
+    print("|---|---|---|---|---|")
+    for law in LAWS:
+        found = np.array([realisation(law, seed) for seed in range(n_realisations)])
+        for row, name in enumerate(RESPONSES):
+            stated, scatter = found[:, 0, row], found[:, 1, row]
+            print(
+                f"| {law} | {name} | {100 * (stated <= 1).mean():.1f} %"
+                f" | {1 / np.quantile(stated, 0.95):.2f} | {100 * (scatter <= 1).mean():.1f} % |"
+            )
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:]))
