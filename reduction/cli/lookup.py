@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -22,15 +22,28 @@ from reduction.lines.export_tables import (
     table_of_difference,
     table_of_values,
 )
+from reduction.lines.line_consistency import (
+    DASHPOT,
+    ENERGY,
+    K_0,
+    K_1,
+    K_AP,
+    TIME,
+    consistent_values,
+    refitted_surfaces,
+)
+from reduction.lines.line_curve import evaluate_curve
 from reduction.lines.line_lookup import Branch, look_up
 from reduction.lines.line_search import LineDifference, compare_values, find_lines
 from reduction.lines.lookup_product import DesignValues, LineSource
 from reduction.lines.published_source import published_sources
+from reduction.lines.tether_comparison import compared_tethers
 from reduction.quantities.names import SINGLE_QUANTITIES
 from reduction.quantities.names import quantity as quantity_of
 from reduction.quantities.units import Dimension, UnitSystem, display_unit, parse_quantity
 from reduction.record.errors import ArchiveError, DataError, SettingsError
 from reduction.record.measurement import Bools, Floats
+from reduction.stages.three_parameter_line.line_product import REASONS
 
 _OF_CYCLES = (
     "apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant",
@@ -395,9 +408,11 @@ def _show(
 ) -> None:
     unit, factor = output.unit(found.unit)
     branch = f", {found.branch} branch" if found.branch else ""
+    output.say_each("warning", found.warnings)
     output.say(f"{found.quantity} of {line.name}{branch}; {found.source}")
     if output.is_text:
         output.show(_table(line, found, points, unit, factor, output.system))
+        _show_consistent(line, found, points, output)
     _said_of_lines(output, (line, found))
 
 
@@ -444,6 +459,64 @@ def _table(
             "; ".join(_remarks(found, place)),
         )
     return table
+
+
+def _slow_pulls_at(line: LineSource, points: Mapping[str, Floats]) -> list[tuple[str, Floats]]:
+    """K_0 by each printed way to it."""
+    mean = points["mean_tension"]
+    return [(of, evaluate_curve(curve, mean).value) for of, curve in line.slow_pulls.items()]
+
+
+def _show_consistent(
+    line: LineSource, found: DesignValues, points: Mapping[str, Floats], output: CommandOutput
+) -> None:
+    """Of a published rope: every K_0, and the K_1 and tau that go with its K_ap and H."""
+    force, scale = output.unit("N")
+    if found.quantity == K_0 and len(line.slow_pulls) > 1:
+        misfit = {
+            one.slow_pull: one.greatest for one in refitted_surfaces(line) if one.quantity == K_1
+        }
+        table = table_of(
+            f"mean tension\n[{force}]", "K_0 by", f"K_0\n[{force}]", "greatest z\nof printed K_1",
+            texts=0,
+        )  # fmt: skip
+        for of, values in _slow_pulls_at(line, points):
+            z = short(misfit.get(of, math.nan), 3)
+            for mean, value in zip(points["mean_tension"].ravel(), values.ravel(), strict=True):
+                table.add_row(as_given(scale * float(mean)), of, short(scale * float(value)), z)
+        output.show(table)
+    if found.quantity not in (K_AP, ENERGY, K_1, TIME, DASHPOT):
+        return
+    found_values = consistent_values(line, **points)
+    if not found_values:
+        return
+    heads, levels = _shown_levels(
+        points, line.rated_break_strength, found.value.size, output.system
+    )
+    output.say("as printed, and with the K_1 and tau that K_ap, H and K_0 give by the line model:")
+    table = table_of(
+        *heads, "K_0 by", *(f"{name}\n[{force}]" for name in ("K_ap", "K_0")),
+        f"K_1 printed\n[{force}]", f"K_1 solved\n[{force}]", "tau printed\n[s]",
+        "tau solved\n[s]", "remark", texts=0,
+    )  # fmt: skip
+    _fold_last(table)
+    nothing = np.full(found.value.shape, np.nan)
+    for place, cells in enumerate(levels):
+        for one in found_values:
+            columns = (
+                (one.printed[K_AP], scale), (one.quasi_static_spring_constant, scale),
+                (one.printed.get(K_1, nothing), scale), (one.dissipation_spring_constant, scale),
+                (one.printed.get(TIME, nothing), 1.0), (one.relaxation_time, 1.0),
+            )  # fmt: skip
+            remark = REASONS[int(one.reason.ravel()[place])]
+            if not remark and one.is_impossible.ravel()[place]:
+                remark = "printed K_ap is above K_0 + printed K_1"
+            table.add_row(
+                *cells, one.slow_pull,
+                *(short(by * float(column.ravel()[place])) for column, by in columns),
+                remark or "-",
+            )  # fmt: skip
+    output.show(table)
 
 
 def _remarks(found: DesignValues, place: int) -> list[str]:
@@ -568,6 +641,27 @@ def _document(
         "wet_linear_density": plain(line.wet_linear_density),
         "linear_density_unit": "kg m-1",
         "source": found.source,
+        "warnings": list(found.warnings),
+        "slow_pulls": {
+            name: of(values)
+            for name, values in (_slow_pulls_at(line, points) if found.quantity == K_0 else ())
+        },
+        "consistent": [
+            {
+                "slow_pull": one.slow_pull,
+                "printed": {name: of(values) for name, values in one.printed.items()},
+                "units": {name: quantity_of(name).unit for name in (*one.printed, K_0, K_1, TIME)},
+                K_0: of(one.quasi_static_spring_constant),
+                K_1: of(one.dissipation_spring_constant),
+                TIME: of(one.relaxation_time),
+                "impossible_as_printed": of(one.is_impossible),
+            }
+            for one in (
+                consistent_values(line, **points)
+                if found.quantity in (K_AP, ENERGY, K_1, TIME, DASHPOT)
+                else ()
+            )
+        ],
         "errata": list(found.errata),
         "notes": list(found.notes),
     }
@@ -581,6 +675,9 @@ def look_up_against(
     lines = _lines_of(source)
     first = _one_of(find_lines(lines, **wanted.search), wanted.quantity, wanted.name)
     second = _other(lines, other, wanted.quantity, first)
+    pair = compared_tethers(first, second)
+    if pair is not None:
+        first, second = pair.first, pair.second
     (points, others), left_out = _points_of(wanted, first, second)
     if left_out:
         output.say("combinations whose amplitude is above the mean tension are left out")
@@ -589,6 +686,9 @@ def look_up_against(
         for line, at in ((first, points), (second, others))
     ]
     found = compare_values(*values)
+    if pair is not None:
+        found = replace(found, notes=(*pair.notes, *found.notes))
+        output.say(pair.notes[0] + "; " + pair.notes[1])
     _show_difference(first, second, found, points, others, output)
     table = table_of_difference(first, second, found, points, others)
     files = _write_table(table, wanted.out, form, output)
@@ -630,6 +730,8 @@ def _show_difference(
         f"{line.name} of {line.source}" if first.name == second.name else line.name
         for line in (second, first)
     ]
+    for which, one in (("first", found.first), ("second", found.second)):
+        output.say_each(f"warning of the {which}", one.warnings)
     output.say(f"{found.quantity} of {told[0]} (second) against {told[1]} (first){branch}")
     if any(not np.array_equal(values, others[name]) for name, values in points.items()):
         output.say(
@@ -757,6 +859,7 @@ def _difference_document(
             "above_rule": of(one.is_above_rule),
             "rule": one.rule,
             "source": one.source,
+            "warnings": list(one.warnings),
             "errata": list(one.errata),
             "notes": list(one.notes),
         }

@@ -297,7 +297,7 @@ def table_of_values(
         title=f"{found.quantity} of {line.name}{_branch(found)}",
         columns=tuple(columns),
         sources=(_source(line, found),),
-        notes=(*_about(line), f"rule: {found.rule}", *found.notes),
+        notes=(*found.warnings, *_about(line), f"rule: {found.rule}", *found.notes),
         is_synthetic=_is_synthetic(line),
     )
 
@@ -356,7 +356,7 @@ def table_of_difference(
     notes = [
         f"{line.name}: {text}"
         for line, one in ((first, a), (second, b))
-        for text in (*_about(line), f"rule: {one.rule}", *one.notes)
+        for text in (*one.warnings, *_about(line), f"rule: {one.rule}", *one.notes)
     ]
     return ValueTable(
         title=f"{name} of {second.name} against {first.name}{_branch(a)}",

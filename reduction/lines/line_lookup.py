@@ -53,6 +53,7 @@ from reduction.experiments.response_transform import back_transform, back_transf
 from reduction.experiments.run_sheet import variance_factor
 from reduction.experiments.surface_discrepancy import discrepancy_at
 from reduction.experiments.surface_points import ABOVE_LEVERAGE, is_within_levels
+from reduction.lines.line_consistency import consistency_warnings
 from reduction.lines.line_curve import (
     End,
     evaluate_curve,
@@ -302,6 +303,7 @@ def _design_values(
         source=line.source,
         errata=of.errata,
         notes=tuple(dict.fromkeys(notes)),
+        warnings=of.warnings if isinstance(of, LineCurve) else (),
         branch=of.branch if isinstance(of, LineCurve) else "",
         interval_of=words[0],
         surface_interval_of=words[1],
@@ -762,13 +764,14 @@ def look_up(
     if quantity == _DASHPOT and quantity not in line.surfaces and line.has_dashpot:
         if branch is not None:
             raise _no_branch(quantity, line, branch)
-        return _dashpot(line, extrapolate, levels)
+        found = _dashpot(line, extrapolate, levels)
+        return _warned(line, found, _numbers(levels))
     surface = line.surfaces.get(quantity)
     given = _numbers(levels)
     if surface is not None and set(given) >= set(line.factor_names):
         if branch is not None:
             raise _no_branch(quantity, line, branch)
-        return _values_of_surface(line, surface, given, extrapolate)
+        return _warned(line, _values_of_surface(line, surface, given, extrapolate), given)
     curves = [one for one in line.curves if one.quantity == quantity]
     if not curves and surface is None:
         why = line.absent.get(quantity)
@@ -785,7 +788,14 @@ def look_up(
             found=", ".join(given) or "none",
             needed=" or ".join(dict.fromkeys(needed)),
         )
-    return _values_of_curve(line, _of_branch(line, curves, branch), given, extrapolate)
+    curve = _of_branch(line, curves, branch)
+    return _warned(line, _values_of_curve(line, curve, given, extrapolate), given)
+
+
+def _warned(line: LineSource, found: DesignValues, given: dict[str, Floats]) -> DesignValues:
+    """The values with what other numbers of the line say against them."""
+    told = consistency_warnings(line, found.quantity, given)
+    return replace(found, warnings=tuple(dict.fromkeys((*found.warnings, *told))))
 
 
 def _numbers(levels: Mapping[str, ArrayLike]) -> dict[str, Floats]:

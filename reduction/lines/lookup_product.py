@@ -170,6 +170,8 @@ class LineCurve:
         The value is the inverse of the slope of the polynomial: K_0 from strain on tension.
     errata, notes : tuple of str
         As `LineSurface`.
+    warnings : tuple of str
+        As `DesignValues`.
     """
 
     quantity: str
@@ -190,6 +192,7 @@ class LineCurve:
     is_inverse_slope: bool = False
     errata: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -226,6 +229,9 @@ class LineSource:
         the rated one counts. [N]
     strength_of : str
         Of which other line the rated break strength is, in words; empty where it is its own.
+    slow_pulls : dict of str to LineCurve
+        K_0 over mean tension by each printed way to it, by its name in words; of a published rope
+        with response surfaces alone.
     notes : tuple of str
         What holds of all of it.
     """
@@ -246,6 +252,7 @@ class LineSource:
     kind: str = ""
     tensile_strength: float = float("nan")
     strength_of: str = ""
+    slow_pulls: dict[str, LineCurve] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
     @property
@@ -320,6 +327,8 @@ class DesignValues:
         Where the numbers are from.
     errata, notes : tuple of str
         What is known against them.
+    warnings : tuple of str
+        What has to be read before the values: other numbers of the source contradict them.
     branch : {"", "ascending", "descending"}
         Of a cycle, where the quantity differs.
     component : tuple of Component, length n_components
@@ -361,6 +370,7 @@ class DesignValues:
     source: str
     errata: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     branch: Literal["", "ascending", "descending"] = ""
     component: tuple[Component, ...] = ()
     contribution: Floats = field(default_factory=lambda: np.empty((0, 0)))

@@ -35,6 +35,7 @@ from reduction.experiments.run_sheet import covariance_factor, variance_factor
 from reduction.lines.composite import CurvePiece, PieceSource
 from reduction.lines.line_lookup import sigma_from_r2
 from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
+from reduction.published.printed_cells import number_of, table_of
 from reduction.published.published_lines import (
     POUND,
     PublishedCubic,
@@ -87,9 +88,54 @@ def _curves_of_line(line: PublishedLine) -> tuple[tuple[LineCurve, ...], dict[st
             "no table has such a row, and the load-strain cubic, whose slope would take its place, "
             f"is {absent['strain']}"
         )
+    if rest is not None:
+        rest = replace(rest, notes=(*rest.notes, _rate_note()))
     if strain is not None:
         strain = _rising(strain)
     return tuple(one for one in (rest, strain) if one is not None), absent
+
+
+def _slow_pulls(line: PublishedLine) -> dict[str, LineCurve]:
+    """K_0 by its own cubic and by the slope of load on strain, of each print where two differ."""
+    found = {}
+    for cubic in (line.stiffness, line.load_strain):
+        if cubic is None:
+            continue
+        is_slope = cubic is line.load_strain
+        # the constant of the strain has no slope
+        opened = [term for term in cubic.open_terms if term.index or not is_slope]
+        label = "slope of load on strain" if is_slope else "cubic of K_0"
+        together = f"Table{'s' * (len(cubic.tables) > 1)} {' and '.join(cubic.tables)}"
+        apart = [f"Table {table}" for table in opened[0].tables] if opened else [together]
+        for place, printed in enumerate(apart):
+            coefficient = np.nan_to_num(cubic.coefficient)
+            for term in opened:
+                coefficient[term.index] = term.values[place]
+            found[f"{label}, {printed}"] = LineCurve(
+                _REST, "mean_tension", 0.0, cubic.tension_high, coefficient=coefficient,
+                is_inverse_slope=is_slope, errata=cubic.errata,
+            )  # fmt: skip
+    return found
+
+
+@cache
+def _rate_note() -> str:
+    """How much K_0 is of the pull: Table D-1, of one line that is not named."""
+    table = table_of("CG-D-39-80", "D-1")
+    slow, fast, early = (
+        number_of(table[row, _REST].printed) or np.nan
+        for row in (
+            "24 h after the dynamic test, slow",
+            "24 h after the dynamic test, fast",
+            "immediately after the dynamic test, fast",
+        )
+    )
+    return (
+        f"K_0 is of the pull it was taken in: in App. D a pull at three times the rate gives "
+        f"{fast / slow:.2f} times, one without a day of rest {early / fast:.2f} times, both "
+        f"{early / slow:.2f} times. That is one line, not named, each pulled once: no scatter is "
+        "known, and nothing is corrected by it"
+    )
 
 
 def _curve(cubic: PublishedCubic) -> LineCurve | None:
@@ -192,6 +238,15 @@ _FREEDOM = 5.0
 
 _FIRST = "ten cycles"
 
+_BY_FRACTION = {
+    name: f"strain of the page is by a constant share of the position: by the marks of Table 3 the "
+    f"modulus is {ratio} times lower (WH5-34)"
+    for name, ratio in (("new", "1.145"), ("used", "1.163"))
+}
+
+TABLE_OF_DATA = {"consolidated": "6", "raw": "5"}
+"""Table of WHOI-2005-10 that has a kind of moduli."""
+
 _FEWEST = 2.0
 """Lines of a surface, where a table says how many: two to four. [1]"""
 
@@ -210,16 +265,27 @@ def published_sources() -> dict[str, LineSource]:
         Lines of CG-D-39-80, then tethers of WHOI-2005-10, one a test and after 3,000 cycles.
     """
     sources = [_line(one) for one in published_lines()]
-    sources += [
-        one
+    windows = (_tether(*window) for window in tether_windows().values())
+    sources += [one for one in windows if one is not None]
+    return {one.name: one for one in sources}
+
+
+@cache
+def tether_windows() -> dict[str, tuple[PublishedTether, str, str]]:
+    """Tether, test and condition of every window of the tethers, by the name of its source."""
+    return {
+        _name_of_window(tether, test, condition): (tether, test, condition)
         for tether in published_tethers()
         for condition, test in sorted(
             {(segment.name.condition, segment.name.test) for segment in tether.segments},
             key=lambda named: (named[0] != _FIRST, named[1]),
         )
-        if (one := _tether(tether, test, condition)) is not None
-    ]
-    return {one.name: one for one in sources}
+    }
+
+
+def _name_of_window(tether: PublishedTether, test: str, condition: str) -> str:
+    aged = "" if condition == _FIRST else f"-{condition.replace(' ', '-')}"
+    return f"rubber-tether-{tether.name}-{test}{aged}"
 
 
 def _line(line: PublishedLine) -> LineSource:
@@ -247,6 +313,7 @@ def _line(line: PublishedLine) -> LineSource:
         kind="rope",
         tensile_strength=strength,
         strength_of=strength_of(line),
+        slow_pulls=_slow_pulls(line) if surfaces else {},
         notes=(*strength_notes(line), *told, *scatter_notes(line), *level_notes(line)),
     )
 
@@ -332,17 +399,18 @@ def _tether(tether: PublishedTether, test: str, condition: str) -> LineSource | 
             and np.isfinite(one.modulus)
         ]
         if found:
-            return _of_segments(tether, test, condition, data, found)
+            return source_of_segments(tether, test, condition, data, found)
     return None
 
 
-def _of_segments(
+def source_of_segments(
     tether: PublishedTether,
     test: str,
     condition: str,
     data: str,
     found: list[TetherSegment],
 ) -> LineSource:
+    """One window of a tether out of one table: ``raw`` is Table 5, ``consolidated`` Table 6."""
     rows = sorted(found, key=lambda one: one.strain_low)
     ends = np.array([[one.strain_low, one.strain_high] for one in rows]).ravel()
     moduli = np.repeat([one.modulus for one in rows], 2)
@@ -351,12 +419,13 @@ def _of_segments(
     notes = tuple(
         dict.fromkeys(f"remark on a printed cell: {note}" for one in rows for note in one.notes)
     )
-    table = {"consolidated": "6", "raw": "5"}[data]
+    table = TABLE_OF_DATA[data]
     keep = np.isfinite(tensions)
     curves = [
         LineCurve(
             "tangent_modulus", "strain", float(ends[0]), float(ends[-1]), at=ends, value=moduli,
             branch="ascending", errata=errata, notes=notes,
+            warnings=(_BY_FRACTION[tether.name],) if test == "T-1" else (),
         )
     ]  # fmt: skip
     if keep.sum() > 1:
@@ -369,8 +438,7 @@ def _of_segments(
         )  # fmt: skip
     specimen = tether.specimen
     return LineSource(
-        name=f"rubber-tether-{specimen.name}-{test}"
-        + ("" if condition == _FIRST else f"-{condition.replace(' ', '-')}"),
+        name=_name_of_window(tether, test, condition),
         source=f"WHOI-2005-10, Table {table}, {test}, {condition}",
         material="rubber",
         construction="tether",

@@ -498,3 +498,43 @@ def test_an_interval_that_reaches_below_zero_is_not_told_from_zero(command):
     ]  # fmt: skip
     assert any(vague)
     assert command(*ask).stdout.count("lower end") == sum(vague)
+
+
+PLAITED = (
+    "nylon-8-strand-plaited-0.5in-new", "--mean-tension", "30 %RBS", "--units", "us",
+)  # fmt: skip
+CYCLE = ("--frequency", "0.3 Hz", "--tension-amplitude", "8.5 %RBS")
+
+
+def test_impossible_numbers_of_a_page_are_the_first_line(command):
+    lines = command("lookup", *PLAITED, *CYCLE, "--quantity", "K_ap").stdout.splitlines()
+    assert lines[0].startswith("warning: the printed numbers cannot hold together")
+    solved = [
+        line for line in lines if "cubic of K_0, Tables 6 and 7" in line and "printed" in line
+    ]
+    # K_ap 45,109 of the page; 15,592 + 25,029 is less, 15,592 + 29,840 is not
+    assert ["45109", "15592", "25029", "29840"] == solved[-1].split()[12:16]
+
+
+def test_k_0_is_shown_by_both_ways_to_it(command):
+    text = command("lookup", *PLAITED, "--quantity", "K_0").stdout
+    assert "15592" in text
+    assert "16616" in text
+    found = json.loads(command("lookup", *PLAITED, "--quantity", "K_0", "--json").stdout)
+    assert found["slow_pulls"].keys() == {
+        "cubic of K_0, Tables 6 and 7",
+        "slope of load on strain, Tables 8 and 9",
+    }
+
+
+def test_tethers_are_compared_within_one_table(command):
+    asked = ("--against", "rubber-tether-used-T-1", "--quantity", "tangent_modulus")
+    named = ("lookup", "rubber-tether-new-T-1", *asked, "--strain", "100 %")
+    found = json.loads(command(*named, "--json").stdout)
+    # (148 / 1.1632) / (137 / 1.1455)
+    assert found["ratio"] == pytest.approx(1.064, abs=1e-3)
+    assert "Table 5" in found["first"]["source"]
+    assert "Table 5" in found["second"]["source"]
+    assert command(*named).stdout.startswith(
+        "both moduli are of Table 5 of WHOI-2005-10; strain is"
+    )
