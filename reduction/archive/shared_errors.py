@@ -189,6 +189,7 @@ _OF_STRAIN = frozenset(
         "strain_gain",
         "splice_method",
         "splice_law",
+        "machine_compliance",
     }
 )
 """Sources that move a point of the curve along the axis of strain alone."""
@@ -201,7 +202,7 @@ _CURVES = (
 
 _OF_ALL_SAMPLES = (
     "tension_gain", "tension_offset", "position_gain", "position_offset", "lag", "strain_gain",
-    "stiffness",
+    "stiffness", "attached_mass", "linear_density", "machine_compliance",
 )  # fmt: skip
 """What may be stated of a test that is in its curve: not the noise of a reading."""
 

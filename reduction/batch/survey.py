@@ -27,7 +27,14 @@ from reduction.record.errors import (
     SettingsError,
     refused_by_system,
 )
-from reduction.record.measurement import Floats, Record, Source, SpliceMarks, StepReadings
+from reduction.record.measurement import (
+    Floats,
+    Record,
+    Source,
+    Specimen,
+    SpliceMarks,
+    StepReadings,
+)
 from reduction.record.notes import Note
 from reduction.stages.standstills import median_step
 from reduction.stages.strain.strain_fit import zero_strain_position
@@ -162,7 +169,7 @@ def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_reco
     )
     found = None
     if not plan.steps:
-        survey = _located(plan, record, sources)
+        survey = _located(campaign, plan, record, sources)
         found = find_steps(plan, survey.located, campaign)
         if found.remark is not None:
             record = replace(record, notes=(*record.notes, found.remark))
@@ -177,13 +184,15 @@ def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_reco
             return [survey]
         plan = replace(plan, steps=found.steps, attributes=plan.attributes | FOUND)
     # a mark, and the position of zero strain, belong to the whole log and not to a step of it
-    whole = locate(record, kind="relaxation", settings=plan.settings)
+    whole = locate(
+        record, kind="relaxation", settings=plan.settings, specimens=_specimens(campaign, plan)
+    )
     surveys = []
     for place, step in enumerate(plan.steps, start=1):
         part = _step_plan(plan, step, place)
         try:
             record_of_step = replace(_step_record(record, step, plan), test_id=part.id)
-            survey = _located(part, record_of_step, sources)
+            survey = _located(campaign, part, record_of_step, sources)
             survey.remarks = () if found is None or found.remark is None else (found.remark,)
         except ReductionError as error:
             survey = Survey(part, sources, n_rows=record.n_samples, error=error)
@@ -212,8 +221,16 @@ def _needs_length(campaign: Campaign, plan: TestPlan) -> bool:
     return any(name in campaign.marks for name in plan.specimens)
 
 
-def _located(plan: TestPlan, record: Record, sources: tuple[Source, ...]) -> Survey:
-    located = locate(record, kind=plan.kind, settings=plan.settings)
+def _specimens(campaign: Campaign, plan: TestPlan) -> tuple[Specimen, ...]:
+    return tuple(campaign.specimens[name] for name in plan.specimens)
+
+
+def _located(
+    campaign: Campaign, plan: TestPlan, record: Record, sources: tuple[Source, ...]
+) -> Survey:
+    located = locate(
+        record, kind=plan.kind, settings=plan.settings, specimens=_specimens(campaign, plan)
+    )
     return Survey(
         plan,
         sources,

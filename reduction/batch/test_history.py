@@ -305,9 +305,14 @@ def instruments_of(
 ) -> tuple[InstrumentErrors, ...]:
     """Stated errors of each specimen, with the names by which tests share them."""
     plan = survey.plan
+    # what the machine gives is by the sum of the tensions: taken to be alike
+    stated = replace(
+        campaign.uncertainty,
+        machine_compliance=campaign.uncertainty.machine_compliance * len(models),
+    )
     return tuple(
         _with_readings(
-            campaign.uncertainty.of_channel(
+            stated.of_channel(
                 model.specimen,
                 channel=number,
                 test=plan.log,

@@ -213,6 +213,12 @@ class UncertaintySection(_UncertaintySection):
     rated_break_strength: _Relative | None = None
     """Relative."""
     temperature: _TemperatureSection | None = None
+    attached_mass: Annotated[float, _Standard("mass")] | None = None
+    """Of the mass between the specimen and a load cell at its moving end: ``"0.1 kg"``."""
+    linear_density: Annotated[float, _Standard("linear_density")] | None = None
+    """Of the mass a length of the specimens."""
+    machine_compliance: Annotated[float, _Standard("compliance")] | None = None
+    """Of frame, load cell and grips: ``"2e-8 m/N"``."""
 
 
 def stated_errors(
@@ -250,6 +256,9 @@ def stated_errors(
         strain_gain=section.strain or 0.0,
         rated_break_strength=section.rated_break_strength or 0.0,
         stiffness=stiffness,
+        attached_mass=section.attached_mass or 0.0,
+        linear_density=section.linear_density or 0.0,
+        machine_compliance=section.machine_compliance or 0.0,
         has_one_load_cell=tension.one_load_cell,
     )
 

@@ -14,6 +14,7 @@ from reduction.record.errors import DataError
 from reduction.record.measurement import (
     UNUSABLE,
     Floats,
+    LoadTrain,
     Quality,
     Record,
     Specimen,
@@ -25,6 +26,7 @@ from reduction.record.samples import copied, empty_like, release_pages, sample_b
 from reduction.record.settings import ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.load_train import without_load_train
 from reduction.stages.standstills import Standstills, find_standstills, find_tension_stands
 from reduction.stages.strain.strain_fit import MarkReading, measure_mark_tension
 from reduction.stages.strain.strain_model import StrainModel, extrapolated, strain_by_model
@@ -53,8 +55,17 @@ class Located:
     cycles: Cycles | None
 
 
-def locate(record: Record, *, kind: str, settings: ReductionSettings) -> Located:
-    """Find the standstills and the cycles of a record; only cyclic kinds have cycles."""
+def locate(
+    record: Record,
+    *,
+    kind: str,
+    settings: ReductionSettings,
+    specimens: tuple[Specimen, ...] | None = None,
+) -> Located:
+    """Find the standstills and the cycles of a record; only cyclic kinds have cycles.
+
+    With the specimens what mass and give of the load train do is taken off the record.
+    """
     if kind not in (*CYCLIC, *PULLED, *HELD):
         raise DataError(
             f"test '{record.test_id}' is of a kind that this version does not reduce",
@@ -72,16 +83,30 @@ def locate(record: Record, *, kind: str, settings: ReductionSettings) -> Located
         standstills = find_standstills(
             record.time, position, tension, settings=settings.phases, is_held=kind in HELD
         )
-    if kind not in CYCLIC:
-        return Located(record, position, tension, standstills, None)
-    cycles = find_cycles(
-        record.time,
-        position,
-        tension,
-        standstills,
-        settings=settings.cycles,
-        cycle_counter=record.cycle_counter,
+    cycles = None
+    if kind in CYCLIC:
+        cycles = find_cycles(
+            record.time,
+            position,
+            tension,
+            standstills,
+            settings=settings.cycles,
+            cycle_counter=record.cycle_counter,
+        )
+    if specimens is None or record.load_train == LoadTrain():
+        return Located(record, position, tension, standstills, cycles)
+    on_tension = standstills.tension_tolerance is not None
+    crosshead = position
+    record, position, tension = without_load_train(
+        record, position, tension, standstills=standstills, cycles=cycles, specimens=specimens
     )
+    if not on_tension:
+        # the crosshead stands still in a hold; slack is a share of the tension of the specimen
+        standstills = find_standstills(
+            record.time, crosshead, tension, settings=settings.phases, is_held=kind in HELD
+        )
+    given = (record.load_train.machine_compliance or 0.0) * standstills.mean_tension.sum(axis=0)
+    standstills = replace(standstills, mean_position=standstills.mean_position - given)
     return Located(record, position, tension, standstills, cycles)
 
 

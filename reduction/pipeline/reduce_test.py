@@ -68,6 +68,7 @@ from reduction.stages.strain.strain_model import StrainModel, strain_by_model
 from reduction.stages.strain.stress import check_constant_volume
 from reduction.stages.three_parameter_line.line_product import SlowPull
 from reduction.uncertainty.error_field import error_field
+from reduction.uncertainty.load_train_notes import load_train_notes
 from reduction.uncertainty.monte_carlo import with_line_spread
 from reduction.uncertainty.propagation import with_diameter
 from reduction.uncertainty.shared_contributions import (
@@ -849,7 +850,8 @@ def reduce_test(
             located, strain, models, specimens, instruments, phase=phase
         ),
     )
-    return with_line_spread(with_shared_ratios(shared), settings.cycles)
+    whole = with_line_spread(with_shared_ratios(shared), settings.cycles)
+    return replace(whole, notes=(*whole.notes, *load_train_notes(whole)))
 
 
 def _with_shared_errors(

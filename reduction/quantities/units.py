@@ -22,7 +22,7 @@ from reduction.record.plain_text import cut
 Dimension = Literal[
     "time", "length", "force", "strain", "stress", "area", "frequency", "temperature", "angle",
     "mass", "velocity", "number", "force_rate", "density", "per_length",
-    "linear_density", "information",
+    "linear_density", "compliance", "information",
 ]  # fmt: skip
 
 DIMENSIONS: dict[Dimension, str] = {
@@ -42,6 +42,7 @@ DIMENSIONS: dict[Dimension, str] = {
     "density": "kg m-3",
     "per_length": "m-1",
     "linear_density": "kg m-1",
+    "compliance": "m N-1",
     "information": "byte",
 }
 
@@ -53,6 +54,7 @@ _PINT_SI = {
     "kg m-3": "kg/m**3",
     "m-1": "1/m",
     "kg m-1": "kg/m",
+    "m N-1": "m/N",
 }
 
 # as test machines write them, where pint has no such name

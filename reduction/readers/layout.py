@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator, model_valida
 
 from reduction.quantities.units import Dimension, parse_quantity, scale_to_si
 from reduction.record.errors import LogError, SettingsError
+from reduction.record.measurement import LoadTrain
 from reduction.record.notes import Note, note
 from reduction.record.samples import scratch_folder
 from reduction.record.settings import Limits
@@ -144,6 +145,13 @@ class Layout(BaseModel):
     """JSON key, MATLAB variable or HDF5 data set with the units of its columns."""
     sample_interval: str | None = None
     """Time between rows, with its unit, of a log that has no time column."""
+    # load train
+    load_cell_at: Literal["fixed", "moving"] | None = None
+    """At which end of the specimen its load cell is."""
+    attached_mass: str | None = None
+    """Between the specimen and a load cell at its moving end, with its unit."""
+    machine_compliance: str | None = None
+    """Of frame, load cell and grips, with its unit: ``"2e-7 m/N"``."""
     channels: dict[str, Channel]
 
     @field_validator("channels", mode="before")
@@ -180,6 +188,7 @@ class Layout(BaseModel):
                     found=f"sample_interval {self.sample_interval}",
                     needed="one of the two",
                 )
+        self._check_load_train()
         # an MTS file of blocks states its decimal mark itself
         decimal = "" if self.format == "blocks" else self.decimal
         marks = [mark for mark in (self.delimiter, decimal, self.thousands) if mark]
@@ -207,6 +216,38 @@ class Layout(BaseModel):
                 "stated reference_tension.",
             )
         return self
+
+    def _check_load_train(self) -> None:
+        """Refuse a mass whose place is not stated, and what is no mass or compliance."""
+        if self.attached_mass is not None and self.load_cell_at is None:
+            raise SettingsError(
+                "a layout has an attached_mass, and does not say where the load cell is",
+                found=f"attached_mass = {self.attached_mass!r} without load_cell_at",
+                needed='load_cell_at = "moving" or "fixed"',
+                hint="A load cell on the fixed frame does not feel a mass at the moving end.",
+            )
+        train = self.load_train
+        for key, value in (
+            ("attached_mass", train.attached_mass),
+            ("machine_compliance", train.machine_compliance),
+        ):
+            if value is not None and value < 0:
+                raise SettingsError(
+                    f"{key} of a layout is negative", found=f"{value:g} in SI",
+                    needed="zero or more",
+                )  # fmt: skip
+
+    @property
+    def load_train(self) -> LoadTrain:
+        """What the layout states of it, in SI."""
+        mass, compliance = self.attached_mass, self.machine_compliance
+        return LoadTrain(
+            load_cell_at=self.load_cell_at,
+            attached_mass=None if mass is None else parse_quantity(mass, "mass"),
+            machine_compliance=(
+                None if compliance is None else parse_quantity(compliance, "compliance")
+            ),
+        )
 
     @staticmethod
     def dimension(name: str) -> Dimension:

@@ -14,7 +14,7 @@ from reduction.readers.layout import CLOCK, Channel, Layout
 from reduction.readers.raw_log import RawLog
 from reduction.readers.sample_flags import flag_record
 from reduction.record.errors import DataError, SettingsError
-from reduction.record.measurement import Floats, Integers, Record
+from reduction.record.measurement import Floats, Integers, LoadTrain, Record
 from reduction.record.notes import Note, note
 from reduction.record.samples import (
     empty_like,
@@ -352,6 +352,7 @@ def to_record(
         position_standard_uncertainty=_uncertainty(pieces, "crosshead_position", "length"),
         metadata=_metadata(pieces),
         notes=(*_piece_notes(pieces), *counter_notes),
+        load_train=_load_train([layout for _, layout in logs], test_id),
     )
     return flag_record(
         record,
@@ -406,6 +407,18 @@ def _check_datum(layouts: Sequence[Layout], test_id: str, length_needed: bool) -
             hint="Measure it at slack, or at a reference_tension that is stated too.",
         )
     return is_length == {True}
+
+
+def _load_train(layouts: Sequence[Layout], test_id: str) -> LoadTrain:
+    """What the layouts say of it, all of them alike."""
+    stated = list(dict.fromkeys(layout.load_train for layout in layouts))
+    if len(stated) > 1:
+        raise SettingsError(
+            f"test '{test_id}': the layouts of its pieces state different load trains",
+            found=" and ".join(str(one) for one in stated),
+            needed="one load_cell_at, attached_mass and machine_compliance for all pieces",
+        )
+    return stated[0]
 
 
 def _check_order(pieces: Sequence[_Piece]) -> None:

@@ -57,6 +57,12 @@ class InstrumentErrors:
         Relative. [1]
     stiffness : float
         Relative, of the material for the temperature of the test, which is its own. [1]
+    attached_mass : float
+        Of the mass between the specimen and a load cell at its moving end. [kg]
+    linear_density : float
+        [kg m-1]
+    machine_compliance : float
+        Of the length that the machine gives by, over the tension of this specimen. [m N-1]
     test : str
         Which test.
     tension_reading, position_reading : float
@@ -78,6 +84,9 @@ class InstrumentErrors:
     strain_gain: float = 0.0
     rated_break_strength: float = 0.0
     stiffness: float = 0.0
+    attached_mass: float = 0.0
+    linear_density: float = 0.0
+    machine_compliance: float = 0.0
     tension_reading: float = 0.0
     position_reading: float = 0.0
     test: str = ""
@@ -612,6 +621,8 @@ class StatedErrors:
     strain_gain, rated_break_strength, stiffness : float
         Relative: of the strain method, of the break strength, and of the stiffness for the
         temperature of the test. [1]
+    attached_mass, linear_density, machine_compliance : float
+        Of the load train and of the specimen's own mass. [kg], [kg m-1], [m N-1]
     has_one_load_cell : bool
         All tension channels share the errors of one load cell.
     """
@@ -627,6 +638,9 @@ class StatedErrors:
     strain_gain: float = 0.0
     rated_break_strength: float = 0.0
     stiffness: float = 0.0
+    attached_mass: float = 0.0
+    linear_density: float = 0.0
+    machine_compliance: float = 0.0
     has_one_load_cell: bool = False
 
     @property
@@ -657,6 +671,9 @@ class StatedErrors:
             strain_gain=self.strain_gain,
             rated_break_strength=self.rated_break_strength,
             stiffness=self.stiffness,
+            attached_mass=self.attached_mass,
+            linear_density=self.linear_density,
+            machine_compliance=self.machine_compliance,
             tension_reading=self.tension_reading,
             position_reading=self.position_reading,
             tension_instrument=self.load_cell_name(load_cell, channel=channel),

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntFlag
 from math import pi
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -229,6 +229,31 @@ class SpliceMarks:
 
 
 @dataclass(frozen=True)
+class LoadTrain:
+    """What stands between a specimen, the load cell and the crosshead's scale; None: not stated.
+
+    Parameters
+    ----------
+    load_cell_at : {"fixed", "moving"} or None
+        At which end of the specimen the load cell is.
+    attached_mass : float or None
+        Between the specimen and a load cell at its moving end. [kg]
+    machine_compliance : float or None
+        Of frame, load cell and grips, which the crosshead's scale does not see. [m N-1]
+    end_mass : tuple of float, length n_specimens
+        Mass whose inertia has been taken off the tension; empty where none has been. [kg]
+    end_mass_by_density : tuple of float, length n_specimens
+        Length that the linear density counts with in it. [m]
+    """
+
+    load_cell_at: Literal["fixed", "moving"] | None = None
+    attached_mass: float | None = None
+    machine_compliance: float | None = None
+    end_mass: tuple[float, ...] = ()
+    end_mass_by_density: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
 @read_only_arrays
 class Record:
     """One test in SI, every row of the log kept.
@@ -269,6 +294,8 @@ class Record:
         Preamble rows of the file, as printed there.
     notes : tuple of Note
         What a reader of the product has to know.
+    load_train : LoadTrain
+        As the layout states it.
     """
 
     test_id: str
@@ -286,6 +313,7 @@ class Record:
     position_standard_uncertainty: float = float("nan")
     metadata: dict[str, str] = field(default_factory=dict)
     notes: tuple[Note, ...] = ()
+    load_train: LoadTrain = LoadTrain()
 
     def __post_init__(self) -> None:
         """Check shapes once and make the arrays read-only."""

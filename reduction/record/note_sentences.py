@@ -27,6 +27,29 @@ def _left_out(n_cycles: int) -> str:
     return f" ({n_cycles} cycle{_plural(n_cycles)} between them in none)" if n_cycles else ""
 
 
+def _unknown_mass(mass: float, usual: float, effect: float, cell: str) -> str:
+    """What a mass that nobody stated would do."""
+    lacks = (
+        "the mass between specimen and moving load cell is not stated"
+        if cell
+        else "at which end the load cell is, and the mass beside it, are not stated"
+    )
+    return (
+        f"{lacks}: {mass:.3g} kg at a moving load cell would move K_ap by its standard uncertainty,"
+        f" {usual:g} kg (a grip for 22 kN) by {effect:+.2%}; on the fixed frame none is felt. State"
+        " load_cell_at and attached_mass in the layout"
+    )
+
+
+def _unknown_compliance(compliance: float, usual: float, effect: float) -> str:
+    """What give that nobody stated would do."""
+    return (
+        f"the compliance of frame, load cell and grips is not stated: {compliance:.3g} m/N would"
+        f" move K_ap by its standard uncertainty, {usual:.2g} m/N (a frame for 100 kN, without"
+        f" grips) by {effect:+.2%}. State machine_compliance in the layout"
+    )
+
+
 _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "laboratory": ("note", "{text}"),
     "misprint-corrected": (
@@ -318,6 +341,34 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " the shortest of {shortest:.4g} s: what it does to stiffness and loss is of first order,"
         " and their uncertainties are too small",
     ),
+    "inertia-taken-off": (
+        "note",
+        lambda mass, force, width, n_lost, cell: (
+            f"tension is that of the specimen: the inertia of {mass:.4g} kg at its moving end, up"
+            f" to {force:.4g} N, is taken off what the load cell at the {cell} end felt;"
+            f" acceleration from the position, in windows of {width:.3g} s"
+            + (
+                f"; {n_lost} samples of the cycles have none, and no tension"
+                if n_lost else ""
+            )
+        ),
+    ),
+    "give-taken-off": (
+        "note",
+        "position is that of the specimen: {compliance:.4g} m/N times the tension, up to"
+        " {length:.4g} m, is taken off what the crosshead's scale saw",
+    ),
+    "attached-mass-unknown": ("note", _unknown_mass),
+    "attached-mass-matters": ("warning", _unknown_mass),
+    "own-mass-unknown": (
+        "note",
+        "the inertia of the specimen itself is not corrected for (that takes load_cell_at and"
+        " linear_density): a mass of {at_moving:.3g} kg between its ends would move K_ap by its"
+        " standard uncertainty under a load cell at the moving end, {at_fixed:.3g} kg under one at"
+        " the fixed end",
+    ),
+    "compliance-unknown": ("note", _unknown_compliance),
+    "compliance-matters": ("warning", _unknown_compliance),
     "tension-late": (
         "warning",
         lambda lag, spread, stated: (

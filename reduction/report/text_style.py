@@ -491,6 +491,9 @@ _LOOKS: dict[str, tuple[str, str]] = {
     "diameter": (_VERMILION, ""),
     "quasi_static_fit": (_SKY, ""),
     "temperature": (_VERMILION, "/"),
+    "attached_mass": (_PURPLE, "/"),
+    "linear_density": (_PURPLE, "x"),
+    "machine_compliance": (_ORANGE, "x"),
 }
 
 _UNKNOWN = (_GREY, "x")
@@ -520,6 +523,9 @@ _MEANINGS = {
     "strain_gain": "what the strain method itself may miss",
     "quasi_static_fit": "fit of the slow pull that gives K_0",
     "temperature": "stiffness at the temperature of the test",
+    "attached_mass": "inertia of what moves with a moving load cell",
+    "linear_density": "inertia of the specimen itself",
+    "machine_compliance": "what frame, load cell and grips give by",
 }
 
 

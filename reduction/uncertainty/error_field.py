@@ -62,6 +62,7 @@ from reduction.stages.strain.strain_model import (
 
 ROWS = (
     "tension", "strain", "tension_slope", "strain_slope", "strain_slope_over_tension",
+    "tension_slope_over_strain",
 )  # fmt: skip
 """Arrays of one error, in the order of the first axis of `_field_rows`."""
 
@@ -79,9 +80,13 @@ def _field_rows(
     tension_slope: Floats | float = 0.0,
     strain_slope: Floats | float = 0.0,
     strain_slope_over_tension: Floats | float = 0.0,
+    tension_slope_over_strain: Floats | float = 0.0,
 ) -> Floats:
-    """The arrays of one error, shape (5, ...) in the order of `ROWS`; ``like`` has the shape."""
-    given = (tension, strain, tension_slope, strain_slope, strain_slope_over_tension)
+    """The arrays of one error, shape (6, ...) in the order of `ROWS`; ``like`` has the shape."""
+    given = (
+        tension, strain, tension_slope, strain_slope, strain_slope_over_tension,
+        tension_slope_over_strain,
+    )  # fmt: skip
     return np.stack([np.broadcast_to(one, like.shape) for one in given])
 
 
@@ -368,6 +373,105 @@ def _coefficient_parts(
     ]
 
 
+def _compliance_part(
+    errors: InstrumentErrors, model: StrainModel, at: Floats, load: Floats
+) -> list[FieldPart]:
+    """Give of the machine: a length that is less by it times the tension; no extensometer's."""
+    if model.method == "extensometer" or not errors.machine_compliance:
+        return []
+    step = _steps_of(load)
+    push = np.stack([load, load + step, load - step])
+    position, further = position_by_model(
+        model, strain=np.stack([at, at + _REACH]), tension=np.stack([load, load])
+    )
+    strain = -errors.machine_compliance * push * _REACH / (further - position)
+    rows = _field_rows(
+        load, strain=strain[0], strain_slope_over_tension=(strain[1] - strain[2]) / (2 * step)
+    )
+    return [(Component("machine_compliance", errors.position_instrument), rows)]
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class Inertia:
+    r"""Mass that has been taken off the tension of cycles, and how the cycles move it.
+
+    .. math:: \ddot x = -(2 \pi f)^2 (x - x_m)
+
+    Parameters
+    ----------
+    mass : float
+        At the moving end. [kg]
+    error : tuple of (Component, float)
+        Its independent standard uncertainties. [kg]
+    frequency, mean_strain, mean_tension : ndarray, shape (...)
+        Of the cycles; they have or broadcast to the shape of the points. [Hz], [1], [N]
+    """
+
+    mass: float
+    error: tuple[tuple[Component, float], ...]
+    frequency: Floats
+    mean_strain: Floats
+    mean_tension: Floats
+
+    def acceleration(
+        self, model: StrainModel, *, strain: Floats, tension: Floats
+    ) -> tuple[Floats, Floats, Floats]:
+        """Of points of the cycles, with its slopes over strain and over tension.
+
+        Examples
+        --------
+        0.1 of strain from the middle of 1 m, at 0.5 Hz:
+
+        >>> model = StrainModel("rope", "gauge-length",
+        ...     {"reference_position": 0.0, "gauge_length": 1.0})
+        >>> inertia = Inertia(5.0, (), np.array(0.5), np.array(0.3), np.array(100.0))
+        >>> found, over_strain, _ = inertia.acceleration(model, strain=np.array([0.4]),
+        ...     tension=np.array([120.0]))
+        >>> print(found.round(4), over_strain.round(4))
+        [-0.987] [-9.8696]
+        """
+        step = _steps_of(tension)
+        middle = np.broadcast_to(self.mean_strain, tension.shape)
+        level = np.broadcast_to(self.mean_tension, tension.shape)
+        position, further, longer, shorter, centre = position_by_model(
+            model,
+            strain=np.stack([strain, strain + _REACH, strain, strain, middle]),
+            tension=np.stack([tension, tension, tension + step, tension - step, level]),
+        )
+        square = -((2 * np.pi * self.frequency) ** 2)
+        return (
+            np.asarray(square * (position - centre)),
+            np.asarray(square * (further - position) / _REACH),
+            np.asarray(square * (longer - shorter) / (2 * step)),
+        )
+
+
+def _with_inertia(
+    parts: list[FieldPart],
+    errors: InstrumentErrors,
+    model: StrainModel,
+    at: Floats,
+    load: Floats,
+    inertia: Inertia,
+) -> list[FieldPart]:
+    """Errors of the inertia that was taken off: of its mass, its acceleration and the cell."""
+    found, over_strain, over_tension = inertia.acceleration(model, strain=at, tension=load)
+    of_mass = _field_rows(
+        load, tension=found, tension_slope=over_tension, tension_slope_over_strain=over_strain
+    )
+    # a load cell that reads high reads the inertia high too, a scale that does the acceleration
+    felt = {
+        Component("tension_gain", errors.tension_instrument): errors.tension_gain,
+        Component("position_gain", errors.position_instrument): -errors.position_gain,
+    }
+    moved = [
+        (one, rows + felt[one] * inertia.mass * of_mass if one in felt else rows)
+        for one, rows in parts
+    ]
+    return [*moved, *((one, -spread * of_mass) for one, spread in inertia.error)]
+
+
 _PIECE = 4096  # points
 
 
@@ -388,6 +492,8 @@ class ErrorField:
         Of the strain's error, over strain at one tension. [1]
     strain_slope_over_tension : ndarray
         Of the strain's error, over tension at one strain. [N-1]
+    tension_slope_over_strain : ndarray
+        Of the tension's error, over strain at one tension. [N]
     strain_by_tension : ndarray, shape (...)
         Change of strain with the tension that is logged at one position: negative where the
         splices are taken to stretch by it, else zero. [N-1]
@@ -399,6 +505,7 @@ class ErrorField:
     tension_slope: Floats
     strain_slope: Floats
     strain_slope_over_tension: Floats
+    tension_slope_over_strain: Floats
     strain_by_tension: Floats
 
     @property
@@ -414,6 +521,7 @@ def error_field(
     strain: ArrayLike,
     tension: ArrayLike,
     held: Literal["position", "tension"] = "position",
+    inertia: Inertia | None = None,
 ) -> ErrorField:
     r"""What each shared error does to tension and strain at points of the plane.
 
@@ -436,6 +544,8 @@ def error_field(
     held : {"position", "tension"}, optional
         Which of both the temperature of the specimen leaves alone: what the machine (or a weight)
         keeps to its set value, or at which a number is read.
+    inertia : Inertia, optional
+        What has been taken off the tension of cycles; nothing where points stand still.
 
     Returns
     -------
@@ -467,12 +577,22 @@ def error_field(
     ['tension_gain', 'strain_calibration'] [9. 0.] [ 0.    -0.001]
     """
     at, load = as_same_shape(strain=strain, tension=tension)
+
+    def part_of(part: slice) -> Inertia | None:
+        if inertia is None:
+            return None
+        frequency, strain, tension = (
+            np.broadcast_to(one, load.shape).ravel()[part]
+            for one in (inertia.frequency, inertia.mean_strain, inertia.mean_tension)
+        )
+        return Inertia(inertia.mass, inertia.error, frequency, strain, tension)
+
     # point by point, in pieces that stay in the cache of a processor
+    parts = [slice(begin, begin + _PIECE) for begin in range(0, max(load.size, 1), _PIECE)]
     pieces = [
-        _table_at(errors, model, at.ravel()[begin : begin + _PIECE],
-                  load.ravel()[begin : begin + _PIECE], held)
-        for begin in range(0, max(load.size, 1), _PIECE)
-    ]  # fmt: skip
+        _table_at(errors, model, at.ravel()[part], load.ravel()[part], held, part_of(part))
+        for part in parts
+    ]
     components, tables, by_tension = zip(*pieces, strict=True)
     table = np.concatenate(tables, axis=-1).reshape(len(components[0]), len(ROWS), *load.shape)
     return ErrorField(
@@ -488,13 +608,17 @@ def _table_at(
     at: Floats,
     load: Floats,
     held: Literal["position", "tension"],
+    inertia: Inertia | None,
 ) -> tuple[tuple[Component, ...], Floats, Floats]:
     """Errors at points in a row, what each does there, and the strain by tension."""
     parts = [
         *_load_parts(errors, model, load),
         *_position_parts(errors, model, at, load),
         *_coefficient_parts(errors, model, at, load),
+        *_compliance_part(errors, model, at, load),
     ]
+    if inertia is not None:
+        parts = _with_inertia(parts, errors, model, at, load, inertia)
     missed = _splice_method_error(model, strain=at, tension=load)
     if missed is not None:
         rows = _field_rows(load, strain=missed[0], strain_slope=missed[1],

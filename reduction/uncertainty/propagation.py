@@ -162,7 +162,7 @@ from reduction.stages.three_parameter_line.line_model import (
 )
 from reduction.stages.three_parameter_line.line_product import SlowPull
 from reduction.stages.three_parameter_line.slow_pull import quasi_static_spring_constant
-from reduction.uncertainty.error_field import ErrorField, error_field
+from reduction.uncertainty.error_field import ErrorField, Inertia, error_field
 
 Waveform = Literal["triangular", "sinusoidal", "other"]
 
@@ -245,6 +245,7 @@ def curve_contributions(
     area: float,
     strain_rate: ArrayLike = 0.0,
     strain_rate_slope: ArrayLike = 0.0,
+    inertia_slope: ArrayLike = 0.0,
 ) -> Contributions:
     """Contributions to tangent modulus and tension at given strains of a curve.
 
@@ -252,7 +253,8 @@ def curve_contributions(
     -----
     First order ([1]_).  Tension that is logged late stands lower on a rising branch and higher on
     a falling one; where the modulus is constant and the rate too, no modulus changes (the slope of
-    the splices' share is left out: a hundredth of that).
+    the splices' share is left out: a hundredth of that).  What is late is what the load cell felt,
+    the inertia that was taken off (its slope over strain, in N) with it.
 
     Examples
     --------
@@ -274,6 +276,7 @@ def curve_contributions(
     at_strain = field.tension - rise * field.strain
     slope = (
         field.tension_slope * rise
+        + field.tension_slope_over_strain
         - rise * (field.strain_slope + field.strain_slope_over_tension * rise)
         - curvature * field.strain
     )
@@ -284,8 +287,9 @@ def curve_contributions(
         component.append(Component("lag", errors.tension_instrument))
         # splices that are taken to stretch by the late tension are late too
         late = errors.lag * (1 - field.strain_by_tension * rise)
-        tension.append(-late * rise * rate)
-        moduli.append(-late * (bend * rate + modulus * faster))
+        felt = rise + np.asarray(inertia_slope)
+        tension.append(-late * felt * rate)
+        moduli.append(-late * (bend * rate + felt / area * faster))
     if errors.diameter:
         component.append(diameter_error(errors))
         tension.append(np.zeros(modulus.shape))
@@ -806,6 +810,7 @@ def loop_contributions(
     waveform: Literal["triangular", "sinusoidal", "other"],
     control: Literal["position", "load"] = "position",
     speed_ratio: Floats | float = 1.0,
+    inertia: Inertia | None = None,
 ) -> Contributions:
     """Contributions to the quantities of loops of one specimen.
 
@@ -816,7 +821,9 @@ def loop_contributions(
     harder where the machine sets the position, and stretches less where it sets the load; by as
     much, relatively, at the mean as at the amplitude.  Tension that is logged late turns the
     complex modulus back by 2 pi f lag and narrows the loop; it has no first-order effect on
-    extremes.
+    extremes.  It is what the load cell felt that is late: the inertia that was taken off with it.
+    Inertia goes with the position and does no work over a cycle, so that an error of its mass
+    leaves the energy alone.
 
     Examples
     --------
@@ -840,6 +847,7 @@ def loop_contributions(
         model,
         strain=np.stack([mean_strain + way * strain_amplitude for way in (1, -1, 0)]),
         tension=np.stack([mean_tension + way * tension_amplitude for way in (1, -1, 0)]),
+        inertia=inertia,
     )
     # peak, valley and centre
     top, foot, _ = np.moveaxis(field.tension, 1, 0)
@@ -890,14 +898,27 @@ def loop_contributions(
         )  # fmt: skip
     if errors.lag:
         turn = 2 * np.pi * frequency * errors.lag
-        work = _LAG_SHAPE[waveform] * frequency * tension_amplitude * strain_amplitude
+        taken_off: Floats | float = 0.0
+        if inertia is not None:
+            ends = [
+                inertia.acceleration(
+                    model,
+                    strain=np.asarray(mean_strain + way * strain_amplitude),
+                    tension=np.asarray(mean_tension + way * tension_amplitude),
+                )[0]
+                for way in (1, -1)
+            ]
+            taken_off = inertia.mass * (ends[0] - ends[1]) / 2
+        felt = tension_amplitude + taken_off
+        felt_storage = storage_spring_constant + taken_off / strain_amplitude
+        work = _LAG_SHAPE[waveform] * frequency * felt * strain_amplitude
         ramps = 1.0 if waveform == "sinusoidal" else speed_ratio
         # splices that are taken to stretch by the late tension are late too
         late = 1 - field.strain_by_tension[2] * apparent_spring_constant
         of_lag = {
             "hysteresis_energy": -errors.lag * work * ramps * late,
             "storage_spring_constant": turn * loss_spring_constant * late,
-            "loss_spring_constant": -turn * storage_spring_constant * late,
+            "loss_spring_constant": -turn * felt_storage * late,
         }
         component, values = _with(
             component, values, Component("lag", errors.tension_instrument), of_lag

@@ -51,7 +51,7 @@ from reduction.record.contributions import (
     renamed,
     stacked,
 )
-from reduction.record.measurement import Floats, Record, areas_of
+from reduction.record.measurement import Floats, LoadTrain, Record, areas_of
 from reduction.record.notes import Note, note
 from reduction.record.samples import empty_like, full_like, release_pages
 from reduction.record.settings import CycleSettings
@@ -86,7 +86,12 @@ from reduction.stages.three_parameter_line.slow_pull import (
     strain_at_tension,
     tension_grid,
 )
-from reduction.uncertainty.error_field import ErrorField, coefficient_errors, error_field
+from reduction.uncertainty.error_field import (
+    ErrorField,
+    Inertia,
+    coefficient_errors,
+    error_field,
+)
 from reduction.uncertainty.propagation import (
     by_diameter,
     chord_contributions,
@@ -202,6 +207,32 @@ def _speed_ratio(
     return np.asarray(np.where(usable, ratio, 1.0))
 
 
+def _inertia_of(
+    train: LoadTrain, loops: Loops | AmplitudeSummary, index: int, errors: InstrumentErrors
+) -> Inertia | None:
+    """What has been taken off the tension of a specimen, of each cycle or of the means."""
+    if not train.end_mass:
+        return None
+    error = []
+    if train.load_cell_at == "moving" and errors.attached_mass:
+        of_machine = Component("attached_mass", errors.position_instrument)
+        error.append((of_machine, errors.attached_mass))
+    of_specimen = train.end_mass_by_density[index] * errors.linear_density
+    if of_specimen:
+        error.append((Component("linear_density", errors.specimen), of_specimen))
+    if not (train.end_mass[index] or error):
+        return None
+    return Inertia(
+        train.end_mass[index], tuple(error),
+        *(np.asarray(getattr(loops, name)[index])
+          for name in ("frequency", "mean_strain", "mean_tension")),
+    )  # fmt: skip
+
+
+def _train_of(test: ReducedTest) -> LoadTrain:
+    return LoadTrain() if test.record is None else test.record.load_train
+
+
 def _of_loops(
     loops: Loops | AmplitudeSummary,
     index: int,
@@ -209,6 +240,7 @@ def _of_loops(
     model: StrainModel,
     cycles: Cycles,
     settings: CycleSettings,
+    train: LoadTrain,
 ) -> Contributions:
     """Each cycle of a specimen, or the means of its test."""
     return loop_contributions(
@@ -217,6 +249,7 @@ def _of_loops(
         waveform=settings.waveform,
         control=settings.control,
         speed_ratio=_speed_ratio(loops, index, model, cycles, settings),
+        inertia=_inertia_of(train, loops, index, errors),
     )  # fmt: skip
 
 
@@ -340,6 +373,7 @@ def _of_curves(
     model: StrainModel,
     area: float,
     rate: Floats,
+    inertia: Inertia | None = None,
 ) -> Contributions:
     """Both branches of one specimen, by name of the archive."""
     known = curves.tangent_modulus[index], curves.tangent_modulus_untrimmed[index]
@@ -347,13 +381,18 @@ def _of_curves(
     slope = np.where(np.isfinite(known[1]), known[1], known[0])
     tension, slope = _completed(curves.strain_bin, curves.branch_tension[index], slope, area)
     strain = np.broadcast_to(curves.strain_bin, tension.shape)
-    field = error_field(errors, model, strain=strain, tension=tension)
+    field = error_field(errors, model, strain=strain, tension=tension, inertia=inertia)
+    of_inertia = (
+        np.zeros(tension.shape)
+        if inertia is None
+        else inertia.mass * inertia.acceleration(model, strain=strain, tension=tension)[1]
+    )
 
     def at_slope(modulus: Floats) -> Contributions:
         bend = np.stack([_smooth_slope(row, curves.strain_bin) for row in modulus])
         return curve_contributions(
             field, errors, tangent_modulus=modulus, area=area, modulus_slope=bend,
-            strain_rate=rate[0], strain_rate_slope=rate[1],
+            strain_rate=rate[0], strain_rate_slope=rate[1], inertia_slope=of_inertia,
         )  # fmt: skip
 
     of_tension = at_slope(slope)
@@ -402,9 +441,10 @@ def _of_segments(
     model: StrainModel,
     area: float,
     rate: Floats,
+    inertia: Inertia | None,
 ) -> Contributions:
     """Segments of both branches; zero where a branch has none."""
-    of_curve = _of_curves(curves, "", index, errors, model, area, rate)
+    of_curve = _of_curves(curves, "", index, errors, model, area, rate, inertia)
     low, high = segments.segment_strain_low[index], segments.segment_strain_high[index]
     shape = (len(of_curve.component), *low.shape)
     names = ("segment_modulus", "segment_tension_low", "segment_tension_high")
@@ -662,8 +702,13 @@ def _of_ends(
     if loops is None or ends is None:
         return
     mean, half = loops.mean_strain[index], loops.strain_amplitude[index]
-    high = error_field(errors, model, strain=mean + half, tension=loops.peak_tension[index])
-    low = error_field(errors, model, strain=mean - half, tension=loops.valley_tension[index])
+    inertia = _inertia_of(_train_of(test), loops, index, errors)
+    high, low = (
+        error_field(errors, model, strain=strain, tension=tension[index], inertia=inertia)
+        for strain, tension in (
+            (mean + half, loops.peak_tension), (mean - half, loops.valley_tension),
+        )
+    )  # fmt: skip
     secant, chord = ends.secant_modulus[index], ends.chord_modulus[index]
     yield secant_contributions(high, errors, strain=mean + half, secant_modulus=secant, area=area)
     rows = [
@@ -721,7 +766,9 @@ def _of_each(
         part = _cycles_of_test(test, block)
         if part.loops is None or part.cycles is None:
             continue
-        of_block = _of_loops(part.loops, index, errors, model, part.cycles, settings)
+        of_block = _of_loops(
+            part.loops, index, errors, model, part.cycles, settings, _train_of(test)
+        )
         component = of_block.component
         for name in names:
             if name not in rows:
@@ -1240,15 +1287,23 @@ def _of_specimen(
         )  # fmt: skip
     if test.curves is not None:
         rate = _strain_rates(test, index, model, cycles)
-        yield _of_curves(test.curves, "", index, errors, model, area, rate)
+        # along the ramps of a triangle nothing accelerates
+        inertia = (
+            None
+            if summary is None or cycles.waveform == "triangular"
+            else _inertia_of(_train_of(test), summary, index, errors)
+        )
+        yield _of_curves(test.curves, "", index, errors, model, area, rate, inertia)
         if test.segments is not None:
-            yield _of_segments(test.curves, test.segments, index, errors, model, area, rate)
+            yield _of_segments(
+                test.curves, test.segments, index, errors, model, area, rate, inertia
+            )
     # without an area the curve is one of tension, of which the slope is not kept
     if test.first_loading is not None and np.isfinite(area):
         rate = _rise_rates(test, index) if errors.lag else np.zeros((2, 2, 1))
         yield _of_curves(test.first_loading, "_first_loading", index, errors, model, area, rate)
     if summary is not None and test.cycles is not None:
-        of_loop = _of_loops(summary, index, errors, model, test.cycles, cycles)
+        of_loop = _of_loops(summary, index, errors, model, test.cycles, cycles, _train_of(test))
         yield _named(of_loop, "test_", left_out=_OF_CYCLES_ALONE)
         if np.isfinite(area):
             yield _named(_of_dynamic_modulus(of_loop, summary, index, errors, area), "test_")
@@ -1274,7 +1329,7 @@ def _contributions_to_cycles(
     if part.loops is None or part.cycles is None or test.cycles is None:
         return Contributions(())
     model = test.strain_models[index]
-    of_loop = _of_loops(part.loops, index, errors, model, part.cycles, cycles)
+    of_loop = _of_loops(part.loops, index, errors, model, part.cycles, cycles, _train_of(test))
     parts = [of_loop]
     if part.end_moduli is not None:
         parts += _of_ends(part, index, errors, float(areas_of(test.specimens)[index]))
@@ -1282,7 +1337,9 @@ def _contributions_to_cycles(
         rest = _quasi_static_contributions(
             pull, origin or PullOrigin(errors, model),
             np.asarray(test.amplitude.mean_tension[index]),
-            _of_loops(test.amplitude, index, errors, model, test.cycles, cycles),
+            _of_loops(
+                test.amplitude, index, errors, model, test.cycles, cycles, _train_of(test)
+            ),
         )  # fmt: skip
         parts.append(_of_line(part.line, part.loops, index, of_loop, rest))
     return merged(parts)

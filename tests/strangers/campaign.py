@@ -14,8 +14,8 @@ from strangers.materials import Array
 # An empty name leaves the statement out of campaign.toml (it stays in the truth).
 KEYS = {
     "tape": "tape",  # [uncertainty] tape = "0.004 ft"
-    "attached_mass_uncertainty": "",  # [uncertainty] attached_mass = "0.1 kg"
-    "machine_compliance_uncertainty": "",  # [uncertainty] machine_compliance = "2e-8 m/N"
+    "attached_mass_uncertainty": "attached_mass",  # [uncertainty] attached_mass = "0.1 kg"
+    "machine_compliance_uncertainty": "machine_compliance",  # [uncertainty] machine_compliance = "2e-8 m/N"
 }
 NOTICE = "SYNTHETIC: generated from a known law; no specimen was pulled."
 

@@ -1,0 +1,93 @@
+r"""How far the load train that is not stated would move a test.
+
+References
+----------
+.. [1] Klein Tools, data sheet of cat. no. 1604-20L: a strand grip for 5,000 lb has 2.60 lb.
+.. [2] MTS Systems, "Series 322 Load Frames," user manual, p. 20: spring rates of 2.6e8 N/m
+   (100 kN) to 7.4e8 N/m (500 kN), without grips.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from reduction.record.notes import Note, note
+from reduction.stages.moduli.modulus_product import AmplitudeSummary
+from reduction.stages.reduced_test import ReducedTest
+from reduction.stages.strain.strain_model import position_by_model
+
+_USUAL_MASS = 1.2  # kg, [1]: no testing laboratory clamps a mooring line with less
+
+_USUAL_COMPLIANCE = 3.8e-9  # m/N, the softest frame of [2]; grips and load cell come on top
+
+_NAME = "apparent_spring_constant"
+
+
+def load_train_notes(test: ReducedTest) -> Iterator[Note]:
+    """Say at what size each term that is not stated moves K_ap by its standard uncertainty."""
+    summary, record = test.amplitude, test.record
+    if summary is None or record is None:
+        return
+    for index, specimen in enumerate(test.specimens):
+        constant = float(summary.apparent_spring_constant[index])
+        spread = _standard_uncertainty(test, summary, index)
+        length = _length_of_strain(test, summary, index)
+        square = (2 * np.pi * float(summary.frequency[index])) ** 2
+        if not (spread > 0 and length > 0 and square > 0 and np.isfinite(constant)):
+            continue
+        train, of_mass = record.load_train, square * length
+        if train.load_cell_at is None or (
+            train.load_cell_at == "moving" and train.attached_mass is None
+        ):
+            yield note(
+                "attached-mass-matters"
+                if _USUAL_MASS * of_mass > spread
+                else "attached-mass-unknown",
+                specimen.name,
+                mass=spread / of_mass,
+                usual=_USUAL_MASS,
+                effect=-_USUAL_MASS * of_mass / constant,
+                cell=train.load_cell_at or "",
+            )
+        if train.load_cell_at is None or specimen.linear_density is None:
+            yield note(
+                "own-mass-unknown", specimen.name, at_moving=3 * spread / of_mass,
+                at_fixed=6 * spread / of_mass,
+            )  # fmt: skip
+        is_crosshead = test.strain_models[index].method != "extensometer"
+        if train.machine_compliance is None and is_crosshead:
+            # the machine gives by the tensions of all specimens, taken to be alike
+            effect = constant * len(test.specimens) / length
+            yield note(
+                "compliance-matters"
+                if _USUAL_COMPLIANCE * effect * abs(constant) > spread
+                else "compliance-unknown",
+                specimen.name,
+                compliance=spread / abs(constant * effect),
+                usual=_USUAL_COMPLIANCE,
+                effect=_USUAL_COMPLIANCE * effect,
+            )
+
+
+def _standard_uncertainty(test: ReducedTest, summary: AmplitudeSummary, index: int) -> float:
+    """Both parts of that of K_ap. [N]."""
+    random = float(summary.uncertainty[_NAME][index])
+    found = test.contributions
+    if found is None or f"test_{_NAME}" not in found.values:
+        return random
+    return float(np.hypot(random, np.linalg.norm(found.values[f"test_{_NAME}"][:, index])))
+
+
+def _length_of_strain(test: ReducedTest, summary: AmplitudeSummary, index: int) -> float:
+    """Stroke of the crosshead over range of strain: that of the gauge with its splices. [m]."""
+    model = test.strain_models[index]
+    if model.method == "extensometer":
+        # between its feet the stroke is not seen; the crosshead's is that of the whole specimen
+        return float("nan")
+    way = np.array([1.0, -1.0])
+    strain = summary.mean_strain[index] + way * summary.strain_amplitude[index]
+    tension = summary.mean_tension[index] + way * summary.tension_amplitude[index]
+    ends = position_by_model(model, strain=strain, tension=tension)
+    return float((ends[0] - ends[1]) / (strain[0] - strain[1]))

@@ -1,0 +1,116 @@
+"""What a load cell and a crosshead's scale see beside the specimen."""
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from reduction.pipeline.located_test import locate
+from reduction.readers.layout import Channel, Layout
+from reduction.record.errors import DataError
+from reduction.record.measurement import LoadTrain, Record, Specimen
+from reduction.record.settings import CycleSettings, ReductionSettings
+from reduction.stages.load_train import acceleration, end_mass
+
+SETTINGS = ReductionSettings(cycles=CycleSettings(waveform="sinusoidal"))
+
+
+def test_a_chain_of_masses_and_springs_is_felt_as_a_third_and_a_sixth():
+    # end moved by x = cos(w t), far below resonance: forces of the springs against their mean
+    n, mass, stiffness, turn = 400, 1.2, 500.0, 0.2
+    spring, lump = stiffness * n, mass / n
+    matrix = np.diag(np.full(n - 1, 2 * spring - lump * turn**2))
+    matrix -= np.diag(np.full(n - 2, spring), 1) + np.diag(np.full(n - 2, spring), -1)
+    pushed = np.zeros(n - 1)
+    pushed[-1] = spring
+    place = np.concatenate(([0.0], np.linalg.solve(matrix, pushed), [1.0]))
+    force = spring * np.diff(place)
+    felt = (force[-1] - lump / 2 * turn**2, force[0])
+    for cell, one in zip(("moving", "fixed"), felt, strict=True):
+        counted, _ = end_mass(LoadTrain(cell, 0.0), linear_density=mass, slack_length=1.0)
+        assert (one - force.mean()) / -(turn**2) == pytest.approx(counted, rel=0.01)
+
+
+def test_noise_of_the_position_is_not_amplified_beyond_what_is_said():
+    generator = np.random.default_rng(1)
+    time, half = np.arange(4000) / 100, 0.25
+    noise = generator.normal(0, 1e-4, time.size)
+    found = acceleration(time, noise, half_width=half)[100:-100]
+    assert np.std(found) == pytest.approx(52 * 1e-4 / half**2 / np.sqrt(51), rel=0.1)
+
+
+def test_uneven_times_and_missing_samples_leave_a_sine_what_it_is():
+    generator = np.random.default_rng(2)
+    time = np.arange(600) / 64 + generator.uniform(-0.3, 0.3, 600) / 64
+    position = np.cos(2 * np.pi * time)
+    seen = position.copy()
+    seen[generator.integers(100, 500, 20)] = np.nan
+    found = acceleration(time, seen, half_width=0.25)
+    inside = slice(40, -40)
+    assert np.allclose(found[inside], -((2 * np.pi) ** 2) * position[inside], atol=0.02 * 39.5)
+
+
+def logged(train, *, mass=0.0, compliance=0.0, rate=64, n_cycles=12):
+    """Ten newton a centimetre, 1 Hz, 0.2 m about 0.5 m, with a rest before."""
+    time = np.arange(-5 * rate, n_cycles * rate + 1) / rate
+    length = np.where(time < 0, 2.0, 2.5 - 0.2 * np.cos(2 * np.pi * time))
+    ease = (time > -2) & (time < 0)
+    length[ease] = 2.15 - 0.15 * np.cos(np.pi * (time[ease] + 2) / 2)
+    tension = 1000 * (length - 2.0)
+    bend = np.where(time >= 0, 0.2 * (2 * np.pi) ** 2 * np.cos(2 * np.pi * time), 0.0)
+    record = Record(
+        "R-1", ("rope",), time, length + compliance * tension, (tension + mass * bend)[None],
+        np.zeros((1, time.size), np.uint16), np.zeros(time.size, np.uint16), load_train=train,
+    )  # fmt: skip
+    return record, length, tension
+
+
+@pytest.mark.parametrize(
+    ("train", "linear_density", "mass", "compliance"),
+    [
+        (LoadTrain("moving", 5.0), None, 5.0, 0.0),
+        (LoadTrain("moving", 5.0, 1e-5), None, 5.0, 1e-5),
+        (LoadTrain("moving", 5.0), 0.6, 5.4, 0.0),
+        (LoadTrain("fixed", 5.0), None, 0.0, 0.0),
+        (LoadTrain("fixed", 5.0), 0.6, -0.2, 0.0),
+        (LoadTrain(machine_compliance=1e-5), None, 0.0, 1e-5),
+        (LoadTrain(), 0.6, 0.0, 0.0),
+    ],
+)
+def test_tension_and_length_of_the_specimen_come_back(train, linear_density, mass, compliance):
+    record, length, tension = logged(train, mass=mass, compliance=compliance)
+    rope = Specimen("rope", "rope", linear_density=linear_density)
+    found = locate(record, kind="cyclic", settings=SETTINGS, specimens=(rope,))
+    assert found.cycles.n_cycles >= 11
+    inside = found.cycles.cycle_number > 0
+    assert np.abs(found.tension[0] - tension)[inside].max() < 0.002 * (400 + mass * 8)
+    assert np.abs(found.position - length)[inside].max() < 1e-5
+    assert np.array_equal(found.record.tension, found.tension)
+
+
+def test_a_log_that_is_too_sparse_for_acceleration_is_refused():
+    record, _, _ = logged(LoadTrain("moving", 5.0), mass=5.0, rate=12, n_cycles=40)
+    with pytest.raises(DataError, match="too sparse for the acceleration"):
+        locate(record, kind="cyclic", settings=SETTINGS, specimens=(Specimen("rope", "rope"),))
+
+
+def layout(**keys):
+    return Layout(format="delimited", channels={"time": Channel(column="t", unit="s")}, **keys)
+
+
+def test_a_layout_states_its_load_train_in_any_unit():
+    stated = layout(load_cell_at="moving", attached_mass="5000 g", machine_compliance="2e-4 mm/N")
+    assert stated.load_train == LoadTrain("moving", 5.0, pytest.approx(2e-7))
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ({"attached_mass": "5 kg"}, "does not say where the load cell is"),
+        ({"load_cell_at": "moving", "attached_mass": "-5 kg"}, "attached_mass of a layout is neg"),
+        ({"machine_compliance": "-1e-7 m/N"}, "machine_compliance of a layout is negative"),
+        ({"machine_compliance": "1e-7 N/m"}, "N/m"),
+    ],
+)
+def test_what_is_no_load_train_is_refused(keys, message):
+    with pytest.raises(ValidationError, match=message):
+        layout(**keys)
