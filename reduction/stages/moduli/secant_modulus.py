@@ -586,6 +586,8 @@ def cycles_at_an_end(n_cycles: int) -> int:
     return min(max(n_cycles // 10, 1), 10)
 
 
+_LATER = 10  # cycles, after which the slope of creep is taken again, to see whether it is one
+
 _SETTLING = 2  # first cycles, in which a specimen still follows the ramp to its mean load
 
 
@@ -677,7 +679,8 @@ def fit_peak_trend(loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0) -
     them each, and count from the first cycle whatever the break-in.  The slope of the mean
     strain is the creep of a rope in load control.  It begins with the third cycle: in the first
     two a specimen still follows the ramp to its mean load, and with the weights of
-    `slope_per_decade` they would be most of it.
+    `slope_per_decade` they would be most of it.  Creep need not be a line in the logarithm: half
+    of what the slope from the eleventh cycle on differs is in its uncertainty.
 
     Examples
     --------
@@ -703,6 +706,9 @@ def fit_peak_trend(loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0) -
     strain_slope, strain_uncertainty = slope_per_decade(
         strain[:, settled:], first_cycle=settled + 1
     )
+    if strain.shape[1] >= 2 * _LATER:
+        later, _ = slope_per_decade(strain[:, _LATER:], first_cycle=_LATER + 1)
+        strain_uncertainty = np.hypot(strain_uncertainty, (later - strain_slope) / 2)
     change, change_uncertainty = _change_of_ends(peaks)
     first_strain, last_strain, strain_scatter = _means_at_ends(strain)
     return PeakTrend(
