@@ -25,7 +25,7 @@ def verdicts_of_misprints(report, answers):
         answer = answers[cell.key]
         if not isinstance(answer, Answer) or answer.bound or not _DIGIT.search(cell.printed):
             continue
-        if item_of(cell, answers).verdict == "reproduced":
+        if item_of(cell, answers).verdict == "derived":
             other = replace(cell, printed=misprint(cell.printed))
             verdicts[cell.key] = item_of(other, answers).verdict
     return verdicts

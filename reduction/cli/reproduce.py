@@ -29,10 +29,12 @@ from reduction.record.errors import DataError, SettingsError
 UNEXPLAINED = DataError.exit_status
 
 _COLUMNS = (
-    "cells: printed numbers of a table. reproduced: comes back from other numbers of the pages "
-    "within its rounding; erratum: the page is wrong, and the corrected number comes back; open: "
-    "the page is wrong or doubtful, and nothing says what is right; not testable: nothing else on "
-    "the pages leads to it; unexplained: does not come back, and no erratum says why. Of an "
+    "cells: printed numbers of a table. derived: follows from theory or from other numbers, within "
+    "its rounding; closed: equations close it with a partner, and would have shown one unit of its "
+    "leading digit at three standard errors (power); repeated: printed twice, and equal, so that "
+    "nothing was computed; erratum: the page is wrong, and the corrected number comes back; open: "
+    "the page is wrong or doubtful, and nothing says what is right; measured: nothing on the pages "
+    "could test it; unexplained: does not come back, and no erratum says why. Of an "
     "erratum: right is the corrected text, sure how far it is proved, cells how many numbers it "
     "touches; `--erratum ID` gives the evidence of one\n"
 )
@@ -112,7 +114,12 @@ def _show(report: ReportId, items: Sequence[ReproducedItem], output: CommandOutp
         for item in open_cells:
             cell = item.cell
             place, printed = f"{cell.table}: {cell.row}", f"{cell.printed} {cell.unit}"
-            cells.add_row(*map(escape, (place, cell.column, printed, cell.erratum, cell.note)))
+            cells.add_row(
+                *map(
+                    escape,
+                    (place, cell.column, printed, cell.erratum or "-", cell.note or item.how),
+                )
+            )
         output.show(cells)
     output.say("")
 
@@ -129,8 +136,7 @@ def _show_total(
 
 
 def _table(heading: str) -> Any:
-    verdicts = (verdict.replace("_", " ") for verdict in VERDICTS)
-    return table_of(heading, "cells", *verdicts)
+    return table_of(heading, "cells", *VERDICTS)
 
 
 def _numbers(counts: Counts) -> list[str]:
@@ -178,6 +184,8 @@ def _described(item: ReproducedItem) -> dict[str, Any]:
         "recomputed": plain(item.recomputed),
         "tolerance": plain(item.tolerance),
         "verdict": item.verdict,
+        "z": plain(item.z),
+        "power": plain(item.power),
         "erratum": cell.erratum or None,
         "confidence": cell.confidence or None,
         "how": item.how,

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from reduction.published.printed_cells import Cell, number_of, printed_step
-from reduction.published.reproduced_item import ReproducedItem, judge, not_testable
+from reduction.published.reproduced_item import ReproducedItem, judge, judge_repeat, measured_item
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
 from reduction.stages.three_parameter_line.slow_pull import slope_of_cubic
@@ -85,7 +85,7 @@ Check = Callable[[Cell, Pages], ReproducedItem]
 
 def always(why: str) -> Check:
     """The check of a claim that nothing in the report determines."""
-    return lambda cell, pages: not_testable(cell, why)
+    return lambda cell, pages: measured_item(cell, why)
 
 
 def rounding(
@@ -206,7 +206,7 @@ def item_of_level(cell: Cell, pages: Pages) -> ReproducedItem:
     table, line, strengths = OF_LEVELS[cell.row]
     if factor == "frequency":
         found = pages.value(table, "every line", f"{K_AP} frequency {end}")
-        return judge(cell, found, f"Table {table}")
+        return judge_repeat(cell, found, f"Table {table}")
     strength = pages.value(strengths, line, "rated_break_strength")
     found = pages.value(table, line, f"{K_AP} {cell.column}")
     return judge(cell, 100 * found / strength, f"range of Table {table} over {strength:g} lb")
@@ -217,7 +217,7 @@ def _strength(cell: Cell, pages: Pages) -> ReproducedItem:
     line = cell.row.rpartition(" | ")[0]
     if cell.erratum == "CG-15":
         other = pages.printed("10", f"{line} | new", "tensile_strength mean")
-        return judge(cell, other, "Table 10")
+        return judge_repeat(cell, other, "Table 10")
     percent = 22.0 if "| 1 in" in cell.row else 30.0
     key = ("3", f"{line} | new", f"{K_AP} mean_tension high")
     return judge(
@@ -229,9 +229,9 @@ def _strength(cell: Cell, pages: Pages) -> ReproducedItem:
 def _screening(cell: Cell, pages: Pages) -> ReproducedItem:
     if cell.column in REPEATED:
         found = pages.printed("sec A-1", "screening", REPEATED[cell.column])
-        return judge(cell, found, "the text of App. A")
+        return judge_repeat(cell, found, "the text of App. A")
     if cell.column not in SCREENING:
-        return not_testable(cell, SETTING)
+        return measured_item(cell, SETTING)
     extreme, other, sign = SCREENING[cell.column]
     total = pages.printed(*extreme) + sign * pages.printed("A-1", cell.row, other)
     return judge(cell, total, f"{extreme[2]}, {extreme[0]}, and the other load")

@@ -44,9 +44,10 @@ from reduction.published.reproduced_item import (
     agree,
     compared_item,
     judge,
+    judge_repeat,
     judge_round,
     judge_word,
-    not_testable,
+    measured_item,
 )
 from reduction.stages.three_parameter_line.line_model import apparent_spring_constant
 
@@ -87,7 +88,7 @@ def _samples(cell: Cell, pages: Pages) -> ReproducedItem:
             cell, within + 2 - 6, "degrees of freedom of Table A-3, six after cycling"
         )
     if cell.table == "sec 6.2.2":
-        return not_testable(cell, "measured")
+        return measured_item(cell, "measured")
     counts = [
         number(found) for key, found in pages.by_key.items()
         if key[0] in ("4", "5", "12", "13") and key[1].endswith("new")
@@ -100,14 +101,15 @@ def _levels(cell: Cell, pages: Pages) -> ReproducedItem:
     """Levels of the screening stand in Table A-1, those of the design in Table 1."""
     if cell.row == "screening":
         column = "duration high" if cell.column == "cycles" else cell.column
-        return judge(cell, pages.printed("A-1", SCREEN, column), "Table A-1")
+        return judge_repeat(cell, pages.printed("A-1", SCREEN, column), "Table A-1")
     if cell.row == "design":
-        return judge(cell, pages.printed("1", levels_of(NYLON_BRAIDS[0]), cell.column), "Table 1")
-    return not_testable(cell, SETTING)
+        found = pages.printed("1", levels_of(NYLON_BRAIDS[0]), cell.column)
+        return judge_repeat(cell, found, "Table 1")
+    return measured_item(cell, SETTING)
 
 
 def _never_slack(cell: Cell, pages: Pages) -> ReproducedItem:
-    return judge(cell, pages.printed("A-1", SCREEN, "duration high"), "Table A-1")
+    return judge_repeat(cell, pages.printed("A-1", SCREEN, "duration high"), "Table A-1")
 
 
 def _period(cell: Cell, pages: Pages) -> ReproducedItem:
@@ -131,17 +133,18 @@ def _printed_again(cell: Cell, pages: Pages) -> ReproducedItem:
         "weight of the sinker": ("field mooring", "weight of a sinker"),
         "weight of a sinker": ("field abrasion", "weight of the sinker"),
     }.get(cell.column, (cell.row, cell.column))
-    return judge(cell, pages.printed(table, row, column), f"printed in {table} too")
+    return judge_repeat(cell, pages.printed(table, row, column), f"printed in {table} too")
 
 
 def _synthetic_line(cell: Cell, pages: Pages) -> ReproducedItem:
     table = "App H" if cell.table == "App G" else "App G"
-    return judge(cell, pages.printed(table, cell.row, cell.column), f"printed in {table} too")
+    found = pages.printed(table, cell.row, cell.column)
+    return judge_repeat(cell, found, f"printed in {table} too")
 
 
 def _scope(cell: Cell, pages: Pages) -> ReproducedItem:
     if cell.table == "App G":
-        return not_testable(cell, "the depth of the field exposure is not printed")
+        return measured_item(cell, "the depth of the field exposure is not printed")
     length, low, high = (
         pages.printed(cell.table, cell.row, column)
         for column in ("length of samples", "water_depth low", "water_depth high")
@@ -403,8 +406,8 @@ def _wet(cell: Cell, pages: Pages) -> ReproducedItem:
 def _repeated(cell: Cell, pages: Pages) -> ReproducedItem:
     """Numbers of Tables 10 and 21 that the text repeats."""
     if cell.column.endswith("change"):
-        return judge(cell, abs(pages.printed("21", cell.row, cell.column)), "Table 21")
-    return judge(cell, pages.printed("10", cell.row, cell.column), "Table 10")
+        return judge_repeat(cell, abs(pages.printed("21", cell.row, cell.column)), "Table 21")
+    return judge_repeat(cell, pages.printed("10", cell.row, cell.column), "Table 10")
 
 
 def _screened(cell: Cell, pages: Pages) -> ReproducedItem:
@@ -546,7 +549,7 @@ def _ratios(pages: Pages) -> dict[str, float]:
 
 def _stiffness_ratio(cell: Cell, pages: Pages) -> ReproducedItem:
     if cell.table.startswith("sec A"):
-        return not_testable(cell, "the stiffness of the screening is not printed")
+        return measured_item(cell, "the stiffness of the screening is not printed")
     ratios = sorted(_ratios(pages).values())
     extreme = ratios[0] if cell.column.endswith("low") else ratios[-1]
     return judge(
@@ -568,8 +571,15 @@ def _change(cell: Cell, pages: Pages) -> ReproducedItem:
             "12" if row.startswith("nylon") else "13")  # fmt: skip
     found = change_of_mean(pages, table, row, quantity)
     if found is None:
-        return not_testable(cell, COLUMN_LOST)
-    return judge(cell, found[0], f"Table {table}, {found[1]}")
+        return measured_item(cell, COLUMN_LOST)
+    held = judge_round if (cell.table, cell.row) in APPROXIMATE else judge
+    return held(cell, found[0], f"Table {table}, {found[1]}")
+
+
+APPROXIMATE = {
+    (section, f"{POLYESTER_PLAITED} | 4 years") for section in ("sec 4.4.1", "sec 4.4.8")
+}
+"""Changes of K_ap that the text gives as approximately so much."""
 
 
 def _figure_4(cell: Cell, pages: Pages) -> ReproducedItem:
@@ -609,7 +619,7 @@ def _over_mean_load(cell: Cell, pages: Pages) -> ReproducedItem:
 
 
 def _mean_of_centre(cell: Cell, pages: Pages) -> ReproducedItem:
-    return judge(cell, pages.value("3", cell.row, cell.column), "Table 3")
+    return judge_repeat(cell, pages.value("3", cell.row, cell.column), "Table 3")
 
 
 def _mean_ratio(pages: Pages, over: str, under: str) -> float:

@@ -14,7 +14,7 @@ from reduction.published.cg_claims import (
 from reduction.published.cg_surfaces import TABLES_OF, item_of_static, item_of_surface
 from reduction.published.cg_tests import item_of_test
 from reduction.published.printed_cells import Cell, cells_of
-from reduction.published.reproduced_item import ReproducedItem, not_testable
+from reduction.published.reproduced_item import ReproducedItem, measured_item
 
 SURFACES = {table for tables in TABLES_OF.values() for table in tables}
 
@@ -47,4 +47,4 @@ def _item_of(cell: Cell, pages: Pages) -> ReproducedItem:
     if of_table is not None:
         return of_table(cell, pages)
     claim = CLAIMS.get(cell.column)
-    return not_testable(cell, PRINTED_ONCE) if claim is None else claim(cell, pages)
+    return measured_item(cell, PRINTED_ONCE) if claim is None else claim(cell, pages)

@@ -7,6 +7,9 @@ equations of the line can be put beside it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
 from reduction.experiments.designs import model_matrix, quadratic_exponents
@@ -26,14 +29,17 @@ from reduction.published.cg_cells import (
     number,
     rounding,
 )
+from reduction.published.cg_closure import SOLVED, Closure, closure_of
 from reduction.published.printed_cells import Cell, printed_step
 from reduction.published.reproduced_item import (
     ReproducedItem,
     agree,
+    closed_item,
     compared_item,
     judge,
     judge_as,
-    not_testable,
+    judge_repeat,
+    measured_item,
 )
 from reduction.stages.three_parameter_line.line_model import (
     apparent_spring_constant,
@@ -64,14 +70,14 @@ def item_of_static(cell: Cell, pages: Pages) -> ReproducedItem:
         return _static_count(cell, pages)
     twin = _static_twin(cell, pages)
     if twin is not None:
-        return judge(cell, twin[0], twin[1])
+        return judge_repeat(cell, twin[0], twin[1])
     if cell.table in ("6", "7"):
         return _coefficient_of_stiffness(cell, pages, term)
     if cell.erratum == "CG-10":
         return compared_item(
             cell, _curvature_of_strain(cell, pages), f"{FITTED}; C that meets K_0 of Table 7"
         )
-    return not_testable(cell, FITTED)
+    return measured_item(cell, FITTED)
 
 
 def _static_twin(cell: Cell, pages: Pages) -> tuple[float, str] | None:
@@ -102,7 +108,7 @@ def _coefficient_of_stiffness(cell: Cell, pages: Pages, term: str) -> Reproduced
     tension = 0.7 * pages.value(cell.table, cell.row, f"{REST} {RANGE}")
     slope = _slopes(cell, pages, tension)
     if slope is None:
-        return not_testable(cell, FITTED)
+        return measured_item(cell, FITTED)
     power = "ABCD".index(term)
     others = pages.polynomial(cell.table, cell.row, tension)
     scale = tension**power * POLYNOMIAL_SCALES[power]
@@ -139,7 +145,7 @@ def _head(cell: Cell, pages: Pages, term: str) -> ReproducedItem:
 def _static_range(cell: Cell, pages: Pages) -> ReproducedItem:
     if cell.erratum == "CG-12":
         off = ", ".join(f"{100 * one:.0f}" for one in _departures(cell.row, pages))
-        return not_testable(cell, f"{off} % off the slope of Table 8 at the three levels")
+        return measured_item(cell, f"{off} % off the slope of Table 8 at the three levels")
     if cell.erratum == "CG-13":
         return _range_of_strength(cell, pages)
     years = cell.row.replace("field exposure", EXPOSED_YEARS)
@@ -150,10 +156,10 @@ def _static_range(cell: Cell, pages: Pages) -> ReproducedItem:
         (table, exposure if quantity == REST else years, f"{quantity} {RANGE}")
     )
     if other is not None and (not other.erratum or other.erratum == cell.erratum):
-        return judge(cell, number(other), f"Table {table}")
+        return judge_repeat(cell, number(other), f"Table {table}")
     strength = pages.by_key.get(("1", cell.row, "rated_break_strength"))
     if strength is None:
-        return not_testable(cell, "a range that no other table prints")
+        return measured_item(cell, "a range that no other table prints")
     return judge(cell, 0.30 * number(strength), "30 % of the rated break strength of Table 1")
 
 
@@ -189,15 +195,15 @@ def _static_count(cell: Cell, pages: Pages) -> ReproducedItem:
     table, quantity = ("8", STRAIN) if cell.table == "6" else ("6", REST)
     other = pages.by_key.get((table, cell.row, f"{quantity} number of samples"))
     if other is not None:
-        return judge(cell, number(other), f"Table {table}")
+        return judge_repeat(cell, number(other), f"Table {table}")
     if "13/16" in cell.row:
         return judge(cell, 9.0, "nine of each diameter, sec. A-2.1")
-    return not_testable(cell, "a count that no other table prints")
+    return measured_item(cell, "a count that no other table prints")
 
 
 def _rate(cell: Cell, pages: Pages) -> ReproducedItem:
     if cell.column != REST:
-        return not_testable(cell, "a setting of the test")
+        return measured_item(cell, "a setting of the test")
     load = np.linspace(0, 2000, 100)
     slowest = "24 h after the dynamic test, slow"
     pulls = [
@@ -205,7 +211,7 @@ def _rate(cell: Cell, pages: Pages) -> ReproducedItem:
         for row in (cell.row, slowest)
     ]
     ratio = float(spring_constant_ratio(pulls[0], pulls[1], 1000.0)[0])
-    return not_testable(cell, f"measured; {ratio:.2f} times the slow pull after 24 h")
+    return measured_item(cell, f"measured; {ratio:.2f} times the slow pull after 24 h")
 
 
 TABLES_OF = {
@@ -238,7 +244,7 @@ def item_of_surface(cell: Cell, pages: Pages) -> ReproducedItem:
         return _range(cell, pages)
     if term.startswith("B") and quantity in TABLES_OF:
         return _coefficient(cell, pages, quantity, term)
-    return not_testable(cell, "a head of the table")
+    return measured_item(cell, "a head of the table")
 
 
 def _twin(cell: Cell, pages: Pages, quantity: str) -> Cell | None:
@@ -257,9 +263,32 @@ def _twin(cell: Cell, pages: Pages, quantity: str) -> Cell | None:
 
 
 def _coefficient(cell: Cell, pages: Pages, quantity: str, term: str) -> ReproducedItem:
+    item = _by_other_prints(cell, pages, quantity, term)
+    if quantity not in SOLVED:
+        return item
+    closure = closure_of(pages, cell.row, quantity)
+    return item if closure is None else _closed(item, closure, int(term.removeprefix("B")) - 1)
+
+
+def _closed(item: ReproducedItem, closure: Sequence[Closure], place: int) -> ReproducedItem:
+    """A coefficient by the slow pull that is nearest to it; which of them is right is not known."""
+    own = number(item.cell)
+    best = min(closure, key=lambda one: abs(own - one.coefficient[place]))
+    beside = " or ".join(f"{one.coefficient[place]:.3f} ({one.slow_pull})" for one in closure)
+    told = f"{item.how}; " if item.verdict == "repeated" else ""
+    return closed_item(
+        replace(item, recomputed=float(best.coefficient[place])),
+        float(best.standard_error[place]),
+        spread=float(np.ptp([one.coefficient[place] for one in closure])),
+        how=f"{told}K_ap, H and K_0 at the runs of the design give {beside}",
+    )
+
+
+def _by_other_prints(cell: Cell, pages: Pages, quantity: str, term: str) -> ReproducedItem:
+    """A coefficient by its other print, or beside what the equations give at the centre."""
     twin = _twin(cell, pages, quantity)
     if twin is not None:
-        return judge(cell, number(twin), f"Table {twin.table}")
+        return judge_repeat(cell, number(twin), f"Table {twin.table}")
     if cell.erratum == "CG-6":
         return compared_item(
             cell, _energy_by_mean_load(pages, cell.row),
@@ -332,7 +361,7 @@ def _exposed_time(cell: Cell, pages: Pages, quantity: str, term: str) -> Reprodu
         f"{POLYESTER_BRAID} | 5 years": ("5", "13", 1470.0, 595.0),
     }
     if term != "B1" or quantity not in (K_1, TIME) or cell.row not in exposed:
-        return not_testable(cell, RUNS)
+        return measured_item(cell, RUNS)
     stiff, lossy, tension, amplitude = exposed[cell.row]
     rest = pages.polynomial("7", cell.row.replace("5 years", "field exposure"), tension)
     solved = _solved(
@@ -354,11 +383,12 @@ def _f_of(r2: float) -> float:
 def _share(cell: Cell, pages: Pages) -> ReproducedItem:
     f = pages.cell(cell.table, cell.row, cell.column.replace("r2", "F-stat"))
     if cell.confidence == "certain":
-        return judge(cell, number(_true_column(cell, pages)), "Table 13, new")
+        return judge_repeat(cell, number(_true_column(cell, pages)), "Table 13, new")
     statistic = number(f)
     # the statistic is 4/10 of the odds of r2
     share = float(statistic / (statistic + _f_of(0.5)))
-    return judge(cell, share, "the printed F, of 10 and 4 degrees of freedom")
+    item = judge(cell, share, "the printed F, of 10 and 4 degrees of freedom")
+    return closed_item(item, 0.5 * printed_step(cell.printed) / np.sqrt(3))
 
 
 def _true_column(cell: Cell, pages: Pages) -> Cell:
@@ -368,7 +398,7 @@ def _true_column(cell: Cell, pages: Pages) -> Cell:
 def _statistic(cell: Cell, pages: Pages) -> ReproducedItem:
     quantity = cell.column.partition(" ")[0]
     if cell.erratum == "CG-5":
-        return judge(cell, number(_true_column(cell, pages)), "Table 13, new")
+        return judge_repeat(cell, number(_true_column(cell, pages)), "Table 13, new")
     r2 = pages.cell(cell.table, cell.row, cell.column.replace("F-stat", "r2"))
     half = 0.5 * printed_step(r2.printed)
     allowed = rounding(_f_of, [number(r2)], [half]) + 0.5 * printed_step(cell.printed)
@@ -376,18 +406,27 @@ def _statistic(cell: Cell, pages: Pages) -> ReproducedItem:
         cell, _f_of(number(r2)),
         "r2 with 10 and 4 degrees of freedom, which counts the mean twice", tolerance=allowed,
     )  # fmt: skip
-    if by_share.verdict != "reproduced":
+    if by_share.verdict != "derived":
         return by_share
+    by_share = closed_item(by_share, allowed / np.sqrt(3))
     cut = _cut_off(cell, pages, quantity)
     if cut is not None:
         half = 0.5 * printed_step(cut.printed)
         how = f"Table {cut.table}, which cuts digits off, and r2"
-        return judge(cell, number(cut) + half, how, tolerance=half)
+        return _also_closed(judge_repeat(cell, number(cut) + half, how, tolerance=half), by_share)
     twin = _twin(cell, pages, quantity)
     if twin is None:
         return by_share
     coarser = max(printed_step(cell.printed), printed_step(twin.printed))
-    return judge(cell, number(twin), f"Table {twin.table}, and r2", tolerance=0.5 * coarser)
+    how = f"Table {twin.table}, and r2"
+    return _also_closed(judge_repeat(cell, number(twin), how, tolerance=0.5 * coarser), by_share)
+
+
+def _also_closed(repeated: ReproducedItem, by_share: ReproducedItem) -> ReproducedItem:
+    """A statistic that stands twice, with what r2 says of it."""
+    if repeated.verdict != "repeated" or by_share.verdict != "closed":
+        return repeated
+    return replace(repeated, verdict="closed", z=by_share.z, power=by_share.power)
 
 
 def _cut_off(cell: Cell, pages: Pages, quantity: str) -> Cell | None:
@@ -404,18 +443,18 @@ def _count(cell: Cell, pages: Pages) -> ReproducedItem:
         for quantity in (K_AP, ENERGY):
             other = pages.by_key.get((table, cell.row, f"{quantity} number of lines"))
             if other is not None and table != cell.table:
-                return judge(cell, number(other), f"Table {table}")
+                return judge_repeat(cell, number(other), f"Table {table}")
     strength = pages.by_key.get(("10", cell.row, "tensile_strength number of samples"))
     if strength is None:
-        return not_testable(cell, "a count that no other table prints")
-    return judge(cell, number(strength), "samples of Table 10")
+        return measured_item(cell, "a count that no other table prints")
+    return judge_repeat(cell, number(strength), "samples of Table 10")
 
 
 def _change(cell: Cell, pages: Pages) -> ReproducedItem:
     quantity = cell.column.partition(" ")[0]
     change = change_of_mean(pages, cell.table, cell.row, quantity)
     if change is None:
-        return not_testable(cell, "the column of the exposed line is lost in the text")
+        return measured_item(cell, "the column of the exposed line is lost in the text")
     value, how = change
     return judge(cell, value, how)
 
@@ -440,7 +479,7 @@ def _range(cell: Cell, pages: Pages) -> ReproducedItem:
     _, what, end = cell.column.split(" ")
     share = pages.value("1", levels_of(cell.row), f"{what} {end}")
     if what == "frequency":
-        return judge(cell, share, "Table 1")
+        return judge_repeat(cell, share, "Table 1")
     strength, source = _strength(cell, pages)
     return judge(cell, share / 100 * strength, f"{share:g} % of {strength:g} lb, {source}")
 

@@ -19,7 +19,12 @@ from reduction.published.cg_cells import (
     rounding,
 )
 from reduction.published.printed_cells import Cell, printed_step
-from reduction.published.reproduced_item import ReproducedItem, judge, not_testable
+from reduction.published.reproduced_item import (
+    ReproducedItem,
+    judge,
+    judge_repeat,
+    measured_item,
+)
 
 MEASURED = "measured"
 
@@ -91,7 +96,7 @@ def _item_of_group(cell: Cell, pages: Pages) -> ReproducedItem:
         scale = 1.0 if quantity == STRENGTH else 100.0
         place = ("10", f"{line} | new", cell.column)
         step = float(_common_step(pages, kind)) if quantity == STRENGTH and kind != "mean" else 0.0
-        return judge(
+        return judge_repeat(
             cell, scale * pages.value(*place), "Table 10",
             tolerance=max(scale * pages.half(*place), 0.5 * step),
         )  # fmt: skip
@@ -107,14 +112,14 @@ def _item_of_group(cell: Cell, pages: Pages) -> ReproducedItem:
             )  # fmt: skip
         if "13/16" in cell.row:
             key = ("8", cell.row.replace(condition, "new"), "quasi_static_strain mean_tension high")
-            return judge(cell, pages.printed(*key), "Table 8 prints it as a range")
+            return judge_repeat(cell, pages.printed(*key), "Table 8 prints it as a range")
         dry = pages.printed("A-3", f"{line} | {DRY}", f"{STRENGTH} mean")
         claim = ("sec A-4.6", f"{line} | wet", f"{STRENGTH} fall")
         return judge(
             cell, dry * (1 - pages.printed(*claim) / 100), "dry, less the 12 % of sec. A-4.6",
             tolerance=dry * pages.half(*claim) / 100,
         )  # fmt: skip
-    return not_testable(cell, MEASURED)
+    return measured_item(cell, MEASURED)
 
 
 def item_of_test(cell: Cell, pages: Pages) -> ReproducedItem:
@@ -153,10 +158,12 @@ def _of_table_10(cell: Cell, pages: Pages) -> ReproducedItem:
     repeated = _elsewhere(cell, pages)
     if repeated is not None:
         value, half, where = repeated
-        return judge(cell, value, where, tolerance=half)
+        # a mean from 30 % of it, a count from degrees of freedom
+        is_computed = "over 30 %" in where or "degrees" in where
+        return (judge if is_computed else judge_repeat)(cell, value, where, tolerance=half)
     if kind == "mean":
         return _mean_by_change(cell, pages, quantity)
-    return not_testable(cell, MEASURED)
+    return measured_item(cell, MEASURED)
 
 
 def _elsewhere(cell: Cell, pages: Pages) -> tuple[float, float, str] | None:
@@ -214,7 +221,7 @@ def _mean_by_change(cell: Cell, pages: Pages, quantity: str) -> ReproducedItem:
     ]
     own = [pair for pair in pairs if cell.row in (pair[0], new)]
     if not own:
-        return not_testable(cell, MEASURED)
+        return measured_item(cell, MEASURED)
     row, change = own[0]
     column = f"{quantity} mean"
     percent = number(change) if change.corrected is None else change.corrected
@@ -241,7 +248,7 @@ def _mean_by_change(cell: Cell, pages: Pages, quantity: str) -> ReproducedItem:
 def _of_table_20(cell: Cell, pages: Pages) -> ReproducedItem:
     kind = cell.column.partition(" ")[2]
     if kind not in ("mean", "standard deviation", "relative variability"):
-        return not_testable(cell, MEASURED if kind == "number of samples" else "a setting")
+        return measured_item(cell, MEASURED if kind == "number of samples" else "a setting")
     return _variability(cell, pages, "abrasion_cycles", kind)
 
 
@@ -283,7 +290,7 @@ def _of_table_21(cell: Cell, pages: Pages) -> ReproducedItem:
         return judge(cell, 100 * (mean / reference - 1), "mean over the mean of the new line")
     key = ("10", cell.row, cell.column)
     if key in pages.by_key:
-        return judge(cell, pages.printed(*key), "Table 10")
+        return judge_repeat(cell, pages.printed(*key), "Table 10")
     if kind == "mean":
         return _mean_by_change(cell, pages, quantity)
     return _variability(cell, pages, quantity, kind)
@@ -299,7 +306,7 @@ def _effect(cell: Cell, pages: Pages) -> ReproducedItem:
         "effect of diameter",
         "effect of mean_tension",
     ):
-        return not_testable(cell, "the runs of the screening are not printed")
+        return measured_item(cell, "the runs of the screening are not printed")
     places = [
         ("A-4", f"{PLAITED} | {size} in | {load}", f"{STRAIN_AT_FAILURE} mean")
         for size in ("1/2", "13/16") for load in (LOW, HIGH)

@@ -35,7 +35,7 @@ _ITEMS: Mapping[ReportId, Callable[[], list[ReproducedItem]]] = {
 
 _COLUMNS = (
     "report", "table", "row", "column", "printed", "unit", "corrected", "recomputed", "tolerance",
-    "verdict", "erratum", "confidence", "how", "page", "note",
+    "verdict", "z", "power", "erratum", "confidence", "how", "page", "note",
 )  # fmt: skip
 
 
@@ -142,7 +142,7 @@ def csv_of(items: Iterable[ReproducedItem]) -> str:
     for item in items:
         own = {
             "recomputed": item.recomputed, "tolerance": item.tolerance, "verdict": item.verdict,
-            "how": item.how,
+            "z": item.z, "power": item.power, "how": item.how,
         }  # fmt: skip
         values = (own[name] if name in own else getattr(item.cell, name) for name in _COLUMNS)
         writer.writerow(_written(value) for value in values)
@@ -170,12 +170,16 @@ TITLES: Mapping[ReportId, str] = {
 }
 
 _WORDS: Mapping[Verdict, str] = {
-    "reproduced": "comes back within the printed rounding",
+    "derived": "follows from theory or from other numbers, within the printed rounding",
+    "closed": "equations close it with a partner, and would show one unit of its leading digit",
+    "repeated": "is printed twice, and equal: nothing was computed",
     "erratum": "the page is wrong; the evidence has an id",
     "open": "the page is doubtful, and nothing says what is right",
-    "not_testable": "nothing else in the report determines it",
+    "measured": "nothing in the report could test it",
     "unexplained": "does not come back, and nobody knows why",
 }
+
+_HELD = ("derived", "closed", "repeated")
 
 _MORE_DIGITS, _MOST_DECIMALS = 2, 12
 
@@ -249,7 +253,7 @@ def _report(report: ReportId, items: Sequence[ReproducedItem]) -> _Report:
             item,
             corrected,
             number_beside(item.recomputed, cell.printed),
-            f"{item.tolerance:.2g}" if wide and item.verdict == "reproduced" else "",
+            f"{item.tolerance:.2g}" if wide and item.verdict in _HELD else "",
         )
         rows.setdefault(cell.table, []).append(row)
     counts = counts_by_table(items)

@@ -13,7 +13,9 @@ from reduction.published.printed_cells import Cell, ReportId, cells_of, number_o
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
 
-Verdict = Literal["reproduced", "erratum", "open", "not_testable", "unexplained"]
+Verdict = Literal[
+    "derived", "closed", "repeated", "erratum", "open", "measured", "unexplained"
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,9 @@ class ReproducedItem:
 
     ``recomputed`` is in the printed unit, NaN where nothing can be computed; ``how`` says from
     what, or why not. ``tolerance`` is by how much the two may differ, in the printed unit; NaN
-    where no number was held against another: words, bounds, what is not testable.
+    where no number was held against another: words, bounds, what nothing else determines. ``z`` and
+    ``power`` are of a number that equations close with a partner: how far off it is, and how far
+    one unit of its leading digit would be, in standard errors; NaN of any other.
     """
 
     cell: Cell
@@ -30,6 +34,85 @@ class ReproducedItem:
     verdict: Verdict
     how: str
     tolerance: float = math.nan
+    z: float = math.nan
+    power: float = math.nan
+
+
+DETECTED = 3.0
+"""Standard errors at which a closure tells a wrong number from a right one. [1]"""
+
+
+def judge_repeat(
+    cell: Cell, other: float, how: str, *, tolerance: float | None = None
+) -> ReproducedItem:
+    """Hold a printed number against another print of the same number.
+
+    Parameters
+    ----------
+    cell : Cell
+        As printed.
+    other : float
+        The other print, in the printed unit.
+    how : str
+        Where it stands.
+    tolerance : float, optional
+        As of `judge`.
+
+    Returns
+    -------
+    item : Item
+        By `judge`, but ``repeated`` where they are equal: nothing was computed, and a wrong number
+        may have been copied.
+    """
+    item = judge(cell, other, how, tolerance=tolerance)
+    return replace(item, verdict="repeated") if item.verdict == "derived" else item
+
+
+def closed_item(
+    item: ReproducedItem, standard_error: float, *, spread: float = 0.0, how: str = ""
+) -> ReproducedItem:
+    """What is known of a number that equations join to a partner.
+
+    Parameters
+    ----------
+    item : Item
+        With the number that the partner asks for; known faults stay as they are.
+    standard_error : float
+        Of the printed number less that one; NaN or zero where nothing is known of it.
+    spread : float
+        How far apart the numbers are that the partner may ask for, of which the nearest is taken:
+        so much of a fault it hides. [printed unit]
+    how : str
+        From what; that of the item where nothing is said.
+
+    Returns
+    -------
+    item : Item
+        ``open`` where the number is farther off than `DETECTED` standard errors; ``closed`` where
+        it is not, and one unit of its leading digit would be; where so coarse a fault would not be
+        seen, ``measured`` in place of ``derived``, and else as it is.
+
+    Examples
+    --------
+    >>> cell = Cell("CG-D-39-80", "14", "", "", ".756", "1e4 lb", None, "", "", "", "")
+    >>> for recomputed in (0.79, 1.11):
+    ...     item = closed_item(compared_item(cell, recomputed, "K_ap and H"), 0.03)
+    ...     print(item.verdict, round(item.z, 1), round(item.power, 1))
+    closed -1.1 3.3
+    open -11.8 3.3
+    """
+    printed = _printed_value(item.cell)
+    if item.verdict not in ("derived", "repeated", "measured") or not (
+        standard_error > 0 and printed and np.isfinite(item.recomputed)
+    ):
+        return item
+    z = (printed - item.recomputed) / standard_error
+    unit = float(10.0 ** np.floor(np.log10(abs(printed))))
+    power = max(0.0, unit - spread) / standard_error
+    verdict: Verdict = "closed" if abs(z) <= DETECTED else "open"
+    if verdict == "closed" and power < DETECTED:
+        verdict = "measured" if item.verdict == "derived" else item.verdict
+    return replace(item, verdict=verdict, how=how or item.how, z=z, power=power)
 
 
 def judge(
@@ -52,7 +135,7 @@ def judge(
     Returns
     -------
     item : Item
-        ``reproduced`` where the printed number is within the tolerance; else ``erratum`` or
+        ``derived`` where the printed number is within the tolerance; else ``erratum`` or
         ``open`` where the cell says so, and the corrected value, where there is one, is within it;
         else ``unexplained``. An erratum that lets the printed number stand, and has no confidence
         therefore, explains no difference from it.
@@ -61,7 +144,7 @@ def judge(
     allowed = (half if tolerance is None else max(tolerance, half)) * (1 + 1e-9)
     verdict = _known_of(cell, "unexplained")
     if np.isfinite(recomputed) and abs(_printed_value(cell) - recomputed) <= allowed:
-        verdict = "reproduced"
+        verdict = "derived"
     elif verdict == "erratum" and cell.corrected is not None:
         verdict = "erratum" if abs(cell.corrected - recomputed) <= allowed else "unexplained"
     return ReproducedItem(cell, recomputed, verdict, how, allowed)
@@ -82,14 +165,14 @@ def agree(cell: Cell, holds: bool, how: str) -> ReproducedItem:
     Returns
     -------
     item : Item
-        ``reproduced`` where the claim holds; else ``erratum`` or ``open`` where the cell says so;
+        ``derived`` where the claim holds; else ``erratum`` or ``open`` where the cell says so;
         else ``unexplained``.
     """
-    verdict = "reproduced" if holds else _known_of(cell, "unexplained")
+    verdict = "derived" if holds else _known_of(cell, "unexplained")
     return ReproducedItem(cell, math.nan, verdict, how)
 
 
-def not_testable(cell: Cell, why: str) -> ReproducedItem:
+def measured_item(cell: Cell, why: str) -> ReproducedItem:
     """A cell that nothing else in the report determines.
 
     Parameters
@@ -104,7 +187,7 @@ def not_testable(cell: Cell, why: str) -> ReproducedItem:
     item : Item
         ``erratum`` or ``open`` where the cell says so: that much is known of it.
     """
-    return ReproducedItem(cell, math.nan, _known_of(cell, "not_testable"), why)
+    return ReproducedItem(cell, math.nan, _known_of(cell, "measured"), why)
 
 
 def compared_item(cell: Cell, recomputed: float, why: str) -> ReproducedItem:
@@ -122,9 +205,9 @@ def compared_item(cell: Cell, recomputed: float, why: str) -> ReproducedItem:
     Returns
     -------
     item : Item
-        By `not_testable`.
+        By `measured_item`.
     """
-    return replace(not_testable(cell, why), recomputed=recomputed)
+    return replace(measured_item(cell, why), recomputed=recomputed)
 
 
 def _known_of(cell: Cell, otherwise: Verdict) -> Verdict:
@@ -209,12 +292,12 @@ def judge_limit(cell: Cell, recomputed: float, how: str, *, is_upper: bool) -> R
     Returns
     -------
     item : Item
-        ``reproduced`` where the bound holds, else by `judge`.
+        ``derived`` where the bound holds, else by `judge`.
     """
     printed = number_of(cell.printed)
     if printed is not None and (recomputed <= printed if is_upper else recomputed >= printed):
         side = "below" if is_upper else "above"
-        return ReproducedItem(cell, recomputed, "reproduced", f"{how}; {side} the limit")
+        return ReproducedItem(cell, recomputed, "derived", f"{how}; {side} the limit")
     return judge(cell, recomputed, how)
 
 
@@ -356,10 +439,10 @@ def item_of(cell: Cell, answers: Mapping[Key, Answer | str]) -> ReproducedItem:
         raise DataError(f"nothing is said of a cell of {cell.report}", found=" / ".join(cell.key))
     answer = answers[cell.key]
     if isinstance(answer, str):
-        return not_testable(cell, answer)
+        return measured_item(cell, answer)
     printed = number_of(cell.printed)
     if answer.meaning is not None and abs(answer.meaning - answer.value) <= _ROUND_OFF:
-        return ReproducedItem(cell, answer.value, "reproduced", answer.how)
+        return ReproducedItem(cell, answer.value, "derived", answer.how)
     if answer.bound:
         is_upper = answer.bound == "below"
         return judge_limit(cell, answer.value, answer.how, is_upper=is_upper)

@@ -18,8 +18,9 @@ from reduction.published.reproduced_item import (
     compared_item,
     judge,
     judge_limit,
+    judge_repeat,
     judge_round,
-    not_testable,
+    measured_item,
 )
 from reduction.quantities.units import scale_to_si
 from reduction.stages.moduli.secant_modulus import chord_modulus
@@ -89,7 +90,7 @@ def _items_of_diameters(
             else:
                 strain = float(column.split()[2]) / 100
                 stretched = before / constant_volume_diameter([strain], [1.0])[0]
-                yield not_testable(cell, _STRETCHED.format(stretched))
+                yield measured_item(cell, _STRETCHED.format(stretched))
 
 
 def _items_of_marks(cells: Sequence[Cell]) -> Iterator[ReproducedItem]:
@@ -162,14 +163,14 @@ def _items_of_weights(cells: Sequence[Cell]) -> Iterator[ReproducedItem]:
                             cell, float("nan"), "unexplained", "earlier than the row before"
                         )
                     else:
-                        yield not_testable(cell, _TIMES)
+                        yield measured_item(cell, _TIMES)
                 case "tension":
                     # what was hung is taken off again, in the opposite order
                     twin = rows[-1 - place]
                     if twin is row:
-                        yield not_testable(cell, "the greatest weight, printed once")
+                        yield measured_item(cell, "the greatest weight, printed once")
                     else:
-                        yield judge(cell, twin["tension"], f"the same weight, {twin.branch}")
+                        yield judge_repeat(cell, twin["tension"], f"the same weight, {twin.branch}")
                 case "length":
                     stretch = 1 + row["strain"] / 100
                     yield judge(
@@ -190,7 +191,7 @@ def _items_of_weights(cells: Sequence[Cell]) -> Iterator[ReproducedItem]:
                         [one["length"] for one in others], [one[column] for one in others], 1
                     )
                     miss = [line(one["length"]) - one[column] for one in others]
-                    yield not_testable(
+                    yield measured_item(
                         cell,
                         f"measured; {line(row['length']):.1f} in by the line through the other "
                         f"rows, which scatter by {np.std(miss, ddof=2):.1f} in",
@@ -260,10 +261,10 @@ def _items_of_segments(cells: Sequence[Cell]) -> Iterator[ReproducedItem]:
         }
         for column, cell in row.cells.items():
             if cell.erratum == _COPIED and cell.confidence == "open":
-                yield not_testable(cell, "agrees with its row, which is that of the new tether")
+                yield measured_item(cell, "agrees with its row, which is that of the new tether")
                 continue
             if not cell.erratum and any(one.confidence == "open" for one in row.cells.values()):
-                yield not_testable(cell, "modulus and strains of its row contradict each other")
+                yield measured_item(cell, "modulus and strains of its row contradict each other")
                 continue
             recomputed = _FROM_OTHERS[column](given)
             carried = sum(
@@ -361,7 +362,7 @@ def _items_of_plan(cells: Sequence[Cell], book: Mapping[Key, Cell]) -> Iterator[
         name = _test_of_row(cell.row)
         if name not in _SECTION:
             if cell.column == "n_cycles":
-                yield not_testable(cell, "one hold, not a count of cycles")
+                yield measured_item(cell, "one hold, not a count of cycles")
                 continue
             key = ("sec 4.1", "overnight hold", "strain")
         elif cell.column == "n_cycles" and name != "T-4 Extended":
@@ -383,7 +384,7 @@ def _item_of_programme(cell: Cell, plan: Sequence[Cell]) -> ReproducedItem | Non
     found = re.search(r"test (T-\d(?: Extended)?)$", cell.row)
     name = found[1] if found else _TEST_OF_CLAIM.get(cell.row, "")
     if cell.row == "overnight hold" and cell.column == "strain":
-        return judge(cell, rows["overnight hold"]["target_strain"], "Table 1")
+        return judge_repeat(cell, rows["overnight hold"]["target_strain"], "Table 1")
     column = cell.column
     if column == "strain":
         column = "strain_low" if cell.row.endswith(", least") else "strain_high"
@@ -411,7 +412,7 @@ def _item_printed_twice(cell: Cell, book: Mapping[Key, Cell]) -> ReproducedItem 
 def _as_elsewhere(cell: Cell, key: Key, book: Mapping[Key, Cell]) -> ReproducedItem:
     there = book[key]
     place = f"printed again, {there.page}: {there.printed} {there.unit}"
-    return judge(cell, _number_in_use(there), place)
+    return judge_repeat(cell, _number_in_use(there), place)
 
 
 def _test_of_row(row: str) -> str:
@@ -638,8 +639,8 @@ def _of_static_test(
     yield judge_limit(
         book["sec 4.8", f"{later}, greatest", "strain"], max(elongation), how, is_upper=False
     )
-    yield judge(book["sec 4.8", f"{later}, first", "strain"], elongation[0], how)
-    yield judge(book["sec 4.8", f"{later}, last", "strain"], elongation[-1], how)
+    yield judge_repeat(book["sec 4.8", f"{later}, first", "strain"], elongation[0], how)
+    yield judge_repeat(book["sec 4.8", f"{later}, last", "strain"], elongation[-1], how)
     yield judge(
         book["sec 4.8", later, "strain_gauge_length"],
         float(np.mean(_static_gauge_length(readings))),
@@ -721,7 +722,7 @@ def _items_of(cells: Sequence[Cell]) -> list[ReproducedItem]:
         by_key.get(cell.key)
         or _item_of_programme(cell, table["1"])
         or _item_printed_twice(cell, book)
-        or not_testable(cell, _why_not(cell))
+        or measured_item(cell, _why_not(cell))
         for cell in cells
     ]
 

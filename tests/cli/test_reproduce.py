@@ -10,7 +10,7 @@ from reduction.published import reproduce_page as reports
 from reduction.published.printed_cells import REPORTS, cells_of, errata_of
 
 SETTINGS, DATA = 2, 4
-KEYS = {"cells", "reproduced", "erratum", "open", "not_testable", "unexplained"}
+KEYS = {"cells", "derived", "closed", "repeated", "erratum", "open", "measured", "unexplained"}
 
 
 def test_keys_of_the_contract(command):
@@ -31,10 +31,10 @@ def test_one_report_in_words(command):
     done = command("reproduce", "Zhang-2015")
     assert done.returncode == 0 and done.stderr == ""
     lines = [line.split() for line in done.stdout.splitlines()]
-    heading = "Zhang-2015 cells reproduced erratum open not testable unexplained"
+    heading = "Zhang-2015 cells derived closed repeated erratum open measured unexplained"
     assert lines[0] == heading.split()
-    assert ["7", "168", "132", "36", "0", "0", "0"] in lines
-    assert ["all", "261", "189", "52", "2", "18", "0"] in lines
+    assert ["7", "168", "132", "0", "0", "36", "0", "0", "0"] in lines
+    assert ["all", "261", "189", "0", "0", "52", "2", "18", "0"] in lines
     assert "ZH-10" in done.stdout and "WA-1" not in done.stdout
     # what is open, with what it may be
     assert "level 4 waves" in done.stdout and "4.17 s at 3 m" in " ".join(done.stdout.split())
@@ -108,5 +108,13 @@ def test_an_erratum_that_is_not_known_is_refused(command):
 
 def test_the_columns_are_explained(command):
     text = command("reproduce", "Wang-2022").stdout
-    for word in ("reproduced:", "not testable:", "unexplained:", "right is", "sure how"):
+    for word in (
+        "derived:",
+        "closed:",
+        "repeated:",
+        "measured:",
+        "unexplained:",
+        "right is",
+        "sure how",
+    ):
         assert word in text

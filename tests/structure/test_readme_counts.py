@@ -8,7 +8,9 @@ import numpy as np
 from reduction.published.reproduce_page import counts_of, reproduce
 
 ROOT = Path(__file__).parents[2]
-VERDICTS = ("reproduced", "erratum", "open", "not_testable", "unexplained")
+VERDICTS = (
+    "derived", "closed", "repeated", "erratum", "open", "measured", "unexplained",
+)  # fmt: skip
 
 
 def test_the_readme_counts_what_reproduce_counts():

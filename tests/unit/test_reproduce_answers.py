@@ -21,11 +21,11 @@ def item(printed, answer, **other):
 @pytest.mark.parametrize(
     ("printed", "value", "verdict"),
     [
-        ("2.50", 2.5049, "reproduced"),
+        ("2.50", 2.5049, "derived"),
         ("2.50", 2.5051, "unexplained"),
-        ("-1/2", -0.5 + 1e-12, "reproduced"),
+        ("-1/2", -0.5 + 1e-12, "derived"),
         ("1/2", 0.5001, "unexplained"),
-        ("about 30 lbs", 30.4, "reproduced"),
+        ("about 30 lbs", 30.4, "derived"),
     ],
 )
 def test_half_of_the_last_printed_digit_and_a_fraction_is_exact(printed, value, verdict):
@@ -33,16 +33,16 @@ def test_half_of_the_last_printed_digit_and_a_fraction_is_exact(printed, value, 
 
 
 def test_a_tolerance_of_the_inputs_is_kept():
-    assert item("9000", Answer(9003.2, "so", tolerance=4.8)).verdict == "reproduced"
+    assert item("9000", Answer(9003.2, "so", tolerance=4.8)).verdict == "derived"
     assert item("9000", Answer(9005.2, "so", tolerance=4.8)).verdict == "unexplained"
 
 
 @pytest.mark.parametrize(
     ("bound", "value", "verdict"),
     [
-        ("below", 0.05, "reproduced"),
+        ("below", 0.05, "derived"),
         ("below", 2.6, "unexplained"),
-        ("above", 2.6, "reproduced"),
+        ("above", 2.6, "derived"),
         ("above", 1.4, "unexplained"),
     ],
 )
@@ -59,13 +59,13 @@ def test_words_are_judged_by_the_digits_of_what_is_right():
 
 
 def test_words_that_mean_a_number():
-    assert item("the same", Answer(1 + 1e-13, "so", meaning=1.0)).verdict == "reproduced"
+    assert item("the same", Answer(1 + 1e-13, "so", meaning=1.0)).verdict == "derived"
     assert item("the same", Answer(0.9, "so", meaning=1.0)).verdict == "unexplained"
 
 
 def test_a_reason_is_not_a_number():
     found = item("7800", "a property of the steel")
-    assert found.verdict == "not_testable" and math.isnan(found.recomputed)
+    assert found.verdict == "measured" and math.isnan(found.recomputed)
     assert found.how == "a property of the steel"
 
 

@@ -25,17 +25,19 @@ from reduction.published.whoi_2005_10 import (
 REPORT = "WHOI-2005-10"
 CELLS = cells_of(REPORT)
 PER_TABLE = {
-    "1": {"reproduced": 22, "not_testable": 1},
-    "2": {"reproduced": 1, "erratum": 1, "not_testable": 12},
-    "3": {"reproduced": 98},
-    "4": {"reproduced": 43, "erratum": 1, "not_testable": 31},
-    "5": {"reproduced": 131, "erratum": 5, "open": 9},
-    "6": {"reproduced": 84, "erratum": 1, "open": 3, "not_testable": 2},
+    "1": {"repeated": 22, "measured": 1},
+    "2": {"derived": 1, "erratum": 1, "measured": 12},
+    "3": {"derived": 98},
+    "4": {"derived": 29, "repeated": 14, "erratum": 1, "measured": 31},
+    "5": {"derived": 131, "erratum": 5, "open": 9},
+    "6": {"derived": 84, "erratum": 1, "open": 3, "measured": 2},
 }
 MUTABLE = [
     item.cell
     for item in items()
-    if item.verdict == "reproduced" and item.cell.table.isdigit() and item.cell.column != "length"
+    if item.verdict in ("derived", "repeated")
+    and item.cell.table.isdigit()
+    and item.cell.column != "length"
 ]
 T_6_USED = "T-6 rubber tether used, raw data, ascending, segment"
 
@@ -63,7 +65,7 @@ def test_counts_of_a_table(table):
 
 def test_counts_of_the_report():
     found = Counter(item.verdict for item in items())
-    assert found == {"reproduced": 483, "erratum": 30, "open": 18, "not_testable": 90}
+    assert found == {"derived": 423, "repeated": 60, "erratum": 30, "open": 18, "measured": 90}
 
 
 def test_every_erratum_is_the_verdict_of_a_cell_or_a_remark_on_one_that_stands():
@@ -121,7 +123,7 @@ def test_a_length_of_the_static_test_is_held_to_half_a_per_cent_of_elongation():
     (cell,) = (
         one for one in cells("4") if one.column == "length" and one.row.endswith("97 lb at 1009")
     )
-    assert verdict(cell, "12.96") == "reproduced"
+    assert verdict(cell, "12.96") == "derived"
     assert verdict(cell, "12.98") == "unexplained"
 
 
@@ -139,7 +141,7 @@ def test_what_scatters_or_rests_on_a_size_that_is_not_printed_is_held_beside_and
     key, least, greatest
 ):
     (item,) = (one for one in items() if one.cell.key == key)
-    assert item.verdict == "not_testable"
+    assert item.verdict == "measured"
     assert "not stated" in item.how or "no diameter" in item.how
     assert least < item.recomputed < greatest
 
@@ -148,9 +150,7 @@ def test_strains_of_table_5_end_where_the_interpolated_stretch_does():
     # T-1 ends at 1.23 and 1.25 in Table 5; Table 3 has 123.8 and 125.1 %, actual 127.1 and 128.9 %
     key = ("sec 4.1", "strain of Tables 5 and 6", "strain_method")
     (item,) = (one for one in items() if one.cell.key == key)
-    assert (
-        item.verdict == "reproduced" and "within 0.8 points" in item.how and "up to 4.1" in item.how
-    )
+    assert item.verdict == "derived" and "within 0.8 points" in item.how and "up to 4.1" in item.how
     changed = [
         replace(one, printed="1.27")
         if one.printed == "1.23" and one.row.startswith("T-1 ")
@@ -188,7 +188,7 @@ def test_a_wrong_claim_becomes_unexplained(place, wrong):
 
 
 def test_what_cannot_be_tested_says_why():
-    why = {item.how for item in items() if item.verdict == "not_testable"}
+    why = {item.how for item in items() if item.verdict == "measured"}
     assert all(len(text) > 15 for text in why)
     assert any("69, 88 and 107" in text for text in why)
     assert not any("see its erratum" in item.how for item in items() if not item.cell.erratum)

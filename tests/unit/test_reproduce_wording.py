@@ -36,16 +36,16 @@ def test_last_digit_that_is_not_zero(text, place):
     assert last_counted_place(text) == pytest.approx(place)
 
 
-@pytest.mark.parametrize(("value", "verdict"), [(115, "reproduced"), (116, "unexplained")])
+@pytest.mark.parametrize(("value", "verdict"), [(115, "derived"), (116, "unexplained")])
 def test_a_round_number_covers_half_its_last_counted_digit(value, verdict):
     item = judge_round(cell("110"), value, "from a table")
     assert item.verdict == verdict and item.how == "from a table; round to 10"
 
 
 def test_a_limit_holds_on_its_own_side_only():
-    assert judge_limit(cell("below 100"), 48.0, "x", is_upper=True).verdict == "reproduced"
+    assert judge_limit(cell("below 100"), 48.0, "x", is_upper=True).verdict == "derived"
     assert judge_limit(cell("below 100"), 120.0, "x", is_upper=True).verdict == "unexplained"
-    assert judge_limit(cell("over 200"), 212.0, "x", is_upper=False).verdict == "reproduced"
+    assert judge_limit(cell("over 200"), 212.0, "x", is_upper=False).verdict == "derived"
     assert judge_limit(cell("over 200"), 180.0, "x", is_upper=False).verdict == "unexplained"
 
 
@@ -62,11 +62,11 @@ def test_a_text_without_a_number_is_no_limit():
 @pytest.mark.parametrize(
     ("words", "value", "step", "verdict"),
     [
-        ("twice", 2.05, 1.0, "reproduced"),
+        ("twice", 2.05, 1.0, "derived"),
         ("twice", 2.51, 1.0, "unexplained"),
-        ("two samples each", 2.0, 1.0, "reproduced"),
-        ("Three minutes", 3.0, 1.0, "reproduced"),
-        ("one-and-a-half", 1.67, 0.5, "reproduced"),
+        ("two samples each", 2.0, 1.0, "derived"),
+        ("Three minutes", 3.0, 1.0, "derived"),
+        ("one-and-a-half", 1.67, 0.5, "derived"),
         ("one-and-a-half", 1.76, 0.5, "unexplained"),
         ("twice", 1.67, 0.5, "unexplained"),
         ("stiffer", 2.0, 1.0, "unexplained"),
@@ -79,7 +79,7 @@ def test_a_number_in_words_is_held_in_the_steps_in_which_it_is_said(words, value
 
 def test_another_writing_of_a_number_is_judged_by_its_own_digits():
     power = cell("10^{-4}", corrected=4.0, erratum="CG-7", confidence="certain")
-    assert judge_as(power, "-4", -4.0, "x").verdict == "reproduced"
+    assert judge_as(power, "-4", -4.0, "x").verdict == "derived"
     assert judge_as(power, "-4", 4.0, "x").verdict == "erratum"
     assert judge_as(power, "-4", 3.0, "x").verdict == "unexplained"
     assert judge_as(power, "-4", 4.0, "x").cell is power

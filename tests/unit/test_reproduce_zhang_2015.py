@@ -15,14 +15,14 @@ BY_KEY = {item.cell.key: item for item in ITEMS}
 # of Table 5 the four vertical ones; of Table 8 both of P2, the maximum of P3, the averages of P3
 # and P4
 COUNTS = {
-    "1": {"reproduced": 4, "not_testable": 3, "open": 1},
-    "2": {"not_testable": 14},
-    "3": {"reproduced": 5},
-    "4": {"reproduced": 3, "erratum": 1, "open": 1},
-    "5": {"reproduced": 4, "erratum": 4},
-    "6": {"reproduced": 8},
-    "7": {"reproduced": 132, "erratum": 36},
-    "8": {"reproduced": 3, "erratum": 5},
+    "1": {"derived": 4, "measured": 3, "open": 1},
+    "2": {"measured": 14},
+    "3": {"derived": 5},
+    "4": {"derived": 3, "erratum": 1, "open": 1},
+    "5": {"derived": 4, "erratum": 4},
+    "6": {"derived": 8},
+    "7": {"derived": 132, "erratum": 36},
+    "8": {"derived": 3, "erratum": 5},
 }
 
 
@@ -37,7 +37,7 @@ def test_counts_of_a_table(table):
 
 def test_nothing_is_unexplained():
     assert Counter(one.verdict for one in ITEMS) == {
-        "reproduced": 189, "erratum": 52, "open": 2, "not_testable": 18,
+        "derived": 189, "erratum": 52, "open": 2, "measured": 18,
     }  # fmt: skip
 
 
