@@ -76,6 +76,7 @@ def strain_model_of(dataset: xr.Dataset, place: int) -> StrainModel | None:
         position_high=number("strain_position_high"),
         tension_low=number("strain_tension_low"),
         tension_high=number("strain_tension_high"),
+        reference_tension=float(np.nan_to_num(number("strain_reference_tension"))),
     )
 
 
@@ -153,6 +154,8 @@ def _strain_model_values(models: Sequence[StrainModel]) -> Values:
     }
     for end in ("position_low", "position_high", "tension_low", "tension_high"):
         values[f"strain_{end}"] = numbers([getattr(one, end) for one in models])
+    if any(one.reference_tension for one in models):
+        values["strain_reference_tension"] = numbers([one.reference_tension for one in models])
     values |= _coefficient_values(models)
     return values | _mark_values(models)
 

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal, Protocol
+
+from reduction.record.note_sentences import Severity
+from reduction.record.notes import Note, by_severity, full_note
 
 Status = Literal["reduced", "reduced_with_notes", "unchanged", "no_work", "failed"]
 
@@ -66,6 +71,23 @@ class PartStatus:
     status: str
     exit_status: int
     message: str
+
+
+_SERIOUS: tuple[Severity, ...] = ("warning", "refusal")
+
+
+def note_message(notes: Sequence[Note]) -> str:
+    """How many notes there are, how many of them are serious, and the most serious of all."""
+    ranked = by_severity(notes)
+    if not ranked:
+        return ""
+    kinds = Counter(one.severity for one in ranked)
+    serious = [
+        f"{kinds[kind]} {kind}{'s' if kinds[kind] > 1 else ''}" for kind in _SERIOUS if kinds[kind]
+    ]
+    among = f" ({', '.join(serious)})" if serious else ""
+    count = f"{len(ranked)} note{'s' if len(ranked) > 1 else ''}"
+    return f"{count}{among}; first: {full_note(ranked[0].stage, str(ranked[0]))}"
 
 
 class Progress(Protocol):

@@ -12,7 +12,7 @@ import xarray as xr
 from reduction import __version__
 from reduction.archive.test_dataset import kept_samples, to_dataset
 from reduction.archive.write import write_archive
-from reduction.batch.campaign_status import Progress, Status, TestStatus
+from reduction.batch.campaign_status import Progress, Status, TestStatus, note_message
 from reduction.batch.reuse import Basis, describe, reusable_product
 from reduction.batch.run_lock import RunLock
 from reduction.batch.slow_pulls import pull_conditions
@@ -31,8 +31,7 @@ from reduction.campaign.plan import Campaign
 from reduction.pipeline.reduce_test import check_stated_errors, reduce_stepwise_test, reduce_test
 from reduction.readers.raw_log import hash_source
 from reduction.record.errors import LogError, ReductionError
-from reduction.record.note_sentences import Severity
-from reduction.record.notes import Note, by_severity, full_note
+from reduction.record.notes import Note
 from reduction.stages.reduced_test import History, ReducedTest
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.stages.three_parameter_line.line_product import SlowPull
@@ -113,12 +112,12 @@ def _bring_up_to_date(
     if not force:
         notes = reusable_product(path, survey, basis.settings, remarks=basis.remarks)
         if notes is not None:
-            return "unchanged", _note_message(notes)
+            return "unchanged", note_message(notes)
     dataset, notes = dataset_of(campaign, survey, basis, command=command)
     _check_raw_files(campaign, survey)
     before_writing()
     write_archive(dataset, path)
-    return "reduced_with_notes" if notes else "reduced", _note_message(notes)
+    return "reduced_with_notes" if notes else "reduced", note_message(notes)
 
 
 def _check_raw_files(campaign: Campaign, survey: Survey) -> None:
@@ -144,23 +143,6 @@ class _Made:
     message: str
     error: ReductionError | None
     seconds: float
-
-
-_SERIOUS: tuple[Severity, ...] = ("warning", "refusal")
-
-
-def _note_message(notes: Sequence[Note]) -> str:
-    """How many notes there are, how many of them are serious, and the most serious of all."""
-    ranked = by_severity(notes)
-    if not ranked:
-        return ""
-    kinds = Counter(one.severity for one in ranked)
-    serious = [
-        f"{kinds[kind]} {kind}{'s' if kinds[kind] > 1 else ''}" for kind in _SERIOUS if kinds[kind]
-    ]
-    among = f" ({', '.join(serious)})" if serious else ""
-    count = f"{len(ranked)} note{'s' if len(ranked) > 1 else ''}"
-    return f"{count}{among}; first: {full_note(ranked[0].stage, str(ranked[0]))}"
 
 
 def reduce_campaign(

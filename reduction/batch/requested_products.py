@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 from reduction.archive.product_files import OF_CAMPAIGN
-from reduction.batch.campaign_status import Progress, TestStatus
+from reduction.batch.campaign_status import Progress, TestStatus, note_message
 from reduction.batch.reuse import Basis, basis_of
 from reduction.batch.run_lock import RunLock
 from reduction.batch.slow_pulls import fit_pulls
@@ -112,10 +112,18 @@ def selected_surveys(surveys: Sequence[Survey], tests: Sequence[str]) -> list[Su
     return [survey for survey in surveys if {survey.plan.id, survey.plan.log} & set(tests)]
 
 
-def _ready(survey: Survey) -> str:
-    """What a checked test is told; of a level that was found how to state it."""
-    told = [one for one in survey.remarks if one.code in ("levels-found", "cycles-unlike")]
-    return "; ".join(["ready for a run", *map(str, told)])
+def _ready(survey: Survey, models: Mapping[tuple[str, str], StrainModel]) -> str:
+    """That a test can be reduced, and the most serious that is known against it before it is."""
+    known = [replace(one, stage="ingest") for one in survey.notes]
+    for name in survey.plan.specimens:
+        model = models.get((survey.plan.id, name))
+        if model is not None:
+            known += [replace(one, stage=f"strain {name}") for one in model.notes]
+    # of a level that was found how to state it
+    levels = [one for one in survey.remarks if one.code in ("levels-found", "cycles-unlike")]
+    told = {str(one) for one in levels}
+    serious = [one for one in known if one.severity != "note" and str(one) not in told]
+    return "; ".join(["ready for a run", *map(str, levels), *filter(None, [note_message(serious)])])
 
 
 def check_campaign(
@@ -129,7 +137,7 @@ def check_campaign(
     for survey in selected_surveys(surveys, tests):
         error = survey.error or errors.get(survey.plan.id)
         statuses.append(
-            status_row(campaign, survey, "no_work", message=_ready(survey))
+            status_row(campaign, survey, "no_work", message=_ready(survey, models))
             if error is None
             else status_row(campaign, survey, "failed", error=error)
         )

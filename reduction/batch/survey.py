@@ -16,9 +16,10 @@ from reduction.batch.workers import Task, Workers, work_on
 from reduction.campaign.plan import Campaign, StepPlan, TestPlan
 from reduction.pipeline.located_test import Located, locate, tension_at_marks
 from reduction.pipeline.reduce_test import Extremes, extremes_of_readings, extremes_of_test
+from reduction.readers.layout import Layout
 from reduction.readers.raw_log import unreadable
 from reduction.readers.read_log import read_record, read_step_readings
-from reduction.readers.record_in_si import length_at_slack
+from reduction.readers.record_in_si import length_at_slack, reference_of, zero_to_set
 from reduction.readers.sample_flags import account_rows
 from reduction.record.errors import (
     DataError,
@@ -27,17 +28,16 @@ from reduction.record.errors import (
     SettingsError,
     refused_by_system,
 )
-from reduction.record.measurement import (
-    Floats,
-    Record,
-    Source,
-    Specimen,
-    SpliceMarks,
-    StepReadings,
-)
+from reduction.record.measurement import Floats, Record, Source, Specimen, StepReadings
 from reduction.record.notes import Note
+from reduction.record.samples import finite_extremes
+from reduction.stages.load_at_slack import load_at_slack, notes_on_zero
 from reduction.stages.standstills import median_step
-from reduction.stages.strain.strain_fit import zero_strain_position
+from reduction.stages.strain.tape_and_crosshead import (
+    TAPE_UNCERTAINTY,
+    check_tape_against_crosshead,
+)
+from reduction.stages.strain.zero_strain import ZeroStrain, zero_at_slack, zero_at_tension
 
 
 def _log_summary(located: Located) -> dict[str, Any]:
@@ -48,6 +48,10 @@ def _log_summary(located: Located) -> dict[str, Any]:
         "rate": {"value": 1 / median_step(record.time), "unit": "Hz"},
         "gaps": int(n_flagged.get("crosshead_position", {}).get("gap", 0)),
         "standstills": located.standstills.n_standstills,
+        "load_at_slack": {
+            name: None if one is None else {"value": one.load, "unit": "N"}
+            for name, one in zip(record.specimens, located.load_at_slack, strict=False)
+        },
         "flags": {channel: masks for channel, masks in n_flagged.items() if masks},
         "notes": [
             *map(str, record.notes),
@@ -121,8 +125,11 @@ class Survey:
     """One test after the first pass.
 
     ``mark_tension`` and ``mark_tension_at_start`` hold, by specimen, one tension [N] for each
-    pooled mark that was read in this test, in the order of the marks.  ``extremes`` is how far
-    the test went; ``found`` what a person is told of the log, ``remarks`` what of its levels.
+    pooled mark that was read in this test, in the order of the marks; ``mark_errors`` what of
+    these marks the crosshead contradicts.  ``zero_strain`` is where strain is zero, by specimen,
+    ``reference_length`` [m] the length at displacement zero where it is stated.  ``extremes`` is
+    how far the test went; ``found`` and ``notes`` what a person is told of the log, ``remarks``
+    what of its levels.
     """
 
     plan: TestPlan
@@ -133,11 +140,13 @@ class Survey:
     n_cycles: int = 0
     mark_tension: dict[str, Floats] = field(default_factory=dict)
     mark_tension_at_start: dict[str, Floats] = field(default_factory=dict)
-    zero_strain_position: float | None = None
-    is_zero_logged: bool = False
+    mark_errors: dict[str, DataError] = field(default_factory=dict)
+    zero_strain: dict[str, ZeroStrain] = field(default_factory=dict)
+    reference_length: float | None = None
     extremes: Extremes = field(default_factory=Extremes)
     found: dict[str, Any] = field(default_factory=dict)
     remarks: tuple[Note, ...] = ()
+    notes: tuple[Note, ...] = ()
     error: ReductionError | None = None
 
 
@@ -169,18 +178,20 @@ def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_reco
     )
     found = None
     if not plan.steps:
-        survey = _located(campaign, plan, record, sources)
-        found = find_steps(plan, survey.located, campaign)
-        if found.remark is not None:
-            record = replace(record, notes=(*record.notes, found.remark))
+        located = locate(
+            record, kind=plan.kind, settings=plan.settings, specimens=_specimens(campaign, plan)
+        )
+        found = find_steps(plan, located, campaign)
+        remarks = () if found.remark is None else (found.remark,)
+        record = replace(record, notes=(*record.notes, *remarks))
         if not found.steps:
-            if survey.located is not None:
-                located = replace(survey.located, record=record)
-                if found.remark is not None:
-                    survey = replace(survey, located=located, found=_log_summary(located))
-                    survey.remarks = (found.remark,)
-                _find_zero_strain(survey, located, campaign, plan)
-            _measure_marks(survey, survey.located, campaign.marks)
+            told = replace(located.record, notes=(*located.record.notes, *remarks))
+            located = replace(located, record=told)
+            located = _with_load_at_slack(located, located, campaign, plan)
+            survey = _located(plan, located, sources)
+            survey.remarks = remarks
+            _find_zero_strain(survey, located, campaign, plan)
+            _measure_marks(survey, located, campaign)
             return [survey]
         plan = replace(plan, steps=found.steps, attributes=plan.attributes | FOUND)
     # a mark, and the position of zero strain, belong to the whole log and not to a step of it
@@ -192,25 +203,85 @@ def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_reco
         part = _step_plan(plan, step, place)
         try:
             record_of_step = replace(_step_record(record, step, plan), test_id=part.id)
-            survey = _located(campaign, part, record_of_step, sources)
+            located = locate(
+                record_of_step,
+                kind=part.kind,
+                settings=part.settings,
+                specimens=_specimens(campaign, plan),
+            )
+            located = _with_load_at_slack(located, whole, campaign, plan)
+            survey = _located(part, located, sources)
             survey.remarks = () if found is None or found.remark is None else (found.remark,)
         except ReductionError as error:
             survey = Survey(part, sources, n_rows=record.n_samples, error=error)
         _find_zero_strain(survey, whole, campaign, plan)
         surveys.append(survey)
-    _measure_marks(surveys[0], whole, campaign.marks)
+    _measure_marks(surveys[0], whole, campaign)
     return surveys
 
 
+def _layouts(campaign: Campaign, plan: TestPlan) -> list[Layout]:
+    return [campaign.layouts[layout] for _, layout in plan.files]
+
+
 def _find_zero_strain(survey: Survey, located: Located, campaign: Campaign, plan: TestPlan) -> None:
-    """Set where strain is zero, and whether that is a position of the log."""
-    layouts = [campaign.layouts[layout] for _, layout in plan.files]
-    survey.is_zero_logged = bool(located.standstills.is_rest.any())
-    survey.zero_strain_position = zero_strain_position(
+    """Set where strain of each specimen is zero, and whether that is a position of the log."""
+    layouts = _layouts(campaign, plan)
+    is_length = located.record.position_is_length
+    length, tension_of_layout = reference_of(layouts)
+    survey.reference_length = length
+    at_slack = zero_at_slack(
         located.standstills,
-        position_is_length=located.record.position_is_length,
+        position_is_length=is_length,
         length_at_slack=length_at_slack(layouts),
     )
+    for name, tension in zip(plan.specimens, located.tension, strict=True):
+        reference = campaign.specimens[name].reference_tension or tension_of_layout
+        if not reference:
+            survey.zero_strain[name] = at_slack
+            continue
+        survey.zero_strain[name] = zero_at_tension(
+            located.position,
+            tension,
+            reference_tension=reference,
+            stated_position=length if reference == tension_of_layout else None,
+        )
+
+
+# where a tape reads the slack length the crosshead stands within this; tension begins beyond it
+_AT_SLACK_LENGTH = 4 * TAPE_UNCERTAINTY
+
+# of the greatest load: what a wrong zero may be, while a hold under tension is more
+_LITTLE = 0.1
+
+
+def _with_load_at_slack(
+    located: Located, whole: Located, campaign: Campaign, plan: TestPlan
+) -> Located:
+    """Say what each load cell reads at the slack rests of the whole log."""
+    layouts, stands = _layouts(campaign, plan), whole.standstills
+    slack_length = length_at_slack(layouts)
+    found, zeros = [], []
+    for number, (name, tension) in enumerate(zip(plan.specimens, whole.tension, strict=True), 1):
+        lengths = [] if slack_length is None else [slack_length]
+        if name in campaign.marks and whole.record.position_is_length:
+            tape = campaign.marks[name]
+            of_log = np.array([test == plan.log for test in tape.test], dtype=bool)
+            lengths += tape.far_thimble[of_log & tape.is_slack].tolist()
+        is_slack = stands.is_rest.copy()
+        little = _LITTLE * finite_extremes(tension)[1]
+        for length in lengths:
+            near = np.abs(stands.mean_position - length) <= _AT_SLACK_LENGTH
+            is_slack |= near & (stands.mean_tension[number - 1] < little)
+        one = load_at_slack(tension, stands, is_slack)
+        found.append(one)
+        zeros.append("" if one is None else zero_to_set(layouts, number, one.load))
+    notes = notes_on_zero(
+        plan.specimens, whole.position, whole.tension, found, zeros,
+        offset_uncertainty=campaign.uncertainty.tension_offset,
+    )  # fmt: skip
+    record = replace(located.record, notes=(*notes, *located.record.notes))
+    return replace(located, record=record, load_at_slack=tuple(found))
 
 
 def _needs_length(campaign: Campaign, plan: TestPlan) -> bool:
@@ -225,28 +296,56 @@ def _specimens(campaign: Campaign, plan: TestPlan) -> tuple[Specimen, ...]:
     return tuple(campaign.specimens[name] for name in plan.specimens)
 
 
-def _located(
-    campaign: Campaign, plan: TestPlan, record: Record, sources: tuple[Source, ...]
-) -> Survey:
-    located = locate(
-        record, kind=plan.kind, settings=plan.settings, specimens=_specimens(campaign, plan)
-    )
+def _located(plan: TestPlan, located: Located, sources: tuple[Source, ...]) -> Survey:
+    record, cycles = located.record, located.cycles
     return Survey(
         plan,
         sources,
         located,
         n_rows=record.n_samples,
-        n_cycles=0 if located.cycles is None else located.cycles.n_cycles,
+        n_cycles=0 if cycles is None else cycles.n_cycles,
         extremes=extremes_of_test(located),
         found=_log_summary(located),
+        notes=(*record.notes, *(() if cycles is None else cycles.notes)),
     )
 
 
-def _measure_marks(survey: Survey, located: Located | None, marks: dict[str, SpliceMarks]) -> None:
+def _measure_marks(survey: Survey, located: Located, campaign: Campaign) -> None:
     """Tension while each mark of a log was read, into the survey of its test or first step."""
-    if located is not None:
-        at = tension_at_marks(located, marks, survey.plan.specimens, log=survey.plan.log)
-        survey.mark_tension, survey.mark_tension_at_start = at["end"], at["start"]
+    plan = survey.plan
+    if located.record.position_is_length and _needs_length(campaign, plan):
+        for name in plan.specimens:
+            if name not in campaign.marks:
+                continue
+            try:
+                notes = check_tape_against_crosshead(
+                    campaign.marks[name],
+                    test_id=plan.log,
+                    standstills=located.standstills,
+                    position=located.position,
+                    position_uncertainty=_of_position(campaign, located),
+                )
+            except DataError as error:
+                survey.mark_errors[name] = error
+                continue
+            survey.notes += notes
+            survey.found.get("notes", []).extend(map(str, notes))
+            if survey.located is not None:
+                record = survey.located.record
+                record = replace(record, notes=(*notes, *record.notes))
+                survey.located = replace(survey.located, record=record)
+    at = tension_at_marks(located, campaign.marks, plan.specimens, log=plan.log)
+    survey.mark_tension, survey.mark_tension_at_start = at["end"], at["start"]
+
+
+def _of_position(campaign: Campaign, located: Located) -> float:
+    """Standard uncertainty of the crosshead's zero and scale, where stated. [m]."""
+    stated = campaign.uncertainty
+    return float(
+        np.hypot(
+            stated.position_offset, stated.position_gain * finite_extremes(located.position)[1]
+        )
+    )
 
 
 def survey_log(campaign: Campaign, name: str, *, reader: Reader = read_record) -> list[Survey]:

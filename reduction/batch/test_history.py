@@ -11,15 +11,20 @@ import numpy as np
 
 from reduction.batch.survey import Survey, as_reduction_error
 from reduction.campaign.plan import Campaign
-from reduction.pipeline.reduce_test import greatest_strain, growth_of_slack_length
+from reduction.pipeline.reduce_test import (
+    greatest_strain,
+    growth_of_slack_length,
+    judge_strain,
+)
 from reduction.record.contributions import InstrumentErrors
-from reduction.record.errors import ReductionError
+from reduction.record.errors import DataError, ReductionError
 from reduction.record.measurement import Floats, Specimen, SpliceMarks
 from reduction.record.notes import Note, note
 from reduction.stages.reduced_test import History
 from reduction.stages.strain.splice_laws import SpliceAverage
 from reduction.stages.strain.strain_fit import PooledMarks, average_over_laws, fit_strain_model
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.strain.zero_strain import ZeroStrain
 
 Models = Mapping[tuple[str, str], StrainModel]
 
@@ -255,6 +260,7 @@ def fit_strain_models(
     }
     cells = {name: _load_cells(campaign, surveys, name) for name in campaign.specimens}
     failed = _failed_logs(surveys)
+    contradicted = _contradicted(surveys)
     models: dict[tuple[str, str], StrainModel] = {}
     errors: dict[str, ReductionError] = {}
     for survey in surveys:
@@ -262,6 +268,8 @@ def fit_strain_models(
             continue
         for name in survey.plan.specimens:
             try:
+                _refuse_contradicted(survey, name, contradicted)
+                zero = survey.zero_strain.get(name, ZeroStrain())
                 model = fit_strain_model(
                     campaign.specimens[name],
                     test_id=survey.plan.log,
@@ -270,20 +278,50 @@ def fit_strain_models(
                     mark_tension_at_start=at_start.get(name),
                     settings=survey.plan.settings.strain,
                     has_extensometer=survey.extremes.has_extensometer,
-                    reference_position=survey.zero_strain_position,
+                    zero=_with_error_of_load(zero, campaign),
+                    reference_length=survey.reference_length,
                     failed_tests=failed,
                     average=averages.get(name),
                 )
                 read_by = tuple(cells[name].get(test, "") for test in model.mark_test)
+                of_strain = judge_strain(survey.extremes, model, test_id=survey.plan.id)
                 models[survey.plan.id, name] = replace(
-                    model,
-                    mark_load_cell=read_by,
-                    is_zero_logged=survey.is_zero_logged and model.method == "gauge-length",
+                    model, mark_load_cell=read_by, notes=(*of_strain, *model.notes)
                 )
             except Exception as error:
                 # one test's failure, even where it is a defect here
                 errors.setdefault(survey.plan.id, as_reduction_error(error))
     return models, errors
+
+
+def _contradicted(surveys: Sequence[Survey]) -> dict[str, DataError]:
+    """First row of the marks of each specimen that the crosshead of its test contradicts."""
+    found: dict[str, DataError] = {}
+    for survey in surveys:
+        for name, error in survey.mark_errors.items():
+            found.setdefault(name, error)
+    return found
+
+
+def _refuse_contradicted(survey: Survey, name: str, contradicted: Mapping[str, DataError]) -> None:
+    """Refuse a test whose strain rests on marks that are not those of its specimen.
+
+    Marks of a specimen are pooled: a wrong row of one test is in the strain of all.
+    """
+    method = survey.plan.settings.strain.method
+    if method in ("extensometer", "gauge-length"):
+        return
+    error = survey.mark_errors.get(name) or contradicted.get(name)
+    if error is not None:
+        raise error
+
+
+def _with_error_of_load(zero: ZeroStrain, campaign: Campaign) -> ZeroStrain:
+    """With what the stated errors of the load cell move the position of a reference tension by."""
+    stated = campaign.uncertainty
+    load = np.hypot(stated.tension_offset, stated.tension_gain * zero.reference_tension)
+    spread = float(np.hypot(zero.standard_uncertainty, zero.compliance * load))
+    return replace(zero, standard_uncertainty=spread)
 
 
 def _average(marks: SpliceMarks, tension: Floats, at_start: Floats) -> SpliceAverage | None:

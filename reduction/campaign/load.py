@@ -45,7 +45,7 @@ from reduction.quantities.units import scale_to_si
 from reduction.readers.layout import check_regular
 from reduction.readers.remote_files import allowed, base_name, fetch, renamed, scratch_folder
 from reduction.record.errors import ArchiveError, LogError, SettingsError
-from reduction.record.measurement import Specimen, SpliceMarks
+from reduction.record.measurement import MarkPlace, Specimen, SpliceMarks
 from reduction.record.plain_text import cut, is_address, shown_address
 from reduction.record.settings import CycleSettings, Limits, ReductionSettings, StrainSettings
 
@@ -148,6 +148,11 @@ def _specimen_of(path: Path, name: str, section: SpecimenSection) -> Specimen:
             path, f"{place}.gauge_length_standard_uncertainty stands alone",
             needed="gauge_length beside it",
         )  # fmt: skip
+    if section.gauge_length is None and section.reference_tension is not None:
+        raise in_toml(
+            path, f"{place}.reference_tension stands alone",
+            needed="gauge_length beside it, the length under that tension",
+        )  # fmt: skip
     given = section.model_dump(exclude={"stretched_diameter", "note"})
     if isinstance(section.diameter, float):
         given["diameter"] = (section.diameter,)
@@ -180,6 +185,7 @@ class _Rows:
     hold: list[str] = field(default_factory=list)
     lengths: list[tuple[float, float, float]] = field(default_factory=list)
     decimals: list[float] = field(default_factory=list)
+    place: list[MarkPlace] = field(default_factory=list)
 
 
 def _columns(path: Path, header: list[str]) -> dict[str, tuple[int, float]]:
@@ -224,11 +230,12 @@ def _check_hold(path: Path, row: int, hold: str) -> None:
         )  # fmt: skip
 
 
-def _read_marks(path: Path) -> dict[str, SpliceMarks]:
-    """Read a marks file."""
+def _read_marks(path: Path, name: str = "") -> dict[str, SpliceMarks]:
+    """Read a marks file; ``name`` is what the campaign calls it."""
     header, filled = read_csv_rows(path, "the marks file")
     columns = _columns(path, header)
     where = {name: header.index(name) for name in ("test", "specimen", "hold")}
+    far_thimble = header[columns["far_thimble"][0]].strip()
     rows: dict[str, _Rows] = {}
     for number, cells in filled:
         entry = rows.setdefault(cells[where["specimen"]].strip(), _Rows())
@@ -237,13 +244,14 @@ def _read_marks(path: Path) -> dict[str, SpliceMarks]:
         entry.test.append(cells[where["test"]].strip())
         entry.hold.append(hold)
         values = []
-        for name in _LENGTHS:
-            index, factor = columns[name]
+        for length in _LENGTHS:
+            index, factor = columns[length]
             cell = cells[index].strip()
             values.append(factor * _reading(path, number, header[index], cell))
             decimals = len(cell.partition(".")[2])
             entry.decimals.append(factor * 10.0**-decimals)
         entry.lengths.append((values[0], values[1], values[2]))
+        entry.place.append(MarkPlace(name or path.name, number, far_thimble))
     if not rows:
         raise LogError(path, "the marks file has no rows", needed="one row a reading")
     marks = {}
@@ -258,6 +266,7 @@ def _read_marks(path: Path) -> dict[str, SpliceMarks]:
             far_thimble=table[:, 2],
             # trailing zeros are dropped by spreadsheets, so the finest digit counts
             reading_uncertainty=min(entry.decimals) / math.sqrt(12) * math.sqrt(2),
+            place=tuple(entry.place),
         )
     return marks
 
@@ -268,7 +277,8 @@ def _pooled_marks(
     """Return all marks of each specimen over the campaign, from every marks file it names."""
     pooled: dict[str, SpliceMarks] = {}
     for name in dict.fromkeys(names):
-        for specimen, marks in _read_marks(path.parent / _file_inside(path, name)).items():
+        file = path.parent / _file_inside(path, name)
+        for specimen, marks in _read_marks(file, name).items():
             if specimen not in specimens:
                 raise LogError(
                     path.parent / name, "a mark names an unknown specimen", channel="specimen",
@@ -286,6 +296,7 @@ def _pooled_marks(
                 far_toe=np.concatenate([before.far_toe, marks.far_toe]),
                 far_thimble=np.concatenate([before.far_thimble, marks.far_thimble]),
                 reading_uncertainty=max(before.reading_uncertainty, marks.reading_uncertainty),
+                place=before.place + marks.place,
             )
     return pooled
 

@@ -30,6 +30,7 @@ from reduction.campaign.unit_types import (
     Force,
     InSI,
     Number,
+    PositiveForce,
     PositiveLength,
     ReadKey,
     Strain,
@@ -565,6 +566,8 @@ class SpecimenSection(_SpecSection):
     """The same less the water it displaces."""
     gauge_length: PositiveLength | None = None
     gauge_length_standard_uncertainty: PositiveLength | None = None
+    reference_tension: PositiveForce | None = None
+    """Tension under which the gauge length was read; slack where left out."""
     earlier_cycles: int | None = Field(default=None, ge=0, le=_MOST)
     """Cycles of tension before the first test of the campaign; none where left out."""
     earlier_flex_cycles: int | None = Field(default=None, ge=0, le=_MOST)

@@ -351,10 +351,17 @@ def check_campaign(campaign: Campaign, *, tests: tuple[str, ...], output: Comman
         statuses, models = check_tests(campaign, tests=tests, progress=progress)
     if statuses or not (campaign.outcomes or campaign.hoses):
         output.show(_status_table(statuses))
+    force, factor = output.unit("N")
     for test in statuses:
         for channel, masks in test.found.get("flags", {}).items():
             listed = ", ".join(f"{name} {count}" for name, count in masks.items())
             output.say(f"  {test.test}: {channel}: samples flagged: {listed}")
+        loads = test.found.get("load_at_slack", {})
+        known = [
+            f"{name} {factor * one['value']:.3g} {force}" for name, one in loads.items() if one
+        ]
+        if known:
+            output.say(f"  {test.test}: load at slack rests: {', '.join(known)}")
         for note in test.found.get("notes", ()):
             output.say(f"  {test.test}: {note}")
     lines = _model_lines(models, statuses, output.system)

@@ -26,8 +26,10 @@ from reduction.record.samples import copied, empty_like, release_pages, sample_b
 from reduction.record.settings import ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.load_at_slack import LoadAtSlack
 from reduction.stages.load_train import without_load_train
 from reduction.stages.standstills import Standstills, find_standstills, find_tension_stands
+from reduction.stages.strain.impossible_strain import refuse_impossible_strain
 from reduction.stages.strain.strain_fit import MarkReading, measure_mark_tension
 from reduction.stages.strain.strain_model import StrainModel, extrapolated, strain_by_model
 
@@ -45,7 +47,8 @@ class Located:
     """A record with its standstills and, where the test has them, its cycles.
 
     ``position`` (n_samples,) [m] and ``tension`` (n_specimens, n_samples) [N] are those of
-    the record, NaN where they are not usable.
+    the record, NaN where they are not usable; ``load_at_slack`` is what each load cell reads at
+    the slack rests of its log, by specimen, empty where nobody looked.
     """
 
     record: Record
@@ -53,6 +56,7 @@ class Located:
     tension: Floats
     standstills: Standstills
     cycles: Cycles | None
+    load_at_slack: tuple[LoadAtSlack | None, ...] = ()
 
 
 def locate(
@@ -151,7 +155,13 @@ def _without_flagged_samples(values: Floats, flags: NDArray[np.uint16], *, but: 
 def strain_of_record(
     record: Record, position: Floats, tension: Floats, models: Sequence[StrainModel]
 ) -> Floats:
-    """Strain of each specimen; NaN where position, or a tension that it needs, is not usable."""
+    """Strain of each specimen; NaN where position, or a tension that it needs, is not usable.
+
+    Raises
+    ------
+    DataError
+        If it is at or below -100 % anywhere.
+    """
     strain = empty_like(tension)
     measured = record.measured_strain
 
@@ -170,6 +180,8 @@ def strain_of_record(
         [(row, part) for row in range(len(models)) for part in parts],
         samples=(position, tension, strain, *(() if measured is None else (measured,))),
     )
+    for one, model in zip(strain, models, strict=True):
+        refuse_impossible_strain(one, specimen=model.specimen, test_id=record.test_id)
     return strain
 
 

@@ -64,6 +64,10 @@ from reduction.stages.moduli.slack_length import slack_crossings, slack_strain_a
 from reduction.stages.moduli.stepwise_test import greatest_step_strain, reduce_stepwise
 from reduction.stages.reduced_test import History, ReducedTest, TestDescription
 from reduction.stages.standstills import Standstills
+from reduction.stages.strain.impossible_strain import (
+    note_on_strain_below_zero,
+    refuse_impossible_strain,
+)
 from reduction.stages.strain.strain_model import StrainModel, strain_by_model
 from reduction.stages.strain.stress import check_constant_volume
 from reduction.stages.three_parameter_line.line_product import SlowPull
@@ -168,12 +172,12 @@ def _drift(name: str, loops: Loops, index: int, half_strain: Floats) -> list[Not
 
 
 def _sign(name: str, mean_tension: Floats, slopes: Floats | None) -> list[Note]:
-    """Tension that pushes, or falls with stretch."""
+    """Tension that falls with stretch; of one that is negative the log itself says which it is."""
     level = _median(mean_tension)
     slope = np.nan if slopes is None else _median(slopes)
-    if not (level < 0 or slope <= 0):
+    if level < 0 or not slope <= 0:
         return []
-    return [note("sign-of-tension", name, tension=level, slope=slope)]
+    return [note("sign-of-tension", name, slope=slope)]
 
 
 def _slack(name: str, valley_tension: Floats, slack_tension: float) -> list[Note]:
@@ -467,6 +471,8 @@ _FIRST_RISE = 0.5
 
 _MOST_KEPT = 1 << 20  # samples, or up to twice as many
 
+_MOST_SPREAD = 2048  # samples of each test of a campaign, or up to twice as many
+
 
 @dataclass(frozen=True)
 class _Samples:
@@ -491,6 +497,8 @@ class Extremes:
         splices relax, so the greatest strain is at one of them, which the strain model tells.
     first_rise : mapping of str to Samples
         Up to half of the peak tension.
+    all_over : mapping of str to Samples
+        Some samples spread over the whole test, with those at the least and greatest position.
     slack_tension : float
         At or below which the specimens are slack; NaN where there is no record. [N]
     position_is_length : bool
@@ -503,6 +511,7 @@ class Extremes:
     greatest_measured_strain: Mapping[str, float] = field(default_factory=dict)
     at_greatest_position: Mapping[str, _Samples] = field(default_factory=dict)
     first_rise: Mapping[str, _Samples] = field(default_factory=dict)
+    all_over: Mapping[str, _Samples] = field(default_factory=dict)
     slack_tension: float = float("nan")
     position_is_length: bool = True
     has_extensometer: bool = False
@@ -520,6 +529,7 @@ def extremes_of_test(located: Located) -> Extremes:
         else _greatest_known(record.specimens, measured),
         at_greatest_position=_at_greatest_position(located),
         first_rise=_first_rise(located),
+        all_over=_all_over(located),
         slack_tension=located.standstills.slack_tension,
         position_is_length=record.position_is_length,
         has_extensometer=measured is not None,
@@ -620,6 +630,53 @@ def _at_greatest_position(located: Located) -> dict[str, _Samples]:
     }
 
 
+def _all_over(located: Located) -> dict[str, _Samples]:
+    """Samples spread over the record, and at its least and greatest position."""
+    position, loads = located.position, located.tension
+    low, high = finite_extremes(position)
+    if not low <= high:
+        return {}
+    lowest = first_sample(lambda part: position[part] == low, 0, position.size, position)
+    highest = first_sample(lambda part: position[part] == high, 0, position.size, position)
+    spread = range(0, position.size, max(1, position.size // _MOST_SPREAD))
+    rows = np.array(sorted({*spread, lowest or 0, highest or 0}), dtype=np.intp)
+    place = take_samples(position, rows)
+    return {
+        name: _Samples(place, take_samples(load, rows))
+        for name, load in zip(located.record.specimens, loads, strict=True)
+    }
+
+
+def judge_strain(extremes: Extremes, model: StrainModel, *, test_id: str) -> tuple[Note, ...]:
+    """Refuse a strain model that gives what no specimen has, and say what hardly one has.
+
+    Raises
+    ------
+    DataError
+        If strain is at or below -100 % anywhere.
+
+    Examples
+    --------
+    >>> place = np.linspace(0.76, 1.38, 200)
+    >>> test = Extremes(
+    ...     all_over={"cord": _Samples(place, 900 * (place - 0.6))}, slack_tension=5.0)
+    >>> model = StrainModel(
+    ...     "cord", "gauge-length", {"reference_position": 1.0, "gauge_length": 1.0})
+    >>> [found] = judge_strain(test, model, test_id="A")
+    >>> print(found.code, round(found.numbers["least"], 2))
+    strain-below-zero -0.24
+    """
+    samples = extremes.all_over.get(model.specimen)
+    if samples is None or model.method == "extensometer":
+        return ()
+    strain = strain_by_model(model, position=samples.position, tension=samples.tension)
+    refuse_impossible_strain(strain, specimen=model.specimen, test_id=test_id)
+    reference = max(model.reference_tension, np.nan_to_num(extremes.slack_tension))
+    return note_on_strain_below_zero(
+        strain, samples.tension, specimen=model.specimen, reference_tension=reference
+    )
+
+
 def _first_above(series: Floats, level: float) -> int | None:
     return first_sample(lambda part: series[part] > level, 0, series.size, series)
 
@@ -683,7 +740,12 @@ def _stage_lines(located: Located, models: Sequence[StrainModel]) -> tuple[Step,
                 if standstills.tension_tolerance is None
                 else f", holds on tension within {standstills.tension_tolerance:.4g} N"
             )
-            + f", slack at {standstills.slack_tension:.4g} N",
+            + f", slack at {standstills.slack_tension:.4g} N"
+            + "".join(
+                f", load of {name} at slack rests {one.load:.4g} N"
+                for name, one in zip(record.specimens, located.load_at_slack, strict=False)
+                if one is not None
+            ),
         ),
     ]
     for model in models:

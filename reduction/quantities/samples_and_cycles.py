@@ -167,7 +167,7 @@ OF_RECORD: tuple[Quantity, ...] = (
         stated(
             "declared_gauge_length",
             "m",
-            "gauge length at zero tension as declared",
+            "gauge length at zero strain as declared",
             STATED,
             tables=("specimens",),
         ),
@@ -360,6 +360,13 @@ OF_RECORD: tuple[Quantity, ...] = (
             "m",
             "upper end of the marked range of position",
             BOUND,
+            tables=("splice_coefficients",),
+        ),
+        stated(
+            "strain_reference_tension",
+            "N",
+            "tension at which strain is zero, where that is not slack",
+            STATED,
             tables=("splice_coefficients",),
         ),
         stated(

@@ -39,6 +39,38 @@ def length_at_slack(layouts: Sequence[Layout]) -> float | None:
     return lengths.pop() if len(lengths) == 1 else None
 
 
+def reference_of(layouts: Sequence[Layout]) -> tuple[float | None, float]:
+    """Length at displacement zero and the tension under which it was read, as all layouts say it.
+
+    None and zero where they do not, or not all the same.
+    """
+    stated = set()
+    for layout in layouts:
+        channel = layout.channels.get("crosshead_position")
+        if channel is None or channel.datum != "displacement" or channel.reference_length is None:
+            return None, 0.0
+        tension = parse_quantity(channel.reference_tension or "0 N", "force")
+        stated.add((parse_quantity(channel.reference_length, "length"), tension))
+    return stated.pop() if len(stated) == 1 else (None, 0.0)
+
+
+def zero_to_set(layouts: Sequence[Layout], number: int, load: float) -> str:
+    """``zero`` of the load channel of a specimen, from 1, by which a load becomes nothing.
+
+    Empty where the layouts of a log differ in it.  As the log has it: before the sign.
+    """
+    texts = set()
+    for layout in layouts:
+        name = f"tension.{number}"
+        channel = layout.channels.get(name) or layout.channels.get("tension")
+        if channel is None:
+            return ""
+        size, _ = scale_to_si(channel.unit, "force")
+        now = 0.0 if channel.zero is None else parse_quantity(channel.zero, "force")
+        texts.add(f"{(now + channel.sign * load) / size:.4g} {channel.unit}")
+    return texts.pop() if len(texts) == 1 else ""
+
+
 _COUNTED = "cycle_counter"
 
 

@@ -95,9 +95,11 @@ class Specimen:
         Mass a length in air, and less the water it displaces, where stated; the wet one of what
         floats is negative. [kg m-1]
     gauge_length : float or None
-        Distance between gauge marks at zero tension, where marked. [m]
+        Distance between gauge marks at zero strain, where marked. [m]
     gauge_length_standard_uncertainty : float or None
         Its standard uncertainty, where stated. [m]
+    reference_tension : float or None
+        Under which the gauge length was read, where that was not slack. [N]
     earlier_cycles, earlier_flex_cycles : int or None
         Cycles of tension, and of flexing, before the first test of the campaign. [1]
     material, condition, construction : str
@@ -118,6 +120,7 @@ class Specimen:
     gauge_length_standard_uncertainty: float | None = None
     earlier_cycles: int | None = None
     earlier_flex_cycles: int | None = None
+    reference_tension: float | None = None
     linear_density: float | None = None
     wet_linear_density: float | None = None
 
@@ -165,6 +168,15 @@ def areas_of(specimens: tuple[Specimen, ...]) -> Floats:
 
 
 @dataclass(frozen=True)
+class MarkPlace:
+    """Where the far thimble of a mark stands: file, row from 1, and column by its header."""
+
+    file: str
+    row: int
+    column: str
+
+
+@dataclass(frozen=True)
 @read_only_arrays
 class SpliceMarks:
     """Tape readings at the splice toes of one specimen, one row a reading.
@@ -185,6 +197,8 @@ class SpliceMarks:
         Standard uncertainty of one tape reading. [m]
     is_reading_stated : bool
         Whether the campaign states it; else it is that of the last digit.
+    place : tuple of MarkPlace, length n_marks or 0
+        Where each row was read from; empty where it is from no file.
     """
 
     specimen: str
@@ -195,6 +209,7 @@ class SpliceMarks:
     far_thimble: Floats
     reading_uncertainty: float = 0.0
     is_reading_stated: bool = False
+    place: tuple[MarkPlace, ...] = ()
 
     def __post_init__(self) -> None:
         """Check that a row is 0 < near toe < far toe < far thimble."""

@@ -17,6 +17,10 @@ def _plural(number: int) -> str:
     return "" if number == 1 else "s"
 
 
+def _rests(number: int) -> str:
+    return f"{number} rest{_plural(number)}"
+
+
 def _against(change: float, more: str, less: str) -> str:
     """A change in percent without its sign, and which way it goes."""
     return f"{100 * abs(change):.1f} % {more if change > 0 else less}"
@@ -196,6 +200,71 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note",
         "{n_marks} of {n_stretched} stretched marks have no hold in the logs and are left out",
     ),
+    "load-zero-wrong": (
+        "warning",
+        lambda load, n_rests, zero, effect: (
+            f"the load cell reads {load:.4g} N where the specimen is slack ({_rests(n_rests)}),"
+            f" {100 * abs(effect):.2g} % of the greatest load, and load rises with stretch: its"
+            f" zero is wrong{', not its sign' if load < 0 else ''}; "
+            + (
+                f'set zero = "{zero}" for this channel'
+                if zero
+                else "set zero of this channel in each layout of the log"
+            )
+        ),
+    ),
+    "load-zero-off": (
+        "note",
+        lambda load, n_rests, zero: (
+            f"the load cell reads {load:.4g} N where the specimen is slack ({_rests(n_rests)}),"
+            " beyond its noise"
+            + (f'; zero = "{zero}" for this channel takes it off' if zero else "")
+        ),
+    ),
+    "load-negative": (
+        "warning",
+        "load is negative ({load:.4g} N in the middle, {least:.4g} N at the least) and rises with"
+        " stretch: the zero of the load cell is wrong, not its sign; the log has no rest at slack,"
+        " so set zero of this channel to what the cell read without load",
+    ),
+    "load-falls-with-stretch": (
+        "warning",
+        "load is negative ({load:.4g} N in the middle) and falls with stretch; does the log count"
+        " compression positive? Then set sign = -1 for this channel",
+    ),
+    "strain-below-zero": (
+        "warning",
+        lambda least, tension, reference, rises: (
+            f"strain is down to {100 * least:.3g} % at tensions up to {tension:.3g} N, above the"
+            f" {reference:.3g} N at which it should be zero: "
+            + (
+                "the zero of crosshead_position is not where the specimen has that tension"
+                if rises
+                else "tension rises where crosshead_position falls; does it count the other way?"
+                " Then set sign = -1 for it"
+            )
+        ),
+    ),
+    "strain-from-tension": (
+        "note",
+        "strain is zero at the reference tension of {tension:.4g} N, at which its gauge length was"
+        " stated",
+    ),
+    "reference-tension-elsewhere": (
+        "warning",
+        "the layout has the reference tension of {tension:.4g} N at {stated:.4g} m, the log first"
+        " at {found:.4g} m; strain is zero at the latter",
+    ),
+    "gauge-length-from-reference": (
+        "warning",
+        "no gauge_length is stated: strain refers to all of the reference_length, {length:.4g} m;"
+        " grips, eyes or splices in it make strain too small and moduli too large",
+    ),
+    "tape-off-crosshead": (
+        "warning",
+        "at the holds of {n_marks} marks the crosshead is {apart:+.4g} m off the tape, more than"
+        " the errors of both explain: is its zero right?",
+    ),
     "splice-laws": (
         "note",
         lambda law, weight, chance, second, effect: (
@@ -302,23 +371,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "sign-of-tension": (
         "warning",
-        lambda tension, slope: (
-            " and ".join(
-                [
-                    *(
-                        [f"mean tension of the cycles is negative ({tension:.4g} N)"]
-                        if tension < 0
-                        else []
-                    ),
-                    *(
-                        [f"tension falls with stretch (median tangent modulus {slope:.4g} Pa)"]
-                        if slope <= 0
-                        else []
-                    ),
-                ]
-            )
-            + "; does the log count compression positive? Then set sign = -1 for this channel"
-        ),
+        "tension falls with stretch (median tangent modulus {slope:.4g} Pa); does the log count"
+        " compression positive? Then set sign = -1 for this channel",
     ),
     "slack-in-cycles": (
         "warning",

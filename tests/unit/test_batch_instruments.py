@@ -12,6 +12,7 @@ from reduction.record.contributions import StatedErrors
 from reduction.record.measurement import Specimen, SpliceMarks
 from reduction.record.settings import ReductionSettings, StrainSettings
 from reduction.stages.strain.strain_fit import fit_strain_model
+from reduction.stages.strain.zero_strain import ZeroStrain
 
 # lengths of WHOI-2005-10, Table 3, new tether, in feet; the slack row of T-2 reads otherwise
 MARKS = SpliceMarks(
@@ -29,7 +30,7 @@ def model_of(log, method):
     return fit_strain_model(
         CAMPAIGN.specimens["new"], test_id=log, marks=MARKS,
         mark_tension=np.array([0.0, 380.0, 600.0, 0.0]), settings=StrainSettings(method=method),
-        reference_position=0.0,
+        zero=ZeroStrain(0.0),
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ from string import Formatter
 
 import pytest
 
-from reduction.batch.reduce_tests import _note_message
+from reduction.batch.campaign_status import note_message
 from reduction.record.note_sentences import SENTENCES
 from reduction.record.notes import SEVERITIES, Note, by_severity, full_note, note
 
@@ -33,9 +33,9 @@ FACTS = {
         note("cycles-not-as-planned", n_found=9, n_planned=10), "warning",
     ),
     "one cycle only: there is no scatter from cycle to cycle": (note("one-cycle"), "note"),
-    "new: mean tension of the cycles is negative (-3 N); does the log count compression positive? "
-    "Then set sign = -1 for this channel": (
-        note("sign-of-tension", "new", tension=-3.0, slope=1e6), "warning",
+    "new: tension falls with stretch (median tangent modulus -1e+06 Pa); does the log count "
+    "compression positive? Then set sign = -1 for this channel": (
+        note("sign-of-tension", "new", slope=-1e6), "warning",
     ),
     "1325: length 416.1 mm is 167 %, recorded is 151 %; the row gives no modulus. A length of "
     "390.5 mm would agree, and the intervals beside it would be 0.62 and 0.33 MPa": (
@@ -111,15 +111,15 @@ def test_warnings_come_first_and_those_alike_keep_their_order():
 
 
 def test_the_message_of_a_test_names_the_most_serious_note():
-    message = _note_message([SAID, REFUSED, OPEN])
+    message = note_message([SAID, REFUSED, OPEN])
     assert message == f"3 notes (1 warning, 1 refusal); first: identity: {OPEN}"
-    assert _note_message([SAID]) == f"1 note; first: specimen new: {SAID}"
-    assert _note_message([]) == ""
+    assert note_message([SAID]) == f"1 note; first: specimen new: {SAID}"
+    assert note_message([]) == ""
 
 
 def test_the_message_of_a_test_says_of_what_the_first_note_speaks_and_counts_each_specimen():
     found = note("law-not-stable", strain=1.25)
-    message = _note_message([replace(found, stage=f"yeoh {name}") for name in ("new", "used")])
+    message = note_message([replace(found, stage=f"yeoh {name}") for name in ("new", "used")])
     assert message == f"2 notes (2 warnings); first: yeoh new: {found}"
 
 

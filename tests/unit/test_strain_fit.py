@@ -12,9 +12,9 @@ from reduction.stages.strain.strain_fit import (
     PooledMarks,
     fit_strain_model,
     fit_to_marks,
-    zero_strain_position,
 )
 from reduction.stages.strain.strain_model import StrainModel, strain_by_model
+from reduction.stages.strain.zero_strain import ZeroStrain, zero_at_slack
 from reduction.uncertainty.error_field import error_field
 
 L0, LS = 2.55, 1.18
@@ -229,16 +229,16 @@ def test_one_stretched_mark_has_no_slope():
 
 def test_without_marks_the_extensometer_comes_before_the_gauge_length():
     rope = Specimen("rope", gauge_length=1.0)
-    both = fit_strain_model(rope, test_id="a", has_extensometer=True, reference_position=0.0)
+    both = fit_strain_model(rope, test_id="a", has_extensometer=True, zero=ZeroStrain(0.0))
     assert both.method == "extensometer"
-    alone = fit_strain_model(rope, test_id="a", reference_position=0.25)
+    alone = fit_strain_model(rope, test_id="a", zero=ZeroStrain(0.25))
     assert alone.method == "gauge-length"
     assert alone.coefficients == {"reference_position": 0.25, "gauge_length": 1.0}
 
 
 def test_the_uncertainty_of_a_stated_gauge_length_is_shared_by_all_strains():
     stated = Specimen("hose", gauge_length=2.0, gauge_length_standard_uncertainty=0.01)
-    model = fit_strain_model(stated, test_id="a", reference_position=2.0)
+    model = fit_strain_model(stated, test_id="a", zero=ZeroStrain(2.0))
     assert tuple(map(str, model.notes)) == () and model.relaxed_length == 2.0
     # at 100 and at 50 %, 0.5 % of the strain
     field = error_field(
@@ -248,7 +248,7 @@ def test_the_uncertainty_of_a_stated_gauge_length_is_shared_by_all_strains():
 
 
 def test_a_gauge_length_without_one_counts_as_exact_and_says_so():
-    model = fit_strain_model(Specimen("a", gauge_length=2.0), test_id="a", reference_position=0.0)
+    model = fit_strain_model(Specimen("a", gauge_length=2.0), test_id="a", zero=ZeroStrain(0.0))
     assert not model.covariance.any()
     (note,) = map(str, model.notes)
     assert note.startswith("the gauge length counts as exact")
@@ -268,7 +268,7 @@ def test_nothing_to_go_by_is_refused():
 def test_gauge_length_names_what_it_lacks():
     gauge = StrainSettings("gauge-length")
     with pytest.raises(DataError, match="by gauge-length lacks a gauge length"):
-        fit_strain_model(Specimen("rope"), test_id="a", settings=gauge, reference_position=0.0)
+        fit_strain_model(Specimen("rope"), test_id="a", settings=gauge, zero=ZeroStrain(0.0))
     with pytest.raises(DataError, match="lacks a position of zero strain"):
         fit_strain_model(Specimen("rope", gauge_length=1.0), test_id="a", settings=gauge)
 
@@ -285,16 +285,16 @@ def rests(positions, is_rest):
 
 def test_zero_strain_is_at_the_first_rest():
     stands = rests([0.5, 0.1, 0.2], [False, True, True])
-    assert zero_strain_position(stands, position_is_length=True) == 0.1
+    assert zero_at_slack(stands, position_is_length=True).position == 0.1
 
 
 def test_without_a_rest_only_a_displacement_has_a_zero():
     stands = rests([0.5], [False])
-    assert zero_strain_position(stands, position_is_length=False) == 0.0
-    assert zero_strain_position(stands, position_is_length=True) is None
+    assert zero_at_slack(stands, position_is_length=False).position == 0.0
+    assert zero_at_slack(stands, position_is_length=True).position is None
     # the length at displacement zero, read at slack, is that of zero strain
-    stated = zero_strain_position(stands, position_is_length=True, length_at_slack=1.5)
-    assert stated == 1.5
+    stated = zero_at_slack(stands, position_is_length=True, length_at_slack=1.5)
+    assert stated.position == 1.5
 
 
 def test_fit_to_marks_is_the_same_model_without_remarks():

@@ -67,6 +67,8 @@ from reduction.stages.strain.splice_laws import (
     fit_splice_laws,
 )
 from reduction.stages.strain.strain_model import StrainModel, free_length_fraction, strain_by_model
+from reduction.stages.strain.tape_and_crosshead import POSITION_TOLERANCE, TAPE_UNCERTAINTY
+from reduction.stages.strain.zero_strain import ZeroStrain
 
 LEVEL = 0.005
 
@@ -220,14 +222,8 @@ MarkReading = Literal["start", "end"]
 # the tape is read in about this long, or in a third of a shorter hold
 _READING_TIME = 10.0
 
-# a tape and a scaled crosshead agree on a length within this; holds lie much farther apart
-_POSITION_TOLERANCE = 0.05
-
 # difference of two free lengths has twice the standard uncertainty of one reading (four readings)
 _CONTRADICTION = 4 * 2
-
-# a hundredth of a foot: a tape is not read better than this on a stretched tether
-_TAPE_UNCERTAINTY = 0.003
 
 
 def _check_marks(marks: SpliceMarks, *, tests: Collection[str] | None = None) -> None:
@@ -251,7 +247,7 @@ def _check_marks(marks: SpliceMarks, *, tests: Collection[str] | None = None) ->
     ...
     reduction.record.errors.DataError: marks of 'new' in test T-1 contradict each other: holds ...
     """
-    allowance = _CONTRADICTION * max(marks.reading_uncertainty, _TAPE_UNCERTAINTY)
+    allowance = _CONTRADICTION * max(marks.reading_uncertainty, TAPE_UNCERTAINTY)
     test = np.array(marks.test)
     for name in dict.fromkeys(marks.test) if tests is None else tests:
         rows = np.flatnonzero(test == name)
@@ -366,7 +362,7 @@ def measure_mark_tension(
         nearest = float(distance.min(initial=np.inf))
         if is_slack:
             measured.append(slack)
-        elif nearest > _POSITION_TOLERANCE:
+        elif nearest > POSITION_TOLERANCE:
             measured.append(float("nan"))
         else:
             same = distance <= nearest + standstills.position_tolerance
@@ -1285,48 +1281,54 @@ def _remarks_on(
     )
 
 
-def zero_strain_position(
-    standstills: Standstills, *, position_is_length: bool, length_at_slack: float | None = None
-) -> float | None:
-    """Crosshead position at which a specimen without splices has no strain.
-
-    Examples
-    --------
-    >>> none = np.empty(0)
-    >>> no_rest = Standstills(none, none, none, none, none, np.empty((1, 0)), none > 0, 0.01, 5.0)
-    >>> print(zero_strain_position(no_rest, position_is_length=False))
-    0.0
-    """
-    rests = standstills.mean_position[standstills.is_rest]
-    if rests.size:
-        return float(rests[0])
-    return length_at_slack if position_is_length else 0.0
+_ELSEWHERE = 0.005  # of the gauge length: strain by which two zeros of it differ
 
 
 def _without_marks(
-    specimen: Specimen, method: StrainMethod, reference_position: float | None
+    specimen: Specimen, method: StrainMethod, zero: ZeroStrain, length: float | None
 ) -> StrainModel:
     if method == "extensometer":
         return StrainModel(specimen.name, "extensometer")
-    if specimen.gauge_length is None or reference_position is None:
+    gauge = length if specimen.gauge_length is None else specimen.gauge_length
+    if gauge is None or zero.position is None:
         raise DataError(
             f"strain of '{specimen.name}' by gauge-length lacks "
-            + ("a gauge length" if specimen.gauge_length is None else "a position of zero strain"),
-            needed="specimens.NAME.gauge_length, and a rest at slack or a displacement from slack "
-            "(its reference_length read without tension)",
+            + ("a gauge length" if gauge is None else "a position of zero strain"),
+            needed="specimens.NAME.gauge_length or a displacement with reference_length"
+            if gauge is None
+            else "a rest at slack, a displacement from slack (its reference_length read without "
+            "tension), or a reference_tension through which the log rises",
         )
-    coefficients = {
-        "reference_position": reference_position,
-        "gauge_length": specimen.gauge_length,
-    }
     spread = specimen.gauge_length_standard_uncertainty
+    notes = [note("gauge-length-exact")] if spread is None else []
+    if specimen.gauge_length is None:
+        notes.append(note("gauge-length-from-reference", specimen.name, length=gauge))
+    if zero.reference_tension:
+        notes.append(note("strain-from-tension", specimen.name, tension=zero.reference_tension))
+        notes += _on_stated_zero(specimen.name, zero, gauge)
     return StrainModel(
         specimen.name,
         "gauge-length",
-        coefficients,
-        np.diag([0.0, 0.0 if spread is None else spread**2]),
-        notes=(note("gauge-length-exact"),) if spread is None else (),
+        {"reference_position": zero.position, "gauge_length": gauge},
+        np.diag([zero.standard_uncertainty**2, 0.0 if spread is None else spread**2]),
+        notes=tuple(notes),
+        is_zero_logged=zero.is_logged,
+        reference_tension=zero.reference_tension,
     )
+
+
+def _on_stated_zero(name: str, zero: ZeroStrain, gauge: float) -> list[Note]:
+    """A position that the layout states for the reference tension, where the log has another."""
+    if zero.position is None or zero.stated_position is None:
+        return []
+    if abs(zero.position - zero.stated_position) <= _ELSEWHERE * gauge:
+        return []
+    return [
+        note(
+            "reference-tension-elsewhere", name, tension=zero.reference_tension,
+            stated=zero.stated_position, found=zero.position,
+        )
+    ]  # fmt: skip
 
 
 def _default_method(
@@ -1363,7 +1365,8 @@ def fit_strain_model(
     mark_tension_at_start: ArrayLike | None = None,
     settings: StrainSettings | None = None,
     has_extensometer: bool = False,
-    reference_position: float | None = None,
+    zero: ZeroStrain | None = None,
+    reference_length: float | None = None,
     failed_tests: Sequence[str] = (),
     average: SpliceAverage | None = None,
 ) -> StrainModel:
@@ -1386,8 +1389,11 @@ def fit_strain_model(
         ``method`` None averages: see Notes.
     has_extensometer : bool
         Whether the log has a strain channel.
-    reference_position : float, optional
-        Crosshead position at zero strain, for ``gauge-length``. [m]
+    zero : ZeroStrain, optional
+        Where strain is zero, for ``gauge-length``.
+    reference_length : float, optional
+        Length of the whole specimen at zero strain, for a ``gauge-length`` that was asked for
+        and is not stated. [m]
     failed_tests : sequence of str
         Tests whose log could not be read, so that their marks have no tension. [1]
     average : SpliceAverage, optional
@@ -1453,7 +1459,7 @@ def fit_strain_model(
             )
     method = stated or _default_method(specimen, readings, has_extensometer)
     if method in ("extensometer", "gauge-length"):
-        return _without_marks(specimen, method, reference_position)
+        return _without_marks(specimen, method, zero or ZeroStrain(), reference_length)
     if readings is None:
         raise DataError(
             f"strain of '{specimen.name}' by {method} needs splice marks",

@@ -98,6 +98,8 @@ class StrainModel:
         not reject, by which its error is judged.
     law_covariance : ndarray, shape (n_coefficients, n_coefficients)
         Of the coefficients, by which law of the splices it is; empty where there is one law. [SI]
+    reference_tension : float
+        At which strain is zero, where that is not slack. [N]
     """
 
     specimen: str
@@ -122,6 +124,7 @@ class StrainModel:
     is_zero_logged: bool = False
     by_marks: StrainModel | None = None
     law_covariance: Floats = field(default_factory=lambda: np.empty((0, 0)))
+    reference_tension: float = 0.0
 
     @property
     def relaxed_length(self) -> float:

@@ -1,0 +1,151 @@
+"""What a load cell reads while nothing pulls at it, and whether its zero is right.
+
+The zero of a load cell is what it reads without load; a log that rests at slack holds it.  A wrong
+zero is in every tension, and where a specimen is soft it turns tension into compression.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from reduction.record.measurement import Bools, Floats
+from reduction.record.notes import Note, note
+from reduction.record.samples import finite_extremes, take_samples
+from reduction.stages.standstills import Standstills, estimate_noise
+
+_BEYOND = 4.0  # standard errors of a mean
+
+# of the greatest tension: by so much every stress there is wrong at the least
+_SERIOUS = 0.01
+
+_COVERED = 2.0  # stated standard uncertainties
+
+_MOST = 4096  # samples that say whether load rises with stretch
+
+
+@dataclass(frozen=True)
+class LoadAtSlack:
+    """Mean load of one specimen over its slack rests.
+
+    ``load`` [N] and ``standard_uncertainty`` [N] by noise and resolution; ``n_rests`` how many
+    there are, ``low`` and ``high`` [N] the least and the greatest mean of one.
+    """
+
+    load: float
+    standard_uncertainty: float
+    n_rests: int
+    low: float
+    high: float
+
+    @property
+    def is_beyond_noise(self) -> bool:
+        """Whether it is no zero."""
+        return abs(self.load) > _BEYOND * self.standard_uncertainty
+
+
+def load_at_slack(tension: Floats, standstills: Standstills, is_slack: Bools) -> LoadAtSlack | None:
+    r"""Mean load of one specimen over the standstills in which it is slack.
+
+    .. math:: u^2 = \frac{\sigma^2}{n} + \frac{q^2}{12}
+
+    None where it is slack in none of them, or nothing can be read there.
+
+    Notes
+    -----
+    Noise averages out over the samples of a rest, the step q of a converter does not where the
+    noise is less than one.
+
+    Examples
+    --------
+    >>> rest = Standstills(
+    ...     first=np.array([0]), last=np.array([99]), start_time=np.array([0.0]),
+    ...     end_time=np.array([9.9]), mean_position=np.array([1.0]),
+    ...     mean_tension=np.array([[-14.4]]), is_rest=np.array([True]),
+    ...     position_tolerance=0.01, slack_tension=5.0)
+    >>> noise = np.random.default_rng(1).normal(-14.4, 0.5, 100)
+    >>> found = load_at_slack(noise, rest, rest.is_rest)
+    >>> print(round(found.load, 1), found.is_beyond_noise)
+    -14.4 True
+    """
+    sums: list[tuple[float, int]] = []
+    for first, last in zip(standstills.first[is_slack], standstills.last[is_slack], strict=True):
+        loads = tension[first : last + 1]
+        loads = loads[np.isfinite(loads)]
+        if loads.size:
+            sums.append((float(loads.mean()), int(loads.size)))
+    if not sums or np.count_nonzero(np.isfinite(tension[: 2 * _MOST])) < 8:
+        return None
+    means, counts = np.array([one for one, _ in sums]), np.array([n for _, n in sums])
+    noise, quantum = estimate_noise(tension)
+    own = noise / np.sqrt(counts.sum())
+    # noise of a step or more blurs the steps, and the mean is finer than one of them
+    step = quantum / 12**0.5 if noise < quantum else 0.0
+    return LoadAtSlack(
+        float(np.average(means, weights=counts)), float(np.hypot(own, step)), len(sums),
+        float(means.min()), float(means.max()),
+    )  # fmt: skip
+
+
+def rises_with_stretch(position: Floats, tension: Floats) -> bool:
+    """Whether load is greater where the crosshead is farther out, over the whole log.
+
+    Examples
+    --------
+    >>> place = np.linspace(0, 1, 50)
+    >>> rises_with_stretch(place, 80 * place - 100), rises_with_stretch(place, -80 * place)
+    (True, False)
+    """
+    rows = np.arange(0, position.size, max(1, position.size // _MOST))
+    place, load = take_samples(position, rows), take_samples(tension, rows)
+    known = np.isfinite(place) & np.isfinite(load)
+    place, load = place[known], load[known]
+    return bool(place.size and (place - place.mean()) @ (load - load.mean()) > 0)
+
+
+def notes_on_zero(
+    names: Sequence[str],
+    position: Floats,
+    tension: Floats,
+    at_slack: Sequence[LoadAtSlack | None],
+    zeros: Sequence[str],
+    offset_uncertainty: float = 0.0,
+) -> tuple[Note, ...]:
+    """Say which load cells have a wrong zero, with the value to set where the log has it.
+
+    ``zeros`` holds the ``zero`` of each channel that would make its load at slack nothing, as it
+    stands in a layout.  A load that is negative has a wrong sign where it falls with stretch and a
+    wrong zero where it rises.  A zero is serious where it is off by more than a hundredth of the
+    greatest load and by more than what is stated of it, which is in every interval.
+
+    Examples
+    --------
+    >>> rest = LoadAtSlack(-14.4, 0.01, 2, -14.5, -14.3)
+    >>> place = np.linspace(0, 1, 50)
+    >>> [found] = notes_on_zero(["new"], place, 400 * place[None] - 14.4, [rest], ["-14.4 N"])
+    >>> print(found)  # doctest: +ELLIPSIS
+    new: the load cell reads -14.4 N where the specimen is slack (2 rests), 3.6 % of the ...
+    """
+    notes = []
+    for name, loads, rest, zero in zip(names, tension, at_slack, zeros, strict=True):
+        low, high = finite_extremes(loads)
+        if not low <= high:
+            continue
+        rows = np.arange(0, loads.size, max(1, loads.size // _MOST))
+        middle = float(np.nanmedian(take_samples(loads, rows)))
+        if -low > max(high, 0.0) and not rises_with_stretch(position, loads):
+            notes.append(note("load-falls-with-stretch", name, load=middle))
+        elif rest is None:
+            # which zero is right the log does not say
+            if middle < -_SERIOUS * (high - low):
+                notes.append(note("load-negative", name, load=middle, least=low))
+        elif rest.is_beyond_noise:
+            reach = max(high - rest.load, rest.load - low)
+            said = {"load": rest.load, "n_rests": rest.n_rests, "zero": zero}
+            if abs(rest.load) > max(_SERIOUS * reach, _COVERED * offset_uncertainty):
+                notes.append(note("load-zero-wrong", name, effect=rest.load / reach, **said))
+            else:
+                notes.append(note("load-zero-off", name, **said))
+    return tuple(notes)

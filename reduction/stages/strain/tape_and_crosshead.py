@@ -1,0 +1,223 @@
+r"""Whether tape and crosshead agree on the length of a specimen while its marks were read.
+
+Both measure the distance between the thimbles, one of them with an instrument whose scale and
+zero stand in campaign.toml and the other in a file that was typed.  Where they disagree one of
+the two is wrong, and no strain can be had from both.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from reduction.record.errors import DataError
+from reduction.record.measurement import Bools, Floats, Integers, SpliceMarks
+from reduction.record.notes import Note, note
+from reduction.record.samples import finite_extremes
+from reduction.stages.standstills import Standstills
+
+POSITION_TOLERANCE = 0.05
+"""Within this a tape and a scaled crosshead agree on a length; holds lie much farther apart. [m]"""
+
+TAPE_UNCERTAINTY = 0.003
+"""A hundredth of a foot: a tape is not read better than this on a stretched tether. [m]"""
+
+UNITS = {"ft": 0.3048, "in": 0.0254, "m": 1.0, "mm": 1e-3, "cm": 1e-2}
+"""Units that the columns of a marks file may have, by their suffix, in metres. [m]"""
+
+_FAR = 4.0  # standard uncertainties
+
+# rows that one wrong zero explains lie as far apart as the holds do, but for the tape
+_ONE_ZERO = 0.01
+
+
+def check_tape_against_crosshead(
+    marks: SpliceMarks,
+    *,
+    test_id: str,
+    standstills: Standstills,
+    position: Floats,
+    position_uncertainty: float = 0.0,
+) -> tuple[Note, ...]:
+    """Refuse tape readings that the crosshead of the same test contradicts.
+
+    Parameters
+    ----------
+    marks : SpliceMarks
+        Of one specimen, over the campaign.
+    test_id : str
+        The test whose log this is; rows of other tests are left alone.
+    standstills : Standstills
+        Of the same log.
+    position : ndarray, shape (n_samples,)
+        Distance between the thimbles by the crosshead; NaN where not usable. [m]
+    position_uncertainty : float
+        Standard uncertainty of its zero and scale at the marks, where stated. [m]
+
+    Returns
+    -------
+    notes : tuple of Note
+        Where both differ by more than their errors explain, and by less than is refused.
+
+    Raises
+    ------
+    DataError
+        If the crosshead was never where the tape says that it was, if another unit of the
+        column brings the rows to the holds, if one shift of position does, or if the unloaded
+        crosshead stood farther out than the slack length.
+
+    Notes
+    -----
+    The marks are read while the machine stands at them ([1]_, sec. 4.1).  A log need not hold
+    that: rows inside the range of the
+    log that meet no hold, and rows outside it while none meets one, contradict nothing unless
+    another unit or one shift explains them all.  A slack specimen may hang: its thimbles stand
+    nearer than the tape says, but never farther.
+
+    Examples
+    --------
+    Readings in inches under a header that says feet.
+
+    >>> from reduction.record.measurement import MarkPlace
+    >>> hold = Standstills(
+    ...     first=np.array([0, 9]), last=np.array([5, 15]), start_time=np.array([0.0, 9.0]),
+    ...     end_time=np.array([5.0, 15.0]), mean_position=np.array([5.904, 7.349]),
+    ...     mean_tension=np.array([[380.0, 480.0]]), is_rest=np.array([False, False]),
+    ...     position_tolerance=0.01, slack_tension=5.0)
+    >>> marks = SpliceMarks("new", 2 * ("T-1",), ("min", "max"), 0.3048 * np.array([29.5, 31.9]),
+    ...     0.3048 * np.array([206.4, 261.4]), 0.3048 * np.array([232.4, 289.3]),
+    ...     place=tuple(MarkPlace("marks.csv", row, "far_thimble_ft") for row in (2, 3)))
+    >>> check_tape_against_crosshead(
+    ...     marks, test_id="T-1", standstills=hold,
+    ...     position=np.array([5.9, 7.35]))  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    reduction.record.errors.DataError: marks.csv:2 [far_thimble_ft]: the tape and the crosshead ...
+    """
+    own = np.array([test == test_id for test in marks.test], dtype=bool)
+    low, high = finite_extremes(position)
+    if not own.any() or not low <= high:
+        return ()
+    allowance = POSITION_TOLERANCE + _FAR * float(
+        np.hypot(marks.reading_uncertainty, position_uncertainty)
+    )
+    stretched = np.flatnonzero(own & ~marks.is_slack)
+    tape = marks.far_thimble[stretched]
+    holds = standstills.mean_position[~standstills.is_rest]
+    meets = _meets(tape, holds, allowance)
+    outside = (tape < low - allowance) | (tape > high + allowance)
+    if not meets.all():
+        _check_unit(marks, stretched, holds, (low, high), allowance, outside)
+        if not meets.any():
+            _check_zero(marks, stretched, holds, allowance)
+        if outside.all() or (outside.any() and meets.any()):
+            row = int(stretched[np.flatnonzero(outside)[0]])
+            raise _contradiction(
+                marks, row, f"the crosshead between {low:.4g} and {high:.4g} m",
+                hint="Correct the row, or the unit of the column, or unit and zero of "
+                "crosshead_position in the layout.",
+            )  # fmt: skip
+    rests = np.flatnonzero(standstills.is_rest)
+    if rests.size:
+        stood = float(standstills.mean_position[rests[0]])
+        _check_slack(marks, np.flatnonzero(own & marks.is_slack), stood, allowance)
+    if not meets.any():
+        return ()
+    nearest = holds[np.abs(holds - tape[meets][:, None]).argmin(axis=1)]
+    apart = float(np.mean(nearest - tape[meets]))
+    reading = max(marks.reading_uncertainty, TAPE_UNCERTAINTY)
+    if abs(apart) <= _FAR * np.hypot(reading, position_uncertainty):
+        return ()
+    return (note("tape-off-crosshead", marks.specimen, n_marks=int(meets.sum()), apart=apart),)
+
+
+def _meets(tape: Floats, holds: Floats, allowance: float) -> Bools:
+    """Which readings have a hold at their position."""
+    if not holds.size:
+        return np.zeros(tape.size, dtype=bool)
+    return np.asarray(np.abs(holds - tape[:, None]).min(axis=1) <= allowance)
+
+
+def _check_slack(marks: SpliceMarks, rows: Integers, stood: float, allowance: float) -> None:
+    for row in rows:
+        if stood > marks.far_thimble[row] + allowance:
+            raise _contradiction(
+                marks, int(row), f"the crosshead at {stood:.4g} m without tension",
+                hint="A slack specimen may hang, but does not reach farther than its length: "
+                "correct the row or its unit, or unit and zero of crosshead_position.",
+            )  # fmt: skip
+
+
+def _check_unit(
+    marks: SpliceMarks,
+    rows: Integers,
+    holds: Floats,
+    logged: tuple[float, float],
+    allowance: float,
+    outside: Bools,
+) -> None:
+    """Refuse readings that another unit of their column brings to the crosshead."""
+    declared = _unit(marks, int(rows[0]))
+    tape = marks.far_thimble[rows]
+    for unit, size in UNITS.items():
+        other = tape * (size / UNITS[declared])
+        inside = (other >= logged[0] - allowance) & (other <= logged[1] + allowance)
+        # without a hold in the log, that all are in its range and none was is as much as can be had
+        fits = _meets(other, holds, allowance).all() or (outside.all() and inside.all())
+        if unit == declared or not fits:
+            continue
+        row = int(rows[0])
+        beside = float(holds[np.abs(holds - other[0]).argmin()]) if holds.size else other[0]
+        factor = UNITS[declared] / size
+        raise _contradiction(
+            marks, row, f"the crosshead at {beside:.4g} m",
+            hint=f"In {unit} all {rows.size} stretched marks of the test fit: is the header "
+            f"far_thimble_{unit}? (Or the log's crosshead_position, stated {factor:.4g} times "
+            "too small.)",
+        )  # fmt: skip
+
+
+def _check_zero(marks: SpliceMarks, rows: Integers, holds: Floats, allowance: float) -> None:
+    """Refuse readings that are all off the holds by one length."""
+    tape = marks.far_thimble[rows]
+    if np.unique(tape).size < 2:
+        return
+    shifts = holds - tape[0]
+    for shift in shifts[np.argsort(np.abs(shifts), kind="stable")]:
+        left = np.abs(holds - (tape + shift)[:, None]).min(axis=1)
+        if abs(shift) > allowance and (left <= _ONE_ZERO + _FAR * marks.reading_uncertainty).all():
+            raise _contradiction(
+                marks, int(rows[0]), f"the crosshead at {tape[0] + shift:.4g} m",
+                hint=f"All {rows.size} stretched marks of the test are off by {shift:+.4g} m: the "
+                "zero of crosshead_position is wrong (its zero or reference_length in the layout),"
+                " or the tape was not read from the near thimble.",
+            )  # fmt: skip
+
+
+def _unit(marks: SpliceMarks, row: int) -> str:
+    return marks.place[row].column.rpartition("_")[2] if marks.place else "m"
+
+
+def _contradiction(marks: SpliceMarks, row: int, crosshead: str, *, hint: str) -> DataError:
+    """The error of a row that the crosshead contradicts, with both values."""
+    unit, length = _unit(marks, row), float(marks.far_thimble[row])
+    read = f"far_thimble {length:.4g} m"
+    if unit != "m":
+        read += f" ({length / UNITS[unit]:.6g} {unit})"
+    facts: dict[str, str | int] = {}
+    if marks.place:
+        place = marks.place[row]
+        facts = {"file": place.file, "row": place.row, "channel": place.column}
+    return DataError(
+        f"the tape and the crosshead contradict each other: '{marks.specimen}' in test "
+        f"{marks.test[row]}, hold {marks.hold[row]}",
+        found=f"{read} by the tape, {crosshead}",
+        needed="the same distance between the thimbles by both",
+        hint=hint,
+        **facts,
+    )

@@ -1,0 +1,236 @@
+"""Inputs that cannot be: the first line that a person reads says which, in `check` as in `run`."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from smallcampaign import CAMPAIGN, write_logs
+
+from reduction.archive.open import open_archive
+
+pytestmark = pytest.mark.slow
+
+TESTS = """strain = { marks = "marks.csv" }
+[tests.A]
+file = "A.csv"
+[tests.B]
+file = "B.csv"
+"""
+POUND = 4.4482216152605
+
+CORD = """
+[campaign]
+id = "cord"
+title = "A cord (synthetic)"
+synthetic = true
+[specimens.cord]
+kind = "rope"
+diameter = ["10 mm"]
+SPECIMEN
+[layouts.logger]
+format = "delimited"
+[layouts.logger.channels]
+time = { column = "t", unit = "s" }
+crosshead_position = { column = "x", unit = "m", datum = "displacement"KEYS }
+tension.1 = { column = "F", unit = "N" }
+[tests.A]
+file = "A.csv"
+layout = "logger"
+specimens = ["cord"]
+"""
+
+
+@pytest.fixture
+def tethers(tmp_path):
+    """Two synthetic tests, with a way to write every row of their logs anew."""
+    folder = tmp_path / "small"
+    write_logs(folder)
+    (folder / "campaign.toml").write_text(CAMPAIGN + TESTS)
+
+    def rewrite(change):
+        for name in ("A.csv", "B.csv"):
+            lines = (folder / name).read_text().splitlines()
+            text = [
+                ",".join(f"{one:.4f}" for one in change(*map(float, line.split(","))))
+                if line[0].isdigit()
+                else line
+                for line in lines
+            ]
+            (folder / name).write_text("\n".join(text) + "\n")
+
+    return folder, rewrite
+
+
+def both(command, folder):
+    """First line of each test by `check` and by `run`, and the status of each command."""
+    said = {}
+    for name in ("check", "run"):
+        done = command(name, folder / "campaign.toml", "--json", cwd=folder)
+        answer = json.loads(done.stdout)
+        said[name] = done.returncode, {one["id"]: one["message"] for one in answer["tests"]}
+    return said
+
+
+def test_tape_readings_in_another_unit_are_refused_with_the_unit_that_fits(tethers, command):
+    folder, _ = tethers
+    lines = (folder / "marks.csv").read_text().splitlines()
+    rows = [line.split(",") for line in lines[1:]]
+    inches = [[*row[:4], *(f"{12 * float(one):.1f}" for one in row[4:])] for row in rows]
+    # the header still says feet
+    (folder / "marks.csv").write_text("\n".join([lines[0], *map(",".join, inches)]) + "\n")
+    for status, tests in both(command, folder).values():
+        assert status == 4
+        # 19.37 ft, where the crosshead stood, typed as 232.4 under far_thimble_ft: 70.84 m
+        assert tests["A"].endswith(
+            "In in all 3 stretched marks of the test fit: is the header far_thimble_in? (Or the "
+            "log's crosshead_position, stated 12 times too small.)"
+        )
+        assert "marks.csv:3 [far_thimble_ft]" in tests["A"]
+        assert (
+            "found far_thimble 70.84 m (232.4 ft) by the tape, the crosshead at 5.90" in tests["A"]
+        )
+        assert "far_thimble_in" in tests["B"]
+    assert not list(folder.glob("processed/small/*.nc"))
+
+
+def test_a_test_without_marks_of_its_own_does_not_use_marks_that_are_refused(tethers, command):
+    folder, _ = tethers
+    text = (folder / "marks.csv").read_text().replace("_ft", "_m")
+    (folder / "marks.csv").write_text("".join(
+        line for line in text.splitlines(keepends=True) if not line.startswith("B,")
+    ))  # fmt: skip
+    for status, tests in both(command, folder).values():
+        assert status == 4
+        assert all("is the header far_thimble_ft?" in one for one in tests.values())
+
+
+def test_a_wrong_zero_of_the_load_cell_is_told_from_a_wrong_sign(tethers, command):
+    folder, rewrite = tethers
+    rewrite(lambda time, place, new, used: (time, place, new - 14.4 / POUND, used))
+    for status, tests in both(command, folder).values():
+        assert status == 0
+        # -14.4 N in the unit of the channel
+        for message in tests.values():
+            assert 'its zero is wrong, not its sign; set zero = "-3.2' in message
+            assert "first: ingest: new: the load cell reads -14.4" in message
+            assert "sign = -1" not in message
+
+
+def test_the_zero_that_is_named_puts_it_right(tethers, command):
+    folder, rewrite = tethers
+    rewrite(lambda time, place, new, used: (time, place, new - 14.4 / POUND, used))
+    whole = (folder / "campaign.toml").read_text()
+    mended = whole.replace(
+        '"load_new_lb", unit = "lbf"', '"load_new_lb", unit = "lbf", zero = "-3.24 lbf"'
+    )
+    (folder / "campaign.toml").write_text(mended)
+    done = command("check", folder / "campaign.toml", cwd=folder)
+    assert "zero" not in done.stdout and "A: load at slack rests: new " in done.stdout
+
+
+def test_a_load_cell_with_the_wrong_sign_keeps_that_advice(tethers, command):
+    folder, rewrite = tethers
+    rewrite(lambda time, place, new, used: (time, place, -new, used))
+    for _, tests in both(command, folder).values():
+        assert "load is negative" in tests["A"] and "set sign = -1" in tests["A"]
+        assert "zero is wrong" not in tests["A"]
+
+
+def test_a_crosshead_with_the_wrong_zero_contradicts_the_tape(tethers, command):
+    folder, rewrite = tethers
+    rewrite(lambda time, place, new, used: (time, place + 1, new, used))
+    for status, tests in both(command, folder).values():
+        assert status == 4
+        assert "off by +0.304" in tests["A"]
+        assert "the zero of crosshead_position is wrong" in tests["A"]
+
+
+def write_cord(folder, *, first, keys="", specimen='gauge_length = "1 m"', rest=False):
+    """Ten cycles of 2000 N a metre from slack at zero, between two displacements."""
+    time = np.arange(0, 100.05, 0.1)
+    travel = 0.1 + 0.5 * (1 - np.abs(time / 5 % 2 - 1))
+    if rest:  # from 20 s at slack, pulled in 20 s
+        ramp = np.concatenate([np.full(200, -0.02), np.linspace(-0.02, 0.1, 200, endpoint=False)])
+        travel = np.concatenate([ramp, travel])
+        time = 0.1 * np.arange(travel.size)
+    load = 2000 * np.maximum(travel, 0)
+    generator = np.random.default_rng(9)
+    rows = zip(
+        time, travel - first + generator.normal(0, 1e-4, time.size),
+        load + generator.normal(0, 0.5, time.size), strict=True,
+    )  # fmt: skip
+    text = "t,x,F\n" + "".join(f"{t:.1f},{x:.5f},{f:.2f}\n" for t, x, f in rows)
+    (folder / "A.csv").write_text(text)
+    campaign = CORD.replace("KEYS", keys).replace("SPECIMEN", specimen)
+    (folder / "campaign.toml").write_text(campaign)
+
+
+def test_a_position_zero_that_is_not_slack_is_said_first(tmp_path, command):
+    # displacement zero at 0.34 m, where 680 N pull: strain -24 to 26 %
+    write_cord(tmp_path, first=0.34)
+    for status, tests in both(command, tmp_path).values():
+        assert status == 0
+        assert "first: cord: strain is down to -24 % at tensions up to 6" in tests["A"]
+        assert "the zero of crosshead_position is not where" in tests["A"]
+
+
+def test_a_strain_of_less_than_nothing_is_refused(tmp_path, command):
+    write_cord(tmp_path, first=1.3)  # zero 1.3 m above slack, on a gauge length of 1 m
+    for status, tests in both(command, tmp_path).values():
+        assert status == 4
+        assert "strain of 'cord' in test 'A' is at or below -100 %; found -12" in tests["A"]
+
+
+@pytest.mark.parametrize(
+    ("keys", "specimen"),
+    [
+        (', reference_length = "1 m", reference_tension = "60 N"', 'gauge_length = "1 m"'),
+        ("", 'gauge_length = "1 m"\nreference_tension = "60 N"'),
+        (', reference_length = "1 m"', 'gauge_length = "1 m"\nreference_tension = "60 N"'),
+    ],
+)
+def test_strain_is_zero_at_the_reference_tension(tmp_path, command, keys, specimen):
+    write_cord(tmp_path, first=0.0, keys=keys, specimen=specimen, rest=True)
+    for status, tests in both(command, tmp_path).values():
+        assert status == 0, tests
+    with open_archive(tmp_path / "processed" / "cord" / "A.nc") as archive:
+        strain = archive["strain"].values[0]
+        load = archive["tension"].values[0]
+        # 60 N are 0.03 m from slack; a length of 1 m there
+        assert np.nanmax(strain) == pytest.approx(0.6 - 0.03, abs=1e-3)
+        rise = (load > 20) & (load < 100) & (np.arange(load.size) < 400)
+        line = np.polyfit(load[rise] - 60.0, strain[rise], 1)
+        assert line[1] == pytest.approx(0.0, abs=2e-4)
+        assert float(archive["strain_reference_tension"].values[0]) == 60.0
+        constant = archive["apparent_spring_constant"].values[0, 1:]  # the first has the way there
+        assert constant == pytest.approx(np.full(constant.shape, 2000.0), rel=0.01)
+        notes = [str(one) for one in archive["note"].values]
+        assert any("strain is zero at the reference tension of 60 N" in one for one in notes)
+
+
+def test_a_log_that_begins_above_the_reference_tension_needs_its_position(tmp_path, command):
+    write_cord(tmp_path, first=0.0, specimen='gauge_length = "1 m"\nreference_tension = "60 N"')
+    for status, tests in both(command, tmp_path).values():
+        assert status == 4
+        assert "a reference_tension through which the log rises" in tests["A"]
+    # stated: displacement zero, 1.03 m, has 60 N
+    keys = ', reference_length = "1.03 m", reference_tension = "60 N"'
+    write_cord(tmp_path, first=0.03, keys=keys, specimen='gauge_length = "1.03 m"')
+    assert both(command, tmp_path)["run"][0] == 0
+    with open_archive(tmp_path / "processed" / "cord" / "A.nc") as archive:
+        greatest = float(np.nanmax(archive["strain"].values))
+    assert math.isclose(greatest, (0.6 - 0.03) / 1.03, abs_tol=1e-3)
+
+
+def test_a_reference_length_stands_for_a_gauge_length_that_was_asked_for(tmp_path, command):
+    write_cord(tmp_path, first=0.0, keys=', reference_length = "1.25 m"', specimen="")
+    text = (tmp_path / "campaign.toml").read_text()
+    (tmp_path / "campaign.toml").write_text(text + 'strain = { method = "gauge-length" }\n')
+    for status, tests in both(command, tmp_path).values():
+        assert status == 0
+        assert (
+            "no gauge_length is stated: strain refers to all of the reference_length" in tests["A"]
+        )
+    with open_archive(tmp_path / "processed" / "cord" / "A.nc") as archive:
+        assert float(np.nanmax(archive["strain"].values)) == pytest.approx(0.6 / 1.25, abs=1e-3)

@@ -1,0 +1,122 @@
+"""Tape readings against the crosshead, and strain that no specimen has."""
+
+import numpy as np
+import pytest
+
+from reduction.record.errors import DataError
+from reduction.record.measurement import MarkPlace, SpliceMarks
+from reduction.stages.standstills import Standstills
+from reduction.stages.strain.tape_and_crosshead import UNITS, check_tape_against_crosshead
+from reduction.stages.strain.zero_strain import zero_at_tension
+
+SLACK, HOLDS = 3.74, np.array([5.90, 6.63, 7.35])
+
+
+def check(tape, *, unit="m", holds=HOLDS, rest=SLACK, reach=(3.74, 7.36), slack=SLACK, u=0.0):
+    """Marks at slack and at three holds, by a tape; all in metres."""
+    places = np.append(rest, holds)
+    n = places.size
+    stands = Standstills(
+        first=np.arange(n), last=np.arange(n), start_time=np.arange(n) * 1.0,
+        end_time=np.arange(n) * 1.0, mean_position=places, mean_tension=np.zeros((1, n)),
+        is_rest=np.arange(n) == 0, position_tolerance=0.01, slack_tension=5.0,
+    )  # fmt: skip
+    far = np.append(slack, tape)
+    marks = SpliceMarks(
+        "new", ("T-1",) * far.size, ("slack", "min", "centre", "max")[: far.size],
+        near_toe=0.1 * far, far_toe=0.9 * far, far_thimble=far, reading_uncertainty=0.001,
+        place=tuple(
+            MarkPlace("marks.csv", row, f"far_thimble_{unit}") for row in range(2, 2 + far.size)
+        ),
+    )  # fmt: skip
+    return check_tape_against_crosshead(
+        marks, test_id="T-1", standstills=stands, position=np.array(reach), position_uncertainty=u
+    )
+
+
+def test_a_tape_that_agrees_says_nothing():
+    assert check(HOLDS + np.array([0.003, -0.002, 0.001])) == ()
+
+
+@pytest.mark.parametrize("meant", UNITS)
+@pytest.mark.parametrize("written", UNITS)
+def test_every_unit_that_was_meant_is_named(meant, written):
+    if meant == written:
+        return
+    factor = UNITS[written] / UNITS[meant]
+    with pytest.raises(DataError, match=f"is the header far_thimble_{meant}\\?") as raised:
+        check(factor * HOLDS, unit=written, slack=factor * SLACK)
+    assert str(raised.value).startswith(f"marks.csv:3 [far_thimble_{written}]: ")
+    assert "the crosshead at 5.9 m" in str(raised.value)
+
+
+def test_without_a_hold_in_the_log_its_range_names_the_unit():
+    with pytest.raises(DataError, match=r"is the header far_thimble_ft\?"):
+        check(HOLDS / 0.3048, holds=np.empty(0), slack=SLACK / 0.3048)
+
+
+def test_one_row_out_of_reach_among_rows_that_agree_is_named():
+    with pytest.raises(DataError, match=r"marks.csv:5 .*hold max; found far_thimble 73.5 m"):
+        check(HOLDS * [1, 1, 10])
+
+
+def test_marks_that_were_read_before_the_log_began_contradict_nothing():
+    # cycles between 5 and 6.5 m: the set-up is not in the log
+    assert check(HOLDS, holds=np.empty(0), reach=(5.0, 6.5)) == ()
+    assert check(HOLDS, holds=np.array([5.0]), reach=(5.0, 6.5)) == ()
+
+
+def test_one_shift_of_all_rows_is_the_zero_of_the_crosshead():
+    with pytest.raises(DataError, match=r"are off by \+0.3 m: the zero of crosshead_position"):
+        check(HOLDS - 0.3, slack=SLACK - 0.3)
+
+
+def test_a_small_shift_is_said_unless_the_crosshead_is_stated_to_be_so_uncertain():
+    (found,) = check(HOLDS - 0.03, slack=SLACK - 0.03)
+    assert (found.code, found.severity) == ("tape-off-crosshead", "warning")
+    assert found.numbers["apart"] == pytest.approx(0.03)
+    assert check(HOLDS - 0.03, slack=SLACK - 0.03, u=0.01) == ()
+
+
+def test_a_slack_specimen_hangs_but_does_not_reach_farther_than_it_is_long():
+    assert check(HOLDS, rest=3.5) == ()
+    with pytest.raises(DataError, match=r"hold slack; .*the crosshead at 4 m without tension"):
+        check(HOLDS, rest=4.0)
+
+
+class TestZeroAtTension:
+    PLACE = np.concatenate([np.linspace(0, 1, 1001), np.linspace(1, 0.2, 801)])
+
+    def test_the_first_rise_counts_and_not_what_a_later_cycle_has(self):
+        load = 2e4 * np.maximum(self.PLACE - 0.1, 0)
+        load[1001:] = 2e4 * np.maximum(self.PLACE[1001:] - 0.19, 0)  # lengthened since
+        zero = zero_at_tension(self.PLACE, load, reference_tension=400.0)
+        assert zero.position == pytest.approx(0.12, abs=1e-9)
+        assert zero.compliance == pytest.approx(5e-5)
+
+    def test_noise_is_in_its_uncertainty(self):
+        generator, found = np.random.default_rng(2), []
+        load = 2e4 * np.maximum(self.PLACE - 0.1, 0)
+        for _ in range(200):
+            noisy = load + generator.normal(0, 20, load.size)
+            zero = zero_at_tension(self.PLACE, noisy, reference_tension=1000.0)
+            found.append((zero.position - 0.15) / zero.standard_uncertainty)
+        assert abs(np.mean(found)) < 0.5
+        assert np.std(found) == pytest.approx(1.0, abs=0.25)
+
+    def test_a_log_that_begins_at_the_tension_begins_at_zero_strain(self):
+        place = np.concatenate([np.full(100, 0.3), np.linspace(0.3, 1, 701)])
+        zero = zero_at_tension(place, 1e4 * (place - 0.2), reference_tension=1000.0)
+        assert zero.position == pytest.approx(0.3, abs=1e-9)
+
+    def test_above_it_the_layout_counts_or_nothing(self):
+        load = 2e4 * (self.PLACE + 0.5)
+        assert zero_at_tension(self.PLACE, load, reference_tension=400.0).position is None
+        zero = zero_at_tension(self.PLACE, load, reference_tension=400.0, stated_position=-0.4)
+        assert (zero.position, zero.is_logged) == (-0.4, False)
+
+    def test_a_ramp_of_few_samples_is_interpolated(self):
+        place = np.concatenate([np.zeros(20), [0.5], np.ones(20)])
+        zero = zero_at_tension(place, 1000 * place, reference_tension=250.0)
+        assert zero.position == pytest.approx(0.25)
+        assert zero.standard_uncertainty == pytest.approx(0.5 / 12**0.5)
