@@ -15,6 +15,8 @@ from reduction.record.notes import Note, note
 from reduction.record.samples import first_sample
 from reduction.record.settings import ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops
+from reduction.stages.cycles.cycle_search import control_channel
+from reduction.stages.cycles.loop_sense import without_backward_loops
 from reduction.stages.cycles.loops import close_loops
 from reduction.stages.moduli.cycle_alignment import (
     aligned_strain,
@@ -171,7 +173,12 @@ def parts_of_cycles(
         return {}
     area = areas_of(specimens)
     break_in = settings.cycles.break_in_cycles
-    loops = close_loops(record.time, tension, strain, cycles, waveform=settings.cycles.waveform)
+    loops = close_loops(
+        record.time, tension, strain, cycles, waveform=settings.cycles.waveform,
+        control=settings.cycles.control,
+        driven=control_channel(located.position, tension, settings.cycles),
+    )  # fmt: skip
+    loops = without_backward_loops(loops)
     amplitude = summarise_amplitude(loops, area=area, break_in_cycles=break_in)
     loops.release_pages()
     if np.isnan(area).any():

@@ -58,12 +58,13 @@ from reduction.record.samples import (
 from reduction.record.settings import CycleSettings, ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.cycle_search import label_phases
+from reduction.stages.cycles.loop_sense import notes_of_loops
 from reduction.stages.holds.relaxation_and_creep import HoldResult, reduce_holds
 from reduction.stages.moduli.modulus_product import ModulusCurves
 from reduction.stages.moduli.slack_length import slack_crossings, slack_strain_at_unloading
 from reduction.stages.moduli.stepwise_test import greatest_step_strain, reduce_stepwise
 from reduction.stages.reduced_test import History, ReducedTest, TestDescription
-from reduction.stages.standstills import Standstills
+from reduction.stages.standstills import Standstills, median_step
 from reduction.stages.strain.impossible_strain import (
     note_on_strain_below_zero,
     refuse_impossible_strain,
@@ -125,7 +126,7 @@ def _plausibility_notes(
             notes += _shape(name, loops, index, half_strain, control)
         else:
             notes += _drift(name, loops, index, half_strain)
-        notes += _sign(name, loops.mean_tension[index], slopes) or slack(
+        notes += _sign(name, loops, index, slopes) or slack(
             name, loops.valley_tension[index], slack_tension
         )
     return (*notes, *_waveform(cycles, waveform))
@@ -171,11 +172,15 @@ def _drift(name: str, loops: Loops, index: int, half_strain: Floats) -> list[Not
     return [note("cycles-drift", name, n_far=n_far, n_cycles=n_cycles, limit=_MOST_DRIFT)]
 
 
-def _sign(name: str, mean_tension: Floats, slopes: Floats | None) -> list[Note]:
-    """Tension that falls with stretch; of one that is negative the log itself says which it is."""
-    level = _median(mean_tension)
+def _sign(name: str, loops: Loops, index: int, slopes: Floats | None) -> list[Note]:
+    """Tension that falls with stretch; of one that is negative the log itself says which it is.
+
+    Of loops that run backward, the loops say which channel is reversed.
+    """
+    level = _median(loops.mean_tension[index])
     slope = np.nan if slopes is None else _median(slopes)
-    if level < 0 or not slope <= 0:
+    is_backward = _median(loops.storage_over_time[index]) < 0
+    if level < 0 or not slope <= 0 or is_backward:
         return []
     return [note("sign-of-tension", name, slope=slope)]
 
@@ -868,6 +873,14 @@ def reduce_test(
         if cycles is None
         else lag_of_test(record, position, tension, cycles, stated=[one.lag for one in instruments])
     )
+    loop_notes = (
+        notes_of_loops(
+            cycle_parts["loops"], names=record.specimens, time_step=median_step(record.time),
+            lag=[one.lag for one in instruments] or [0.0] * len(specimens),
+        )
+        if "loops" in cycle_parts
+        else ()
+    )  # fmt: skip
     notes = _notes_of_test(
         located, strain, kind=description.kind, specimens=specimens, settings=settings, holds=holds,
         parts=cycle_parts, of_stages=(*first_rise_notes, *refused_pulls),
@@ -891,6 +904,7 @@ def reduce_test(
         holds=holds,
         pulls=of_pulls,
         channel_lag=lag,
+        loop_notes=loop_notes,
         slack_strain=slack_strain,
         rope_step=rope_step(
             located, strain, tension, kind=description.kind, specimens=specimens,

@@ -107,6 +107,8 @@ def parts_of_line(
     )
     # the amplitudes of a wave that is no sine are not those of its fundamental
     reading = "amplitude" if settings.waveform == "sinusoidal" else "fundamental"
+    if reading == "fundamental":  # a linear line has one complex stiffness at one frequency
+        loops = loops.over_time()
     given: dict[str, Any] = {
         "quasi_static_spring_constant": constant,
         "quasi_static_standard_uncertainty": spread,

@@ -374,6 +374,49 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "tension falls with stretch (median tangent modulus {slope:.4g} Pa); does the log count"
         " compression positive? Then set sign = -1 for this channel",
     ),
+    "loops-run-backward": (
+        "warning",
+        lambda slope, tension, strain, channel: (
+            f"tension falls with stretch ({slope:.4g} N per unit strain, at a mean of {tension:.4g}"
+            f" N and {100 * strain:.3g} %): "
+            + (
+                f"the {channel} channel runs backward; set sign = -1 for it in the layout"
+                if channel
+                else "one channel runs backward, or what is logged is the inertia of moving parts;"
+                " check sign and zero of both"
+            )
+            + ". Stiffness, loop energy and loss are not given"
+        ),
+    ),
+    "loops-give-work": (
+        "warning",
+        lambda energy, n_cycles, n_known, delay, stated, time_step, cause: (
+            f"{n_cycles} of {n_known} loops give out work ({energy:.4g} J/m on average): tension"
+            " rises with stretch, so no channel is reversed, and follows it by"
+            f" {1e3 * delay:.3g} ms or more, "
+            + {
+                "lag": f"within the stated lag of {1e3 * stated:.3g} ms (k=1): it was logged late,"
+                " and the loss is not known in sign",
+                "sampling": f"less than a sample of {1e3 * time_step:.3g} ms: the channels were"
+                " hardly read together; state a lag",
+                "driven": (
+                    f"more than twice the stated lag of {1e3 * stated:.3g} ms: the specimen is"
+                    " driven, or tension was logged later than stated"
+                    if stated
+                    else "and no lag is stated: tension was logged late by that, or the specimen is"
+                    " driven"
+                ),
+            }[cause]
+        ),
+    ),
+    "drift-in-energy": (
+        "warning",
+        lambda energy, closed: (
+            f"the loop area is {closed:.4g} J/m as logged, of which {closed - energy:+.3g} J/m"
+            f" ({(closed - energy) / abs(energy):+.1%} of what is given) is the drift of the"
+            f" cycles: the hysteresis energy of {energy:.4g} J/m is without it"
+        ),
+    ),
     "slack-in-cycles": (
         "warning",
         "slack within {n_slack} of {n_cycles} cycles (tension at or below {slack_tension:.4g} N):"

@@ -132,6 +132,7 @@ class ReducedTest:
     stress_at_strain_levels: tuple[float, ...] = ()
     slack_strain: SlackStrain | None = None
     stepwise: StepwiseResult | None = None
+    loop_notes: tuple[Note, ...] = ()
     line: LineParameters | None = None
     line_of_test: LineParameters | None = None
     quasi_static_standard_uncertainty: Floats | None = None
@@ -163,6 +164,7 @@ class ReducedTest:
 
     def _of_stages(self) -> Iterator[tuple[str, Sequence[Note], Sequence[str]]]:
         """Each stage by its name, with its notes and how its numbers were made."""
+        yield "loops", self.loop_notes, ()  # first: a channel that is reversed voids the others
         if self.record is not None:
             yield "ingest", self.record.notes, ()
         for specimen in self.specimens:

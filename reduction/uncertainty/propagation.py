@@ -807,6 +807,7 @@ def loop_contributions(
     hysteresis_energy: Floats,
     storage_spring_constant: Floats,
     loss_spring_constant: Floats,
+    closed_loop_energy: Floats,
     waveform: Literal["triangular", "sinusoidal", "other"],
     control: Literal["position", "load"] = "position",
     speed_ratio: Floats | float = 1.0,
@@ -836,7 +837,8 @@ def loop_contributions(
     ...     mean_tension=2e3 * one, tension_amplitude=1e3 * one, mean_strain=0.02 * one,
     ...     strain_amplitude=0.01 * one, apparent_spring_constant=1e5 * one,
     ...     hysteresis_energy=np.pi * 0.5 * one, storage_spring_constant=99875.0 * one,
-    ...     loss_spring_constant=5e3 * one, waveform="sinusoidal")
+    ...     loss_spring_constant=5e3 * one, closed_loop_energy=np.pi * 0.5 * one,
+    ...     waveform="sinusoidal")
     >>> print((found.values["loss_spring_constant"] / 5e3).round(3))
     [[-0.126]]
     """
@@ -868,6 +870,7 @@ def loop_contributions(
         "valley_tension": foot,
         "apparent_spring_constant": stiffer * apparent_spring_constant,
         "hysteresis_energy": wider * hysteresis_energy,
+        "closed_loop_energy": wider * closed_loop_energy,
         "storage_spring_constant": stiffer * storage_spring_constant,
         "loss_spring_constant": lossier * loss_spring_constant,
     }
@@ -882,6 +885,7 @@ def loop_contributions(
                 "mean_strain": -mean_strain,
                 "strain_amplitude": -strain_amplitude,
                 "hysteresis_energy": -hysteresis_energy,
+                "closed_loop_energy": -closed_loop_energy,
             }
             if control == "load"
             else {
@@ -890,6 +894,7 @@ def loop_contributions(
                 "peak_tension": mean_tension + tension_amplitude,
                 "valley_tension": mean_tension - tension_amplitude,
                 "hysteresis_energy": hysteresis_energy,
+                "closed_loop_energy": closed_loop_energy,
             }
         )
         component, values = _with(
@@ -917,9 +922,14 @@ def loop_contributions(
         late = 1 - field.strain_by_tension[2] * apparent_spring_constant
         of_lag = {
             "hysteresis_energy": -errors.lag * work * ramps * late,
+            "closed_loop_energy": -errors.lag * work * ramps * late,
             "storage_spring_constant": turn * loss_spring_constant * late,
             "loss_spring_constant": -turn * felt_storage * late,
         }
+        if waveform != "sinusoidal":  # the loss is that of the area
+            of_lag["loss_spring_constant"] = of_lag["hysteresis_energy"] / (
+                np.pi * strain_amplitude**2
+            )
         component, values = _with(
             component, values, Component("lag", errors.tension_instrument), of_lag
         )

@@ -170,8 +170,10 @@ Reading = Literal["amplitude", "fundamental"]
 _LOOP = (
     "frequency", "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude",
     "apparent_spring_constant", "hysteresis_energy", "storage_spring_constant",
-    "loss_spring_constant",
+    "loss_spring_constant", "closed_loop_energy",
 )  # fmt: skip
+
+_OF_FUNDAMENTAL = ("storage_spring_constant", "loss_spring_constant")
 
 _K_0 = "quasi_static_spring_constant"
 
@@ -241,12 +243,22 @@ def _of_loops(
     cycles: Cycles,
     settings: CycleSettings,
     train: LoadTrain,
+    *,
+    line: LineParameters | None = None,
 ) -> Contributions:
-    """Each cycle of a specimen, or the means of its test."""
+    """Each cycle of a specimen, or the means of its test; with E' and E'' of its line if given.
+
+    A line is found from the fundamental over time of a wave that is no sine, and a lag turns a
+    fundamental.
+    """
+    values = {name: np.asarray(getattr(loops, name)[index]) for name in _LOOP}
+    over_time = line is not None and line.reading == "fundamental"
+    if line is not None and over_time:
+        values |= {name: np.asarray(getattr(line, name)[index]) for name in _OF_FUNDAMENTAL}
     return loop_contributions(
         errors, model,
-        **{name: np.asarray(getattr(loops, name)[index]) for name in _LOOP},
-        waveform=settings.waveform,
+        **values,
+        waveform="sinusoidal" if over_time else settings.waveform,
         control=settings.control,
         speed_ratio=_speed_ratio(loops, index, model, cycles, settings),
         inertia=_inertia_of(train, loops, index, errors),
@@ -283,7 +295,7 @@ def _of_line(
         for item in fields(line)
         if isinstance(getattr(line, item.name), np.ndarray)
     } | {name: np.asarray(getattr(loops, name)[index]) for name in _LOOP if name not in
-         ("storage_spring_constant", "loss_spring_constant")}  # fmt: skip
+         ("storage_spring_constant", "loss_spring_constant", "closed_loop_energy")}  # fmt: skip
     # one K_0 a run: its error is that of every cycle
     rest = of_rest.values[_K_0]
     shape = (*rest.shape[:1], *np.shape(values[_K_0]))
@@ -1313,7 +1325,11 @@ def _of_specimen(
                 np.asarray(summary.mean_tension[index]), of_loop,
             )  # fmt: skip
             yield _named(rest, "test_")
-            yield _named(_of_line(test.line_of_test, summary, index, of_loop, rest), "test_")
+            line = test.line_of_test
+            of_both = _of_loops(
+                summary, index, errors, model, test.cycles, cycles, _train_of(test), line=line
+            )
+            yield _named(_of_line(line, summary, index, of_both, rest), "test_")
 
 
 def _contributions_to_cycles(
@@ -1341,7 +1357,10 @@ def _contributions_to_cycles(
                 test.amplitude, index, errors, model, test.cycles, cycles, _train_of(test)
             ),
         )  # fmt: skip
-        parts.append(_of_line(part.line, part.loops, index, of_loop, rest))
+        of_both = _of_loops(
+            part.loops, index, errors, model, part.cycles, cycles, _train_of(test), line=part.line
+        )
+        parts.append(_of_line(part.line, part.loops, index, of_both, rest))
     return merged(parts)
 
 

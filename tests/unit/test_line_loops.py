@@ -66,7 +66,7 @@ def test_a_line_comes_back_from_its_loops(reading):
 
 def test_triangular_cycles_need_the_fundamental_and_the_note_says_so():
     loops = loops_of(*series(6, waveform="triangular"), waveform="triangular")
-    by_fundamental = identify_run(loops, **K0, reading="fundamental")
+    by_fundamental = identify_run(loops.over_time(), **K0, reading="fundamental")
     assert by_fundamental.relaxation_time == pytest.approx([TIME], rel=2e-3)
     assert tuple(map(str, by_fundamental.notes)) == ()
     by_amplitude = identify_run(loops, **K0)

@@ -92,7 +92,10 @@ def test_a_step_of_two_levels_is_named():
 def test_a_first_cycle_that_begins_lower_is_named():
     load = cycles(12)
     load[:31] = np.concatenate([np.full(20, 60.0), np.linspace(60, 300, 11)])
-    (note,) = map(str, step_of(record(load), "bedding-in").notes)
+    # as the machine counts it; found by its turns it is cut where it passes the other valleys
+    assert tuple(map(str, step_of(record(load), "bedding-in").notes)) == ()
+    counter = np.clip((np.arange(load.size) - 20) // 20 + 1, 0, 12)
+    (note,) = map(str, step_of(record(load, counter=counter), "bedding-in").notes)
     assert note.startswith("line: the first cycle begins at 60")
 
 

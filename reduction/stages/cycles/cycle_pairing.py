@@ -266,6 +266,10 @@ def _is_cycling(ranges: Floats) -> bool:
 
 _SHORT = 0.05  # share of its neighbour by which one at an edge may end short of the level
 
+_FEWEST_ALIKE = 3  # half cycles beside one at an edge, by which it is judged
+
+_UNLIKE = 3.0  # ranges over which those are spread
+
 _PACE = 0.25  # share by which a half cycle at the end of a run may last longer or shorter
 
 _TURNS_BESIDE = 8  # turns of the run that an end is held against
@@ -402,7 +406,9 @@ def _fit_ends(
     ):
         at_edge = edge != "reversal"
         own, neighbour = ranges[end], ranges[-2 if end else 1]
-        ran_on = own > (1 + DIFFERENT) * neighbour
+        ran_on = own > (1 + DIFFERENT) * neighbour or (
+            own - neighbour > _beyond(ranges[::-1] if end else ranges, still)
+        )
         # a machine that begins or ends a sine at its mean moves half a range, then away
         is_fragment = ranges.size > 4 and neighbour < (1 - DIFFERENT) * ranges[beside]
         if is_fragment and (ran_on or at_edge):
@@ -429,6 +435,20 @@ def _fit_ends(
     return _FittedRun(nodes, tuple(cut), tuple(short), tuple(paced))
 
 
+def _beyond(ranges: Floats, still: float) -> float:
+    """How much more than its neighbour the first of a row may move, by what the next ones differ.
+
+    Examples
+    --------
+    >>> print(_beyond(np.array([2.4, 2.0, 2.01, 2.0, 2.0]), still=0.001))
+    0.1
+    """
+    if ranges.size <= _FEWEST_ALIKE:
+        return np.inf
+    beside = ranges[1 : 1 + _FEWEST_ALIKE]
+    return max(_SHORT * float(beside[0]), still, _UNLIKE * float(np.ptp(beside)))
+
+
 def _valleys(values: Floats, nodes: Indices) -> tuple[int, int]:
     """Place of the first valley of a run, and the place after its last."""
     if nodes.size < 2:
@@ -438,11 +458,14 @@ def _valleys(values: Floats, nodes: Indices) -> tuple[int, int]:
 
 
 def _passing(values: Floats, turn: int, end: int, level: float) -> int:
-    """Sample between a turn and a far end at which the signal passes a level."""
+    """Sample, between a turn and a far end, nearest to where the signal passes a level."""
     step = 1 if end > turn else -1
     way = values[turn : end + step if end + step >= 0 else None : step]
     beyond = way <= level if values[turn] > level else way >= level
-    return turn + step * int(np.argmax(beyond))
+    at = int(np.argmax(beyond))
+    if at and abs(way[at - 1] - level) < abs(way[at] - level):
+        at -= 1
+    return turn + step * at
 
 
 def _keeps_pace(
@@ -538,10 +561,11 @@ def find_half_cycles(
 
     *Ends.* A first or last half cycle with a range over 1.3 times its neighbour's is cut
     where it passes the neighbour's level, cf. the return to slack after the tenth peak
-    in [1]_.  One that begins or ends with the record or at a gap, or ends at a standstill,
-    short of the neighbour's level by more than 5 % of its range, the travel of a sample and
-    the tolerance of the standstill, is incomplete and left out; so is one that begins at a
-    standstill, or at an edge where the signal stands, with less than 0.7 times its range.
+    in [1]_.  So is one that moves 5 % more, and by three times what the three beside it differ
+    by: it holds the approach.  One that begins or ends with the record or at a gap, or ends at
+    a standstill, short of the neighbour's level by more than 5 % of its range, the travel of a
+    sample and the tolerance of the standstill, is incomplete and left out; so is one that begins
+    at a standstill, or at an edge where the signal stands, with less than 0.7 times its range.
     Between two reversals it is whole, but for one beside a move away: a sine that begins or
     ends at its mean has moved half a range there.
     In a sinusoidal test an end that ran on, or takes 25 % more or less time, is left out.

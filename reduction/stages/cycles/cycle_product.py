@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,7 +85,11 @@ class Loops:
 
     The fields are the contract's per-cycle variables.  ``uncertainty`` holds the
     standard uncertainty of each field that has one, by the field's name, same
-    shape and unit.
+    shape and unit.  ``storage_over_time`` and ``loss_over_time`` are those of the
+    fundamental over time, which a linear model of the material asks for; of a sine
+    they are the storage and loss spring constants.  ``tension_turn_missed`` and
+    ``strain_turn_missed`` are by how much half a range that turns between samples may
+    be too small or too large, together.
     """
 
     frequency: Floats
@@ -102,7 +106,22 @@ class Loops:
     loss_spring_constant: Floats
     loss_factor: Floats
     fundamental_energy_share: Floats
+    closed_loop_energy: Floats
+    storage_over_time: Floats
+    loss_over_time: Floats
+    tension_turn_missed: Floats
+    strain_turn_missed: Floats
     uncertainty: dict[str, Floats]
+
+    def over_time(self) -> Loops:
+        """Return the same with storage and loss of the fundamental over time."""
+        of = {"storage_spring_constant": "storage_over_time"}
+        of["loss_spring_constant"] = "loss_over_time"
+        own = {name: self.uncertainty[other] for name, other in of.items()}
+        return replace(
+            self, **{name: getattr(self, other) for name, other in of.items()},
+            uncertainty=self.uncertainty | own,
+        )  # fmt: skip
 
     def release_pages(self) -> None:
         """Take the tables of a long test, which lie on disk, off the memory of the process."""

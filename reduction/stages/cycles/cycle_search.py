@@ -638,7 +638,33 @@ _BRANCHES = np.array([BRANCH_VALUES[name] for name in BRANCH_NAMES], dtype=np.in
 
 
 def control_channel(position: Floats, tension: Floats, settings: CycleSettings) -> Floats:
-    """The channel that the machine controls: position, or the mean tension of the specimens."""
+    """Return the channel that the machine moves: position, or the mean tension of the specimens.
+
+    Parameters
+    ----------
+    position : ndarray, shape (n_samples,)
+        Of the crosshead. [m]
+    tension : ndarray, shape (n_specimens, n_samples)
+        [N]
+    settings : CycleSettings
+        Which of them.
+
+    Returns
+    -------
+    driven : ndarray, shape (n_samples,)
+        [m] or [N]
+
+    Raises
+    ------
+    ValueError
+        If tension is not a table.
+
+    Examples
+    --------
+    >>> settings = CycleSettings(control="load")
+    >>> print(control_channel(np.zeros(2), np.array([[1.0, 2.0], [3.0, 4.0]]), settings))
+    [2. 3.]
+    """
     if settings.control == "position":
         return position
     return mean_of_rows(tension)

@@ -41,6 +41,19 @@ A loop of loss angle :math:`\delta` has, by "the line drawn between the ends of 
 
 Closed loops: one row of dynamic quantities a cycle and specimen.
 
+Storage and loss of a wave that is no sine, at equal phase of the channel that the machine moves.
+With that channel as :math:`\cos\theta` of its half range,
+
+.. math::
+
+    E'' = \frac{1}{\pi \varepsilon_a} \oint T \, d\cos\theta
+        = \frac{H}{\pi \varepsilon_a^2}, \qquad
+    E' = \frac{1}{\pi \varepsilon_a} \oint T \, d\sin\theta
+
+([4]_), into which no time enters: the loss of an elastic curve is zero, however long its strokes
+last.  Of a sine they are those of the fundamental over time.  Of a triangle they are not: a linear
+material of constant loss angle has two thirds of its loss in a sine, since ramps make its area.
+
 References
 ----------
 .. [1] M. Abramowitz and I. A. Stegun, "Handbook of Mathematical Functions," NBS, 1964, eqs.
@@ -49,6 +62,8 @@ References
 .. [3] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.2 and A-3 (slope of the line between
    the ends of the loop; which ends is not said).
+.. [4] ISO 4664-1:2022, "Rubber, vulcanized or thermoplastic - Determination of dynamic properties -
+   Part 1: General guidance," ISO, Geneva (loss from the area of the loop).
 """
 
 from __future__ import annotations
@@ -65,6 +80,13 @@ from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 from reduction.record.samples import empty_like, release_pages, take_samples
 from reduction.stages.cycles.cycle_product import Cycles, Loops
+from reduction.stages.cycles.periods import (
+    own_periods,
+    spread_of_turns,
+    time_of_sample,
+    touching,
+)
+from reduction.stages.cycles.turns import level_of_turn, noise_in_extreme, turns_are_sharp
 
 _EIGHTH_ORDER = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
 
@@ -581,12 +603,72 @@ def _mean_drift(means: Floats, ends: Floats) -> Floats:
     return np.nan_to_num(found, nan=0.0)
 
 
+_LEAST_STEP = 1e-9  # of the half range
+
+
+def _at_equal_phase(
+    values: Floats, driven: Floats, time: Floats, branch_first: Integers, branch_last: Integers
+) -> tuple[Floats, Floats]:
+    r"""Integral of a series over the sine of the phase of another, and the mean of that sine.
+
+    .. math:: \oint y \, d\sin\theta, \qquad \overline{\sin\theta}, \qquad
+              \cos\theta = \frac{2 x - x_1 - x_2}{|x_2 - x_1|}
+
+    Notes
+    -----
+    Between samples of a branch the series is a straight line over the other, so that the turns,
+    near which the phase runs fast, cost nothing; where noise sends the other backward it is a
+    straight line over the sine.
+
+    Examples
+    --------
+    A straight line of slope 900 whose strokes last 60 and 5 samples, amplitude 0.2:
+
+    >>> strain = np.r_[np.linspace(-0.2, 0.2, 61), np.linspace(0.2, -0.2, 6)[1:]]
+    >>> work, _ = _at_equal_phase(900 * strain, strain, np.arange(66.0),
+    ...     np.array([[0, 60]]), np.array([[60, 65]]))
+    >>> print((work / (np.pi * 0.2)).round(6))
+    [900.]
+    """
+    n_cycles = branch_first.shape[0]
+    work, mean = np.zeros(n_cycles), np.zeros(n_cycles)
+    for column, way in ((0, -1.0), (1, 1.0)):
+        begin, end = branch_first[:, column], branch_last[:, column]
+        length = end - begin + 1
+        row = np.repeat(np.arange(n_cycles), length)
+        at = np.arange(row.size) + np.repeat(begin - np.cumsum(length) + length, length)
+        half, middle = (driven[end] - driven[begin]) / 2, (driven[end] + driven[begin]) / 2
+        with np.errstate(divide="ignore", invalid="ignore"):
+            level = (driven[at] - middle[row]) / np.abs(half)[row]
+        np.clip(level, -1, 1, out=level)
+        angle, sine = way * np.arccos(level), way * np.sqrt(1 - level**2)
+        step, rise = np.diff(level), np.diff(sine)
+        # what lies, in the integral of the level over the sine, above that of the first sample
+        over = (np.diff(angle) + np.diff(sine * level)) / 2 - level[:-1] * rise
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.where(-way * step > _LEAST_STEP, over / step, rise / 2)
+        load, seconds = values[at], time[at]
+        inside = row[1:] == row[:-1]
+        for total, part in (
+            (work, load[:-1] * rise + np.diff(load) * share),
+            (mean, (sine[1:] + sine[:-1]) / 2 * np.diff(seconds)),
+        ):
+            total += np.bincount(row[:-1][inside], part[inside], n_cycles)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return work, mean / (time[branch_last[:, 1]] - time[branch_first[:, 0]])
+
+
 Waveform = Literal["triangular", "sinusoidal", "other"]
+
+Control = Literal["position", "load"]
 
 MEASURED = (
     "peak", "valley", "high", "low", "energy", "strain_step_norm", "force_cosine", "force_sine",
     "force_mean", "strain_cosine", "strain_sine", "strain_mean", "force_end", "strain_end",
     "force_rise", "force_turn", "force_fall", "strain_rise", "strain_turn", "strain_fall",
+    "phase_work", "phase_sine",
+    "force_top", "force_begin", "force_end_turn", "force_missed",
+    "strain_top", "strain_begin", "strain_end_turn", "strain_missed",
 )  # fmt: skip
 
 """What is summed over the samples of a cycle, in this order."""
@@ -600,6 +682,9 @@ def _quantities_of_cycles(
     waveform: Waveform,
     noise: float,
     strain_noise: float,
+    rise_share: Floats | float = 0.5,
+    control: Control = "position",
+    is_sharp: bool = False,
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
     """Quantities of each cycle of one specimen, and their standard uncertainties.
 
@@ -612,7 +697,9 @@ def _quantities_of_cycles(
     --------
     Of a triangular cycle from 100 to 300 N and from 1 to 3 %, K_ap is 100 N over 1 %:
 
-    >>> known = {"peak": 300.0, "valley": 100.0, "high": 0.03, "low": 0.01, "strain_cosine": 0.01}
+    >>> known = {"peak": 300.0, "valley": 100.0, "high": 0.03, "low": 0.01,
+    ...     "force_missed": 0.0, "force_top": 300.0, "force_begin": 100.0, "force_end_turn": 100.0,
+    ...     "strain_top": 0.03, "strain_begin": 0.01, "strain_end_turn": 0.01}
     >>> measured = np.array([[known.get(name, 0.0)] for name in MEASURED])
     >>> one, pair = np.array([0]), np.array([[0, 50]])
     >>> cycles = Cycles(
@@ -644,10 +731,27 @@ def _quantities_of_cycles(
         amplitude = np.hypot(force_cos, force_sin)
         strain_amplitude = np.hypot(strain_cos, strain_sin)
     else:
-        mean, mean_strain = (peak + valley) / 2, (row["high"] + row["low"]) / 2
-        # between a turn and the next, half a period, a drift adds half of itself to the range
-        amplitude = (peak - valley - np.abs(force_drift) / 2) / 2
-        strain_amplitude = (row["high"] - row["low"] - np.abs(strain_drift) / 2) / 2
+        # the valleys on either side, at the time of the peak: a steady drift is not in the range
+        # and where no cycle comes before, the first valley is that of an approach or of a hold
+        begins, ends_in = (
+            {name: row[f"{name}_{turn}"] for name in ("force", "strain")}
+            for turn in ("begin", "end_turn")
+        )
+        follows = touching(cycles)
+        foot, strain_foot = (
+            ends_in[name]
+            - (1 - rise_share) * np.where(follows, ends_in[name] - begins[name], drift)
+            for name, drift in (("force", force_drift), ("strain", strain_drift))
+        )
+        top, strain_top = row["force_top"], row["strain_top"]
+        turns = [top, row["force_begin"], row["force_end_turn"]]
+        peak, valley = np.max(turns, axis=0), np.min(turns, axis=0)
+        mean, mean_strain = (top + foot) / 2, (strain_top + strain_foot) / 2
+        # of a channel of the wrong sign the top is the lower one
+        amplitude = np.abs(top - foot) / 2
+        strain_amplitude = np.abs(strain_top - strain_foot) / 2
+        amplitude = np.where(np.isnan(force_drift), np.nan, amplitude)
+        strain_amplitude = np.where(np.isnan(strain_drift), np.nan, strain_amplitude)
     energy = _without_drift(
         row["energy"],
         end_tension=row["force_end"],
@@ -660,25 +764,46 @@ def _quantities_of_cycles(
     with np.errstate(divide="ignore", invalid="ignore"):
         # a series a cos + b sin is the real part of (a - ib) exp(i omega t)
         square = strain_cos**2 + strain_sin**2
-        storage = (force_cos * strain_cos + force_sin * strain_sin) / square
-        loss = (force_cos * strain_sin - force_sin * strain_cos) / square
+        over_time = (force_cos * strain_cos + force_sin * strain_sin) / square
+        lost_over_time = (force_cos * strain_sin - force_sin * strain_cos) / square
         apparent = amplitude / strain_amplitude
-        share = np.pi * square * loss / energy
-        factor = loss / storage
+        share = np.pi * square * lost_over_time / energy
         both = np.hypot(noise, apparent * strain_noise)
-        u_part = np.sqrt(2 / n_samples) * both / np.sqrt(square)
+        u_over_time = np.sqrt(2 / n_samples) * both / np.sqrt(square)
         u_energy = row["strain_step_norm"] * both
-        u_extreme = np.hypot(noise, _missed_turn(amplitude, n_samples))
+        missed = 0.0 if is_sharp else _missed_turn(1.0, n_samples)
+        u_extreme = np.hypot(noise, missed * amplitude)
         if waveform == "sinusoidal":
             u_half, u_strain = np.sqrt(2 / n_samples) * noise, np.sqrt(2 / n_samples) * strain_noise
-            u_apparent = u_part
+            storage, loss = over_time, lost_over_time
+            u_storage = u_loss = u_apparent = u_over_time
         else:
             u_half = u_extreme / np.sqrt(2)
-            u_strain = np.hypot(strain_noise, _missed_turn(strain_amplitude, n_samples))
-            u_strain /= np.sqrt(2)
+            u_strain = np.hypot(strain_noise, missed * strain_amplitude) / np.sqrt(2)
+            if is_sharp:
+                u_half = np.hypot(u_half, row["force_missed"] / np.sqrt(12))
+                u_strain = np.hypot(u_strain, row["strain_missed"] / np.sqrt(12))
             # a missed turn takes the same share off both amplitudes; only noise is left
             u_apparent = apparent * np.hypot(noise / amplitude, strain_noise / strain_amplitude)
             u_apparent /= np.sqrt(2)
+            drift, own = (
+                (strain_drift, amplitude) if control == "load" else (force_drift, strain_amplitude)
+            )
+            # tips that lie between samples are in neither
+            logged = own - row["force_missed" if control == "load" else "strain_missed"] / 2
+            in_phase = (row["phase_work"] + drift * row["phase_sine"]) / (np.pi * logged)
+            quadrature = energy / (np.pi * own**2)
+            if control == "load":
+                # compliances, of which the modulus is the inverse
+                in_phase, quadrature = (
+                    one / (in_phase**2 + quadrature**2) for one in (in_phase, quadrature)
+                )
+            storage, loss = in_phase, quadrature
+            u_storage = np.sqrt(2 / n_samples) * both / strain_amplitude
+            u_loss = np.abs(loss) * np.hypot(
+                u_energy / energy, np.sqrt(2) * strain_noise / strain_amplitude
+            )
+        factor = loss / storage
         values = {
             "mean_tension": mean,
             "tension_amplitude": amplitude,
@@ -692,6 +817,11 @@ def _quantities_of_cycles(
             "loss_spring_constant": loss,
             "loss_factor": factor,
             "fundamental_energy_share": share,
+            "closed_loop_energy": row["energy"],
+            "storage_over_time": over_time,
+            "loss_over_time": lost_over_time,
+            "tension_turn_missed": row["force_missed"],
+            "strain_turn_missed": row["strain_missed"],
         }
         uncertainty = {
             "mean_tension": u_half,
@@ -701,17 +831,23 @@ def _quantities_of_cycles(
             "peak_tension": u_extreme,
             "valley_tension": u_extreme,
             "apparent_spring_constant": u_apparent,
-            "hysteresis_energy": u_energy,
-            "storage_spring_constant": u_part,
-            "loss_spring_constant": u_part,
-            "loss_factor": u_part / np.abs(storage) * np.sqrt(1 + factor**2),
+            "hysteresis_energy": np.hypot(u_energy, (row["energy"] - energy) / _PLACE_OF_DRIFT),
+            "storage_spring_constant": u_storage,
+            "loss_spring_constant": u_loss,
+            "loss_factor": np.abs(factor) * np.hypot(u_loss / loss, u_storage / storage),
             "fundamental_energy_share": np.abs(share)
-            * np.hypot(u_part / np.abs(loss), u_energy / np.abs(energy)),
+            * np.hypot(u_over_time / np.abs(lost_over_time), u_energy / np.abs(energy)),
+            "closed_loop_energy": u_energy,
+            "storage_over_time": u_over_time,
+            "loss_over_time": u_over_time,
         }
     return values, uncertainty
 
 
-def _missed_turn(amplitude: Floats, n_samples: Floats) -> Floats:
+_PLACE_OF_DRIFT = np.sqrt(6)  # half width of a triangular distribution over its deviation
+
+
+def _missed_turn(amplitude: Floats | float, n_samples: Floats) -> Floats:
     """How far the logged extreme may lie below the turn between two samples.
 
     A branch at constant rate rises by four amplitudes over N per sample; the turn lies
@@ -798,8 +934,11 @@ _FIELDS = (
     "frequency", "cycle_start_time", "mean_tension", "tension_amplitude", "mean_strain",
     "strain_amplitude", "peak_tension", "valley_tension", "apparent_spring_constant",
     "hysteresis_energy", "storage_spring_constant", "loss_spring_constant", "loss_factor",
-    "fundamental_energy_share",
+    "fundamental_energy_share", "closed_loop_energy", "storage_over_time", "loss_over_time",
+    "tension_turn_missed", "strain_turn_missed",
 )  # fmt: skip
+
+_WITHOUT_UNCERTAINTY = ("cycle_start_time", "tension_turn_missed", "strain_turn_missed")
 
 
 def _extremes(values: Floats, first: Integers, last: Integers) -> tuple[Floats, Floats]:
@@ -810,13 +949,111 @@ def _extremes(values: Floats, first: Integers, last: Integers) -> tuple[Floats, 
     return np.maximum(greatest, values[last]), np.minimum(least, values[last])
 
 
+def _readings_at_turns(
+    series: Floats,
+    branch_first: Integers,
+    branch_last: Integers,
+    *,
+    reach: int,
+    is_sharp: bool,
+    way: int,
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """Greatest reading near each peak, least ones near both valleys, and what they miss.
+
+    A turn between two samples lies above the readings, and below where the lines beside it cross,
+    since no machine turns at once: half way, and half the range is missed by as much again.  A
+    series of way -1 falls where the driven channel rises.
+    """
+    values = way * series
+    begin, peak, end = branch_first[:, 0], branch_last[:, 0], branch_last[:, 1]
+
+    def extreme(of: np.ufunc, low: Integers, high: Integers) -> Floats:
+        pairs = np.column_stack([np.maximum(low, begin), np.minimum(high, end)]).ravel()
+        stop = int(end[-1])
+        found = of.reduceat(values[:stop], np.minimum(pairs[:-1], stop - 1))[::2]
+        return np.asarray(of(found, values[np.minimum(high, end)]))
+
+    top = extreme(np.maximum, peak - reach, peak + reach)
+    first = extreme(np.minimum, begin, begin + reach)
+    last = extreme(np.minimum, end - reach, end)
+    missed = np.zeros(top.size)
+    if is_sharp:
+        above = level_of_turn(values, peak, top, sign=1) - top
+        below = last - level_of_turn(values, end, last, sign=-1)
+        top, last, missed = top + above / 2, last - below / 2, (above + below) / 2
+    return way * top, way * first, way * last, missed
+
+
+def _without_noise(
+    measured: Floats,
+    values: Floats,
+    cycles: Cycles,
+    *,
+    reach: int,
+    is_sharp: bool,
+    noise: float,
+    way: int,
+    chose_turns: bool,
+) -> None:
+    """Valleys of cycles that touch made one, and what noise adds to extremes taken off.
+
+    ``measured`` has the rows of top, first and last valley and is changed.
+    """
+    top, first, last = measured
+    touch = np.flatnonzero(touching(cycles))
+    both = last[touch - 1]
+    if is_sharp:
+        both = np.where(np.isfinite(both), both, first[touch])
+    else:  # a cycle that lacks readings has no valley, its neighbour has
+        both = way * np.fmin(way * first[touch], way * both)
+    first[touch] = both
+    last[touch - 1] = np.where(np.isfinite(last[touch - 1]), both, np.nan)
+    if is_sharp:
+        return
+    peak = cycles.branch_last[:, 0]
+    of_peak, of_valley = (
+        noise_in_extreme(values, turn, reach=reach, sign=sign, noise=noise, chose_turn=chose_turns)
+        for turn, sign in ((peak, way), (cycles.first[touch], -way))
+    )
+    top -= way * of_peak
+    first += way * of_valley
+    last += way * of_valley
+
+
 def _measure(
-    tension: Floats, strain: Floats, basis: _CycleBasis, middles: Integers, waveform: Waveform
+    time: Floats,
+    tension: Floats,
+    strain: Floats,
+    basis: _CycleBasis,
+    middles: Integers,
+    branches: tuple[Integers, Integers],
+    waveform: Waveform,
+    control: Control,
+    reach: int,
+    is_sharp: bool,
+    ways: tuple[int, int],
 ) -> Floats:
     """What only the samples tell, one row a quantity of `MEASURED`, one column a cycle."""
     first, last = basis.first, basis.last
     force, lost_force = _bridge_gaps(tension, first, last)
     stretch, lost_stretch = _bridge_gaps(strain, first, last)
+    moved, answer = (force, stretch) if control == "load" else (stretch, force)
+    at_phase = (
+        (np.zeros(first.size),) * 2
+        if waveform == "sinusoidal"
+        else _at_equal_phase(answer, moved, time, *branches)
+    )
+    at_turns = (
+        (np.zeros(first.size),) * 8
+        if waveform == "sinusoidal"
+        else tuple(
+            one
+            for series, way in zip((force, stretch), ways, strict=True)
+            for one in _readings_at_turns(
+                series, *branches, reach=reach, is_sharp=is_sharp, way=way
+            )
+        )
+    )
     measured = np.array(
         [
             *_extremes(force, first, last),
@@ -828,6 +1065,8 @@ def _measure(
             (stretch[first] + stretch[last]) / 2,
             *_part_means(force, basis, middles),
             *_part_means(stretch, basis, middles),
+            *at_phase,
+            *at_turns,
         ]
     )
     measured[:, lost_force | lost_stretch] = np.nan
@@ -841,6 +1080,8 @@ def close_loops(
     cycles: Cycles,
     *,
     waveform: Waveform = "triangular",
+    control: Control = "position",
+    driven: Floats | None = None,
 ) -> Loops:
     r"""Dynamic quantities of each cycle and specimen.
 
@@ -859,6 +1100,11 @@ def close_loops(
         From `reduction.stages.cycles.cycle_search`.
     waveform : {"triangular", "sinusoidal", "other"}
         How the control channel moves; see `reduction.stages.cycles.loops`. [-]
+    control : {"position", "load"}
+        What the machine moves. [-]
+    driven : ndarray, shape (n_samples,), optional
+        That channel; strain, or tension under load control, of the first specimen where it is left
+        out. [m] or [N]
 
     Returns
     -------
@@ -909,10 +1155,23 @@ def close_loops(
     begin, end = take_samples(time, first), take_samples(time, last)
     duration = end - begin
     period = _mean_period(begin, first, last, last_turn=end)
+    moved = (tension if control == "load" else strain)[0] if driven is None else driven
+    turn_spread: Floats | float | None = None
     if waveform == "sinusoidal" and np.all(period > 0):
-        period = _sine_period(time, tension, cycles, period)
+        period, turn_spread = _sine_period(time, moved, cycles, period)
         duration = period
+    elif waveform != "sinusoidal":
+        duration, turn_spread = own_periods(
+            time, moved, cycles, duration, noise=reading_noise(moved)
+        )
     measured = empty_like(tension, shape=(tension.shape[0], len(MEASURED), cycles.n_cycles))
+    noises = [(reading_noise(force), reading_noise(stretch)) for force, stretch in
+              zip(tension, strain, strict=True)]  # fmt: skip
+    branch = float(np.median(cycles.branch_last - cycles.branch_first, axis=0).min())
+    reach = max(int(_REACH_OF_TURN * branch), 1)
+    ways = [(_way(force, cycles), _way(stretch, cycles)) for force, stretch in
+            zip(tension, strain, strict=True)]  # fmt: skip
+    sharp = _sharp(tension, moved, cycles, waveform, noises, ways)
     # the middles of rise and fall, at least a sample apart and from either end
     middles = (cycles.branch_first + cycles.branch_last).T // 2
     middles[0] = np.clip(middles[0], cycles.first + 1, cycles.last - 2)
@@ -928,58 +1187,133 @@ def close_loops(
         )  # fmt: skip
         for index, (force, stretch) in enumerate(zip(tension, strain, strict=True)):
             measured[index, :, block] = _measure(
-                force[low:high], stretch[low:high], basis, middles[:, block] - low, waveform
-            )
+                time[low:high], force[low:high], stretch[low:high], basis, middles[:, block] - low,
+                (cycles.branch_first[block] - low, cycles.branch_last[block] - low),
+                waveform, control, reach, sharp[index], ways[index],
+            )  # fmt: skip
 
     samples = (time, tension, strain, measured)
     run_blocks(measure_block, cycles.blocks(_BLOCK), samples=samples, longest=cycles.longest)
     shape = (tension.shape[0], cycles.n_cycles)
     tables = {name: empty_like(tension, shape=shape) for name in _FIELDS}
     uncertainty = {
-        name: empty_like(tension, shape=shape) for name in _FIELDS if name != "cycle_start_time"
+        name: empty_like(tension, shape=shape)
+        for name in _FIELDS
+        if name not in _WITHOUT_UNCERTAINTY
     }
+    rise_share = _rise_share(time, cycles)
     for index, (force, stretch) in enumerate(zip(tension, strain, strict=True)):
+        noise, strain_noise = noises[index]
+        if waveform != "sinusoidal":
+            for series, of_series, way, rows, chose_turns in (
+                (force, noise, ways[index][0], _OF_TURNS, control == "load"),
+                (stretch, strain_noise, ways[index][1], _OF_TURNS + 4, control == "position"),
+            ):
+                _without_noise(
+                    measured[index, rows : rows + 3], series, cycles, reach=reach,
+                    is_sharp=sharp[index], noise=of_series, way=way,
+                    chose_turns=chose_turns,
+                )  # fmt: skip
         values, errors = _quantities_of_cycles(
-            measured[index],
-            cycles,
-            ends,
-            waveform=waveform,
-            noise=reading_noise(force),
-            strain_noise=reading_noise(stretch),
-        )
+            measured[index], cycles, ends, waveform=waveform, noise=noise,
+            strain_noise=strain_noise, rise_share=rise_share, control=control,
+            is_sharp=sharp[index],
+        )  # fmt: skip
         for name, column in values.items():
             tables[name][index] = column
-            uncertainty[name][index] = errors[name]
-            release_pages(tables[name], uncertainty[name])
+            release_pages(tables[name])
+            if name in errors:
+                uncertainty[name][index] = errors[name]
+                release_pages(uncertainty[name])
         release_pages(measured)
     tables["cycle_start_time"][:] = begin
     tables["frequency"][:] = 1 / duration
     # a turn is known to one sample at each end of the cycle, evenly spread
-    step = duration / (cycles.last - cycles.first)
-    uncertainty["frequency"][:] = step / duration**2 * np.sqrt(2 / 12)
+    if turn_spread is None:
+        turn_spread = time_of_sample(duration, cycles)
+    uncertainty["frequency"][:] = turn_spread / duration**2 * np.sqrt(2)
     release_pages(*tables.values(), *uncertainty.values())
     return Loops(**tables, uncertainty=uncertainty)
 
 
-def _sine_period(time: Floats, tension: Floats, cycles: Cycles, period: Floats) -> Floats:
-    """Period of the wave in each cycle, from the phase of the fundamental of its tension.
+_REACH_OF_TURN = 0.25  # of the shorter branch, in which its extremes are sought
+
+_OF_TURNS = MEASURED.index("force_top")
+
+
+def _sharp(
+    tension: Floats,
+    driven: Floats,
+    cycles: Cycles,
+    waveform: Waveform,
+    noises: list[tuple[float, float]],
+    ways: list[tuple[int, int]],
+) -> list[bool]:
+    """Of which specimens the lines beside a turn tell its level better than the readings."""
+    peak = cycles.branch_last[:, 0]
+    if waveform != "triangular" or not turns_are_sharp(driven, peak, noise=reading_noise(driven)):
+        return [False] * len(noises)
+    return [
+        turns_are_sharp(way * force, peak, noise=own)
+        for force, (own, _), (way, _) in zip(tension, noises, ways, strict=True)
+    ]
+
+
+def _way(values: Floats, cycles: Cycles) -> int:
+    """1 of a series that is greater at the peaks of the cycles than at their valleys, else -1."""
+    ends = (take_samples(values, one) for one in (cycles.branch_last[:, 0], cycles.first))
+    change = np.subtract(*ends)
+    known = change[np.isfinite(change)]
+    return -1 if known.size and np.median(known) < 0 else 1
+
+
+def _rise_share(time: Floats, cycles: Cycles) -> Floats:
+    """Share of the time of each cycle that its rise takes."""
+    begin, peak, end = (
+        take_samples(time, one)
+        for one in (cycles.branch_first[:, 0], cycles.branch_last[:, 0], cycles.branch_last[:, 1])
+    )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray((peak - begin) / (end - begin))
+
+
+_PASSES = 4  # each leaves a part in so many of the error as there are cycles
+
+
+def _sine_period(
+    time: Floats, driven: Floats, cycles: Cycles, period: Floats
+) -> tuple[Floats, Floats | float]:
+    """Period of the wave in each cycle, and the spread of one turn, by the driven channel's phase.
 
     Noise puts the turns of a log a sample early or late; the phase of a fundamental over a
-    hundred samples is known to a hundredth of one.
+    hundred samples is known to a hundredth of one.  The phase of the other channel moves with its
+    loss angle, which settles over a test.
     """
-    turns = np.empty(cycles.n_cycles)
+    phased = np.empty(cycles.n_cycles)
     blocks = cycles.blocks(_BLOCK)
 
     def find(block: slice) -> None:
         low, high = int(cycles.first[block.start]), int(cycles.last[block.stop - 1]) + 1
         first, last = cycles.first[block] - low, cycles.last[block] - low
         basis = _cycle_basis(time[low:high], first, last, period=period[block])
-        force, _ = _bridge_gaps(tension[0, low:high], first, last)
-        turns[block] = _phase_turns(*_fundamental(force, basis)[:2], basis, time[low:high])
+        level, _ = _bridge_gaps(driven[low:high], first, last)
+        phased[block] = _phase_turns(*_fundamental(level, basis)[:2], basis, time[low:high])
 
-    run_blocks(find, blocks, samples=(time, tension), longest=cycles.longest)
-    last_turn = np.append(turns[1:], np.nan)
-    # the last cycle of a run ends where it would go on
+    run_blocks(find, blocks, samples=(time, driven), longest=cycles.longest)
+    # a wrong period turns the phase about the middle of the cycle, which it leaves alone
+    middle = (take_samples(time, cycles.first) + take_samples(time, cycles.last)) / 2
+    # the last cycle of a run ends where it would go on, at the period of the others
     ends_run = np.append(cycles.last[:-1] != cycles.first[1:], True)
-    last_turn[ends_run] = (turns + period)[ends_run]
-    return _mean_period(turns, cycles.first, cycles.last, last_turn=last_turn)
+    found, turns = period, phased
+    for _ in range(_PASSES):
+        turns = middle - (middle - phased) * found / period
+        last_turn = np.append(turns[1:], np.nan)
+        last_turn[ends_run] = (turns + found)[ends_run]
+        found = _mean_period(turns, cycles.first, cycles.last, last_turn=last_turn)
+    # the phase of a fundamental is uncertain by the noise of all readings of its cycle
+    rise = take_samples(driven, cycles.branch_last[:, 0])
+    half = float(np.nanmedian(rise - take_samples(driven, cycles.branch_first[:, 0]))) / 2
+    readings = float(np.median(cycles.last - cycles.first))
+    of_noise = reading_noise(driven) * np.sqrt(2 / readings) / half / (2 * np.pi)
+    least = abs(of_noise) * float(np.median(found)) if half else 0.0
+    return found, max(least, spread_of_turns(turns, cycles.first, cycles.last, step=0.0))

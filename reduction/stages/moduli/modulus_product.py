@@ -158,6 +158,7 @@ class AmplitudeSummary:
     loss_spring_constant: Floats
     loss_factor: Floats
     slope_reading_spread: Floats
+    closed_loop_energy: Floats
     uncertainty: dict[str, Floats]
 
 

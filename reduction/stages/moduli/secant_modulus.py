@@ -220,8 +220,12 @@ def end_moduli(
 _QUANTITIES = (
     "frequency", "mean_strain", "strain_amplitude", "mean_tension", "tension_amplitude",
     "apparent_spring_constant", "hysteresis_energy", "storage_spring_constant",
-    "loss_spring_constant", "loss_factor",
+    "loss_spring_constant", "loss_factor", "closed_loop_energy",
 )  # fmt: skip
+
+_WITHIN_STEP = np.sqrt(12)  # width of an even distribution over its deviation
+
+_WITHIN_CYCLE = np.sqrt(6)  # half width of a triangular distribution over its deviation
 
 
 def _mean_over_cycles(values: Floats, uncertainty: Floats | None) -> tuple[Floats, Floats]:
@@ -235,6 +239,58 @@ def _mean_over_cycles(values: Floats, uncertainty: Floats | None) -> tuple[Float
         own = np.where(known, uncertainty, 0.0).sum(axis=-1)
         of_mean = np.where(n == 1, own, of_mean)
     return mean, of_mean
+
+
+def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]:
+    r"""Frequency over all cycles, and its standard uncertainty, shape (n_specimens,) each.
+
+    .. math:: f = n / \sum P, \qquad u^2(f) = \left(\frac{f^2 \sqrt 2 \, u(t)}{n}\right)^2
+              + \frac{1}{3} \left(\frac{\dot\delta}{2 \pi}\right)^2
+
+    Notes
+    -----
+    Cycles touch, so that the first turn and the last alone are uncertain, by what scatters between
+    the durations or, where it is more, by what each cycle carries.  While the loss angle changes by
+    its rate, the channel that follows has another frequency than the one that the machine drives;
+    between the two the frequency of a test is not defined, and what of the rate is beyond its own
+    uncertainty counts as limits.
+    """
+    frequency = loops.frequency[:, break_in_cycles:]
+    angle = np.arctan2(
+        loops.loss_over_time[:, break_in_cycles:], loops.storage_over_time[:, break_in_cycles:]
+    )
+    time = loops.cycle_start_time[:, break_in_cycles:]
+    n_specimens = frequency.shape[0]
+    mean, spread = np.full(n_specimens, np.nan), np.full(n_specimens, np.nan)
+    own = loops.uncertainty.get("frequency", np.zeros(loops.frequency.shape))[:, break_in_cycles:]
+    for row in range(n_specimens):
+        known = np.isfinite(frequency[row]) & (frequency[row] > 0)
+        n = int(known.sum())
+        if not n:
+            continue
+        period = 1 / frequency[row, known]
+        mean[row] = n / period.sum()
+        jitter = np.sqrt(np.mean(np.diff(period) ** 2) / 3) if n > 1 else 0.0
+        ends = float(np.hypot(*own[row, known][[0, -1]])) / np.sqrt(2)
+        of_turns = max(ends, mean[row] ** 2 * float(jitter)) / max(n - 1, 1)
+        rate, of_rate = _line_over(time[row, known], angle[row, known])
+        beyond = np.sqrt(max(rate**2 - of_rate**2, 0.0)) / (2 * np.pi)
+        spread[row] = np.hypot(of_turns, beyond / np.sqrt(3))
+    return mean, spread
+
+
+def _line_over(time: Floats, values: Floats) -> tuple[float, float]:
+    """Slope of a series over time and its standard uncertainty; zero where no line is known."""
+    known = np.isfinite(time) & np.isfinite(values)
+    if known.sum() < _FEWEST_OF_LINE or not np.ptp(time[known]) > 0:
+        return 0.0, 0.0
+    x, y = time[known] - time[known].mean(), values[known] - values[known].mean()
+    square = float((x**2).sum())
+    slope = float((x * y).sum()) / square
+    return slope, float(np.sqrt(((y - slope * x) ** 2).sum() / (x.size - 2) / square))
+
+
+_FEWEST_OF_LINE = 4
 
 
 def summarise_amplitude(
@@ -315,6 +371,28 @@ def summarise_amplitude(
             getattr(loops, name)[:, break_in_cycles:],
             None if own is None else own[:, break_in_cycles:],
         )
+    means["frequency"], uncertainty["frequency"] = _mean_frequency(loops, break_in_cycles)
+    # a wave that turns between samples does so in all cycles alike, or nearly
+    of_force, of_strain = (
+        np.nan_to_num(np.nanmean(np.where(np.isfinite(one), one, 0.0), axis=1))
+        for one in (
+            loops.tension_turn_missed[:, break_in_cycles:],
+            loops.strain_turn_missed[:, break_in_cycles:],
+        )
+    )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        apart = of_force / means["tension_amplitude"] - of_strain / means["strain_amplitude"]
+    for name, missed in (
+        ("tension_amplitude", of_force),
+        ("strain_amplitude", of_strain),
+        ("apparent_spring_constant", apart * means["apparent_spring_constant"]),
+    ):
+        uncertainty[name] = np.hypot(uncertainty[name], np.abs(missed) / _WITHIN_STEP)
+    # where in its cycle a drift takes place is not known, and is the same in all of them
+    drift = means["closed_loop_energy"] - means["hysteresis_energy"]
+    uncertainty["hysteresis_energy"] = np.hypot(
+        uncertainty["hysteresis_energy"], np.abs(drift) / _WITHIN_CYCLE
+    )
     # of a loss angle that noise turns negative there is no ellipse to read slopes from
     tangent = np.where(means["loss_factor"] >= 0, means["loss_factor"], np.nan)
     means["slope_reading_spread"] = slope_readings(
@@ -685,7 +763,7 @@ def fit_peak_trend(loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0) -
     Examples
     --------
     >>> peak = 700 - 20 * np.log10(np.arange(1.0, 11.0))[None]
-    >>> loops = Loops(*[peak] * 14, uncertainty={})
+    >>> loops = Loops(*[peak] * 19, uncertainty={})
     >>> trend = fit_peak_trend(loops, area=[5e-4])
     >>> print(trend.peak_tension_per_decade.round(3), trend.peak_tension_change.round(4))
     [-20.] [-0.0286]

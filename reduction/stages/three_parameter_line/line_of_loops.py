@@ -184,7 +184,7 @@ def _remarks(loops: Loops, line: LineParameters) -> tuple[Note, ...]:
     if line.reading == "amplitude" and known.any():
         own = np.broadcast_to(line.loss_spring_constant, known.shape)[known]
         # one line a run is held against the mean of its cycles
-        lost = loops.loss_spring_constant
+        lost = loops.loss_over_time
         lost = lost if lost.shape == known.shape else np.nanmean(lost, axis=1)
         ratio = float(np.nanmedian(own / lost[known]))
         if abs(ratio - 1) > _NOT_AN_ELLIPSE:

@@ -1,0 +1,179 @@
+r"""Loops that run the wrong way round, and what the drift of the cycles does to their energy.
+
+Of a passive specimen tension rises with stretch and leads it.  Where it falls with stretch one
+channel counts backward; where it rises and follows, tension was logged late, by
+
+.. math:: \ell \ge -\delta / (2 \pi f)
+
+with the angle :math:`\delta` of the loop, or something in the specimen does work.  No single
+frequency tells these two apart, but what is known of the lag of the channels may.
+
+References
+----------
+.. [1] J. D. Ferry, *Viscoelastic Properties of Polymers*, 3rd ed., Wiley, New York, 1980, ch. 1
+   (stress leads strain by the loss angle).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from reduction.record.measurement import Bools, Floats
+from reduction.record.notes import Note, note
+from reduction.stages.cycles.cycle_product import Loops
+
+_OF_A_SPECIMEN = (
+    "apparent_spring_constant", "hysteresis_energy", "storage_spring_constant",
+    "loss_spring_constant", "loss_factor", "fundamental_energy_share", "closed_loop_energy",
+)  # fmt: skip
+
+_WITHIN = 2.0  # standard uncertainties
+
+_BEYOND_SCATTER = 3.0
+
+_DRIFT_TOLD = 0.02  # of the energy
+
+
+def without_backward_loops(loops: Loops) -> Loops:
+    """Leave out what is no property of a specimen where tension falls with stretch.
+
+    Parameters
+    ----------
+    loops : Loops
+        From `reduction.stages.cycles.loops`. [SI]
+
+    Returns
+    -------
+    loops : Loops
+        With NaN for stiffness, energy and loss of such specimens; means, amplitudes, frequency and
+        the fundamental over time are what was logged, and stay.
+
+    Raises
+    ------
+    ValueError
+        If the arrays of the loops differ in shape.
+
+    Examples
+    --------
+    >>> one = {name: np.ones((1, 2)) for name in Loops.__dataclass_fields__}
+    >>> loops = Loops(**one | {"storage_over_time": np.full((1, 2), -8.0), "uncertainty": {}})
+    >>> print(without_backward_loops(loops).apparent_spring_constant)
+    [[nan nan]]
+    """
+    backward = _runs_backward(loops)
+    if not backward.any():
+        return loops
+    kept = ~backward[:, None]
+    return replace(
+        loops,
+        **{name: np.where(kept, getattr(loops, name), np.nan) for name in _OF_A_SPECIMEN},
+        uncertainty=loops.uncertainty
+        | {
+            name: np.where(kept, loops.uncertainty[name], np.nan)
+            for name in _OF_A_SPECIMEN
+            if name in loops.uncertainty
+        },
+    )
+
+
+def notes_of_loops(
+    loops: Loops, *, names: Sequence[str], lag: Sequence[float], time_step: float
+) -> tuple[Note, ...]:
+    """What loops say of channels and specimens: which one runs backward, is late, or gives work.
+
+    Parameters
+    ----------
+    loops : Loops
+        From `reduction.stages.cycles.loops`. [SI]
+    names : sequence of str, length n_specimens
+        Of the specimens.
+    lag : sequence of float, length n_specimens
+        Standard uncertainty of the lag of tension, 0 where none is stated. [s]
+    time_step : float
+        Between two samples. [s]
+
+    Returns
+    -------
+    notes : tuple of Note
+
+    Raises
+    ------
+    ValueError
+        If the sequences differ in length.
+
+    Notes
+    -----
+    Source of the sense: [1]_.  Loops give out work where the mean of their energy is below zero by
+    more than three times what it scatters by.
+
+    Examples
+    --------
+    Tension that follows strain by 0.1 rad at 2 Hz, 8 ms, which are half a sample:
+
+    >>> one = {name: np.ones((1, 9)) for name in Loops.__dataclass_fields__}
+    >>> found, = notes_of_loops(
+    ...     Loops(**one | {"frequency": np.full((1, 9), 2.0), "uncertainty": {},
+    ...         "hysteresis_energy": np.full((1, 9), -1.0), "closed_loop_energy":
+    ...         np.full((1, 9), -1.0), "loss_over_time": np.full((1, 9), -0.1)}),
+    ...     names=["rope"], lag=[0.0], time_step=0.016)
+    >>> print(found.code, round(found.numbers["delay"], 4), found.numbers["cause"])
+    loops-give-work 0.0079 sampling
+    """
+    backward = _runs_backward(loops)
+    told: list[Note] = []
+    for row, (name, stated) in enumerate(zip(names, lag, strict=True)):
+        tension, strain, storage = (
+            _median(getattr(loops, one)[row])
+            for one in ("mean_tension", "mean_strain", "storage_over_time")
+        )
+        if backward[row]:
+            channel = _channel_that_runs_backward(tension, strain)
+            told.append(
+                note("loops-run-backward", name, slope=storage, tension=tension, strain=strain,
+                     channel=channel)
+            )  # fmt: skip
+            continue
+        energy = loops.hysteresis_energy[row]
+        known = energy[np.isfinite(energy)]
+        if not known.size:
+            continue
+        mean, scatter = float(known.mean()), float(known.std()) / np.sqrt(max(known.size - 1, 1))
+        if mean < -_BEYOND_SCATTER * scatter:
+            angle = np.arctan2(_median(loops.loss_over_time[row]), storage)
+            delay = max(-angle, 0.0) / (2 * np.pi * _median(loops.frequency[row]))
+            cause = (
+                "lag" if delay <= _WITHIN * stated
+                else "sampling" if not stated and delay <= time_step
+                else "driven"
+            )  # fmt: skip
+            told.append(
+                note("loops-give-work", name, energy=mean, n_cycles=int((known < 0).sum()),
+                     n_known=known.size, delay=delay, stated=stated, time_step=time_step,
+                     cause=cause)
+            )  # fmt: skip
+        closed = float(np.nanmean(loops.closed_loop_energy[row]))
+        if abs(closed - mean) > max(_DRIFT_TOLD * abs(mean), _BEYOND_SCATTER * scatter):
+            told.append(note("drift-in-energy", name, energy=mean, closed=closed))
+    return tuple(told)
+
+
+def _runs_backward(loops: Loops) -> Bools:
+    """Specimens whose tension falls with stretch in most cycles."""
+    return np.array([_median(row) < 0 for row in loops.storage_over_time], dtype=bool)
+
+
+def _channel_that_runs_backward(tension: float, strain: float) -> str:
+    """Which channel the means blame: a specimen pulls, and at a length above its own."""
+    if tension > 0 > strain:
+        return "crosshead_position"
+    if strain > 0 > tension:
+        return "tension"
+    return ""
+
+
+def _median(values: Floats) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if known.size else float("nan")
