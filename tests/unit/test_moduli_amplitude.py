@@ -12,6 +12,7 @@ AREA = np.array([5e-4, 4e-4])
 
 def loops_of(values, uncertainty=None):
     fields = {name: values.copy() for name in Loops.__dataclass_fields__ if name != "uncertainty"}
+    fields |= {name: 0 * values for name in ("tension_turn_missed", "strain_turn_missed")}
     return Loops(**fields, uncertainty=uncertainty or {})
 
 

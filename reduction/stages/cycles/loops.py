@@ -86,7 +86,7 @@ from reduction.stages.cycles.periods import (
     time_of_sample,
     touching,
 )
-from reduction.stages.cycles.turns import level_of_turn, noise_in_extreme, turns_are_sharp
+from reduction.stages.cycles.turns import Turn, kind_of_turns, level_of_turn, noise_in_extreme
 
 _EIGHTH_ORDER = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
 
@@ -684,7 +684,7 @@ def _quantities_of_cycles(
     strain_noise: float,
     rise_share: Floats | float = 0.5,
     control: Control = "position",
-    is_sharp: bool = False,
+    turn: Turn = "rounded",
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
     """Quantities of each cycle of one specimen, and their standard uncertainties.
 
@@ -771,7 +771,7 @@ def _quantities_of_cycles(
         both = np.hypot(noise, apparent * strain_noise)
         u_over_time = np.sqrt(2 / n_samples) * both / np.sqrt(square)
         u_energy = row["strain_step_norm"] * both
-        missed = 0.0 if is_sharp else _missed_turn(1.0, n_samples)
+        missed = 0.0 if turn != "rounded" else _missed_turn(1.0, n_samples)
         u_extreme = np.hypot(noise, missed * amplitude)
         if waveform == "sinusoidal":
             u_half, u_strain = np.sqrt(2 / n_samples) * noise, np.sqrt(2 / n_samples) * strain_noise
@@ -780,7 +780,7 @@ def _quantities_of_cycles(
         else:
             u_half = u_extreme / np.sqrt(2)
             u_strain = np.hypot(strain_noise, missed * strain_amplitude) / np.sqrt(2)
-            if is_sharp:
+            if turn != "rounded":
                 u_half = np.hypot(u_half, row["force_missed"] / np.sqrt(12))
                 u_strain = np.hypot(u_strain, row["strain_missed"] / np.sqrt(12))
             # a missed turn takes the same share off both amplitudes; only noise is left
@@ -955,7 +955,7 @@ def _readings_at_turns(
     branch_last: Integers,
     *,
     reach: int,
-    is_sharp: bool,
+    turn: Turn,
     way: int,
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """Greatest reading near each peak, least ones near both valleys, and what they miss.
@@ -977,10 +977,12 @@ def _readings_at_turns(
     first = extreme(np.minimum, begin, begin + reach)
     last = extreme(np.minimum, end - reach, end)
     missed = np.zeros(top.size)
-    if is_sharp:
+    if turn == "sharp":
         above = level_of_turn(values, peak, top, sign=1) - top
         below = last - level_of_turn(values, end, last, sign=-1)
         top, last, missed = top + above / 2, last - below / 2, (above + below) / 2
+    elif turn == "hidden":  # at most what lines of these ramps add where they cross half way
+        missed = (top - (first + last) / 2) / (end - begin)
     return way * top, way * first, way * last, missed
 
 
@@ -990,7 +992,7 @@ def _without_noise(
     cycles: Cycles,
     *,
     reach: int,
-    is_sharp: bool,
+    turn: Turn,
     noise: float,
     way: int,
     chose_turns: bool,
@@ -1002,13 +1004,13 @@ def _without_noise(
     top, first, last = measured
     touch = np.flatnonzero(touching(cycles))
     both = last[touch - 1]
-    if is_sharp:
+    if turn == "sharp":
         both = np.where(np.isfinite(both), both, first[touch])
     else:  # a cycle that lacks readings has no valley, its neighbour has
         both = way * np.fmin(way * first[touch], way * both)
     first[touch] = both
     last[touch - 1] = np.where(np.isfinite(last[touch - 1]), both, np.nan)
-    if is_sharp:
+    if turn == "sharp":
         return
     peak = cycles.branch_last[:, 0]
     of_peak, of_valley = (
@@ -1030,7 +1032,7 @@ def _measure(
     waveform: Waveform,
     control: Control,
     reach: int,
-    is_sharp: bool,
+    turn: Turn,
     ways: tuple[int, int],
 ) -> Floats:
     """What only the samples tell, one row a quantity of `MEASURED`, one column a cycle."""
@@ -1049,9 +1051,7 @@ def _measure(
         else tuple(
             one
             for series, way in zip((force, stretch), ways, strict=True)
-            for one in _readings_at_turns(
-                series, *branches, reach=reach, is_sharp=is_sharp, way=way
-            )
+            for one in _readings_at_turns(series, *branches, reach=reach, turn=turn, way=way)
         )
     )
     measured = np.array(
@@ -1171,7 +1171,7 @@ def close_loops(
     reach = max(int(_REACH_OF_TURN * branch), 1)
     ways = [(_way(force, cycles), _way(stretch, cycles)) for force, stretch in
             zip(tension, strain, strict=True)]  # fmt: skip
-    sharp = _sharp(tension, moved, cycles, waveform, noises, ways)
+    turns = _turns(tension, moved, cycles, waveform, noises, ways)
     # the middles of rise and fall, at least a sample apart and from either end
     middles = (cycles.branch_first + cycles.branch_last).T // 2
     middles[0] = np.clip(middles[0], cycles.first + 1, cycles.last - 2)
@@ -1189,7 +1189,7 @@ def close_loops(
             measured[index, :, block] = _measure(
                 time[low:high], force[low:high], stretch[low:high], basis, middles[:, block] - low,
                 (cycles.branch_first[block] - low, cycles.branch_last[block] - low),
-                waveform, control, reach, sharp[index], ways[index],
+                waveform, control, reach, turns[index], ways[index],
             )  # fmt: skip
 
     samples = (time, tension, strain, measured)
@@ -1211,13 +1211,13 @@ def close_loops(
             ):
                 _without_noise(
                     measured[index, rows : rows + 3], series, cycles, reach=reach,
-                    is_sharp=sharp[index], noise=of_series, way=way,
+                    turn=turns[index], noise=of_series, way=way,
                     chose_turns=chose_turns,
                 )  # fmt: skip
         values, errors = _quantities_of_cycles(
             measured[index], cycles, ends, waveform=waveform, noise=noise,
             strain_noise=strain_noise, rise_share=rise_share, control=control,
-            is_sharp=sharp[index],
+            turn=turns[index],
         )  # fmt: skip
         for name, column in values.items():
             tables[name][index] = column
@@ -1241,20 +1241,23 @@ _REACH_OF_TURN = 0.25  # of the shorter branch, in which its extremes are sought
 _OF_TURNS = MEASURED.index("force_top")
 
 
-def _sharp(
+def _turns(
     tension: Floats,
     driven: Floats,
     cycles: Cycles,
     waveform: Waveform,
     noises: list[tuple[float, float]],
     ways: list[tuple[int, int]],
-) -> list[bool]:
-    """Of which specimens the lines beside a turn tell its level better than the readings."""
+) -> list[Turn]:
+    """How the wave of each specimen turns; a wave that is said to have no corner rounds them."""
     peak = cycles.branch_last[:, 0]
-    if waveform != "triangular" or not turns_are_sharp(driven, peak, noise=reading_noise(driven)):
-        return [False] * len(noises)
+    if waveform != "triangular":
+        return ["rounded"] * len(noises)
+    kind = kind_of_turns(driven, peak, noise=reading_noise(driven))
+    if kind != "sharp":
+        return [kind] * len(noises)
     return [
-        turns_are_sharp(way * force, peak, noise=own)
+        "sharp" if kind_of_turns(way * force, peak, noise=own) == "sharp" else "hidden"
         for force, (own, _), (way, _) in zip(tension, noises, ways, strict=True)
     ]
 

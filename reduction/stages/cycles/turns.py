@@ -19,6 +19,8 @@ References
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import log_ndtr
@@ -161,8 +163,11 @@ def noise_in_extreme(
     return noise * excess_of_greatest((shape.max() - shape) / noise)
 
 
-def turns_are_sharp(driven: Floats, peak: Integers, *, noise: float) -> bool:
-    """Whether a wave turns from sample to sample, and so clearly that its lines cross.
+Turn = Literal["sharp", "hidden", "rounded"]
+
+
+def kind_of_turns(driven: Floats, peak: Integers, *, noise: float) -> Turn:
+    """Whether a wave turns from sample to sample, rounds its turns, or hides them in noise.
 
     Parameters
     ----------
@@ -175,8 +180,8 @@ def turns_are_sharp(driven: Floats, peak: Integers, *, noise: float) -> bool:
 
     Returns
     -------
-    are_sharp : bool
-        False where the readings show a rounded turn, or noise hides it. [-]
+    kind : {"sharp", "hidden", "rounded"}
+        Hidden where the steps beside the turn are within three times the noise. [-]
 
     Raises
     ------
@@ -188,18 +193,22 @@ def turns_are_sharp(driven: Floats, peak: Integers, *, noise: float) -> bool:
     >>> place = np.arange(200)
     >>> peaks = np.arange(20, 190, 20)
     >>> triangle, sine = -np.abs((place + 10.3) % 20 - 10), np.cos(np.pi * place / 10)
-    >>> print(turns_are_sharp(triangle, peaks, noise=0), turns_are_sharp(sine, peaks, noise=0))
-    True False
+    >>> print(kind_of_turns(triangle, peaks, noise=0), kind_of_turns(sine, peaks, noise=0))
+    sharp rounded
+    >>> print(kind_of_turns(triangle, peaks, noise=0.5))
+    hidden
     """
     inside = peak[(peak >= _BESIDE) & (peak < driven.size - _BESIDE)]
     if inside.size == 0:
-        return False
+        return "rounded"
     some = inside[np.linspace(0, inside.size - 1, min(inside.size, _MOST_TURNS)).astype(int)]
     level = take_samples(driven, some[:, None] + np.arange(-2, 3))
     rise, fall = level[:, 1] - level[:, 0], level[:, 3] - level[:, 4]
     step = np.median(np.minimum(rise, fall))
     rounded = np.median(np.minimum(level[:, 1] + rise, level[:, 3] + fall) - level[:, 2])
-    return bool(step > _CLEAR * noise and rounded < _ROUNDED * step)
+    if not step > _CLEAR * noise:
+        return "hidden"
+    return "sharp" if rounded < _ROUNDED * step else "rounded"
 
 
 def level_of_turn(values: Floats, turn: Integers, extreme: Floats, *, sign: int) -> Floats:

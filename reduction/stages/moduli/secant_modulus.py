@@ -341,8 +341,10 @@ def summarise_amplitude(
     >>> one = np.ones((1, 2))
     >>> loops = Loops(
     ...     **{name: one for name in Loops.__dataclass_fields__ if name not in (
-    ...         "apparent_spring_constant", "uncertainty")},
+    ...         "apparent_spring_constant", "tension_turn_missed", "strain_turn_missed",
+    ...         "uncertainty")},
     ...     apparent_spring_constant=np.array([[100.0, 110.0]]), uncertainty={},
+    ...     tension_turn_missed=0 * one, strain_turn_missed=0 * one,
     ... )
     >>> summary = summarise_amplitude(loops, area=[1e-4])
     >>> print(summary.dynamic_modulus, summary.uncertainty["dynamic_modulus"])
@@ -381,11 +383,15 @@ def summarise_amplitude(
         )
     )
     with np.errstate(divide="ignore", invalid="ignore"):
-        apart = of_force / means["tension_amplitude"] - of_strain / means["strain_amplitude"]
+        # tension may turn at another place between its samples than strain
+        apart = np.hypot(
+            of_force / means["tension_amplitude"], of_strain / means["strain_amplitude"]
+        )
     for name, missed in (
         ("tension_amplitude", of_force),
         ("strain_amplitude", of_strain),
         ("apparent_spring_constant", apart * means["apparent_spring_constant"]),
+        ("storage_spring_constant", apart * means["storage_spring_constant"]),
     ):
         uncertainty[name] = np.hypot(uncertainty[name], np.abs(missed) / _WITHIN_STEP)
     # where in its cycle a drift takes place is not known, and is the same in all of them
