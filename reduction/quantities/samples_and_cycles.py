@@ -630,6 +630,9 @@ OF_RECORD: tuple[Quantity, ...] = (
             BOUND,
             tables=("cycles",),
         ),
+        measured(
+            "foot_strain", "1", "strain at the turn that the cycle begins with", tables=("cycles",)
+        ),
         measured("loss_factor", "1", "loss over storage spring constant", tables=("cycles",)),
         measured(
             "fundamental_energy_share",

@@ -54,7 +54,8 @@ def test_what_is_stated_of_the_load_train_is_taken_off_with_its_uncertainty(law,
         if "attached_mass" in truth.errors:
             drawn += truth.errors["attached_mass"]["drawn"] * of_mass
             least = truth.errors["attached_mass"]["stated_standard"] * of_mass
-            assert least < spread < 1.2 * least + 0.01 * constant
+            # beside it the gain of the cell and, by lag and noise of the loop, a little more
+            assert least < spread < 1.25 * least + 0.01 * constant
         if "machine_compliance" in truth.errors:
             drawn += (
                 truth.errors["machine_compliance"]["drawn"]
@@ -73,6 +74,11 @@ def test_what_is_not_stated_is_told_with_the_size_that_matters(law, tmp_path):
     length = truth.constants["reference_length_m"]
     for archive in archives.values():
         spread = one(archive, f"{K_AP}_standard_uncertainty")
+        if np.isnan(spread):
+            # inertia turned the loop over: no stiffness is given, and the first warning says why
+            told = list(zip(archive["note"], archive["note_severity"], strict=True))
+            assert any("inertia" in text and rank == "warning" for text, rank in told)
+            continue
         # as found: what is left of a tension that inertia cancels has a phase of its own
         frequency = one(archive, "test_frequency")
         mass = spread / (2 * np.pi * frequency) ** 2 / length

@@ -152,6 +152,7 @@ def of_loop(errors, model, exact, waveform="sinusoidal"):
         errors, model, frequency=np.array(FREQUENCY), waveform=waveform,
         storage_spring_constant=np.sqrt(exact["apparent_spring_constant"] ** 2 - loss**2),
         loss_spring_constant=np.array(loss),
+        closed_loop_energy=np.array(exact["hysteresis_energy"]),
         **{
             name: np.array(exact[name])
             for name in (
@@ -277,6 +278,7 @@ def test_a_warmer_specimen_moves_what_the_machine_does_not_set(control):
         InstrumentErrors("new", stiffness=share, test="T"), MODELS["gauge-length"],
         frequency=np.array(FREQUENCY), waveform="sinusoidal", control=control,
         storage_spring_constant=np.array(exact["apparent_spring_constant"]),
+        closed_loop_energy=np.array(exact["hysteresis_energy"]),
         **{
             name: np.array(exact[name])
             for name in exact if name not in ("peak_tension", "valley_tension")

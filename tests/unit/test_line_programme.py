@@ -23,7 +23,7 @@ class TestBeddingIn:
     def test_permanent_strain_is_at_equal_tension(self):
         # the foot moves by 3 %, of which 50 N over 5,000 N is a valley that was not reached
         loops = loops_with(
-            (1, 3), mean_strain=[0.10, 0.12, 0.13], strain_amplitude=0.02,
+            (1, 3), foot_strain=[0.08, 0.10, 0.11],
             valley_tension=[100.0, 100.0, 150.0],
             apparent_spring_constant=[3000.0, 4500.0, 5000.0],
         )  # fmt: skip
@@ -37,8 +37,8 @@ class TestBeddingIn:
     def test_uncertainties_add_up(self):
         loops = loops_with((2, 5), u=0.001, apparent_spring_constant=2.0)
         bedding = summarise_bedding_in(loops, rated_break_strength=np.nan)
-        # two feet, each of mean and amplitude, and two valleys over 2 N
-        expected = 0.001 * np.sqrt(2 * 2 + 2 / 4)
+        # two feet, and two valleys over 2 N
+        expected = 0.001 * np.sqrt(2 + 2 / 4)
         assert bedding.permanent_strain_standard_uncertainty == pytest.approx([expected] * 2)
         assert np.isnan(bedding.first_stiffness_over_strength).all()
 

@@ -730,7 +730,9 @@ def _quantities_of_cycles(
         mean, mean_strain = row["force_mean"], row["strain_mean"]
         amplitude = np.hypot(force_cos, force_sin)
         strain_amplitude = np.hypot(strain_cos, strain_sin)
+        begin = mean_strain - strain_amplitude
     else:
+        begin = row["strain_begin"]
         # the valleys on either side, at the time of the peak: a steady drift is not in the range
         # and where no cycle comes before, the first valley is that of an approach or of a hold
         begins, ends_in = (
@@ -822,6 +824,7 @@ def _quantities_of_cycles(
             "loss_over_time": lost_over_time,
             "tension_turn_missed": row["force_missed"],
             "strain_turn_missed": row["strain_missed"],
+            "foot_strain": begin,
         }
         uncertainty = {
             "mean_tension": u_half,
@@ -840,6 +843,7 @@ def _quantities_of_cycles(
             "closed_loop_energy": u_energy,
             "storage_over_time": u_over_time,
             "loss_over_time": u_over_time,
+            "foot_strain": np.sqrt(2) * u_strain,
         }
     return values, uncertainty
 
@@ -935,7 +939,7 @@ _FIELDS = (
     "strain_amplitude", "peak_tension", "valley_tension", "apparent_spring_constant",
     "hysteresis_energy", "storage_spring_constant", "loss_spring_constant", "loss_factor",
     "fundamental_energy_share", "closed_loop_energy", "storage_over_time", "loss_over_time",
-    "tension_turn_missed", "strain_turn_missed",
+    "tension_turn_missed", "strain_turn_missed", "foot_strain",
 )  # fmt: skip
 
 _WITHOUT_UNCERTAINTY = ("cycle_start_time", "tension_turn_missed", "strain_turn_missed")

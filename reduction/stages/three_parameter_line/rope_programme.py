@@ -154,7 +154,7 @@ def summarise_bedding_in(loops: Loops, *, rated_break_strength: ArrayLike) -> Be
     Examples
     --------
     >>> one = {name: np.full((1, 2), 100.0) for name in Loops.__dataclass_fields__}
-    >>> one |= dict(mean_strain=np.array([[0.10, 0.13]]), strain_amplitude=np.full((1, 2), 0.02),
+    >>> one |= dict(foot_strain=np.array([[0.08, 0.11]]),
     ...     apparent_spring_constant=np.array([[800.0, 1000.0]]), uncertainty=one.copy())
     >>> bedding = summarise_bedding_in(Loops(**one), rated_break_strength=500.0)
     >>> print(bedding.permanent_strain.round(3), bedding.stiffening)
@@ -166,8 +166,8 @@ def summarise_bedding_in(loops: Loops, *, rated_break_strength: ArrayLike) -> Be
     strength = one_a_specimen(rated_break_strength, n_specimens)
     secant = loops.apparent_spring_constant[:, [0, -1]]
     u_secant = loops.uncertainty["apparent_spring_constant"][:, [0, -1]]
-    foot = (loops.mean_strain - loops.strain_amplitude)[:, [0, -1]]
-    u_foot = np.hypot(loops.uncertainty["mean_strain"], loops.uncertainty["strain_amplitude"])
+    foot = loops.foot_strain[:, [0, -1]]
+    u_foot = loops.uncertainty["foot_strain"]
     valley = loops.valley_tension[:, [0, -1]]
     u_valley = loops.uncertainty["valley_tension"][:, [0, -1]]
     variance = (u_foot[:, [0, -1]] ** 2 + (u_valley / secant[:, 1:]) ** 2).sum(axis=1)
