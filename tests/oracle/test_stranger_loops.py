@@ -1,0 +1,82 @@
+"""Loops of laws that the package does not have, end to end, against their truth."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from commandruns import reduction
+from strangers import make
+
+JUDGED = ("frequency", "loss_factor", "apparent_spring_constant", "hysteresis_energy")
+LAWS = ("settling-angle", "unequal-elastic", "unequal-lossy", "noisy-turns", "relaxing-mean",
+        "work-out")  # fmt: skip
+# 24 realisations of each law have the 95 % intervals judged; a single one of them is allowed more
+WITHIN = 3.5
+
+
+def run(law, folder, seed=3):
+    truth = make(f"loop-{law}", seed, folder)
+    done = reduction("run", folder / "campaign.toml", cwd=folder)
+    (archive,) = Path(folder, "processed").glob("*/D-1.nc")
+    with xr.open_dataset(archive, group="cycles") as cycles:
+        return truth, cycles.load(), done.stdout
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_loops_of_a_law_are_within_their_uncertainty(law, tmp_path):
+    truth, found, _ = run(law, tmp_path)
+    piece = truth.tests["D-1"]["piece"]
+    assert abs(found.sizes["cycle"] - piece["n_cycles"]) <= 1
+    for name in JUDGED:
+        by_cycle = truth.arrays.get(f"D-1/piece/cycles/{name}")
+        true = piece[name] if by_cycle is None else float(np.mean(by_cycle))
+        value = float(found[f"test_{name}"][0])
+        stated = float(found[f"test_{name}_standard_uncertainty"][0])
+        assert abs(value - true) <= WITHIN * stated, name
+        # and no interval that says nothing
+        size = true if name in ("frequency", "apparent_spring_constant") else (
+            1.0 if name == "loss_factor"
+            else piece["apparent_spring_constant"] * piece["strain_amplitude"] ** 2
+        )  # fmt: skip
+        assert stated < 0.05 * abs(size), name
+
+
+def test_a_settling_angle_leaves_the_frequency_to_a_millionth(tmp_path):
+    truth, found, _ = run("settling-angle", tmp_path)
+    true = truth.tests["D-1"]["piece"]["frequency"]
+    assert float(found.test_frequency[0]) == pytest.approx(true, rel=5e-6)
+
+
+def test_a_drift_has_its_area_beside_it(tmp_path):
+    _, found, _ = run("relaxing-mean", tmp_path)
+    drift = float((found.test_closed_loop_energy - found.test_hysteresis_energy)[0])
+    stated = float(found.test_hysteresis_energy_standard_uncertainty[0])
+    assert abs(drift) > 0 and stated >= abs(drift) / np.sqrt(6) * (1 - 1e-9)
+
+
+def test_work_that_is_given_out_is_on_the_first_line(tmp_path):
+    _, _, said = run("work-out", tmp_path)
+    assert "first: loops: piece:" in said and "loops give out work" in said
+
+
+def test_a_reversed_channel_is_named_on_the_first_line_and_gives_no_stiffness(tmp_path):
+    _, found, said = run("reversed-channel", tmp_path)
+    assert "the crosshead_position channel runs backward; set sign = -1" in said
+    assert "first: loops: piece: tension falls with stretch" in said
+    for name in ("apparent_spring_constant", "dynamic_modulus", "hysteresis_energy", "loss_factor"):
+        assert np.isnan(found[f"test_{name}"]).all(), name
+
+
+def test_the_advice_on_a_reversed_channel_gives_the_truth(tmp_path):
+    truth = make("loop-reversed-channel", 3, tmp_path)
+    text = (tmp_path / "campaign.toml").read_text()
+    at = text.index("crosshead_position = {") + len("crosshead_position = {")
+    (tmp_path / "campaign.toml").write_text(f"{text[:at]} sign = -1,{text[at:]}")
+    reduction("run", tmp_path / "campaign.toml", cwd=tmp_path)
+    (archive,) = (tmp_path / "processed").glob("*/D-1.nc")
+    piece = truth.tests["D-1"]["piece"]
+    with xr.open_dataset(archive, group="cycles") as found:
+        for name in JUDGED[1:]:
+            stated = float(found[f"test_{name}_standard_uncertainty"][0])
+            assert abs(float(found[f"test_{name}"][0]) - piece[name]) <= WITHIN * stated, name

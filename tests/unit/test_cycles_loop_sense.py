@@ -1,0 +1,85 @@
+"""Loops that run the wrong way: which channel, which lag, or a specimen that is driven."""
+
+import numpy as np
+import pytest
+
+from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.cycles.loop_sense import notes_of_loops, without_backward_loops
+from reduction.stages.cycles.loops import close_loops
+
+FREQUENCY, N_CYCLES, PER = 0.5, 12, 100
+
+
+def loops_of(angle, *, strain_sign=1, tension_sign=1, drift=0.0):
+    """Sine of 900 N a unit strain about a strain of 0.5 and 1000 N, tension ahead by an angle."""
+    turn = np.arange(N_CYCLES * PER + 1) / PER
+    wave = 2 * np.pi * turn
+    strain = strain_sign * (0.5 - 0.2 * np.cos(wave))
+    tension = tension_sign * (1000 - 180 * np.cos(wave + angle) + drift * turn)
+    first = PER * np.arange(N_CYCLES)
+    rise = np.column_stack([first, first + PER // 2])
+    cycles = Cycles(
+        first, first + PER, rise, rise + PER // 2, np.ones((N_CYCLES, 2)),
+        np.zeros(turn.size, np.int32), np.zeros(turn.size, np.int8), np.zeros(turn.size, bool), 0.1,
+    )  # fmt: skip
+    return close_loops(
+        turn / FREQUENCY, tension[None], strain[None], cycles, waveform="sinusoidal",
+        driven=0.5 - 0.2 * np.cos(wave),
+    )  # fmt: skip
+
+
+def notes(loops, *, lag=0.0):
+    return notes_of_loops(loops, names=["rope"], lag=[lag], time_step=1 / FREQUENCY / PER)
+
+
+def test_a_loop_that_loses_work_gets_no_note():
+    assert notes(loops_of(0.1)) == ()
+
+
+@pytest.mark.parametrize(("signs", "channel"), [
+    ((-1, 1), "crosshead_position"), ((1, -1), "tension"),
+])  # fmt: skip
+def test_the_channel_that_runs_backward_is_named_and_nothing_of_the_specimen_is_given(
+    signs, channel
+):
+    loops = loops_of(0.1, strain_sign=signs[0], tension_sign=signs[1])
+    (note,) = notes(loops)
+    assert note.code == "loops-run-backward" and note.numbers["channel"] == channel
+    assert note.severity == "warning"
+    assert f"the {channel} channel runs backward; set sign = -1" in str(note)
+    kept = without_backward_loops(loops)
+    for name in ("apparent_spring_constant", "hysteresis_energy", "loss_factor"):
+        assert np.isnan(getattr(kept, name)).all(), name
+        assert np.isnan(kept.uncertainty[name]).all(), name
+    assert np.isfinite(kept.frequency).all() and np.isfinite(kept.peak_tension).all()
+
+
+def test_a_slope_that_neither_mean_explains_blames_no_channel():
+    # tension pulls and the specimen is stretched: inertia, or a delay of half a period
+    (note,) = notes(loops_of(np.pi - 0.1))
+    assert note.numbers["channel"] == ""
+    assert "inertia of moving parts" in str(note)
+
+
+@pytest.mark.parametrize(("lag", "cause"), [(0.05, "lag"), (0.01, "driven"), (0.0, "driven")])
+def test_work_that_is_given_out_is_held_against_the_stated_lag(lag, cause):
+    # 0.2 rad at 0.5 Hz are 63.7 ms, 3.2 samples of 20 ms
+    (note,) = notes(loops_of(-0.2), lag=lag)
+    assert note.code == "loops-give-work" and note.numbers["cause"] == cause
+    assert note.numbers["delay"] == pytest.approx(0.2 / np.pi, rel=1e-3)
+    assert note.numbers["n_cycles"] == N_CYCLES
+    assert "so no channel is reversed" in str(note)
+
+
+def test_less_than_a_sample_is_how_channels_are_read():
+    (note,) = notes(loops_of(-0.02))
+    assert note.numbers["cause"] == "sampling"
+
+
+def test_the_work_of_a_drift_is_told():
+    (note,) = notes(loops_of(0.1, drift=-5.0))
+    # the closing line lies at the least strain, 0.2 below the mean: 0.2 times 5 N
+    energy = np.pi * 0.2 * 180 * np.sin(0.1)
+    assert note.code == "drift-in-energy"
+    assert note.numbers["energy"] == pytest.approx(energy, rel=2e-3)
+    assert abs(note.numbers["closed"] - energy) == pytest.approx(1.0, rel=0.02)
