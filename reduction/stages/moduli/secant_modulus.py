@@ -771,7 +771,7 @@ def fit_peak_trend(loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0) -
     Examples
     --------
     >>> peak = 700 - 20 * np.log10(np.arange(1.0, 11.0))[None]
-    >>> loops = Loops(*[peak] * 19, uncertainty={})
+    >>> loops = Loops(*[peak] * 20, uncertainty={})
     >>> trend = fit_peak_trend(loops, area=[5e-4])
     >>> print(trend.peak_tension_per_decade.round(3), trend.peak_tension_change.round(4))
     [-20.] [-0.0286]
