@@ -733,27 +733,20 @@ def _quantities_of_cycles(
         begin = mean_strain - strain_amplitude
     else:
         begin = row["strain_begin"]
-        # the valleys on either side, at the time of the peak: a steady drift is not in the range
-        # and where no cycle comes before, the first valley is that of an approach or of a hold
-        begins, ends_in = (
-            {name: row[f"{name}_{turn}"] for name in ("force", "strain")}
-            for turn in ("begin", "end_turn")
-        )
+        turns = [row["force_top"], row["force_begin"], row["force_end_turn"]]
+        peak, valley = np.max(turns, axis=0), np.min(turns, axis=0)
         follows = touching(cycles)
-        foot, strain_foot = (
-            ends_in[name]
-            - (1 - rise_share) * np.where(follows, ends_in[name] - begins[name], drift)
+        (mean, amplitude), (mean_strain, strain_amplitude) = (
+            _mean_and_amplitude(
+                row[f"{name}_top"],
+                row[f"{name}_begin"],
+                row[f"{name}_end_turn"],
+                drift,
+                rise_share,
+                follows,
+            )
             for name, drift in (("force", force_drift), ("strain", strain_drift))
         )
-        top, strain_top = row["force_top"], row["strain_top"]
-        turns = [top, row["force_begin"], row["force_end_turn"]]
-        peak, valley = np.max(turns, axis=0), np.min(turns, axis=0)
-        mean, mean_strain = (top + foot) / 2, (strain_top + strain_foot) / 2
-        # of a channel of the wrong sign the top is the lower one
-        amplitude = np.abs(top - foot) / 2
-        strain_amplitude = np.abs(strain_top - strain_foot) / 2
-        amplitude = np.where(np.isnan(force_drift), np.nan, amplitude)
-        strain_amplitude = np.where(np.isnan(strain_drift), np.nan, strain_amplitude)
     energy = _without_drift(
         row["energy"],
         end_tension=row["force_end"],
@@ -846,6 +839,36 @@ def _quantities_of_cycles(
             "foot_strain": np.sqrt(2) * u_strain,
         }
     return values, uncertainty
+
+
+def _mean_and_amplitude(
+    top: Floats,
+    begin: Floats,
+    end: Floats,
+    drift: Floats,
+    rise_share: Floats | float,
+    follows: Bools,
+) -> tuple[Floats, Floats]:
+    """Mean of peak and valley and half of what lies between, without a steady drift.
+
+    Of the valleys on either side, at the time of the peak.  Where no cycle comes before, the first
+    valley is that of an approach or a hold, and no line through both is a drift: the one farther
+    from the peak is taken, and of the range what half a period drifts.
+
+    Examples
+    --------
+    A range of 20 that grows by 2 a cycle, the first after a hold at its valley:
+
+    >>> one = np.array([-1.0, 1.0]), np.array([1.0, 3.0])
+    >>> _mean_and_amplitude(
+    ...     np.array([20.0, 22.0]), *one, np.array([2.0, 2.0]), 0.5, np.array([False, True]))
+    (array([ 9.5, 12. ]), array([10., 10.]))
+    """
+    # of a channel of the wrong sign the top is the lower one
+    far = np.where(np.abs(top - begin) > np.abs(top - end), begin, end)
+    foot = np.where(follows, (1 - rise_share) * begin + rise_share * end, far)
+    amplitude = np.abs(top - foot) / 2 - np.where(follows, 0.0, np.abs(drift) / 4)
+    return (top + foot) / 2, np.where(np.isnan(drift), np.nan, amplitude)
 
 
 _PLACE_OF_DRIFT = np.sqrt(6)  # half width of a triangular distribution over its deviation
