@@ -4,6 +4,7 @@ import json
 import math
 import re
 from decimal import Decimal
+from itertools import zip_longest
 from pathlib import Path
 
 import numpy as np
@@ -41,7 +42,7 @@ def level_text(number, unit):
 
 
 def shown_by_command(question, lines, monkeypatch):
-    """Row of the table, sentences, or the refusal, of `reduction lookup` for a question."""
+    """Row, warnings, other tables, sentences, or the refusal, of `reduction lookup`."""
     monkeypatch.setattr(command, "_lines_of", lambda source: lines)
     output = Told(question["system"])
     wanted = LookupRequest(
@@ -55,20 +56,32 @@ def shown_by_command(question, lines, monkeypatch):
         command.look_up_values("of the page", wanted, output=output)
     except ReductionError as error:
         return {"refused": str(error)}
-    (table,) = output.tables
-    heads = [str(column.header).replace("\\[", "[") for column in table.columns]
-    cells = [next(iter(column.cells)) for column in table.columns]
-    headline, *said = output.texts
+    (heads, [cells]), *tables = map(heads_and_rows, output.tables)
     of = output.document
+    warnings = [text for text in output.texts if text.startswith("warning: ")]
+    headline, *said = [text for text in output.texts if text not in warnings]
+    intros = [text for text in said if text.endswith(":")]
     return {
         "headline": headline,
+        "warnings": [text.removeprefix("warning: ") for text in warnings],
         "row": [list(pair) for pair in zip(heads, cells, strict=True)],
-        "said": said,
+        "tables": [
+            {"intro": intro, "heads": heads, "rows": rows}
+            for intro, (heads, rows) in zip_longest(intros, tables, fillvalue="")
+        ],
+        "said": [text for text in said if text not in intros],
         "values": [
             of["value"], *of["interval"], *of["surface_interval"], *of["line_interval"],
             of["peak_share"], of["minimum_share"],
         ],
     }  # fmt: skip
+
+
+def heads_and_rows(table):
+    heads = [str(column.header).replace("\\[", "[") for column in table.columns]
+    return heads, [
+        list(row) for row in zip(*(column.cells for column in table.columns), strict=True)
+    ]
 
 
 def same_answer(shown, wanted):
@@ -86,8 +99,10 @@ def same_answer(shown, wanted):
             for one, other in zip(shown["values"], wanted["values"], strict=True)
         )
         and same_text(shown["headline"], wanted["headline"])
-        and same_text(json.dumps(shown["row"]), json.dumps(wanted["row"]))
-        and same_text(json.dumps(shown["said"]), json.dumps(wanted["said"]))
+        and all(
+            same_text(json.dumps(shown[part]), json.dumps(wanted[part]))
+            for part in ("warnings", "row", "tables", "said")
+        )
     )
 
 

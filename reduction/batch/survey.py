@@ -194,9 +194,10 @@ def _read_test(campaign: Campaign, plan: TestPlan, *, reader: Reader = read_reco
             _measure_marks(survey, located, campaign)
             return [survey]
         plan = replace(plan, steps=found.steps, attributes=plan.attributes | FOUND)
-    # a mark, and the position of zero strain, belong to the whole log and not to a step of it
+    # a mark, and the position of zero strain, belong to the whole log and not to a step of it;
+    # of a pull, because that has no cycles to look for
     whole = locate(
-        record, kind="relaxation", settings=plan.settings, specimens=_specimens(campaign, plan)
+        record, kind="quasi-static", settings=plan.settings, specimens=_specimens(campaign, plan)
     )
     surveys = []
     for place, step in enumerate(plan.steps, start=1):

@@ -312,7 +312,7 @@ def consistency_warnings(
         is_impossible = bool(found)
     asked = {DASHPOT: SOLVED, K_1: (K_1,), TIME: (TIME,)}.get(quantity, ())
     for name in asked or ((K_1,) if is_impossible else ()):
-        found += _of_column(line, name, refits)
+        found += column_warnings(line, name, refits)
     return tuple(found)
 
 
@@ -341,7 +341,9 @@ def _of_points(values: tuple[ConsistentValues, ...]) -> tuple[str, ...]:
     )
 
 
-def _of_column(line: LineSource, name: str, refits: tuple[RefittedSurface, ...]) -> tuple[str, ...]:
+def column_warnings(
+    line: LineSource, name: str, refits: tuple[RefittedSurface, ...]
+) -> tuple[str, ...]:
     """A column that is wrong by every slow pull."""
     own = [one for one in refits if one.quantity == name]
     if not own or not min(one.greatest for one in own) > critical_z(line.surfaces[name]):

@@ -24,6 +24,7 @@ from reduction.archive.write import write_text_atomically
 from reduction.experiments.surface_points import ABOVE_LEVERAGE
 from reduction.lines.archive_source import archives_of_lines, lines_of_open_archive, unique_names
 from reduction.lines.deck_formats import FORMS
+from reduction.lines.line_consistency import SOLVED, column_warnings, refitted_surfaces
 from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
 from reduction.lines.published_source import published_sources
 from reduction.published.printed_cells import REPORTS, ReportId, cells_of, errata_of
@@ -32,6 +33,7 @@ from reduction.quantities.names import quantity
 from reduction.quantities.units import Dimension, UnitSystem, display_unit, scale_to_si
 from reduction.record.contributions import Component, coverage_factor
 from reduction.record.errors import ReductionError
+from reduction.stages.three_parameter_line.line_product import REASONS
 
 _TEXTS = ("name", "source", "material", "construction", "condition", "kind", "strength_of")
 
@@ -82,11 +84,26 @@ def _line_data(line: LineSource) -> dict[str, Any]:
             "absent": dict(line.absent),
             "notes": list(line.notes),
             "rule": line.rule,
+            "slow_pulls": {of: _curve(one) for of, one in line.slow_pulls.items()},
+            **_refits(line),
             "is_tether": line.is_tether,
             "quantities": list(line.quantities),
             "has_dashpot": line.has_dashpot,
         }
     )
+
+
+def _refits(line: LineSource) -> dict[str, Any]:
+    """What does not depend on the levels: columns that do not follow from the others, and z."""
+    refits = refitted_surfaces(line)
+    return {
+        "column_warnings": {
+            name: list(column_warnings(line, name, refits)) for name in SOLVED if refits
+        },
+        "greatest_z": {
+            one.slow_pull: _numbers(one.greatest) for one in refits if one.quantity == SOLVED[0]
+        },
+    }
 
 
 def _surface(surface: LineSurface) -> dict[str, Any]:
@@ -126,6 +143,7 @@ def _curve(curve: LineCurve) -> dict[str, Any]:
         "component": _components(curve.component),
         "errata": list(curve.errata),
         "notes": list(curve.notes),
+        "warnings": list(curve.warnings),
     }  # fmt: skip
 
 
@@ -338,7 +356,7 @@ MOST_BYTES = 2_500_000
 
 _REPORT = "index.html"
 
-_FORMAT = 2
+_FORMAT = 3
 """Of what one page keeps for the next."""
 
 _TIMES = 3
@@ -347,8 +365,8 @@ _SHARES = np.append(1e-12, np.arange(1, 33) / 32)
 """Inverse degrees of freedom at which the page has the factor of an interval; the first is none."""
 
 _SCRIPTS = (
-    "format.js", "student.js", "surface.js", "curve.js", "loads.js", "lookup.js", "shown.js",
-    "data.js", "chart.js", "form.js", "command.js", "answer.js", "page.js",
+    "format.js", "student.js", "surface.js", "curve.js", "loads.js", "lookup.js", "consistent.js",
+    "shown.js", "data.js", "chart.js", "form.js", "command.js", "answer.js", "page.js",
 )  # fmt: skip
 
 _DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
@@ -464,6 +482,7 @@ def _constants() -> dict[str, Any]:
             for dimension, given in _GIVEN.items()
         },
         "above_leverage": ABOVE_LEVERAGE,
+        "reasons": [REASONS[reason] for reason in sorted(REASONS)],
         "coverage_factors": coverage_factor(1 / _SHARES).tolist(),
     }
 

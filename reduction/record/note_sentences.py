@@ -1079,3 +1079,9 @@ SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
     **_OF_EXPERIMENTS, **_OF_HOSES,
 }  # fmt: skip
 """By code: how serious a note is, and its sentence."""
+
+CAUSES = frozenset({
+    "load-zero-wrong", "load-negative", "load-falls-with-stretch", "strain-below-zero",
+    "reference-tension-elsewhere", "tape-off-crosshead",
+})  # fmt: skip
+"""What is wrong with an input as it was stated: it explains what else is said of the test."""

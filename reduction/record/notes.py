@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from reduction.record.note_sentences import SENTENCES, Severity
+from reduction.record.note_sentences import CAUSES, SENTENCES, Severity
 
 SEVERITIES: tuple[Severity, ...] = ("warning", "refusal", "note")
 """Most serious first."""
@@ -89,8 +89,10 @@ def note(code: str, subject: str = "", /, **numbers: Any) -> Note:
 
 
 def by_severity(notes: Iterable[Note]) -> tuple[Note, ...]:
-    """Notes, most serious first; those alike keep their order."""
-    return tuple(sorted(notes, key=lambda one: SEVERITIES.index(one.severity)))
+    """Notes, most serious first and causes before what follows; those alike keep their order."""
+    return tuple(
+        sorted(notes, key=lambda one: (SEVERITIES.index(one.severity), one.code not in CAUSES))
+    )
 
 
 def full_note(stage: str, text: str) -> str:

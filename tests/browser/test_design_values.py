@@ -29,11 +29,11 @@ SEED = 20_261_122
 ASKED, BY_HAND, ODD = 500, 30, 300
 RAW = Path(__file__).parents[2] / "raw"
 ANSWERS = """questions => questions.map((one) => {
-  const { headline, row, said, refused, found } = answer(one);
+  const { headline, warnings, row, tables, said, refused, found } = answer(one);
   if (refused) return { refused };
   const names = ["value", "low", "high", "surface_low", "surface_high", "line_low", "line_high"];
   const values = [...names, "peak_share", "minimum_share"].map((name) => found[name]);
-  return { headline, row, said, values: values.map((value) => (Number.isFinite(value) ? value : null)) };
+  return { headline, warnings, row, tables, said, values: values.map((value) => (Number.isFinite(value) ? value : null)) };
 })"""
 COMMANDS = """keys => keys.map(([key, levels, branch]) => exportCommandsOf(
   LINES.find((line) => line.key === key), { levels, branch, flag: false }))"""
@@ -121,6 +121,8 @@ def test_questions_put_into_the_form_are_answered_in_the_same_words(
             assert page.locator(".flags li").all_inner_texts() == (
                 remarks.split("; ") if remarks else []
             )
+            assert page.locator(".warnings li").all_inner_texts() == wanted["warnings"]
+            assert page.locator("#said table").count() == len(wanted["tables"])
             notes = page.locator("#notes").inner_text()
             for said in wanted["said"]:
                 assert " ".join(said.removeprefix("note: ").split()) in " ".join(notes.split())

@@ -140,18 +140,26 @@ def test_a_vague_exponent_is_held_at_one_and_the_history_gives_it():
     assert any("only to 0.85 +- " in line for line in model.made)
 
 
-def test_joint_covariance_is_that_of_many_campaigns():
+@pytest.mark.parametrize(
+    ("count", "tolerance"),
+    # a standard deviation of 60 is known to 9 %, one of 300 to 4 %
+    [(60, 0.36), pytest.param(300, 0.16, marks=[pytest.mark.nightly, pytest.mark.slow])],
+)
+def test_joint_covariance_is_that_of_many_campaigns(count, tolerance):
     law = {"method": "tension-driven"}
     names = list(fit(**law).coefficients)
     drawn = np.array(
-        [[fit(noise=READING, seed=one, **law).coefficients[n] for n in names] for one in range(300)]
+        [
+            [fit(noise=READING, seed=one, **law).coefficients[n] for n in names]
+            for one in range(count)
+        ]
     )
     expected = np.sqrt(np.diag(fit(**law).covariance))
-    np.testing.assert_allclose(drawn.std(axis=0), expected, rtol=0.15)
+    np.testing.assert_allclose(drawn.std(axis=0), expected, rtol=tolerance)
     correlation = np.corrcoef(drawn.T)
     covariance = fit(**law).covariance
     stated = covariance / np.outer(expected, expected)
-    np.testing.assert_allclose(correlation, stated, atol=0.2)
+    np.testing.assert_allclose(correlation, stated, atol=1.25 * tolerance)
 
 
 def test_a_law_that_was_asked_for_and_does_not_fit_is_refused():

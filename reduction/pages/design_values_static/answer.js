@@ -36,6 +36,20 @@ function showRow(row) {
   return box;
 }
 
+// A table behind the answer, under the words that lead to it.
+function showTable({ intro, heads, rows }) {
+  const box = element("div", null, { class: "table", tabindex: "0", role: "region", "aria-label": "K_0, K_1 and tau" }), table = element("table"), head = element("tr");
+  if (intro) box.append(element("p", intro[0].toUpperCase() + intro.slice(1), { class: "small" }));
+  head.append(...heads.map((text) => element("th", text.replaceAll("\n", " ").trim(), { scope: "col" })));
+  table.append(head, ...rows.map((cells) => {
+    const row = element("tr");
+    row.append(...cells.map((text) => element("td", grouped(text))));
+    return row;
+  }));
+  box.append(table);
+  return box;
+}
+
 function showRefusal(said, asked) {
   const { refusal } = asked;
   const box = element("div", null, { class: "refused" });
@@ -89,7 +103,12 @@ function show() {
       flags.className = "flags";
       said.append(flags);
     }
-    said.append(showRow(found.row));
+    if (found.warnings.length) {
+      const warnings = listOf(found.warnings);
+      warnings.className = "warnings";
+      said.append(warnings);
+    }
+    said.append(showRow(found.row), ...found.tables.map(showTable));
   }
   showCharts(line, asked, found);
   showNotes(line, asked, found);

@@ -8,16 +8,18 @@ function lineOf(line, key, group) {
   const decoded = (one, texts) => Object.fromEntries(Object.entries(one)
     .map(([name, value]) => [name, texts.includes(name) ? value : numbersOf(value)]));
   const ofSurface = ["quantity", "errata", "notes"];
-  const ofCurve = ["quantity", "variable", "branch", "spread_of", "range_note", "errata", "notes", "is_inverse_slope"];
+  const ofCurve = ["quantity", "variable", "branch", "spread_of", "range_note", "errata", "notes", "warnings", "is_inverse_slope"];
   const components = (one) => ({
     ...one, component: one.component.map(([source, of, number, freedom]) => [source, of, number, numbersOf(freedom)]),
   });
+  const curveFrom = (one) => components({ ...decoded(one, [...ofCurve, "component"]), component: one.component });
   return {
     ...line, key, group,
     ...Object.fromEntries(numbers.map((name) => [name, numbersOf(line[name])])),
     surfaces: Object.fromEntries(Object.entries(line.surfaces).map(([name, one]) => (
       [name, components({ ...decoded(one, [...ofSurface, "component"]), component: one.component })]))),
-    curves: line.curves.map((one) => components({ ...decoded(one, [...ofCurve, "component"]), component: one.component })),
+    curves: line.curves.map(curveFrom),
+    slow_pulls: Object.fromEntries(Object.entries(line.slow_pulls).map(([of, one]) => [of, curveFrom(one)])),
     is_synthetic: line.notes.includes("synthetic data"),
   };
 }

@@ -162,7 +162,7 @@ function told(line, of, points, { loads, words, more, is_untested, freedom }) {
   return {
     ...points, ...loads, is_untested, freedom,
     quantity: of.quantity, unit: unitOf(of.quantity), component: of.component,
-    rule: line.rule, source: line.source, errata: of.errata, notes: distinct(notes),
+    rule: line.rule, source: line.source, errata: of.errata, notes: distinct(notes), warnings: of.warnings ?? [],
     branch: of.branch || "", interval_of: words[0], surface_interval_of: words[1],
   };
 }

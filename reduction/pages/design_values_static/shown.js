@@ -34,8 +34,8 @@ function valueText(found, factor) {
   return within(factor * found.value, ...intervalsOf(found).map(([, low, high]) => (factor * (high - low)) / 2));
 }
 
-// Headings and cells of one row, as the table of the command has them.
-function rowOf(line, found, levels, system) {
+// Headings and cells of the levels that were asked for.
+function levelCells(line, levels, system) {
   const row = [];
   for (const [name, value] of Object.entries(levels)) {
     const [unit, factor] = unitOfLevel(name, system);
@@ -44,6 +44,12 @@ function rowOf(line, found, levels, system) {
       row.push(["\n[%RBS]", short((100 * value) / line.rated_break_strength, 4)]);
     }
   }
+  return row;
+}
+
+// Headings and cells of one row, as the table of the command has them.
+function rowOf(line, found, levels, system) {
+  const row = levelCells(line, levels, system);
   const [unit, factor] = displayUnit(found.unit, system);
   row.push([`value\n[${unit}]`, valueText(found, factor)]);
   row.push(...intervalsOf(found).map(([head, low, high]) => [head, span(factor, low, high)]));
@@ -108,6 +114,7 @@ function answer({ line, quantity, levels, branch = null, flag = false, system = 
     const found = lookUp(of, quantity, at, { branch, flag });
     return {
       headline: headlineOf(of, found), row: rowOf(of, found, at, system), said: saidOf(of, found), found, at,
+      warnings: warningsOf(of, found, at), tables: moreTables(of, found, at, system),
     };
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;
