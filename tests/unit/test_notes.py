@@ -55,7 +55,7 @@ FACTS = {
             "marks-scatter", "new", rows="slack rows", ratio=1.6, chi_square=26.5, freedom=10,
             chance=1 / 320,
         ),
-        "note",
+        "warning",
     ),
     "new: 3 of 10 cycles drift by more than 20% of their range: their amplitudes, slopes and "
     "energies rest on it": (
