@@ -67,7 +67,7 @@ NOT_IN_SUITE = {
     "generate": "the logs that the others take",
     "programs": "what runs in processes of its own",
     "accuracy": "errors against a truth, not cost; docs/method.md",
-    "coverage_strangers": "truth, not cost; docs/uncertainty.md",
+    "coverage_strangers": "coverage of intervals, not cost; docs/uncertainty.md",
     "coverage_ropes": "coverage of intervals, not cost; docs/uncertainty.md",
     "coverage_surfaces": "coverage of intervals, not cost; docs/method.md",
     "coverage_tethers": "coverage of intervals, not cost; docs/uncertainty.md",

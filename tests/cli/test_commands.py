@@ -182,15 +182,17 @@ def test_a_log_in_steps_gives_one_product_a_step(small, command):
 
 
 @pytest.mark.slow
-def test_a_product_of_no_test_is_named_and_left_alone(reduced, command):
+def test_a_product_of_no_test_is_named_and_put_aside(reduced, command):
     campaign = reduced / "raw" / "campaign.toml"
     campaign.write_text(campaign.read_text().split("[tests.B]")[0])
     marks = reduced / "raw" / "marks.csv"
     kept = [line for line in marks.read_text().splitlines() if not line.startswith("B,")]
     marks.write_text("\n".join(kept) + "\n")
     done = command("run", campaign, "--quiet", cwd=reduced)
-    assert done.returncode == 0 and "B.nc: belongs to no test of this campaign" in done.stderr
-    assert (reduced / "processed" / "small" / "B.nc").exists()
+    assert done.returncode == 0
+    assert "superseded/B.nc: nothing in this campaign makes it now" in done.stderr
+    assert (reduced / "processed" / "small" / "superseded" / "B.nc").exists()
+    assert not (reduced / "processed" / "small" / "B.nc").exists()
 
 
 def test_sniff_proposes_a_layout_that_a_person_completes(small, command):
