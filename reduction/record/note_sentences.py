@@ -1080,8 +1080,8 @@ SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
 }  # fmt: skip
 """By code: how serious a note is, and its sentence."""
 
-CAUSES = frozenset({
-    "load-zero-wrong", "load-negative", "load-falls-with-stretch", "strain-below-zero",
-    "reference-tension-elsewhere", "tape-off-crosshead",
-})  # fmt: skip
-"""What is wrong with an input as it was stated: it explains what else is said of the test."""
+CAUSES = (
+    "load-zero-wrong", "load-negative", "load-falls-with-stretch", "tape-off-crosshead",
+    "loops-run-backward", "reference-tension-elsewhere", "strain-below-zero",
+)  # fmt: skip
+"""What is wrong with an input as it was stated, first what explains those behind it."""

@@ -90,9 +90,12 @@ def note(code: str, subject: str = "", /, **numbers: Any) -> Note:
 
 def by_severity(notes: Iterable[Note]) -> tuple[Note, ...]:
     """Notes, most serious first and causes before what follows; those alike keep their order."""
-    return tuple(
-        sorted(notes, key=lambda one: (SEVERITIES.index(one.severity), one.code not in CAUSES))
-    )
+
+    def rank(one: Note) -> tuple[int, int]:
+        place = CAUSES.index(one.code) if one.code in CAUSES else len(CAUSES)
+        return SEVERITIES.index(one.severity), place
+
+    return tuple(sorted(notes, key=rank))
 
 
 def full_note(stage: str, text: str) -> str:
