@@ -2,8 +2,9 @@
 
 `readings_that_differ` holds for every product, flagged or not: a sample is what the file says, in
 the unit that the campaign says, or is marked as missing.  `numbers_that_differ` is for a product
-that carries no flag: its cycles are turns of the position in the file, and their peak, valley,
-slope, energy and modulus follow from the samples between them by the definition alone.
+that carries no flag: its cycles are turns of the position in the file, their peak and valley lie
+within half a step of the samples, and slope, energy and modulus follow from the samples between
+them by the definition alone.
 """
 
 import numpy as np
@@ -97,6 +98,21 @@ def _slopes(load, stretch):
     return slopes
 
 
+def _turns_that_differ(name, found, extreme, step):
+    """Turns farther from the greatest or least reading than half of what lies between readings."""
+    found, extreme, step = map(np.asarray, (found, extreme, step))
+    if found.shape != extreme.shape:
+        return [f"{name}_tension: {found.size} values, {extreme.size} in the file"]
+    far = ~(np.abs(found - extreme) <= 0.5 * step) & np.isfinite(extreme)
+    if not far.any():
+        return []
+    first = int(np.flatnonzero(far)[0])
+    return [
+        f"{name}_tension: {int(far.sum())} values differ, first {first}: "
+        f"{found[first]:.9g} for {extreme[first]:.9g}"
+    ]
+
+
 def _n_peaks(position):
     """Peaks of the position: rises and falls of a thirtieth of its range on either side."""
     threshold = _TURN * np.ptp(position)
@@ -120,19 +136,20 @@ def numbers_that_differ(reading, dataset):
     if not n_peaks - 2 <= first.size <= n_peaks + 1:  # a jump makes a peak and spoils a cycle
         found.append(f"{first.size} cycles for {n_peaks} peaks of the position")
     strain, area = dataset["strain"].values[0], []
-    peak, valley, slope = [], [], []
+    peak, valley, slope, step = [], [], [], []
     for begin, end in zip(first, last, strict=True):
         part = slice(begin, end + 1)
         load, stretch = reading.tension[part], strain[part]
         ends = np.nanmin(load), np.nanmax(load)
         valley.append(ends[0])
         peak.append(ends[1])
+        step.append(np.nanmax(np.abs(np.diff(load))))
         slope.append(_slopes(load, stretch))
         # of a cycle that does not close the area has more than one meaning
         closes = abs(load[-1] - load[0]) < _CLOSED * (ends[1] - ends[0])
         area.append(np.trapezoid(load, stretch) if closes else np.nan)
-    found += _apart("peak_tension", dataset["peak_tension"].values[0], peak)
-    found += _apart("valley_tension", dataset["valley_tension"].values[0], valley)
+    found += _turns_that_differ("peak", dataset["peak_tension"].values[0], peak, step)
+    found += _turns_that_differ("valley", dataset["valley_tension"].values[0], valley, step)
     apparent = dataset["apparent_spring_constant"].values[0]
     low, high = np.sort(np.reshape(slope, (-1, 2)), axis=1).T
     found += [
@@ -149,9 +166,10 @@ def numbers_that_differ(reading, dataset):
         "hysteresis_energy", np.abs(energy[known]), np.abs(area)[known], _ENERGY, _ENERGY * scale
     )
     time = reading.time
-    found += _apart(
-        "frequency", dataset["frequency"].values[0], 1 / (time[last] - time[first]), 1e-6
-    )
+    # a cycle begins between two samples
+    period = time[last] - time[first]
+    apart = np.max(np.diff(time)) / np.min(period)
+    found += _apart("frequency", dataset["frequency"].values[0], 1 / period, apart)
     return found + _moduli_that_differ(reading, dataset, strain)
 
 

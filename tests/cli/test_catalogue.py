@@ -24,7 +24,7 @@ def rows_of(done):
 def test_a_question_is_answered_as_a_table(command, processed):
     done = command(
         "catalogue", processed, "--kind", "cyclic", "--specimen", "new",
-        "--where", "frequency >= 0.1 Hz", "--quantity", "apparent_spring_constant",
+        "--where", "frequency >= 0.09 Hz", "--quantity", "apparent_spring_constant",
         "--sort", "apparent_spring_constant", "--descending", "--limit", "2",
     )  # fmt: skip
     assert done.returncode == 0, done.stderr

@@ -84,7 +84,7 @@ def test_a_number_of_the_cycles_that_the_samples_do_not_give_is_seen(plant):
     def too_high(quantities):
         def of_cycles(*args, **options):
             numbers, uncertainty = quantities(*args, **options)
-            return numbers | {"peak_tension": numbers["peak_tension"] + 1.0}, uncertainty
+            return numbers | {"peak_tension": numbers["peak_tension"] + 30.0}, uncertainty
 
         return of_cycles
 
