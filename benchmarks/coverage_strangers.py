@@ -30,6 +30,8 @@ import numpy as np
 import xarray as xr
 
 import reduction
+from reduction.lines.archive_source import lines_of_archive
+from reduction.lines.line_lookup import look_up
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from strangers import LAWS, Truth, make
@@ -47,6 +49,7 @@ OF_A_SURFACE = (
     "relaxation_time",
 )  # fmt: skip
 N_POINTS = 40
+NO_TESTS = ("surfaces", "comparisons", "predictions", "catalogue", "change_in_length")
 NORMAL = 1.959964
 
 
@@ -105,10 +108,34 @@ def judge_run(into: Realisation, archive: xr.Dataset, place: int, true: dict[str
         into.add(name, archive[key].to_numpy()[place], true[name], NORMAL * spread)
 
 
+def judge_surfaces(into: Realisation, folder: Path, truth: Truth) -> None:
+    """Values that a look-up gives at points that were not tested, drawn inside the design."""
+    levels = {
+        name: truth.arrays.get(f"interior/{name}", np.empty(0))[:N_POINTS]
+        for name in ("frequency", "mean_tension", "tension_amplitude")
+    }
+    for path in folder.glob("*/surfaces.nc"):
+        for line in lines_of_archive(path):
+            for name in OF_A_SURFACE:
+                if name not in line.surfaces or not levels["frequency"].size:
+                    continue
+                found = look_up(line, name, extrapolate="flag", **levels)
+                true = np.where(
+                    found.is_inside, truth.arrays[f"interior/{name}"][:N_POINTS], np.nan
+                )
+                # an interval need not be even about its value: the side of the truth counts
+                half = np.where(
+                    true > found.value,
+                    found.surface_high - found.value,
+                    found.value - found.surface_low,
+                )
+                into.add(f"surface of {name}", found.value, true, half)
+
+
 def archives_of(folder: Path) -> Iterator[tuple[str, xr.Dataset]]:
     """Every archive of a test, by its name."""
     for path in sorted(folder.glob("*/*.nc")):
-        if path.stem not in ("surfaces", "comparisons", "predictions", "catalogue"):
+        if path.stem not in NO_TESTS:
             with reduction.open_archive(path) as archive:
                 yield path.stem, archive.load()
 
@@ -130,12 +157,16 @@ def realise(law: str, seed: int) -> Realisation:
         n_judged = 0
         for test, archive in archives_of(folder / "p"):
             for place, specimen in enumerate(archive["specimen"].to_numpy().astype(str)):
-                true = truth.tests.get(test, {}).get(specimen)
+                # what was found at a level of a record is filed by the level
+                log, _, level = test.partition(".")
+                piece = level.replace("-", " ") or specimen
+                true = truth.tests.get(log, {}).get(piece)
                 if true is None:
                     continue
                 n_judged += 1
-                judge_curves(found, archive, place, truth, f"{test}/{specimen}/")
+                judge_curves(found, archive, place, truth, f"{log}/{piece}/")
                 judge_run(found, archive, place, true)
+        judge_surfaces(found, folder / "p", truth)
         found.n_refused = found.n_tests - n_judged
         return found
 

@@ -320,6 +320,13 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "cycles between two amplitudes, one branch of each, not counted: {n_cycles}, first at"
         " {time:g} s",
     ),
+    "cycles-of-starting-machine": (
+        "note",
+        lambda n_first, n_last: (
+            f"the machine had not reached its amplitude in the first {n_first} and had left it in"
+            f" the last {n_last} cycles, which are not counted"
+        ),
+    ),
     "counter-constant": (
         "note", "the machine's cycle counter never changes: reversals are counted instead",
     ),

@@ -695,6 +695,56 @@ def _range(values: Floats) -> float:
     return max(high - low, 0.0)
 
 
+_STEADY = 0.004  # of a range: by less no mean of a dozen cycles is moved beyond its scatter
+
+_STARTING = 0.25  # of a range: by more it is another level, not a machine that starts
+
+_MOST_STARTING = 3
+
+_LEFT_STEADY = 5
+
+
+def _steady_span(values: Floats, branch_first: Indices, branch_last: Indices) -> slice:
+    """Cycles but for those at either end in which the machine starts or stops.
+
+    A controller takes a cycle or some to the amplitude that it is set to, and the phase of those
+    cycles is not that of the others.
+
+    Examples
+    --------
+    >>> wave = np.append(np.tile([0.0, 100.0], 12), 0.0)
+    >>> wave[1] = 90
+    >>> ends = np.stack([np.arange(0, 24, 2), np.arange(1, 24, 2)], axis=1)
+    >>> _steady_span(wave, ends, ends + 1)
+    slice(1, 12, None)
+    """
+    begin, peak, end = branch_first[:, 0], branch_last[:, 0], branch_last[:, 1]
+    falls, rises = values[peak] - values[end], values[peak] - values[begin]
+    n_cycles = peak.size
+    if n_cycles < _LEFT_STEADY + 2 * _MOST_STARTING or not np.isfinite(falls + rises).all():
+        return slice(0, n_cycles)
+    # a record may begin and end within a cycle: that branch says nothing
+    reach = int(np.median(end - begin)) // 20
+
+    def apart(of: Floats) -> Floats:
+        """How far ranges are from the middle one, as a share; zero within their scatter."""
+        middle = np.median(of)
+        far = np.abs(of - middle)
+        return np.where(far > 6 * 1.5 * np.median(far), far / middle, 0.0)
+
+    def n_starting(share: Floats) -> int:
+        is_so = (share > _STEADY) & (share < _STARTING)
+        return int(np.max(np.flatnonzero(is_so[:_MOST_STARTING]), initial=-1)) + 1
+
+    of_rise, of_fall = apart(rises), apart(falls)
+    first, last = np.maximum(of_rise, of_fall), np.maximum(of_rise, of_fall)[::-1].copy()
+    if begin[0] <= reach:
+        first[0] = of_fall[0]
+    if end[-1] >= values.size - 1 - reach:
+        last[0] = of_rise[-1]
+    return slice(n_starting(first), n_cycles - n_starting(last))
+
+
 def _labels(first: Indices, last: Indices, values: NDArray[Any], time: Floats) -> NDArray[Any]:
     """Value of the interval of each sample, 0 outside; a shared sample is the later one's."""
     end = last + 1
@@ -793,6 +843,8 @@ def find_cycles(
         is_sinusoidal=settings.waveform == "sinusoidal",
     )  # fmt: skip
     branch_first, branch_last, left_out = whole_cycles(values, halves)
+    steady = _steady_span(values, branch_first, branch_last)
+    n_unsteady = branch_first.shape[0] - (steady.stop - steady.start)
     first, last = branch_first[:, 0], branch_last[:, 1]
     counted_by = "reversals"
     if cycle_counter is not None and _changes_of_count(cycle_counter).size:
@@ -803,6 +855,13 @@ def find_cycles(
     else:
         made = halves.made
         notes += halves.notes
+        if n_unsteady:
+            notes.append(
+                note("cycles-of-starting-machine", n_first=steady.start,
+                     n_last=branch_first.shape[0] - steady.stop)
+            )  # fmt: skip
+        branch_first, branch_last = branch_first[steady], branch_last[steady]
+        first, last = first[steady], last[steady]
         if left_out.size:
             begins = float(time[left_out[0]])
             notes.append(note("cycles-of-two-amplitudes", n_cycles=left_out.size, time=begins))
@@ -818,9 +877,10 @@ def find_cycles(
         )
     if first.size == 1:
         notes.append(note("one-cycle"))
-    if settings.expected_cycles is not None and settings.expected_cycles != first.size:
+    n_made = first.size + (n_unsteady if counted_by == "reversals" else 0)
+    if settings.expected_cycles is not None and settings.expected_cycles != n_made:
         notes.append(
-            note("cycles-not-as-planned", n_found=first.size, n_planned=settings.expected_cycles)
+            note("cycles-not-as-planned", n_found=n_made, n_planned=settings.expected_cycles)
         )
 
     start, stop, rate, trim_notes = _trimmed(
