@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import ExitStack
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, cast
 
@@ -27,6 +28,7 @@ from reduction.lines.composite import (
     compose,
     used_of,
 )
+from reduction.lines.cycle_stiffness import LEAST_COVER
 from reduction.lines.deck_formats import export_table
 from reduction.lines.export_sources import assembly_table, composite_table, ranges_of
 from reduction.lines.published_source import published_piece_sources, published_sources
@@ -192,6 +194,7 @@ def _show(source: PieceSource, curve: CompositeCurve, output: CommandOutput) -> 
     made = ", SYNTHETIC: nothing was tested" if source.is_synthetic else ""
     doubt = f"; DOUBTFUL: {curve.doubt}" if curve.doubt else ""
     output.say(f"{composite_table(source, curve).title}{made}{doubt}")
+    _end_in_doubt(curve, output)
     table = table_of(
         "strain [%]", f"tension [{unit}]", f"standard uncertainty [{unit}]",
         f"of it shared [{unit}]", "piece", "remark",
@@ -223,6 +226,12 @@ def _show(source: PieceSource, curve: CompositeCurve, output: CommandOutput) -> 
     output.show(table)
     output.say_each("note", (*curve.notes, *source.notes))
     output.say_each("source", source.sources)
+
+
+def _end_in_doubt(curve: CompositeCurve, output: CommandOutput) -> None:
+    """Status 4 where a curve is in doubt inside the range that it is stated for."""
+    if curve.doubt:
+        output.raise_status(DataError.exit_status)
 
 
 def _contributions(component: Sequence[Component], rows: Floats) -> list[dict[str, Any]]:
@@ -296,8 +305,10 @@ def _assembly_document(line: DeployedLine) -> dict[str, Any]:
             assembly.component, assembly.contribution
         ),
         "strain": plain(deployed.strain),
-        "apparent_spring_constant": plain(deployed.apparent_spring_constant),
-        "secant_spring_constant": plain(deployed.secant_spring_constant),
+        "secant_spring_constant": plain(deployed.stiffness.spring_constant),
+        "least_spring_constant": plain(deployed.stiffness.least),
+        "greatest_spring_constant": plain(deployed.stiffness.greatest),
+        "nearest_test": [name or None for name in deployed.nearest_test],
         "tether_length": plain(assembly.tether_length),
         "tether_tension": plain(assembly.tether_tension),
         "tether_strain": plain(assembly.tether_strain),
@@ -312,18 +323,21 @@ def _assembly_document(line: DeployedLine) -> dict[str, Any]:
             **dict.fromkeys(
                 ("tension", "tension_standard_uncertainty", "tension_random_standard_uncertainty",
                  "tension_shared_standard_uncertainty", "tension_uncertainty_contributions",
-                 "apparent_spring_constant",
-                 "secant_spring_constant",
+                 "apparent_spring_constant", "secant_spring_constant", "least_spring_constant",
+                 "greatest_spring_constant", "curve_spring_constant", "spring_constant",
+                 "standard_uncertainty", "low", "high", "common_low", "common_high",
                  "tether_tension", "mean_tension", "peak_tension", "minimum_tension",
                  "peak_tether_tension", "minimum_tether_tension", "greatest_load", "least_load",
                  "tension_at_slack"), "N",
             ),
             **dict.fromkeys(
-                ("strain", "tether_strain", "load_share", "peak_share", "minimum_share"), "1"
+                ("strain", "tether_strain", "load_share", "peak_share", "minimum_share", "covered"),
+                "1",
             ),
             "stiffness": "N m-1",
         },
         "working": [_state_document(state) for state in deployed.working],
+        "doubt": line.curve.doubt,
         "sources": [line.splices, *line.source.sources],
         "notes": [*deployed.notes, *line.curve.notes, *line.source.notes],
         "synthetic": line.source.is_synthetic,
@@ -332,8 +346,7 @@ def _assembly_document(line: DeployedLine) -> dict[str, Any]:
 
 def _state_document(state: WorkingState) -> dict[str, Any]:
     names = (
-        "mean_tension", "peak_tension", "minimum_tension", "total_length", "peak_length",
-        "minimum_length", "stiffness", "apparent_spring_constant", "tether_tension",
+        "mean_tension", "peak_tension", "minimum_tension", "total_length", "tether_tension",
         "peak_tether_tension", "minimum_tether_tension", "load_share", "peak_share",
         "minimum_share", "is_tested",
     )  # fmt: skip
@@ -347,8 +360,29 @@ def _state_document(state: WorkingState) -> dict[str, Any]:
         "tension_standard_uncertainty": state.standard_uncertainty,
         "tension_random_standard_uncertainty": state.random_standard_uncertainty,
         "tension_shared_standard_uncertainty": state.shared_standard_uncertainty,
-        "secant_spring_constant": state.secant_spring_constant,
-        "is_moved": state.is_moved,
+        **{
+            name: plain(getattr(state, name))
+            for name in (
+                "low",
+                "high",
+                "secant_spring_constant",
+                "least_spring_constant",
+                "greatest_spring_constant",
+                "stiffness",
+                "peak_length",
+                "minimum_length",
+                "common_low",
+                "common_high",
+                "curve_spring_constant",
+            )
+        },
+        "apparent_spring_constant": plain(state.secant_spring_constant),
+        "nearest_test": state.nearest or None,
+        "tests": [
+            {name: plain(value) for name, value in asdict(one).items()} for one in state.tests
+        ],
+        "doubt": state.doubt,
+        "note": state.note,
         "tether_strain": plain(state.strain),
         "sharing": sharing,
     }
@@ -454,7 +488,13 @@ def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
     force, per_newton = output.unit("N")
     length, per_metre = output.unit("m")
     made = ", SYNTHETIC: nothing was tested" if line.source.is_synthetic else ""
-    output.say(f"assembly {line.name}: {line.words}{made}")
+    doubt = f"; DOUBTFUL: {line.curve.doubt}" if line.curve.doubt else ""
+    output.say(f"assembly {line.name}: {line.words}{made}{doubt}")
+    _end_in_doubt(line.curve, output)
+    for number, state in enumerate(deployed.working, start=1):
+        if state.doubt:
+            output.say(f"working.{number}: DOUBTFUL: {state.doubt}")
+            output.raise_status(DataError.exit_status)
     slack = assembly.slack_length
     output.say(
         f"slack below {per_metre * float(assembly.total_length[0]):.5g} {length}"
@@ -468,7 +508,7 @@ def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
     table = table_of(
         f"length [{length}]", f"tension [{force}]", f"standard uncertainty [{force}]",
         f"of it shared [{force}]",
-        f"EA, +- 5 % [{force}]", f"EA, local [{force}]",
+        f"EA, +- 5 % [{force}]", f"least [{force}]", f"greatest [{force}]",
         f"a tether [{force}]" if equal else f"greatest, least [{force}]",
         "its strain [%]" if equal else "strains [%]", "remark", texts=0,
     )  # fmt: skip
@@ -482,8 +522,14 @@ def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
             short(per_newton * float(tension[place])),
             short(per_newton * float(assembly.standard_uncertainty[place]), 3),
             short(float(shared[place]), 3),
-            short(per_newton * float(deployed.secant_spring_constant[place]), 4),
-            short(per_newton * float(deployed.apparent_spring_constant[place]), 4),
+            *(
+                short(per_newton * float(one[place]), 4)
+                for one in (
+                    deployed.stiffness.spring_constant,
+                    deployed.stiffness.least,
+                    deployed.stiffness.greatest,
+                )
+            ),
             _pair(per_newton * load, equal=equal),
             _pair(100 * strain, equal=equal),
             ", ".join(
@@ -491,7 +537,7 @@ def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
                 for word, flag in (
                     ("not tested", not assembly.is_tested[place]),
                     ("join", assembly.is_join[place]),
-                    ("moved: local EA is the rule's", assembly.is_moved[place]),
+                    ("moved", assembly.is_moved[place]),
                 )
                 if flag
             ),
@@ -499,7 +545,12 @@ def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
     output.show(table)
     for number, state in enumerate(deployed.working, start=1):
         _show_working(number, state, output)
-    output.say_each("note", (*deployed.notes, *line.curve.notes, *line.source.notes))
+    notes = [
+        f"working.{number}: {state.note}"
+        for number, state in enumerate(deployed.working, start=1)
+        if state.note
+    ]
+    output.say_each("note", (*notes, *deployed.notes, *line.curve.notes, *line.source.notes))
     output.say_each("source", (line.splices, *line.source.sources))
 
 
@@ -510,6 +561,24 @@ def _pair(values: Any, *, equal: bool) -> str:
     return f"{short(float(values.max()), 4)}, {short(float(values.min()), 4)}"
 
 
+def _stiffness_in_words(state: WorkingState, output: CommandOutput) -> str:
+    """EA over the cycle with its interval, and the tests that it is from."""
+    force, per_newton = output.unit("N")
+    span = "the cycle" if state.level.tension_amplitude else "+- 5 % of the length"
+    used = state.used
+    if not used:
+        return f"no EA: no test covers {LEAST_COVER:.0%} of {span}"
+    tests = ", ".join(f"{one.words} {per_newton * one.spring_constant:.4g}" for one in used)
+    nearest = f", of which {state.nearest} is nearest in mean and amplitude" if used[1:] else ""
+    return (
+        f"EA {per_newton * state.secant_spring_constant:.4g} {force} over {span}, "
+        f"{per_newton * state.least_spring_constant:.4g} to "
+        f"{per_newton * state.greatest_spring_constant:.4g} by the tests that cover it ({tests}, "
+        f"each from {per_newton * state.common_low:.4g} to "
+        f"{per_newton * state.common_high:.4g} {force}{nearest})"
+    )
+
+
 def _show_working(number: int, state: WorkingState, output: CommandOutput) -> None:
     force, per_newton = output.unit("N")
     length, per_metre = output.unit("m")
@@ -518,23 +587,15 @@ def _show_working(number: int, state: WorkingState, output: CommandOutput) -> No
         f"working.{number}: {per_newton * float(point.mean_tension):.4g} {force} "
         f"+- {per_newton * _KNOWN * state.standard_uncertainty:.3g} (95 %, k = {_KNOWN:.2f}) at "
         f"{per_metre * float(point.total_length):.5g} {length}, strain of a tether "
-        f"{100 * float(state.strain.max()):.4g} %, EA "
-        f"{per_newton * state.secant_spring_constant:.4g} {force} over "
+        f"{100 * float(state.strain.max()):.4g} %, {_stiffness_in_words(state, output)}"
     )
-    if not state.level.tension_amplitude:
-        rule = " by the rule of rising, DOUBTFUL" if state.is_moved else ""
-        told += (
-            f"+- 5 % of the length, locally "
-            f"{per_newton * float(point.apparent_spring_constant):.4g} {force}{rule}"
-        )
-    else:
-        told += (
-            "the cycle"
-            f"; cycles {per_newton * float(point.minimum_tension):.4g} to "
-            f"{per_newton * float(point.peak_tension):.4g} {force}, "
-            f"{per_metre * float(point.minimum_length):.5g} to "
-            f"{per_metre * float(point.peak_length):.5g} {length}"
-        )
+    if state.level.tension_amplitude:
+        told += f"; cycles {per_newton * state.low:.4g} to {per_newton * state.high:.4g} {force}"
+        if np.isfinite(state.secant_spring_constant):
+            told += (
+                f", {per_metre * state.minimum_length:.5g} to "
+                f"{per_metre * state.peak_length:.5g} {length}"
+            )
     share = float(point.peak_share.max())
     told += (
         f"; a tether carries up to {per_newton * float(point.peak_tether_tension.max()):.4g} "

@@ -14,7 +14,8 @@ the length of every part in line follows from the tension:
 
 Length is explicit in tension part by part, so that the curve is a table and nothing is iterated.
 
-A deployed assembly at work: stiffness, load of each tether, and whether one goes slack.
+A deployed assembly at work: length and load of each tether on the curve, EA and stroke by the tests
+that cover the cycle, and whether a tether goes slack.
 
 A deployed assembly from its tethers to its curve, its stiffness and its work.
 
@@ -40,7 +41,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.lines.composite import CompositeCurve, PieceSource
+from reduction.lines.composite import CompositeCurve, PieceSource, curve_of_piece
+from reduction.lines.cycle_stiffness import (
+    LEAST_COVER,
+    CycleStiffness,
+    LoadedTest,
+    stiffness_of_cycles,
+)
 from reduction.lines.line_lookup import cycle_loads
 from reduction.record.arrays import as_positive
 from reduction.record.contributions import (
@@ -461,10 +468,6 @@ class _WorkingPoint:
     peak_tension: Floats
     minimum_tension: Floats
     total_length: Floats
-    peak_length: Floats
-    minimum_length: Floats
-    stiffness: Floats
-    apparent_spring_constant: Floats
     tether_tension: Floats
     peak_tether_tension: Floats
     minimum_tether_tension: Floats
@@ -481,9 +484,7 @@ def _working_point(
     *,
     rated_break_strength: float = float("nan"),
 ) -> _WorkingPoint:
-    r"""Stiffness and loads of an assembly under cycles of tension.
-
-    .. math:: EA = L_0 \, \frac{2 A}{L(T + A) - L(T - A)}
+    """Length and loads of an assembly under cycles of tension.
 
     Notes
     -----
@@ -501,8 +502,8 @@ def _working_point(
     >>> curve = _composite_curve([CurvePiece("T", "static", "ascending", at, 100 * at, 0 * at)])
     >>> model = StrainModel("T", "gauge-length", {"reference_position": 1.0, "gauge_length": 1.0})
     >>> point = _working_point(_assemble([_Tether(curve, model)]), 100.0, 40.0)
-    >>> print(point.total_length.round(6), point.apparent_spring_constant.round(6))
-    2.0 100.0
+    >>> print(point.total_length.round(6), point.peak_tether_tension.round(6))
+    2.0 [140.]
     """
     cycle = cycle_loads(mean_tension, tension_amplitude, rated_break_strength=float("nan"))
     peak, least = cycle.peak_tension, cycle.minimum_tension
@@ -524,33 +525,20 @@ def _working_point(
             hint="A slack tether tangles and is cut: more stretch, less amplitude, or equal "
             "lengths.",
         )
-    long, short = assembly.length_at(peak), assembly.length_at(least)
-    tangent = np.interp(
-        mean, assembly.tension, np.gradient(assembly.tension, assembly.total_length)
-    )
-    # a cycle of less than this is a point
-    apart = long - short > 1e-6 * long
-    stiffness = np.where(apart, (peak - least) / np.where(apart, long - short, 1.0), tangent)
-    ends = [
-        assembly.is_tested[np.clip(np.searchsorted(assembly.tension, one), 0, None)]
-        for one in (peak, least)
-    ]
+    low, high = (np.searchsorted(assembly.tension, one) for one in (least, peak))
+    n_untested = np.concatenate([[0], np.cumsum(~assembly.is_tested)])
     return _WorkingPoint(
         mean_tension=mean,
         peak_tension=peak,
         minimum_tension=least,
         total_length=assembly.length_at(mean),
-        peak_length=long,
-        minimum_length=short,
-        stiffness=stiffness,
-        apparent_spring_constant=stiffness * assembly.total_length[0],
         tether_tension=loads,
         peak_tether_tension=of_peak,
         minimum_tether_tension=of_least,
         load_share=loads / mean,
         peak_share=of_peak / rated_break_strength,
         minimum_share=of_least / rated_break_strength,
-        is_tested=ends[0] & ends[1],
+        is_tested=n_untested[high + 1] == n_untested[low],
     )
 
 
@@ -650,17 +638,69 @@ class WorkingLevel:
 
 
 @dataclass(frozen=True)
+class TestStiffness:
+    """What one test says of a cycle.
+
+    Parameters
+    ----------
+    words : str
+        Which test, and which part of it.
+    low, high : float
+        Loads of the assembly between which it was tested. [N]
+    covered : float
+        Share of the cycle that these are. [1]
+    spring_constant, standard_uncertainty : float
+        EA over the loads that all tests which count have in common; NaN where it does not. [N]
+    """
+
+    words: str
+    low: float
+    high: float
+    covered: float
+    spring_constant: float
+    standard_uncertainty: float
+
+
+@dataclass(frozen=True)
 @read_only_arrays
 class WorkingState:
     """An assembly at one working level.
 
-    ``strain`` is that of the free length of each tether, shape (n_tethers,) [1];
-    ``standard_uncertainty`` that of the tension at this length [N], of which
-    ``random_standard_uncertainty`` is of the curve by itself and ``shared_standard_uncertainty`` of
-    what its tests share with others [N]; ``secant_spring_constant`` is
-    EA over the cycle, or over 5 % of the length to each side where it has no amplitude [N];
-    ``is_moved`` is of the tangent there; ``sharing`` is there where the lengths have a
-    tolerance.
+    Mean length and loads are those of the curve, EA and stroke those of the tests.
+
+    Parameters
+    ----------
+    level : WorkingLevel
+        As asked.
+    point : _WorkingPoint
+        On the curve.
+    strain : ndarray, shape (n_tethers,)
+        Of the free length of each tether. [1]
+    standard_uncertainty, random_standard_uncertainty, shared_standard_uncertainty : float
+        Of the tension at this length: both parts, of the curve by itself, and of what its tests
+        share with others. [N]
+    low, high : float
+        Ends of the cycle: as asked, or 5 % of the length to each side without an amplitude. [N]
+    secant_spring_constant, least_spring_constant, greatest_spring_constant : float
+        EA over the cycle, and the ends of its interval; NaN where no test covers it. [N]
+    stiffness : float
+        EA over the length at which the assembly goes slack. [N m-1]
+    peak_length, minimum_length : float
+        Of the cycle, half the stroke to each side of the mean; NaN where EA is. [m]
+    common_low, common_high : float
+        Loads that the tests which cover the cycle have in common. [N]
+    curve_spring_constant : float
+        EA of the curve between these loads, which joins tests. [N]
+    tests : tuple of TestStiffness
+        Of each piece of the curve.
+    nearest : str
+        The test that is nearest in mean and amplitude, of those that count; empty without one.
+    doubt : str
+        Why the curve is in doubt inside the asked cycle; else empty.
+    note : str
+        The same of a level without an amplitude.
+    sharing : _LoadSharing or None
+        Where the lengths have a tolerance.
     """
 
     level: WorkingLevel
@@ -669,23 +709,52 @@ class WorkingState:
     standard_uncertainty: float
     random_standard_uncertainty: float
     shared_standard_uncertainty: float
+    low: float
+    high: float
     secant_spring_constant: float
-    is_moved: bool
+    least_spring_constant: float
+    greatest_spring_constant: float
+    stiffness: float
+    peak_length: float
+    minimum_length: float
+    common_low: float
+    common_high: float
+    curve_spring_constant: float
+    tests: tuple[TestStiffness, ...]
+    nearest: str
+    doubt: str
+    note: str
     sharing: _LoadSharing | None
+
+    @property
+    def used(self) -> tuple[TestStiffness, ...]:
+        """Tests whose EA count."""
+        return tuple(one for one in self.tests if np.isfinite(one.spring_constant))
 
 
 @dataclass(frozen=True)
 @read_only_arrays
 class _DeployedAssembly:
-    """An assembly and its work; arrays have the shape (n,) of the nodes of its curve."""
+    """An assembly and its work; arrays have the shape (n,) of the nodes of its curve.
+
+    ``stiffness`` is of cycles of 5 % of the length to each side of a node, ``tests`` are what it
+    is from.
+    """
 
     assembly: _AssemblyCurve
     strain: Floats
-    apparent_spring_constant: Floats
-    secant_spring_constant: Floats
+    stiffness: CycleStiffness
+    tests: tuple[LoadedTest, ...]
     free_length: tuple[float, ...]
     working: tuple[WorkingState, ...]
     notes: tuple[str, ...]
+
+    @property
+    def nearest_test(self) -> tuple[str, ...]:
+        """Test whose EA is the nearest at each node; empty where none covers the cycle."""
+        return tuple(
+            self.tests[place].words if place >= 0 else "" for place in self.stiffness.nearest
+        )
 
 
 @dataclass(frozen=True)
@@ -737,10 +806,13 @@ def deploy(
     assembly = _assemble(tethers, parts)
     slack = float(assembly.total_length[0])
     lengths = tuple(one.model.relaxed_length for one in tethers)
+    tests = _loaded_tests(tethers, parts)
     states = []
     for number, level in enumerate(levels, start=1):
         try:
-            states.append(_state(assembly, tether, level, parts, tolerance, rated_break_strength))
+            states.append(
+                _state(assembly, tests, tether, level, parts, tolerance, rated_break_strength)
+            )
         except DataError as error:
             raise DataError(
                 f"working.{number}: {error.problem}", found=error.found, needed=error.needed,
@@ -749,24 +821,61 @@ def deploy(
     return _DeployedAssembly(
         assembly=assembly,
         strain=assembly.total_length / slack - 1,
-        apparent_spring_constant=slack * np.gradient(assembly.tension, assembly.total_length),
-        secant_spring_constant=_secant(assembly, assembly.total_length),
+        stiffness=stiffness_of_cycles(
+            tests, *_span_loads(assembly, assembly.total_length), slack_length=slack
+        ),
+        tests=tests,
         free_length=lengths,
         working=tuple(states),
         notes=_notes(assembly, model),
     )
 
 
-def _secant(assembly: _AssemblyCurve, length: Floats) -> Floats:
-    """EA over a span about a length, cut off at the ends of the curve. [N]."""
+def _loaded_tests(
+    tethers: Sequence[_Tether], parts: Sequence[SeriesPart]
+) -> tuple[LoadedTest, ...]:
+    """The assembly as each test alone would have it, over the loads of that test.
+
+    Notes
+    -----
+    A test is left out where tethers are so unequal that no length keeps all of them inside it.
+    """
+    found = []
+    for piece in tethers[0].curve.pieces:
+        own = curve_of_piece(piece)
+        try:
+            assembly = _assemble([replace(one, curve=own) for one in tethers], parts)
+        except DataError:
+            continue
+        first = piece.strain[0] * (1 - _APART)
+        inside = np.flatnonzero((assembly.tether_strain >= first).all(axis=0))
+        if inside.size < 2:
+            continue
+        found.append(
+            LoadedTest(
+                words=piece.words,
+                kind=piece.kind,
+                length=assembly.total_length[inside],
+                tension=assembly.tension[inside],
+                random_standard_uncertainty=assembly.random_standard_uncertainty[inside],
+                contribution=assembly.contribution[:, inside],
+                low=float(assembly.tension[inside[0]]),
+                high=float(assembly.tension[-1]),
+            )
+        )
+    return tuple(found)
+
+
+def _span_loads(assembly: _AssemblyCurve, length: Floats) -> tuple[Floats, Floats]:
+    """Tensions at 5 % of a length to each side of it, cut off at the ends of the curve. [N]."""
     low = np.maximum((1 - _SPAN) * length, assembly.total_length[0])
     high = np.minimum((1 + _SPAN) * length, assembly.total_length[-1])
-    rise = assembly.tension_at(high) - assembly.tension_at(low)
-    return np.asarray(assembly.total_length[0] * rise / (high - low))
+    return assembly.tension_at(low), assembly.tension_at(high)
 
 
 def _state(
     assembly: _AssemblyCurve,
+    tests: Sequence[LoadedTest],
     tether: _Tether,
     level: WorkingLevel,
     parts: Sequence[SeriesPart],
@@ -787,8 +896,33 @@ def _state(
             tolerance=tolerance,
             parts=parts,
         )
-    at = float(point.total_length)
+    at, slack = float(point.total_length), float(assembly.total_length[0])
     both, random, shared = assembly.uncertainty_at(at)
+    has_cycle = level.tension_amplitude > 0
+    low, high = (
+        (float(point.minimum_tension), float(point.peak_tension))
+        if has_cycle
+        else (float(one) for one in _span_loads(assembly, np.array(at)))
+    )
+    found = stiffness_of_cycles(tests, low, high, slack_length=slack)
+    said = tuple(
+        TestStiffness(
+            one.words, one.low, one.high, float(found.covered[place, 0]),
+            float(found.test_spring_constant[place, 0]),
+            float(found.test_standard_uncertainty[place, 0]),
+        )
+        for place, one in enumerate(tests)
+    )  # fmt: skip
+    value, least, greatest, common_low, common_high = (
+        float(one[0])
+        for one in (found.spring_constant, found.least, found.greatest, found.low, found.high)
+    )
+    joined = _curve_spring_constant(assembly, common_low, common_high)
+    doubts = _doubts(said, joined, least, greatest)
+    half = slack * level.tension_amplitude / value
+    if has_cycle and not point.is_tested:
+        doubts = ("no test reaches a part of the cycle", *doubts)
+    nearest = int(found.nearest[0])
     return WorkingState(
         level=level,
         point=point,
@@ -798,20 +932,57 @@ def _state(
         standard_uncertainty=both,
         random_standard_uncertainty=random,
         shared_standard_uncertainty=shared,
-        secant_spring_constant=(
-            float(point.apparent_spring_constant)
-            if level.tension_amplitude
-            else float(_secant(assembly, np.array(at)))
-        ),
-        is_moved=bool(assembly.is_moved[_node(assembly, at)]),
+        low=low,
+        high=high,
+        secant_spring_constant=value,
+        least_spring_constant=least,
+        greatest_spring_constant=greatest,
+        stiffness=value / slack,
+        peak_length=at + half,
+        minimum_length=at - half,
+        common_low=common_low,
+        common_high=common_high,
+        curve_spring_constant=joined,
+        tests=said,
+        nearest=tests[nearest].words if nearest >= 0 else "",
+        doubt="; ".join(doubts) if has_cycle else "",
+        note="" if has_cycle else "; ".join(doubts),
         sharing=sharing,
     )
 
 
-def _node(assembly: _AssemblyCurve, length: float) -> int:
-    """The node at a length, or the next one above: flags are of the way to it."""
-    place = int(np.searchsorted(assembly.total_length, length))
-    return min(place, assembly.total_length.size - 1)
+def _curve_spring_constant(assembly: _AssemblyCurve, low: float, high: float) -> float:
+    """EA of the curve between two loads, NaN where there are none. [N]."""
+    short, long = assembly.length_at([low, high])
+    return float(assembly.total_length[0] * (high - low) / (long - short))
+
+
+_NEAREST_NAMED = 3
+
+_LITTLE = 0.1
+"""Share of an EA by which new lines of one kind differ (CG-D-39-80, sec. 4.4.1)."""
+
+
+def _doubts(
+    tests: Sequence[TestStiffness], joined: float, least: float, greatest: float
+) -> tuple[str, ...]:
+    """Why no EA is known of a cycle, or the curve does not have that of its tests."""
+    if not np.isfinite(least):
+        nearest = sorted(tests, key=lambda one: -one.covered)[:_NEAREST_NAMED]
+        names = ", ".join(f"{one.words} {one.covered:.0%}" for one in nearest if one.covered > 0)
+        return (
+            f"no test covers {LEAST_COVER:.0%} of the cycle, so that no EA is known: "
+            + (f"of its loads are covered {names}" if names else "no test reaches it"),
+        )
+    if (1 - _LITTLE) * least <= joined <= (1 + _LITTLE) * greatest:
+        return ()
+    names = " and ".join(one.words for one in tests if np.isfinite(one.spring_constant))
+    nearer = least if joined < least else greatest
+    return (
+        f"over the loads of {names} the curve, which joins tests that are not alike, has "
+        f"{joined / nearer:.3g} of the {'least' if joined < least else 'greatest'} EA that the "
+        "tests allow: take its mean, not its slope",
+    )
 
 
 def _tension(assembly: _AssemblyCurve, level: WorkingLevel) -> float:

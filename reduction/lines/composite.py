@@ -868,6 +868,8 @@ class CompositeCurve:
         has two; NaN where none has. [1]
     piece_names, piece_words : tuple of str
         By index: its test, and its test with its kind.
+    pieces : tuple of CurvePiece
+        By the same index: what the curve is made of.
     doubt : str
         Where the curve is farther from a piece that has a say than twice its uncertainty and 3 % of
         the greatest tension, and how far; else empty.
@@ -889,6 +891,7 @@ class CompositeCurve:
     between_pieces: float
     piece_names: tuple[str, ...]
     piece_words: tuple[str, ...]
+    pieces: tuple[CurvePiece, ...] = ()
     doubt: str = ""
     notes: tuple[str, ...] = field(default=())
 
@@ -997,6 +1000,7 @@ def _composite_curve(
         ),
         piece_names=tuple(one.name for one in used),
         piece_words=tuple(one.words for one in used),
+        pieces=tuple(used),
         doubt=_quality_warning(blend),
         notes=_notes_of(used, rule, blend, moved),
     )
@@ -1120,6 +1124,11 @@ def used_of(source: PieceSource, curve: CompositeCurve) -> PieceSource:
         sources=tuple(text for text in source.sources if text not in left),
         notes=(*source.notes, f"of other kinds, and not used: {', '.join(left.values())}"),
     )
+
+
+def curve_of_piece(piece: CurvePiece) -> CompositeCurve:
+    """One piece alone as a curve from zero."""
+    return _composite_curve((piece,), rule=CompositeRule(precedence=(piece.kind,)))
 
 
 def compose(source: PieceSource, rule: CompositeRule) -> CompositeCurve:

@@ -331,6 +331,7 @@ def _rising(strain: Floats, tension: Floats) -> dict[str, Floats]:
 def assembly_table(line: DeployedLine) -> ValueTable:
     """Return every node of an assembly: length, tension, stiffness, load of each tether."""
     deployed, assembly = line.deployed, line.deployed.assembly
+    stiffness = deployed.stiffness
     columns = [
         TableColumn("total_length", "m", "end to end", np.array(assembly.total_length)),
         TableColumn("tension", "N", "of the assembly", np.array(assembly.tension)),
@@ -340,12 +341,20 @@ def assembly_table(line: DeployedLine) -> ValueTable:
             np.array(deployed.strain),
         ),
         TableColumn(
-            "apparent_spring_constant", "N", "EA, tangent, over that length",
-            np.array(deployed.apparent_spring_constant),
+            "secant_spring_constant", "N", "EA over that length, of a cycle of 5 % of the length "
+            "there to each side, by the tests that cover it", np.array(stiffness.spring_constant),
         ),
         TableColumn(
-            "secant_spring_constant", "N", "EA over 5 % of the length there to each side",
-            np.array(deployed.secant_spring_constant),
+            "least_spring_constant", "N", "least EA of these tests, 95 %",
+            np.array(stiffness.least),
+        ),
+        TableColumn(
+            "greatest_spring_constant", "N", "greatest EA of these tests, 95 %",
+            np.array(stiffness.greatest),
+        ),
+        TableColumn(
+            "nearest_test", "", "of these, the nearest to the cycle in mean and amplitude",
+            np.array(deployed.nearest_test),
         ),
         TableColumn("tether_length", "m", "thimble to thimble", np.array(assembly.tether_length)),
     ]  # fmt: skip
@@ -373,7 +382,7 @@ def assembly_table(line: DeployedLine) -> ValueTable:
     columns += [
         TableColumn("is_join", "", "pieces of a curve hand over", np.array(assembly.is_join)),
         TableColumn(
-            "is_moved", "", "a curve was made to rise: the tangent is that of the rule",
+            "is_moved", "", "a curve was made to rise: its slope is that of the rule",
             np.array(assembly.is_moved),
         ),
     ]  # fmt: skip

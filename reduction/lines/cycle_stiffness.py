@@ -1,0 +1,218 @@
+r"""EA of a cycle of tension, from the tests that cover it.
+
+.. math:: EA_i = L_0 \, \frac{T_2 - T_1}{L_i(T_2) - L_i(T_1)}, \qquad
+    EA = \frac{\sum_i EA_i / d_i^2}{\sum_i 1 / d_i^2}, \qquad
+    d_i^2 = (\bar T_i - \bar T)^2 + (A_i - A)^2
+
+T_1 and T_2 are the ends of the loads that all tests which cover the cycle have in common, and d_i
+is how far the mean and the amplitude of test i are from those of the cycle [1]_.  The interval is
+from the least EA_i less its expanded uncertainty to the greatest one with it.
+
+A curve that joins tests in unlike states keeps the tension continuous, and has the stiffness of
+none of them where they hand over: its slope is not used.
+
+References
+----------
+.. [1] D. Shepard, "A two-dimensional interpolation function for irregularly-spaced data," Proc.
+   23rd ACM National Conf., 1968, pp. 517-524 (weights by the inverse square of the distance).
+.. [2] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
+   in measurement," 5.1, 5.2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reduction.record.contributions import coverage_factor
+from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
+
+LEAST_COVER = 0.7
+"""Share of the loads of a cycle that a test has to reach for its EA to count. [1]"""
+
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class LoadedTest:
+    """Length of a line against its tension by one test alone; arrays have the shape (n,).
+
+    Parameters
+    ----------
+    words : str
+        Which test, and which part of it.
+    kind : str
+        Of the piece.
+    length, tension : ndarray, shape (n,)
+        Both rising. [m], [N]
+    random_standard_uncertainty : ndarray, shape (n,)
+        Of the tension at one length. [N]
+    contribution : ndarray, shape (n_components, n)
+        What each error that tests share adds to the tension at one length, signed. [N]
+    low, high : float
+        Loads between which it was tested. [N]
+    """
+
+    words: str
+    kind: str
+    length: Floats
+    tension: Floats
+    random_standard_uncertainty: Floats
+    contribution: Floats
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class CycleStiffness:
+    """EA of cycles; arrays have the shape (n,) of the cycles or (n_tests, n), NaN where none is.
+
+    Parameters
+    ----------
+    spring_constant : ndarray, shape (n,)
+        EA. [N]
+    least, greatest : ndarray, shape (n,)
+        Ends of its interval: all tests with their expanded uncertainties, 95 %. [N]
+    low, high : ndarray, shape (n,)
+        Loads that the tests have in common. [N]
+    nearest : ndarray of int, shape (n,)
+        Test that is nearest in mean and amplitude, of those that count; -1 where none does.
+    covered : ndarray, shape (n_tests, n)
+        Share of the cycle that each test reaches. [1]
+    test_spring_constant, test_standard_uncertainty : ndarray, shape (n_tests, n)
+        Of each test that counts. [N]
+    """
+
+    spring_constant: Floats
+    least: Floats
+    greatest: Floats
+    low: Floats
+    high: Floats
+    nearest: Integers
+    covered: Floats
+    test_spring_constant: Floats
+    test_standard_uncertainty: Floats
+
+
+def stiffness_of_cycles(
+    tests: Sequence[LoadedTest], low: ArrayLike, high: ArrayLike, *, slack_length: float
+) -> CycleStiffness:
+    r"""EA of cycles of tension by the tests that cover at least 70 % of each.
+
+    Parameters
+    ----------
+    tests : sequence of LoadedTest
+        Those of a kind that goes before stand first.
+    low, high : array_like, shape (n,)
+        Valley and peak of each cycle. [N]
+    slack_length : float
+        Over which strain is taken. [m]
+
+    Returns
+    -------
+    stiffness : CycleStiffness
+        EA with its interval, and of each test. [SI]
+
+    Raises
+    ------
+    ValueError
+        If the shapes of the ends differ.
+
+    Notes
+    -----
+    Tests of one kind count together: where loops cover a cycle, static tests and first loadings,
+    which are slower or of another state, have no say.  The chord of a test is taken at its own
+    lengths: what its tension is wrong by at both ends moves its EA,
+
+    .. math:: u^2(EA_i) = \Bigl(\frac{EA_i}{T_2 - T_1}\Bigr)^2
+        \Bigl(u_1^2 + u_2^2 + \sum_k (c_{k2} - c_{k1})^2\Bigr)
+
+    with the random part u at each end and the contribution c_k of each shared error ([2]_).  Two
+    tests that reach 70 % of a cycle have at least 40 % of it in common.
+
+    References
+    ----------
+    .. [1] D. Shepard, 1968, as `reduction.lines.cycle_stiffness`.
+    .. [2] JCGM 100:2008, 5.1, 5.2.
+
+    Examples
+    --------
+    Two springs of 100 and 300 N per unit strain, 1 m long, between 60 and 140 N:
+
+    >>> at = np.linspace(1.0, 3.0, 21)
+    >>> springs = [LoadedTest(f"T-{ea}", "cyclic", at, ea * (at - 1), 0 * at, np.empty((0, 21)),
+    ...     50.0, 150.0) for ea in (100, 300)]
+    >>> found = stiffness_of_cycles(springs, [60.0, 10.0], [140.0, 90.0], slack_length=1.0)
+    >>> print(found.spring_constant.round(6), found.least.round(6), found.greatest.round(6))
+    [200.  nan] [100.  nan] [300.  nan]
+    """
+    valley, peak = np.atleast_1d(np.asarray(low, float)), np.atleast_1d(np.asarray(high, float))
+    shape = (len(tests), valley.size)
+    ends = np.array([(one.low, one.high) for one in tests]).reshape(-1, 2, 1)
+    begin, end = np.maximum(valley, ends[:, 0]), np.minimum(peak, ends[:, 1])
+    with np.errstate(invalid="ignore", divide="ignore"):
+        covered = np.nan_to_num(np.maximum(end - begin, 0.0) / (peak - valley))
+    is_used = _first_kind_that_covers(tests, covered >= LEAST_COVER - _ROUNDING)
+    is_known = is_used.any(axis=0)
+    first = np.where(is_used, begin, -np.inf).max(axis=0, initial=-np.inf)
+    last = np.where(is_used, end, np.inf).min(axis=0, initial=np.inf)
+    first, last = np.where(is_known, first, np.nan), np.where(is_known, last, np.nan)
+    spring, spread = np.full(shape, np.nan), np.full(shape, np.nan)
+    for place, one in enumerate(tests):
+        rise = last - first
+        with np.errstate(divide="ignore"):
+            by = slack_length / _between(one.length, one, first, last)
+        errors = [
+            *(np.interp(at, one.tension, one.random_standard_uncertainty) for at in (first, last)),
+            *(_between(row, one, first, last) for row in one.contribution),
+        ]
+        spring[place] = np.where(is_used[place], rise * by, np.nan)
+        spread[place] = np.where(is_used[place], np.linalg.norm(errors, axis=0) * by, np.nan)
+    apart = _distance(ends, valley, peak)
+    weight = np.where(is_used, apart**-2, 0.0)
+    factor = float(coverage_factor(np.inf))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        value = np.nansum(weight * spring, axis=0) / weight.sum(axis=0)
+    low_end = np.where(is_used, spring - factor * spread, np.inf).min(axis=0, initial=np.inf)
+    high_end = np.where(is_used, spring + factor * spread, -np.inf).max(axis=0, initial=-np.inf)
+    nearest = (
+        np.where(is_used, apart, np.inf).argmin(axis=0) if tests else np.zeros(valley.size, int)
+    )
+    return CycleStiffness(
+        spring_constant=value,
+        least=np.where(is_known, np.maximum(low_end, 0.0), np.nan),
+        greatest=np.where(is_known, high_end, np.nan),
+        low=first,
+        high=last,
+        nearest=np.where(is_known, nearest, -1),
+        covered=covered,
+        test_spring_constant=spring,
+        test_standard_uncertainty=spread,
+    )
+
+
+def _first_kind_that_covers(tests: Sequence[LoadedTest], is_enough: Bools) -> Bools:
+    """Tests that cover a cycle, of the first kind that has one, shape (n_tests, n)."""
+    is_used = np.zeros_like(is_enough)
+    for kind in dict.fromkeys(one.kind for one in tests):
+        own = np.array([one.kind == kind for one in tests])[:, None] & is_enough
+        is_used |= own & ~is_used.any(axis=0)
+    return is_used
+
+
+def _between(values: Floats, test: LoadedTest, low: Floats, high: Floats) -> Floats:
+    """Difference of values along a test between two loads."""
+    first, last = (np.interp(at, test.tension, values) for at in (low, high))
+    return np.asarray(last - first)
+
+
+def _distance(ends: Floats, valley: Floats, peak: Floats) -> Floats:
+    """How far tests are from cycles in mean and amplitude, shape (n_tests, n). [N]."""
+    mean = (ends[:, 0] + ends[:, 1] - valley - peak) / 2
+    amplitude = (ends[:, 1] - ends[:, 0] - peak + valley) / 2
+    return np.asarray(np.maximum(np.hypot(mean, amplitude), _ROUNDING * (valley + peak)))
