@@ -337,9 +337,9 @@ def _assembly_document(line: DeployedLine) -> dict[str, Any]:
             "stiffness": "N m-1",
         },
         "working": [_state_document(state) for state in deployed.working],
-        "doubt": line.curve.doubt,
+        "doubts": list(line.doubts),
         "sources": [line.splices, *line.source.sources],
-        "notes": [*deployed.notes, *line.curve.notes, *line.source.notes],
+        "notes": list(line.notes),
         "synthetic": line.source.is_synthetic,
     }  # fmt: skip
 
@@ -488,13 +488,10 @@ def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
     force, per_newton = output.unit("N")
     length, per_metre = output.unit("m")
     made = ", SYNTHETIC: nothing was tested" if line.source.is_synthetic else ""
-    doubt = f"; DOUBTFUL: {line.curve.doubt}" if line.curve.doubt else ""
-    output.say(f"assembly {line.name}: {line.words}{made}{doubt}")
-    _end_in_doubt(line.curve, output)
-    for number, state in enumerate(deployed.working, start=1):
-        if state.doubt:
-            output.say(f"working.{number}: DOUBTFUL: {state.doubt}")
-            output.raise_status(DataError.exit_status)
+    output.say(f"assembly {line.name}: {line.words}{made}")
+    output.say_each("DOUBTFUL", line.doubts)
+    if line.doubts:
+        output.raise_status(DataError.exit_status)
     slack = assembly.slack_length
     output.say(
         f"slack below {per_metre * float(assembly.total_length[0]):.5g} {length}"
@@ -545,12 +542,7 @@ def _show_assembly(line: DeployedLine, output: CommandOutput) -> None:
     output.show(table)
     for number, state in enumerate(deployed.working, start=1):
         _show_working(number, state, output)
-    notes = [
-        f"working.{number}: {state.note}"
-        for number, state in enumerate(deployed.working, start=1)
-        if state.note
-    ]
-    output.say_each("note", (*notes, *deployed.notes, *line.curve.notes, *line.source.notes))
+    output.say_each("note", line.notes)
     output.say_each("source", (line.splices, *line.source.sources))
 
 

@@ -696,9 +696,9 @@ class WorkingState:
     nearest : str
         The test that is nearest in mean and amplitude, of those that count; empty without one.
     doubt : str
-        Why the curve is in doubt inside the asked cycle; else empty.
+        Why the curve is in doubt at what was asked; else empty.
     note : str
-        The same of a level without an amplitude.
+        What of its slope is in doubt where no cycle was asked.
     sharing : _LoadSharing or None
         Where the lengths have a tolerance.
     """
@@ -775,6 +775,24 @@ class DeployedLine:
     def is_equal(self) -> bool:
         """Whether all tethers carry the same."""
         return bool(np.ptp(self.deployed.assembly.slack_length) == 0)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Why the curve is in doubt inside the asked cycles; without any level, anywhere."""
+        named = enumerate(self.deployed.working, start=1)
+        found = tuple(f"working.{number}: {state.doubt}" for number, state in named if state.doubt)
+        if self.deployed.working or not self.curve.doubt:
+            return found
+        return (self.curve.doubt,)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What else to know, of the levels first."""
+        named = enumerate(self.deployed.working, start=1)
+        found = [f"working.{number}: {state.note}" for number, state in named if state.note]
+        if self.curve.doubt and not any(self.curve.doubt in one for one in self.doubts):
+            found.append(f"elsewhere DOUBTFUL: {self.curve.doubt}")
+        return (*found, *self.deployed.notes, *self.curve.notes, *self.source.notes)
 
     @property
     def words(self) -> str:
@@ -918,10 +936,14 @@ def _state(
         for one in (found.spring_constant, found.least, found.greatest, found.low, found.high)
     )
     joined = _curve_spring_constant(assembly, common_low, common_high)
-    doubts = _doubts(said, joined, least, greatest)
     half = slack * level.tension_amplitude / value
-    if has_cycle and not point.is_tested:
-        doubts = ("no test reaches a part of the cycle", *doubts)
+    of_slope = _doubts_of_slope(said, joined, least, greatest)
+    of_mean = [tether.curve.doubt] if _is_far(assembly, tether.curve, low, high) else []
+    if has_cycle:
+        gap = [] if point.is_tested else ["no test reaches a part of the cycle"]
+        doubts, notes = [*gap, *of_slope, *of_mean], []
+    else:
+        doubts, notes = of_mean, of_slope
     nearest = int(found.nearest[0])
     return WorkingState(
         level=level,
@@ -945,9 +967,18 @@ def _state(
         curve_spring_constant=joined,
         tests=said,
         nearest=tests[nearest].words if nearest >= 0 else "",
-        doubt="; ".join(doubts) if has_cycle else "",
-        note="" if has_cycle else "; ".join(doubts),
+        doubt="; ".join(doubts),
+        note="; ".join(notes),
         sharing=sharing,
+    )
+
+
+def _is_far(assembly: _AssemblyCurve, curve: CompositeCurve, low: float, high: float) -> bool:
+    """Whether the curve is in doubt at a strain that a tether has between two tensions."""
+    ends = [np.interp((low, high), assembly.tension, row) for row in assembly.tether_strain]
+    return any(
+        bool(curve.is_doubtful[(curve.strain >= first) & (curve.strain <= last)].any())
+        for first, last in ends
     )
 
 
@@ -963,26 +994,26 @@ _LITTLE = 0.1
 """Share of an EA by which new lines of one kind differ (CG-D-39-80, sec. 4.4.1)."""
 
 
-def _doubts(
+def _doubts_of_slope(
     tests: Sequence[TestStiffness], joined: float, least: float, greatest: float
-) -> tuple[str, ...]:
+) -> list[str]:
     """Why no EA is known of a cycle, or the curve does not have that of its tests."""
     if not np.isfinite(least):
         nearest = sorted(tests, key=lambda one: -one.covered)[:_NEAREST_NAMED]
         names = ", ".join(f"{one.words} {one.covered:.0%}" for one in nearest if one.covered > 0)
-        return (
+        return [
             f"no test covers {LEAST_COVER:.0%} of the cycle, so that no EA is known: "
-            + (f"of its loads are covered {names}" if names else "no test reaches it"),
-        )
+            + (f"nearest are {names}" if names else "no test reaches it")
+        ]
     if (1 - _LITTLE) * least <= joined <= (1 + _LITTLE) * greatest:
-        return ()
+        return []
     names = " and ".join(one.words for one in tests if np.isfinite(one.spring_constant))
     nearer = least if joined < least else greatest
-    return (
+    return [
         f"over the loads of {names} the curve, which joins tests that are not alike, has "
         f"{joined / nearer:.3g} of the {'least' if joined < least else 'greatest'} EA that the "
-        "tests allow: take its mean, not its slope",
-    )
+        "tests allow: take its mean, not its slope"
+    ]
 
 
 def _tension(assembly: _AssemblyCurve, level: WorkingLevel) -> float:

@@ -74,6 +74,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
+from reduction.lines.cycle_stiffness import LoadedTest
 from reduction.quantities.flags import BRANCH_VALUES
 from reduction.quantities.names import BRANCH_NAMES
 from reduction.record.arrays import as_finite, as_increasing, as_same_shape
@@ -738,8 +739,8 @@ _FAR = 2.0
 _LITTLE = 0.03
 
 
-def _quality_warning(blend: _Blend) -> str:
-    """Where the curve is not among its pieces by its own uncertainty, in words.
+def _quality_warning(blend: _Blend) -> tuple[str, Bools]:
+    """Where the curve is not among its pieces by its own uncertainty, in words and by node.
 
     Notes
     -----
@@ -751,20 +752,22 @@ def _quality_warning(blend: _Blend) -> str:
     >>> at = np.array([0.5, 1.0])
     >>> pieces = [CurvePiece("T", "static", "ascending", at, load * at, 0 * at)
     ...     for load in (*[100] * 5, 200)]
-    >>> print(_quality_warning(_blend_pieces(pieces, taper=0.5, least_slope=0.5, n_points=3))[:42])
-    up to 2.24 standard uncertainties from a p
+    >>> blend = _blend_pieces(pieces, taper=0.5, least_slope=0.5, n_points=3)
+    >>> print(_quality_warning(blend)[0][:42])
+    the curve is up to 2.24 standard uncertain
     """
     # near slack a little strain is any share of the tension
     told = blend.farthest > _LITTLE * blend.tension[-1]
     share = told * blend.farthest / np.sqrt(blend.variance_apart + _MOVED * blend.tension**2)
     worst = int(np.argmax(share))
-    if share[worst] <= _FAR:
-        return ""
+    is_far = np.asarray(share > _FAR)
+    if not is_far.any():
+        return "", is_far
     far = float(blend.farthest[worst])
     return (
-        f"up to {share[worst]:.3g} standard uncertainties from a piece: {far:.4g} N "
+        f"the curve is up to {share[worst]:.3g} standard uncertainties from a piece: {far:.4g} N "
         f"({far / blend.tension[worst]:.1%}) at strain {blend.strain[worst]:.4g}"
-    )
+    ), is_far
 
 
 def _notes_of(
@@ -870,6 +873,8 @@ class CompositeCurve:
         By index: its test, and its test with its kind.
     pieces : tuple of CurvePiece
         By the same index: what the curve is made of.
+    is_doubtful : ndarray of bool, shape (n,)
+        Of each node: the curve is in doubt there.
     doubt : str
         Where the curve is farther from a piece that has a say than twice its uncertainty and 3 % of
         the greatest tension, and how far; else empty.
@@ -891,7 +896,8 @@ class CompositeCurve:
     between_pieces: float
     piece_names: tuple[str, ...]
     piece_words: tuple[str, ...]
-    pieces: tuple[CurvePiece, ...] = ()
+    pieces: tuple[CurvePiece, ...]
+    is_doubtful: Bools
     doubt: str = ""
     notes: tuple[str, ...] = field(default=())
 
@@ -971,7 +977,8 @@ def _composite_curve(
     rows = np.pad(blend.contribution, ((0, 0), (1, 0)))
     is_gap = np.concatenate([[True], ~blend.is_covered])
     gaps = np.flatnonzero(is_gap)
-    doubt = _rise_warning(strain, tension, variance, gaps)
+    doubt, is_far = _quality_warning(blend)
+    bend = _rise_warning(strain, tension, variance, gaps)
 
     def with_middles(values: Floats, middle: Floats | float) -> Floats:
         return np.insert(values, gaps + 1, middle)
@@ -979,7 +986,7 @@ def _composite_curve(
     def of_intervals(flags: Bools) -> Bools:
         return np.insert(flags, gaps, flags[gaps])
 
-    random = np.sqrt(with_middles(variance, doubt))
+    random = np.sqrt(with_middles(variance, bend))
     moved_by = np.insert(rows, gaps + 1, (rows[:, gaps] + rows[:, gaps + 1]) / 2, axis=1)
     return CompositeCurve(
         strain=with_middles(strain, (strain[gaps] + strain[gaps + 1]) / 2),
@@ -1001,7 +1008,8 @@ def _composite_curve(
         piece_names=tuple(one.name for one in used),
         piece_words=tuple(one.words for one in used),
         pieces=tuple(used),
-        doubt=_quality_warning(blend),
+        doubt=doubt,
+        is_doubtful=np.insert(np.concatenate([[False], is_far]), gaps + 1, False),
         notes=_notes_of(used, rule, blend, moved),
     )
 
@@ -1129,6 +1137,27 @@ def used_of(source: PieceSource, curve: CompositeCurve) -> PieceSource:
 def curve_of_piece(piece: CurvePiece) -> CompositeCurve:
     """One piece alone as a curve from zero."""
     return _composite_curve((piece,), rule=CompositeRule(precedence=(piece.kind,)))
+
+
+def tests_of_curve(curve: CompositeCurve) -> tuple[LoadedTest, ...]:
+    """Each piece of a curve as a line of its own, 1 m long at zero tension."""
+    found = []
+    for piece in curve.pieces:
+        own = curve_of_piece(piece)
+        inside = own.strain >= piece.strain[0]
+        found.append(
+            LoadedTest(
+                words=piece.words,
+                kind=piece.kind,
+                length=1 + own.strain[inside],
+                tension=own.tension[inside],
+                random_standard_uncertainty=own.random_standard_uncertainty[inside],
+                contribution=own.contribution[:, inside],
+                low=float(own.tension[inside][0]),
+                high=float(own.tension[-1]),
+            )
+        )
+    return tuple(found)
 
 
 def compose(source: PieceSource, rule: CompositeRule) -> CompositeCurve:

@@ -164,15 +164,15 @@ def stiffness_of_cycles(
     first, last = np.where(is_known, first, np.nan), np.where(is_known, last, np.nan)
     spring, spread = np.full(shape, np.nan), np.full(shape, np.nan)
     for place, one in enumerate(tests):
-        rise = last - first
-        with np.errstate(divide="ignore"):
-            by = slack_length / _between(one.length, one, first, last)
+        own = is_used[place]
+        loads = first[own], last[own]
+        rise, by = loads[1] - loads[0], slack_length / _between(one.length, one, *loads)
         errors = [
-            *(np.interp(at, one.tension, one.random_standard_uncertainty) for at in (first, last)),
-            *(_between(row, one, first, last) for row in one.contribution),
+            *(np.interp(at, one.tension, one.random_standard_uncertainty) for at in loads),
+            *(_between(row, one, *loads) for row in one.contribution),
         ]
-        spring[place] = np.where(is_used[place], rise * by, np.nan)
-        spread[place] = np.where(is_used[place], np.linalg.norm(errors, axis=0) * by, np.nan)
+        spring[place, own] = rise * by
+        spread[place, own] = np.linalg.norm(errors, axis=0) * by
     apart = _distance(ends, valley, peak)
     weight = np.where(is_used, apart**-2, 0.0)
     factor = float(coverage_factor(np.inf))

@@ -36,7 +36,8 @@ from reduction.archive.open import reading
 from reduction.archive.variables import stored
 from reduction.lines.archive_pieces import alignment_words, parts_of
 from reduction.lines.assembly import DeployedLine
-from reduction.lines.composite import CompositeCurve, PieceSource, used_of
+from reduction.lines.composite import CompositeCurve, PieceSource, tests_of_curve, used_of
+from reduction.lines.cycle_stiffness import LoadedTest, stiffness_of_cycles
 from reduction.lines.export_dynamics import line_dynamics
 from reduction.lines.export_line import CurveSpread, ExportLine, start_against
 from reduction.lines.export_tables import TableColumn, ValueTable, spread_columns
@@ -390,7 +391,7 @@ def assembly_table(line: DeployedLine) -> ValueTable:
         title=f"{line.name}: {line.words}",
         columns=tuple(columns),
         sources=(line.splices, *line.source.sources),
-        notes=(*deployed.notes, *line.curve.notes, *line.source.notes),
+        notes=(*(f"DOUBTFUL: {doubt}" for doubt in line.doubts), *line.notes),
         is_synthetic=line.source.is_synthetic,
         component=assembly.component,
         contribution=np.array(assembly.contribution),
@@ -436,15 +437,70 @@ def line_from_assembly(line: DeployedLine, **stated: Any) -> ExportLine:
             *origins,
         ),
         notes=(
+            *_stiffness_notes(
+                deployed.tests,
+                assembly.total_length,
+                assembly.tension,
+                {
+                    f"working.{number}": (state.low, state.high)
+                    for number, state in enumerate(deployed.working, start=1)
+                },
+            ),
+            *(f"DOUBTFUL: {doubt}" for doubt in line.doubts),
             f"strain is of the unstretched length of the whole assembly, "
             f"{assembly.total_length[0]:.6g} m: this is the length of the line in the deck",
-            *deployed.notes,
-            *line.curve.notes,
-            *line.source.notes,
+            *line.notes,
         ),
         is_synthetic=line.source.is_synthetic,
         **{"unstretched_length": float(assembly.total_length[0])} | given,
     )
+
+
+_ON_GRID = 1e-3  # of an EA: what a grid of strain moves of it
+
+
+def _stiffness_notes(
+    tests: Sequence[LoadedTest],
+    length: Floats,
+    tension: Floats,
+    cycles: Mapping[str, tuple[float, float]] | None = None,
+) -> list[str]:
+    """EA of the tests beside that of the table that is exported, and a warning where they differ.
+
+    Each test is a cycle of its own loads; both EA are over the loads that the tests which cover it
+    have in common.
+    """
+    named = list((cycles or {}).items()) + [(one.words, (one.low, one.high)) for one in tests]
+    low, high = np.array([loads for _, loads in named]).reshape(-1, 2).T
+    found = stiffness_of_cycles(tests, low, high, slack_length=float(length[0]))
+    ends = [np.interp(at, tension, length) for at in (found.low, found.high)]
+    own = length[0] * (found.high - found.low) / (ends[1] - ends[0])
+    known = np.flatnonzero(np.isfinite(own)).tolist()
+    if not known:
+        return []
+
+    def words(place: int) -> str:
+        value, first, last, table = (
+            plain_number(float(one[place]), 4)
+            for one in (found.spring_constant, found.least, found.greatest, own)
+        )
+        loads = " to ".join(plain_number(float(one[place]), 4) for one in (found.low, found.high))
+        return f"{named[place][0]} {value} N ({first} to {last}), table {table} N, {loads} N"
+
+    said = ["EA of the tests, 95 %, beside that of this table: " + "; ".join(map(words, known))]
+    is_off = (own < (1 - _ON_GRID) * found.least) | (own > (1 + _ON_GRID) * found.greatest)
+    off = [
+        f"{named[place][0]} ({own[place] / found.spring_constant[place]:.2g} of it)"
+        for place in known
+        if is_off[place]
+    ]
+    if off:
+        said.append(
+            "DOUBTFUL: the table joins tests that are not alike, and between the loads of these "
+            f"its EA is outside their interval: {', '.join(off)}; a mooring code takes its slope: "
+            "for the stiffness of a cycle export the tests about its mean alone"
+        )
+    return said
 
 
 _WAYS = {
@@ -562,6 +618,7 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
         ),
         notes=(
             *([f"DOUBTFUL: {curve.doubt}"] if curve.doubt else []),
+            *_stiffness_notes(tests_of_curve(curve), 1 + curve.strain, curve.tension),
             *curve.notes,
             *([f"more than one piece has a say at strain {', '.join(joins)}"] if joins else []),
             *source.notes,

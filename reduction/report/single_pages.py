@@ -130,7 +130,7 @@ def _draw_assembly(found: DeployedLine, units: UnitSystem) -> Figure:
     for place, state in enumerate(found.deployed.working, start=1):
         point, tint = state.point, colour(place)
         ends = np.array([point.minimum_tension, point.mean_tension, point.peak_tension])
-        lengths = np.array([point.minimum_length, point.total_length, point.peak_length])
+        lengths = np.array([state.minimum_length, float(point.total_length), state.peak_length])
         data.append(
             {
                 "type": "scatter", "mode": "lines+markers", "name": f"working point {place}",
@@ -144,25 +144,70 @@ def _draw_assembly(found: DeployedLine, units: UnitSystem) -> Figure:
         "assembly", f"Tension of {found.name}",
         f"Band: expanded uncertainty (95 %, {factor_words([NORMAL])}). Dotted where a tether is at"
         " a strain that no test reaches. Marked: working points, with"
-        " their cycles from valley to peak.",
+        " their cycles from valley to peak as steep as their tests are; the curve, which joins"
+        " tests, is softer where it hands over from one to the next.",
         data, synthetic=found.source.is_synthetic, height=460, is_wide=True,
         xaxis=axis(length.label("length")), yaxis=axis(force.label("tension")),
     )  # fmt: skip
 
 
+_N_LOADS = 241
+
+
 def _draw_stiffness(found: DeployedLine, units: UnitSystem) -> Figure:
-    """Draw the tangent EA against tension."""
+    """Draw EA against tension: of each test, of the curve, and what is stated of each cycle."""
     force = shown("tension", units)
-    load = force.factor * found.deployed.assembly.tension
-    stiffness = force.factor * found.deployed.apparent_spring_constant
-    data = [line(load, stiffness, name="EA", colour=COLOURS[1])]
+    deployed, slack = found.deployed, float(found.deployed.assembly.total_length[0])
+    data: list[Trace] = []
+    for place, one in enumerate(deployed.tests):
+        at, spring = _chords(one.length, one.tension, slack)
+        data.append(
+            line(
+                force.factor * at, force.factor * spring, name=one.words,
+                colour=_PIECES[place % len(_PIECES)], width=1.6,
+                dash="solid" if place < len(_PIECES) else "dash",
+            )
+        )  # fmt: skip
+    at, spring = _chords(deployed.assembly.total_length, deployed.assembly.tension, slack)
+    data.append(
+        line(
+            force.factor * at, force.factor * spring, name="curve that joins them, not used",
+            colour=_CURVE, dash="dot", width=1.2,
+        )
+    )  # fmt: skip
+    for place, state in enumerate(deployed.working, start=1):
+        ends = force.factor * np.array([state.low, state.high])
+        value, least, greatest = (
+            np.full(2, force.factor * one)
+            for one in (
+                state.secant_spring_constant,
+                state.least_spring_constant,
+                state.greatest_spring_constant,
+            )
+        )
+        name = f"working point {place}"
+        data += [
+            band(ends, least, greatest, name=f"{name}, its tests", colour=_CURVE, alpha=0.15),
+            line(ends, value, name=name, colour=_CURVE, width=3.4),
+        ]
     return make_figure(
         "assembly-stiffness", "Stiffness",
-        "EA, tangent, over the length at which the assembly goes slack. Its steps are those of the"
-        " composite curve, where pieces hand over.",
-        data, synthetic=found.source.is_synthetic,
+        "EA over the length at which the assembly goes slack. Thin: each test alone, over a"
+        " twentieth of its own loads to each side. Thick: what is stated of each cycle, with the"
+        " interval of the tests that cover it (95 %). Dotted: the slope of the curve that joins the"
+        " tests, which belongs to none of them where it hands over.",
+        data, synthetic=found.source.is_synthetic, height=520, is_wide=True,
         xaxis=axis(force.label("tension")), yaxis=axis(force.label("EA")),
     )  # fmt: skip
+
+
+def _chords(length: Floats, tension: Floats, slack_length: float) -> tuple[Floats, Floats]:
+    """Tensions along a curve, and EA over a twentieth of its loads to each side of them. [N]."""
+    at = np.linspace(tension[0], tension[-1], _N_LOADS)
+    reach = (tension[-1] - tension[0]) / 20
+    low, high = np.maximum(at - reach, tension[0]), np.minimum(at + reach, tension[-1])
+    ends = [np.interp(one, tension, length) for one in (low, high)]
+    return at, slack_length * (high - low) / (ends[1] - ends[0])
 
 
 _OF_WAVE = (
@@ -284,8 +329,6 @@ _RULE = (
     "uncertainty and by what pieces of its kind differ by."
 )
 
-_RULED = "local EA by the rule"
-
 _DOUBTS = ("DOUBTFUL", "no pieces of one curve", "slipped", "not known", "extrapolated")
 
 
@@ -331,7 +374,7 @@ def write_assembly_page(found: DeployedLine, path: Path, *, units: UnitSystem = 
     ]  # fmt: skip
     _write_curve_page(
         path, f"Assembly {found.name}", parts, tiles=tiles, units=units,
-        notes=(*_warning(found.curve), *found.deployed.notes, *found.curve.notes, *source.notes),
+        notes=(*(f"DOUBTFUL: {doubt}" for doubt in found.doubts), *found.notes),
         sources=(found.splices, *source.sources), synthetic=source.is_synthetic,
         subtitle=f"{found.words}.",
     )  # fmt: skip
@@ -374,9 +417,7 @@ def _working_table(found: DeployedLine, units: UnitSystem) -> PageTable | None:
     rows = []
     for place, state in enumerate(found.deployed.working, start=1):
         point, sharing = state.point, state.sharing
-        has_cycle = bool(state.level.tension_amplitude)
-        doubts = (("not tested", not point.is_tested), (_RULED, state.is_moved and not has_cycle))
-        local = float("nan") if has_cycle else float(point.apparent_spring_constant)
+        doubts = (("not tested", not point.is_tested), ("doubtful", bool(state.doubt)))
         rows.append(
             [
                 words(", ".join([str(place), *(word for word, holds in doubts if holds)])),
@@ -385,7 +426,9 @@ def _working_table(found: DeployedLine, units: UnitSystem) -> PageTable | None:
                 number(float(point.total_length), length),
                 number(float(state.strain.max()), percent),
                 number(state.secant_spring_constant, force),
-                number(local, force),
+                number(state.least_spring_constant, force),
+                number(state.greatest_spring_constant, force),
+                words(state.nearest),
                 number(float(point.peak_tether_tension.max()), force),
                 number(100 * float(point.peak_share.max())),
                 number(float("nan") if sharing is None else float(sharing.least_load), force),
@@ -398,17 +441,19 @@ def _working_table(found: DeployedLine, units: UnitSystem) -> PageTable | None:
         "Working points.",
         (
             "point", force.label("tension"), force.label("amplitude"), length.label("length"),
-            percent.label("strain of a tether"), force.label("EA"), force.label("local EA"),
-            force.label("greatest of a tether"), "of its strength [%]",
-            force.label("least by the tolerance"), force.label("greatest by the tolerance"),
+            percent.label("strain of a tether"), force.label("EA"), force.label("least EA"),
+            force.label("greatest EA"), "nearest test", force.label("greatest of a tether"),
+            "of its strength [%]", force.label("least by the tolerance"),
+            force.label("greatest by the tolerance"),
         ),
         rows, synthetic=found.source.is_synthetic,
         remarks=[
             f"±: expanded uncertainty, 95 % ({factor_words([NORMAL])}), of the curve at that"
-            " length. EA is that of the cycle, peak to valley; where there is none it is over 5 %"
-            " of the length to each side, and the tangent stands beside it as local EA, which is"
-            " doubtful where it is that of the rule of rising. Loads by the tolerance of the"
-            " lengths are at the mean tension."
+            " length. EA is that of the cycle, peak to valley, or of 5 % of the length to each side"
+            " where there is none: by the tests that cover at least 70 % of it, over the loads that"
+            " they have in common, the nearer in mean and amplitude the more; least and greatest"
+            " are those of these tests, 95 %. Loads by the tolerance of the lengths are at the mean"
+            " tension."
         ],
     )  # fmt: skip
 

@@ -6,43 +6,43 @@ from reduction.lines.assembly import (
     SeriesPart,
     _assemble,
     _equal_tethers,
+    _Tether,
     _unequal_tethers,
     _working_point,
     _worst_sharing,
 )
+from reduction.lines.composite import CurvePiece, _composite_curve
 from reduction.record.errors import DataError, SettingsError
+from reduction.stages.strain.strain_model import StrainModel
 
 
-def test_springs_have_the_stiffness_of_hooke_at_every_amplitude():
+def test_springs_have_the_length_and_the_loads_of_hooke_at_every_amplitude():
     assembly = _assemble(_equal_tethers(spring(2.0), 4), [SeriesPart("wire", 2.0, 4000.0)])
     point = _working_point(assembly, [200.0, 400.0], [0.0, 100.0], rated_break_strength=500.0)
     stiffness = 1 / (2.0 / 400 + 2.0 / 4000)
-    assert point.stiffness == pytest.approx([stiffness] * 2, rel=1e-4)
-    assert point.apparent_spring_constant == pytest.approx([4 * stiffness] * 2, rel=1e-4)
     assert point.peak_tether_tension[0] == pytest.approx([50.0, 125.0])
     assert point.minimum_tether_tension[3] == pytest.approx([50.0, 75.0])
     assert point.peak_share[1] == pytest.approx([0.1, 0.25])
     assert point.load_share == pytest.approx(np.full((4, 2), 0.25))
     assert point.total_length == pytest.approx(4 + np.array([200, 400]) / stiffness)
-    assert point.peak_length - point.minimum_length == pytest.approx(
-        [0.0, 200 / stiffness], abs=1e-9
-    )
-
-
-def test_the_stiffness_of_rubber_is_the_secant_over_the_cycle():
-    assembly = _assemble(_equal_tethers(RUBBER, 4))
-    point = _working_point(assembly, 2400.0, 800.0)
-    low, high = assembly.length_at([1600.0, 3200.0])
-    assert point.stiffness == pytest.approx(1600 / (high - low))
-    tangent = _working_point(assembly, 2400.0)
-    near = _working_point(assembly, 2400.0, 30.0)
-    assert tangent.stiffness == pytest.approx(near.stiffness, rel=0.01)
 
 
 def test_strains_that_were_not_tested_are_flagged():
     assembly = _assemble([spring(low=0.5)])
     found = _working_point(assembly, [40.0, 100.0, 100.0], [0.0, 0.0, 60.0])
     assert found.is_tested.tolist() == [False, True, False]
+
+
+def test_a_gap_between_two_windows_is_not_tested_where_a_cycle_spans_it():
+    model = StrainModel("T", "gauge-length", {"reference_position": 1.0, "gauge_length": 1.0})
+    at = [np.linspace(*ends, 11) for ends in ((0.2, 0.8), (1.2, 2.0))]
+    pieces = [
+        CurvePiece(name, "cyclic", "mean", one, 100 * one, 0 * one)
+        for name, one in zip(("T-1", "T-2"), at, strict=True)
+    ]
+    assembly = _assemble([_Tether(_composite_curve(pieces), model)])
+    found = _working_point(assembly, [50.0, 160.0, 100.0], [20.0, 20.0, 60.0])
+    assert found.is_tested.tolist() == [True, True, False]
 
 
 def test_zero_tension_is_an_error():
@@ -61,7 +61,9 @@ def test_the_longest_tether_goes_slack_while_the_assembly_is_taut():
     with pytest.raises(DataError, match=f"tether 2 of 3 goes slack.*above {slack:g} N"):
         _working_point(assembly, 100.0, 65.0)
     found = _working_point(assembly, 100.0, 55.0)
-    assert found.minimum_tether_tension[1] == pytest.approx(100 * (found.minimum_length / 1.2 - 1))
+    # 45 N: all three are taut at the length where 200 (L - 1) + 100 (L / 1.2 - 1) is that
+    length = 345 / (200 + 100 / 1.2)
+    assert found.minimum_tether_tension[1] == pytest.approx(100 * (length / 1.2 - 1))
 
 
 def test_a_peak_beyond_the_curves_is_an_error():

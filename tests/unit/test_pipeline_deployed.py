@@ -5,6 +5,8 @@ import pytest
 from assemblies import DRIVEN, RUBBER
 
 from reduction.lines.assembly import SeriesPart, WorkingLevel, deploy
+from reduction.lines.composite import CompositeRule, CurvePiece, PieceSource, compose
+from reduction.record.contributions import Component
 from reduction.record.errors import DataError
 from reduction.stages.strain.strain_model import StrainModel, position_by_model
 
@@ -26,17 +28,20 @@ def test_a_strain_a_length_and_a_tension_name_the_same_point():
         assert float(found.point.total_length) == pytest.approx(length, rel=1e-9)
 
 
-def test_stiffness_is_the_slope_over_the_slack_length():
-    """Springs without splices of 100 N in 2 m, and 1 m of bridle: 3 x 50 N/m over 3 m."""
+def test_nothing_is_said_of_the_stiffness_below_the_first_strain_that_was_tested():
     from_line = StrainModel("T", "gauge-length", {"reference_position": 2.0, "gauge_length": 2.0})
     straight = deploy(
         CURVE, from_line, n_tethers=3, parts=[SeriesPart("bridle", 1.0)],
         levels=[WorkingLevel("strain", 0.02)],
     )  # fmt: skip
-    # below the first piece the curve is a straight line of 400 + 80 * 0.1**2
-    slope = 3 * 400.8 / 2.0
     low = straight.assembly.tension < 3 * 20
-    assert straight.apparent_spring_constant[low] == pytest.approx(slope * 3.0, rel=1e-6)
+    assert np.isnan(straight.stiffness.spring_constant[low]).all()
+    assert not any(name for name, is_low in zip(straight.nearest_test, low, strict=True) if is_low)
+    (state,) = straight.working
+    assert np.isnan(state.secant_spring_constant) and state.nearest == ""
+    assert state.note == (
+        "no test covers 70% of the cycle, so that no EA is known: no test reaches it"
+    )
     assert straight.strain == pytest.approx(straight.assembly.total_length / 3.0 - 1)
     assert not straight.working[0].point.is_tested
     assert straight.free_length == (2.0,) * 3
@@ -88,7 +93,135 @@ def test_the_secant_is_over_five_percent_of_the_length_to_each_side():
     found = deploy(CURVE, model, n_tethers=1, levels=[LEVEL, WorkingLevel("strain", 1.0, 50.0)])
     still, cycled = found.working
     assert still.secant_spring_constant == pytest.approx(640.8, rel=2e-3)
-    at = np.interp(4.0, found.assembly.total_length, found.secant_spring_constant)
+    at = np.interp(4.0, found.assembly.total_length, found.stiffness.spring_constant)
     assert at == pytest.approx(640.8, rel=2e-3)
-    assert cycled.secant_spring_constant == float(cycled.point.apparent_spring_constant)
-    assert not found.assembly.is_moved.any() and not still.is_moved
+    # the slope at 100 % is 400 + 240 N, and within 50 N it hardly bends
+    assert cycled.secant_spring_constant == pytest.approx(640, rel=5e-3)
+    assert cycled.peak_length - cycled.minimum_length == pytest.approx(2 * 100 / 640, rel=5e-3)
+    assert not found.assembly.is_moved.any() and cycled.doubt == still.doubt == ""
+
+
+SPRING = StrainModel("T", "gauge-length", {"reference_position": 2.0, "gauge_length": 2.0})
+
+
+def window(name, low, high, law, kind="cyclic", spread=0.0):
+    at = np.linspace(low, high, 41)
+    return CurvePiece(name, kind, "mean", at, law(at), np.full(41, spread))
+
+
+def windows(*pieces):
+    return compose(PieceSource("tether", "mean", pieces), CompositeRule())
+
+
+def soft(at):
+    """400 N per unit strain; 200 N at 50 %, 600 N at 150 %."""
+    return 400 * at
+
+
+def stiff(at):
+    """800 N per unit strain, 80 % further out; 200 N at 105 %, 640 N at 160 %."""
+    return 800 * (at - 0.8)
+
+
+def test_two_unlike_windows_leave_their_own_stiffness_and_not_that_of_their_join():
+    """Chords of straight lines are their slopes, whatever the cycle: 2 x 400 and 2 x 800 N."""
+    curve = windows(window("T-1", 0.4, 1.5, soft), window("T-2", 1.0, 1.6, stiff))
+    assert np.diff(curve.tension_at([1.0, 1.4]))[0] / 0.4 < 350  # the join is softer than both
+    found = deploy(
+        curve, SPRING, n_tethers=2, parts=[SeriesPart("chain", 1.0)],
+        levels=[WorkingLevel("tension", 800.0, 300.0)],
+    )  # fmt: skip
+    (state,) = found.working
+    # over 3 m at slack, of which 2 m stretch
+    assert [one.spring_constant for one in state.used] == pytest.approx([1200, 2400], rel=1e-6)
+    assert 1200 < state.secant_spring_constant < 2400
+    assert state.least_spring_constant == pytest.approx(1200, rel=1e-6)
+    assert state.greatest_spring_constant == pytest.approx(2400, rel=1e-6)
+    # T-1 has loads of 320 to 1200 N, T-2 of 320 to 1280 N: 760 +- 440 and 800 +- 480
+    apart = np.array([np.hypot(40, 140), np.hypot(0, 180)])
+    mean = np.average([1200, 2400], weights=apart**-2)
+    assert state.secant_spring_constant == pytest.approx(mean, rel=1e-6)
+    assert state.nearest == "T-1 cycles"
+    assert state.curve_spring_constant < 0.9 * 1200  # softer than either of them
+    assert "of the least EA that the tests allow" in state.doubt
+    # the stroke is that of the stated EA, about the mean of the curve
+    assert state.peak_length - state.minimum_length == pytest.approx(3 * 600 / mean)
+    middle = (state.peak_length + state.minimum_length) / 2
+    assert middle == pytest.approx(float(state.point.total_length))
+    assert found.assembly.length_at(800.0) == pytest.approx(middle)
+
+
+def test_along_the_curve_the_stiffness_never_leaves_that_of_the_tests():
+    curve = windows(window("T-1", 0.4, 1.5, soft), window("T-2", 1.0, 1.6, stiff))
+    found = deploy(curve, SPRING, n_tethers=1)
+    slope = np.gradient(found.assembly.tension, found.assembly.total_length) * 2.0
+    known = np.isfinite(found.stiffness.spring_constant)
+    assert slope[known].min() < 300
+    for one in (
+        found.stiffness.spring_constant, found.stiffness.least, found.stiffness.greatest,
+    ):  # fmt: skip
+        assert (one[known] > 400 * (1 - 1e-6)).all() and (one[known] < 800 * (1 + 1e-6)).all()
+    assert set(found.nearest_test) == {"", "T-1 cycles", "T-2 cycles"}
+
+
+@pytest.mark.parametrize(("high", "has_stiffness"), [(0.86, True), (0.84, False)])
+def test_a_test_counts_from_seventy_percent_of_the_cycle(high, has_stiffness):
+    """200 to 400 N are asked, and T-1 begins at 200 N: 70 % of them end at 340 N, a strain of 85 %."""
+    curve = windows(window("T-1", 0.5, high, soft), window("T-2", 1.2, 1.8, stiff))
+    level = WorkingLevel("tension", 300.0, 100.0)
+    (state,) = deploy(curve, SPRING, n_tethers=1, levels=[level]).working
+    assert state.tests[0].covered == pytest.approx((400 * high - 200) / 200)
+    # T-2 begins at 320 N
+    assert state.tests[1].covered == pytest.approx(0.4)
+    assert np.isfinite(state.secant_spring_constant) == has_stiffness
+    if not has_stiffness:
+        assert "no EA is known: nearest are T-1 cycles 68%, T-2 cycles 40%" in state.doubt
+
+
+def test_kinds_behind_that_which_covers_the_cycle_have_no_say():
+    pieces = (
+        window("S", 0.2, 1.6, lambda at: 380 * at, "static"),
+        window("T-1", 0.5, 1.5, soft),
+        window("F", 0.1, 1.6, lambda at: 500 * at, "first-loading"),
+    )
+    level = WorkingLevel("tension", 400.0, 150.0)
+    (state,) = deploy(windows(*pieces), SPRING, n_tethers=1, levels=[level]).working
+    assert [one.words for one in state.used] == ["T-1 cycles"]
+    assert state.secant_spring_constant == pytest.approx(400, rel=1e-6)
+
+
+def test_the_interval_holds_what_the_tests_are_wrong_by_themselves():
+    """2 N at each end of 300 N: root 2 times 2 / 300 of 400 N, k = 1.96."""
+    curve = windows(window("T-1", 0.4, 1.5, soft, spread=2.0))
+    level = WorkingLevel("tension", 400.0, 150.0)
+    (state,) = deploy(curve, SPRING, n_tethers=1, levels=[level]).working
+    half = 1.96 * np.sqrt(2) * 2 / 300 * 400
+    assert state.greatest_spring_constant - 400 == pytest.approx(half, rel=1e-3)
+    assert 400 - state.least_spring_constant == pytest.approx(half, rel=1e-3)
+
+
+def test_a_gain_that_tests_share_moves_their_stiffness_by_as_much_as_their_tension():
+    at = np.linspace(0.4, 1.5, 41)
+    gain = Component("tension_gain", "cell")
+    piece = CurvePiece(
+        "T-1", "cyclic", "mean", at, 400 * at, 0 * at, (gain,), 0.01 * 400 * at[None]
+    )  # fmt: skip
+    level = WorkingLevel("tension", 400.0, 150.0)
+    (state,) = deploy(windows(piece), SPRING, n_tethers=1, levels=[level]).working
+    assert state.greatest_spring_constant == pytest.approx(400 * (1 + 0.0196), rel=1e-4)
+
+
+def test_unequal_tethers_have_the_stiffness_of_their_springs():
+    """400 N over 2 m and over 2.2 m, taut both: 200 and 181.8 N/m, over 2 m."""
+    curve = windows(window("T-1", 0.2, 1.5, soft))
+    level = WorkingLevel("tension", 500.0, 100.0)
+    found = deploy(curve, SPRING, n_tethers=2, free_lengths=(2.0, 2.2), levels=[level])
+    assert found.working[0].secant_spring_constant == pytest.approx(2 * (200 + 400 / 2.2), rel=1e-5)
+
+
+def test_a_curve_without_doubt_where_two_windows_agree():
+    curve = windows(window("T-1", 0.4, 1.5, soft), window("T-2", 1.0, 1.8, soft))
+    level = WorkingLevel("tension", 500.0, 90.0)
+    (state,) = deploy(curve, SPRING, n_tethers=1, levels=[level]).working
+    assert len(state.used) == 2 and state.doubt == state.note == ""
+    assert state.curve_spring_constant == pytest.approx(400, rel=1e-6)
