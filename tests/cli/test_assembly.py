@@ -32,8 +32,11 @@ def written(folder, text=SPEC):
 
 def assembly(command, path):
     done = command("assembly", path, "--json")
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    assert done.returncode in (0, 4), done.stderr
+    found = json.loads(done.stdout)
+    # what is in doubt where a mooring works ends with 4, and what is not does not
+    assert (done.returncode == 4) == bool(found["doubts"])
+    return found
 
 
 @pytest.mark.parametrize(
@@ -74,8 +77,6 @@ def test_length_is_that_of_the_rubber_its_splices_and_the_bridles(command):
     assert at_100 == pytest.approx(2 * 8.8 + splices * 1.21774 + 1.0, abs=1e-4)
     slack = found["total_length"][0]
     assert found["strain"] == pytest.approx(np.array(found["total_length"]) / slack - 1)
-    slope = np.gradient(found["tension"], found["total_length"])
-    assert found["apparent_spring_constant"] == pytest.approx(slack * slope)
 
 
 def test_tethers_of_a_campaign_have_the_splices_of_their_strain_correction(
@@ -188,7 +189,8 @@ def test_a_spring_in_line_takes_its_share(command, tmp_path):
 def test_every_node_is_written(command, tmp_path):
     path = written(tmp_path)
     done = command("assembly", path, "--out", tmp_path / "a.csv", "--units", "us")
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == 4, done.stderr  # far from a test at a strain of 142 %
+    assert done.stdout.splitlines()[1].startswith("DOUBTFUL: the curve is up to ")
     assert "slack below 30.167 ft" in done.stdout and "not tested" in done.stdout
     with (tmp_path / "a.csv").open(newline="", encoding="utf-8") as lines:
         rows = list(csv.reader(lines))
@@ -201,7 +203,7 @@ def test_every_node_is_written(command, tmp_path):
     assert tension == pytest.approx(found["tension"], rel=1e-9, abs=1e-9)
     assert command("assembly", path, "--quiet").stdout == ""
     page = tmp_path / "a.html"
-    assert command("assembly", path, "--out", page).returncode == 0
+    assert command("assembly", path, "--out", page).returncode == 4
     assert "2 x rubber-tether-used" in page.read_text(encoding="utf-8")
 
 
@@ -345,21 +347,63 @@ def test_the_deck_of_an_assembly_has_its_slack_length(command, tmp_path):
     )
 
 
-def test_stiffness_where_the_curve_was_moved_is_flagged_and_has_a_secant(command):
+def test_the_stiffness_of_a_cycle_is_that_of_the_tests_that_cover_it(command):
+    """Table 6: 100 to 200 lbf of T-4 (70 to 190) and T-5 (112 to 237); T-3 ends at 160 lbf.
+
+    T-4 has 112 to 190 lbf between strains of 1.4532 and 1.93, T-5 between 1.72 and 2.0397; four
+    tethers of 8.8 m with splices of 1.1948 m that strain by 0.2177 of it, 10.995 m at slack.
+    """
     path = DOCS / "new-hampshire.toml"
-    found, said = assembly(command, path), command("assembly", path, "--units", "us").stdout
-    first = next(line for line in said.splitlines() if line.startswith("working.1"))
-    point = found["working"][0]
-    assert point["is_moved"] is True
-    length, tension = np.array(found["total_length"]), found["tension"]
-    at = point["total_length"]
-    low, high = np.interp([0.95 * at, 1.05 * at], length, tension)
-    secant = length[0] * (high - low) / (0.1 * at)
-    assert point["secant_spring_constant"] == pytest.approx(secant, rel=1e-9)
-    assert f"EA {secant / LBF:.4g} lbf over +- 5 % of the length, locally " in first
-    assert "by the rule of rising, DOUBTFUL" in first
-    rows = [line for line in said.splitlines() if "moved: local EA is the rule's" in line]
-    assert rows and any("join" in row for row in rows)
+    found = assembly(command, path)
+    state = found["working"][1]
+    strain = np.array([np.diff(np.interp([112, 190], load, at))[0] for load, at in (
+        ([70, 120, 190], [1.05, 1.53, 1.93]), ([112, 170, 237], [1.72, 1.98, 2.18]),
+    )])  # fmt: skip
+    expected = found["total_length"][0] * 4 * 78 / ((8.8 + 1.1948 * 0.2177) * strain)
+    by_name = {one["words"]: one for one in state["tests"]}
+    both = [by_name[name]["spring_constant"] / LBF for name in ("T-4 cycles", "T-5 cycles")]
+    assert both == pytest.approx(expected, rel=1e-3)
+    assert expected == pytest.approx([794, 1184], abs=1)
+    assert by_name["T-3 cycles"]["covered"] == pytest.approx(0.6)
+    assert by_name["T-3 cycles"]["spring_constant"] is None
+    assert (state["common_low"] / LBF, state["common_high"] / LBF) == pytest.approx((448, 760))
+    # the slopes of both at the mean of 150 lbf are those of the segments there
+    near = found["total_length"][0] * 4 / 9.06 * np.array([70 / 0.40, 58 / 0.26])
+    assert near == pytest.approx([850, 1083], abs=2)
+    assert near[0] < state["secant_spring_constant"] / LBF < near[1]
+    assert state["nearest_test"] == "T-4 cycles"
+    least, greatest = (state[f"{name}_spring_constant"] / LBF for name in ("least", "greatest"))
+    # a load to the pound at either end of 78 lbf, k = 1.96
+    half = 1.96 * np.sqrt(2 / 12) / 78
+    assert (least, greatest) == pytest.approx(expected * (1 + half * np.array([-1, 1])), rel=2e-3)
+    told = command("assembly", path, "--units", "us").stdout.splitlines()
+    assert told[1].startswith("DOUBTFUL: working.2: over the loads of T-4 cycles and T-5 cycles")
+    (line,) = (line for line in told if line.startswith("working.2"))
+    assert "T-4 cycles 794.1, T-5 cycles 1184" in line
+    assert "T-4 cycles is nearest in mean and amplitude" in line
+
+
+def test_no_stiffness_along_the_curve_is_softer_or_stiffer_than_the_tests_there(command):
+    """Segments of Table 6 and of T-4 after 3,000 cycles: loads, and pounds per unit strain."""
+    segments = np.array([
+        (63, 118, 125), (50, 98, 96), (98, 139, 124.2), (88, 160, 160), (70, 120, 104.2),
+        (120, 190, 175), (112, 170, 223.1), (170, 237, 335), (135, 230, 306.5), (230, 320, 529.4),
+        (68, 113, 81.8), (113, 153, 125),
+    ])  # fmt: skip
+    found = assembly(command, DOCS / "new-hampshire.toml")
+    length, tension = np.array(found["total_length"]), np.array(found["tension"]) / 4 / LBF
+    value = np.array(found["secant_spring_constant"], dtype=float) / (4 * LBF * length[0] / 9.06)
+    known = np.isfinite(value)
+    assert known.sum() > 300
+    assert tension[known][0] == pytest.approx(55, abs=8)
+    for low, high, one in zip(
+        np.interp(0.95 * length, length, tension)[known],
+        np.interp(1.05 * length, length, tension)[known],
+        value[known],
+        strict=True,
+    ):
+        slope = segments[(segments[:, 0] < high) & (segments[:, 1] > low), 2]
+        assert slope.min() * 0.99 < one < slope.max() * 1.01
 
 
 def test_the_uncertainty_of_a_working_state_is_expanded_and_says_so(command):

@@ -18,8 +18,10 @@ LBF = 4.4482216152605
 
 def composite(command, *arguments):
     done = command("composite", *arguments, "--json")
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    assert done.returncode in (0, 4), done.stderr
+    found = json.loads(done.stdout)
+    assert (done.returncode == 4) == bool(found["doubt"])
+    return found
 
 
 def test_a_campaign_gives_one_rising_curve_of_all_its_tests(command, synthetic):
@@ -266,12 +268,13 @@ def test_a_curve_far_from_a_piece_says_so_in_the_first_line(command):
     first = command("composite", "rubber-tether-used").stdout.splitlines()[0]
     doubt = composite(command, "rubber-tether-used")["doubt"]
     assert first.endswith(f"; DOUBTFUL: {doubt}")
-    assert float(re.match(r"up to ([\d.]+) standard uncertainties", doubt)[1]) > 2
+    assert float(re.match(r"the curve is up to ([\d.]+) standard uncertainties", doubt)[1]) > 2
 
 
 def test_a_table_names_pieces_in_words_and_its_notes_once(command, tmp_path):
     path = tmp_path / "u.csv"
-    assert command("composite", "rubber-tether-used", "--out", path).returncode == 0
+    # far from a test, which the file says too
+    assert command("composite", "rubber-tether-used", "--out", path).returncode == 4
     with path.open(newline="", encoding="utf-8") as lines:
         first, *others = csv.DictReader(lines)
     assert {"T-1 cycles", "T-6 cycles"} < {row["piece"] for row in others}

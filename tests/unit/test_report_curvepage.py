@@ -15,6 +15,7 @@ from reduction.report.single_pages import (
     write_assembly_page,
     write_composite_page,
 )
+from reduction.stages.strain.strain_model import StrainModel
 
 
 def piece(name, low, high, kind="cyclic"):
@@ -104,36 +105,40 @@ def test_a_page_of_an_assembly_lists_its_working_points(tmp_path):
     assert "Working points." not in text and "US customary" in text
 
 
-def test_a_point_without_a_cycle_has_the_slope_of_the_curve_around_it_and_the_local_one(tmp_path):
-    # the pieces fall at a strain of 1: the curve rises there by the rule, as softly as it may
-    at = np.linspace(0.5, 2.0, 61)
-    falling = 400 * at - 150 * np.exp(-(((at - 1.1) / 0.08) ** 2))
+def test_a_point_has_the_stiffness_of_its_tests_and_the_nearest_of_them_by_name(tmp_path):
+    # two springs without splices, the second one 80 % further out: the join is softer than both
+    low, high = np.linspace(0.4, 1.5, 41), np.linspace(1.0, 1.6, 41)
     source = PieceSource(
-        "tether", "mean", (CurvePiece("T-1", "cyclic", "mean", at, falling, np.full(61, 2.0)),),
+        "tether", "mean", tuple(
+            CurvePiece(name, "cyclic", "mean", at, load, 0 * at)
+            for name, at, load in (("T-1", low, 400 * low), ("T-2", high, 800 * (high - 0.8)))
+        ),
         is_synthetic=True,
     )  # fmt: skip
     curve = compose(source, CompositeRule())
-    found = deploy(
-        curve, DRIVEN, n_tethers=1,
-        levels=(WorkingLevel("strain", 1.05), WorkingLevel("strain", 1.05, 50.0)),
-    )  # fmt: skip
-    still, cycled = found.working
-    assert still.is_moved
+    model = StrainModel("T", "gauge-length", {"reference_position": 2.0, "gauge_length": 2.0})
+    levels = (WorkingLevel("tension", 400.0, 150.0), WorkingLevel("tension", 100.0))
+    found = deploy(curve, model, n_tethers=1, levels=levels)
+    made = DeployedLine("a", found, source, curve, "its own law", ())
     path = tmp_path / "a.html"
-    write_assembly_page(DeployedLine("a", found, source, curve, "its own law", ()), path)
+    write_assembly_page(made, path)
     text = path.read_text(encoding="utf-8")
     (body,) = re.findall(r"Working points\..*?<tbody>(.*?)</tbody>", text, re.S)
     rows = [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row, re.S) for row in body.split("</tr>")[:2]]
     (first, second) = ([re.sub(r"<[^>]+>", "", cell) for cell in row] for row in rows)
-    assert first[0] == "1, local EA by the rule" and second[0] == "2"
-    length, tension = found.assembly.total_length, found.assembly.tension
-    at_ends = np.interp(still.point.total_length * np.array([0.95, 1.05]), length, tension)
-    step = 0.1 * float(still.point.total_length) / length[0]
-    assert float(first[5]) == pytest.approx(np.ptp(at_ends) / step, rel=2e-3)
-    assert float(first[6]) == pytest.approx(float(still.point.apparent_spring_constant), rel=1e-3)
-    assert float(second[5]) == pytest.approx(cycled.secant_spring_constant, rel=1e-3)
-    assert second[6] == first[8]  # nothing: a cycle has one EA, and there is no tolerance
-    assert "the tangent stands beside it" in text
+    assert first[0] == "1, doubtful" and second[0] == "2, not tested"
+    assert 400 < float(first[5]) < 800
+    assert [float(cell) for cell in first[6:8]] == pytest.approx([400, 800], rel=1e-3)
+    assert first[8] == "T-1 cycles"
+    assert second[5] == second[6] == second[7]  # nothing: no test is there
+    assert "DOUBTFUL: working.1: over the loads of T-1 cycles and T-2 cycles" in text
+    drawn = {trace["name"]: trace for trace in _draw_stiffness(made, "si").data}
+    for name, slope in (("T-1 cycles", 400), ("T-2 cycles", 800)):
+        assert finite(drawn[name]) == pytest.approx(np.full(finite(drawn[name]).size, slope))
+    assert drawn["working point 1"]["x"] == [250.0, 550.0]
+    assert finite(drawn["working point 1"]) == pytest.approx([float(first[5])] * 2, rel=1e-3)
+    band = finite(drawn["working point 1, its tests"])
+    assert (band.min(), band.max()) == pytest.approx((400, 800), rel=1e-3)
 
 
 def test_a_curve_far_from_a_piece_is_doubtful_on_both_pages(tmp_path):
@@ -147,7 +152,7 @@ def test_a_curve_far_from_a_piece_is_doubtful_on_both_pages(tmp_path):
     curve = compose(source, CompositeRule())
     path = tmp_path / "c.html"
     write_composite_page(source, curve, path)
-    assert "DOUBTFUL: up to 2.2" in path.read_text(encoding="utf-8")
+    assert "DOUBTFUL: the curve is up to 2.2" in path.read_text(encoding="utf-8")
     found = deploy(curve, DRIVEN, n_tethers=1)
     write_assembly_page(DeployedLine("a", found, source, curve, "its own law", ()), path)
-    assert "DOUBTFUL: up to 2.2" in path.read_text(encoding="utf-8")
+    assert "DOUBTFUL: the curve is up to 2.2" in path.read_text(encoding="utf-8")
