@@ -44,3 +44,20 @@ def test_the_table_flags_the_way_to_each_node():
     assert flagged == pytest.approx([0.25, 0.5, 1.3, 1.4])
     assert columns["piece"][0] == "" and columns["piece"][-1] == "T-3 cycles"
     assert columns["tension"] == pytest.approx(100 * at)
+
+
+def test_the_header_has_the_stiffness_of_the_tests_beside_that_of_the_table():
+    """400 N per unit strain, and 800 N per unit strain 80 % further out: the join is softer."""
+    low, high = np.linspace(0.4, 1.5, 41), np.linspace(1.0, 1.6, 41)
+    pieces = [
+        CurvePiece(name, "cyclic", "mean", at, load, 0 * at)
+        for name, at, load in (("T-1", low, 400 * low), ("T-2", high, 800 * (high - 0.8)))
+    ]
+    for used, is_doubtful in ((pieces, True), (pieces[:1], False)):
+        source = PieceSource("tether", "mean", tuple(used), sources=("a log",))
+        notes = line_from_composite(source, compose(source, CompositeRule())).notes
+        (said,) = (note for note in notes if note.startswith("EA of the tests"))
+        assert ("table 400 N" in said) == (not is_doubtful)
+        assert ("T-1 cycles 400 N (400 to 400), table 400 N, 160 to 600 N" in said) != is_doubtful
+        warned = [note for note in notes if note.startswith("DOUBTFUL: the table joins tests")]
+        assert bool(warned) == is_doubtful
