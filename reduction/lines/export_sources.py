@@ -471,7 +471,8 @@ def _stiffness_notes(
     have in common.
     """
     named = list((cycles or {}).items()) + [(one.words, (one.low, one.high)) for one in tests]
-    low, high = np.array([loads for _, loads in named]).reshape(-1, 2).T
+    # a mean of tests may end below the loads of one of them
+    low, high = np.minimum(np.array([loads for _, loads in named]).reshape(-1, 2).T, tension[-1])
     found = stiffness_of_cycles(tests, low, high, slack_length=float(length[0]))
     ends = [np.interp(at, tension, length) for at in (found.low, found.high)]
     own = length[0] * (found.high - found.low) / (ends[1] - ends[0])

@@ -61,3 +61,20 @@ def test_the_header_has_the_stiffness_of_the_tests_beside_that_of_the_table():
         assert ("T-1 cycles 400 N (400 to 400), table 400 N, 160 to 600 N" in said) != is_doubtful
         warned = [note for note in notes if note.startswith("DOUBTFUL: the table joins tests")]
         assert bool(warned) == is_doubtful
+
+
+def test_the_header_of_a_table_that_ends_below_the_loads_of_a_test():
+    at = np.linspace(0.5, 1.5, 41)
+    pieces = [
+        CurvePiece(name, "cyclic", "mean", at, slope * at, 0 * at)
+        for name, slope in (("T-1", 400), ("T-2", 1600))
+    ]
+    source = PieceSource("tether", "mean", tuple(pieces), sources=("a log",))
+    curve = compose(source, CompositeRule())
+    assert curve.tension[-1] < 0.75 * 2400
+    (said,) = (
+        note
+        for note in line_from_composite(source, curve).notes
+        if note.startswith("EA of the tests")
+    )
+    assert "T-2 cycles 1600 N (1600 to 1600)" in said and "nan" not in said
