@@ -9,6 +9,7 @@ from pathlib import Path
 
 from reduction.archive.product_files import OF_CAMPAIGN
 from reduction.batch.campaign_status import Progress, TestStatus, note_message
+from reduction.batch.plausibility import implausible
 from reduction.batch.reuse import Basis, basis_of
 from reduction.batch.run_lock import RunLock
 from reduction.batch.slow_pulls import fit_pulls
@@ -18,6 +19,7 @@ from reduction.batch.workers import Workers
 from reduction.campaign.plan import Campaign
 from reduction.record.errors import ReductionError, SettingsError
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.strain.stress import check_constant_volume
 
 
 def requested_parts(campaign: Campaign) -> set[str]:
@@ -76,7 +78,10 @@ def reduction_inputs(
     pulls, errors_of_pulls = fit_pulls(campaign, first, models, workers=workers, progress=progress)
     errors |= errors_of_pulls
     failed = [entry.plan.id for entry in first.surveys if entry.error or entry.plan.id in errors]
-    basis = partial(basis_of, campaign, past=earlier_tests_of(first.surveys, models), pulls=pulls)
+    basis = partial(
+        basis_of, campaign, past=earlier_tests_of(first.surveys, models), pulls=pulls,
+        doubts=implausible(campaign, first.surveys, models),
+    )  # fmt: skip
     return ReductionInputs(first, errors, tuple(failed), basis)
 
 
@@ -134,7 +139,11 @@ def check_campaign(
     surveys = survey_campaign(campaign, progress=progress).surveys
     models, errors = fit_strain_models(campaign, surveys)
     statuses = []
+    doubts = implausible(campaign, surveys, models)
     for survey in selected_surveys(surveys, tests):
+        survey.notes += doubts.get(survey.plan.id, ())
+        for name in survey.plan.specimens:
+            survey.notes += check_constant_volume(campaign.specimens[name])
         error = survey.error or errors.get(survey.plan.id)
         statuses.append(
             status_row(campaign, survey, "no_work", message=_ready(survey, models))

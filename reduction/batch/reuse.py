@@ -166,6 +166,7 @@ def basis_of(
     past: EarlierTests,
     *,
     pulls: Mapping[tuple[str, str], SlowPull],
+    doubts: Mapping[str, tuple[Note, ...]] | None = None,
 ) -> Basis:
     """Gather what one test rests on."""
     history = history_of(survey, past, campaign)
@@ -179,8 +180,10 @@ def basis_of(
         pulls=of_run,
         pull_origins=origins,
         settings=_settings_json(campaign, survey, of_test, history, of_run, origins),
-        remarks=history_remarks(survey, past, campaign),
-    )
+        remarks=(
+            *history_remarks(survey, past, campaign), *(doubts or {}).get(survey.plan.id, ()),
+        ),
+    )  # fmt: skip
 
 
 NOT_REDUCED = "not reduced yet from logs and settings as they stand now"

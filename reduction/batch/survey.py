@@ -38,6 +38,7 @@ from reduction.stages.strain.tape_and_crosshead import (
     check_tape_against_crosshead,
 )
 from reduction.stages.strain.zero_strain import ZeroStrain, zero_at_slack, zero_at_tension
+from reduction.stages.test_levels import TestLevels, levels_of_test
 
 
 def _log_summary(located: Located) -> dict[str, Any]:
@@ -128,8 +129,8 @@ class Survey:
     pooled mark that was read in this test, in the order of the marks; ``mark_errors`` what of
     these marks the crosshead contradicts.  ``zero_strain`` is where strain is zero, by specimen,
     ``reference_length`` [m] the length at displacement zero where it is stated.  ``extremes`` is
-    how far the test went; ``found`` and ``notes`` what a person is told of the log, ``remarks``
-    what of its levels.
+    how far the test went and ``levels`` what it was run at; ``found`` and ``notes`` what a person
+    is told of the log, ``remarks`` what of its levels.
     """
 
     plan: TestPlan
@@ -144,6 +145,7 @@ class Survey:
     zero_strain: dict[str, ZeroStrain] = field(default_factory=dict)
     reference_length: float | None = None
     extremes: Extremes = field(default_factory=Extremes)
+    levels: TestLevels | None = None
     found: dict[str, Any] = field(default_factory=dict)
     remarks: tuple[Note, ...] = ()
     notes: tuple[Note, ...] = ()
@@ -306,6 +308,15 @@ def _located(plan: TestPlan, located: Located, sources: tuple[Source, ...]) -> S
         n_rows=record.n_samples,
         n_cycles=0 if cycles is None else cycles.n_cycles,
         extremes=extremes_of_test(located),
+        levels=levels_of_test(
+            record.time,
+            located.position,
+            located.tension,
+            record.measured_strain,
+            located.standstills,
+            cycles,
+            control=plan.control,
+        ),
         found=_log_summary(located),
         notes=(*record.notes, *(() if cycles is None else cycles.notes)),
     )

@@ -232,6 +232,23 @@ _LONGEST_NAME = 200  # characters at the end of a name in which a unit may stand
 _UNIT_IN_NAME = re.compile(r".*[\(\[]\s*([^()\[\]]*[^()\[\]\d\s][^()\[\]]*)[\)\]]\s*$")
 
 
+_UNIT_WORDS = {
+    "force": ("kN", "KN", "MN", "daN", "N", "lbf", "lbs", "lb", "klbf", "kips", "kip", "kgf", "kg"),
+    "length": ("mm", "cm", "inches", "inch", "in", "ft", "m"),
+    "time": ("ms", "sec", "min", "s"),
+    "voltage": ("mV", "V"),
+    "strain": ("mm/mm", "mm/m", "in/in", "m/m", "%", "pct"),
+}
+"""Units that a column's name may end in without brackets, by dimension."""
+
+# load_kN, Kraft/kN, "Load, kN", "F in kN", "Load kN"
+_UNIT_BEHIND_NAME = re.compile(
+    r"(?:.*?[^\W\d_]\d*)(?:_|/|,\s*|\s+in\s+|\s+)("
+    + "|".join(unit for units in _UNIT_WORDS.values() for unit in units)
+    + r")\s*$"
+)
+
+
 def keep_line(metadata: dict[str, str], line: str, row: int, layout: Layout) -> None:
     """Keep a line as metadata: ``name: value`` or two fields by name, all else by row."""
     text = line.removeprefix(layout.comment).strip() if layout.comment else line.strip()
@@ -262,15 +279,39 @@ def check_units(
             continue
         if unit_row is not None:
             check_unit(path, want, units[place] if place < len(units) else "", row=unit_row)
-        elif isinstance(want.column, str) and (
-            match := _UNIT_IN_NAME.match(names[place][-_LONGEST_NAME:])
-        ):
-            _check_unit_in_name(path, want, match[1])
+        elif isinstance(want.column, str):
+            name = names[place][-_LONGEST_NAME:]
+            if match := _UNIT_IN_NAME.match(name):
+                _check_unit_in_name(path, want, match[1])
+            elif match := _UNIT_BEHIND_NAME.match(name):
+                _check_unit_in_name(path, want, match[1])
+                _check_dimension_in_name(path, want, match[1])
+
+
+def _check_dimension_in_name(path: Path, want: DeclaredColumn, stated: str) -> None:
+    """Refuse a column whose name ends in the unit of something else than it is declared to be."""
+    known = {dimension for dimension, units in _UNIT_WORDS.items() if stated in units}
+    if want.dimension not in _UNIT_WORDS or want.dimension in known:
+        return
+    (of,) = known
+    raise LogError(
+        path,
+        f"the name of the column states a unit of {of}, and the layout declares a {want.dimension}",
+        channel=str(want.column),
+        found=f"'{stated}'",
+        needed=f"'{want.unit}' or another unit of {want.dimension}",
+        hint=(
+            "Set unit and factor of the channel to what the amplifier gives for a volt."
+            if of == "voltage"
+            else "Are two columns swapped in the layout? Otherwise give the column by its number."
+        ),
+    )
 
 
 def _check_unit_in_name(path: Path, want: DeclaredColumn, stated: str) -> None:
     try:
-        found = scale_to_si(stated.strip(), want.dimension)
+        text = {"kg": "kgf", "pct": "%"}.get(stated.strip(), stated.strip())
+        found = scale_to_si(text, want.dimension)
     except SettingsError:
         return
     declared = scale_to_si(want.unit, want.dimension)

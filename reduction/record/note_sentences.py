@@ -26,6 +26,21 @@ def _against(change: float, more: str, less: str) -> str:
     return f"{100 * abs(change):.1f} % {more if change > 0 else less}"
 
 
+def _pascals(value: float) -> str:
+    """A stress in MPa or GPa."""
+    return f"{value / 1e9:.3g} GPa" if abs(value) >= 1e9 else f"{value / 1e6:.3g} MPa"
+
+
+def _would_fit(readings: str) -> str:
+    """Readings by which a number would lie in its band, as a sentence of its own."""
+    return f" Inside it with: {readings}" if readings else ""
+
+
+def _is_like(like: str) -> str:
+    """What a ratio is like, in brackets."""
+    return f" (as {like})" if like else ""
+
+
 def _left_out(n_cycles: int) -> str:
     """How many cycles lie between levels, as a part of a sentence."""
     return f" ({n_cycles} cycle{_plural(n_cycles)} between them in none)" if n_cycles else ""
@@ -1081,14 +1096,206 @@ _OF_HOSES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
 }  # fmt: skip
 
+_OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
+    "modulus-outside-band": (
+        "warning",
+        lambda modulus, low, high, of, readings: (
+            f"greatest stress over greatest strain is {_pascals(modulus)}, and that of a {of} lies"
+            f" between {_pascals(low)} and {_pascals(high)}: is the unit of load, the diameter, the"
+            f" gauge length or the material right?{_would_fit(readings)}"
+        ),
+    ),
+    "strength-outside-band": (
+        "warning",
+        lambda found, low, high, of, readings: (
+            f"rated_break_strength over the area of the diameter is {_pascals(found)}, and that of"
+            f" a {of} lies between {_pascals(low)} and {_pascals(high)}: is the diameter, the"
+            f" strength, its unit or the material right?{_would_fit(readings)}"
+        ),
+    ),
+    "density-outside-band": (
+        "warning",
+        lambda found, low, high, of, readings: (
+            f"linear_density over the area of the diameter is {found:.3g} kg/m3, and that of a {of}"
+            f" lies between {low:.3g} and {high:.3g}: is the unit of linear_density, the diameter"
+            " or the material right?"
+        ),
+    ),
+    "strain-above-band": (
+        "warning",
+        lambda strain, limit, of: (
+            f"strain reaches {100 * strain:.3g} %, and a {of} breaks below {100 * limit:.3g} %: is"
+            " the gauge length, the unit of position or of the extensometer, or the material right?"
+        ),
+    ),
+    "tension-above-strength": (
+        "warning",
+        lambda share: (
+            f"tension reaches {100 * share:.0f} % of the rated_break_strength and the test is not"
+            " said to have failed: is the unit or the gain of the load, or the"
+            " rated_break_strength right?"
+        ),
+    ),
+    "tension-far-below-strength": (
+        "warning",
+        lambda share: (
+            f"tension reaches {100 * share:.2g} % of the rated_break_strength alone: is the unit or"
+            " the factor of the load, or the unit of the rated_break_strength right?"
+        ),
+    ),
+    "diameter-readings-apart": (
+        "warning",
+        lambda least, greatest: (
+            f"readings of the diameter are {1e3 * least:.4g} to {1e3 * greatest:.4g} mm: is one of"
+            " them a slip?"
+        ),
+    ),
+    "rate-not-as-stated": (
+        "warning",
+        lambda stated, found, unit, ratio, like: (
+            f"the log shows a rate of {found:.3g} {unit}, {ratio:.3g} times the stated rate of"
+            f" {stated}{_is_like(like)}: is the unit of time, the sampling interval, the unit of"
+            " position or the rate right?"
+        ),
+    ),
+    "target-strain-missed": (
+        "warning",
+        lambda reached, target, ratio, like, method: (
+            f"strain reaches {100 * reached:.3g} %, {ratio:.3g} times the target_strain of"
+            f" {100 * target:.3g} %{_is_like(like)}: is "
+            + (
+                "the gauge length the free length between the splices (not eye to eye), and its"
+                " unit right?"
+                if method == "gauge-length"
+                else "the unit of the extensometer right?"
+                if method == "extensometer"
+                else "the unit of position and of the marks, or the target_strain right?"
+            )
+        ),
+    ),
+    "waveform-not-as-stated": (
+        "warning",
+        "the waveform is stated as {stated}, and the log shows a {found} one",
+    ),
+    "gauge-against-length": (
+        "warning",
+        lambda gauge, length, like: (
+            f"the gauge length is {gauge:.4g} m, and the pins are {length:.4g} m apart at slack"
+            f"{_is_like(like)}: is the gauge length, its unit or the unit of position right?"
+        ),
+    ),
+    "extensometer-against-stroke": (
+        "warning",
+        lambda ratio, like: (
+            "the measured strain falls where the crosshead position rises: does one of them count"
+            " the other way? Then set sign = -1 for it"
+            if ratio < 0
+            else f"the measured strain is {ratio:.3g} times the stroke over the length at slack"
+            f"{_is_like(like)}: is the unit or the range (gain) of the extensometer, or the unit of"
+            " position (stroke) right?"
+        ),
+    ),
+    "channels-alike": (
+        "warning",
+        "the tension is that of {others}, reading by reading: do both channels name one column, or"
+        " were two cables joined to one load cell?",
+    ),
+    "column-of-another": (
+        "warning",
+        "its tension is read from the column {column!r}, which has the name of {other}: are the"
+        " columns swapped?",
+    ),
+    "log-used-twice": (
+        "warning", "its log is that of test {other}, byte by byte: is the same file named twice?",
+    ),
+    "stiffness-jumps": (
+        "warning",
+        lambda other, ratio, like: (
+            f"it is {ratio:.3g} times as stiff as in {other}{_is_like(like)}: is"
+            " the unit, gain or factor of the load that of the other test, and is it the file and"
+            " the specimen that are named (not swapped)?"
+        ),
+    ),
+    "tension-behind-position": (
+        "warning",
+        "tension comes {delay:.2g} s after position, and no specimen holds it back: was the load"
+        " logged late, or through a filter? Loops and moduli are wrong by it",
+    ),
+    "position-behind-tension": (
+        "warning",
+        "tension comes {delay:.2g} s before position, more than a specimen's damping lets it: was"
+        " the position logged late, or is the sign of one channel wrong?",
+    ),
+    "load-falls-for-good": (
+        "warning",
+        "the load ends at {share:.0%} of its greatest while the crosshead stays out: did the"
+        " specimen break or slip? Then state failed = true",
+    ),
+    "run-off-plan": (
+        "warning",
+        lambda experiment, levels, why, like: (
+            f"not at the levels of {experiment}: {levels}"
+            + (f"; {why}" if why else "")
+            + (f"; these are the levels of {like}: are files or rows swapped?" if like else "")
+        ),
+    ),
+    "cord-stress-outside-band": (
+        "warning",
+        lambda stress, low, high: (
+            f"its cords break at {_pascals(stress)} of their section, and cords of textile at"
+            f" {_pascals(low)} to {_pascals(high)}: is the unit of the cord's load (of one cord,"
+            " not of the fabric), or the cord_diameter right?"
+        ),
+    ),
+    "cords-do-not-fit": (
+        "warning",
+        lambda share: (
+            f"cords_per_length times cord_diameter is {share:.3g} of the width"
+            + (
+                ", so that cords overlap: are both layers counted, or is a unit wrong?"
+                if share > 1
+                else ": is the unit of cords_per_length or of cord_diameter right?"
+            )
+        ),
+    ),
+    "hose-rubber-outside-band": (
+        "warning",
+        lambda modulus, low, high: (
+            f"its rubber_modulus is {_pascals(modulus)}, and Young's modulus of hose rubber is"
+            f" {_pascals(low)} to {_pascals(high)}: is its unit right, or is it a shear modulus?"
+        ),
+    ),
+    "wrap-angle-outside-band": (
+        "warning",
+        lambda angle: (
+            f"its wrap_angle is {degrees(angle):.3g} degrees from the axis, and a hose stretches"
+            " where it is above 55: was it measured from the hoop, or is it in radians?"
+        ),
+    ),
+    "dead-length-large": (
+        "warning",
+        "{share:.0%} of its length is dead_length: is the unit of dead_length or of length right?",
+    ),
+    "hose-not-of-design": (
+        "warning",
+        lambda hose, ratio, like: (
+            f"its diameter is {ratio:.3g} times the outer_diameter of {hose}, which it is held"
+            f" against{_is_like(like)}: is the diameter (not the wall) in the right unit?"
+        ),
+    ),
+}  # fmt: skip
+
 SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
     **_OF_READING, **_OF_STRAIN, **_OF_CYCLES, **_OF_MODULI, **_OF_HOLDS, **_OF_LINE,
-    **_OF_EXPERIMENTS, **_OF_HOSES,
+    **_OF_EXPERIMENTS, **_OF_HOSES, **_OF_PLAUSIBILITY,
 }  # fmt: skip
 """By code: how serious a note is, and its sentence."""
 
 CAUSES = (
+    "log-used-twice", "channels-alike", "column-of-another",
     "load-zero-wrong", "load-negative", "load-falls-with-stretch", "tape-off-crosshead",
-    "loops-run-backward", "reference-tension-elsewhere", "strain-below-zero",
+    "loops-run-backward", "extensometer-against-stroke", "gauge-against-length",
+    "modulus-outside-band", "strength-outside-band", "tension-above-strength", "stiffness-jumps",
+    "run-off-plan", "reference-tension-elsewhere", "strain-below-zero",
 )  # fmt: skip
 """What is wrong with an input as it was stated, first what explains those behind it."""

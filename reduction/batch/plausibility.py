@@ -1,0 +1,464 @@
+"""Whether what is stated of a campaign can be true of its logs: units, sizes, levels, plans.
+
+Each test is held against bands of its kind of specimen, against what is stated of it, and against
+the other tests of its specimens.  What does not fit is a warning that names the reading that would;
+docs/plausibility.md lists them all.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
+
+import numpy as np
+
+from reduction.batch.survey import Survey
+from reduction.campaign.plan import Campaign, ExperimentPlan
+from reduction.experiments.designs import engineering_levels
+from reduction.pipeline.reduce_test import greatest_strain
+from reduction.quantities.units import scale_to_si
+from reduction.record.errors import SettingsError
+from reduction.record.measurement import Floats, Specimen
+from reduction.record.notes import Note, note
+from reduction.stages.plausible_bands import Bands, bands_of, readings_that_fit, words_of_ratio
+from reduction.stages.strain.strain_model import StrainModel
+
+Models = Mapping[tuple[str, str], StrainModel]
+
+_STRENGTH_REACHED = 1.02  # of the rated break strength, by a test that did not fail
+
+_LITTLE_OF_STRENGTH = 0.004
+
+_RATE = 1.3  # found over stated, or stated over found
+
+_TARGET = 1.17
+
+_LONGER = 1.05  # gauge length over the length at slack
+
+_STROKE = 1.5  # strain by the extensometer over that of the stroke
+
+_JUMP = 1.85  # greatest tension over greatest strain, between like tests of one specimen
+
+_JUMP_OF_KINDS = 2.5  # between a slow pull and cycles
+
+_LIKE_STRAIN, _LIKE_RATE = 1.3, 1.5
+
+_MOST_COMPARED = 40  # tests of one specimen
+
+_OFF_PLAN = 0.5  # coded
+
+_FALLEN = 0.5  # of the greatest tension, at the end
+
+_EARLY = 0.16  # of a cycle, by which no specimen lets tension lead
+
+_LATE = 0.01
+
+_BY_DESIGN = 1.25  # size of the tested hose over that of its design
+
+
+def implausible(
+    campaign: Campaign, surveys: Sequence[Survey], models: Models
+) -> dict[str, tuple[Note, ...]]:
+    """What cannot be true of each test, by its id.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        What is stated.
+    surveys : sequence of Survey
+        What the logs hold; tests that failed are passed over.
+    models : mapping
+        Strain model of each test and specimen that has one.
+
+    Returns
+    -------
+    notes : dict of str to tuple of Note
+        Warnings; empty of a test of which all fits.
+    """
+    read = [one for one in surveys if one.error is None]
+    found: dict[str, list[Note]] = {one.plan.id: [] for one in read}
+    for survey in read:
+        notes = found[survey.plan.id]
+        for name in survey.plan.specimens:
+            model = models.get((survey.plan.id, name))
+            notes += _of_specimen(campaign, survey, campaign.specimens[name], model)
+        notes += _of_statements(survey, models)
+        notes += _of_columns(campaign, survey)
+    for test, one in _of_pairs(read, models):
+        found[test].append(one)
+    for plan in campaign.experiments.values():
+        for test, one in _off_plan(campaign, plan, read):
+            found[test].append(one)
+    for test, one in _of_hoses(campaign):
+        if test in found:
+            found[test].append(one)
+    return {test: tuple(notes) for test, notes in found.items()}
+
+
+def _of_specimen(
+    campaign: Campaign, survey: Survey, specimen: Specimen, model: StrainModel | None
+) -> Iterator[Note]:
+    """Sizes of a specimen, and how far the test went with it, against bands of its kind."""
+    name = specimen.name
+    words = " ".join((specimen.material, specimen.construction, specimen.condition))
+    bands = bands_of(specimen.kind, words)
+    tension = survey.extremes.greatest_tension.get(name, np.nan)
+    strength = specimen.rated_break_strength or np.nan
+    yield from _of_sizes(specimen, bands)
+    if tension > _STRENGTH_REACHED * strength and not survey.plan.failed:
+        yield note("tension-above-strength", name, share=tension / strength)
+    if tension < _LITTLE_OF_STRENGTH * strength and survey.levels is not None:
+        yield note("tension-far-below-strength", name, share=tension / strength)
+    strain = greatest_strain(survey.extremes, name, model)
+    if bands is None or not strain > 0:
+        return
+    if strain > bands.greatest_strain:
+        yield note(
+            "strain-above-band", name, strain=strain, limit=bands.greatest_strain, of=bands.of
+        )
+    if not specimen.diameter or survey.plan.kind in ("relaxation", "creep"):
+        return
+    modulus = tension / specimen.area / strain
+    low, high = bands.modulus
+    if modulus > 0 and not low <= modulus <= high:
+        yield note(
+            "modulus-outside-band", name, modulus=modulus, low=low, high=high, of=bands.of,
+            readings=readings_that_fit(
+                modulus, bands.modulus, load_unit=_load_unit(campaign, survey, name)
+            ),
+        )  # fmt: skip
+
+
+def _of_sizes(specimen: Specimen, bands: Bands | None) -> Iterator[Note]:
+    """Diameter, strength and mass of a specimen against each other."""
+    if not specimen.diameter:
+        return
+    readings = specimen.diameter
+    if max(readings) > 1.3 * min(readings):
+        yield note("diameter-readings-apart", specimen.name, least=min(readings),
+                   greatest=max(readings))  # fmt: skip
+    if bands is None:
+        return
+    for code, value, (low, high) in (
+        ("strength-outside-band", specimen.rated_break_strength, bands.strength),
+        ("density-outside-band", specimen.linear_density, bands.density),
+    ):
+        if not value:
+            continue
+        found = value / specimen.area
+        if not low <= found <= high:
+            yield note(
+                code, specimen.name, found=found, low=low, high=high, of=bands.of,
+                readings=readings_that_fit(found, (low, high), of_strength=True),
+            )  # fmt: skip
+
+
+def _load_unit(campaign: Campaign, survey: Survey, name: str) -> str:
+    """Unit in which the load of a specimen is declared."""
+    layout = campaign.layouts[survey.plan.files[0][1]]
+    number = str(survey.plan.specimens.index(name) + 1)
+    channel = layout.channels.get(f"tension.{number}")
+    return "" if channel is None else channel.unit
+
+
+def _of_statements(survey: Survey, models: Models) -> Iterator[Note]:
+    """What is stated of a test against what its log shows."""
+    levels, plan = survey.levels, survey.plan
+    if levels is None:
+        return
+    yield from _of_rate(survey)
+    if levels.waveform and plan.waveform in ("triangular", "sinusoidal"):
+        if levels.waveform != plan.waveform and plan.kind != "snap":
+            yield note("waveform-not-as-stated", stated=plan.waveform, found=levels.waveform)
+    for index, name in enumerate(plan.specimens):
+        model = models.get((plan.id, name))
+        strain = greatest_strain(survey.extremes, name, model)
+        target = max(plan.target_strain, default=np.nan)
+        if not 1 / _TARGET <= strain / target <= _TARGET and np.isfinite(strain / target):
+            yield note(
+                "target-strain-missed", name, reached=strain, target=target,
+                ratio=strain / target, like=words_of_ratio(strain / target),
+                method=model.method if model is not None else "",
+            )  # fmt: skip
+        yield from _of_length(survey, index, model)
+        share = float(levels.final_share[index])
+        if share < _FALLEN and not plan.failed and plan.kind in ("tensile", "quasi-static"):
+            yield note("load-falls-for-good", name, share=share)
+        lead = float(levels.lead[index]) * levels.frequency
+        if lead < -_LATE or lead > _EARLY:
+            yield note(
+                "tension-behind-position" if lead < 0 else "position-behind-tension", name,
+                delay=abs(float(levels.lead[index])),
+            )  # fmt: skip
+        if levels.is_like_first[index]:
+            yield note("channels-alike", name, others=", ".join(plan.specimens[:index]))
+
+
+_NUMBER = re.compile(r"^\s*([-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)\s*(.+?)\s*$")
+
+
+def _of_rate(survey: Survey) -> Iterator[Note]:
+    """The rate that is stated against the speed or the frequency of the log."""
+    levels = survey.levels
+    match = _NUMBER.match(survey.plan.attributes.get("rate", ""))
+    if match is None or levels is None:
+        return
+    text = match[2].replace(" per ", "/").replace("cycles", "cycle")
+    for dimension, found, unit in (
+        ("velocity", levels.speed, "m/s"), ("frequency", levels.frequency, "Hz"),
+    ):  # fmt: skip
+        try:
+            factor = scale_to_si(text, dimension)[0]
+        except SettingsError:
+            continue
+        stated = factor * float(match[1])
+        ratio = found / stated if stated else np.nan
+        if np.isfinite(ratio) and not 1 / _RATE <= ratio <= _RATE:
+            yield note(
+                "rate-not-as-stated", stated=survey.plan.attributes["rate"], found=found,
+                unit=unit, ratio=ratio, like=words_of_ratio(ratio),
+            )  # fmt: skip
+
+
+def _of_length(survey: Survey, index: int, model: StrainModel | None) -> Iterator[Note]:
+    """Gauge length and extensometer against the length between the pins."""
+    levels = survey.levels
+    if levels is None or model is None:
+        return
+    name = survey.plan.specimens[index]
+    length = levels.slack_position
+    slope = float(levels.strain_per_length[index])
+    if not survey.extremes.position_is_length:
+        length = survey.reference_length or np.nan
+    gauge = model.coefficients.get("gauge_length", np.nan)
+    if model.method == "gauge-length" and survey.extremes.position_is_length:
+        if gauge > _LONGER * length or gauge < length / 3:
+            yield note("gauge-against-length", name, gauge=gauge, length=length,
+                       like=words_of_ratio(gauge / length))  # fmt: skip
+    if model.method == "extensometer" and np.isfinite(slope * length):
+        ratio = slope * length
+        if not 1 / _STROKE <= ratio <= _STROKE:
+            yield note("extensometer-against-stroke", name, ratio=ratio,
+                       like=words_of_ratio(abs(ratio)))  # fmt: skip
+
+
+def _of_columns(campaign: Campaign, survey: Survey) -> Iterator[Note]:
+    """Columns whose name is that of another specimen."""
+    plan = survey.plan
+    layout = campaign.layouts[plan.files[0][1]]
+    for number, name in enumerate(plan.specimens, start=1):
+        channel = layout.channels.get(f"tension.{number}")
+        column = str(channel.column).lower() if channel is not None else ""
+        words = re.split(r"[\W_]+", column)
+        others = [
+            one for one in campaign.specimens
+            if one != name and one.lower() in words and name.lower() not in words
+        ]  # fmt: skip
+        if others:
+            yield note("column-of-another", name, column=column, other=others[0])
+
+
+def _of_pairs(surveys: Sequence[Survey], models: Models) -> Iterator[tuple[str, Note]]:
+    """Tests of one file, and tests of one specimen that pull unlike at one length."""
+    first: dict[tuple[str, ...], str] = {}
+    for survey in surveys:
+        logs = tuple(source.sha256 for source in survey.sources)
+        known = first.setdefault(logs, survey.plan.log)
+        if known != survey.plan.log:
+            yield survey.plan.id, note("log-used-twice", other=known)
+    by_specimen: dict[str, list[Survey]] = {}
+    for survey in surveys:
+        if survey.levels is not None and not survey.plan.failed and not survey.plan.step_place:
+            for name in survey.plan.specimens:
+                by_specimen.setdefault(name, []).append(survey)
+    for name, several in by_specimen.items():
+        for one, other in combinations(several[:_MOST_COMPARED], 2):
+            ratio = _stiffness_ratio(one, other, name, models)
+            if np.isfinite(ratio):
+                yield other.plan.id, note(
+                    "stiffness-jumps", name, other=one.plan.id, ratio=ratio,
+                    like=words_of_ratio(ratio),
+                )  # fmt: skip
+
+
+def _stiffness_ratio(one: Survey, other: Survey, name: str, models: Models) -> float:
+    """Greatest tension over greatest strain of the other test over that of the one.
+
+    Rubber softens with what it has seen and ropes stiffen with load and rate: tests of unlike
+    stretch or frequency are not compared, and a slow pull with cycles by a wider limit.
+    """
+    values = []
+    for survey in (one, other):
+        strain = greatest_strain(survey.extremes, name, models.get((survey.plan.id, name)))
+        tension = survey.extremes.greatest_tension.get(name, np.nan)
+        levels = survey.levels
+        values.append((tension / strain, strain, np.nan if levels is None else levels.frequency))
+    (first, strain, rate), (later, other_strain, other_rate) = values
+    if not max(strain, other_strain) < _LIKE_STRAIN * min(strain, other_strain):
+        return np.nan
+    kinds = {one.plan.kind, other.plan.kind}
+    if kinds == {"cyclic", "quasi-static"}:
+        limit = _JUMP_OF_KINDS
+    elif len(kinds) > 1 or not max(rate, other_rate) < _LIKE_RATE * min(rate, other_rate):
+        return np.nan
+    else:
+        limit = _JUMP
+    ratio = later / first
+    return np.nan if 1 / limit <= ratio <= limit else ratio
+
+
+def _off_plan(
+    campaign: Campaign, plan: ExperimentPlan, surveys: Sequence[Survey]
+) -> Iterator[tuple[str, Note]]:
+    """Runs of an experiment whose levels are not those of its plan."""
+    names = [factor.name for factor in plan.factors]
+    read = {one.plan.id: one for one in surveys if one.levels is not None}
+    rows = [(run, name) for run in plan.runs if run in read for name in read[run].plan.specimens]
+    if not rows:
+        return
+    coded = np.array([plan.runs[run][: len(names)] for run, _ in rows])
+    strength = np.array(
+        [campaign.specimens[name].rated_break_strength or np.nan for _, name in rows]
+    )
+    is_share = any(factor.basis == "rated_break_strength" for factor in plan.factors)
+    planned, high, low = (
+        engineering_levels(
+            levels, plan.factors, rated_break_strength=strength if is_share else None
+        )
+        for levels in (coded, np.ones_like(coded), -np.ones_like(coded))
+    )
+    reached = np.full(planned.shape, np.nan)
+    for place, (run, name) in enumerate(rows):
+        levels = read[run].levels
+        if levels is None:
+            continue
+        index = read[run].plan.specimens.index(name)
+        known = {
+            "frequency": levels.frequency, "mean_tension": levels.mean_tension[index],
+            "tension_amplitude": levels.tension_amplitude[index],
+        }  # fmt: skip
+        reached[place] = [known.get(one, np.nan) for one in names]
+    off = (reached - planned) / ((high - low) / 2)
+    far = np.abs(off) > _OFF_PLAN
+    if not far.any():
+        return
+    why = _pattern(names, coded, planned, reached)
+    for place in np.flatnonzero(far.any(axis=1)).tolist():
+        run, name = rows[place]
+        is_of = np.all(
+            np.isnan(off[place])
+            | (np.abs(reached[place] - planned) < _OFF_PLAN * (high - low) / 2),
+            axis=1,
+        )
+        like = [
+            other for (other, _), fits in zip(rows, is_of, strict=True) if fits and other != run
+        ]
+        yield run, note(
+            "run-off-plan", name, experiment=plan.name,
+            levels="; ".join(
+                f"{names[column].replace('_', ' ')} {reached[place, column]:.4g}, planned "
+                f"{planned[place, column]:.4g}"
+                for column in np.flatnonzero(far[place])
+            ),
+            why=why, like=", ".join(dict.fromkeys(like)),
+        )  # fmt: skip
+
+
+def _pattern(names: list[str], coded: Floats, planned: Floats, reached: Floats) -> str:
+    """What all runs have in common in being off their plan, in words."""
+    found = []
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = reached / planned
+    for column, name in enumerate(names):
+        own = ratio[:, column]
+        own = own[np.isfinite(own)]
+        if own.size < 2 or np.ptp(own) > 0.1 * abs(np.median(own)):
+            continue
+        middle = float(np.median(own))
+        if abs(middle - 1) > 0.1:
+            like = words_of_ratio(middle)
+            found.append(
+                f"{name.replace('_', ' ')} is {middle:.3g} times the plan in all runs"
+                + (f" ({like})" if like else "")
+            )
+    if {"mean_tension", "tension_amplitude"} <= set(names):
+        mean, swing = names.index("mean_tension"), names.index("tension_amplitude")
+        if len(found) == 2 and all("tension" in one for one in found):
+            found.append("unit of load, gain, or rated_break_strength is wrong by that")
+        peak = planned[:, mean] - planned[:, swing]
+        is_peak = np.abs(reached[:, mean] / peak - 1) < 0.03
+        if np.isfinite(reached[:, mean]).any() and is_peak.all():
+            found.append("the mean tensions of the plan are the peaks: mean and amplitude together")
+        if np.ptp(coded[:, mean] - coded[:, swing]) > 0:
+            span = [np.ptp(planned[:, one]) / 2 for one in (mean, swing)]
+            centres = [(planned[:, one].max() + planned[:, one].min()) / 2 for one in (mean, swing)]
+            got = [
+                (reached[:, one] - centres[place]) / span[place]
+                for place, one in enumerate((mean, swing))
+            ]
+            if np.all(np.abs(got[0] - coded[:, swing]) < 0.2) and np.all(
+                np.abs(got[1] - coded[:, mean]) < 0.2
+            ):
+                found.append("mean and amplitude stand in each other's column of the plan")
+    if "frequency" in names:
+        at = names.index("frequency")
+        centre = (planned[:, at].max() + planned[:, at].min()) / 2
+        if np.ptp(planned[:, at]) > 0 and np.allclose(
+            reached[:, at] - centre, centre - planned[:, at], rtol=0.1,
+            atol=0.05 * np.ptp(planned[:, at]),
+        ):  # fmt: skip
+            found.append("the coded frequency has the wrong sign in every run")
+        with np.errstate(divide="ignore"):
+            if np.allclose(reached[:, at] * planned[:, at], 1.0, rtol=0.1):
+                found.append("the frequencies of the plan are periods")
+    return "; ".join(found)
+
+
+_CORD_STRESS = (0.25e9, 2.2e9)
+
+_CORD_SHARE = (0.15, 1.02)
+
+_RUBBER = (0.5e6, 20e6)
+
+_ANGLE = (np.radians(50), np.radians(85))
+
+_DEAD = 0.3
+
+
+def _of_hoses(campaign: Campaign) -> Iterator[tuple[str, Note]]:
+    """Designs of hoses that no hose has, said with the tests that are held against them."""
+    for plan in campaign.comparisons.values():
+        hose = campaign.hoses.get(plan.predicted)
+        if hose is None:
+            continue
+        design, name = hose.design, plan.predicted
+        cord, spacing = (
+            float(np.mean(design.cord_diameter)),
+            float(np.mean(design.cords_per_length)),
+        )
+        stress = float(design.cord.load[-1] * np.mean(design.cord_load_scale)) / (
+            np.pi * cord**2 / 4
+        )
+        share = cord * spacing
+        rubber = float(np.mean(design.rubber_modulus))
+        angle = float(np.mean(design.wrap_angle))
+        dead = float(np.mean(design.dead_length_share))
+        if not _CORD_STRESS[0] <= stress <= _CORD_STRESS[1]:
+            yield plan.measured, note("cord-stress-outside-band", name, stress=stress,
+                                      low=_CORD_STRESS[0], high=_CORD_STRESS[1])  # fmt: skip
+        if not _CORD_SHARE[0] <= share <= _CORD_SHARE[1]:
+            yield plan.measured, note("cords-do-not-fit", name, share=share)
+        if not _RUBBER[0] <= rubber <= _RUBBER[1]:
+            yield plan.measured, note("hose-rubber-outside-band", name, modulus=rubber,
+                                      low=_RUBBER[0], high=_RUBBER[1])  # fmt: skip
+        if not _ANGLE[0] <= angle <= _ANGLE[1]:
+            yield plan.measured, note("wrap-angle-outside-band", name, angle=angle)
+        if dead > _DEAD:
+            yield plan.measured, note("dead-length-large", name, share=dead)
+        specimen = campaign.specimens[plan.specimen]
+        if specimen.diameter:
+            ratio = specimen.mean_diameter / float(np.mean(design.outer_diameter))
+            if not 1 / _BY_DESIGN <= ratio <= _BY_DESIGN:
+                yield plan.measured, note("hose-not-of-design", plan.specimen, hose=name,
+                                          ratio=ratio, like=words_of_ratio(ratio))  # fmt: skip

@@ -1,0 +1,211 @@
+"""What a log shows of its test: levels, speeds and shapes, to hold against what is stated of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from reduction.record.measurement import Bools, Floats, read_only_arrays
+from reduction.record.samples import finite_extremes, take_samples
+from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.standstills import Standstills
+
+_MOST_CYCLES = 40  # that are looked at, spread over the test
+
+_MOST_POINTS = 4000  # of a record without cycles
+
+_SHAPES = {"triangular": 1 / np.sqrt(3), "sinusoidal": 1 / np.sqrt(2)}
+"""Root mean square over half the range. [1]"""
+
+_LIKE = 0.04  # of such a shape
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class TestLevels:
+    """Levels of one test; arrays are of its specimens, NaN where the log does not show them.
+
+    Parameters
+    ----------
+    frequency : float
+        Cycles over their time. [Hz]
+    speed : float
+        Of the crosshead on the way. [m s-1]
+    slack_position : float
+        Of the crosshead at its first slack rest. [m]
+    waveform : str
+        ``triangular`` or ``sinusoidal`` where the driven channel is like one of them.
+    mean_tension, tension_amplitude : ndarray, shape (n_specimens,)
+        Medians over the cycles. [N]
+    lead : ndarray, shape (n_specimens,)
+        Time by which tension leads position, of their fundamentals. [s]
+    strain_per_length : ndarray, shape (n_specimens,)
+        Range of the strain that was measured over that of position; negative where one falls
+        while the other rises. [m-1]
+    final_share : ndarray, shape (n_specimens,)
+        Tension at the end of the record, at its stretch, over the greatest. [1]
+    is_like_first : ndarray of bool, shape (n_specimens,)
+        Specimens after the first whose tension is that of an earlier one, reading by reading.
+    """
+
+    __test__ = False  # a test of a tether, not of this software
+
+    frequency: float
+    speed: float
+    slack_position: float
+    waveform: str
+    mean_tension: Floats
+    tension_amplitude: Floats
+    lead: Floats
+    strain_per_length: Floats
+    final_share: Floats
+    is_like_first: Bools
+
+
+def levels_of_test(
+    time: Floats,
+    position: Floats,
+    tension: Floats,
+    measured_strain: Floats | None,
+    standstills: Standstills,
+    cycles: Cycles | None,
+    *,
+    control: str,
+) -> TestLevels:
+    """Levels of a test by its record and its cycles.
+
+    Parameters
+    ----------
+    time, position : ndarray, shape (n_samples,)
+        [s], [m]
+    tension : ndarray, shape (n_specimens, n_samples)
+        [N]
+    measured_strain : ndarray, shape (n_specimens, n_samples), or None
+        [1]
+    standstills : Standstills
+        Of the record.
+    cycles : Cycles or None
+        Of the record, where it has some.
+    control : str
+        ``position`` or ``load``, which the machine drives.
+
+    Returns
+    -------
+    levels : TestLevels
+        Found; nothing is compared here.
+    """
+    n_specimens = tension.shape[0]
+    nothing = np.full(n_specimens, np.nan)
+    mean, amplitude, lead = nothing.copy(), nothing.copy(), nothing.copy()
+    frequency = speed = np.nan
+    waveform = ""
+    if cycles is not None and cycles.n_cycles:
+        some = np.unique(
+            np.linspace(0, cycles.n_cycles - 1, min(cycles.n_cycles, _MOST_CYCLES)).astype(int)
+        )
+        period = take_samples(time, cycles.last) - take_samples(time, cycles.first)
+        frequency = 1 / float(np.median(period))
+        peak, valley = cycles.branch_last[some, 0], cycles.branch_first[some, 0]
+        rise = take_samples(position, peak) - take_samples(position, valley)
+        speed = float(
+            np.nanmedian(np.abs(rise) / (take_samples(time, peak) - take_samples(time, valley)))
+        )
+        shapes = []
+        for index, load in enumerate(tension):
+            rows = [_of_cycle(time, position, load, int(cycles.first[one]), int(cycles.last[one]))
+                    for one in some]  # fmt: skip
+            mean[index], amplitude[index], lead[index] = np.nanmedian(
+                [row[:3] for row in rows], axis=0
+            )
+            shapes += [row[4 if control == "load" else 3] for row in rows]
+        shape = float(np.nanmedian(shapes))
+        waveform = next((name for name, known in _SHAPES.items() if abs(shape - known) < _LIKE), "")
+    else:
+        speed = _speed(time, position)
+    rests = np.flatnonzero(standstills.is_rest)
+    return TestLevels(
+        frequency=frequency,
+        speed=speed,
+        slack_position=float(standstills.mean_position[rests[0]]) if rests.size else np.nan,
+        waveform=waveform,
+        mean_tension=mean,
+        tension_amplitude=amplitude,
+        lead=lead,
+        strain_per_length=_strain_per_length(position, measured_strain, n_specimens),
+        final_share=_final_share(position, tension),
+        is_like_first=np.array([
+            any(np.array_equal(tension[index], tension[before], equal_nan=True)
+                for before in range(index))
+            for index in range(n_specimens)
+        ], dtype=np.bool_),
+    )  # fmt: skip
+
+
+def _of_cycle(
+    time: Floats, position: Floats, load: Floats, first: int, last: int
+) -> tuple[float, float, float, float, float]:
+    """Mean and amplitude of tension, lead of it over position, and the shape of either."""
+    at = slice(first, last + 1)
+    t, x, force = time[at], position[at], load[at]
+    known = np.isfinite(x) & np.isfinite(force)
+    if known.sum() < 4 or not np.ptp(t[known]) > 0:
+        return (np.nan,) * 5
+    t, x, force = t[known], x[known], force[known]
+    low, high = float(force.min()), float(force.max())
+    phase = 2 * np.pi * (t - t[0]) / (t[-1] - t[0])
+    weight = np.gradient(t)
+    wave = weight * np.exp(-1j * phase)
+    angle = np.angle(((force - force.mean()) * wave).sum() / ((x - x.mean()) * wave).sum())
+    lead = float(angle / (2 * np.pi) * (t[-1] - t[0]))
+    return (low + high) / 2, (high - low) / 2, lead, _shape(x, weight), _shape(force, weight)
+
+
+def _shape(values: Floats, weight: Floats) -> float:
+    """Root mean square about the middle over half the range. [1]."""
+    low, high = float(values.min()), float(values.max())
+    if not high > low:
+        return np.nan
+    middle = values - (low + high) / 2
+    return float(np.sqrt((weight * middle**2).sum() / weight.sum())) / ((high - low) / 2)
+
+
+def _some(n_samples: int) -> slice:
+    """Samples spread over a record."""
+    return slice(None, None, max(1, n_samples // _MOST_POINTS))
+
+
+def _speed(time: Floats, position: Floats) -> float:
+    """Median speed of the crosshead where it is on the way. [m s-1]."""
+    some = _some(time.size)
+    t, x = time[some], position[some]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rate = np.abs(np.diff(x) / np.diff(t))
+    rate = rate[np.isfinite(rate)]
+    moving = rate[rate > 0.2 * np.quantile(rate, 0.98)] if rate.size else rate
+    return float(np.median(moving)) if moving.size else np.nan
+
+
+def _strain_per_length(position: Floats, strain: Floats | None, n_specimens: int) -> Floats:
+    """Slope of measured strain over position. [m-1]."""
+    found = np.full(n_specimens, np.nan)
+    some = _some(position.size)
+    if strain is None:
+        return found
+    for index, stretch in enumerate(strain):
+        x, y = position[some], stretch[some]
+        known = np.isfinite(x) & np.isfinite(y)
+        if known.sum() > 10 and np.ptp(x[known]) > 0:
+            found[index] = np.polyfit(x[known], y[known], 1)[0]
+    return found
+
+
+def _final_share(position: Floats, tension: Floats) -> Floats:
+    """Tension of the last twentieth over the greatest, while the crosshead stays out; else NaN."""
+    n_last = max(position.size // 20, 1)
+    low, high = finite_extremes(position)
+    if not high > low or not np.nanmin(position[-n_last:]) > low + 0.7 * (high - low):
+        return np.full(tension.shape[0], np.nan)
+    greatest = np.array([finite_extremes(one)[1] for one in tension])
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray(np.nanmedian(tension[:, -n_last:], axis=1) / greatest)
