@@ -17,7 +17,8 @@ from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign, ExperimentPlan
 from reduction.experiments.designs import engineering_levels
 from reduction.pipeline.reduce_test import greatest_strain
-from reduction.quantities.units import scale_to_si
+from reduction.prediction.hose_tension import predict_hose
+from reduction.quantities.units import Dimension, scale_to_si
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats, Specimen
 from reduction.record.notes import Note, note
@@ -36,13 +37,17 @@ _TARGET = 1.17
 
 _LONGER = 1.05  # gauge length over the length at slack
 
+_OF_HOSE = 0.75  # gauge length of a hose over the length between its flanges
+
+_AT_SLACK = 0.03  # strain by the extensometer
+
 _STROKE = 1.5  # strain by the extensometer over that of the stroke
 
 _JUMP = 1.85  # greatest tension over greatest strain, between like tests of one specimen
 
 _JUMP_OF_KINDS = 2.5  # between a slow pull and cycles
 
-_LIKE_STRAIN, _LIKE_RATE = 1.3, 1.5
+_LIKE_STRAIN, _LIKE_RATE = 1.3, 2.2
 
 _MOST_COMPARED = 40  # tests of one specimen
 
@@ -50,9 +55,13 @@ _OFF_PLAN = 0.5  # coded
 
 _FALLEN = 0.5  # of the greatest tension, at the end
 
-_EARLY = 0.16  # of a cycle, by which no specimen lets tension lead
+_EARLY = 0.09  # of a cycle, by which no specimen lets tension lead
 
 _LATE = 0.01
+
+_MOST_SWINGS = 5  # of a pull or a hold, and what sets it up
+
+_AS_PREDICTED = 1.45  # tension of a hose over what its design gives
 
 _BY_DESIGN = 1.25  # size of the tested hose over that of its design
 
@@ -83,14 +92,14 @@ def implausible(
         for name in survey.plan.specimens:
             model = models.get((survey.plan.id, name))
             notes += _of_specimen(campaign, survey, campaign.specimens[name], model)
-        notes += _of_statements(survey, models)
+        notes += _of_statements(campaign, survey, models)
         notes += _of_columns(campaign, survey)
     for test, one in _of_pairs(read, models):
         found[test].append(one)
     for plan in campaign.experiments.values():
         for test, one in _off_plan(campaign, plan, read):
             found[test].append(one)
-    for test, one in _of_hoses(campaign):
+    for test, one in (*_of_hoses(campaign), *_of_predictions(campaign, read)):
         if test in found:
             found[test].append(one)
     return {test: tuple(notes) for test, notes in found.items()}
@@ -162,12 +171,20 @@ def _load_unit(campaign: Campaign, survey: Survey, name: str) -> str:
     return "" if channel is None else channel.unit
 
 
-def _of_statements(survey: Survey, models: Models) -> Iterator[Note]:
+def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterator[Note]:
     """What is stated of a test against what its log shows."""
     levels, plan = survey.levels, survey.plan
     if levels is None:
         return
     yield from _of_rate(survey)
+    yield from _of_stated_levels(survey)
+    if plan.kind in ("tensile", "quasi-static", "relaxation", "creep") and (
+        levels.n_swings > _MOST_SWINGS
+    ):
+        yield note("cycles-in-other-kind", n_cycles=levels.n_swings // 2, kind=plan.kind)
+    break_in = plan.settings.cycles.break_in_cycles
+    if 0 < survey.n_cycles <= break_in:
+        yield note("break-in-is-all", n_cycles=survey.n_cycles, break_in=break_in)
     if levels.waveform and plan.waveform in ("triangular", "sinusoidal"):
         if levels.waveform != plan.waveform and plan.kind != "snap":
             yield note("waveform-not-as-stated", stated=plan.waveform, found=levels.waveform)
@@ -181,7 +198,7 @@ def _of_statements(survey: Survey, models: Models) -> Iterator[Note]:
                 ratio=strain / target, like=words_of_ratio(strain / target),
                 method=model.method if model is not None else "",
             )  # fmt: skip
-        yield from _of_length(survey, index, model)
+        yield from _of_length(campaign, survey, index, model)
         share = float(levels.final_share[index])
         if share < _FALLEN and not plan.failed and plan.kind in ("tensile", "quasi-static"):
             yield note("load-falls-for-good", name, share=share)
@@ -195,6 +212,35 @@ def _of_statements(survey: Survey, models: Models) -> Iterator[Note]:
             yield note("channels-alike", name, others=", ".join(plan.specimens[:index]))
 
 
+_STATED: tuple[tuple[str, Dimension], ...] = (
+    ("frequency", "frequency"), ("mean_tension", "force"),
+)  # fmt: skip
+
+
+def _of_stated_levels(survey: Survey) -> Iterator[Note]:
+    """Frequency and mean tension that are stated of a test against those of its log."""
+    levels = survey.levels
+    for key, dimension in _STATED:
+        text = survey.plan.attributes.get(key, "")
+        match = _NUMBER.match(text)
+        if match is None or levels is None:
+            continue
+        stated = scale_to_si(_as_pint(match[2]), dimension)[0] * float(match[1])
+        found = [levels.frequency] if key == "frequency" else levels.mean_tension.tolist()
+        for value in found:
+            ratio = value / stated if stated else np.nan
+            if np.isfinite(ratio) and not 1 / _TARGET <= ratio <= _TARGET:
+                yield note(
+                    "level-not-as-stated", level=key, stated=text, found=value,
+                    unit="Hz" if key == "frequency" else "N", ratio=ratio,
+                    like=words_of_ratio(ratio),
+                )  # fmt: skip
+
+
+def _as_pint(unit: str) -> str:
+    return unit.replace(" per ", "/").replace("cycles", "cycle")
+
+
 _NUMBER = re.compile(r"^\s*([-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)\s*(.+?)\s*$")
 
 
@@ -204,12 +250,12 @@ def _of_rate(survey: Survey) -> Iterator[Note]:
     match = _NUMBER.match(survey.plan.attributes.get("rate", ""))
     if match is None or levels is None:
         return
-    text = match[2].replace(" per ", "/").replace("cycles", "cycle")
-    for dimension, found, unit in (
+    shown: tuple[tuple[Dimension, float, str], ...] = (
         ("velocity", levels.speed, "m/s"), ("frequency", levels.frequency, "Hz"),
-    ):  # fmt: skip
+    )  # fmt: skip
+    for dimension, found, unit in shown:
         try:
-            factor = scale_to_si(text, dimension)[0]
+            factor = scale_to_si(_as_pint(match[2]), dimension)[0]
         except SettingsError:
             continue
         stated = factor * float(match[1])
@@ -221,7 +267,9 @@ def _of_rate(survey: Survey) -> Iterator[Note]:
             )  # fmt: skip
 
 
-def _of_length(survey: Survey, index: int, model: StrainModel | None) -> Iterator[Note]:
+def _of_length(
+    campaign: Campaign, survey: Survey, index: int, model: StrainModel | None
+) -> Iterator[Note]:
     """Gauge length and extensometer against the length between the pins."""
     levels = survey.levels
     if levels is None or model is None:
@@ -233,9 +281,13 @@ def _of_length(survey: Survey, index: int, model: StrainModel | None) -> Iterato
         length = survey.reference_length or np.nan
     gauge = model.coefficients.get("gauge_length", np.nan)
     if model.method == "gauge-length" and survey.extremes.position_is_length:
-        if gauge > _LONGER * length or gauge < length / 3:
+        is_hose = campaign.specimens[name].kind == "stretch hose"  # measured from flange to flange
+        if gauge > _LONGER * length or gauge < (_OF_HOSE if is_hose else 1 / 3) * length:
             yield note("gauge-against-length", name, gauge=gauge, length=length,
                        like=words_of_ratio(gauge / length))  # fmt: skip
+    at_slack = float(levels.slack_strain[index])
+    if model.method == "extensometer" and abs(at_slack) > _AT_SLACK:
+        yield note("extensometer-off-at-slack", name, strain=at_slack)
     if model.method == "extensometer" and np.isfinite(slope * length):
         ratio = slope * length
         if not 1 / _STROKE <= ratio <= _STROKE:
@@ -293,8 +345,11 @@ def _stiffness_ratio(one: Survey, other: Survey, name: str, models: Models) -> f
         strain = greatest_strain(survey.extremes, name, models.get((survey.plan.id, name)))
         tension = survey.extremes.greatest_tension.get(name, np.nan)
         levels = survey.levels
-        values.append((tension / strain, strain, np.nan if levels is None else levels.frequency))
+        stiffness = tension / strain if strain > 0 else np.nan
+        values.append((stiffness, strain, np.nan if levels is None else levels.frequency))
     (first, strain, rate), (later, other_strain, other_rate) = values
+    if not (first > 0 and later > 0):
+        return np.nan
     if not max(strain, other_strain) < _LIKE_STRAIN * min(strain, other_strain):
         return np.nan
     kinds = {one.plan.kind, other.plan.kind}
@@ -313,6 +368,7 @@ def _off_plan(
 ) -> Iterator[tuple[str, Note]]:
     """Runs of an experiment whose levels are not those of its plan."""
     names = [factor.name for factor in plan.factors]
+    yield from _short_pulls(plan, surveys)
     read = {one.plan.id: one for one in surveys if one.levels is not None}
     rows = [(run, name) for run in plan.runs if run in read for name in read[run].plan.specimens]
     if not rows:
@@ -343,7 +399,8 @@ def _off_plan(
     far = np.abs(off) > _OFF_PLAN
     if not far.any():
         return
-    why = _pattern(names, coded, planned, reached)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        why = _pattern(names, coded, planned, reached)
     for place in np.flatnonzero(far.any(axis=1)).tolist():
         run, name = rows[place]
         is_of = np.all(
@@ -365,11 +422,27 @@ def _off_plan(
         )  # fmt: skip
 
 
+def _short_pulls(plan: ExperimentPlan, surveys: Sequence[Survey]) -> Iterator[tuple[str, Note]]:
+    """Slow pulls that end below the mean tension of all runs."""
+    read = {one.plan.id: one for one in surveys}
+    for specimen, test in plan.quasi_static.items():
+        pull = read.get(test)
+        means = []
+        for run in plan.runs:
+            one = read.get(run)
+            if one is not None and one.levels is not None and specimen in one.plan.specimens:
+                means.append(float(one.levels.mean_tension[one.plan.specimens.index(specimen)]))
+        if pull is None or not means:
+            continue
+        reached = pull.extremes.greatest_tension.get(specimen, np.nan)
+        if reached < min(means):
+            yield test, note("pull-below-runs", specimen, reached=reached, least=min(means))
+
+
 def _pattern(names: list[str], coded: Floats, planned: Floats, reached: Floats) -> str:
     """What all runs have in common in being off their plan, in words."""
     found = []
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = reached / planned
+    ratio = reached / planned
     for column, name in enumerate(names):
         own = ratio[:, column]
         own = own[np.isfinite(own)]
@@ -409,9 +482,8 @@ def _pattern(names: list[str], coded: Floats, planned: Floats, reached: Floats) 
             atol=0.05 * np.ptp(planned[:, at]),
         ):  # fmt: skip
             found.append("the coded frequency has the wrong sign in every run")
-        with np.errstate(divide="ignore"):
-            if np.allclose(reached[:, at] * planned[:, at], 1.0, rtol=0.1):
-                found.append("the frequencies of the plan are periods")
+        if np.allclose(reached[:, at] * planned[:, at], 1.0, rtol=0.1):
+            found.append("the frequencies of the plan are periods")
     return "; ".join(found)
 
 
@@ -462,3 +534,31 @@ def _of_hoses(campaign: Campaign) -> Iterator[tuple[str, Note]]:
             if not 1 / _BY_DESIGN <= ratio <= _BY_DESIGN:
                 yield plan.measured, note("hose-not-of-design", plan.specimen, hose=name,
                                           ratio=ratio, like=words_of_ratio(ratio))  # fmt: skip
+
+
+def _of_predictions(campaign: Campaign, surveys: Sequence[Survey]) -> Iterator[tuple[str, Note]]:
+    """Hoses that pull unlike their design by a factor that a slip explains sooner than a hose."""
+    read = {one.plan.id: one for one in surveys}
+    for plan in campaign.comparisons.values():
+        survey, hose = read.get(plan.measured), campaign.hoses.get(plan.predicted)
+        if survey is None or hose is None:
+            continue
+        gauge = campaign.specimens[plan.specimen].gauge_length
+        samples = survey.extremes.all_over.get(plan.specimen)
+        if gauge is None or samples is None or not survey.extremes.position_is_length:
+            continue
+        strain = samples.position / gauge - 1
+        top = _TOP * float(np.nanmax(strain))
+        near = (np.abs(strain - top) < 0.05 * top) & np.isfinite(samples.tension)
+        if not top > 0 or not near.any():
+            continue
+        predicted = float(np.ravel(predict_hose(hose.design, [top]).tension)[0])
+        ratio = float(np.median(samples.tension[near])) / predicted
+        if np.isfinite(ratio) and not 1 / _AS_PREDICTED <= ratio <= _AS_PREDICTED:
+            yield plan.measured, note(
+                "hose-unlike-design", plan.specimen, hose=plan.predicted, ratio=ratio,
+                strain=top, like=words_of_ratio(ratio),
+            )  # fmt: skip
+
+
+_TOP = 0.8  # of the greatest strain, below what the cords' last stretch makes of an angle

@@ -144,6 +144,7 @@ def check_campaign(
         survey.notes += doubts.get(survey.plan.id, ())
         for name in survey.plan.specimens:
             survey.notes += check_constant_volume(campaign.specimens[name])
+        survey.found.get("notes", []).extend(map(str, doubts.get(survey.plan.id, ())))
         error = survey.error or errors.get(survey.plan.id)
         statuses.append(
             status_row(campaign, survey, "no_work", message=_ready(survey, models))

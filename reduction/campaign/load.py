@@ -413,7 +413,8 @@ def _merge_tests(
 
 
 _KEPT = (
-    "rate", "medium", "soak", "temperature", "machine", "load_cell", "calibration_due",
+    "rate", "frequency", "mean_tension", "medium", "soak", "temperature", "machine", "load_cell",
+    "calibration_due",
     "operator", "procedure", "note",
 )  # fmt: skip
 

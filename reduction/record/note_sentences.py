@@ -1173,6 +1173,35 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             )
         ),
     ),
+    "level-not-as-stated": (
+        "warning",
+        lambda level, stated, found, unit, ratio, like: (
+            f"the log shows a {level} of {found:.4g} {unit}, {ratio:.3g} times the stated {level}"
+            f" of {stated}{_is_like(like)}: is its unit, or that of the log, right?"
+        ),
+    ),
+    "cycles-in-other-kind": (
+        "warning",
+        "the log holds about {n_cycles} cycles and its kind is {kind}: is the kind right?",
+    ),
+    "break-in-is-all": (
+        "warning",
+        "break_in_cycles is {break_in} and the log holds {n_cycles} cycles: none is left",
+    ),
+    "pull-below-runs": (
+        "warning",
+        "the slow pull ends at {reached:.4g} N, below the mean tension of every run ({least:.4g} N"
+        " at the least): K_0 is not known where the runs are",
+    ),
+    "hose-unlike-design": (
+        "warning",
+        lambda hose, ratio, strain, like: (
+            f"at {100 * strain:.3g} % it pulls {ratio:.3g} times what its design {hose} gives"
+            f"{_is_like(like)}: is the unit of load, the gauge length, the file and hose that are"
+            " named (not swapped), the inner diameter (bore), the length, or the number, angle and"
+            " load of its cords (both layers counted once) right?"
+        ),
+    ),
     "waveform-not-as-stated": (
         "warning",
         "the waveform is stated as {stated}, and the log shows a {found} one",
@@ -1195,10 +1224,15 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " position (stroke) right?"
         ),
     ),
+    "extensometer-off-at-slack": (
+        "warning",
+        "the extensometer reads {strain:.3%} where the specimen is slack: was it set to zero"
+        " there?",
+    ),
     "channels-alike": (
         "warning",
-        "the tension is that of {others}, reading by reading: do both channels name one column, or"
-        " were two cables joined to one load cell?",
+        "the tension is identical to that of {others}, reading by reading: do both channels name"
+        " one column, or were two cables joined to one load cell?",
     ),
     "column-of-another": (
         "warning",
@@ -1292,10 +1326,14 @@ SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
 """By code: how serious a note is, and its sentence."""
 
 CAUSES = (
-    "log-used-twice", "channels-alike", "column-of-another",
+    "log-used-twice", "channels-alike", "column-of-another", "diameter-readings-apart",
+    "cycles-in-other-kind", "rate-not-as-stated", "level-not-as-stated",
     "load-zero-wrong", "load-negative", "load-falls-with-stretch", "tape-off-crosshead",
     "loops-run-backward", "extensometer-against-stroke", "gauge-against-length",
     "modulus-outside-band", "strength-outside-band", "tension-above-strength", "stiffness-jumps",
-    "run-off-plan", "reference-tension-elsewhere", "strain-below-zero",
+    "run-off-plan", "cord-stress-outside-band", "cords-do-not-fit", "hose-rubber-outside-band",
+    "wrap-angle-outside-band", "dead-length-large", "hose-not-of-design", "hose-unlike-design",
+    "target-strain-missed", "density-outside-band", "strain-above-band",
+    "extensometer-off-at-slack", "reference-tension-elsewhere", "strain-below-zero",
 )  # fmt: skip
 """What is wrong with an input as it was stated, first what explains those behind it."""

@@ -56,7 +56,7 @@ _FIBRES: Mapping[tuple[str, ...], Bands] = {
 
 _KINDS: Mapping[str, Bands] = {
     "rubber tether": Bands(
-        "rubber tether", (0.3 * _MEGA, 5 * _MEGA), (1.5 * _MEGA, 40 * _MEGA), (850, 1700), 9.0
+        "rubber tether", (0.3 * _MEGA, 3.2 * _MEGA), (1.5 * _MEGA, 40 * _MEGA), (850, 1700), 9.0
     ),
     "elastomer": Bands("elastomer", (0.01 * _MEGA, 100 * _MEGA), (0, inf), (600, 3000), 12.0),
     "stretch hose": Bands("stretch hose", (0.1 * _MEGA, 30 * _MEGA), (0, inf), (0, inf), 4.0),
@@ -147,7 +147,7 @@ def readings_that_fit(
     --------
     Twice the diameter, of a tether of 1 MPa:
 
-    >>> readings_that_fit(0.25e6, (0.3e6, 5e6), load_unit="lbf")[:74]
+    >>> readings_that_fit(0.25e6, (0.3e6, 3.2e6), load_unit="lbf")[:74]
     'load in kgf, not lbf; half that diameter (was it doubled?); a diameter of '
     """
     low, high = band

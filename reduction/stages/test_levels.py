@@ -43,8 +43,12 @@ class TestLevels:
     strain_per_length : ndarray, shape (n_specimens,)
         Range of the strain that was measured over that of position; negative where one falls
         while the other rises. [m-1]
+    slack_strain : ndarray, shape (n_specimens,)
+        Strain that was measured at the first slack rest. [1]
     final_share : ndarray, shape (n_specimens,)
         Tension at the end of the record, at its stretch, over the greatest. [1]
+    n_swings : int
+        Rises and falls of position by more than a quarter of its range, one after another.
     is_like_first : ndarray of bool, shape (n_specimens,)
         Specimens after the first whose tension is that of an earlier one, reading by reading.
     """
@@ -59,7 +63,9 @@ class TestLevels:
     tension_amplitude: Floats
     lead: Floats
     strain_per_length: Floats
+    slack_strain: Floats
     final_share: Floats
+    n_swings: int
     is_like_first: Bools
 
 
@@ -108,18 +114,19 @@ def levels_of_test(
         frequency = 1 / float(np.median(period))
         peak, valley = cycles.branch_last[some, 0], cycles.branch_first[some, 0]
         rise = take_samples(position, peak) - take_samples(position, valley)
-        speed = float(
-            np.nanmedian(np.abs(rise) / (take_samples(time, peak) - take_samples(time, valley)))
-        )
+        rates = np.abs(rise) / (take_samples(time, peak) - take_samples(time, valley))
+        rates = rates[np.isfinite(rates)]
+        speed = float(np.median(rates)) if rates.size else np.nan
         shapes = []
         for index, load in enumerate(tension):
             rows = [_of_cycle(time, position, load, int(cycles.first[one]), int(cycles.last[one]))
                     for one in some]  # fmt: skip
-            mean[index], amplitude[index], lead[index] = np.nanmedian(
-                [row[:3] for row in rows], axis=0
-            )
+            known = np.array([row[:3] for row in rows if np.isfinite(row[:3]).all()])
+            if known.size:
+                mean[index], amplitude[index], lead[index] = np.median(known, axis=0)
             shapes += [row[4 if control == "load" else 3] for row in rows]
-        shape = float(np.nanmedian(shapes))
+        shapes = [one for one in shapes if np.isfinite(one)]
+        shape = float(np.median(shapes)) if shapes else np.nan
         waveform = next((name for name, known in _SHAPES.items() if abs(shape - known) < _LIKE), "")
     else:
         speed = _speed(time, position)
@@ -133,13 +140,24 @@ def levels_of_test(
         tension_amplitude=amplitude,
         lead=lead,
         strain_per_length=_strain_per_length(position, measured_strain, n_specimens),
+        slack_strain=nothing if measured_strain is None or not rests.size else np.array([
+            _middle(one[standstills.first[rests[0]] : standstills.last[rests[0]] + 1])
+            for one in measured_strain
+        ]),
         final_share=_final_share(position, tension),
+        n_swings=_n_swings(position, least=5 * standstills.position_tolerance),
         is_like_first=np.array([
             any(np.array_equal(tension[index], tension[before], equal_nan=True)
                 for before in range(index))
             for index in range(n_specimens)
         ], dtype=np.bool_),
     )  # fmt: skip
+
+
+def _middle(values: Floats) -> float:
+    """Median of what is known; NaN of nothing."""
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if known.size else np.nan
 
 
 def _of_cycle(
@@ -156,7 +174,8 @@ def _of_cycle(
     phase = 2 * np.pi * (t - t[0]) / (t[-1] - t[0])
     weight = np.gradient(t)
     wave = weight * np.exp(-1j * phase)
-    angle = np.angle(((force - force.mean()) * wave).sum() / ((x - x.mean()) * wave).sum())
+    of_force, of_position = ((force - force.mean()) * wave).sum(), ((x - x.mean()) * wave).sum()
+    angle = np.angle(of_force * np.conj(of_position))
     lead = float(angle / (2 * np.pi) * (t[-1] - t[0]))
     return (low + high) / 2, (high - low) / 2, lead, _shape(x, weight), _shape(force, weight)
 
@@ -200,6 +219,25 @@ def _strain_per_length(position: Floats, strain: Floats | None, n_specimens: int
     return found
 
 
+def _n_swings(position: Floats, *, least: float) -> int:
+    """Rises and falls of a quarter of the range, of samples spread over the record."""
+    known = position[_some(position.size)]
+    known = known[np.isfinite(known)]
+    if not known.size:
+        return 0
+    step = max(np.ptp(known) / 4, least)
+    count, extreme, way = 0, known[0], 0
+    for value in known.tolist():
+        if (way >= 0 and value > extreme) or (way <= 0 and value < extreme):
+            if abs(value - extreme) > step and way == 0:
+                way, count = (1 if value > extreme else -1), count + 1
+            if way != 0:
+                extreme = value
+        elif abs(value - extreme) > step:
+            way, count, extreme = -way, count + 1, value
+    return count
+
+
 def _final_share(position: Floats, tension: Floats) -> Floats:
     """Tension of the last twentieth over the greatest, while the crosshead stays out; else NaN."""
     n_last = max(position.size // 20, 1)
@@ -207,5 +245,9 @@ def _final_share(position: Floats, tension: Floats) -> Floats:
     if not high > low or not np.nanmin(position[-n_last:]) > low + 0.7 * (high - low):
         return np.full(tension.shape[0], np.nan)
     greatest = np.array([finite_extremes(one)[1] for one in tension])
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(np.nanmedian(tension[:, -n_last:], axis=1) / greatest)
+    found = np.full(tension.shape[0], np.nan)
+    for index, load in enumerate(tension[:, -n_last:]):
+        known = load[np.isfinite(load)]
+        if known.size and greatest[index] > 0:
+            found[index] = float(np.median(known)) / greatest[index]
+    return found
