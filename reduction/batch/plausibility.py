@@ -59,6 +59,8 @@ _EARLY = 0.09  # of a cycle, by which no specimen lets tension lead
 
 _LATE = 0.01
 
+_BACKWARD = 0.25
+
 _MOST_SWINGS = 5  # of a pull or a hold, and what sets it up
 
 _AS_PREDICTED = 1.45  # tension of a hose over what its design gives
@@ -203,7 +205,8 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
         if share < _FALLEN and not plan.failed and plan.kind in ("tensile", "quasi-static"):
             yield note("load-falls-for-good", name, share=share)
         lead = float(levels.lead[index]) * levels.frequency
-        if lead < -_LATE or lead > _EARLY:
+        # by more than that a channel runs backward, which its sign says
+        if -_BACKWARD < lead < -_LATE or _EARLY < lead < _BACKWARD:
             yield note(
                 "tension-behind-position" if lead < 0 else "position-behind-tension", name,
                 delay=abs(float(levels.lead[index])),
