@@ -122,9 +122,7 @@ def _plausibility_notes(
         slack = _taut if is_snap else _slack
         # of a channel of the wrong sign a valley says nothing about slack
         half_strain = _half_range(strain[index], cycles)
-        if waveform == "sinusoidal":
-            notes += _shape(name, loops, index, half_strain, control)
-        else:
+        if waveform != "sinusoidal":
             notes += _drift(name, loops, index, half_strain)
         notes += _sign(name, loops, index, slopes) or slack(
             name, loops.valley_tension[index], slack_tension
@@ -138,20 +136,6 @@ def _half_range(strain: Floats, cycles: Cycles) -> Floats:
         over_intervals(extreme, strain, cycles.first, cycles.last) for extreme in (np.fmax, np.fmin)
     )
     return np.asarray((high - low) / 2, dtype=np.float64)
-
-
-def _shape(name: str, loops: Loops, index: int, half_strain: Floats, control: str) -> list[Note]:
-    """A sinusoidal test whose range is not that of its fundamental, from which numbers come."""
-    half_tension = (loops.peak_tension[index] - loops.valley_tension[index]) / 2
-    of_strain = _median(half_strain / loops.strain_amplitude[index]) - 1
-    of_tension = _median(half_tension / loops.tension_amplitude[index]) - 1
-    moved, excess = ("tension", of_tension) if control == "load" else ("strain", of_strain)
-    if abs(excess) > _OFF_THE_SINE:
-        return [note("not-sinusoidal", name, moved=moved, effect=excess)]
-    other, excess = ("strain", of_strain) if control == "load" else ("tension", of_tension)
-    if not abs(excess) > _OFF_THE_SINE:
-        return []
-    return [note("answer-not-sinusoidal", name, moved=moved, other=other, effect=excess)]
 
 
 def _drift(name: str, loops: Loops, index: int, half_strain: Floats) -> list[Note]:

@@ -376,16 +376,6 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "strain reaches {strain:.4g}, which no specimen does; is the unit of position, or the"
         " length that strain refers to, right?",
     ),
-    "not-sinusoidal": (
-        "warning",
-        "declared sinusoidal, but half the range of {moved} is {effect:+.0%} off the amplitude of"
-        " its fundamental, which stands for it; is waveform right?",
-    ),
-    "answer-not-sinusoidal": (
-        "note",
-        "{moved} is a sine and {other} is none: half its range is {effect:+.0%} off the amplitude"
-        " of its fundamental, which stands for it",
-    ),
     "cycles-drift": (
         "warning",
         "{n_far} of {n_cycles} cycles drift by more than {limit:.0%} of their range: their"
@@ -1204,7 +1194,7 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "waveform-not-as-stated": (
         "warning",
-        "the waveform is stated as {stated}, and the log shows a {found} one",
+        "the waveform is stated as {stated}, and that of the log is {found}: is waveform right?",
     ),
     "gauge-against-length": (
         "warning",

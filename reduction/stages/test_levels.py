@@ -18,7 +18,7 @@ _MOST_POINTS = 4000  # of a record without cycles
 _SHAPES = {"triangular": 1 / np.sqrt(3), "sinusoidal": 1 / np.sqrt(2)}
 """Root mean square over half the range. [1]"""
 
-_LIKE = 0.04  # of such a shape
+_LIKE, _UNLIKE = 0.04, 0.09  # of such a shape
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,8 @@ class TestLevels:
     slack_position : float
         Of the crosshead at its first slack rest. [m]
     waveform : str
-        ``triangular`` or ``sinusoidal`` where the driven channel is like one of them.
+        What the driven channel is like: ``triangular``, ``sinusoidal``, ``other`` where it is far
+        from both, empty where it may be one of them.
     mean_tension, tension_amplitude : ndarray, shape (n_specimens,)
         Medians over the cycles. [N]
     lead : ndarray, shape (n_specimens,)
@@ -127,7 +128,12 @@ def levels_of_test(
             shapes += [row[4 if control == "load" else 3] for row in rows]
         shapes = [one for one in shapes if np.isfinite(one)]
         shape = float(np.median(shapes)) if shapes else np.nan
-        waveform = next((name for name, known in _SHAPES.items() if abs(shape - known) < _LIKE), "")
+        far = {name: abs(shape - known) for name, known in _SHAPES.items()}
+        nearest = min(far, key=far.__getitem__)
+        if far[nearest] < _LIKE:
+            waveform = nearest
+        elif far[nearest] > _UNLIKE:
+            waveform = "other"
     else:
         speed = _speed(time, position)
     rests = np.flatnonzero(standstills.is_rest)

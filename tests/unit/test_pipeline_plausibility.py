@@ -94,28 +94,3 @@ def test_a_test_without_cycles_is_judged_by_its_strain_alone():
         slack_tension=20.0, waveform="triangular", cycles=None, loops=None, curves=None,
     )))  # fmt: skip
     assert [note.split(":")[0] for note in notes] == ["new"]
-
-
-def test_a_triangle_declared_sinusoidal_asks_for_the_waveform(notes_of):
-    # the fundamental of a triangle is 8 / pi^2 of its half range, 23 % below it
-    (note,) = map(str, notes_of(waveform="sinusoidal"))
-    assert note.startswith("new: declared sinusoidal, but half the range of strain is +23% off")
-    assert note.endswith("is waveform right?")
-
-
-@pytest.mark.parametrize(("control", "moved"), [("position", "strain"), ("load", "tension")])
-def test_the_wave_is_judged_by_what_the_machine_moved(notes_of, control, moved):
-    # from 0.5 to 1.5 and back in sines; cords pick up at 1.2 and carry eight times as much
-    sine = 1 - 0.5 * np.cos(np.pi * (notes_of.strain - 0.5))
-    kinked = 1000 * sine + 7000 * np.maximum(sine - 1.2, 0)
-    two = {"tension": 1000 * sine, "stretch": sine} | {
-        "strain": {"tension": kinked}, "tension": {"stretch": kinked / 1000}
-    }[moved]  # fmt: skip
-    (note,) = map(str, notes_of(**two, waveform="sinusoidal", control=control))
-    other = {"strain": "tension", "tension": "strain"}[moved]
-    assert note.startswith(f"new: {moved} is a sine and {other} is none: half its range is +")
-    assert "waveform right" not in note
-    assert (
-        tuple(map(str, notes_of(1000 * sine, stretch=sine, waveform="sinusoidal", control=control)))
-        == ()
-    )

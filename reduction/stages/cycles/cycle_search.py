@@ -721,10 +721,8 @@ def _steady_span(values: Floats, branch_first: Indices, branch_last: Indices) ->
     begin, peak, end = branch_first[:, 0], branch_last[:, 0], branch_last[:, 1]
     falls, rises = values[peak] - values[end], values[peak] - values[begin]
     n_cycles = peak.size
-    if n_cycles < _LEFT_STEADY + 2 * _MOST_STARTING or not np.isfinite(falls + rises).all():
+    if n_cycles <= _LEFT_STEADY or not np.isfinite(falls + rises).all():
         return slice(0, n_cycles)
-    # a record may begin and end within a cycle: that branch says nothing
-    reach = int(np.median(end - begin)) // 20
 
     def apart(of: Floats) -> Floats:
         """How far ranges are from the middle one, as a share; zero within their scatter."""
@@ -732,17 +730,22 @@ def _steady_span(values: Floats, branch_first: Indices, branch_last: Indices) ->
         far = np.abs(of - middle)
         return np.where(far > 6 * 1.5 * np.median(far), far / middle, 0.0)
 
-    def n_starting(share: Floats) -> int:
-        is_so = (share > _STEADY) & (share < _STARTING)
-        return int(np.max(np.flatnonzero(is_so[:_MOST_STARTING]), initial=-1)) + 1
-
     of_rise, of_fall = apart(rises), apart(falls)
-    first, last = np.maximum(of_rise, of_fall), np.maximum(of_rise, of_fall)[::-1].copy()
+    # a branch that is as the others says that the level is theirs
+    worse, better = np.maximum(of_rise, of_fall), np.minimum(of_rise, of_fall)
+    is_off = (worse > _STEADY) & (better < _STARTING)
+    # a record may begin and end within a cycle: that branch says nothing
+    reach = int(np.median(end - begin)) // 20
     if begin[0] <= reach:
-        first[0] = of_fall[0]
+        is_off[0] = _STEADY < of_fall[0] < _STARTING
     if end[-1] >= values.size - 1 - reach:
-        last[0] = of_rise[-1]
-    return slice(n_starting(first), n_cycles - n_starting(last))
+        is_off[-1] = _STEADY < of_rise[-1] < _STARTING
+
+    def n_off(of: Bools) -> int:
+        first = int(np.argmin(of))  # that is as the others
+        return first if first <= min(_MOST_STARTING, (n_cycles - _LEFT_STEADY + 1) // 2) else 0
+
+    return slice(n_off(is_off), n_cycles - n_off(is_off[::-1]))
 
 
 def _labels(first: Indices, last: Indices, values: NDArray[Any], time: Floats) -> NDArray[Any]:

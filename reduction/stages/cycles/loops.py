@@ -674,6 +674,113 @@ MEASURED = (
 """What is summed over the samples of a cycle, in this order."""
 
 
+@dataclass(frozen=True)
+class _Shape:
+    """Half the range of a wave and its middle, over the amplitude of its fundamental.
+
+    ``missed`` is how far half the range goes on changing with the number of harmonics.
+    """
+
+    half: float = 1.0
+    middle: float = 0.0
+    missed: float = 0.0
+
+
+_MOST_HARMONICS = 8
+
+_PER_HARMONIC = 5  # samples of a cycle
+
+_CYCLES_OF_SHAPE = 60
+
+_FEWEST_INSIDE = 4
+
+_OF_ONE_WAVE = 0.05  # of an amplitude
+
+_ABOVE_NOISE = 4.0  # standard uncertainties of a harmonic
+
+_OF_PARTS = ("cosine", "sine", "mean", "rise", "turn", "fall")
+
+
+def _shape_of_wave(
+    time: Floats,
+    values: Floats,
+    cycles: Cycles,
+    period: Floats,
+    parts: Floats,
+    ends: Floats,
+) -> _Shape:
+    """Shape of a wave by its harmonics, over some of its cycles together.
+
+    Notes
+    -----
+    The answer to a sine is none where the material bends or has a kink at its turns, and its
+    extremes are those of the wave and not of the fundamental.  Noise does not lift a sum of
+    harmonics as it lifts the greatest of many readings.
+
+    Examples
+    --------
+    A sine whose turns a tenth of its third harmonic makes sharper:
+
+    >>> t = np.arange(0, 100.5, 0.5)
+    >>> wave = -np.cos(0.2 * np.pi * t) - 0.1 * np.cos(0.6 * np.pi * t)
+    >>> first = np.arange(0, 200, 20)
+    >>> pair = np.stack([first, first + 10], axis=1)
+    >>> cycles = Cycles(first, first + 20, pair, pair + 10, np.ones((10, 2)), np.zeros(201),
+    ...     np.zeros(201), np.zeros(201), 0.1)
+    >>> parts = np.zeros((6, 10))
+    >>> parts[0] = -1
+    >>> middles = np.stack([first + place for place in (0, 5, 15, 20)]) * 0.5
+    >>> shape = _shape_of_wave(t, wave, cycles, np.full(10, 10.0), parts, middles)
+    >>> print(round(shape.half, 6), abs(round(shape.middle, 6)))
+    1.1 0.0
+    """
+    cosine, sine, mean = parts[:3]
+    drift = _mean_drift(parts[3:], ends)
+    sine = sine + drift / np.pi
+    amplitude = np.hypot(cosine, sine)
+    readings = float(np.median(cycles.last - cycles.first))
+    order = int(min(_MOST_HARMONICS, readings // _PER_HARMONIC))
+    known = np.flatnonzero(np.isfinite(amplitude + mean) & (amplitude > 0))
+    # cycles of another amplitude are not of one wave
+    middle = np.median(amplitude[known]) if known.size else np.nan
+    known = known[np.abs(amplitude[known] - middle) < _OF_ONE_WAVE * middle]
+    if known.size > _FEWEST_INSIDE:
+        known = known[1:-1]  # what stands beside cycles of another amplitude may hold part of them
+    if order < 2 or not known.size:
+        return _Shape()
+    some = known[
+        np.unique(np.linspace(0, known.size - 1, min(known.size, _CYCLES_OF_SHAPE)).astype(int))
+    ]
+    phases, waves = [], []
+    for one in some.tolist():
+        part = slice(int(cycles.first[one]), int(cycles.last[one]) + 1)
+        phase = 2 * np.pi * (time[part] - time[part.start]) / period[one]
+        level = values[part] - mean[one] - drift[one] * (phase / (2 * np.pi) - 0.5)
+        usable = np.isfinite(level)
+        phases.append((phase - np.arctan2(sine[one], cosine[one]))[usable])
+        waves.append(level[usable] / amplitude[one])
+    orders = np.arange(1, order + 1)
+
+    def terms(phase: Floats) -> Floats:
+        angle = np.multiply.outer(phase, orders)
+        return np.column_stack([np.ones(phase.size), np.cos(angle), np.sin(angle)])
+
+    design, wave = terms(np.concatenate(phases)), np.concatenate(waves)
+    of_wave = np.linalg.lstsq(design, wave, rcond=None)[0]
+    spread = float(np.std(wave - design @ of_wave)) * np.sqrt(2 / wave.size)
+    size = np.hypot(of_wave[1 : order + 1], of_wave[order + 1 :])
+    # the fundamental is that of each cycle; a harmonic within the noise is none
+    is_kept = (size > _ABOVE_NOISE * spread) & (orders > 1)
+    weights = np.concatenate([[0.0], of_wave[1:] * np.tile(is_kept, 2)])
+    weights[1] = 1.0
+    curve = terms(np.linspace(0, 2 * np.pi, 721))
+    fewer = np.concatenate([[True], np.tile(orders <= max(order // 2, 1), 2)])
+    low, high = np.min(curve @ weights), np.max(curve @ weights)
+    blunt = np.ptp(curve[:, fewer] @ weights[fewer]) / 2
+    half = float(high - low) / 2
+    return _Shape(half, float(high + low) / 2, abs(half - float(blunt)))
+
+
 def _quantities_of_cycles(
     measured: Floats,
     cycles: Cycles,
@@ -685,6 +792,7 @@ def _quantities_of_cycles(
     rise_share: Floats | float = 0.5,
     control: Control = "position",
     turn: Turn = "rounded",
+    shapes: tuple[_Shape, _Shape] | None = None,
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
     """Quantities of each cycle of one specimen, and their standard uncertainties.
 
@@ -727,9 +835,16 @@ def _quantities_of_cycles(
     force_sin = row["force_sine"] + force_drift / np.pi
     strain_sin = row["strain_sine"] + strain_drift / np.pi
     if waveform == "sinusoidal":
+        shapes = shapes or (_Shape(), _Shape())
         mean, mean_strain = row["force_mean"], row["strain_mean"]
         amplitude = np.hypot(force_cos, force_sin)
         strain_amplitude = np.hypot(strain_cos, strain_sin)
+        of_force, of_strain = shapes
+        row["force_missed"] = of_force.missed * amplitude
+        row["strain_missed"] = of_strain.missed * strain_amplitude
+        mean = mean + of_force.middle * amplitude
+        mean_strain = mean_strain + of_strain.middle * strain_amplitude
+        amplitude, strain_amplitude = amplitude * of_force.half, strain_amplitude * of_strain.half
         begin = mean_strain - strain_amplitude
     else:
         begin = row["strain_begin"]
@@ -1241,10 +1356,16 @@ def close_loops(
                     turn=turns[index], noise=of_series, way=way,
                     chose_turns=chose_turns,
                 )  # fmt: skip
+        shapes = None
+        if waveform == "sinusoidal":
+            shapes = (
+                _shape_of_wave(time, force, cycles, period, measured[index, _OF_FORCE], ends),
+                _shape_of_wave(time, stretch, cycles, period, measured[index, _OF_STRAIN], ends),
+            )
         values, errors = _quantities_of_cycles(
             measured[index], cycles, ends, waveform=waveform, noise=noise,
             strain_noise=strain_noise, rise_share=rise_share, control=control,
-            turn=turns[index],
+            turn=turns[index], shapes=shapes,
         )  # fmt: skip
         for name, column in values.items():
             tables[name][index] = column
@@ -1266,6 +1387,10 @@ def close_loops(
 _REACH_OF_TURN = 0.25  # of the shorter branch, in which its extremes are sought
 
 _OF_TURNS = MEASURED.index("force_top")
+
+_OF_FORCE, _OF_STRAIN = (
+    [MEASURED.index(f"{name}_{part}") for part in _OF_PARTS] for name in ("force", "strain")
+)
 
 
 def _turns(

@@ -238,7 +238,37 @@ def _mean_over_cycles(values: Floats, uncertainty: Floats | None) -> tuple[Float
     if uncertainty is not None:
         own = np.where(known, uncertainty, 0.0).sum(axis=-1)
         of_mean = np.where(n == 1, own, of_mean)
-    return mean, of_mean
+    off = [
+        _off_settled(row[is_so], of_row)
+        for row, is_so, of_row in zip(values, known, mean, strict=True)
+    ]
+    return mean, np.hypot(of_mean, off)
+
+
+_FEWEST_SETTLED = 9
+
+_CLEARLY = 4.0  # standard uncertainties
+
+
+def _off_settled(values: Floats, mean: float) -> float:
+    """How far a mean is from where the cycles have settled; zero where they have not, or always.
+
+    Examples
+    --------
+    >>> cycle = np.arange(12)
+    >>> round(_off_settled(100 - 10 * np.exp(-cycle) + 0.01 * (-1.0) ** cycle, 98.7), 1)
+    1.3
+    >>> _off_settled(100.0 - 2 * np.log(1 + cycle), 96.0)
+    0.0
+    """
+    if values.size < _FEWEST_SETTLED:
+        return 0.0
+    end = values[-(values.size // 3) :]
+    level, spread = float(end.mean()), float(end.std(ddof=1))
+    slope = abs(float(np.polyfit(np.arange(end.size), end, 1)[0])) * end.size
+    far = abs(level - mean)
+    is_flat = slope < max(_CLEARLY * spread / np.sqrt(end.size), 0.1 * far)
+    return far if is_flat and far > _CLEARLY * spread / np.sqrt(end.size) else 0.0
 
 
 def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]:
@@ -330,9 +360,10 @@ def summarise_amplitude(
     apart, over K_ap (`reduction.stages.cycles.loops`).
 
     Uncertainty is type A: scatter over the cycles over the root of their number; of a
-    single cycle, its own. Trend over the cycles is in the scatter. Cycles with NaN are
-    left out.  Beside it stands what all cycles have alike: a turn missed between two samples
-    in amplitudes, K_ap and K', the place of the drift within its cycle in the energy, and in the
+    single cycle, its own. Trend over the cycles is in the scatter; where the cycles settle, how
+    far the mean is from there is in it too. Cycles with NaN are left out.  Beside it stands
+    what all cycles have alike: a turn missed between two samples in amplitudes, K_ap and K', the
+    place of the drift within its cycle in the energy, and in the
     frequency what the driven channel and the other one differ by.
 
     Examples
