@@ -1,7 +1,15 @@
 """Bands in which numbers of mooring elements lie, and readings of an input that lead into them.
 
 A band is wide: what lies outside is a slip of a unit, a factor or a diameter, or a specimen of
-another kind than stated.  docs/plausibility.md has the source of each.
+another kind than stated.  docs/plausibility.md says what each rests on.
+
+References
+----------
+.. [1] J. D. Irish, W. Paul and D. M. Wyman, "The Determination of the Elastic Modulus of Rubber
+   Mooring Tethers and their Use in Coastal Moorings," Woods Hole Oceanog. Inst., Woods Hole,
+   MA, Tech. Rep. WHOI-2005-10, Dec. 2005, Tables 5, 6 (moduli of tethers).
+.. [2] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, Tables 1, 2, 7 (sizes, strengths, stiffness).
 """
 
 from __future__ import annotations
@@ -142,6 +150,15 @@ def readings_that_fit(
     -------
     readings : str
         In words; empty where nothing fits.
+
+    Raises
+    ------
+    ValueError
+        If the band is not of two numbers.
+
+    Notes
+    -----
+    The bands rest on [1]_ and [2]_ and on what fibres and steels have.
 
     Examples
     --------

@@ -1,4 +1,10 @@
-"""What a log shows of its test: levels, speeds and shapes, to hold against what is stated of it."""
+"""What a log shows of its test: levels, speeds and shapes, to hold against what is stated of it.
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.2 (frequency, mean load, load amplitude).
+"""
 
 from __future__ import annotations
 
@@ -101,6 +107,29 @@ def levels_of_test(
     -------
     levels : TestLevels
         Found; nothing is compared here.
+
+    Notes
+    -----
+    Levels are those of [1]_.  Cycles are looked at by their medians, some forty of them, so that a long log costs no more.
+
+    Raises
+    ------
+    IndexError
+        If a cycle lies outside the record.
+
+    Examples
+    --------
+    A stroke of 2 m in 20 s, and the pull of 100 N/m that goes with it:
+
+    >>> from reduction.record.settings import PhaseSettings
+    >>> from reduction.stages.standstills import find_standstills
+    >>> time = np.arange(0, 60, 0.5)
+    >>> position = np.interp(time, [20, 40, 60], [0, 2, 2])
+    >>> stands = find_standstills(time, position, [100 * position], settings=PhaseSettings())
+    >>> found = levels_of_test(
+    ...     time, position, 100 * position[None], None, stands, None, control="position")
+    >>> print(round(found.speed, 3), found.final_share)
+    0.1 [1.]
     """
     n_specimens = tension.shape[0]
     nothing = np.full(n_specimens, np.nan)

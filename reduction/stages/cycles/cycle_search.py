@@ -695,9 +695,11 @@ def _range(values: Floats) -> float:
     return max(high - low, 0.0)
 
 
-_STEADY = 0.004  # of a range: by less no mean of a dozen cycles is moved beyond its scatter
+_STEADY = 0.015  # of a range: by less a mean of a dozen cycles is moved by a thousandth
 
 _STARTING = 0.25  # of a range: by more it is another level, not a machine that starts
+
+_OTHER_LENGTH = 0.1
 
 _MOST_STARTING = 3
 
@@ -721,7 +723,7 @@ def _steady_span(values: Floats, branch_first: Indices, branch_last: Indices) ->
     begin, peak, end = branch_first[:, 0], branch_last[:, 0], branch_last[:, 1]
     falls, rises = values[peak] - values[end], values[peak] - values[begin]
     n_cycles = peak.size
-    if n_cycles <= _LEFT_STEADY or not np.isfinite(falls + rises).all():
+    if n_cycles < _LEFT_STEADY + _MOST_STARTING or not np.isfinite(falls + rises).all():
         return slice(0, n_cycles)
 
     def apart(of: Floats) -> Floats:
@@ -733,7 +735,10 @@ def _steady_span(values: Floats, branch_first: Indices, branch_last: Indices) ->
     of_rise, of_fall = apart(rises), apart(falls)
     # a branch that is as the others says that the level is theirs
     worse, better = np.maximum(of_rise, of_fall), np.minimum(of_rise, of_fall)
-    is_off = (worse > _STEADY) & (better < _STARTING)
+    # a machine that waits before it starts makes a cycle of another length
+    length = end - begin
+    is_long = np.abs(length / np.median(length) - 1) > _OTHER_LENGTH
+    is_off = ((worse > _STEADY) | is_long) & (better < _STARTING)
     # a record may begin and end within a cycle: that branch says nothing
     reach = int(np.median(end - begin)) // 20
     if begin[0] <= reach:
@@ -846,7 +851,10 @@ def find_cycles(
         is_sinusoidal=settings.waveform == "sinusoidal",
     )  # fmt: skip
     branch_first, branch_last, left_out = whole_cycles(values, halves)
-    steady = _steady_span(values, branch_first, branch_last)
+    # a stroke of constant speed has its amplitude from the first, a sine grows into it
+    steady = slice(0, branch_first.shape[0])
+    if settings.waveform == "sinusoidal":
+        steady = _steady_span(values, branch_first, branch_last)
     n_unsteady = branch_first.shape[0] - (steady.stop - steady.start)
     first, last = branch_first[:, 0], branch_last[:, 1]
     counted_by = "reversals"
