@@ -29,7 +29,7 @@ from reduction.lines.line_lookup import Branch
 from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
 from reduction.quantities.names import RESPONSES, quantity
 from reduction.record.contributions import Component
-from reduction.record.errors import ArchiveError
+from reduction.record.errors import ArchiveError, DataError
 from reduction.record.measurement import Bools, Floats
 
 _OVER_STRAIN = ("tangent_modulus", "branch_tension")
@@ -165,7 +165,7 @@ def _line_source_of_experiment(
     """Surfaces of an experiment as a source of design values."""
     names = surface_names(dataset, experiment)
     if not names:
-        raise ArchiveError(f"experiment '{experiment}' has no surface", needed="a Box-Behnken one")
+        raise DataError(f"experiment '{experiment}' has no surface", needed="a Box-Behnken one")
     row = dataset.variables["experiment"].values.astype(str).tolist().index(experiment)
     fitted = surfaces_of(dataset, experiment)
     factors = fitted.factor_names
@@ -335,14 +335,19 @@ def _line_source_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
             "the archive has no such specimen", found=specimen, needed=", ".join(known) or "none"
         )
     place = known.index(specimen)
-    strength = "rated_break_strength"
     curves = _curves_of_specimen(dataset, place)
     if not curves:
-        raise ArchiveError(
+        raise DataError(
             f"the archive of test {dataset.attrs.get('test', '')} has no curve",
             needed="a cyclic test, or a slow pull",
         )
+    return _line_of_curves(dataset, place, specimen, curves)
 
+
+def _line_of_curves(
+    dataset: xr.Dataset, place: int, specimen: str, curves: tuple[LineCurve, ...]
+) -> LineSource:
+    strength = "rated_break_strength"
     return LineSource(
         name=specimen,
         source=f"{dataset.attrs.get('id', '')}, specimen {specimen}",
@@ -386,12 +391,16 @@ def lines_of_open_archive(
         return [
             _line_source_of_experiment(archive, name, specimens=known)
             for name, kind in zip(names, kinds, strict=True)
-            if kind == "box-behnken"
+            if kind == "box-behnken" and surface_names(archive, name)
         ]
     if not any(name in archive for name in CURVES):
         return []
     names = archive.variables["specimen"].values.astype(str).tolist()
-    return [_line_source_of_test(archive, name) for name in names]
+    found = [(place, name, _curves_of_specimen(archive, place)) for place, name in enumerate(names)]
+    # of a specimen whose curves were refused the notes of its test say why: it is no line
+    return [
+        _line_of_curves(archive, place, name, curves) for place, name, curves in found if curves
+    ]
 
 
 def with_unique_names(found: Sequence[tuple[str, Sequence[LineSource]]]) -> list[LineSource]:

@@ -359,6 +359,13 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " whole ones",
     ),
     "one-cycle": ("note", "one cycle only: there is no scatter from cycle to cycle"),
+    "few-samples-a-cycle": (
+        "warning",
+        "{n_samples:g} samples in a cycle, where {needed} are needed for sound peaks and loops: a"
+        " turn between two samples is missed, the spring constant is of what was logged, and"
+        " tangent moduli may have no window. Log every {step}, or take the log that was not"
+        " thinned",
+    ),
     "cycles-not-as-planned": (
         "warning", "{n_found} whole cycles found, {n_planned} planned",
     ),

@@ -2,9 +2,12 @@
 
 import json
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
+from commandruns import ROOT
 from smallcampaign import CAMPAIGN, write_logs
 
 from reduction.archive.open import open_archive
@@ -234,3 +237,59 @@ def test_a_reference_length_stands_for_a_gauge_length_that_was_asked_for(tmp_pat
         )
     with open_archive(tmp_path / "processed" / "cord" / "A.nc") as archive:
         assert float(np.nanmax(archive["strain"].values)) == pytest.approx(0.6 / 1.25, abs=1e-3)
+
+
+def thin_out(name, folder, factor):
+    """A campaign of the project, every log of it with one row of `factor`."""
+    folder.mkdir(parents=True)
+    for source in filter(Path.is_file, (ROOT / "raw" / name).iterdir()):
+        text = source.read_bytes()
+        if source.suffix == ".csv" and source.stem != "marks":
+            lines = text.splitlines(keepends=True)
+            begin = next(row for row, line in enumerate(lines) if line[:1] in b"-.0123456789")
+            text = b"".join([*lines[:begin], *lines[begin::factor]])
+        (folder / source.name).write_bytes(text)
+    return folder / "campaign.toml"
+
+
+def run_thinned(command, name, folder, factor):
+    """Check and run it: the data are at fault, and neither this program nor the disk."""
+    campaign = thin_out(name, folder / "raw", factor)
+    checked = command("check", campaign)
+    places = ("--processed", folder / "processed", "--reports", folder / "reports")
+    done = command("run", campaign, *places)
+    told = f"{name}, one row of {factor}: {checked.returncode}, {done.returncode}\n{done.stderr}"
+    assert {checked.returncode, done.returncode} <= {0, 4, 5}, told
+    assert "Check the disk" not in done.stdout + done.stderr, told
+    assert "design values: " in done.stdout, told
+    return checked, done
+
+
+@pytest.mark.parametrize(("name", "factor"), [("nylon-synthetic", 30), ("tmt-synthetic", 80)])
+def test_a_log_too_coarse_for_its_cycles_is_refused_by_check_as_by_run(
+    command, tmp_path, name, factor
+):
+    for done in run_thinned(command, name, tmp_path, factor):
+        assert done.returncode in (4, 5)  # 5: no run is left for its experiment
+        assert re.search(
+            r"too few samples in a cycle; found [23] in cycle \d+, which lasts [\d.]+ s; "
+            r"needed 4 or more, and 12 for sound peaks and loops\. Log every [\d.]+ s or faster",
+            done.stderr,
+        )
+
+
+def test_a_log_with_few_samples_in_its_cycles_is_flagged_by_check(command, tmp_path):
+    checked, done = run_thinned(command, "nylon-synthetic", tmp_path, 20)
+    assert (checked.returncode, done.returncode) == (0, 0)
+    assert "R01: 4 samples in a cycle, where 12 are needed for sound peaks" in checked.stdout
+    # none of its runs has a curve, and that is no fault of its archives
+    assert "design values: " in done.stdout
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(
+    "name", ["tmt-synthetic", "nylon-synthetic", "hose-synthetic", "buoy-technology-1997"]
+)
+def test_no_thinned_log_ends_in_a_defect_or_in_a_fault_of_the_disk(command, tmp_path, name):
+    for factor in (2, 3, 5, 7, 10, 12, 14, 16, 20, 25, 30, 40, 50, 60, 70, 80, 100, 150, 200):
+        run_thinned(command, name, tmp_path / str(factor), factor)

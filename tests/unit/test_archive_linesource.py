@@ -231,9 +231,7 @@ def test_a_pull_that_was_refused_and_a_test_without_a_curve_give_no_line(folder)
     refused = pull.copy(deep=True)
     refused["pull_strain_coefficient"][0, 2] = np.nan
     for one in (refused, pull.drop_vars("pull_strain_coefficient")):
-        with pytest.raises(
-            ArchiveError, match="has no curve; needed a cyclic test, or a slow pull"
-        ):
+        with pytest.raises(DataError, match="has no curve; needed a cyclic test, or a slow pull"):
             _line_source_of_test(one, name)
 
 

@@ -59,6 +59,12 @@ _BAND_SHARE = 0.1
 
 _SLOW_PASS = 0.1
 
+FEWEST_SAMPLES = 4
+"""In a cycle, the last one left to the next: two turns, and a sample on each branch between."""
+
+ENOUGH_SAMPLES = 12
+"""In a cycle: the polygon through so many encloses 4.5 % less than the loop."""
+
 _GROUP = 4
 
 Indices = NDArray[np.intp]
@@ -634,6 +640,16 @@ _HINT = (
     "(relaxation, creep, quasi-static)."
 )
 
+
+def _hint(time: Floats) -> str:
+    """What to look at where no cycle is found; a log may be too coarse to show any."""
+    step = median_step(time)
+    return (
+        f"{_HINT} The samples stand {step:.4g} s apart: cycles shorter than "
+        f"{FEWEST_SAMPLES * step:.4g} s need a log with more of them."
+    )
+
+
 _BRANCHES = np.array([BRANCH_VALUES[name] for name in BRANCH_NAMES], dtype=np.int8)
 
 
@@ -670,7 +686,7 @@ def control_channel(position: Floats, tension: Floats, settings: CycleSettings) 
     return mean_of_rows(tension)
 
 
-def _reversals(values: Floats, settings: CycleSettings) -> tuple[Indices, float]:
+def _reversals(time: Floats, values: Floats, settings: CycleSettings) -> tuple[Indices, float]:
     """Reversals and the band that they were found with."""
     load = settings.control == "load"
     channel, unit = ("tension", "N") if load else ("crosshead position", "m")
@@ -684,7 +700,7 @@ def _reversals(values: Floats, settings: CycleSettings) -> tuple[Indices, float]
             found=f"a range of {_range(values):.4g} {unit}, "
             f"{max(reversals.size - 1, 0)} movements of {band:.4g} {unit} or more",
             needed="two half cycles or more",
-            hint=_HINT,
+            hint=_hint(time),
         )
     return reversals, band
 
@@ -842,7 +858,7 @@ def find_cycles(
     values = control_channel(position, tension, settings)
     notes: list[Note] = []
     made: tuple[str, ...] = ()
-    reversals, band = _reversals(values, settings)
+    reversals, band = _reversals(time, values, settings)
     reversals, jumps = _drop_jumps(values, reversals)
     if jumps.size:
         notes.append(note("jumps-no-reversals", n_jumps=jumps.size, time=float(time[jumps[0]])))
@@ -884,8 +900,9 @@ def find_cycles(
             found=f"{reversals.size - 1} movements of {band:.4g} or more, none followed by one "
             "of similar range without a standstill or a gap between",
             needed="an ascending and a descending half cycle of similar range",
-            hint=_HINT,
+            hint=_hint(time),
         )
+    notes += _refuse_coarse(time, first, last)
     if first.size == 1:
         notes.append(note("one-cycle"))
     n_made = first.size + (n_unsteady if counted_by == "reversals" else 0)
@@ -918,6 +935,35 @@ def find_cycles(
         notes=tuple(notes),
         made=made,
     )
+
+
+def _refuse_coarse(time: Floats, first: Indices, last: Indices) -> list[Note]:
+    """Refuse a log with too few samples in its cycles; a note where they are few.
+
+    Examples
+    --------
+    >>> time = np.arange(0.0, 30.0, 4.0)
+    >>> _refuse_coarse(time, np.array([0, 3]), np.array([3, 6]))
+    Traceback (most recent call last):
+    reduction.record.errors.DataError: too few samples in a cycle; found 3 in cycle 1, which lasts
+    12 s; needed 4 or more, and 12 for sound peaks and loops. Log every 1 s or faster, or take the
+    log that was not thinned.
+    """
+    counts = last - first
+    duration = take_samples(time, last) - take_samples(time, first)
+    usual, period = float(np.median(counts)), float(np.median(duration))
+    wanted = f"{period / ENOUGH_SAMPLES:.3g} s or faster"
+    least = int(np.argmin(counts))
+    if usual < FEWEST_SAMPLES or counts[least] < FEWEST_SAMPLES - 1:
+        raise DataError(
+            "too few samples in a cycle",
+            found=f"{counts[least]} in cycle {least + 1}, which lasts {duration[least]:.4g} s",
+            needed=f"{FEWEST_SAMPLES} or more, and {ENOUGH_SAMPLES} for sound peaks and loops",
+            hint=f"Log every {wanted}, or take the log that was not thinned.",
+        )
+    if usual < ENOUGH_SAMPLES:
+        return [note("few-samples-a-cycle", n_samples=usual, needed=ENOUGH_SAMPLES, step=wanted)]
+    return []
 
 
 def _counter_notes(

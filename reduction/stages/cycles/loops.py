@@ -98,15 +98,21 @@ def _sums_over_cycles(values: Floats, first: Integers, last: Integers) -> Floats
     --------
     >>> _sums_over_cycles(np.arange(6.0), np.array([0, 3]), np.array([3, 5]))
     array([3., 7.])
+    >>> _sums_over_cycles(np.arange(6.0), np.array([0, 6]), np.array([3, 6]))
+    array([3., 0.])
     """
     if first.size == 0:
         return np.empty(0)
+    holds_some = last > first
+    if not holds_some.all():  # of nothing reduceat gives the sample at its begin
+        sums = np.zeros(first.size)
+        sums[holds_some] = _sums_over_cycles(values, first[holds_some], last[holds_some])
+        return sums
     # pairs (first, last): the even entries are the sums, the odd ones the gaps between cycles;
     # the last pair's end may be one past the series, which reduceat does not take
     pairs = np.column_stack([first, last]).ravel()
     stop = int(last[-1])
-    sums: Floats = np.add.reduceat(values[:stop], pairs[:-1])[::2]
-    return sums
+    return np.asarray(np.add.reduceat(values[:stop], pairs[:-1])[::2])
 
 
 def _smooth_steps(strain: Floats, first: Integers, last: Integers) -> Floats:

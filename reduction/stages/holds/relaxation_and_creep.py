@@ -102,6 +102,8 @@ def _find_ramp(
     >>> ramp = _find_ramp(t, [0.0, 0.0, 1.0, 2.0, 3.0], [0.0, 0.0, 10.0, 20.0, 30.0], band=0.1)
     >>> ramp.start_time, ramp.centre_time, ramp.duration, round(ramp.stiffness, 6)
     (1.0, 2.5, 3.0, 10.0)
+    >>> _find_ramp(t, [0.0, 0.0, 1.0, 1.0, 1.0], [9.0, 9.0, 9.0, 9.0, 9.0], band=2.0) is None
+    True
     """
     seconds = as_increasing("time", time)
     seconds, place, load = as_same_shape(time=seconds, position=position, tension=tension)
@@ -117,6 +119,8 @@ def _find_ramp(
     end = float(seconds[-1])
     adds = load if load[-1] > load[0] else place
     lowest, rise = float(adds[0]), float(adds[-1] - adds[0])
+    if rise == 0:  # a log too coarse for the motion: it came back to the reading that it left
+        return None
     if adds is load:
         # a machine that rings as it stops may read far below what the ramp has added
         highest = float(np.max(load[-1 - _SAMPLES_BESIDE :])) - lowest
