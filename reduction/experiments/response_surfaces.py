@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import combinations
+from math import comb
 from typing import Literal
 
 import numpy as np
@@ -203,23 +203,27 @@ def _repeats(
     coded: Floats, responses: Floats, used: Bools, lack: LackOfFit, run_names: Sequence[str]
 ) -> list[Note]:
     notes = []
-    # a run typed in twice looks like this, and makes pure error too small
-    twins = [
-        (first, second)
-        for first, second in combinations(np.flatnonzero(used).tolist(), 2)
-        if (coded[first] == coded[second]).all()
-        and np.array_equal(responses[:, first], responses[:, second], equal_nan=True)
-    ]
+    # a run typed in twice looks like this, and makes pure error too small; -0 is 0, and NaN is NaN
+    numbers = np.column_stack([coded, responses.T]) + 0.0
+    numbers[np.isnan(numbers)] = np.nan
+    alike: dict[bytes, list[int]] = {}
+    for run in np.flatnonzero(used & np.isfinite(coded).all(axis=1)).tolist():
+        alike.setdefault(numbers[run].tobytes(), []).append(run)
+    twins = [runs for runs in alike.values() if len(runs) > 1]
     if twins:
-        first, second = twins[0]
-        pair = {"first": run_names[first], "second": run_names[second]}
-        notes.append(note("runs-alike", **pair, n_pairs=len(twins)))
-    spread = max(
-        (np.ptp(coded[lack.cell == cell], axis=0).max() for cell in np.unique(lack.cell[used])),
-        default=0.0,
-    )
+        pair = {"first": run_names[twins[0][0]], "second": run_names[twins[0][1]]}
+        n_pairs = sum(comb(len(runs), 2) for runs in twins)
+        notes.append(note("runs-alike", **pair, n_pairs=n_pairs))
+    runs_of_cell = np.argsort(lack.cell, kind="stable")
+    runs_of_cell = runs_of_cell[used[runs_of_cell]]
+    begin = np.flatnonzero(np.diff(lack.cell[runs_of_cell], prepend=-2))
+    of_cells = coded[runs_of_cell]
+    spread = 0.0
+    if begin.size:
+        ranges = np.maximum.reduceat(of_cells, begin) - np.minimum.reduceat(of_cells, begin)
+        spread = float(ranges.max())
     if spread > 1e-9:
-        notes.append(note("repeats-differ", spread=float(spread), tolerance=lack.tolerance))
+        notes.append(note("repeats-differ", spread=spread, tolerance=lack.tolerance))
     return notes
 
 
@@ -247,6 +251,10 @@ def _alone(fit: LeastSquares, run_names: Sequence[str]) -> list[Note]:
 
 _SEQUENCE = {"linear": "first order", "interaction": "interactions", "square": "squares"}
 """Order of the sources in the analysis of variance, that of R's rsm."""
+
+
+MOST_RUNS = 2000
+"""Of one experiment: room and time grow with their square, and these take 350 MB and 3 s."""
 
 
 def fit_surfaces(
@@ -308,7 +316,8 @@ def fit_surfaces(
         above its low one.
     DataError
         If a run has a value and no levels, a level or response is infinite, a factor never
-        moves, there is one block, or a response to be transformed is not above zero.
+        moves, there is one block, a response to be transformed is not above zero, or there are
+        more than `MOST_RUNS` runs.
     FitError
         If there are fewer runs than terms, or the runs leave terms confounded.
 
@@ -336,6 +345,13 @@ def fit_surfaces(
     coded = _coded_levels(levels, low=low, high=high, units=units, factor_names=factor_names)
     measured = np.array(responses, dtype=np.float64)
     n_runs, n_factors = coded.shape
+    if n_runs > MOST_RUNS:
+        raise DataError(
+            "there are too many runs for a surface",
+            found=f"{n_runs:,}",
+            needed=f"{MOST_RUNS:,} or fewer: all runs are compared with all others",
+            hint="Give one row a run, as the mean of its cycles, and not one row a sample.",
+        )
     runs = tuple(run_names or (str(number + 1) for number in range(n_runs)))
     _require_names(runs, n_runs, "run")
     _require_names(tuple(response_names), measured.shape[0] if measured.ndim else 0, "response")

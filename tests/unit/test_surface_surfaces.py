@@ -9,7 +9,7 @@ from statsmodels.stats.anova import anova_lm
 
 from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
 from reduction.experiments.fit_results import FIT_REASONS
-from reduction.experiments.response_surfaces import fit_surfaces
+from reduction.experiments.response_surfaces import MOST_RUNS, fit_surfaces
 from reduction.experiments.term_selection import reduce_terms
 from reduction.record.errors import DataError, FitError, SettingsError
 
@@ -346,3 +346,16 @@ def test_a_value_at_or_below_nought_has_no_logarithm(noise):
     noise[0, 2] = -1.0
     with pytest.raises(DataError, match="1 of 60 values are not above zero"):
         surfaces(noise, transforms="log")
+
+
+def test_more_runs_than_an_experiment_has_are_refused_and_pairs_are_counted_quickly():
+    runs = np.tile(RUNS, (MOST_RUNS // len(RUNS) + 1, 1))
+    measured = np.random.default_rng(3).normal(size=(1, len(runs)))
+    with pytest.raises(DataError, match="too many runs for a surface; found 2,010; needed 2,000"):
+        surfaces(measured, runs)
+    alike = np.tile(measured[:, : len(RUNS)], 3)
+    (note,) = [
+        one for one in surfaces(alike, np.tile(RUNS, (3, 1))).notes if one.code == "runs-alike"
+    ]
+    # three runs of each: three pairs
+    assert note.numbers["n_pairs"] == 3 * len(RUNS)
