@@ -189,8 +189,7 @@ def open_archive(path: Path | str, *, chunks: Chunks | None = None) -> xr.Datase
         If Dask is wanted and not installed, or refuses the chunks.
     """
     path = Path(path)
-    if not path.is_file():
-        raise ArchiveError(f"there is no archive {path}", hint="Run the campaign first.")
+    refuse_no_file(path)
     try:
         _refuse(path, _fault_stored(path))
         with _small_cache():
@@ -232,6 +231,20 @@ def open_archive(path: Path | str, *, chunks: Chunks | None = None) -> xr.Datase
     # what is known to be an archive is opened again, so that a fault is one of the chunks
     dataset.close()
     return _open_in_chunks(path, chunks)
+
+
+def refuse_no_file(path: Path) -> None:
+    """Refuse what cannot be opened as a file; one end of a pipe waits for ever for the other."""
+    if path.is_file():
+        return
+    if path.exists():
+        raise ArchiveError(
+            f"{path} is no archive",
+            found="a folder" if path.is_dir() else "a pipe, a socket or a device",
+            needed="a file",
+            hint="Move it away.",
+        )
+    raise ArchiveError(f"there is no archive {path}", hint="Run the campaign first.")
 
 
 def _opened(path: Path, chunks: Chunks | None = None) -> xr.Dataset:

@@ -20,6 +20,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from reduction.archive.open import refuse_no_file
 from reduction.archive.product_files import archives_in
 from reduction.record.errors import ArchiveError, DataError, SettingsError
 
@@ -584,6 +585,7 @@ def _unreadable(path: Path, kind: str) -> Iterator[None]:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[_Archive]:
+    refuse_no_file(path)
     with _unreadable(path, "netCDF"):
         dataset = netCDF4.Dataset(path)
     with dataset:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import sys
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -42,7 +43,7 @@ from reduction.campaign.plan import Campaign
 from reduction.quantities.units import UnitSystem
 from reduction.readers.raw_log import hash_source
 from reduction.record.contributions import Component, InstrumentErrors
-from reduction.record.errors import ArchiveError
+from reduction.record.errors import ArchiveError, SettingsError
 from reduction.record.measurement import Origin, Source, Specimen, Step
 from reduction.record.plain_text import bare_cell, safe_cell
 from reduction.report.campaign_page import write_report
@@ -394,6 +395,7 @@ def run_campaign(
     """
     progress = progress or Silent()
     refuse_unknown_tests(campaign, tests)
+    _refuse_name(processed / campaign.id)
     with run_lock(processed / campaign.id) as lock:
         try:
             return _run(
@@ -405,6 +407,20 @@ def run_campaign(
             if workers is not None:  # nobody writes once the lock is given back
                 workers.end()
             raise
+
+
+def _refuse_name(folder: Path) -> None:
+    """Refuse a folder that the netCDF library cannot name, before anything is reduced for it."""
+    name = str(folder.absolute())
+    try:
+        name.encode(sys.getfilesystemencoding())
+    except UnicodeEncodeError as error:
+        raise SettingsError(
+            "products cannot be written to this folder",
+            found=f"{name!a}, a name that {error.encoding} has no letters for",
+            needed="a path in the character set of this process",
+            hint="Rename the folder, or say with --processed where the products go.",
+        ) from error
 
 
 def _run(

@@ -129,6 +129,7 @@ def _run_named(folder: Path) -> str:
 
 def _own() -> str:
     command = without_secrets(shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]]))
+    command = command.encode("utf-8", "backslashreplace").decode()  # of names in other letters
     started = datetime.now(UTC).isoformat(sep=" ", timespec="seconds")
     return f"'{command}', process {os.getpid()} on {platform.node()}, since {started}"
 

@@ -12,6 +12,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -231,14 +232,26 @@ def _markdown(table: ValueTable, units: UnitSystem) -> str:
     cells = [heads, ["---:"] * len(heads), *rows]
     return "\n".join(
         [
-            f"**{table.title}**",
+            f"**{_as_markdown(table.title)}**",
             "",
-            *(f"- {' '.join(text.split())}" for text in _said(table)),
+            *(f"- {_as_markdown(text)}" for text in _said(table)),
             "",
-            *("| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in cells),
+            *("| " + " | ".join(map(_as_markdown, row)) + " |" for row in cells),
             "",
         ]
     )
+
+
+def _as_markdown(text: str) -> str:
+    r"""Text in one line that no reader of Markdown takes for HTML, a link or a cell.
+
+    Examples
+    --------
+    >>> print(_as_markdown("<img src=x> a|b [go](javascript:1)"))
+    &lt;img src=x&gt; a\|b [go\](javascript:1)
+    """
+    plain = escape(" ".join(text.split()), quote=False)
+    return re.sub(r"[\\`|]|\](?=\()", lambda sign: "\\" + sign[0], plain)
 
 
 TENSIONS = ("mean_tension", "tension_amplitude", "tension")

@@ -306,11 +306,14 @@ class _Reading:
     def _digest(self, path: Path) -> str:
         """Of all bytes: by times and numbers of files the page would not be the same elsewhere."""
         if path not in self._digests:
+            self._digests[path] = ""
+            if not path.is_file():  # a pipe would be waited for
+                return ""
             try:
                 with path.open("rb") as file:
                     self._digests[path] = file_digest(file, "sha256").hexdigest()
             except OSError:
-                self._digests[path] = ""
+                pass  # without it the archive is read, which tells why
         return self._digests[path]
 
     def leave(self, path: Path) -> int:

@@ -238,6 +238,9 @@ DEADLINE = 30.0
 
 MOST_AT_ONCE = 24
 
+_TO_LEAVE = 1.0
+"""How long a connection that is cut off may take to leave its place. [s]"""
+
 _MOST_CHANGES = 40
 
 _LONGEST = 200
@@ -315,6 +318,9 @@ class ExploreServer(ThreadingHTTPServer):
         self.told_of_defect = told_of_defect
         self.working = threading.Lock()
         self._places = threading.BoundedSemaphore(MOST_AT_ONCE)
+        # oldest first, those that are at work left out: what waits for its other end
+        self._waiting: dict[socket.socket, None] = {}
+        self._waiting_lock = threading.Lock()
         ours, report = (
             files("reduction.pages") / "explorer_static",
             files("reduction.report") / "static",
@@ -353,10 +359,18 @@ class ExploreServer(ThreadingHTTPServer):
         self.server_name, self.server_port = HOST, self.server_address[1]
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        """Give a request a thread, as long as there are not too many."""
+        """Give a request a thread; of too many the one that dawdles longest makes room."""
         if not self._places.acquire(blocking=False):
-            self.shutdown_request(request)
-            return
+            with self._waiting_lock:
+                oldest = next(iter(self._waiting), None)
+                if oldest is not None:
+                    del self._waiting[oldest]
+                    _cut_off(oldest)
+            if oldest is None or not self._places.acquire(timeout=_TO_LEAVE):
+                self.shutdown_request(request)
+                return
+        with self._waiting_lock:
+            self._waiting[request] = None
         super().process_request(request, client_address)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
@@ -364,7 +378,13 @@ class ExploreServer(ThreadingHTTPServer):
         try:
             super().process_request_thread(request, client_address)
         finally:
+            self.is_at_work(request)
             self._places.release()
+
+    def is_at_work(self, request: Any) -> None:
+        """A request is here as a whole: nobody takes its place."""
+        with self._waiting_lock:
+            self._waiting.pop(request, None)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """A connection that broke is nobody's business; requests answer their own faults."""
@@ -469,6 +489,7 @@ class _Handler(BaseHTTPRequestHandler):
             raise _Refused(HTTPStatus.BAD_REQUEST, f"the request has no {missing[0]}")
         # it is here as a whole: the work on it takes as long as it takes
         self._deadline.cancel()
+        self.server.is_at_work(self.connection)
         with self.server.working:
             return _as_json(HTTPStatus.OK, make(**{name: asked[name] for name in names}))
 

@@ -2,7 +2,9 @@
 
 import json
 import math
+import os
 import re
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -293,3 +295,15 @@ def test_a_log_with_few_samples_in_its_cycles_is_flagged_by_check(command, tmp_p
 def test_no_thinned_log_ends_in_a_defect_or_in_a_fault_of_the_disk(command, tmp_path, name):
     for factor in (2, 3, 5, 7, 10, 12, 14, 16, 20, 25, 30, 40, 50, 60, 70, 80, 100, 150, 200):
         run_thinned(command, name, tmp_path / str(factor), factor)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs names that are no UTF-8")
+def test_a_folder_that_netcdf_cannot_name_is_refused_before_anything_is_reduced(
+    command, tethers, tmp_path
+):
+    folder = tmp_path / os.fsdecode(b"f\xff")
+    campaign = tmp_path / "small" / "campaign.toml"
+    done = command("run", campaign, "--processed", folder, "--reports", tmp_path / "reports")
+    assert done.returncode == 2
+    assert "a name that utf-8 has no letters for; needed a path in" in done.stderr
+    assert not folder.exists()

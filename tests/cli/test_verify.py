@@ -1,9 +1,11 @@
 """The command ``verify``: what it says, how it ends, and where it looks for the campaign."""
 
 import json
+import os
 import shutil
 
 import pytest
+from boundedruns import BoundedRuns
 from commandruns import reduction
 from documentedcampaign import copied, run
 
@@ -102,3 +104,16 @@ def test_a_folder_that_may_not_be_looked_into_is_no_empty_one(place, monkeypatch
     monkeypatch.setattr("os.listdir", refuse)
     with pytest.raises(PermissionError, match="Permission denied"):
         processed_folders(place / "processed")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs a pipe with a name")
+def test_a_pipe_among_the_archives_is_a_finding_and_is_not_waited_for(place):
+    folder = place / "processed" / NAME
+    os.mkfifo(folder / "x.nc")
+    (folder / "T-1.nc").unlink()
+    os.mkfifo(folder / "T-1.nc")
+    for words in (("verify", folder), ("report", folder), ("diff", folder, folder)):
+        with BoundedRuns() as bounded:
+            done = bounded.run(*map(str, words), cwd=place, seconds=60)
+        assert done.status == 6
+        assert "found a pipe, a socket or a device; needed a file" in done.errors

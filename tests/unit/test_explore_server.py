@@ -4,8 +4,9 @@ import http.client
 import json
 import socket
 import threading
+import time
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -344,16 +345,36 @@ def test_a_connection_has_an_end_however_it_goes_on(server, monkeypatch):
         assert line.recv(100) == b""
 
 
-def test_too_many_at_once_are_turned_away_and_then_answered_again(server):
+def test_slow_connections_make_room_for_one_that_asks(server):
     lines = [
         socket.create_connection(("127.0.0.1", server.server_port), timeout=20)
-        for _ in range(server_module.MOST_AT_ONCE)
+        for _ in range(4 * server_module.MOST_AT_ONCE)
     ]
     for line in lines:
-        line.sendall(b"GET / HTTP/1.1\r\n")
-    assert until(server, is_answered=False)  # all of them have their places
+        with suppress(OSError):  # those that came first were turned away for those that came last
+            line.sendall(b"GET / HTTP/1.1\r\n")
+    began = time.monotonic()
+    assert ask(server, "GET", "/explore.css").status == 200
+    assert time.monotonic() - began < server_module.PATIENCE / 2
     for line in lines:
         line.close()
+    assert until(server, is_answered=True)
+
+
+def test_more_at_work_than_there_are_places_are_turned_away(server, session):
+    with ThreadPoolExecutor(server_module.MOST_AT_ONCE) as pool:
+        asked = [
+            pool.submit(ask, server, "POST", "/api/reload", {})
+            for _ in range(server_module.MOST_AT_ONCE)
+        ]
+        for _ in range(400):
+            if server._places._value == 0 and not server._waiting:
+                break
+            threading.Event().wait(0.02)
+        with pytest.raises((ConnectionError, http.client.HTTPException)):
+            ask(server, "GET", "/explore.css")
+        session.wait.set()
+        assert {one.result(20).status for one in asked} == {200}
     assert until(server, is_answered=True)
 
 

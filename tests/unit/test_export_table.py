@@ -62,6 +62,15 @@ def test_latex_escapes_and_markdown_has_a_row_a_point():
     assert "- Source: CG-D-39-80, Table 3" in rows
 
 
+def test_markdown_lets_no_markup_through():
+    hostile = "<img src=x onerror=alert(1)> a|b [go](javascript:1)"
+    column = TableColumn("name", "", "name", np.array([hostile]))
+    table = ValueTable(hostile, (column,), sources=(hostile,), notes=("two\n<b>lines",))
+    text = table_text_of(table, "markdown")
+    assert "<" not in text and "go](" not in text
+    assert r"| &lt;img src=x onerror=alert(1)&gt; a\|b [go\](javascript:1) |" in text
+
+
 def test_netcdf_keeps_values_units_and_sources(tmp_path):
     write_netcdf(TABLE, tmp_path / "t.nc")
     with xr.open_dataset(tmp_path / "t.nc") as found:

@@ -6,6 +6,7 @@ import zlib
 from base64 import b64decode
 from dataclasses import replace
 from html.parser import HTMLParser
+from importlib.resources import files
 from itertools import pairwise
 
 import numpy as np
@@ -504,3 +505,20 @@ def test_an_archive_of_the_campaign_that_nothing_stands_for_now_says_so(rich_tes
     text = " ".join("".join(Page(page.read_text(encoding="utf-8")).text).split())
     assert "surfaces.nc Nothing in the campaign stands for this archive now" in text
     assert "T-9.nc Nothing" not in text
+
+
+@pytest.mark.parametrize(
+    ("room", "name"),
+    [
+        ("reduction.report", "page.html"),
+        ("reduction.report", "client.html"),
+        ("reduction.published", "reproduce.html"),
+        ("reduction.pages", "design-values.html"),
+    ],
+)
+def test_every_page_forbids_another_base_and_sending_of_forms(room, name):
+    page = (files(room) / "templates" / name).read_text("utf-8")
+    (policy,) = re.findall(r'http-equiv="Content-Security-Policy" content="([^"]*)"', page)
+    assert {"default-src 'none'", "form-action 'none'", "base-uri 'none'"} <= set(
+        policy.split("; ")
+    )
