@@ -474,6 +474,7 @@ def _show_surfaces(
     output: CommandOutput,
 ) -> None:
     """Each surface: its terms, its analysis of variance, its stationary point."""
+    within = "" if surfaces.blocks is None else " within blocks"
     for index, name in enumerate(surfaces.response_names):
         transform = surfaces.transform[index]
         shown = _ShownUnits(runs.response_units[index], transform, runs.factor_units, output.system)
@@ -485,7 +486,8 @@ def _show_surfaces(
             continue
         _show_terms(surfaces, index, shown.scale, output)
         output.say(
-            f"r2 {short(surfaces.r2[index])}, adjusted {short(surfaces.adjusted_r2[index])}, "
+            f"r2{within} {short(surfaces.r2[index])}, "
+            f"adjusted {short(surfaces.adjusted_r2[index])}, "
             f"predicted {short(surfaces.predicted_r2[index])}; "
             f"F {short(surfaces.overall_f[index])}, p {short(surfaces.overall_p_value[index], 3)}"
         )

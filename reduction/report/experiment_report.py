@@ -1075,10 +1075,11 @@ def quality_table(view: ExperimentView, surfaces: ResponseSurfaces) -> PageTable
     sheet = Sheet(view).texts(
         "response", [unit.label(in_words(name)) for name, unit in zip(names, units, strict=True)]
     )
+    within = "" if surfaces.blocks is None else " within blocks"
     for heading, shares in (("r²", surfaces.r2), ("adjusted r²", surfaces.adjusted_r2),
                             ("predicted r²", surfaces.predicted_r2)):  # fmt: skip
         sheet.cells(
-            f"{heading} [1]",
+            f"{heading}{within} [1]",
             [TableCell(share_text(float(one)), repr(float(one)), is_number=True) for one in shares],
         )
     n_terms = len(surfaces.term_names) - 1

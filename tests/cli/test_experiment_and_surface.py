@@ -215,6 +215,8 @@ def test_specimens_are_blocks_or_draws(fit):
     found = answered(fit(f"{both}\n{other}", SPEC, "--json"))["responses"]
     blocks = found["apparent_spring_constant"]["blocks"]
     assert blocks["names"] == ["one", "two"] and blocks["treatment"] == "fixed"
+    assert "r2 within blocks 0.99" in fit(f"{both}\n{other}", SPEC).stdout
+    assert "within" not in fit(table(UNITS), SPEC).stdout
     assert found["apparent_spring_constant"]["anova"][0]["source"] == "blocks"
     random = SPEC.replace("sigma", 'specimens_as = "random"\nsigma')
     drawn = answered(fit(f"{both}\n{other}", random, "--json"))
