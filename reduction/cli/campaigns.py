@@ -206,10 +206,19 @@ def _is_copy(processed: Path, reports: Path, output: CommandOutput) -> bool:
     return any(str(folder) in output.names for folder in (processed, reports))
 
 
+def _errors_stand_below() -> bool:
+    """Whether one screen, file or pipe takes answers and errors, so that each is said once."""
+    try:
+        out, errors = (os.fstat(stream.fileno()) for stream in (sys.stdout, sys.stderr))
+    except (AttributeError, OSError, ValueError):  # streams that are no files
+        return False
+    is_screen = sys.stdout.isatty() and sys.stderr.isatty()
+    return is_screen or os.path.samestat(out, errors)
+
+
 def _status_table(tests: Sequence[TestStatus]) -> Table:
     rows = []
-    # on one screen the errors stand right below the table
-    is_below = sys.stdout.isatty() and sys.stderr.isatty()
+    is_below = _errors_stand_below()
     for test in tests:
         message = escape(test.message)  # text from files of strangers: no markup is read in it
         if is_below and test.exit_status:
@@ -250,8 +259,10 @@ def _part_table(kind: str, parts: Sequence[PartStatus]) -> Table:
     table = Table(box=None, pad_edge=False)
     for heading in (kind, "status", "message"):
         table.add_column(heading)
+    is_below = _errors_stand_below()
     for one in parts:
-        table.add_row(one.id, one.status, escape(one.message))
+        is_told = is_below and bool(one.exit_status)
+        table.add_row(one.id, one.status, "see below" if is_told else escape(one.message))
     return table
 
 
@@ -440,8 +451,9 @@ def run_campaign(
         output.error(
             f"{path}: nothing in this campaign makes it now; moved there, and no answer rests on it"
         )
-    output.say(f"products: {result.processed}")
-    if result.tables:
+    has_failed = bool(result.tests) and all(one.status == "failed" for one in result.tests)
+    output.say(f"products: {'none; all tests failed' if has_failed else result.processed}")
+    if result.tables and not has_failed:
         number, folder = len(result.tables) - 1, result.tables[0].parent
         output.say(f"tables:   {folder}: {number} tables, and columns.csv, which explains them")
     document: dict[str, Any] = {
@@ -458,7 +470,7 @@ def run_campaign(
     if result.report is None:
         output.say("report:   none; nothing was made that could be shown")
     else:
-        output.say(f"report:   {result.report}")
+        output.say(f"report:   {result.report}{', which says why' if has_failed else ''}")
     _say_client_report(client, output)
     document["design_values"] = _refresh_design_page(
         processed, reports, output, made=campaign.id, opener=opener

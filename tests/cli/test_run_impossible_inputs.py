@@ -4,6 +4,7 @@ import json
 import math
 import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -307,3 +308,16 @@ def test_a_folder_that_netcdf_cannot_name_is_refused_before_anything_is_reduced(
     assert done.returncode == 2
     assert "a name that utf-8 has no letters for; needed a path in" in done.stderr
     assert not folder.exists()
+
+
+def test_errors_stand_once_in_one_file_and_a_run_that_failed_names_no_products(tethers, tmp_path):
+    for name in ("A.csv", "B.csv"):
+        (tmp_path / "small" / name).write_text("no log\n")
+    places = ("--processed", tmp_path / "p", "--reports", tmp_path / "r")
+    done = subprocess.run(
+        [sys.executable, "-m", "reduction", "run", tmp_path / "small" / "campaign.toml", *places],
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False, cwd=ROOT,
+    )  # fmt: skip
+    assert done.returncode == 3
+    assert sum("A.csv" in line for line in done.stdout.splitlines()) == 1
+    assert "products: none; all tests failed\n" in done.stdout

@@ -622,7 +622,11 @@ def tensile_pull(
                 "tension falls by half after its greatest, and the crosshead does not go back"
             )
         else:
-            how.append("tension does not fall by half at the position of its greatest")
+            how.append(
+                "tension does not fall by half at the position of its greatest (where the log "
+                "ends with the break, as a machine that stops at a part of the fall leaves it, "
+                "state failed = true)"
+            )
     return TensilePull(
         peak_tension=numbers[0],
         peak_tension_standard_uncertainty=numbers[1],
