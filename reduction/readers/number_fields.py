@@ -110,7 +110,8 @@ def _numbers(column: pa.ChunkedArray) -> list[Floats] | None:
 
 
 def _has_thousands(rows: TextRows) -> bool:
-    mark = rows.layout.thousands.encode()
+    layout = rows.layout
+    mark = (layout.quote if layout.thousands == layout.delimiter else layout.thousands).encode()
     return bool(mark) and re.search(re.escape(mark), rows.text) is not None
 
 
@@ -185,7 +186,8 @@ def _second_look(
     trimmed = pc.utf8_trim_whitespace(column)
     is_missing = pc.is_in(trimmed, value_set=pa.array(layout.missing, pa.string()))
     point, mark = re.escape(layout.decimal), re.escape(layout.thousands)
-    whole = rf"\d+|\d{{1,3}}(?:{mark}\d{{3}})+" if mark else r"\d+"
+    # a group follows one to three digits of which the first is no 0: 0,244 is a decimal comma
+    whole = rf"\d+|[1-9]\d{{0,2}}(?:{mark}\d{{3}})+" if mark else r"\d+"
     number = rf"^[+-]?(?:(?:{whole})(?:{point}\d*)?|{point}\d+)(?:[eE][+-]?\d+)?$"
     is_number = pc.match_substring_regex(trimmed, number)
     bad = pc.index(pc.or_(is_missing, is_number), False).as_py()
@@ -199,15 +201,53 @@ def _second_look(
         bad = int(infinite[0])
     found = trimmed[bad].as_py()
     sample = f"12{layout.decimal}5"
+    at = rows.row_of_line(bad) if row is None else int(row[bad])
     raise LogError(
         rows.path,
         "a value is not a number",
-        row=rows.row_of_line(bad) if row is None else int(row[bad]),
+        row=at,
         channel=str(want.column),
         found=repr(cut(found, 60)) if found else "an empty field",
         needed=f"a decimal number such as {sample} in {want.unit}, or a declared missing mark",
-        hint="Add it to the missing marks of the layout where it means missing.",
+        hint=_what_to_set(found, want, layout, is_first=bad == 0 and at == rows.first_row),
     )
+
+
+_DATE = re.compile(r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}([ T]|$)|\d{1,2}:\d{2}")
+
+_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
+
+_GROUPS = {
+    ",": re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?"),
+    ".": re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,\d*)?"),
+}
+
+
+def _what_to_set(found: str, want: DeclaredColumn, layout: Layout, *, is_first: bool) -> str:
+    """What of the layout a field asks for that is no number by it."""
+    parted = "," if layout.decimal == "." else "."
+    is_parted = not layout.thousands and _GROUPS[parted].fullmatch(found) is not None
+    has_comma = layout.decimal == "." and _COMMA.fullmatch(found) is not None
+    if is_parted and has_comma:
+        return (
+            'Set thousands = "," where the comma parts groups, or decimal = "," where it does not.'
+        )
+    if is_parted:
+        return f'Set thousands = "{parted}" where it parts groups of three digits.'
+    if has_comma:
+        no_groups = ' and thousands = ""' if layout.thousands == "," else ""
+        return f'Set decimal = ","{no_groups} where the comma is a decimal mark.'
+    if want.key == "time" and _DATE.match(found):
+        return (
+            'Set unit = "clock" where it is a time of day (09:45:30); of dates take another column '
+            "for the time, or sample_interval."
+        )
+    if is_first and found and not any(one.isdigit() for one in found):
+        return (
+            "Set has_unit_row = true where this is a row of units; preamble_rows = N skips rows "
+            "above the names."
+        )
+    return "Add it to the missing marks of the layout where it means missing."
 
 
 AT_A_TIME = 2

@@ -51,6 +51,8 @@ _NOT_MEASURED = (
     r"geschwindigkeit|digital"
 )
 
+_ELONGATION = "elongation"  # a position where it is stated in a unit of length, else a strain
+
 # ranked: the first pattern that fits a column wins; the second text rules a column out
 _NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
     "time": (
@@ -63,7 +65,7 @@ _NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
         "length",
         (r"crosshead|traverse", r"^position|^pos$", r"weg$|\bweg\b", r"extension",
          r"displace?ment|\bdisp\b|^disp",
-         r"stroke|tool separation", r"^machine$|^maschine$"),
+         r"stroke|tool separation", r"^machine$|^maschine$", _ELONGATION),
         _NOT_MEASURED,
     ),
     "tension": (
@@ -189,6 +191,8 @@ def _candidates(key: str, columns: Sequence[_SeenColumn]) -> list[tuple[_SeenCol
             if not re.search(pattern, plain) or re.search(rf"\b({barred})\b", plain):
                 continue
             unit = _unit(column, dimension)
+            if pattern == _ELONGATION and unit == UNKNOWN:
+                continue
             if unit is not None and _fits(key, column):
                 found.append((rank, column, unit))
     best: dict[int, tuple[_SeenColumn, str]] = {}
@@ -396,8 +400,8 @@ _MTS = "MTS793|"
 _LEAST_SHARE = (0.5, 0.8)  # of the fields are numbers; more where blanks part them
 
 _THOUSANDS = {
-    ".": re.compile(r"[+-]?\d{1,3}(,\d{3})+(\.\d*)?"),
-    ",": re.compile(r"[+-]?\d{1,3}(\.\d{3})+(,\d*)?"),
+    ".": re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?"),
+    ",": re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,\d*)?"),
 }
 
 _MARKED = (

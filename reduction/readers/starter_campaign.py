@@ -57,6 +57,11 @@ class _Log:
     sniffed: SniffedLayout
 
     @property
+    def is_named(self) -> bool:
+        """Whether a column of it is a position or a load."""
+        return bool({"crosshead_position", "tension.1"} & set(self.sniffed.keys))
+
+    @property
     def n_specimens(self) -> int:
         return max(1, sum(key.startswith("tension.") for key in self.sniffed.keys))
 
@@ -92,13 +97,13 @@ def _logs_of(path: Path) -> list[_Log]:
     sheets: list[str | None] = [None]
     if format_of(path) == "spreadsheet":
         sheets = [*sheets_with_tables(path)]
-    found = [_Log(path.name, sheet, sniff_layout(path, sheet=sheet)) for sheet in sheets]
-    return [log for log in found if {"crosshead_position", "tension.1"} & set(log.sniffed.keys)]
+    return [_Log(path.name, sheet, sniff_layout(path, sheet=sheet)) for sheet in sheets]
 
 
 def starter_campaign(folder: Path) -> dict[str, str]:
     """Text of ``campaign.toml`` and ``tests.csv`` for the logs of a folder."""
     logs: list[_Log] = []
+    unnamed: list[_Log] = []
     marks: list[str] = []
     refused: list[str] = []
     for path in sorted(folder.iterdir(), key=lambda entry: _natural(entry.name)):
@@ -115,9 +120,13 @@ def starter_campaign(folder: Path) -> dict[str, str]:
         except LogError as error:
             refused.append(f"{path.name}: {error.problem}")
             continue
-        if not found:
-            refused.append(f"{path.name}: no column looks like a position or a load")
-        logs += found
+        named = [log for log in found if log.is_named]
+        unnamed += [] if named else found
+        logs += named
+    if not logs:  # tables whose columns nobody knows, for a reader to name them
+        logs, unnamed = unnamed, []
+    names = dict.fromkeys(log.file for log in unnamed)
+    refused += [f"{name}: no column looks like a position or a load" for name in names]
     if not logs:
         raise LogError(
             folder, "the folder holds no log", found="; ".join(refused) or "no files",

@@ -243,6 +243,22 @@ def test_decimal_commas_and_thousands_are_seen(tmp_path):
     assert log.columns["tension.1"].tolist() == [1000.5 + i for i in range(1, 9)]
 
 
+def test_the_proposal_for_quoted_thousands_loads(tmp_path):
+    text = "Time,Extension,Load\n(s),(mm),(N)\n"
+    text += "".join(f'0.{i},0.{i},"{10 + i},044.03516"\n' for i in range(1, 9))
+    found = proposed(write(tmp_path, text))
+    assert (found["delimiter"], found["decimal"], found["thousands"]) == (",", ".", ",")
+    log = read_log(tmp_path / "log.csv", filled(found), name="x")
+    assert log.columns["tension.1"].tolist() == [1e3 * (10 + i) + 44.03516 for i in range(1, 9)]
+
+
+def test_an_elongation_in_millimetres_is_a_position_and_one_in_percent_a_strain(tmp_path):
+    rows = "".join(f"{i},{i},{i}\n" for i in range(5))
+    for unit, key in (("mm", "crosshead_position"), ("%", "strain")):
+        text = f"Time (s),Load (N),Elongation ({unit})\n{rows}"
+        assert key in proposed(write(tmp_path, text))["channels"]
+
+
 def test_a_decimal_comma_that_may_part_thousands_is_a_guess(tmp_path):
     path = write(tmp_path, "a;b\n" + "".join(f"1,{i:03};2,{i:03}\n" for i in range(9)))
     assert any(

@@ -161,3 +161,16 @@ def test_the_draft_for_the_tether_tests_has_every_log():
     assert {row["layout"] for row in rows(files)} == {"log"}
     assert {row["specimens"] for row in rows(files)} == {"?;?"}
     assert tomllib.loads(files["campaign.toml"])["defaults"]["strain"] == {"marks": "marks.csv"}
+
+
+def test_tables_whose_columns_nobody_knows_are_logs_where_there_are_no_others(tmp_path):
+    ddf = "Sample\tAI0\tAI1\n" + "".join(f"{i}\t{i / 7:.3f}\t{i / 3:.3f}\n" for i in range(9))
+    (tmp_path / "run.ddf").write_text(ddf)
+    (tmp_path / "notes.md").write_text("just words\n")
+    files = starter_campaign(tmp_path)
+    assert [row["file"] for row in rows(files)] == ["run.ddf"]
+    assert 'column = "?"' in files["campaign.toml"]
+    (tmp_path / "T-1.csv").write_text(LOG)
+    files = starter_campaign(tmp_path)
+    assert [row["file"] for row in rows(files)] == ["T-1.csv"]
+    assert "run.ddf: no column looks like a position or a load" in files["campaign.toml"]
