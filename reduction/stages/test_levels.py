@@ -110,7 +110,7 @@ def levels_of_test(
 
     Notes
     -----
-    Levels are those of [1]_.  Cycles are looked at by their medians, some forty of them, so that a long log costs no more.
+    Levels are those of [1]_, medians over some forty cycles, so that a long log costs no more.
 
     Raises
     ------

@@ -1,0 +1,84 @@
+"""Mistakes that people make with a campaign: `check` names the cause of each that can be seen.
+
+The list (`mistakes.py`) was written without the checks, with what could show each of them.
+"""
+
+import re
+from pathlib import Path
+
+import pytest
+from mistakes import MISTAKES, make, names_the_cause, prepare
+from typer.testing import CliRunner
+
+from reduction.cli.main import app
+
+pytestmark = pytest.mark.slow
+
+RAW = Path(__file__).parents[2] / "raw"
+
+SEEN_BY_NOBODY = {
+    # a run says the first, from its comparison; the others move nothing beyond a specimen's scatter
+    "hose-cords-one-layer", "hose-bore-radius-for-diameter", "hose-length-ft-for-in",
+    "hose-dynamic-as-static", "rope-extensometer-slips", "tether-stretch-of-readings-swapped",
+}  # fmt: skip
+TOLD_IN_OTHER_WORDS = {
+    "hose-wall-for-outer-diameter", "hose-wrap-diameter-ft", "hose-wrong-specimen",
+    "rope-load-saturated", "rope-one-run-gain-2", "tether-delimiter", "tether-load-late-100ms",
+    "tether-marks-slack-read-late", "tether-preamble", "tether-second-header",
+    "tether-thousands-point",
+}  # fmt: skip
+EACH = 6  # of the list, in the continuous integration; all of it at night
+
+PLAIN = {}
+
+
+def lines_of(folder, monkeypatch):
+    """Status of `check`, and its lines."""
+    monkeypatch.chdir(folder)
+    done = CliRunner().invoke(app, ["check", "campaign.toml"], env={"COLUMNS": "4000"})
+    text = (done.output + "\n" + done.stderr).replace(str(folder), "")
+    return done.exit_code, {re.sub(r"\s+", " ", line).strip() for line in text.splitlines()}
+
+
+@pytest.mark.parametrize(
+    "mistake",
+    [
+        pytest.param(
+            one, id=one.name, marks=[] if place % EACH == 0 else [pytest.mark.nightly]
+        )
+        for place, one in enumerate(MISTAKES)
+    ],
+)  # fmt: skip
+def test_a_mistake_that_can_be_seen_is_named(mistake, tmp_path, monkeypatch):
+    key = mistake.of, mistake.keep
+    if key not in PLAIN:
+        folder = tmp_path / "plain"
+        folder.mkdir()
+        prepare(mistake.of, RAW, folder, mistake.keep)
+        status, PLAIN[key] = lines_of(folder, monkeypatch)
+        assert status == 0
+    folder = tmp_path / "mistaken"
+    folder.mkdir()
+    make(mistake, RAW, folder)
+    status, lines = lines_of(folder, monkeypatch)
+    assert status not in (1, 6)
+    if mistake.visible == "no":
+        return
+    new = lines - PLAIN[key]
+    if mistake.name not in SEEN_BY_NOBODY:
+        assert new or status
+    if mistake.name not in SEEN_BY_NOBODY | TOLD_IN_OTHER_WORDS:
+        assert names_the_cause(mistake, "\n".join(sorted(new))), (mistake.cause, sorted(new))
+
+
+def test_the_list_is_long_and_its_exceptions_are_of_it():
+    names = [one.name for one in MISTAKES]
+    assert len(names) == len(set(names))
+    count = {kind: sum(one.of == kind for one in MISTAKES) for kind in ("tether", "rope", "hose")}
+    assert count["tether"] >= 60 and count["rope"] >= 25 and count["hose"] >= 15
+    assert set(names) > SEEN_BY_NOBODY | TOLD_IN_OTHER_WORDS
+
+
+def test_the_page_lists_every_mistake():
+    page = (RAW.parent / "docs" / "mistakes.md").read_text(encoding="utf-8")
+    assert [one.name for one in MISTAKES if one.cause.replace("|", "/") not in page] == []
