@@ -10,7 +10,7 @@ from typing import Any, Literal, Protocol
 from reduction.record.note_sentences import Severity
 from reduction.record.notes import Note, by_severity, full_note
 
-Status = Literal["reduced", "reduced_with_notes", "unchanged", "no_work", "failed"]
+Status = Literal["reduced", "check", "unchanged", "no_work", "failed"]
 
 
 @dataclass(frozen=True)

@@ -117,7 +117,8 @@ def _bring_up_to_date(
     _check_raw_files(campaign, survey)
     before_writing()
     write_archive(dataset, path)
-    return "reduced_with_notes" if notes else "reduced", note_message(notes)
+    may_move = any(one.severity == "warning" for one in notes)
+    return "check" if may_move else "reduced", note_message(notes)
 
 
 def _check_raw_files(campaign: Campaign, survey: Survey) -> None:

@@ -15,10 +15,11 @@ import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.compute as pc  # type: ignore[import-untyped]
 import pyarrow.csv as pa_csv  # type: ignore[import-untyped]
 
+from reduction.quantities.units import Dimension, scale_to_si
 from reduction.readers.columns import DeclaredColumn, clock_to_seconds, without_marks
 from reduction.readers.layout import CLOCK, Layout
 from reduction.readers.text_rows import TextRows, count_lines, split_line
-from reduction.record.errors import LogError, ReductionError
+from reduction.record.errors import LogError, ReductionError, SettingsError
 from reduction.record.measurement import Floats, Integers
 from reduction.record.plain_text import cut
 from reduction.record.samples import BLOCK, ColumnWriter
@@ -209,7 +210,7 @@ def _second_look(
         channel=str(want.column),
         found=repr(cut(found, 60)) if found else "an empty field",
         needed=f"a decimal number such as {sample} in {want.unit}, or a declared missing mark",
-        hint=_what_to_set(found, want, layout, is_first=bad == 0 and at == rows.first_row),
+        hint=_what_to_set(found, want, layout),
     )
 
 
@@ -223,7 +224,16 @@ _GROUPS = {
 }
 
 
-def _what_to_set(found: str, want: DeclaredColumn, layout: Layout, *, is_first: bool) -> str:
+def _is_unit(text: str, dimension: Dimension) -> bool:
+    """Whether a field is a unit in which its column could be."""
+    try:
+        scale_to_si(text.strip("()[] "), dimension)
+    except SettingsError:
+        return False
+    return bool(text.strip()) and not any(one.isdigit() for one in text)
+
+
+def _what_to_set(found: str, want: DeclaredColumn, layout: Layout) -> str:
     """What of the layout a field asks for that is no number by it."""
     parted = "," if layout.decimal == "." else "."
     is_parted = not layout.thousands and _GROUPS[parted].fullmatch(found) is not None
@@ -242,7 +252,7 @@ def _what_to_set(found: str, want: DeclaredColumn, layout: Layout, *, is_first: 
             'Set unit = "clock" where it is a time of day (09:45:30); of dates take another column '
             "for the time, or sample_interval."
         )
-    if is_first and found and not any(one.isdigit() for one in found):
+    if _is_unit(found, want.dimension):
         return (
             "Set has_unit_row = true where this is a row of units; preamble_rows = N skips rows "
             "above the names."

@@ -72,11 +72,11 @@ def test_a_test_that_did_not_change_is_not_done_again(reduced, command):
     assert [test["status"] for test in again["tests"]] == ["unchanged", "unchanged"]
     assert product.stat().st_mtime_ns == stamp
     forced = json.loads(command("run", campaign, "--json", "--force", cwd=reduced).stdout)
-    assert {test["status"] for test in forced["tests"]} == {"reduced_with_notes"}
+    assert {test["status"] for test in forced["tests"]} == {"check"}
     assert product.read_bytes() == content
     campaign.write_text(campaign.read_text().replace("1.04 in", "1.01 in"))
     changed = json.loads(command("run", campaign, "--json", "--test", "A", cwd=reduced).stdout)
-    assert [test["status"] for test in changed["tests"]] == ["reduced_with_notes"]
+    assert [test["status"] for test in changed["tests"]] == ["check"]
     assert product.read_bytes() != content
     report = command("report", reduced / "processed", "--json", cwd=reduced)
     assert json.loads(report.stdout)["reports"] == [str(Path("reports/small/index.html"))]
@@ -102,7 +102,7 @@ def test_a_failed_test_keeps_its_older_product_and_lets_the_others_run(reduced, 
     with (reduced / "processed" / "small" / "status.csv").open(newline="") as file:
         assert {row["test"]: row["status"] for row in csv.DictReader(file)}["A"] == "failed"
     # the marks of A can no longer be used: B is made without them, and says which and why
-    assert statuses["B"]["status"] == "reduced_with_notes"
+    assert statuses["B"]["status"] == "check"
     assert (reduced / "processed" / "small" / "B.nc").read_bytes() != beside
     with open_archive(reduced / "processed" / "small" / "B.nc") as archive:
         notes = archive["note"].values.tolist()
@@ -238,7 +238,7 @@ def test_a_log_that_is_not_there_fails_its_own_test_alone(small, command):
     done = command("run", small / "raw" / "campaign.toml", "--json", cwd=small)
     assert done.returncode == 3 and "A.csv: the file cannot be read" in done.stderr
     statuses = {test["id"]: test["status"] for test in json.loads(done.stdout)["tests"]}
-    assert statuses == {"A": "failed", "B": "reduced_with_notes"}
+    assert statuses == {"A": "failed", "B": "check"}
 
 
 def test_the_start_of_a_command_loads_no_heavy_package():
@@ -289,7 +289,7 @@ def test_whatever_a_product_says_is_part_of_what_makes_it_unchanged(reduced, com
         )
     done = command("run", campaign, "--json", "--test", "A", cwd=reduced)
     assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout)["tests"][0]["status"] == "reduced_with_notes"
+    assert json.loads(done.stdout)["tests"][0]["status"] == "check"
 
 
 @pytest.mark.slow
@@ -329,7 +329,7 @@ def test_one_test_alone_leaves_the_rows_of_the_others_in_the_status(reduced, com
     assert command("run", campaign, "--quiet", "--test", "B", cwd=reduced).returncode == 0
     with (reduced / "processed" / "small" / "status.csv").open(newline="") as file:
         rows = {row["test"]: row for row in csv.DictReader(file)}
-    assert rows["A"]["status"] == "reduced_with_notes" and "note" in rows["A"]["message"]
+    assert rows["A"]["status"] == "check" and "note" in rows["A"]["message"]
     assert rows["B"]["status"] == "unchanged" and "note" in rows["B"]["message"]
 
 

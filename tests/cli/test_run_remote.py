@@ -107,7 +107,7 @@ def test_logs_behind_signed_addresses_leave_no_secret_anywhere(here, command, tm
         failed = command("run", raw / "campaign.toml", "--allow-remote", cwd=tmp_path / "raw")
         assert failed.returncode == 3
     assert f"{names['B.csv']}: there is no permission: it cannot be read" in failed.stderr
-    assert "reduced_with_notes" in failed.stdout  # the other test
+    assert "check" in failed.stdout  # the other test
     for text in (refused.stderr, done.stdout, done.stderr, failed.stdout, failed.stderr):
         assert not any(secret in text for secret in SECRETS)
     products = {**files_below(tmp_path / "processed"), **files_below(tmp_path / "reports")}
@@ -200,7 +200,7 @@ def test_check_fetches_logs_and_writes_nothing(campaign, bucket, command, tmp_pa
 
 
 def test_a_second_run_finds_everything_unchanged(campaign, bucket, command, tmp_path):
-    for status in ("reduced_with_notes", "unchanged"):
+    for status in ("check", "unchanged"):
         done = command(*RUN, "--json", cwd=tmp_path)
         assert [test["status"] for test in json.loads(done.stdout)["tests"]] == [status] * 2
 
@@ -215,7 +215,7 @@ def test_a_log_that_is_not_there_is_the_error_of_its_test(
     assert message in done.stderr
     with (tmp_path / "processed" / "small" / "status.csv").open(newline="") as file:
         rows = list(csv.reader(file))
-    assert [row[:2] for row in rows[1:]] == [["A", "reduced_with_notes"], ["B", "failed"]]
+    assert [row[:2] for row in rows[1:]] == [["A", "check"], ["B", "failed"]]
     assert rows[2][3] == message
     page = (tmp_path / "reports" / "small" / "index.html").read_text()
     assert message in page and str(scratch) not in page

@@ -59,7 +59,7 @@ def reduced_once(tmp_path_factory, command):
     (folder / "marks.csv").write_text("\n".join(map(",".join, rows)) + "\n")
     (folder / "campaign.toml").write_text(CAMPAIGN)
     statuses = run(folder, command)
-    assert statuses == {"A": "reduced_with_notes", "B": "reduced_with_notes"}
+    assert statuses == {"A": "check", "B": "check"}
     return folder
 
 
@@ -104,14 +104,14 @@ def test_a_tape_that_is_read_to_more_digits_makes_the_tests_of_its_specimen_anew
     assert run(pair, command) == {"A": "unchanged", "B": "unchanged"}
     before = shared_of(pair, "B", "strain_calibration")
     edit(pair / "marks.csv", ",2.06,", ",2.060,")  # the same length, read to a thousandth of a foot
-    assert run(pair, command) == {"A": "reduced_with_notes", "B": "reduced_with_notes"}
+    assert run(pair, command) == {"A": "check", "B": "check"}
     assert shared_of(pair, "B", "strain_calibration") != before
 
 
 def test_another_load_cell_at_the_marks_makes_the_tests_that_rest_on_them_anew(pair, command):
     assert set(shared_of(pair, "B", "tension_gain")) == {"first, channel 1", "second, channel 1"}
     edit(pair / "campaign.toml", '"first"', '"third"')
-    assert run(pair, command) == {"A": "reduced_with_notes", "B": "reduced_with_notes"}
+    assert run(pair, command) == {"A": "check", "B": "check"}
     assert set(shared_of(pair, "B", "tension_gain")) == {"third, channel 1", "second, channel 1"}
 
 
@@ -119,11 +119,11 @@ def test_tests_that_rest_on_the_marks_of_one_that_fails_are_made_anew(pair, comm
     before = content(pair, "B")
     sound = (pair / "A.csv").read_text()
     break_log(pair, "A.csv")
-    assert run(pair, command) == {"A": "failed", "B": "reduced_with_notes"}
+    assert run(pair, command) == {"A": "failed", "B": "check"}
     assert content(pair, "B") != before
     assert run(pair, command) == {"A": "failed", "B": "unchanged"}
     (pair / "A.csv").write_text(sound)
-    assert run(pair, command) == {"A": "unchanged", "B": "reduced_with_notes"}
+    assert run(pair, command) == {"A": "unchanged", "B": "check"}
     assert content(pair, "B") == before
 
 
@@ -131,7 +131,7 @@ def test_tests_that_rest_on_the_marks_of_one_that_fails_are_made_anew(pair, comm
 def test_the_law_by_which_a_strain_ratio_is_judged_is_of_all_logs_with_marks(pair, command):
     by_position = ("[tests.A]\n", '[tests.A]\nstrain = { method = "strain-ratio" }\n')
     edit(pair / "campaign.toml", *by_position)
-    assert run(pair, command) == {"A": "reduced_with_notes", "B": "unchanged"}
+    assert run(pair, command) == {"A": "check", "B": "unchanged"}
     before = shared_of(pair, "A", "splice_method")
     lines = (pair / "B.csv").read_text().splitlines()
     names = next(line for line in lines if not line.startswith("#")).split(",")
@@ -142,7 +142,7 @@ def test_the_law_by_which_a_strain_ratio_is_judged_is_of_all_logs_with_marks(pai
         cells[load] = f"{1.2 * float(cells[load]):.3f}"
         lines[row] = ",".join(cells)
     (pair / "B.csv").write_text("\n".join(lines) + "\n")
-    assert run(pair, command) == {"A": "reduced_with_notes", "B": "reduced_with_notes"}
+    assert run(pair, command) == {"A": "check", "B": "check"}
     assert shared_of(pair, "A", "splice_method") != before
 
 
@@ -153,13 +153,13 @@ def test_strain_methods_of_one_specimen_share_no_error_and_one_method_of_two_tes
     assert owners[0] == owners[1] == {"new, mixed"}
     by_length = ("[tests.B]\n", '[tests.B]\nstrain = { method = "gauge-length" }\n')
     edit(pair / "campaign.toml", *by_length)
-    assert run(pair, command)["B"] == "reduced_with_notes"
+    assert run(pair, command)["B"] == "check"
     assert set(shared_of(pair, "A", "strain_calibration")) == {"new, mixed"}
     assert set(shared_of(pair, "B", "strain_calibration")) == {"new, gauge-length"}
     # a gauge length rests on no mark
     before = content(pair, "B")
     edit(pair / "marks.csv", ",2.06,", ",2.060,")
-    assert run(pair, command) == {"A": "reduced_with_notes", "B": "unchanged"}
+    assert run(pair, command) == {"A": "check", "B": "unchanged"}
     assert content(pair, "B") == before
 
 

@@ -50,7 +50,7 @@ def test_every_test_is_reduced(run):
     assert run.done.returncode == 0
     tests = run.said["tests"]
     assert len(tests) == 16
-    assert {test["status"] for test in tests} <= {"reduced", "reduced_with_notes"}
+    assert {test["status"] for test in tests} <= {"reduced", "check"}
     assert {test["n_cycles"] for test in tests} == {13, 0}
 
 

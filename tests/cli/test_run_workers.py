@@ -90,7 +90,7 @@ def test_products_have_the_same_bytes_on_any_number_of_workers(jobs, campaign, s
     assert (
         sum(line.lstrip().split("/")[0].isdigit() for line in lines[: N_TESTS + 1]) == N_TESTS + 1
     )
-    assert f"{N_TESTS + 1}/{N_TESTS + 1} " in errors and "reduced_with_notes" in errors
+    assert f"{N_TESTS + 1}/{N_TESTS + 1} " in errors and "check" in errors
     head = said.splitlines()[0].split()
     assert {"seconds", "worker"} <= set(head) and f" {platform.node()}:" in said
 

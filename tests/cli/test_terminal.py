@@ -110,7 +110,7 @@ def test_quiet_at_a_terminal_says_nothing(at_terminal, tmp_path):
 def test_a_pipe_has_one_line_a_test_and_progress_beside_it(tmp_path):
     done = reduction("run", CAMPAIGN, *places(tmp_path), FORCE_COLOR="1")
     assert "\x1b" not in done.stdout + done.stderr
-    assert done.stderr.startswith("1/1 static reduced_with_notes, ")
+    assert done.stderr.startswith("1/1 static check, ")
     head, row, *_ = done.stdout.splitlines()
     columns = re.split(r"  +", head)
     assert columns[0] == "test" and columns[-1] == "message"

@@ -78,7 +78,7 @@ def messages():
     made = table_of("test", "status", "number", texts=2)
     made.columns[2].justify, made.columns[2].no_wrap = "right", True
     made.add_column("message")
-    made.add_row("T-1", "reduced_with_notes", "1.2345e+05", MESSAGE)
+    made.add_row("T-1", "check", "1.2345e+05", MESSAGE)
     made.add_row("T-2", "reduced", "1", "")
     return made
 
