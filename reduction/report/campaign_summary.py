@@ -266,7 +266,7 @@ def _status(view: TestView) -> str:
     if view.status is None:
         return "archived"
     if view.status.status == "unchanged":
-        return "reduced with notes" if view.texts("note") else "reduced"
+        return "check" if any(one.severity == "warning" for one in view.notes) else "reduced"
     return _words(view.status.status)
 
 

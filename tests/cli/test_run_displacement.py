@@ -63,7 +63,7 @@ def run(folder, command, keys):
 )
 def test_strain_counts_from_displacement_zero(travel, command, keys):
     test = run(travel, command, keys)
-    assert test["status"].startswith("reduced"), test["message"]
+    assert test["status"] in ("reduced", "check"), test["message"]
     with open_archive(travel / "processed" / "travel" / "A.nc") as archive:
         strain = archive["strain"].values
         # 0.1 and 0.3 m of travel on 1.2 m
@@ -76,7 +76,7 @@ def test_strain_counts_from_displacement_zero(travel, command, keys):
 
 def test_strain_counts_from_the_reference_tension_wherever_the_log_has_it(travel, command):
     test = run(travel, command, ', reference_length = "1.5 m", reference_tension = "200 N"')
-    assert test["status"].startswith("reduced"), test["message"]
+    assert test["status"] in ("reduced", "check"), test["message"]
     # 2000 N/m have 200 N at 0.1 m of travel, and not at zero as the layout has it
     assert "reference tension of 200 N at 1.5 m, the log first at 1.6 m" in test["message"]
     with open_archive(travel / "processed" / "travel" / "A.nc") as archive:

@@ -165,7 +165,7 @@ def test_products_are_made_anew_without_an_earlier_test_that_fails_and_with_it_w
     statuses = run(row, command)
     assert statuses["A"]["status"] == "failed"
     for test in ("weights", "B", "C"):
-        assert statuses[test]["status"] == "check"
+        assert statuses[test]["status"] in ("reduced", "check")
         names, numbers, notes = history(row, test)
         assert names.startswith("A") and np.isnan(numbers).all()
         assert any(note.startswith("earlier test A failed") for note in notes)
@@ -175,7 +175,7 @@ def test_products_are_made_anew_without_an_earlier_test_that_fails_and_with_it_w
     (row / "A.csv").write_text(sound)
     statuses = run(row, command)
     assert statuses["A"]["status"] == "unchanged"
-    assert statuses["B"]["status"] == "check"
+    assert statuses["B"]["status"] in ("reduced", "check")
     assert {path.name: path.read_bytes() for path in folder.glob("*.nc")} == before
 
 
@@ -233,7 +233,7 @@ def test_a_defect_before_the_reduction_is_the_failure_of_one_test(
     statuses = run(row, command)
     assert statuses["B"]["status"] == "failed" and statuses["B"]["exit_status"] == 1
     assert "a defect of this program: ZeroDivisionError: for the test" in statuses["B"]["message"]
-    assert [statuses[test]["status"] for test in ("A", "C")] == 2 * ["check"]
+    assert [statuses[test]["status"] for test in ("A", "C")] == 2 * ["reduced"]
 
 
 def test_a_run_tells_the_rate_and_the_gaps_that_it_was_drawn_with(row, command):
