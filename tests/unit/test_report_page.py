@@ -289,7 +289,7 @@ def test_the_summary_of_a_campaign_is_shown_as_it_stands(report, rich_test):
 
 def test_the_page_does_not_tell_the_run_that_made_an_archive_from_a_later_one(report, rich_test):
     page = report(rich_test, status=STATUS + "T-1,unchanged,0,,,0.1\r\n")
-    assert page.rows("Tests in the order")[1][-1][1] == "reduced with notes"
+    assert page.rows("Tests in the order")[1][-1][1] == "check"
 
 
 def test_of_a_test_without_notes_none_are_said(report, bare_test):
