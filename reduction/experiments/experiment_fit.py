@@ -59,6 +59,9 @@ _OFF_SCREENING = 0.1
 _WRONG_HALF = 0.5
 """Coded distance from which a level of a screening is no more that of its column."""
 
+_NOT_OF_PLAN = 0.5
+"""Coded distance from which a run of a surface is another than its plan says."""
+
 _OF_ORDER = ("pure-error-excludes-drift", "order-confounded")
 
 
@@ -78,11 +81,19 @@ def _remarks_of_runs(runs: RunTable) -> list[Note]:
 
 
 def _surface_levels_off_plan(runs: RunTable, coded: Floats, names: Sequence[str]) -> list[Note]:
-    """A note where runs of a surface were not run where the plan has them."""
-    words = levels_off_plan(
-        coded, runs.coded_plan[:, : len(names)], beyond=ON_PLAN,
-        run_names=runs.names, factor_names=names,
-    )  # fmt: skip
+    """A note where runs of a surface strayed; `DataError` where they are not those of the plan."""
+    given = {"run_names": runs.names, "factor_names": names}
+    plan = runs.coded_plan[:, : len(names)]
+    wrong = levels_off_plan(coded, plan, beyond=_NOT_OF_PLAN, **given)
+    if wrong:
+        raise DataError(
+            "levels reached are not those of the plan",
+            found=_listed(wrong, between="; "),
+            needed=f"levels within {_NOT_OF_PLAN:g} coded of the plan",
+            hint="Look whether runs or logs are swapped, and at the units of levels and loads; "
+            "correct runs or factors of the experiment.",
+        )
+    words = levels_off_plan(coded, plan, beyond=ON_PLAN, **given)
     if not words:
         return []
     return [note("levels-off-plan", limit=ON_PLAN, where=_listed(words, between="; "))]
