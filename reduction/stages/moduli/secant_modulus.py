@@ -295,7 +295,13 @@ def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]
     own = loops.uncertainty.get("frequency", np.zeros(loops.frequency.shape))[:, break_in_cycles:]
     for row in range(n_specimens):
         known = np.isfinite(frequency[row]) & (frequency[row] > 0)
+        # a cycle that waits, as before the machine starts, is no measure of the others
         n = int(known.sum())
+        if n:
+            middle = np.median(frequency[row, known])
+            alike = known & (np.abs(frequency[row] - middle) < _WAITING * middle)
+            known = alike if alike.sum() >= _MOST_ALIKE * n else known
+            n = int(known.sum())
         if not n:
             continue
         period = 1 / frequency[row, known]
@@ -321,6 +327,8 @@ def _line_over(time: Floats, values: Floats) -> tuple[float, float]:
 
 
 _FEWEST_OF_LINE = 4
+
+_WAITING, _MOST_ALIKE = 0.15, 0.75  # of a frequency; of the cycles
 
 
 def summarise_amplitude(
