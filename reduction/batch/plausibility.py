@@ -16,10 +16,11 @@ import numpy as np
 from reduction.batch.survey import Survey
 from reduction.campaign.plan import Campaign, ExperimentPlan
 from reduction.experiments.designs import engineering_levels
+from reduction.experiments.run_sheet import NOT_OF_PLAN
 from reduction.pipeline.reduce_test import greatest_strain
 from reduction.prediction.hose_tension import predict_hose
 from reduction.quantities.units import Dimension, scale_to_si
-from reduction.record.errors import SettingsError
+from reduction.record.errors import ReductionError, SettingsError
 from reduction.record.measurement import Floats, Specimen
 from reduction.record.notes import Note, note
 from reduction.stages.plausible_bands import Bands, bands_of, readings_that_fit, words_of_ratio
@@ -51,8 +52,6 @@ _LIKE_STRAIN, _LIKE_RATE = 1.3, 2.2
 
 _MOST_COMPARED = 40  # tests of one specimen
 
-_OFF_PLAN = 0.5  # coded
-
 _FALLEN = 0.5  # of the greatest tension, at the end
 
 _EARLY = 0.09  # of a cycle, by which no specimen lets tension lead
@@ -61,7 +60,7 @@ _LATE = 0.01
 
 _BACKWARD = 0.25
 
-_MOST_SWINGS = 5  # of a pull or a hold, and what sets it up
+_MOST_STROKES = 5  # of a pull or a hold, and what sets it up
 
 _AS_PREDICTED = 1.45  # tension of a hose over what its design gives
 
@@ -179,11 +178,11 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
     if levels is None:
         return
     yield from _of_rate(survey)
-    yield from _of_stated_levels(survey)
+    yield from _of_stated_levels(campaign, survey)
     if plan.kind in ("tensile", "quasi-static", "relaxation", "creep") and (
-        levels.n_swings > _MOST_SWINGS
+        levels.n_strokes > _MOST_STROKES
     ):
-        yield note("cycles-in-other-kind", n_cycles=levels.n_swings // 2, kind=plan.kind)
+        yield note("cycles-in-other-kind", n_cycles=levels.n_strokes // 2, kind=plan.kind)
     break_in = plan.settings.cycles.break_in_cycles
     if 0 < survey.n_cycles <= break_in:
         yield note("break-in-is-all", n_cycles=survey.n_cycles, break_in=break_in)
@@ -193,7 +192,7 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
     for index, name in enumerate(plan.specimens):
         model = models.get((plan.id, name))
         strain = greatest_strain(survey.extremes, name, model)
-        target = max(plan.target_strain, default=np.nan)
+        target = max(plan.target_strain, default=0.0) or np.nan
         if not 1 / _TARGET <= strain / target <= _TARGET and np.isfinite(strain / target):
             yield note(
                 "target-strain-missed", name, reached=strain, target=target,
@@ -211,7 +210,7 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
                 "tension-behind-position" if lead < 0 else "position-behind-tension", name,
                 delay=abs(float(levels.lead[index])),
             )  # fmt: skip
-        if levels.is_like_first[index]:
+        if levels.is_copy[index]:
             yield note("channels-alike", name, others=", ".join(plan.specimens[:index]))
 
 
@@ -220,7 +219,7 @@ _STATED: tuple[tuple[str, Dimension], ...] = (
 )  # fmt: skip
 
 
-def _of_stated_levels(survey: Survey) -> Iterator[Note]:
+def _of_stated_levels(campaign: Campaign, survey: Survey) -> Iterator[Note]:
     """Frequency and mean tension that are stated of a test against those of its log."""
     levels = survey.levels
     for key, dimension in _STATED:
@@ -228,9 +227,12 @@ def _of_stated_levels(survey: Survey) -> Iterator[Note]:
         match = _NUMBER.match(text)
         if match is None or levels is None:
             continue
-        stated = scale_to_si(_as_pint(match[2]), dimension)[0] * float(match[1])
+        strengths = [
+            campaign.specimens[name].rated_break_strength for name in survey.plan.specimens
+        ]
         found = [levels.frequency] if key == "frequency" else levels.mean_tension.tolist()
-        for value in found:
+        for value, strength in zip(found, strengths, strict=False):
+            stated = _stated_level(float(match[1]), match[2], dimension, strength)
             ratio = value / stated if stated else np.nan
             if np.isfinite(ratio) and not 1 / _TARGET <= ratio <= _TARGET:
                 yield note(
@@ -238,6 +240,16 @@ def _of_stated_levels(survey: Survey) -> Iterator[Note]:
                     unit="Hz" if key == "frequency" else "N", ratio=ratio,
                     like=words_of_ratio(ratio),
                 )  # fmt: skip
+
+
+def _stated_level(number: float, unit: str, dimension: Dimension, strength: float | None) -> float:
+    """A level that is stated in words, in SI; NaN where its unit says nothing here."""
+    if dimension == "force" and unit in ("%RBS", "%MBL", "% RBS", "% MBL"):
+        return number / 100 * strength if strength else np.nan
+    try:
+        return number * scale_to_si(_as_pint(unit), dimension)[0]
+    except SettingsError:
+        return np.nan
 
 
 def _as_pint(unit: str) -> str:
@@ -257,11 +269,7 @@ def _of_rate(survey: Survey) -> Iterator[Note]:
         ("velocity", levels.speed, "m/s"), ("frequency", levels.frequency, "Hz"),
     )  # fmt: skip
     for dimension, found, unit in shown:
-        try:
-            factor = scale_to_si(_as_pint(match[2]), dimension)[0]
-        except SettingsError:
-            continue
-        stated = factor * float(match[1])
+        stated = _stated_level(float(match[1]), match[2], dimension, None)
         ratio = found / stated if stated else np.nan
         if np.isfinite(ratio) and not 1 / _RATE <= ratio <= _RATE:
             yield note(
@@ -328,42 +336,57 @@ def _of_pairs(surveys: Sequence[Survey], models: Models) -> Iterator[tuple[str, 
             for name in survey.plan.specimens:
                 by_specimen.setdefault(name, []).append(survey)
     for name, several in by_specimen.items():
-        for one, other in combinations(several[:_MOST_COMPARED], 2):
-            ratio = _stiffness_ratio(one, other, name, models)
-            if np.isfinite(ratio):
-                yield other.plan.id, note(
-                    "stiffness-jumps", name, other=one.plan.id, ratio=ratio,
-                    like=words_of_ratio(ratio),
-                )  # fmt: skip
+        yield from _of_stiffness(name, several[:_MOST_COMPARED], models)
 
 
-def _stiffness_ratio(one: Survey, other: Survey, name: str, models: Models) -> float:
-    """Greatest tension over greatest strain of the other test over that of the one.
+def _of_stiffness(
+    name: str, several: Sequence[Survey], models: Models
+) -> Iterator[tuple[str, Note]]:
+    """Tests of a specimen that are unlike most that should be like them; of two the later one."""
+    others: list[list[tuple[str, float, bool]]] = [[] for _ in several]
+    for one, other in combinations(range(len(several)), 2):
+        ratio, limit = _stiffness_ratio(several[one], several[other], name, models)
+        if np.isfinite(ratio):
+            is_far = not 1 / limit <= ratio <= limit
+            others[other].append((several[one].plan.id, ratio, is_far))
+            others[one].append((several[other].plan.id, 1 / ratio, is_far))
+    for place, survey in enumerate(several):
+        far = [(test, ratio) for test, ratio, is_far in others[place] if is_far]
+        is_earlier = len(others[place]) == 1 and not any(
+            one.plan.id == others[place][0][0] for one in several[:place]
+        )
+        if 2 * len(far) > len(others[place]) and not is_earlier:
+            test, ratio = far[0]
+            yield (
+                survey.plan.id,
+                note("stiffness-jumps", name, other=test, ratio=ratio, like=words_of_ratio(ratio)),
+            )
 
-    Rubber softens with what it has seen and ropes stiffen with load and rate: tests of unlike
-    stretch or frequency are not compared, and a slow pull with cycles by a wider limit.
+
+def _stiffness_ratio(one: Survey, other: Survey, name: str, models: Models) -> tuple[float, float]:
+    """Greatest tension over greatest strain of the other test over that of the one, and a limit.
+
+    Rubber softens with what it has seen and ropes stiffen with load and rate: the ratio is NaN for
+    tests of unlike stretch or frequency, and its limit is wider for a slow pull beside cycles.
     """
     values = []
     for survey in (one, other):
         strain = greatest_strain(survey.extremes, name, models.get((survey.plan.id, name)))
         tension = survey.extremes.greatest_tension.get(name, np.nan)
-        levels = survey.levels
-        stiffness = tension / strain if strain > 0 else np.nan
-        values.append((stiffness, strain, np.nan if levels is None else levels.frequency))
+        frequency = np.nan if survey.levels is None else survey.levels.frequency
+        values.append((tension / strain if strain > 0 else np.nan, strain, frequency))
     (first, strain, rate), (later, other_strain, other_rate) = values
+    nothing = np.nan, _JUMP
     if not (first > 0 and later > 0):
-        return np.nan
+        return nothing
     if not max(strain, other_strain) < _LIKE_STRAIN * min(strain, other_strain):
-        return np.nan
+        return nothing
     kinds = {one.plan.kind, other.plan.kind}
     if kinds == {"cyclic", "quasi-static"}:
-        limit = _JUMP_OF_KINDS
-    elif len(kinds) > 1 or not max(rate, other_rate) < _LIKE_RATE * min(rate, other_rate):
-        return np.nan
-    else:
-        limit = _JUMP
-    ratio = later / first
-    return np.nan if 1 / limit <= ratio <= limit else ratio
+        return later / first, _JUMP_OF_KINDS
+    if len(kinds) > 1 or not max(rate, other_rate) < _LIKE_RATE * min(rate, other_rate):
+        return nothing
+    return later / first, _JUMP
 
 
 def _off_plan(
@@ -399,7 +422,7 @@ def _off_plan(
         }  # fmt: skip
         reached[place] = [known.get(one, np.nan) for one in names]
     off = (reached - planned) / ((high - low) / 2)
-    far = np.abs(off) > _OFF_PLAN
+    far = np.abs(off) > NOT_OF_PLAN
     if not far.any():
         return
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -408,7 +431,7 @@ def _off_plan(
         run, name = rows[place]
         is_of = np.all(
             np.isnan(off[place])
-            | (np.abs(reached[place] - planned) < _OFF_PLAN * (high - low) / 2),
+            | (np.abs(reached[place] - planned) < NOT_OF_PLAN * (high - low) / 2),
             axis=1,
         )
         like = [
@@ -555,7 +578,12 @@ def _of_predictions(campaign: Campaign, surveys: Sequence[Survey]) -> Iterator[t
         near = (np.abs(strain - top) < 0.05 * top) & np.isfinite(samples.tension)
         if not top > 0 or not near.any():
             continue
-        predicted = float(np.ravel(predict_hose(hose.design, [top]).tension)[0])
+        try:
+            predicted = float(np.ravel(predict_hose(hose.design, [top]).tension)[0])
+        except ReductionError:
+            continue  # what is wrong with the design is said where it is predicted
+        if not predicted > 0:
+            continue
         ratio = float(np.median(samples.tension[near])) / predicted
         if np.isfinite(ratio) and not 1 / _AS_PREDICTED <= ratio <= _AS_PREDICTED:
             yield plan.measured, note(

@@ -24,6 +24,7 @@ from reduction.experiments.least_squares_fit import replicate_cells
 from reduction.experiments.response_surfaces import fit_surfaces
 from reduction.experiments.response_transform import Transform
 from reduction.experiments.run_sheet import (
+    NOT_OF_PLAN,
     ON_PLAN,
     Caution,
     RunSheet,
@@ -56,12 +57,6 @@ from reduction.stages.three_parameter_line.line_model import (
 
 _OFF_SCREENING = 0.1
 
-_WRONG_HALF = 0.5
-"""Coded distance from which a level of a screening is no more that of its column."""
-
-_NOT_OF_PLAN = 0.5
-"""Coded distance from which a run of a surface is another than its plan says."""
-
 _OF_ORDER = ("pure-error-excludes-drift", "order-confounded")
 
 
@@ -80,42 +75,23 @@ def _remarks_of_runs(runs: RunTable) -> list[Note]:
     return [replace(remark, subject=_listed(names)) for remark, names in of_remark.items()]
 
 
-def _surface_levels_off_plan(runs: RunTable, coded: Floats, names: Sequence[str]) -> list[Note]:
-    """A note where runs of a surface strayed; `DataError` where they are not those of the plan."""
+def _levels_off_plan(
+    runs: RunTable, coded: Floats, names: Sequence[str], *, code: str, noted: float
+) -> list[Note]:
+    """A note where runs strayed from the plan; `DataError` where they are not those of it."""
     given = {"run_names": runs.names, "factor_names": names}
     plan = runs.coded_plan[:, : len(names)]
-    wrong = levels_off_plan(coded, plan, beyond=_NOT_OF_PLAN, **given)
+    wrong = levels_off_plan(coded, plan, beyond=NOT_OF_PLAN, **given)
     if wrong:
         raise DataError(
             "levels reached are not those of the plan",
             found=_listed(wrong, between="; "),
-            needed=f"levels within {_NOT_OF_PLAN:g} coded of the plan",
+            needed=f"levels within {NOT_OF_PLAN:g} coded of the plan",
             hint="Look whether runs or logs are swapped, and at the units of levels and loads; "
             "correct runs or factors of the experiment.",
         )
-    words = levels_off_plan(coded, plan, beyond=ON_PLAN, **given)
-    if not words:
-        return []
-    return [note("levels-off-plan", limit=ON_PLAN, where=_listed(words, between="; "))]
-
-
-def _require_screening_levels(runs: RunTable, coded: Floats, names: Sequence[str]) -> list[Note]:
-    """A note where runs of a screening strayed; `DataError` where they left their half."""
-    given = {"run_names": runs.names, "factor_names": names}
-    plan = runs.coded_plan[:, : len(names)]
-    wrong = levels_off_plan(coded, plan, beyond=_WRONG_HALF, **given)
-    if wrong:
-        raise DataError(
-            "levels reached are not those of the plan, on which the effects rest",
-            found=_listed(wrong, between="; "),
-            needed=f"levels within {_WRONG_HALF:g} coded of the plan",
-            hint="Look whether runs or logs are swapped; correct runs of the experiment.",
-        )
-    words = levels_off_plan(coded, plan, beyond=_OFF_SCREENING, **given)
-    if not words:
-        return []
-    where = _listed(words, between="; ")
-    return [note("screening-levels-off-plan", limit=_OFF_SCREENING, where=where)]
+    words = levels_off_plan(coded, plan, beyond=noted, **given)
+    return [note(code, limit=noted, where=_listed(words, between="; "))] if words else []
 
 
 def _missing_surfaces(
@@ -371,7 +347,7 @@ def fit_experiment(
             if not np.isfinite(screening.effect).any():
                 refusal_status = FitError.exit_status
         else:
-            notes += _surface_levels_off_plan(runs, coded, names)
+            notes += _levels_off_plan(runs, coded, names, code="levels-off-plan", noted=ON_PLAN)
             scales, remarks = _scales(runs, names, low, high, response_names, transform)
             notes += remarks
             surfaces = _surfaces(runs, names, low, high, response_names, scales, specimens_as)
@@ -426,7 +402,9 @@ def _screening(
     runs: RunTable, coded: Floats, names: tuple[str, ...], response_names: tuple[str, ...]
 ) -> tuple[ScreeningEffects, list[Note]]:
     """Effects by the plan, where the runs kept to it."""
-    notes = _require_screening_levels(runs, coded, names)
+    notes = _levels_off_plan(
+        runs, coded, names, code="screening-levels-off-plan", noted=_OFF_SCREENING
+    )
     n_factors = len(names)
     design = Design(
         "plackett-burman", runs.coded_plan[:, :n_factors], runs.coded_plan[:, n_factors:]

@@ -457,6 +457,9 @@ def find_cautions(
 ON_PLAN = 0.3
 """Coded distance from the plan of a run that a machine with poor control still meets. [1]."""
 
+NOT_OF_PLAN = 0.5
+"""Coded distance from which a run is not the one of the plan, as where two are swapped. [1]."""
+
 
 def levels_off_plan(
     coded: ArrayLike,

@@ -31,6 +31,11 @@ def _pascals(value: float) -> str:
     return f"{value / 1e9:.3g} GPa" if abs(value) >= 1e9 else f"{value / 1e6:.3g} MPa"
 
 
+def _one(of: str) -> str:
+    """A kind with its article."""
+    return f"{'an' if of[0] in 'aeiou' else 'a'} {of}"
+
+
 def _would_fit(readings: str) -> str:
     """Readings by which a number would lie in its band, as a sentence of its own."""
     return f" Inside it with: {readings}" if readings else ""
@@ -1097,7 +1102,7 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "modulus-outside-band": (
         "warning",
         lambda modulus, low, high, of, readings: (
-            f"greatest stress over greatest strain is {_pascals(modulus)}, and that of a {of} lies"
+            f"greatest stress over greatest strain is {_pascals(modulus)}, and that of {_one(of)} lies"
             f" between {_pascals(low)} and {_pascals(high)}: is the unit of load, the diameter, the"
             f" gauge length or the material right?{_would_fit(readings)}"
         ),
@@ -1106,14 +1111,14 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda found, low, high, of, readings: (
             f"rated_break_strength over the area of the diameter is {_pascals(found)}, and that of"
-            f" a {of} lies between {_pascals(low)} and {_pascals(high)}: is the diameter, the"
+            f" {_one(of)} lies between {_pascals(low)} and {_pascals(high)}: is the diameter, the"
             f" strength, its unit or the material right?{_would_fit(readings)}"
         ),
     ),
     "density-outside-band": (
         "warning",
         lambda found, low, high, of, readings: (
-            f"linear_density over the area of the diameter is {found:.3g} kg/m3, and that of a {of}"
+            f"linear_density over the area of the diameter is {found:.3g} kg/m3, and that of {_one(of)}"
             f" lies between {low:.3g} and {high:.3g}: is the unit of linear_density, the diameter"
             " or the material right?"
         ),
@@ -1121,7 +1126,7 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "strain-above-band": (
         "warning",
         lambda strain, limit, of: (
-            f"strain reaches {100 * strain:.3g} %, and a {of} breaks below {100 * limit:.3g} %: is"
+            f"strain reaches {100 * strain:.3g} %, and {_one(of)} breaks below {100 * limit:.3g} %: is"
             " the gauge length, the unit of position or of the extensometer, or the material right?"
         ),
     ),
@@ -1249,13 +1254,13 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "tension-behind-position": (
         "warning",
-        "tension comes {delay:.2g} s after position, and no specimen holds it back: was the load"
-        " logged late, or through a filter? Loops and moduli are wrong by it",
+        "tension lags position by {delay:.2g} s, which no specimen does: was the load logged late,"
+        " or through a filter? Loops and moduli are wrong by it",
     ),
     "position-behind-tension": (
         "warning",
-        "tension comes {delay:.2g} s before position, more than a specimen's damping lets it: was"
-        " the position logged late, or is the sign of one channel wrong?",
+        "tension leads position by {delay:.2g} s, more than the damping of a specimen explains: was"
+        " the position logged late, or does mass beside a moving load cell add its inertia?",
     ),
     "load-falls-for-good": (
         "warning",

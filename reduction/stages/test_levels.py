@@ -15,6 +15,7 @@ import numpy as np
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 from reduction.record.samples import finite_extremes, take_samples
 from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.cycles.cycle_search import find_reversals
 from reduction.stages.standstills import Standstills
 
 _MOST_CYCLES = 40  # that are looked at, spread over the test
@@ -54,10 +55,10 @@ class TestLevels:
         Strain that was measured at the first slack rest. [1]
     final_share : ndarray, shape (n_specimens,)
         Tension at the end of the record, at its stretch, over the greatest. [1]
-    n_swings : int
+    n_strokes : int
         Rises and falls of position by more than a quarter of its range, one after another.
-    is_like_first : ndarray of bool, shape (n_specimens,)
-        Specimens after the first whose tension is that of an earlier one, reading by reading.
+    is_copy : ndarray of bool, shape (n_specimens,)
+        Specimens whose tension is that of one before them, reading by reading.
     """
 
     __test__ = False  # a test of a tether, not of this software
@@ -72,8 +73,8 @@ class TestLevels:
     strain_per_length: Floats
     slack_strain: Floats
     final_share: Floats
-    n_swings: int
-    is_like_first: Bools
+    n_strokes: int
+    is_copy: Bools
 
 
 def levels_of_test(
@@ -180,8 +181,8 @@ def levels_of_test(
             for one in measured_strain
         ]),
         final_share=_final_share(position, tension),
-        n_swings=_n_swings(position, least=5 * standstills.position_tolerance),
-        is_like_first=np.array([
+        n_strokes=_n_strokes(position, least=5 * standstills.position_tolerance),
+        is_copy=np.array([
             any(np.array_equal(tension[index], tension[before], equal_nan=True)
                 for before in range(index))
             for index in range(n_specimens)
@@ -254,23 +255,13 @@ def _strain_per_length(position: Floats, strain: Floats | None, n_specimens: int
     return found
 
 
-def _n_swings(position: Floats, *, least: float) -> int:
+def _n_strokes(position: Floats, *, least: float) -> int:
     """Rises and falls of a quarter of the range, of samples spread over the record."""
     known = position[_some(position.size)]
     known = known[np.isfinite(known)]
     if not known.size:
         return 0
-    step = max(np.ptp(known) / 4, least)
-    count, extreme, way = 0, known[0], 0
-    for value in known.tolist():
-        if (way >= 0 and value > extreme) or (way <= 0 and value < extreme):
-            if abs(value - extreme) > step and way == 0:
-                way, count = (1 if value > extreme else -1), count + 1
-            if way != 0:
-                extreme = value
-        elif abs(value - extreme) > step:
-            way, count, extreme = -way, count + 1, value
-    return count
+    return max(find_reversals(known, band=max(np.ptp(known) / 4, least)).size - 1, 0)
 
 
 def _final_share(position: Floats, tension: Floats) -> Floats:

@@ -12,7 +12,7 @@ import pytest
 from measured_logs import LOGS, needs_measured_logs
 
 from reduction.record.settings import CycleSettings, PhaseSettings
-from reduction.stages.cycles.cycle_search import _find_reversals, _first_pass, find_cycles
+from reduction.stages.cycles.cycle_search import _first_pass, find_cycles, find_reversals
 from reduction.stages.standstills import find_standstills
 
 FOLDER = LOGS / "instron-elastomer"
@@ -130,7 +130,7 @@ def test_reversals_alone_count_every_cycle_of_the_stop_log(name):
     stop = read(name, "Stop")
     moving = stop[stop["Step"] == 1]
     position = moving["Position (mm)"].to_numpy()
-    peaks = _find_reversals(position, band=3.0)
+    peaks = find_reversals(position, band=3.0)
     peaks = peaks[1:][np.diff(position[peaks]) > 0]
     counted = moving["Total Cycles"].to_numpy()[peaks]
     frequency = TESTS[name][2]

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from reduction.record.settings import CycleSettings, PhaseSettings
-from reduction.stages.cycles.cycle_search import _find_reversals, find_cycles
+from reduction.stages.cycles.cycle_search import find_cycles, find_reversals
 from reduction.stages.standstills import find_standstills
 
 # eighths and powers of two: scaling and shifting them rounds nothing
@@ -21,35 +21,35 @@ BANDS = st.integers(1, 400).map(lambda band: band / 8)
 @given(SIGNALS, BANDS, st.integers(-8, 8), LEVELS)
 def test_scale_and_shift_change_no_reversal(values, band, power, shift):
     scale = 2.0**power
-    moved = _find_reversals(scale * (values + shift), band=scale * band)
-    assert moved.tolist() == _find_reversals(values, band=band).tolist()
+    moved = find_reversals(scale * (values + shift), band=scale * band)
+    assert moved.tolist() == find_reversals(values, band=band).tolist()
 
 
 @given(SIGNALS, BANDS)
 def test_a_mirrored_signal_has_the_same_reversals(values, band):
-    mirrored = _find_reversals(-values, band=band)
-    assert mirrored.tolist() == _find_reversals(values, band=band).tolist()
+    mirrored = find_reversals(-values, band=band)
+    assert mirrored.tolist() == find_reversals(values, band=band).tolist()
 
 
 @given(SIGNALS, BANDS)
 def test_a_signal_read_backwards_has_the_same_levels(values, band):
-    forwards = values[_find_reversals(values, band=band)]
-    backwards = values[::-1][_find_reversals(values[::-1], band=band)]
+    forwards = values[find_reversals(values, band=band)]
+    backwards = values[::-1][find_reversals(values[::-1], band=band)]
     assert forwards.tolist() == backwards[::-1].tolist()
 
 
 @given(SIGNALS, BANDS, BANDS)
 def test_a_smaller_band_first_changes_nothing(values, one, other):
-    first = _find_reversals(values, band=min(one, other))
-    both = first[_find_reversals(values[first], band=max(one, other))]
-    assert values[both].tolist() == values[_find_reversals(values, band=max(one, other))].tolist()
+    first = find_reversals(values, band=min(one, other))
+    both = first[find_reversals(values[first], band=max(one, other))]
+    assert values[both].tolist() == values[find_reversals(values, band=max(one, other))].tolist()
 
 
 @given(SIGNALS, BANDS)
 def test_a_repeated_sample_changes_no_level(values, band):
     twice = np.repeat(values, 2)
-    found = values[_find_reversals(values, band=band)]
-    assert twice[_find_reversals(twice, band=band)].tolist() == found.tolist()
+    found = values[find_reversals(values, band=band)]
+    assert twice[find_reversals(twice, band=band)].tolist() == found.tolist()
 
 
 @given(st.integers(1, 30), st.integers(10, 80), st.floats(0.0, 0.45), st.integers(0, 2**32 - 1))
@@ -58,7 +58,7 @@ def test_noise_below_the_band_changes_no_count(n_cycles, n_samples, share, seed)
     noise = np.random.default_rng(seed).uniform(-share, share, phase.size)
     # at a band of 1 on a stroke of 2.5 neither noise makes a swing nor takes one away
     signal = 2.5 * (1 - np.abs(2 * phase - 1))
-    assert _find_reversals(signal + noise, band=1.0).size == 2 * n_cycles + 1
+    assert find_reversals(signal + noise, band=1.0).size == 2 * n_cycles + 1
 
 
 @settings(max_examples=examples(30), deadline=None)

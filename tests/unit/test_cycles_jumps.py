@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reduction.stages.cycles.cycle_search import _drop_jumps, _find_reversals
+from reduction.stages.cycles.cycle_search import _drop_jumps, find_reversals
 
 
 def stroke(n_cycles=6, half=50):
@@ -15,9 +15,9 @@ def stroke(n_cycles=6, half=50):
 @pytest.mark.parametrize("at", [120, 145, 151, 170, 185, 203])
 def test_a_drop_out_leaves_the_number_of_reversals(level, length, at):
     values = stroke()
-    whole = _find_reversals(values, band=10)
+    whole = find_reversals(values, band=10)
     values[at : at + length] = level
-    kept, _ = _drop_jumps(values, _find_reversals(values, band=10))
+    kept, _ = _drop_jumps(values, find_reversals(values, band=10))
     assert kept.size == whole.size
     steps = np.diff(values[kept])
     assert (steps[1:] * steps[:-1] < 0).all()
@@ -26,18 +26,18 @@ def test_a_drop_out_leaves_the_number_of_reversals(level, length, at):
 def test_where_a_jump_was_is_returned():
     values = stroke()
     values[120:122] = 0
-    assert _drop_jumps(values, _find_reversals(values, band=10))[1].tolist() == [119]
+    assert _drop_jumps(values, find_reversals(values, band=10))[1].tolist() == [119]
 
 
 def test_cycles_of_few_samples_are_no_jumps():
     values = np.tile([0.0, 1, 2, 1], 20)
-    reversals = _find_reversals(values, band=1)
+    reversals = find_reversals(values, band=1)
     assert _drop_jumps(values, reversals)[0].tolist() == reversals.tolist()
 
 
 def test_a_square_wave_is_no_row_of_jumps_and_back():
     values = np.repeat(np.tile([0.0, 1.0], 10), 40)
-    reversals = _find_reversals(values, band=0.5)
+    reversals = find_reversals(values, band=0.5)
     assert _drop_jumps(values, reversals)[0].tolist() == reversals.tolist()
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.stages.cycles.cycle_search import _find_reversals, _first_pass, _typical_range
+from reduction.stages.cycles.cycle_search import _first_pass, _typical_range, find_reversals
 
 
 def sequential(values, band):
@@ -50,7 +50,7 @@ def test_reversals_are_those_of_the_sequential_definition(kind):
         elif kind == "decaying":
             values = np.cumsum(values) + np.linspace(2, 0, n_samples) * (-1) ** np.arange(n_samples)
         band = generator.uniform(0.1, 4)
-        assert _find_reversals(values, band=band).tolist() == sequential(values, band)
+        assert find_reversals(values, band=band).tolist() == sequential(values, band)
 
 
 def test_levels_are_those_of_the_sequential_definition_where_values_repeat():
@@ -58,25 +58,25 @@ def test_levels_are_those_of_the_sequential_definition_where_values_repeat():
     for _ in range(500):
         values = generator.integers(0, 6, generator.integers(2, 40)).astype(float)
         band = float(generator.integers(1, 5))
-        found = _find_reversals(values, band=band)
+        found = find_reversals(values, band=band)
         assert values[found].tolist() == values[sequential(values, band)].tolist()
 
 
 def test_3000_noisy_cycles_have_exactly_6000_half_cycles():
     values = triangle(3000, 400, noise=0.002)
-    reversals = _find_reversals(values, band=0.1)
+    reversals = find_reversals(values, band=0.1)
     assert reversals.size - 1 == 6000
     assert _first_pass(values)[0].size - 1 == 6000
 
 
 @pytest.mark.parametrize("band", [0.02, 0.1, 0.5, 0.9])
 def test_the_count_does_not_depend_on_the_band_between_noise_and_stroke(band):
-    assert _find_reversals(triangle(50, 400, noise=0.002), band=band).size - 1 == 100
+    assert find_reversals(triangle(50, 400, noise=0.002), band=band).size - 1 == 100
 
 
 def test_reversals_alternate_and_are_extremes_of_what_lies_between():
     values = triangle(20, 100, noise=0.02)
-    reversals = _find_reversals(values, band=0.3)
+    reversals = find_reversals(values, band=0.3)
     steps = np.diff(values[reversals])
     assert (steps[1:] * steps[:-1] < 0).all()
     assert (np.abs(steps) >= 0.3).all()
@@ -86,45 +86,43 @@ def test_reversals_alternate_and_are_extremes_of_what_lies_between():
 
 
 def test_a_plateau_counts_where_it_begins():
-    assert _find_reversals([0, 1, 2, 2, 2, 1, 0, 0, 1], band=0.5).tolist() == [0, 2, 6, 8]
+    assert find_reversals([0, 1, 2, 2, 2, 1, 0, 0, 1], band=0.5).tolist() == [0, 2, 6, 8]
 
 
 def test_missing_samples_are_passed_over():
     values = triangle(10, 100)
-    whole = _find_reversals(values, band=0.1)
+    whole = find_reversals(values, band=0.1)
     values[120:130] = values[333] = np.nan
-    assert _find_reversals(values, band=0.1).tolist() == whole.tolist()
+    assert find_reversals(values, band=0.1).tolist() == whole.tolist()
 
 
 @pytest.mark.parametrize("values", [[], [1.0], [1.0, 1.0, 1.0], [0.0, 0.4, 0.1], [np.nan] * 5])
 def test_a_signal_that_stays_within_the_band_has_no_reversal(values):
-    assert _find_reversals(values, band=0.5).size == 0
+    assert find_reversals(values, band=0.5).size == 0
 
 
 def test_swings_that_grow_steadily_take_few_passes():
     # one pair would go per pass: 100,000 passes of 100,000 points, were groups not merged
     n_samples = 200_000
     growing = np.linspace(0, 0.9, n_samples) * (-1) ** np.arange(n_samples)
-    assert _find_reversals(growing, band=1.9).size == 0
-    assert _find_reversals(growing[::-1], band=1.9).size == 0
+    assert find_reversals(growing, band=1.9).size == 0
+    assert find_reversals(growing[::-1], band=1.9).size == 0
 
 
 def test_blocks_of_the_scan_join_without_a_seam():
     values = np.repeat(triangle(2, 100_000), 2)  # plateaus across the seams, too
-    assert (
-        _find_reversals(values, band=0.5).tolist() == _find_reversals(values[:], band=0.1).tolist()
-    )
-    assert _find_reversals(values, band=0.5).size == 5
+    assert find_reversals(values, band=0.5).tolist() == find_reversals(values[:], band=0.1).tolist()
+    assert find_reversals(values, band=0.5).size == 5
 
 
 def test_a_band_that_is_not_positive_is_refused():
     with pytest.raises(DataError, match="values of band are not positive.*found 0; needed numbers"):
-        _find_reversals([0, 1], band=0.0)
+        find_reversals([0, 1], band=0.0)
 
 
 def test_a_table_is_no_series():
     with pytest.raises(DataError, match=r"values are not a series; found shape \(2, 2\)"):
-        _find_reversals([[0, 1], [1, 0]], band=0.5)
+        find_reversals([[0, 1], [1, 0]], band=0.5)
 
 
 def test_typical_range_is_that_of_the_cycles_and_not_of_the_way_to_them():

@@ -531,7 +531,7 @@ def find_half_cycles(
     values : ndarray, shape (n_samples,)
         Control channel; NaN where missing. [m] or [N]
     reversals : ndarray of int, shape (n_reversals,)
-        From `reduction.stages.cycles.cycle_search._find_reversals`, at least two. [1]
+        From `reduction.stages.cycles.cycle_search.find_reversals`, at least two. [1]
     standstills : Standstills
         They end a run, unless they are dwells. [SI]
     band : float

@@ -142,7 +142,7 @@ def _merge_groups(level: Floats, band: float) -> NDArray[np.bool_]:
     return stays
 
 
-def _find_reversals(values: ArrayLike, *, band: float) -> NDArray[np.intp]:
+def find_reversals(values: ArrayLike, *, band: float) -> NDArray[np.intp]:
     """Reversals between which a signal moves by at least a band.
 
     Notes
@@ -164,7 +164,7 @@ def _find_reversals(values: ArrayLike, *, band: float) -> NDArray[np.intp]:
 
     Examples
     --------
-    >>> _find_reversals([0, 3, 2.9, 5, 4.8, 5.1, 0, 0.2, 0.1], band=1.0)
+    >>> find_reversals([0, 3, 2.9, 5, 4.8, 5.1, 0, 0.2, 0.1], band=1.0)
     array([0, 5, 6])
     """
     as_positive("band", band)
@@ -234,14 +234,14 @@ def _first_pass(values: ArrayLike) -> tuple[NDArray[np.intp], float]:
     """
     values = np.asarray(values, dtype=np.float64)
     noise = noise_range(values)
-    reversals, band = _find_reversals(values, band=noise), noise
+    reversals, band = find_reversals(values, band=noise), noise
     while reversals.size > 1:
         levels = take_samples(values, reversals)
         wider = _BAND_SHARE * _typical_range(levels)
         if wider <= band:
             break
         # dropping with the smaller band first changes nothing
-        reversals, band = reversals[_find_reversals(levels, band=wider)], wider
+        reversals, band = reversals[find_reversals(levels, band=wider)], wider
     return reversals, band
 
 
@@ -691,7 +691,7 @@ def _reversals(time: Floats, values: Floats, settings: CycleSettings) -> tuple[I
     load = settings.control == "load"
     channel, unit = ("tension", "N") if load else ("crosshead position", "m")
     if settings.band is not None:
-        reversals, band = _find_reversals(values, band=settings.band), settings.band
+        reversals, band = find_reversals(values, band=settings.band), settings.band
     else:
         reversals, band = _first_pass(values)
     if reversals.size < 3:

@@ -696,7 +696,7 @@ _MOST_HARMONICS = 8
 
 _PER_HARMONIC = 5  # samples of a cycle
 
-_CYCLES_OF_SHAPE = 60
+_CYCLES_OF_SHAPE, _SAMPLES_OF_SHAPE = 60, 400  # that are looked at; of each of them
 
 _FEWEST_INSIDE = 4
 
@@ -759,7 +759,8 @@ def _shape_of_wave(
     ]
     phases, waves = [], []
     for one in some.tolist():
-        part = slice(int(cycles.first[one]), int(cycles.last[one]) + 1)
+        first, last = int(cycles.first[one]), int(cycles.last[one])
+        part = slice(first, last + 1, max((last - first) // _SAMPLES_OF_SHAPE, 1))
         phase = 2 * np.pi * (time[part] - time[part.start]) / period[one]
         level = values[part] - mean[one] - drift[one] * (phase / (2 * np.pi) - 0.5)
         usable = np.isfinite(level)
@@ -1266,9 +1267,10 @@ def close_loops(
 
     Notes
     -----
-    Means and amplitudes of a sinusoidal test are those of its fundamental, whose range they
-    are: the turn of a slow log lies between two samples, earlier in tension than in strain.
-    Peaks and valleys, and of other waves means and amplitudes, are of the logged extremes:
+    Means and amplitudes of a sinusoidal test are those of the extremes of its wave, by its
+    harmonics (`_shape_of_wave`): the turn of a slow log lies between two samples, earlier in
+    tension than in strain, and the answer to a sine may have a kink there.  Peaks and valleys,
+    and of other waves means and amplitudes, are of the logged extremes:
     noise makes a peak read high by about one to two standard deviations of a reading, and a
     slow log misses the turn by up to half a sample.  Uncertainties are of one cycle: the
     noise of a reading (`reading_noise`) carried through and, for extremes, the turn between
