@@ -1102,8 +1102,8 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "modulus-outside-band": (
         "warning",
         lambda modulus, low, high, of, readings: (
-            f"greatest stress over greatest strain is {_pascals(modulus)}, and that of {_one(of)} lies"
-            f" between {_pascals(low)} and {_pascals(high)}: is the unit of load, the diameter, the"
+            f"greatest stress over greatest strain is {_pascals(modulus)}, and that of {_one(of)}"
+            f" lies between {_pascals(low)} and {_pascals(high)}: is the unit of load, the diameter, the"
             f" gauge length or the material right?{_would_fit(readings)}"
         ),
     ),
@@ -1118,16 +1118,16 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "density-outside-band": (
         "warning",
         lambda found, low, high, of, readings: (
-            f"linear_density over the area of the diameter is {found:.3g} kg/m3, and that of {_one(of)}"
-            f" lies between {low:.3g} and {high:.3g}: is the unit of linear_density, the diameter"
+            f"linear_density over the area of the diameter is {found:.3g} kg/m3, and that of"
+            f" {_one(of)} lies between {low:.3g} and {high:.3g}: is the unit of linear_density, the diameter"
             " or the material right?"
         ),
     ),
     "strain-above-band": (
         "warning",
         lambda strain, limit, of: (
-            f"strain reaches {100 * strain:.3g} %, and {_one(of)} breaks below {100 * limit:.3g} %: is"
-            " the gauge length, the unit of position or of the extensometer, or the material right?"
+            f"strain reaches {100 * strain:.3g} %, and {_one(of)} breaks below {100 * limit:.3g} %:"
+            " is the gauge length, the unit of position or of the extensometer, or the material right?"
         ),
     ),
     "tension-above-strength": (
