@@ -1103,8 +1103,8 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda modulus, low, high, of, readings: (
             f"greatest stress over greatest strain is {_pascals(modulus)}, and that of {_one(of)}"
-            f" lies between {_pascals(low)} and {_pascals(high)}: is the unit of load, the diameter, the"
-            f" gauge length or the material right?{_would_fit(readings)}"
+            f" lies between {_pascals(low)} and {_pascals(high)}: is the unit of load, the"
+            f" diameter, the gauge length or the material right?{_would_fit(readings)}"
         ),
     ),
     "strength-outside-band": (
@@ -1119,15 +1119,16 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda found, low, high, of, readings: (
             f"linear_density over the area of the diameter is {found:.3g} kg/m3, and that of"
-            f" {_one(of)} lies between {low:.3g} and {high:.3g}: is the unit of linear_density, the diameter"
-            " or the material right?"
+            f" {_one(of)} lies between {low:.3g} and {high:.3g}: is the unit of linear_density, the"
+            " diameter or the material right?"
         ),
     ),
     "strain-above-band": (
         "warning",
         lambda strain, limit, of: (
             f"strain reaches {100 * strain:.3g} %, and {_one(of)} breaks below {100 * limit:.3g} %:"
-            " is the gauge length, the unit of position or of the extensometer, or the material right?"
+            " is the gauge length, the unit of position or of the extensometer, or the material"
+            " right?"
         ),
     ),
     "tension-above-strength": (

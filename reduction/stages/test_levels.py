@@ -145,7 +145,9 @@ def levels_of_test(
         frequency = 1 / float(np.median(period))
         peak, valley = cycles.branch_last[some, 0], cycles.branch_first[some, 0]
         rise = take_samples(position, peak) - take_samples(position, valley)
-        rates = np.abs(rise) / (take_samples(time, peak) - take_samples(time, valley))
+        # a cycle that a machine counted without a stroke takes no time to its peak
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rates = np.abs(rise) / (take_samples(time, peak) - take_samples(time, valley))
         rates = rates[np.isfinite(rates)]
         speed = float(np.median(rates)) if rates.size else np.nan
         shapes = []

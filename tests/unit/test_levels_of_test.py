@@ -1,0 +1,52 @@
+"""Levels of a test as its log shows them, against waves that are known."""
+
+import numpy as np
+import pytest
+
+from reduction.record.settings import CycleSettings, PhaseSettings
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.standstills import find_standstills
+from reduction.stages.test_levels import levels_of_test
+
+
+def levels(position, tension, *, waveform="sinusoidal", counter=None, step=0.05):
+    time = step * np.arange(position.size)
+    tension = np.atleast_2d(tension)
+    stands = find_standstills(time, position, tension, settings=PhaseSettings())
+    cycles = find_cycles(
+        time, position, tension, stands, settings=CycleSettings(waveform=waveform),
+        cycle_counter=counter,
+    )  # fmt: skip
+    return levels_of_test(time, position, tension, None, stands, cycles, control="position")
+
+
+def test_a_sine_whose_tension_leads_by_a_known_time():
+    time = 0.05 * np.arange(1200)
+    position = 2 - 0.5 * np.cos(0.4 * np.pi * time)
+    tension = 300 - 100 * np.cos(0.4 * np.pi * (time + 0.1))
+    found = levels(position, np.stack([tension, tension]))
+    assert found.waveform == "sinusoidal"
+    assert found.frequency == pytest.approx(0.2, rel=0.01)
+    assert found.mean_tension == pytest.approx([300, 300], rel=0.01)
+    assert found.tension_amplitude == pytest.approx([100, 100], rel=0.01)
+    assert found.lead == pytest.approx([0.1, 0.1], abs=0.01)
+    assert found.is_copy.tolist() == [False, True]
+    assert found.n_strokes == 24
+
+
+def test_a_triangle_is_told_from_a_sine():
+    phase = 0.05 * np.arange(1200) / 5 % 1
+    position = 2 + np.abs(2 * phase - 1)
+    found = levels(position, 100 * position, waveform="triangular")
+    assert found.waveform == "triangular"
+    assert found.speed == pytest.approx(0.4, rel=0.02)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_cycle_that_a_machine_counts_without_a_stroke_has_no_speed():
+    time = 0.05 * np.arange(1200)
+    position = 2 - 0.5 * np.cos(0.4 * np.pi * time)
+    counter = 1 + (time // 5).astype(np.int64)
+    position[1100:] = position[1100]
+    found = levels(position, 100 * position, counter=counter)
+    assert np.isfinite(found.speed)
