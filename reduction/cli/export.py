@@ -11,6 +11,7 @@ from typing import Any, Literal, cast
 from reduction.cli.curves import deployed_line, is_of_pieces, piece_source, rule_of
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain
+from reduction.lines.archive_source import SURFACES, experiments_with_pulls
 from reduction.lines.composite import compose
 from reduction.lines.deck_formats import closeness_of, export_line
 from reduction.lines.deck_moordyn import fast_damping, segment_length
@@ -119,7 +120,8 @@ def _with_syrope(
     if part is None:
         raise SettingsError(
             f"a Syrope line needs the dynamics of {line.name}",
-            needed="a published line with --frequency, --mean-tension and --tension-amplitude",
+            needed="a published line, or a campaign with an experiment and a slow pull, with "
+            "--frequency, --mean-tension and --tension-amplitude",
         )
     shape, k1, k2 = _parts(working_curve)
     greatest = parse_quantity(
@@ -269,6 +271,10 @@ def _line_of(
     extrapolate: Literal["refuse", "flag"],
 ) -> ExportLine:
     """The line that SOURCE means: a published one, that of an archive, or a composite of tests."""
+    surfaces = _surfaces_of(sources) if levels else None
+    if surfaces is not None:
+        chosen = {"--curve": curve, "--precedence": precedence}
+        return _of_experiment(surfaces, chosen, specimen, levels, extrapolate, stated)
     if is_of_pieces(sources):
         if levels:
             raise _levels_choose_nothing(levels, "several tests")
@@ -327,6 +333,54 @@ def _line_of(
     return line_from_archive(path, curve=curve, specimen=specimen, **stated)
 
 
+def _surfaces_of(sources: Sequence[str]) -> Path | None:
+    """Archive of surfaces that SOURCE is, or that lies in the folder of its campaign."""
+    if len(sources) != 1:
+        return None
+    path = Path(sources[0])
+    return next(
+        (one for one in (path, path / SURFACES) if one.name == SURFACES and one.is_file()), None
+    )
+
+
+def _of_experiment(
+    path: Path,
+    chosen: dict[str, str | None],
+    specimen: str | None,
+    levels: dict[str, str],
+    extrapolate: Literal["refuse", "flag"],
+    stated: dict[str, Any],
+) -> ExportLine:
+    """The line of an experiment: K_ap and H of its surfaces, K_0 and the curve of its slow pull."""
+    given = [f"{name} {value}" for name, value in chosen.items() if value is not None]
+    if given:
+        raise SettingsError(
+            "the curve of an experiment is that of its slow pull", found=", ".join(given),
+            needed="levels without them",
+        )  # fmt: skip
+    _refuse_half_levels(str(path), levels)
+    lines = experiments_with_pulls(path)
+    found = [one for one in lines if specimen in (None, one.name, one.name.split(" ")[-1])]
+    if len(found) != 1:
+        raise SettingsError(
+            "which experiment is meant is not said" if found else f"there is no '{specimen}'",
+            found=str(path),
+            needed="--specimen with one of " + ", ".join(f'"{one.name}"' for one in lines),
+        )
+    (line,) = found
+    strength = line.rated_break_strength
+    strength = strength if math.isfinite(strength) else stated.get("rated_break_strength", math.nan)
+    at = {
+        name: parse_quantity(
+            text,
+            _LEVELS[name],
+            rated_break_strength=strength if math.isfinite(strength) else None,
+        )
+        for name, text in levels.items()
+    }
+    return line_from_lookup(line, levels=at, extrapolate=extrapolate, **stated)
+
+
 def _strength_of_shares(sources: Sequence[str], stated: dict[str, Any]) -> float | None:
     """What %RBS is a share of: of a published line what it is at the look-up, else as stated."""
     line = published_sources().get(sources[0]) if len(sources) == 1 else None
@@ -365,5 +419,5 @@ def _levels_choose_nothing(levels: dict[str, str], where: str) -> SettingsError:
     return SettingsError(
         f"levels of a cycle choose nothing in {where}",
         found=", ".join(f"--{name.replace('_', '-')}" for name in levels),
-        needed="a published line",
+        needed="a published line, or a campaign with an experiment and a slow pull",
     )

@@ -6,6 +6,7 @@ there are surfaces.
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -364,12 +365,13 @@ def _synthetic(dataset: xr.Dataset) -> tuple[str, ...]:
     return ("synthetic data",) if dataset.attrs.get("synthetic") == "yes" else ()
 
 
-_SURFACES = "surfaces.nc"
+SURFACES = "surfaces.nc"
+"""File of the surfaces of a campaign, beside the archives of its tests."""
 
 
 def archives_of_lines(folder: Path) -> list[Path]:
     """Archives of a campaign's folder that may have something to look up, surfaces last."""
-    surfaces = folder / _SURFACES
+    surfaces = folder / SURFACES
     return [*archives_of_tests(folder), *([surfaces] if surfaces.is_file() else [])]
 
 
@@ -401,6 +403,72 @@ def lines_of_open_archive(
     return [
         _line_of_curves(archive, place, name, curves) for place, name, curves in found if curves
     ]
+
+
+def experiments_with_pulls(path: Path) -> list[LineSource]:
+    """Experiments of an archive of surfaces, one for each specimen and its slow pull.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Archive of the surfaces of a campaign, with the archives of its tests beside it.
+
+    Returns
+    -------
+    lines : list of LineSource
+        Surfaces of K_ap and H, with K_0 and the strain of the pull that the campaign names for the
+        specimen; called EXPERIMENT SPECIMEN where an experiment has several.
+
+    Raises
+    ------
+    DataError
+        If no specimen of an experiment has a slow pull.
+    ArchiveError
+        If the archive of a pull is missing, or holds none.
+    """
+    with reading(path) as archive:
+        found = lines_of_open_archive(archive, path)
+        settings = json.loads(str(archive.attrs.get("settings", "{}")))
+    made = []
+    for line in found:
+        pulls = settings.get(line.name, {}).get("quasi_static", {})
+        for specimen, test in pulls.items():
+            pulled = _pull_of(path.parent, test, specimen)
+            made.append(
+                replace(
+                    line,
+                    name=line.name if len(pulls) == 1 else f"{line.name} {specimen}",
+                    source=f"{line.source}; slow pull {pulled.source}",
+                    curves=pulled.curves,
+                    notes=tuple(dict.fromkeys((*line.notes, *pulled.notes))),
+                )
+            )
+    if not made:
+        raise DataError(
+            "no specimen of the experiment has a slow pull, which K_0 is of",
+            found=", ".join(line.name for line in found) or "no experiment with surfaces",
+            needed="quasi_static = { SPECIMEN = TEST } of the experiment in campaign.toml",
+        )
+    return made
+
+
+def _pull_of(folder: Path, test: str, specimen: str) -> LineSource:
+    """K_0 and strain of one slow pull over tension."""
+    for path in archives_of_tests(folder):
+        with reading(path) as archive:
+            if archive.attrs.get("test") == test:
+                found = _line_source_of_test(archive, specimen)
+                curves = tuple(one for one in found.curves if one.quantity not in _OVER_STRAIN)
+                if curves:
+                    return replace(found, curves=curves)
+                raise ArchiveError(
+                    f"the slow pull of {specimen} has no curve", found=str(path),
+                    needed="a load-strain cubic; the notes of the test say why it has none",
+                )  # fmt: skip
+    raise ArchiveError(
+        f"the slow pull of {specimen} has no archive", found=f"no test {test} in {folder}",
+        needed="the products of the whole campaign in one folder",
+    )  # fmt: skip
 
 
 def with_unique_names(found: Sequence[tuple[str, Sequence[LineSource]]]) -> list[LineSource]:

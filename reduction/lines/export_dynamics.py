@@ -329,7 +329,7 @@ def _said_printed(
         return "the source has no surfaces of K_1 and tau that can be used"
     spring, time = (float(one.value) for one in printed.values())
     said = (
-        f"the printed surfaces of K_1 and tau, {plain_number(spring)} N and "
+        f"the line's own surfaces of K_1 and tau, {plain_number(spring)} N and "
         f"{plain_number(time, 4)} s, are not used"
     )
     if not (spring > 0 and time > 0):
@@ -346,7 +346,7 @@ def _said_instead(
     return (
         f"DOUBTFUL: K_1 {plain_number(spring)} N and tau "
         f"{plain_number(part.relaxation_time, 4)} s are those of the "
-        f"printed surfaces; none give back K_ap and H there: {REASONS[reason]}. They give "
+        f"line's own surfaces; none give back K_ap and H there: {REASONS[reason]}. They give "
         f"{_against(part, measured, amplitude)}"
     )
 

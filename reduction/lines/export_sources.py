@@ -698,6 +698,7 @@ def line_from_lookup(
         viscoelasticity=part,
         sources=tuple(sources),
         notes=tuple(note for note in dict.fromkeys(notes) if note),
+        is_synthetic="synthetic data" in source.notes,
         **own | given,
     )
 
