@@ -25,6 +25,7 @@ from reduction.lines.export_line import (
     SEA_WATER,
     ExportLine,
     curve_from_zero,
+    damping_words,
     local_share,
     local_words,
     thin_curve,
@@ -364,6 +365,7 @@ def _one_file(text: Callable[..., str]) -> Callable[..., dict[str, str]]:
 
 _MOORDYN_FORMS: dict[str, _WrittenCurve] = {
     "table": "points",
+    "damped-table": "points",
     "static-dynamic": "none",
     "load-dependent": "none",
     "syrope": "none",
@@ -481,7 +483,9 @@ def closeness_of(line: ExportLine, to: str, form: str | None) -> tuple[str, ...]
         else _fit_smooth_curve(line.strain, line.tension)
     )
     doubt = "DOUBTFUL: " if found.local > _CLOSE else ""
+    damping = line.damping if form == "damped-table" else None
     return (
+        *(() if damping is None else (damping_words(damping),)),
         f"{doubt}the written curve is off by up to {plain_number(found.error, 3)} N, "
         f"{found.share:.2e} of the "
         f"greatest tension; {local_words(found)}",

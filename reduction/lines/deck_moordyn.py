@@ -14,8 +14,11 @@ What MoorDyn 2.7 does with a file that is not to its liking, and what is done he
 * a Syrope line without initial conditions ends in a segmentation fault: they are always written;
 * its own choice of a time step (CFL) takes the stiffness of a table as zero, and the line blows up:
   the deck states a step, from the steepest part of the curve;
-* a measured N beside a table is far too much damping for cycles that are fast against tau, and
-  asks for steps of microseconds: a table has numerical damping, the other forms the measured one;
+* N = K_1 tau beside a table is far too much damping for cycles that are fast against tau, and
+  asks for steps of microseconds: a table has numerical damping, or the dashpot of one cycle;
+* it gives the tension of the middle of its last step: a cycle has too little hysteresis energy,
+  by half a step over the time by which strain follows tension; the step of a deck with damping is
+  that short, for 1 %;
 * without damping of the fast spring the second-order integration grows without bounds: a little is
   written, and said to be numerical.
 
@@ -50,7 +53,13 @@ import numpy as np
 
 from reduction.lines.deck_text import header_lines, number, one_line, real_number
 from reduction.lines.export_dynamics import Syrope, Viscoelasticity
-from reduction.lines.export_line import ExportLine, ThinnedCurve, thin_curve
+from reduction.lines.export_line import (
+    CycleDamping,
+    ExportLine,
+    ThinnedCurve,
+    damping_words,
+    thin_curve,
+)
 from reduction.quantities.digits import plain_number
 from reduction.record.errors import SettingsError
 
@@ -68,6 +77,10 @@ _COURANT = 0.1
 _DEPTH = 100.0
 
 _SHORTEST_STEP, _LONGEST_STEP = 1e-4, 0.02
+
+_SHARE_OF_LAG = 0.02
+"""Of the time by which strain follows tension, as a step: MoorDyn gives the tension of the middle
+of its last step, and what is late by half of it has 1 % less hysteresis energy. [1]"""
 
 _COLUMNS = (
     "TypeName Diam Mass/m EA BA/-zeta EI Cd Ca CdAx CaAx",
@@ -102,12 +115,14 @@ def _deck(
     strain: float,
     stiffness: float,
     damping: float = 0.0,
+    lag: float = math.inf,
     conditions: tuple[str, ...] = (),
     program: str = "MoorDyn",
 ) -> str:
     """A whole input file: one line between two points, with a strain that it may have."""
     length = _length(line)
     segments, step = _steps(line.needed("linear_density"), stiffness, damping, segment_length(line))
+    step = min(step, max(_SHARE_OF_LAG * lag, _SHORTEST_STEP))
     # the upper end stays under water however long the line is
     depth = max(_DEPTH, 2 * length * (1 + strain))
     top = length * (1 + strain) - depth
@@ -157,7 +172,7 @@ def _steps(mass: float, stiffness: float, damping: float, apart: float) -> tuple
     return _SEGMENTS, min(step, _LONGEST_STEP)
 
 
-MoorDynForm = Literal["table", "static-dynamic", "load-dependent", "syrope"]
+MoorDynForm = Literal["table", "damped-table", "static-dynamic", "load-dependent", "syrope"]
 
 MOST_POINTS = 30
 """Rows that a table of MoorDyn may have. [1]"""
@@ -207,15 +222,15 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
     series with EA_d, [2]_ puts a spring and a dashpot in series beside K_0: the same line, but
     not the same dashpot; see `Viscoelasticity.slow_dashpot_coefficient`.
     """
-    if form == "table":
-        return _table_files(line, stem)
+    if form in ("table", "damped-table"):
+        return _table_files(line, stem, is_damped=form == "damped-table")
     if form == "syrope":
         return _syrope_files(line, stem)
     if form not in ("static-dynamic", "load-dependent"):
         raise SettingsError(
             "the form of a MoorDyn line is not known",
             found=repr(form),
-            needed="table, static-dynamic, load-dependent or syrope",
+            needed="table, damped-table, static-dynamic, load-dependent or syrope",
         )
     part = line.viscoelasticity
     if part is None:
@@ -261,6 +276,7 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
             head,
             strain=line.strain[-1] / 2,
             stiffness=part.fast_stiffness,
+            lag=part.lag,
         )
     }
 
@@ -288,24 +304,50 @@ def _said(line: ExportLine) -> tuple[str, ...]:
     )
 
 
-def _table_files(line: ExportLine, stem: str) -> dict[str, str]:
+def _table_files(line: ExportLine, stem: str, *, is_damped: bool) -> dict[str, str]:
     curve = thin_curve(line.strain, line.tension, most=MOST_POINTS)
     table = f"{stem}_table.txt"
+    damping = _dashpot_of(line) if is_damped else None
     head = header_lines(
         line,
         curve,
         *_said(line),
-        f"internal damping {NUMERICAL_DAMPING:g}: MoorDyn takes a number below zero for minus a "
-        "share of critical damping, and finds the damping of each segment by it; numerical, not "
-        "measured",
+        _NUMERICAL if damping is None else damping_words(damping),
         f"{table} belongs beside this file",
     )
-    row = _line_type(line, table, number(NUMERICAL_DAMPING))
+    coefficient = 0.0 if damping is None else damping.coefficient
+    row = _line_type(line, table, number(coefficient or NUMERICAL_DAMPING))
     steepest = float(np.max(np.diff(curve.tension) / np.diff(curve.strain)))
+    strain = line.strain[-1] / 2
     return {
-        "": _deck(line, row, head, strain=line.strain[-1] / 2, stiffness=steepest),
+        "": _deck(
+            line,
+            row,
+            head,
+            strain=strain,
+            stiffness=steepest,
+            damping=coefficient,
+            lag=coefficient / steepest if is_damped else math.inf,
+        ),
         table: _table_text(line, curve),
     }
+
+
+_NUMERICAL = (
+    f"internal damping {NUMERICAL_DAMPING:g}: MoorDyn takes a number below zero for minus a share "
+    "of critical damping, and finds the damping of each segment by it; numerical, not measured"
+)
+
+
+def _dashpot_of(line: ExportLine) -> CycleDamping:
+    if line.damping is None:
+        raise SettingsError(
+            f"the hysteresis energy of the cycles of {line.name} is not known",
+            needed="the archive of one cyclic test whose loop has an energy above zero, and its "
+            "mean curve",
+            hint="Export the curve without it: --form table.",
+        )
+    return line.damping
 
 
 def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:

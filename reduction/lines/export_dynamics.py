@@ -132,6 +132,16 @@ class Viscoelasticity:
         known = math.isfinite(self.frequency)
         return self.apparent_stiffness_at(self.frequency) if known else self.fast_stiffness
 
+    @property
+    def lag(self) -> float:
+        """Time by which strain follows tension at the frequency; infinite without one. [s]."""
+        if not math.isfinite(self.frequency):
+            return math.inf
+        turned = 2j * math.pi * self.frequency * self.relaxation_time
+        slow, fast = self.static_stiffness, self.fast_stiffness
+        stiffness = slow + (fast - slow) * turned / (1 + turned)
+        return stiffness.imag / stiffness.real / (2 * math.pi * self.frequency)
+
     def apparent_stiffness_at(self, frequency: float) -> float:
         """Tension amplitude over strain amplitude, K_ap, at a frequency in Hz. [N]."""
         return float(apparent_spring_constant(**self._three, frequency=frequency))

@@ -148,6 +148,100 @@ CYLINDER = Hydrodynamics(
 
 
 @dataclass(frozen=True)
+class CycleDamping:
+    """A dashpot beside the curve of a test that gives the hysteresis energy of its cycles back.
+
+    Parameters
+    ----------
+    coefficient : float
+        Tension over the rate of strain. [N s]
+    frequency : float
+        Of the cycles. [Hz]
+    strain_amplitude : float
+        Half their range. [1]
+    hysteresis_energy : float
+        Of one cycle. [J m-1]
+    standard_uncertainty : float
+        Of that energy. [J m-1]
+    """
+
+    coefficient: float
+    frequency: float
+    strain_amplitude: float
+    hysteresis_energy: float
+    standard_uncertainty: float
+
+
+def cycle_damping(
+    hysteresis_energy: float,
+    frequency: float,
+    strain_amplitude: float,
+    standard_uncertainty: float = math.nan,
+) -> CycleDamping:
+    r"""Dashpot of a line whose sinusoidal cycle has a hysteresis energy.
+
+    .. math:: c = \frac{H}{2 \pi^2 f \varepsilon_a^2}
+
+    since c times the rate of strain, over a cycle of strain amplitude :math:`\varepsilon_a`, does
+    the work :math:`\pi (2 \pi f c) \varepsilon_a^2`.
+
+    Parameters
+    ----------
+    hysteresis_energy : float
+        Of one cycle. [J m-1]
+    frequency : float
+        [Hz]
+    strain_amplitude : float
+        Half the range. [1]
+    standard_uncertainty : float, optional
+        Of the energy. [J m-1]
+
+    Returns
+    -------
+    damping : CycleDamping
+        Holds at this frequency and amplitude.
+
+    Raises
+    ------
+    DataError
+        If any of them is not above zero.
+
+    Examples
+    --------
+    The work of a unit dashpot at 1/(2 pi) Hz and unit amplitude is pi.
+
+    >>> round(cycle_damping(math.pi, 1 / (2 * math.pi), 1.0).coefficient, 12)
+    1.0
+    """
+    found = (hysteresis_energy, frequency, strain_amplitude)
+    if not all(value > 0 for value in found):
+        raise DataError(
+            "no dashpot gives back the cycles of the test",
+            found=f"H {hysteresis_energy:.4g} J/m, {frequency:.4g} Hz, strain amplitude "
+            f"{strain_amplitude:.4g}",
+            needed="all above zero",
+        )
+    coefficient = hysteresis_energy / (2 * math.pi**2 * frequency * strain_amplitude**2)
+    return CycleDamping(
+        coefficient, frequency, strain_amplitude, hysteresis_energy, standard_uncertainty
+    )
+
+
+def damping_words(damping: CycleDamping) -> str:
+    """What the dashpot beside a table is of, and what it is not."""
+    energy, spread = damping.hysteresis_energy, 1.96 * damping.standard_uncertainty
+    known = f" +-{plain_number(spread, 2)} (95 percent)" if math.isfinite(spread) else ""
+    doubt = "DOUBTFUL, the interval holds zero: " if spread >= energy else ""
+    return (
+        f"{doubt}internal damping {plain_number(damping.coefficient, 4)} N s, by which a "
+        f"sinusoidal cycle of {damping.frequency:.4g} Hz and strain amplitude "
+        f"{damping.strain_amplitude:.4g} has the hysteresis energy of the test, "
+        f"{plain_number(energy, 4)} J/m{known}; at twice the frequency it would have twice as "
+        "much, which was not measured"
+    )
+
+
+@dataclass(frozen=True)
 @read_only_arrays
 class ExportLine:
     """A line as a mooring code takes it.
@@ -176,6 +270,8 @@ class ExportLine:
         Where it was found.
     syrope : Syrope, optional
         Where it is known.
+    damping : CycleDamping, optional
+        Of the cycles that the curve is the mean of.
     spread : CurveSpread, optional
         Uncertainty of the tensions, where it is known.
     hydrodynamics : Hydrodynamics
@@ -201,6 +297,7 @@ class ExportLine:
     material: str = ""
     viscoelasticity: Viscoelasticity | None = None
     syrope: Syrope | None = None
+    damping: CycleDamping | None = None
     spread: CurveSpread | None = None
     hydrodynamics: Hydrodynamics = field(default_factory=lambda: CYLINDER)
     sources: tuple[str, ...] = ()

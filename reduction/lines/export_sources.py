@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -39,7 +39,13 @@ from reduction.lines.assembly import DeployedLine
 from reduction.lines.composite import CompositeCurve, PieceSource, tests_of_curve, used_of
 from reduction.lines.cycle_stiffness import LoadedTest, stiffness_of_cycles
 from reduction.lines.export_dynamics import line_dynamics
-from reduction.lines.export_line import CurveSpread, ExportLine, start_against
+from reduction.lines.export_line import (
+    CurveSpread,
+    CycleDamping,
+    ExportLine,
+    cycle_damping,
+    start_against,
+)
 from reduction.lines.export_tables import TableColumn, ValueTable, spread_columns
 from reduction.lines.line_curve import evaluate_curve
 from reduction.lines.lookup_product import LineCurve, LineSource
@@ -204,12 +210,19 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
             spread = None if spread is None else _with_ends(spread, added)
             notes.append(
                 f"the branches are known from strain {plain_number(tested[0], 4)} to"
-                f" {plain_number(tested[1], 4)}; beyond, the curve goes on with its own slope and"
-                f" bend to the turns of the mean cycle, {plain_number(strain[0], 4)} and"
-                f" {plain_number(strain[-1], 4)}"
+                f" {plain_number(tested[1], 4)}; beyond, a straight line goes on to the"
+                f" turns of the mean cycle at its peaks and valleys,"
+                f" {plain_number(strain[0], 4)} and {plain_number(strain[-1], 4)}"
+            )
+        if turns.strain[1] - strain[-1] > _SHORT * (turns.strain[1] - turns.strain[0]):
+            notes.append(
+                f"DOUBTFUL: the curve ends at strain {plain_number(strain[-1], 4)} and the mean "
+                f"cycle at {plain_number(turns.strain[1], 4)}: beyond its last row a code keeps "
+                "the tension, and a whole cycle has less stiffness than the test"
             )
     return {
         "name": specimen,
+        "damping": _damping_of(archive, place) if curve == "mean" else None,
         "spread": spread,
         **_rising(strain, tension),
         "curve": words,
@@ -227,59 +240,81 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
     }
 
 
-def _turns(archive: xr.Dataset, place: int) -> tuple[float, float]:
-    """Strain at the two turns of the mean cycle, where the curve lies; NaN where not known."""
+def _damping_of(archive: xr.Dataset, place: int) -> CycleDamping | None:
+    """Dashpot of the cycles of a test; None where their loop has no energy that is known."""
+    energy, frequency, amplitude, uncertainty = (
+        _number(archive, name, place)
+        for name in (
+            "test_hysteresis_energy",
+            "test_frequency",
+            "test_strain_amplitude",
+            "test_hysteresis_energy_standard_uncertainty",
+        )
+    )
+    if not (energy > 0 and frequency > 0 and amplitude > 0):
+        return None
+    return cycle_damping(energy, frequency, amplitude, uncertainty)
+
+
+@dataclass(frozen=True)
+class _Turns:
+    """Where the mean cycle turns; NaN where not known."""
+
+    strain: tuple[float, float]
+    tension: tuple[float, float]
+
+
+def _turns(archive: xr.Dataset, place: int) -> _Turns:
+    """Turns of the mean cycle: K_ap over its strain range, about the middle of peaks and valleys.
+
+    A peak is a reading with noise in it, and K_ap is without that bias.
+    """
     middle = _number(archive, "alignment_strain", place)
     if math.isnan(middle):
         middle = _number(archive, "test_mean_strain", place)
     half = _number(archive, "test_strain_amplitude", place)
-    return middle - half, middle + half
+    level = math.nan
+    if "peak_tension" in archive:
+        ends = archive["peak_tension"].values[place] + archive["valley_tension"].values[place]
+        level = float(np.mean(ends[np.isfinite(ends)]) / 2) if np.isfinite(ends).any() else math.nan
+    pull = half * _number(archive, "test_apparent_spring_constant", place)
+    return _Turns((middle - half, middle + half), (level - pull, level + pull))
 
-
-_END_SHARE = 0.25  # of the points of a curve, which say how it goes on
 
 _FARTHEST = 0.2  # of the range of the curve, at each end
 
+_SHORT = 0.02  # of the range of a cycle, that a curve may leave out at its upper end
+
 
 def _to_turns(
-    strain: Floats, tension: Floats, turns: tuple[float, float]
+    strain: Floats, tension: Floats, turns: _Turns
 ) -> tuple[Floats, Floats, NDArray[np.int64]]:
     """A mean curve that goes on to the turns of the cycles, and how many points that added.
 
     Branches are trimmed at their ends, and a slope needs samples on both sides; a mooring code
-    that moves the line by the whole cycle would find no stiffness there.  The mean of both
-    branches is smooth up to the turns, where they meet.
+    that moves the line by the whole cycle would find no stiffness there.  Both branches meet at
+    the turns, whose tensions were measured.
 
     Examples
     --------
     A parabola from 1 to 2 whose cycles turn at 0.9 and 2.1.
 
     >>> strain = np.linspace(1, 2, 21)
-    >>> longer, tension, added = _to_turns(strain, strain**2, (0.9, 2.1))
+    >>> longer, tension, added = _to_turns(strain, strain**2, _Turns((0.9, 2.1), (0.81, 4.41)))
     >>> print(longer[[0, -1]], tension[[0, -1]].round(6), added)
     [0.9 2.1] [0.81 4.41] [1 1]
     """
-    count = max(int(np.ceil(_END_SHARE * strain.size)), 3)
     added = np.zeros(2, dtype=np.int64)
-    if strain.size < count + 1:
-        return strain, tension, added
     reach = _FARTHEST * float(strain[-1] - strain[0])
     points, values = [strain], [tension]
-    for end, (turn, part) in enumerate(
-        zip(turns, (slice(count), slice(-count, None)), strict=True)
-    ):
-        edge = float(strain[0] if end == 0 else strain[-1])
-        beyond = edge - turn if end == 0 else turn - edge
-        if not 0 < beyond <= reach:
-            continue
-        x, y = strain[part] - edge, tension[part]
-        goes_on = float(np.polyval(np.polyfit(x, y, 2), turn - edge))
-        inner = float(tension[0] if end == 0 else tension[-1])
-        if (goes_on - inner) * (1 if end else -1) <= 0:
+    for end, way in enumerate((-1, 1)):
+        inner = -end  # the first point, or the last
+        beyond = way * (turns.strain[end] - float(strain[inner]))
+        if not (0 < beyond <= reach and way * (turns.tension[end] - float(tension[inner])) > 0):
             continue
         place = 0 if end == 0 else len(points)
-        points.insert(place, np.array([turn]))
-        values.insert(place, np.array([goes_on]))
+        points.insert(place, np.array([turns.strain[end]]))
+        values.insert(place, np.array([turns.tension[end]]))
         added[end] = 1
     return np.concatenate(points), np.concatenate(values), added
 

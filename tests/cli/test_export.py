@@ -37,7 +37,7 @@ def test_a_reduced_test_becomes_a_deck_and_its_table(command, synthetic, tmp_pat
         )
     # the turns of the mean cycle, which no trimmed branch reaches
     assert [strain[1], strain[-1]] == pytest.approx([middle - half, middle + half])
-    assert "goes on with its own slope" in " ".join(answer["notes"])
+    assert "a straight line goes on to the turns" in " ".join(answer["notes"])
 
 
 def test_branches_differ_and_their_mean_lies_between(command, synthetic, tmp_path):

@@ -6,6 +6,7 @@ import shlex
 from pathlib import Path
 
 import pytest
+from commandruns import run_once, shared_by_processes
 from typer.testing import CliRunner
 
 from reduction.cli.main import app
@@ -27,7 +28,10 @@ def after(words, option):
 
 
 @pytest.mark.parametrize("arguments", commands(), ids=lambda words: after(words, "--out"))
-def test_commands_end_well(arguments, tmp_path, monkeypatch):
+def test_commands_end_well(arguments, tmp_path, monkeypatch, tmp_path_factory):
+    if arguments[1].startswith("processed/"):
+        made = run_once("tmt-synthetic", shared_by_processes(tmp_path_factory))
+        (tmp_path / "processed").symlink_to(made.processed.parent)
     monkeypatch.chdir(tmp_path)
     done = CliRunner().invoke(app, arguments)
     assert done.exit_code == 0, done.output
