@@ -264,13 +264,13 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
         )
     smooth = _fit_smooth_curve(line.strain, line.tension)
     curve = thin_curve(line.strain, line.tension, most=CABLE_POINTS)
-    powers = smooth.coefficient
-    tension = _expression(smooth, powers)
+    start, powers = _with_straight_ends(smooth)
+    tension = _expression(start, powers)
     remarks = [
         f"expressions: {smooth.start.size} cubic pieces, greatest error "
         f"{plain_number(smooth.error, 3)} N, "
         f"{smooth.share:.2e} of the greatest tension; {local_words(smooth)}; beyond strain "
-        f"{smooth.end:.6g} the last piece goes on and nothing is known"
+        f"{smooth.end:.6g} and below zero a straight line goes on and nothing is known"
     ]
     if form == "table":
         pairs = zip(curve.strain, curve.tension, strict=True)
@@ -295,8 +295,8 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
     rows = {
         "type": "nonlinear",
         "T": tension,
-        "Te": _expression(smooth, powers[:, 1:] * (1.0, 2.0, 3.0)),
-        "Tee": _expression(smooth, powers[:, 2:] * (2.0, 6.0)),
+        "Te": _expression(start, powers[:, 1:] * (1.0, 2.0, 3.0)),
+        "Tee": _expression(start, powers[:, 2:] * (2.0, 6.0)),
         "EA": real_number(float(curve.tension[-1] / curve.strain[-1])),
         "EI": real_number(_SMALL),
         "GJ": real_number(_SMALL),
@@ -316,11 +316,30 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
     return "\n".join([*text, "", "End", ""])
 
 
-def _expression(curve: _SmoothCurve, powers: Floats) -> str:
+def _with_straight_ends(curve: _SmoothCurve) -> tuple[Floats, Floats]:
+    """Pieces with a straight one before the first and after the last, at the slopes of the ends.
+
+    A cubic that goes on beyond its last point may fall, and Cable finds an equilibrium there.
+    """
+    ends = np.array([0.0, curve.end])
+    slope = [
+        float(np.polyval([3 * cubic, 2 * square, linear], at - first))
+        for at, first, (_, linear, square, cubic) in zip(
+            ends, curve.start[[0, -1]], curve.coefficient[[0, -1]], strict=True
+        )
+    ]
+    top = float(np.polyval(curve.coefficient[-1, ::-1], curve.end - curve.start[-1]))
+    below, above = [0.0, slope[0], 0.0, 0.0], [top, slope[1], 0.0, 0.0]
+    powers = np.vstack([below, curve.coefficient, above])
+    # what is before the first piece hangs on its start, strain zero
+    return np.concatenate([[0.0], curve.start, [curve.end]]), powers
+
+
+def _expression(start: Floats, powers: Floats) -> str:
     """Pieces chosen by ``?:``, each in Horner's form; ``e`` stands in every one of them."""
     text = ""
     for piece in range(len(powers) - 1, -1, -1):
-        here = f"(e - {real_number(float(curve.start[piece]))})"
+        here = f"(e - {real_number(float(start[piece]))})"
         polynomial = ""
         for power in reversed(powers[piece]):
             value = real_number(abs(float(power)))
@@ -329,7 +348,7 @@ def _expression(curve: _SmoothCurve, powers: Floats) -> str:
         if piece == len(powers) - 1:
             text = polynomial
         else:
-            end = real_number(float(curve.start[piece + 1]))
+            end = real_number(float(start[piece + 1]))
             text = f"((e < {end}) ? {polynomial} : {text})"
     return text
 

@@ -6,8 +6,11 @@ import pytest
 from export_lines import line, rubber
 from export_readers import CableExpression, cable_material, cable_pairs
 
+from reduction.lines.composite import CompositeRule, compose
 from reduction.lines.deck_formats import _whoicable_text
 from reduction.lines.export_line import SEA_WATER
+from reduction.lines.export_sources import line_from_composite, line_from_lookup
+from reduction.lines.published_source import published_piece_sources, published_sources
 from reduction.record.errors import SettingsError
 
 
@@ -22,6 +25,36 @@ def test_the_three_expressions_are_the_curve_and_its_derivatives():
     np.testing.assert_allclose(CableExpression(material["Te"])(grid), slope, rtol=1e-3)
     bend = 900 * (-0.9 + 0.96 * grid)
     np.testing.assert_allclose(CableExpression(material["Tee"])(grid), bend, atol=20)
+
+
+@pytest.mark.parametrize(
+    "name", ["polyester-double-braid-0.5in-new", "nylon-8-strand-plaited-0.5in-new", "tethers"]
+)
+def test_a_curve_rises_everywhere_and_goes_on_straight_beyond_both_ends(name):
+    """Cable finds an equilibrium wherever the expression has the tension."""
+    if name == "tethers":
+        source = published_piece_sources()["rubber-tether-used"]
+        one = line_from_composite(
+            source, compose(source, CompositeRule()), diameter=0.06, linear_density=2.0
+        )
+    else:
+        one = line_from_lookup(published_sources()[name], linear_density=0.11)
+    _, material = cable_material(_whoicable_text(one))
+    end = float(one.strain[-1])
+    grid = np.linspace(-0.3, 3.0, 3301) * end
+    tension = CableExpression(material["T"])(grid)
+    assert (np.diff(tension) > 0).all()
+    inside = (grid >= 0) & (grid <= end)
+    wanted = np.interp(grid[inside], [0, *one.strain], [0, *one.tension])
+    np.testing.assert_allclose(tension[inside], wanted, atol=0.02 * wanted[-1])
+    for beyond, edge in ((grid > end * (1 + 1e-9), end), (grid < 0, 0.0)):
+        slope = np.diff(tension[beyond]) / np.diff(grid[beyond])
+        at_edge = CableExpression(material["Te"])(edge)[0]
+        np.testing.assert_allclose(slope, at_edge, rtol=1e-6)
+        np.testing.assert_allclose(
+            CableExpression(material["Te"])(grid[beyond]), at_edge, rtol=1e-6
+        )
+        assert not CableExpression(material["Tee"])(grid[beyond]).any()
 
 
 def test_a_straight_line_has_no_constant_derivative():
