@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal, Protocol
 
-from reduction.record.note_sentences import Severity
 from reduction.record.notes import Note, by_severity, full_note
 
 Status = Literal["reduced", "check", "unchanged", "no_work", "failed"]
@@ -26,7 +24,7 @@ class TestStatus:
     exit_status : int
         As the command line defines it.
     message : str
-        The error, or the most serious note.
+        The error, or what could move an answer most.
     n_rows, n_cycles : int
         Rows of the log; whole cycles found.
     raw_sha256 : str
@@ -73,21 +71,13 @@ class PartStatus:
     message: str
 
 
-_SERIOUS: tuple[Severity, ...] = ("warning", "refusal")
-
-
 def note_message(notes: Sequence[Note]) -> str:
-    """How many notes there are, how many of them are serious, and the most serious of all."""
-    ranked = by_severity(notes)
-    if not ranked:
-        return ""
-    kinds = Counter(one.severity for one in ranked)
-    serious = [
-        f"{kinds[kind]} {kind}{'s' if kinds[kind] > 1 else ''}" for kind in _SERIOUS if kinds[kind]
-    ]
-    among = f" ({', '.join(serious)})" if serious else ""
-    count = f"{len(ranked)} note{'s' if len(ranked) > 1 else ''}"
-    return f"{count}{among}; first: {full_note(ranked[0].stage, str(ranked[0]))}"
+    """The one thing that could move an answer most; nothing where there is none.
+
+    What else is known stands in the archive, and in the report behind a fold.
+    """
+    doubts = [one for one in by_severity(notes) if one.severity == "warning"]
+    return full_note(doubts[0].stage, str(doubts[0])) if doubts else ""
 
 
 class Progress(Protocol):

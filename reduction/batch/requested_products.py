@@ -127,8 +127,8 @@ def _ready(survey: Survey, models: Mapping[tuple[str, str], StrainModel]) -> str
     # of a level that was found how to state it
     levels = [one for one in survey.remarks if one.code in ("levels-found", "cycles-unlike")]
     told = {str(one) for one in levels}
-    serious = [one for one in known if one.severity != "note" and str(one) not in told]
-    return "; ".join(["ready for a run", *map(str, levels), *filter(None, [note_message(serious)])])
+    other = [one for one in known if str(one) not in told]
+    return "; ".join(["ready for a run", *map(str, levels), *filter(None, [note_message(other)])])
 
 
 def check_campaign(

@@ -38,7 +38,7 @@ from reduction.readers.sniff import sniff_layout
 from reduction.readers.starter_campaign import starter_campaign
 from reduction.record.errors import ArchiveError, SettingsError
 from reduction.record.plain_text import toml_comment
-from reduction.report.campaign_page import write_report
+from reduction.report.campaign_page import read_answers, write_report
 from reduction.report.client_report import CLIENT_PAGE_NAME
 from reduction.stages.strain.strain_model import StrainModel
 
@@ -437,8 +437,10 @@ def run_campaign(
             opener=opener,
         )
     client = None if result.report is None else _client_report(result.report)
-    if result.tests or not (campaign.outcomes or campaign.hoses):
-        output.show(_status_table(result.tests))
+    answered = _show_answers(output, result.processed, result.tests, opener)
+    others = [one for one in result.tests if one.test not in answered]
+    if others or not (answered or campaign.outcomes or campaign.hoses):
+        output.show(_status_table(others))
     _say_results(output, results_found(campaign))
     for kind, parts in result.parts.items():
         if parts:
@@ -477,6 +479,35 @@ def run_campaign(
     )
     output.answer(document)
     _report_failures(output, [*result.tests, *chain(*result.parts.values())])
+
+
+_MOST_DOUBTS = 5
+
+
+def _show_answers(
+    output: CommandOutput, processed: Path, tests: Sequence[TestStatus], opener: Opener
+) -> frozenset[str]:
+    """Show the answers of a run, then what needs a person's eye; return which tests have one."""
+    made = {one.test for one in tests if one.status not in ("failed", "no_work")}
+    if not output.is_text or not (made or not tests):
+        return frozenset()
+    found = read_answers(processed, units=output.system, only=made, opener=opener)
+    for answers in found.tables:
+        output.say(answers.caption)
+        table = Table(box=None, pad_edge=False)
+        for heading, is_number in zip(answers.columns, answers.number_columns, strict=True):
+            table.add_column(escape(heading), justify="right" if is_number else "left")
+        for row in answers.rows:
+            table.add_row(*(escape(cell.text) for cell in row))
+        output.show(table)
+        output.say("")
+    if found.doubts:
+        output.say("Check:")
+    for one in found.doubts[:_MOST_DOUBTS]:
+        output.say(f"  {', '.join(one.tests)}: {one.text}")
+    if len(found.doubts) > _MOST_DOUBTS:
+        output.say("  The report has the others.")
+    return found.answered
 
 
 def report_again(

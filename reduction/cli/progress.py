@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -27,6 +28,8 @@ _WORDS = {
     "report": "writing the report",
 }  # fmt: skip
 """Stages of a run, in words for a person."""
+
+_MOST_LETTERS = 100  # of what stands beside the status of a test
 
 
 class _Count(MofNCompleteColumn):
@@ -71,6 +74,8 @@ class _CampaignProgress:
             return
         width = len(str(self._total))
         words = [f"{self._done:{width}}/{self._total} {test} {status.status}"]
+        if status.message:
+            words[0] += f": {textwrap.shorten(status.message, _MOST_LETTERS, placeholder='...')}"
         if status.status != "unchanged":
             words.append(f"{status.seconds:.1f} s")
         if status.worker:

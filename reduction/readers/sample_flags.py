@@ -44,6 +44,9 @@ _MOST_IN_A_ROW = 3  # more that follow each other closely are a signal
 
 _SIGNAL_SHARE = 0.1  # of a series in excursions: they are its signal
 
+_HARMLESS = {"missing", "gap", "repeated_or_backward_time", "not_constant_rate", "resampled"}
+"""Flags of what is not there or is told by a note of its own: what is kept is right."""
+
 
 def _usual_step(values: Floats, first: Integers, last: Integers) -> Floats:
     """Third largest of the eight steps before the first and after the last step of a place."""
@@ -650,8 +653,12 @@ def flag_record(
             for channel, masks in account.n_flagged.items()
             if masks
         )
-        is_resampled = set().union(*account.n_flagged.values()) <= {"resampled"}
-        code = "rows-resampled" if is_resampled else "rows-flagged"
+        masks = set().union(*account.n_flagged.values())
+        code = (
+            "rows-resampled" if masks <= {"resampled"}
+            else "rows-set-aside" if masks <= _HARMLESS
+            else "rows-flagged"
+        )  # fmt: skip
         found.append(note(code, n_read=account.n_read, n_kept=account.n_kept, flags=listed))
     return replace(flagged, notes=tuple(found))
 

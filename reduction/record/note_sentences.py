@@ -80,7 +80,7 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note", "length at {reading} is {length}, printed {printed} ({erratum})",
     ),
     "counter-missing": (
-        "warning", "the cycle counter is missing on {n_rows} rows, -1 there",
+        "note", "the cycle counter is missing on {n_rows} rows, -1 there",
     ),
     "resampled": (
         "note",
@@ -100,7 +100,7 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " between the rows beside them, and their position is not used",
     ),
     "sampling-uneven": (
-        "warning",
+        "note",
         "the sampling rate is not constant: {n_uneven} of {n_steps} time steps differ by more than"
         " {tolerance:.0%} from their median {median:.4g} s ({shortest:.4g} to {longest:.4g} s, gaps"
         " apart)",
@@ -116,6 +116,9 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "rows-flagged": (
         "warning", "{n_read} rows read, {n_kept} kept, flagged: {flags}",
+    ),
+    "rows-set-aside": (
+        "note", "{n_read} rows read, {n_kept} kept, flagged: {flags}",
     ),
     "rows-resampled": (
         "note", "{n_read} rows read, {n_kept} kept, flagged: {flags}",
@@ -134,7 +137,7 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "blank-rows": ("note", "{n_rows} blank rows at the end of the sheet are left out"),
     "log-cut-off": (
-        "warning", "the file ends inside a block of data: the logger was stopped or cut off",
+        "note", "the file ends inside a block of data: the logger was stopped or cut off",
     ),
     "levels-found": (
         "warning",
@@ -174,7 +177,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         ),
     ),
     "marks-scatter": (
-        "warning",
+        "note",
         lambda ratio, chi_square, freedom, chance, rows="rows": (
             f"the {rows} scatter {ratio:.1f} times as much as the tape explains (chi-square"
             f" {chi_square:.3g} of {freedom} degree{_plural(freedom)} of freedom, one in"
@@ -212,7 +215,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         ),
     ),
     "marks-of-failed-tests": (
-        "warning",
+        "note",
         "{n_marks} of {n_stretched} stretched marks are of tests that failed ({tests}), so that"
         " their tension is not known; the law of tension is without them",
     ),
@@ -331,12 +334,12 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "{n_jumps} jumps of the control channel and back are no reversals, first at {time:g} s",
     ),
     "gaps-end-runs": (
-        "warning",
+        "note",
         "gaps of the record longer than 30 % of a half cycle, each the end of a run: {n_gaps},"
         " first near {time:g} s",
     ),
     "cycles-of-two-amplitudes": (
-        "warning",
+        "note",
         "cycles between two amplitudes, one branch of each, not counted: {n_cycles}, first at"
         " {time:g} s",
     ),
@@ -435,9 +438,9 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "drift-in-energy": (
         "warning",
-        lambda energy, closed: (
+        lambda energy, closed, effect: (
             f"the loop area is {closed:.4g} J/m as logged, of which {closed - energy:+.3g} J/m"
-            f" ({(closed - energy) / abs(energy):+.1%} of what is given) is the drift of the"
+            f" ({effect:+.1%} of what is given) is the drift of the"
             f" cycles: the hysteresis energy of {energy:.4g} J/m is without it"
         ),
     ),
@@ -508,7 +511,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "specimen {place} of the record has no tangent modulus: no window has enough samples",
     ),
     "cycles-aligned": (
-        "warning",
+        "note",
         "the mean strain of the cycles drifts by {drift:+.3%} from the first to the last"
         " ({effect:.0%} of the range of a cycle; {per_decade:+.3%} per decade of cycles): curves"
         " are those of cycles shifted to a mean strain of {reference:.3%}, and tension at a strain"
@@ -536,7 +539,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         ),
     ),
     "slip-cycles-missing": (
-        "warning", "slip not looked for: {n_missing} of {n_cycles} cycles are missing",
+        "note", "slip not looked for: {n_missing} of {n_cycles} cycles are missing",
     ),
     "tension-steps-up": (
         "warning",
@@ -553,7 +556,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note", "what earlier tests did to either is not known: no order is given",
     ),
     "history-with-failed-tests": (
-        "warning", "what earlier tests did to them is not wholly known: one of those failed",
+        "note", "what earlier tests did to them is not wholly known: one of those failed",
     ),
     "unequal-cycles": (
         "note",
@@ -568,7 +571,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "law-not-fitted": ("refusal", "not fitted: {reason}"),
     "law-not-told-from-zero": ("note", "not told from zero: {names}"),
     "law-not-stable": (
-        "warning",
+        "note",
         lambda strain: (
             f"the fitted law is not stable: below a strain of {100 * strain:.3g} % its stress falls"
             " with strain in uniaxial, biaxial or shear deformation; do not use it in a model"
@@ -829,7 +832,7 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " earlier_maximum_tension are of the logged tests alone",
     ),
     "earlier-test-failed": (
-        "warning",
+        "note",
         "earlier test {test} failed: what it did to {specimens} is not known, and earlier_cycles,"
         " earlier_maximum_strain and earlier_maximum_tension have no number",
     ),

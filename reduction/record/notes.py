@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from math import isfinite
 from typing import Any
 
 from reduction.record.note_sentences import CAUSES, SENTENCES, Severity
@@ -89,11 +90,16 @@ def note(code: str, subject: str = "", /, **numbers: Any) -> Note:
 
 
 def by_severity(notes: Iterable[Note]) -> tuple[Note, ...]:
-    """Notes, most serious first and causes before what follows; those alike keep their order."""
+    """Notes, most serious first, causes before what follows, then by how far they move an answer.
 
-    def rank(one: Note) -> tuple[int, int]:
+    Those alike keep their order.
+    """
+
+    def rank(one: Note) -> tuple[int, int, float]:
         place = CAUSES.index(one.code) if one.code in CAUSES else len(CAUSES)
-        return SEVERITIES.index(one.severity), place
+        effect = one.numbers.get("effect")
+        is_known = isinstance(effect, int | float) and isfinite(effect)
+        return SEVERITIES.index(one.severity), place, -abs(effect) if is_known else 0.0
 
     return tuple(sorted(notes, key=rank))
 

@@ -194,74 +194,92 @@ _MOST_ROWS = 24
 
 
 def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
-    """Return the moduli to design with: of the whole cycle, and of each branch at its middle."""
+    """Return the design moduli: EA and modulus of the whole cycle, and tangents at mid-strain."""
     order = all_specimens(tests)
     is_of_ropes = bool(tests) and all(view.is_rope for view in tests)
-    whole = _OF_ROPE if is_of_ropes else _WHOLE
-    by_test = [(view, list(_rows(view, whole))) for view in tests]
+    by_test = [(view, list(_rows(view, is_of_ropes=is_of_ropes))) for view in tests]
     found = [row for _, rows in by_test for row in rows]
     found.sort(key=lambda row: order.index(row[0].text))
     if not found:
         return None
     units = tests[0].units
-    stress, percent = shown("stress", units), shown("strain", units)
-    columns = (
-        "specimen", "test", percent.label("strain of the cycles"), "frequency [Hz]",
-        (shown("tension", units) if is_of_ropes else stress).label("whole cycle"),
-        stress.label("ascending"), stress.label("descending"),
-        "cycles used [1]", "k [1]", "warnings [1]",
-    )  # fmt: skip
+    force, of_branch = shown("tension", units), shown("tension" if is_of_ropes else "stress", units)
+    columns = [
+        "specimen", "test", shown("strain", units).label("strain"), "frequency [Hz]",
+        force.label("EA"), "EA/MBL", *([] if is_of_ropes else [of_branch.label("whole cycle")]),
+        of_branch.label("ascending"), of_branch.label("descending"), "cycles used", "status",
+    ]  # fmt: skip
+    place = columns.index("EA/MBL")
+    if all(row[place].text == NOT_GIVEN for row in found):
+        found = [[*row[:place], *row[place + 1 :]] for row in found]
+        del columns[place]
+    tangents = "EA of the tangent" if is_of_ropes else "tangent modulus"
+    whole = "" if is_of_ropes else " Whole cycle: stress amplitude over strain amplitude."
     return make_table(
-        f"{'Stiffness' if is_of_ropes else 'Modulus'} to design with: of the whole cycle, which is"
-        f" amplitude of {'tension' if is_of_ropes else 'stress'} over amplitude of strain, and of"
-        " each branch the tangent modulus at the middle of the strain of the cycles; means over the"
+        f"Design {'stiffness' if is_of_ropes else 'moduli'}. EA: tension amplitude over strain"
+        f" amplitude.{whole} Ascending, descending: {tangents} at mid-strain. Means over the"
         " cycles.",
         columns, found, synthetic=any_synthetic(tests), is_compact=True,
         is_tall=len(found) > _MOST_ROWS,
         remarks=[
             plus_minus_of_tests(
-                factors_of(found), [view for view, rows in by_test if rows], [whole, _TANGENT]
+                factors_of(found), [view for view, rows in by_test if rows],
+                [_OF_ROPE, *([] if is_of_ropes else [_WHOLE]), _TANGENT],
             ),
             "Cycles used: of the whole cycle, then of the tangents where those differ."
             f" {NOT_GIVEN}: a branch has no trustworthy value there, and its section says why."
             " A modulus holds for the strains of its own test: a greater amplitude or a higher"
-            " mean has another.",
+            " mean has another. Status: 'check' where something could move an answer beyond its"
+            " interval.",
         ],
     )  # fmt: skip
 
 
-def _rows(view: TestView, name: str) -> Iterator[list[TableCell]]:
-    whole, middle = view.array(name), view.array("test_mean_strain")
+def _rows(view: TestView, *, is_of_ropes: bool) -> Iterator[list[TableCell]]:
+    constant, middle = view.array(_OF_ROPE), view.array("test_mean_strain")
     half_range = view.array("test_strain_amplitude")
-    if whole is None or middle is None or half_range is None:
+    if constant is None or middle is None or half_range is None:
         return
-    stress, percent = shown("stress", view.units), shown("strain", view.units)
-    unit = stress if name == _WHOLE else shown("tension", view.units)
-    spread = expanded_of(view, name, whole)
-    frequency = view.array_like("test_frequency", whole)
-    doubts = _count_warnings(view)
-    averaged = np.broadcast_to(cycles_averaged(view.data, name), whole.shape)
-    for place in np.flatnonzero(np.isfinite(whole)).tolist():
-        tangents, counts = _tangents(view, place, float(middle[place]))
-        cells = [
-            measured(whole[place], spread.half[place], unit, factor=spread.factor[place]),
-            *tangents,
-        ]
+    stress, force = shown("stress", view.units), shown("tension", view.units)
+    whole = view.array_like(_WHOLE, constant)
+    of_whole, of_constant = (
+        expanded_of(view, name, values) for name, values in ((_WHOLE, whole), (_OF_ROPE, constant))
+    )
+    frequency = view.array_like("test_frequency", constant)
+    strength = view.array_like("rated_break_strength", constant)
+    averaged = np.broadcast_to(cycles_averaged(view.data, _OF_ROPE), constant.shape)
+    for place in np.flatnonzero(np.isfinite(constant)).tolist():
+        area = float(constant[place] / whole[place]) if is_of_ropes else 1.0
+        tangents, counts = _tangents(
+            view, place, float(middle[place]), area, force if is_of_ropes else stress
+        )
         low, high = (float(middle[place] + side * half_range[place]) for side in (-1, 1))
+        share = float(constant[place] / strength[place])
         yield [
             words(view.specimens[place]),
             words(f"{view.id} (earlier run)" if view.is_of_earlier_run else view.id),
-            span(low, high, percent, places=0),
+            span(low, high, shown("strain", view.units), places=0),
             number(float(frequency[place]), digits=2),
-            *cells,
+            measured(
+                constant[place], of_constant.half[place], force, factor=of_constant.factor[place]
+            ),
+            number(share, digits=3),
+            *([] if is_of_ropes else [
+                measured(whole[place], of_whole.half[place], stress, factor=of_whole.factor[place])
+            ]),
+            *tangents,
             TableCell(_used(int(averaged[place]), counts), str(averaged[place]), is_number=True),
-            TableCell(_factor_text(cells), is_number=True),
-            TableCell(f"{doubts}" if doubts else "none", f"{doubts}", is_number=True),
-        ]
+            words(_STATUS_OF_DOUBT[any(one.severity == "warning" for one in view.notes)]),
+        ]  # fmt: skip
 
 
-def _tangents(view: TestView, specimen: int, strain: float) -> tuple[list[TableCell], list[int]]:
-    """Return the tangent modulus of both branches at a strain, and how many cycles are in it."""
+_STATUS_OF_DOUBT = {True: "check", False: "reduced"}
+
+
+def _tangents(
+    view: TestView, specimen: int, strain: float, area: float, unit: Shown
+) -> tuple[list[TableCell], list[int]]:
+    """Return the tangent of both branches at a strain, times an area, and its cycles."""
     bins, modulus = view.array("strain_bin"), view.array(_TANGENT)
     missing = TableCell(NOT_GIVEN, is_number=True)
     if bins is None or modulus is None or bins.size == 0:
@@ -280,7 +298,7 @@ def _tangents(view: TestView, specimen: int, strain: float) -> tuple[list[TableC
             return float(curve_at([strain], bins, curve[own], spacing=spacing)[0])
 
         value, half, factor = map(at_middle, (modulus, spread.half, spread.factor))
-        cells.append(measured(value, half, shown("stress", view.units), factor=factor))
+        cells.append(measured(area * value, area * half, unit, factor=factor))
         if np.isfinite(value) and np.isfinite(counts[own][nearest]):
             used.append(int(counts[own][nearest]))
     return cells, used
@@ -297,15 +315,6 @@ def _used(n_cycles: int, counts: Sequence[int]) -> str:
     ends = dict.fromkeys(f"{one:,}" for one in (min(counts), max(counts))) if counts else {}
     of_curve = " to ".join(ends)
     return "; ".join(dict.fromkeys(text for text in (f"{n_cycles:,}", of_curve) if text))
-
-
-def _factor_text(cells: Sequence[TableCell]) -> str:
-    ends = [f"{one:.2f}" for one in sorted(factors_of([cells]))]
-    return " to ".join(dict.fromkeys([ends[0], ends[-1]])) if ends else NOT_GIVEN
-
-
-def _count_warnings(view: TestView) -> int:
-    return sum(one.severity == "warning" for one in view.notes)
 
 
 RULES: dict[DecisionRule, str] = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from reduction.archive.atomic_write import take_away
@@ -17,7 +17,13 @@ from reduction.record.errors import ArchiveError
 from reduction.record.plain_text import bare_cell
 from reduction.report.answer_tables import design_modulus_table
 from reduction.report.campaign_sections import CampaignView, is_there, read_campaign
-from reduction.report.campaign_summary import find_faults, summary_sentence, test_table, tiles
+from reduction.report.campaign_summary import (
+    SummaryFinding,
+    find_faults,
+    summary_sentence,
+    test_table,
+    tiles,
+)
 from reduction.report.client_report import CLIENT_PAGE_NAME, ClientContent, render_client_report
 from reduction.report.figures.campaign_figures import (
     draw_all_moduli,
@@ -54,6 +60,7 @@ from reduction.report.test_view import (
     instrument_table,
     natural_order,
 )
+from reduction.report.text_style import PageTable
 
 MOST_BYTES = 9_000_000
 """Of the sections on a page: with the program that draws (4.9 MB) it stays below 15 MB. [1]"""
@@ -182,41 +189,18 @@ def write_report(
     opener: Opener = reading,
 ) -> Path:
     """Write the page of a campaign."""
-    paths = sorted(archives_of_tests(processed), key=lambda path: natural_order(path.stem))
-    statuses = _read_statuses(processed / "status.csv")
-    if not (paths or statuses or is_there(processed)):
-        raise ArchiveError(
-            "there is nothing to report on",
-            found=f"no archive and no status.csv in {processed}",
-            needed="the folder of a campaign, such as processed/CAMPAIGN",
-            hint="Run the campaign first.",
-        )
-    by_test = {row.test: row for row in statuses}
-    has_statuses = (processed / "status.csv").is_file()
     details = read_details(processed)
-    tests: list[TestView] = []
     rendered: dict[str, RenderedSection] = {}
     sections: dict[str, TestSection] = {}
-    not_shown: dict[str, str] = {}
-    starts: dict[str, float] = {}
-    for index, path in enumerate(paths):
-        try:
-            with opener(path) as data:
-                name = data.attrs["test"]
-                known = by_test.get(name) or (Status(name, OF_NO_TEST) if has_statuses else None)
-                view = TestView(f"test-{index}", data, units, known)
-                section = make_section(view)
-                rendered[view.key] = render_section(section, is_folded=len(paths) > 1)
-                if details is not None:
-                    sections[view.key] = section
-                starts[view.key] = view.start_time
-                tests.append(view.without_samples())
-        except ArchiveError as error:
-            # the page is the same wherever the archives lie
-            not_shown[path.name] = str(error).replace(str(path), path.name)
-    by_id = {view.id: view for view in tests}
-    tests.sort(key=lambda view: _place(view, by_id, starts))
-    whole = read_campaign(processed, by_id, units, not_shown, stray, opener)
+    n_archives = len(archives_of_tests(processed))
+
+    def make(view: TestView) -> None:
+        section = make_section(view)
+        rendered[view.key] = render_section(section, is_folded=n_archives > 1)
+        if details is not None:
+            sections[view.key] = section
+
+    tests, whole, statuses, not_shown = _read_views(processed, units, opener, stray, make)
     if unreadable is not None:
         for name, why in not_shown.items():
             unreadable(name, why)
@@ -225,7 +209,7 @@ def write_report(
         values_page=values_page,
     )
     outcomes = [
-        render_section(section, is_folded=len(paths) + len(whole.outcomes) > 1)
+        render_section(section, is_folded=n_archives + len(whole.outcomes) > 1)
         for _, section in whole.outcomes
     ]
     page = _write_pages(content, [*outcomes, *(rendered[view.key] for view in tests)], out)
@@ -239,6 +223,107 @@ def write_report(
         )  # fmt: skip
         write_text_atomically(beside, render_client_report(of_client))
     return page
+
+
+def _read_views(
+    processed: Path,
+    units: UnitSystem,
+    opener: Opener,
+    stray: Collection[str] = (),
+    each: Callable[[TestView], None] | None = None,
+) -> tuple[list[TestView], CampaignView, list[Status], dict[str, str]]:
+    """Read tests, without their samples, the whole campaign, statuses, and what is unreadable."""
+    paths = sorted(archives_of_tests(processed), key=lambda path: natural_order(path.stem))
+    statuses = _read_statuses(processed / "status.csv")
+    if not (paths or statuses or is_there(processed)):
+        raise ArchiveError(
+            "there is nothing to report on",
+            found=f"no archive and no status.csv in {processed}",
+            needed="the folder of a campaign, such as processed/CAMPAIGN",
+            hint="Run the campaign first.",
+        )
+    by_test = {row.test: row for row in statuses}
+    has_statuses = (processed / "status.csv").is_file()
+    tests: list[TestView] = []
+    not_shown: dict[str, str] = {}
+    starts: dict[str, float] = {}
+    for index, path in enumerate(paths):
+        try:
+            with opener(path) as data:
+                name = data.attrs["test"]
+                known = by_test.get(name) or (Status(name, OF_NO_TEST) if has_statuses else None)
+                view = TestView(f"test-{index}", data, units, known)
+                if each is not None:
+                    each(view)
+                starts[view.key] = view.start_time
+                tests.append(view.without_samples())
+        except ArchiveError as error:
+            # the page is the same wherever the archives lie
+            not_shown[path.name] = str(error).replace(str(path), path.name)
+    by_id = {view.id: view for view in tests}
+    tests.sort(key=lambda view: _place(view, by_id, starts))
+    whole = read_campaign(processed, by_id, units, not_shown, stray, opener)
+    return tests, whole, statuses, not_shown
+
+
+@dataclass(frozen=True)
+class CampaignAnswers:
+    """The answers of a campaign, and what needs a person's eye, most serious first.
+
+    ``answered`` are the tests that have a row in the tables.
+    """
+
+    tables: tuple[PageTable, ...]
+    doubts: tuple[SummaryFinding, ...]
+    answered: frozenset[str]
+
+
+def read_answers(
+    processed: Path,
+    *,
+    units: UnitSystem = "si",
+    only: Collection[str] | None = None,
+    opener: Opener = reading,
+) -> CampaignAnswers:
+    """Read what stands first on the page of a campaign.
+
+    Parameters
+    ----------
+    processed : pathlib.Path
+        Folder of the campaign.
+    units : {"si", "us"}
+        What a reader is shown.
+    only : collection of str, optional
+        Tests that are asked for; all of the campaign where it is not given.
+    opener : callable, optional
+        What opens an archive.
+
+    Returns
+    -------
+    answers : CampaignAnswers
+        Tables and doubts.
+
+    Raises
+    ------
+    ArchiveError
+        If the folder holds no product.
+    """
+    tests, whole, statuses, not_shown = _read_views(processed, units, opener)
+    if only is not None:
+        tests = [view for view in tests if view.id in only]
+        statuses = [row for row in statuses if row.test in only]
+    doubts = [
+        one
+        for one in find_faults(tests, statuses, not_shown, whole.findings)
+        if one.severity == "warning"
+    ]
+    moduli = design_modulus_table(tests)
+    rows = () if moduli is None else moduli.rows
+    return CampaignAnswers(
+        tables=(*whole.answers, *(() if moduli is None else (moduli,))),
+        doubts=tuple(doubts),
+        answered=frozenset(row[1].text for row in rows),
+    )
 
 
 def _page_of(

@@ -110,17 +110,11 @@ def test_warnings_come_first_and_those_alike_keep_their_order():
     assert by_severity([SAID, REFUSED, OPEN, later]) == (OPEN, later, REFUSED, SAID)
 
 
-def test_the_message_of_a_test_names_the_most_serious_note():
-    message = note_message([SAID, REFUSED, OPEN])
-    assert message == f"3 notes (1 warning, 1 refusal); first: identity: {OPEN}"
-    assert note_message([SAID]) == f"1 note; first: specimen new: {SAID}"
-    assert note_message([]) == ""
-
-
-def test_the_message_of_a_test_says_of_what_the_first_note_speaks_and_counts_each_specimen():
-    found = note("law-not-stable", strain=1.25)
-    message = note_message([replace(found, stage=f"yeoh {name}") for name in ("new", "used")])
-    assert message == f"2 notes (2 warnings); first: yeoh new: {found}"
+def test_the_message_of_a_test_is_what_could_move_an_answer_most():
+    assert note_message([SAID, REFUSED, OPEN]) == f"identity: {OPEN}"
+    assert note_message([SAID, REFUSED]) == ""
+    far = replace(OPEN, subject="used", numbers={**OPEN.numbers, "effect": 0.3})
+    assert note_message([OPEN, far]) == f"identity: {far}"
 
 
 def test_a_note_that_names_its_specimen_is_not_given_it_again():

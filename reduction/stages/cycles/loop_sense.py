@@ -156,7 +156,8 @@ def notes_of_loops(
             )  # fmt: skip
         closed = float(np.nanmean(loops.closed_loop_energy[row]))
         if abs(closed - mean) > max(_DRIFT_TOLD * abs(mean), _BEYOND_SCATTER * scatter):
-            told.append(note("drift-in-energy", name, energy=mean, closed=closed))
+            effect = (closed - mean) / abs(mean)
+            told.append(note("drift-in-energy", name, energy=mean, closed=closed, effect=effect))
     return tuple(told)
 
 

@@ -1,4 +1,7 @@
-r"""How far the load train that is not stated would move a test.
+r"""How far what is not known of a test would move its answers, against their intervals.
+
+A doubt whose effect lies within the 95 % interval of the answer is told as a note: the interval
+holds it already.
 
 References
 ----------
@@ -10,6 +13,7 @@ References
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -32,7 +36,7 @@ def load_train_notes(test: ReducedTest) -> Iterator[Note]:
         return
     for index, specimen in enumerate(test.specimens):
         constant = float(summary.apparent_spring_constant[index])
-        spread = _standard_uncertainty(test, summary, index)
+        spread = _standard_uncertainty(test, summary, _NAME, index)
         length = _length_of_strain(test, summary, index)
         square = (2 * np.pi * float(summary.frequency[index])) ** 2
         if not (spread > 0 and length > 0 and square > 0 and np.isfinite(constant)):
@@ -71,13 +75,41 @@ def load_train_notes(test: ReducedTest) -> Iterator[Note]:
             )
 
 
-def _standard_uncertainty(test: ReducedTest, summary: AmplitudeSummary, index: int) -> float:
-    """Both parts of that of K_ap. [N]."""
-    random = float(summary.uncertainty[_NAME][index])
+_OF_ANSWER = {"identity-open": _NAME, "drift-in-energy": "hysteresis_energy"}
+
+_EXPANDED = 2.0  # k of 95 %
+
+
+def with_weighed_notes(test: ReducedTest) -> ReducedTest:
+    """Tell as notes those warnings whose effect lies within the interval of what they move."""
+    summary = test.amplitude
+    if summary is None:
+        return test
+    names = [one.name for one in test.specimens]
+
+    def weighed(one: Note) -> Note:
+        if one.code not in _OF_ANSWER or one.subject not in names:
+            return one
+        name, index = _OF_ANSWER[one.code], names.index(one.subject)
+        value = abs(float(getattr(summary, name)[index]))
+        half = _EXPANDED * _standard_uncertainty(test, summary, name, index)
+        return replace(one, severity="note") if abs(one.numbers["effect"]) * value <= half else one
+
+    identity = test.identity
+    if identity is not None:
+        identity = replace(identity, notes=tuple(map(weighed, identity.notes)))
+    return replace(test, identity=identity, loop_notes=tuple(map(weighed, test.loop_notes)))
+
+
+def _standard_uncertainty(
+    test: ReducedTest, summary: AmplitudeSummary, name: str, index: int
+) -> float:
+    """Both parts of that of an answer of the test. [its unit]."""
+    random = float(summary.uncertainty[name][index])
     found = test.contributions
-    if found is None or f"test_{_NAME}" not in found.values:
+    if found is None or f"test_{name}" not in found.values:
         return random
-    return float(np.hypot(random, np.linalg.norm(found.values[f"test_{_NAME}"][:, index])))
+    return float(np.hypot(random, np.linalg.norm(found.values[f"test_{name}"][:, index])))
 
 
 def _length_of_strain(test: ReducedTest, summary: AmplitudeSummary, index: int) -> float:
