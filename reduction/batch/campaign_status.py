@@ -61,8 +61,8 @@ class TestStatus:
 class PartStatus:
     """What became of an experiment, a hose or a comparison.
 
-    ``status`` is ``fitted``, ``predicted`` or ``compared``, each also with ``_with_notes``;
-    ``failed``; or ``no_work``.
+    ``status`` is ``fitted``, ``predicted`` or ``compared``; ``check`` where something could move
+    its answer; ``failed``; or ``no_work``.
     """
 
     id: str

@@ -323,7 +323,8 @@ def _status(result: ExperimentResult) -> PartStatus:
     ranked = by_severity(one for one in result.notes if one.code not in _MAIN_PART)
     # what is missing, and the worst of what else there is to know
     message = "; ".join([_in_one_line(result), *map(str, (*main[:1], *ranked[:1]))])
-    status = "failed" if failed else "fitted_with_notes" if result.notes else "fitted"
+    may_move = any(one.severity == "warning" for one in result.notes)
+    status = "failed" if failed else "check" if may_move else "fitted"
     return PartStatus(result.name, status, result.refusal_status, message)
 
 

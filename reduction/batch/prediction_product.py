@@ -44,7 +44,7 @@ def write_predictions(campaign: Campaign, folder: Path, *, command: str) -> list
             statuses.append(PartStatus(plan.name, "failed", error.exit_status, text))
             continue
         hoses.append(hose)
-        status = "predicted_with_notes" if hose.notes else "predicted"
+        status = "check" if any(one.severity == "warning" for one in hose.notes) else "predicted"
         message = "; ".join([_in_one_line(hose), *map(str, hose.notes[:1])])
         statuses.append(PartStatus(plan.name, status, 0, message))
     if hoses:
@@ -142,7 +142,7 @@ def write_comparisons(
             continue
         done.append(named)
         paths[path.name] = path
-        status = "compared_with_notes" if named.notes else "compared"
+        status = "check" if any(one.severity == "warning" for one in named.notes) else "compared"
         message = f"{plan.name}: {named.comparison.validation.verdict}"
         statuses.append(PartStatus(plan.name, status, 0, message))
     old = folder / "comparisons.nc"

@@ -443,8 +443,10 @@ def run_campaign(
         output.show(_status_table(others))
     _say_results(output, results_found(campaign))
     for kind, parts in result.parts.items():
-        if parts:
-            output.show(_part_table(kind.removesuffix("s"), parts))
+        # of what ended well the answer stands above
+        told = [one for one in parts if one.exit_status or one.status in ("no_work", "failed")]
+        if told:
+            output.show(_part_table(kind.removesuffix("s"), told))
     for name in result.stray:
         output.error(
             f"{result.processed / name}: a step of a log that failed in this run; left where it is"

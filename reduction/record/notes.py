@@ -98,14 +98,14 @@ def by_severity(notes: Iterable[Note]) -> tuple[Note, ...]:
     def rank(one: Note) -> tuple[int, int, float]:
         place = CAUSES.index(one.code) if one.code in CAUSES else len(CAUSES)
         effect = one.numbers.get("effect")
-        is_known = isinstance(effect, int | float) and isfinite(effect)
-        return SEVERITIES.index(one.severity), place, -abs(effect) if is_known else 0.0
+        far = abs(effect) if isinstance(effect, int | float) and isfinite(effect) else 0.0
+        return SEVERITIES.index(one.severity), place, -far
 
     return tuple(sorted(notes, key=rank))
 
 
 def full_note(stage: str, text: str) -> str:
-    """Return a note with its subject: the stage stands before it where the note does not say it.
+    """Return a note with its subject: a stage of a specimen stands before it where it is not said.
 
     Parameters
     ----------
@@ -128,4 +128,4 @@ def full_note(stage: str, text: str) -> str:
     """
     specimen = stage.split(" ")[-1]
     is_said = text.startswith((f"{stage}:", f"{specimen}:", f"{specimen},"))
-    return text if is_said or not stage else f"{stage}: {text}"
+    return text if is_said or " " not in stage else f"{stage}: {text}"

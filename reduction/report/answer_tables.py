@@ -196,27 +196,27 @@ _MOST_ROWS = 24
 def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
     """Return the design moduli: EA and modulus of the whole cycle, and tangents at mid-strain."""
     order = all_specimens(tests)
-    is_of_ropes = bool(tests) and all(view.is_rope for view in tests)
-    by_test = [(view, list(_rows(view, is_of_ropes=is_of_ropes))) for view in tests]
+    is_of_lines = bool(tests) and all(view.is_rope or view.is_hose for view in tests)
+    by_test = [(view, list(_rows(view, is_of_lines=is_of_lines))) for view in tests]
     found = [row for _, rows in by_test for row in rows]
     found.sort(key=lambda row: order.index(row[0].text))
     if not found:
         return None
     units = tests[0].units
-    force, of_branch = shown("tension", units), shown("tension" if is_of_ropes else "stress", units)
+    force, of_branch = shown("tension", units), shown("tension" if is_of_lines else "stress", units)
     columns = [
         "specimen", "test", shown("strain", units).label("strain"), "frequency [Hz]",
-        force.label("EA"), "EA/MBL", *([] if is_of_ropes else [of_branch.label("whole cycle")]),
+        force.label("EA"), "EA/MBL", *([] if is_of_lines else [of_branch.label("whole cycle")]),
         of_branch.label("ascending"), of_branch.label("descending"), "cycles used", "status",
     ]  # fmt: skip
     place = columns.index("EA/MBL")
     if all(row[place].text == NOT_GIVEN for row in found):
         found = [[*row[:place], *row[place + 1 :]] for row in found]
         del columns[place]
-    tangents = "EA of the tangent" if is_of_ropes else "tangent modulus"
-    whole = "" if is_of_ropes else " Whole cycle: stress amplitude over strain amplitude."
+    tangents = "EA of the tangent" if is_of_lines else "tangent modulus"
+    whole = "" if is_of_lines else " Whole cycle: stress amplitude over strain amplitude."
     return make_table(
-        f"Design {'stiffness' if is_of_ropes else 'moduli'}. EA: tension amplitude over strain"
+        f"Design {'stiffness' if is_of_lines else 'moduli'}. EA: tension amplitude over strain"
         f" amplitude.{whole} Ascending, descending: {tangents} at mid-strain. Means over the"
         " cycles.",
         columns, found, synthetic=any_synthetic(tests), is_compact=True,
@@ -224,7 +224,7 @@ def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
         remarks=[
             plus_minus_of_tests(
                 factors_of(found), [view for view, rows in by_test if rows],
-                [_OF_ROPE, *([] if is_of_ropes else [_WHOLE]), _TANGENT],
+                [_OF_ROPE, *([] if is_of_lines else [_WHOLE]), _TANGENT],
             ),
             "Cycles used: of the whole cycle, then of the tangents where those differ."
             f" {NOT_GIVEN}: a branch has no trustworthy value there, and its section says why."
@@ -235,7 +235,7 @@ def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
     )  # fmt: skip
 
 
-def _rows(view: TestView, *, is_of_ropes: bool) -> Iterator[list[TableCell]]:
+def _rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]]:
     constant, middle = view.array(_OF_ROPE), view.array("test_mean_strain")
     half_range = view.array("test_strain_amplitude")
     if constant is None or middle is None or half_range is None:
@@ -249,9 +249,9 @@ def _rows(view: TestView, *, is_of_ropes: bool) -> Iterator[list[TableCell]]:
     strength = view.array_like("rated_break_strength", constant)
     averaged = np.broadcast_to(cycles_averaged(view.data, _OF_ROPE), constant.shape)
     for place in np.flatnonzero(np.isfinite(constant)).tolist():
-        area = float(constant[place] / whole[place]) if is_of_ropes else 1.0
+        area = float(constant[place] / whole[place]) if is_of_lines else 1.0
         tangents, counts = _tangents(
-            view, place, float(middle[place]), area, force if is_of_ropes else stress
+            view, place, float(middle[place]), area, force if is_of_lines else stress
         )
         low, high = (float(middle[place] + side * half_range[place]) for side in (-1, 1))
         share = float(constant[place] / strength[place])
@@ -264,7 +264,7 @@ def _rows(view: TestView, *, is_of_ropes: bool) -> Iterator[list[TableCell]]:
                 constant[place], of_constant.half[place], force, factor=of_constant.factor[place]
             ),
             number(share, digits=3),
-            *([] if is_of_ropes else [
+            *([] if is_of_lines else [
                 measured(whole[place], of_whole.half[place], stress, factor=of_whole.factor[place])
             ]),
             *tangents,

@@ -16,7 +16,12 @@ from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
 from reduction.record.plain_text import bare_cell
 from reduction.report.answer_tables import design_modulus_table
-from reduction.report.campaign_sections import CampaignView, is_there, read_campaign
+from reduction.report.campaign_sections import (
+    ALL_COMPARISONS,
+    CampaignView,
+    is_there,
+    read_campaign,
+)
 from reduction.report.campaign_summary import (
     SummaryFinding,
     find_faults,
@@ -25,12 +30,14 @@ from reduction.report.campaign_summary import (
     tiles,
 )
 from reduction.report.client_report import CLIENT_PAGE_NAME, ClientContent, render_client_report
+from reduction.report.figure_data import Figure
 from reduction.report.figures.campaign_figures import (
     draw_all_moduli,
     draw_parts,
     draw_ratios,
     draw_specimens_together,
     draw_static_dynamic,
+    draw_stiffness_levels,
 )
 from reduction.report.figures.cycle_figures import draw_amplitude_pairs
 from reduction.report.page_template import (
@@ -42,6 +49,7 @@ from reduction.report.page_template import (
     render_section,
 )
 from reduction.report.test_section import (
+    Part,
     TestSection,
     design_tables,
     interval_table,
@@ -345,25 +353,26 @@ def _page_of(
         make_part("Static against dynamic", draw_static_dynamic(tests)),
         *whole.comparisons,
     ]
+    first, comparisons = _first_figure(tests, comparisons)
     intervals = [interval_table(view) for view in tests]
     moduli = design_modulus_table(tests)
     speakers = [*tests, *whole.views]
-    first = speakers[0] if speakers else None
+    speaker = speakers[0] if speakers else None
     of_tests = tiles(tests, statuses, faults)
     if not (tests or statuses):
         of_tests = [one for one in of_tests if one.target == "wrong"]
     definitions = [_OF_TESTS] if tests or statuses or not whole.hoses else []
     definitions += [_OF_HOSES] if whole.hoses else []
     return Page(
-        title=(first.attribute("title") if first else "") or f"Campaign {folder}",
-        campaign=first.attribute("campaign") if first else folder,
+        title=(speaker.attribute("title") if speaker else "") or f"Campaign {folder}",
+        campaign=speaker.attribute("campaign") if speaker else folder,
         summary=summary_sentence(tests) or whole.summary,
         about=about_page(
             units,
             "the archives alone",
             in_si="Notes, settings and history are as in the archives, in SI.",
-            institution=first.attribute("institution") if first else "",
-            references=first.attribute("references") if first else "",
+            institution=speaker.attribute("institution") if speaker else "",
+            references=speaker.attribute("references") if speaker else "",
             definitions=definitions,
         ),
         tiles=whole.with_tiles(of_tests),
@@ -376,6 +385,7 @@ def _page_of(
         instruments=instrument_table(tests, units),
         instrument_notes=instrument_sentences(tests),
         tests=test_table(tests, statuses),
+        first=first,
         answers=[*whole.answers, *([moduli] if moduli else [])],
         designs=design_tables(tests),
         segments=segment_table(tests),
@@ -383,6 +393,27 @@ def _page_of(
         comparisons=[part for part in comparisons if part.figures],
         across="Across the tests" if tests else "Across the hoses",
     )
+
+
+def _first_figure(
+    tests: Sequence[TestView], comparisons: Sequence[Part]
+) -> tuple[Figure | None, list[Part]]:
+    """Take what stands on the first screen out of the figures over several tests or hoses."""
+    levels = draw_stiffness_levels(tests)
+    if levels:
+        return levels[0], list(comparisons)
+    found = [place for place, part in enumerate(comparisons) if part.figures]
+    if not found:
+        return None, list(comparisons)
+    # of hoses that were compared with their tests the comparison, which stands last
+    place = found[-1] if comparisons[found[-1]].heading == ALL_COMPARISONS else found[0]
+    part = comparisons[place]
+    rest = [
+        *comparisons[:place],
+        replace(part, figures=part.figures[1:]),
+        *comparisons[place + 1 :],
+    ]
+    return part.figures[0], rest
 
 
 def _read_statuses(path: Path) -> list[Status]:

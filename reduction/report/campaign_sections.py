@@ -476,6 +476,9 @@ _STRAY = (
 _Read = TypeVar("_Read")
 
 
+ALL_COMPARISONS = "All comparisons in one figure"
+
+
 @dataclass(frozen=True)
 class CampaignView:
     """Views of the archives that belong to no single test, each with its section."""
@@ -546,7 +549,7 @@ class CampaignView:
         compared = draw_all_comparisons([view for view, _ in self.compared])
         return [
             make_part("All predicted hoses in one figure", hoses),
-            make_part("All comparisons in one figure", compared),
+            make_part(ALL_COMPARISONS, compared),
         ]
 
     def with_tiles(self, of_tests: list[Tile]) -> list[Tile]:

@@ -101,20 +101,14 @@ def grouped_notes(view: TestView) -> list[tuple[str, list[str]]]:
 
 
 def brief(view: TestView) -> str:
-    """Return what a line says of a test: its cycles, its strain, what is doubtful in it."""
+    """Return what a line says of a test: its cycles, its strain, whether there is a doubt."""
     n_cycles = view.n_cycles
     rows = [f"{n_cycles:,} {'cycle' if n_cycles == 1 else 'cycles'}"] if n_cycles else []
     reached = _reached(view).text
     if reached != NOT_GIVEN:
         rows.append(f"strain {reached} %")
-    notes = dict(grouped_notes(view))
-    warnings = len(notes.pop(_HEADINGS["warning"], ()))
-    others = sum(len(own) for own in notes.values())
-    rows += [
-        f"{number} {noun if number == 1 else f'{noun}s'}"
-        for number, noun in ((warnings, "warning"), (others, "note"))
-        if number
-    ]
+    if any(one.severity == "warning" for one in view.notes):
+        rows.append("check")
     return ", ".join(rows)
 
 
@@ -159,19 +153,17 @@ def test_table(tests: Sequence[TestView], statuses: Sequence[Status]) -> PageTab
 def tiles(
     tests: Sequence[TestView], statuses: Sequence[Status], faults: Sequence[SummaryFinding]
 ) -> list[Tile]:
-    """Return the numbers at the top: tests, specimens, failures, warnings."""
-    counts = {name: sum(one.severity == name for one in faults) for name in _ORDER}
+    """Return the numbers at the top: tests, specimens, cycles, failures."""
+    n_failures = sum(one.severity == "failure" for one in faults)
     n_tests = len({view.id for view in tests} | {row.test for row in statuses})
     n_specimens = len({name for view in tests for name in view.specimens})
     n_cycles = sum(view.n_cycles for view in tests)
-    return [
+    found = [
         _tile(n_tests, "test", "tested"),
         _tile(n_specimens, "specimen", "tested"),
         _tile(n_cycles, "cycle", "answer"),
-        _tile(counts["failure"], "failure", "wrong", is_bad=counts["failure"] > 0),
-        _tile(counts["warning"], "warning", "wrong", is_bad=counts["warning"] > 0),
-        _tile(counts["note"] + counts["refusal"], "other note", "wrong"),
     ]
+    return [*found, _tile(n_failures, "failure", "wrong", is_bad=True)] if n_failures else found
 
 
 def _tile(number: int, noun: str, target: str, *, is_bad: bool = False) -> Tile:

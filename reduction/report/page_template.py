@@ -21,6 +21,7 @@ from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
 from reduction import __version__
 from reduction.quantities.units import UnitSystem
 from reduction.report.campaign_summary import SummaryFinding, Tile
+from reduction.report.figure_data import Figure
 from reduction.report.test_section import Part, TestSection
 from reduction.report.text_style import PageTable
 
@@ -70,8 +71,10 @@ class Page:
         Under the specimens.
     instruments : Table or None
         What is stated of the instruments; ``instrument_notes`` where nothing is.
+    first : Figure or None
+        What stands first of all.
     answers, designs, intervals : sequence of Table
-        The first screen.
+        The rest of the first screen.
     comparisons : sequence of Part
         Figures over several of a kind, headed by ``across``.
     sections : sequence of RenderedSection
@@ -102,6 +105,7 @@ class Page:
     tests: PageTable | None = None
     instruments: PageTable | None = None
     instrument_notes: Sequence[str] = ()
+    first: Figure | None = None
     answers: Sequence[PageTable] = ()
     designs: Sequence[PageTable] = ()
     segments: PageTable | None = None

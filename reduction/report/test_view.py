@@ -121,6 +121,11 @@ class TestView:
         return bool(kinds) and set(kinds) <= {"rope", "wire"}
 
     @property
+    def is_hose(self) -> bool:
+        """True where every specimen is a hose."""
+        return set(self.texts("specimen_kind")) == {"stretch hose"}
+
+    @property
     def is_rubber(self) -> bool:
         """False where cords, fibres or wires carry in every specimen."""
         kinds = self.texts("specimen_kind")

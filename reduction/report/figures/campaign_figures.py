@@ -39,6 +39,8 @@ from reduction.report.text_style import (
     shown,
 )
 
+_STIFFNESS = "test_apparent_spring_constant"
+
 _CYCLES_OF = ", cycles "
 """Between specimen and cycles, in the name of what a ratio is of."""
 
@@ -155,6 +157,51 @@ def draw_all_moduli(tests: Sequence[TestView]) -> list[Figure]:
             )
         )  # fmt: skip
     return found
+
+
+_LEAST_LEVELS = 3
+
+
+def draw_stiffness_levels(tests: Sequence[TestView]) -> list[Figure]:
+    """Draw EA of each test of a rope against its mean tension, a colour a frequency."""
+    own = [view for view in tests if view.is_rope and view.array(_STIFFNESS) is not None]
+    if not own or len(own) != len([view for view in tests if view.array(_STIFFNESS) is not None]):
+        return []
+    force = shown("tension", own[0].units)
+    points: dict[float, list[tuple[float, float, float, str]]] = {}
+    for view in own:
+        constant = view.array_like(_STIFFNESS, np.full(len(view.specimens), np.nan))
+        half = expanded_of(view, _STIFFNESS, constant).half
+        tension = view.array_like("test_mean_tension", constant)
+        frequency = view.array_like("test_frequency", constant)
+        for place in np.flatnonzero(np.isfinite(constant) & np.isfinite(tension)).tolist():
+            key = float(f"{frequency[place]:.2g}")
+            label = f"{view.id}, {view.specimens[place]}"
+            points.setdefault(key, []).append(
+                (float(tension[place]), float(constant[place]), float(half[place]), label)
+            )
+    if sum(map(len, points.values())) < _LEAST_LEVELS:
+        return []
+    data: list[Trace] = [
+        {
+            "x": [force.factor * row[0] for row in rows],
+            "y": [force.factor * row[1] for row in rows],
+            "error_y": {"type": "data", "array": [force.factor * row[2] for row in rows]},
+            "text": [plot_text(row[3]) for row in rows],
+            "type": "scatter", "mode": "markers", "name": f"{frequency:g} Hz",
+            "marker": marker(index, size=8),
+        }
+        for index, (frequency, rows) in enumerate(sorted(points.items()))
+    ]  # fmt: skip
+    return [
+        make_figure(
+            "campaign-stiffness-levels", "EA of the cycles against mean tension",
+            "EA of each test, tension amplitude over strain amplitude, against its mean tension;"
+            " a colour a frequency; bars: 95 % interval.",
+            data, synthetic=any_synthetic(own), height=420, is_wide=True,
+            xaxis=axis(force.label("mean tension")), yaxis=axis(force.label("EA")),
+        )
+    ]  # fmt: skip
 
 
 def draw_parts(tests: Sequence[TestView]) -> list[Figure]:
