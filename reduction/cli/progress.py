@@ -74,7 +74,7 @@ class _CampaignProgress:
             return
         width = len(str(self._total))
         words = [f"{self._done:{width}}/{self._total} {test} {status.status}"]
-        if status.message:
+        if status.message and not status.exit_status:  # an error is said once, at the end
             words[0] += f": {textwrap.shorten(status.message, _MOST_LETTERS, placeholder='...')}"
         if status.status != "unchanged":
             words.append(f"{status.seconds:.1f} s")

@@ -143,7 +143,7 @@ def test_weights_are_in_the_history_and_have_one(run_once):
 def test_what_a_failed_test_did_is_not_known_and_is_said(row, command):
     break_log(row, "A.csv")
     statuses = run(row, command)
-    assert [statuses[test]["status"] for test in ("A", "B")] == ["failed", "check"]
+    assert [statuses[test]["status"] for test in ("A", "B")] == ["failed", "reduced"]
     for test in ("weights", "B", "C"):
         names, numbers, notes = history(row, test)
         assert names.startswith("A")
@@ -165,7 +165,7 @@ def test_products_are_made_anew_without_an_earlier_test_that_fails_and_with_it_w
     statuses = run(row, command)
     assert statuses["A"]["status"] == "failed"
     for test in ("weights", "B", "C"):
-        assert statuses[test]["status"] in ("reduced", "check")
+        assert statuses[test]["status"] == "reduced"
         names, numbers, notes = history(row, test)
         assert names.startswith("A") and np.isnan(numbers).all()
         assert any(note.startswith("earlier test A failed") for note in notes)
@@ -175,7 +175,7 @@ def test_products_are_made_anew_without_an_earlier_test_that_fails_and_with_it_w
     (row / "A.csv").write_text(sound)
     statuses = run(row, command)
     assert statuses["A"]["status"] == "unchanged"
-    assert statuses["B"]["status"] in ("reduced", "check")
+    assert statuses["B"]["status"] == "reduced"
     assert {path.name: path.read_bytes() for path in folder.glob("*.nc")} == before
 
 
@@ -187,7 +187,7 @@ def test_a_product_made_while_one_test_failed_does_not_stand_for_another(row, co
     break_log(row, "B.csv")
     statuses = run(row, command)
     assert statuses["weights"]["status"] == "reduced"
-    assert statuses["C"]["status"] == "check"
+    assert statuses["C"]["status"] == "reduced"
     assert any(note.startswith("earlier test B failed") for note in history(row, "C")[2])
 
 
@@ -196,7 +196,7 @@ def test_a_setting_of_its_own_makes_a_product_anew_beside_a_failed_test(row_with
     break_log(row, "A.csv")
     text = (row / "campaign.toml").read_text()
     (row / "campaign.toml").write_text(text.replace('["10 mm"]', '["11 mm"]'))
-    assert run(row, command)["B"]["status"] == "check"
+    assert run(row, command)["B"]["status"] == "reduced"
 
 
 def test_an_earlier_test_that_is_new_and_fails_makes_the_later_ones_anew(
@@ -208,7 +208,7 @@ def test_an_earlier_test_that_is_new_and_fails_makes_the_later_ones_anew(
     (row / "campaign.toml").write_text(text + '[tests.new]\nfile = "new.csv"\norder = 0\n')
     statuses = run(row, command)
     assert statuses["new"]["status"] == "failed"
-    assert statuses["B"]["status"] == "check"
+    assert statuses["B"]["status"] == "reduced"
     assert np.isnan(history(row, "B")[1]).all()
 
 
@@ -261,7 +261,7 @@ def test_a_log_in_steps_has_each_in_the_history_and_one_that_fails_is_one_earlie
     break_log(row, "A.csv")
     statuses = run(row, command)
     assert statuses["A"]["status"] == "failed"
-    assert statuses["B"]["status"] == "check"
+    assert statuses["B"]["status"] == "reduced"
     names, numbers, _ = history(row, "B")
     assert names == "A, weights" and np.isnan(numbers).all()
 

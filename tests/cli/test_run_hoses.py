@@ -63,7 +63,7 @@ def test_every_test_hose_and_comparison_is_done(run):
     assert run.done.returncode == 0
     assert [one["id"] for one in run.said["hoses"]] == ["H64", "H68"]
     comparisons = run.said["comparisons"]
-    assert {one["status"] for one in comparisons} == {"compared_with_notes"}
+    assert {one["status"] for one in comparisons} == {"compared", "check"}
     assert len(comparisons) == 8
 
 
@@ -184,7 +184,7 @@ def test_a_comparison_of_a_test_that_failed_is_a_failure_of_its_own(tmp_path):
         reports=tmp_path / "r", clock=lambda: 0.0,
     )  # fmt: skip
     by_name = {one.id: one for one in done.parts["comparisons"]}
-    assert by_name["H64-pull"].status == "compared_with_notes"
+    assert by_name["H64-pull"].status == "compared"
     assert by_name["H64-static"].status == "failed"
     assert "test 'L-64' failed" in by_name["H64-static"].message
     assert done.exit_status == 4
@@ -298,7 +298,7 @@ def test_a_comparison_waits_for_a_test_that_is_not_reduced_yet(tmp_path):
     done = run_again(copied(tmp_path), tmp_path, tests=["B-64"])
     statuses = {one.id: one for one in done.parts["comparisons"]}
     assert done.exit_status == 0
-    assert statuses["H64-break"].status == "compared_with_notes"
+    assert statuses["H64-break"].status == "check"
     assert statuses["H64-static"].status == "no_work"
     assert (
         "L-64 is not reduced yet from logs and settings as they stand now"
@@ -314,7 +314,7 @@ def test_a_test_that_is_not_as_it_would_be_made_now_is_waited_for(run, tmp_path)
     }
     assert again["H64-static"].status == "no_work"
     assert "not reduced yet from logs and settings as they stand now" in again["H64-static"].message
-    assert again["H68-static"].status == "compared_with_notes"
+    assert again["H68-static"].status == "compared"
 
 
 @pytest.mark.nightly
@@ -327,7 +327,7 @@ def test_break_in_of_the_campaign_is_none_of_a_pull(tmp_path):
     )
     done = run_again(path, tmp_path)
     assert done.exit_status == 0
-    assert {one.status for one in done.parts["comparisons"]} == {"compared_with_notes"}
+    assert {one.status for one in done.parts["comparisons"]} == {"compared", "check"}
 
 
 def test_verdicts_of_logs_that_are_bad_now_do_not_stay(run, tmp_path):

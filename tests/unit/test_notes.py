@@ -55,7 +55,7 @@ FACTS = {
             "marks-scatter", "new", rows="slack rows", ratio=1.6, chi_square=26.5, freedom=10,
             chance=1 / 320,
         ),
-        "warning",
+        "note",
     ),
     "new: 3 of 10 cycles drift by more than 20% of their range: their amplitudes, slopes and "
     "energies rest on it": (
@@ -111,10 +111,10 @@ def test_warnings_come_first_and_those_alike_keep_their_order():
 
 
 def test_the_message_of_a_test_is_what_could_move_an_answer_most():
-    assert note_message([SAID, REFUSED, OPEN]) == f"identity: {OPEN}"
+    assert note_message([SAID, REFUSED, OPEN]) == str(OPEN)
     assert note_message([SAID, REFUSED]) == ""
     far = replace(OPEN, subject="used", numbers={**OPEN.numbers, "effect": 0.3})
-    assert note_message([OPEN, far]) == f"identity: {far}"
+    assert note_message([OPEN, far]) == str(far)
 
 
 def test_a_note_that_names_its_specimen_is_not_given_it_again():

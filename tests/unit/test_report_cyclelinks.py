@@ -1,6 +1,7 @@
 """The cycles that a reader can choose on the page, and the line that says what is in a test."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -73,7 +74,9 @@ def test_a_line_says_how_many_cycles_of_which_strain_and_what_is_doubted():
         note=("note", ["tests: a plain note"]), note_stage=("note", ["tests"]),
         note_code=("note", ["plain"]), note_severity=("note", ["note"]),
     )  # fmt: skip
-    assert brief(view) == "2 cycles, strain 75.0 to 125.0 %, 1 note"
+    assert brief(view) == "2 cycles, strain 75.0 to 125.0 %"
+    doubted = replace(view, data=view.data.assign(note_severity=("note", ["warning"])))
+    assert brief(doubted) == "2 cycles, strain 75.0 to 125.0 %, check"
 
 
 def test_a_line_says_nothing_of_what_is_not_there():

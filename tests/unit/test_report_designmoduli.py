@@ -51,23 +51,23 @@ def texts(table):
     return [[cell.text for cell in row] for row in table.rows]
 
 
-def test_a_row_says_range_branches_cycles_and_factor():
+def test_a_row_says_range_branches_and_cycles():
     table = design_modulus_table([make_view()])
     first, second = texts(table)
     # the middle of 75 to 125 % lies half-way between two bins
     assert first[:4] == ["new", "T-1", "75 to 125", "0.10"]
-    assert first[4].startswith("1.200 ± 0.0")
-    assert first[5:7] == ["1.100 ± 0.023", "0.900 ± 0.023"]
-    assert first[7] == "10; 9"
-    assert first[8].endswith("2.31")
+    assert first[4] == "600.0"  # N: 1.2 MPa over 500 mm2, and nothing is known of its uncertainty
+    assert first[5].startswith("1.200 ± 0.0")
+    assert first[6:8] == ["1.100 ± 0.023", "0.900 ± 0.023"]
+    assert first[8] == "10; 9"
     assert second[:3] == ["used", "T-1", "85 to 135"]
-    assert second[5] == "1.000 ± 0.023"
-    assert float(table.rows[0][5].value) == pytest.approx(1.1e6)
+    assert second[6] == "1.000 ± 0.023"
+    assert float(table.rows[0][6].value) == pytest.approx(1.1e6)
 
 
 def test_a_branch_without_a_value_there_has_a_dash_and_words_for_it():
     table = design_modulus_table([make_view()])
-    assert texts(table)[1][6] == NOT_GIVEN
+    assert texts(table)[1][7] == NOT_GIVEN
     assert any("no trustworthy value" in text for text in table.remarks)
     assert table.remarks[0].startswith("±: expanded uncertainty, 95 % (k = ")
 
@@ -79,28 +79,38 @@ def test_specimens_stand_together_in_the_order_of_the_campaign():
     ]  # fmt: skip
 
 
-def test_doubts_of_a_test_are_counted_beside_its_numbers():
+def test_a_test_with_a_doubt_says_so_beside_its_numbers():
     notes = [
         ("cycles", "the last cycle is broken", "warning"),
         ("moduli", "one cycle only", "note"),
     ]
     doubted, sound = make_view(notes=notes), make_view("T-2")
-    column = {row[1]: row[9] for row in texts(design_modulus_table([doubted, sound]))}
-    assert column == {"T-1": "1", "T-2": "none"}
+    column = {row[1]: row[-1] for row in texts(design_modulus_table([doubted, sound]))}
+    assert column == {"T-1": "check", "T-2": "reduced"}
 
 
-def test_a_rope_has_the_force_of_its_whole_cycle_per_unit_strain():
-    table = design_modulus_table([make_view(kind="rope")])
-    assert table.columns[4] == "whole cycle [N]"
-    assert texts(table)[0][4] == "600.0"
-    assert table.caption.startswith("Stiffness to design with")
+@pytest.mark.parametrize("kind", ["rope", "stretch hose"])
+def test_a_rope_and_a_hose_have_forces_per_unit_strain_alone(kind):
+    table = design_modulus_table([make_view(kind=kind)])
+    assert table.columns[4:7] == ("EA [N]", "ascending [N]", "descending [N]")
+    # 500 mm2 of 1.2, 1.1 and 0.9 MPa; 0.023 MPa is 11.5 N
+    assert texts(table)[0][4:7] == ["600.0", "550 ± 12", "450 ± 12"]
+    assert table.caption.startswith("Design stiffness. EA:")
+
+
+def test_ea_stands_over_the_rated_break_strength_where_it_is_known():
+    view = make_view()
+    data = view.data.assign(rated_break_strength=(S, [1500.0, NAN]))
+    table = design_modulus_table([TestView("k", data)])
+    assert table.columns[5] == "EA/MBL"
+    assert [row[5] for row in texts(table)] == ["0.400", NOT_GIVEN]
 
 
 def test_the_units_of_the_page_are_those_of_the_table():
     table = design_modulus_table([make_view(units="us")])
-    assert table.columns[4:7] == ("whole cycle [psi]", "ascending [psi]", "descending [psi]")
+    assert table.columns[5:8] == ("whole cycle [psi]", "ascending [psi]", "descending [psi]")
     # 1.1 MPa; 0.023 MPa is 3.3 psi
-    assert texts(table)[0][5] == "159.5 ± 3.3"
+    assert texts(table)[0][6] == "159.5 ± 3.3"
 
 
 def test_without_cycles_there_is_no_table():
@@ -113,7 +123,7 @@ def test_without_cycles_there_is_no_table():
 def test_a_test_without_curves_has_its_whole_cycle_alone():
     view = make_view()
     table = design_modulus_table([TestView("k", view.data.drop_dims("strain_bin"))])
-    assert texts(table)[0][5:8] == [NOT_GIVEN, NOT_GIVEN, "10"]
+    assert texts(table)[0][6:9] == [NOT_GIVEN, NOT_GIVEN, "10"]
 
 
 def test_cycles_used_are_those_after_the_break_in_that_have_a_number():
@@ -123,8 +133,8 @@ def test_cycles_used_are_those_after_the_break_in_that_have_a_number():
     data = view.data.assign(tension_amplitude=((S, "cycle"), amplitude))
     data.attrs["settings"] = '{"reduction": {"cycles": {"break_in_cycles": 1}}}'
     table = design_modulus_table([TestView("k", data)])
-    assert [row[7] for row in texts(table)] == ["9", "6; 9"]
-    assert [row[7].value for row in table.rows] == ["9", "6"]
+    assert [row[8] for row in texts(table)] == ["9", "6; 9"]
+    assert [row[8].value for row in table.rows] == ["9", "6"]
 
 
 def test_numbers_of_an_earlier_run_say_so_in_their_row():

@@ -156,7 +156,7 @@ def test_experiments_alone_are_a_page(page):
     headings = re.findall(r'<h2 id="([^"]+)"', html)
     assert headings == ["answer", "wrong", "experiment-0", "experiment-1"]
     assert "SYNTHETIC DATA" in html
-    assert "Every note of this experiment" in html
+    assert "All notes on this experiment" in html
 
 
 def test_experiments_stand_before_the_tests(page, write, rich_test):
