@@ -55,15 +55,15 @@ def test_a_drift_has_its_area_beside_it(tmp_path):
     assert abs(drift) > 0 and stated >= abs(drift) / np.sqrt(6) * (1 - 1e-9)
 
 
-def test_work_that_is_given_out_is_on_the_first_line(tmp_path):
+def test_work_that_is_given_out_is_the_first_thing_to_check(tmp_path):
     _, _, said = run("work-out", tmp_path)
-    assert "first: loops: piece:" in said and "loops give out work" in said
+    assert "\nCheck:\n  D-1: piece:" in said and "loops give out work" in said
 
 
 def test_a_reversed_channel_is_named_on_the_first_line_and_gives_no_stiffness(tmp_path):
     _, found, said = run("reversed-channel", tmp_path)
     assert "the crosshead_position channel runs backward; set sign = -1" in said
-    assert "first: loops: piece: tension falls with stretch" in said
+    assert said.startswith("Check:\n  D-1: piece: tension falls with stretch")
     for name in ("apparent_spring_constant", "dynamic_modulus", "hysteresis_energy", "loss_factor"):
         assert np.isnan(found[f"test_{name}"]).all(), name
 
