@@ -1,4 +1,4 @@
-"""The counts of the README are those of the command, and docs/lookup.md runs."""
+"""The counts of docs/printed-numbers.md are those of the command, and docs/lookup.md runs."""
 
 import re
 from pathlib import Path
@@ -13,10 +13,10 @@ VERDICTS = (
 )  # fmt: skip
 
 
-def test_the_readme_counts_what_reproduce_counts():
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+def test_the_page_of_printed_numbers_counts_what_reproduce_counts():
+    page = (ROOT / "docs" / "printed-numbers.md").read_text(encoding="utf-8")
     for report, items in reproduce().items():
-        (row,) = re.findall(rf"^\| {report} \|(.*)\|$", readme, re.M)
+        (row,) = re.findall(rf"^\| {report} \|(.*)\|$", page, re.M)
         shown = [int(cell) for cell in row.split("|")]
         counts = counts_of(items)
         assert shown == [len(items), *(counts[name] for name in VERDICTS)], report
