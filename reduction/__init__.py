@@ -8,16 +8,27 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from reduction.archive.campaign_tree import open_campaign
     from reduction.archive.open import open_archive
+    from reduction.python_interface import look_up, run
 else:
-    _ROOMS = {"open_campaign": "campaign_tree", "open_archive": "open"}
+    _PLACES = {
+        "look_up": "python_interface",
+        "open_archive": "archive.open",
+        "open_campaign": "archive.campaign_tree",
+        "run": "python_interface",
+    }
 
     def __getattr__(name: str) -> Any:
         """Load what needs xarray at its first use: the package itself imports in milliseconds."""
-        if name in _ROOMS:
-            return getattr(import_module(f"reduction.archive.{_ROOMS[name]}"), name)
+        if name in _PLACES:
+            return getattr(import_module(f"reduction.{_PLACES[name]}"), name)
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-__all__ = ["__version__", "open_archive", "open_campaign"]
+__all__ = ["__version__", "look_up", "open_archive", "open_campaign", "run"]
 
 __version__ = "0.1.0"
+
+
+def __dir__() -> list[str]:
+    """Public names alone."""
+    return __all__

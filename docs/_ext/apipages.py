@@ -32,6 +32,7 @@ ROOMS = {
 
 DOORS = {
     "reduction": "the package",
+    "reduction.python_interface": "what a script calls: run, look up",
     "reduction.archive.campaign_tree": "processed campaigns as trees of datasets",
     "reduction.archive.csv_tables": "tables as pandas DataFrames",
     "reduction.archive.open": "one archive",

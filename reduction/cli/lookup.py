@@ -56,7 +56,7 @@ _OF_CURVES = {"tension": "branch_tension"}
 _ENDINGS = (".nc", ".toml", ".csv")
 
 
-def _lines_of(source: str) -> list[LineSource]:
+def lines_of_source(source: str) -> list[LineSource]:
     """Every line that SOURCE names."""
     published = published_sources()
     if source == "published":
@@ -124,7 +124,7 @@ def _no_products(path: Path) -> SettingsError:
     )
 
 
-def _one_of(lines: Sequence[LineSource], quantity: str, name: str | None) -> LineSource:
+def one_line_of(lines: Sequence[LineSource], quantity: str, name: str | None) -> LineSource:
     """The line that was meant: by its name, else the only one that has the quantity."""
     named = [line for line in lines if name in (None, line.name)]
     if not named:
@@ -157,7 +157,7 @@ def _one_of(lines: Sequence[LineSource], quantity: str, name: str | None) -> Lin
     return having[0] if having else named[0]
 
 
-_DIMENSIONS: dict[str, Dimension] = {
+LEVEL_DIMENSIONS: dict[str, Dimension] = {
     "frequency": "frequency",
     "mean_tension": "force",
     "tension_amplitude": "force",
@@ -292,7 +292,7 @@ def _numbers(name: str, text: str, line: LineSource) -> Floats:
     try:
         return np.array(
             [
-                parse_quantity(part.strip(), _DIMENSIONS[name], rated_break_strength=known)
+                parse_quantity(part.strip(), LEVEL_DIMENSIONS[name], rated_break_strength=known)
                 for part in text.split(",")
             ]
         )
@@ -304,7 +304,7 @@ def _numbers(name: str, text: str, line: LineSource) -> Floats:
 
 def list_sources(source: str, search: Mapping[str, Any], *, output: CommandOutput) -> None:
     """Print what SOURCE holds: each line, its quantities, and over which range."""
-    lines = find_lines(_lines_of(source), **search)
+    lines = find_lines(lines_of_source(source), **search)
     unit, factor = ("in", 1 / 0.0254) if output.units == "us" else ("mm", 1e3)
     force, scale = output.unit("N")
     table = table_of(
@@ -379,7 +379,9 @@ def _described(line: LineSource) -> dict[str, Any]:
 def look_up_values(source: str, wanted: LookupRequest, *, output: CommandOutput) -> None:
     """Print design values; several values of a level, parted by commas, make a grid."""
     form = None if wanted.out is None else format_of_file(wanted.out)
-    line = _one_of(find_lines(_lines_of(source), **wanted.search), wanted.quantity, wanted.name)
+    line = one_line_of(
+        find_lines(lines_of_source(source), **wanted.search), wanted.quantity, wanted.name
+    )
     (points,), left_out = _points_of(wanted, line)
     if left_out:
         output.say("combinations whose amplitude is above the mean tension are left out")
@@ -672,8 +674,8 @@ def look_up_against(
 ) -> None:
     """Print values of two lines, their difference and ratio, and whether the intervals allow it."""
     form = None if wanted.out is None else format_of_file(wanted.out)
-    lines = _lines_of(source)
-    first = _one_of(find_lines(lines, **wanted.search), wanted.quantity, wanted.name)
+    lines = lines_of_source(source)
+    first = one_line_of(find_lines(lines, **wanted.search), wanted.quantity, wanted.name)
     second = _other(lines, other, wanted.quantity, first)
     pair = compared_tethers(first, second)
     if pair is not None:
@@ -699,10 +701,10 @@ def look_up_against(
 def _other(lines: list[LineSource], name: str, quantity: str, first: LineSource) -> LineSource:
     """The second line: one of SOURCE by its name, else what the name means by itself."""
     of_source = [line for line in lines if line.name == name]
-    found = of_source or _lines_of(name)
+    found = of_source or lines_of_source(name)
     having = [line for line in found if quantity in line.quantities]
     if len(having) < 2:
-        return _one_of(found, quantity, None)
+        return one_line_of(found, quantity, None)
     alike = [line for line in having if line.name == first.name]
     if len(alike) != 1:
         raise SettingsError(

@@ -12,13 +12,15 @@ PACKAGE = Path(__file__).parents[2] / "reduction"
 ROOMS = [
     "record", "quantities", "stages", "experiments", "prediction", "uncertainty", "pipeline",
     "readers", "archive", "published", "lines", "campaign", "report", "batch", "pages", "cli",
+    "python_interface",
     "__main__",
 ]  # fmt: skip
 LAYER = {room: layer for layer, room in enumerate(ROOMS)}
 # the way of a record: each stage knows those before it
 STAGES = ["strain", "cycles", "moduli", "holds", "three_parameter_line"]
 EDGES = {
-    "readers", "archive", "published", "lines", "campaign", "report", "batch", "pages", "cli", "__main__",
+    "readers", "archive", "published", "lines", "campaign", "report", "batch", "pages", "cli",
+    "python_interface", "__main__",
 }  # fmt: skip
 UNITS_AT = EDGES  # pint stands at the edges only
 # numpy everywhere; scipy where the mathematics is

@@ -1,0 +1,208 @@
+"""What a script calls: run a campaign, look up design values.
+
+Opening archives and campaigns is `reduction.archive`'s; both are reached as ``reduction.<name>``.
+"""
+
+from __future__ import annotations
+
+import time
+import warnings as python_warnings
+from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import xarray as xr
+
+from reduction.archive.campaign_tree import open_campaign
+from reduction.batch.run_campaign import run_campaign
+from reduction.batch.workers import local_workers
+from reduction.campaign.load import load_campaign
+from reduction.cli.lookup import (
+    LEVEL_DIMENSIONS,
+    lines_of_source,
+    name_of_quantity,
+    one_line_of,
+)
+from reduction.lines import line_lookup
+from reduction.lines.line_lookup import Branch
+from reduction.lines.lookup_product import DesignValues, LineSource
+from reduction.quantities.units import UnitSystem, parse_quantity
+from reduction.record.errors import SettingsError
+
+_INTERVALS = {
+    "": "95 % interval of one more run",
+    "surface_": "95 % interval of the surface, or of the curve of one test",
+    "line_": "95 % interval of another line of the kind",
+}
+
+_SHARES = {
+    "peak_share": "greatest tension over the rated break strength",
+    "minimum_share": "least tension over the rated break strength",
+}
+
+_FLAGS = {
+    "is_inside": "whether it lies within the tested range",
+    "is_above_rule": "whether the peak is above the rule of the source",
+}
+
+
+def look_up(
+    source: str | Path,
+    quantity: str,
+    *,
+    line: str | None = None,
+    branch: Branch | None = None,
+    extrapolate: Literal["refuse", "flag"] = "refuse",
+    **levels: Any,
+) -> xr.Dataset:
+    """Look up design values of a published line or of a campaign of one's own.
+
+    Parameters
+    ----------
+    source : str or pathlib.Path
+        A published line by its name, an archive, or ``processed/<campaign>``.
+    quantity : str
+        Its name, or its symbol such as ``"K_ap"``.
+    line : str, optional
+        Which line, where the source holds several, such as ``"T-1 new"``.
+    branch : {"ascending", "descending"}, optional
+        Of a quantity that differs by it.
+    extrapolate : {"refuse", "flag"}
+        What to do outside the tested range.
+    **levels : str, float, array_like or xarray.DataArray
+        ``frequency``, ``mean_tension``, ``tension_amplitude``, ``tension`` or ``strain``: a text
+        with a unit (``"20 %RBS"``), numbers in SI, or anything with ``to_base_units`` such as a
+        pint quantity. Arrays are broadcast together, ``DataArray`` by the names of their
+        dimensions.
+
+    Returns
+    -------
+    values : xarray.Dataset
+        The quantity with its 95 % intervals (``_low`` and ``_high``), flags, and in its attributes
+        source, rule, warnings and errata.
+
+    Raises
+    ------
+    ReductionError
+        If there is no such line, quantity or level, or a point lies outside the tested range.
+
+    Examples
+    --------
+    Table 15 of CG-D-39-80 at the centre of the design, to its own digits of the line.
+
+    >>> found = look_up("nylon-double-braid-0.5in-new", "K_ap", frequency="0.3 Hz",
+    ...     mean_tension="21 %RBS", tension_amplitude="8.5 %RBS")
+    >>> bool(found.is_inside), bool(found.apparent_spring_constant_low
+    ...     < found.apparent_spring_constant < found.apparent_spring_constant_high)
+    (True, True)
+    """
+    name = name_of_quantity(quantity)
+    chosen = one_line_of(lines_of_source(str(source)), name, line)
+    axes = xr.broadcast(*(_level(key, value, chosen) for key, value in levels.items()))
+    given = {key: axis.values for key, axis in zip(levels, axes, strict=True)}
+    found = line_lookup.look_up(chosen, name, branch=branch, extrapolate=extrapolate, **given)
+    like = axes[0] if axes else xr.DataArray(0.0)
+    return _dataset(found, chosen, given, like)
+
+
+def _level(name: str, value: Any, line: LineSource) -> xr.DataArray:
+    """A level in SI, with dimensions."""
+    if name not in LEVEL_DIMENSIONS:
+        raise SettingsError(
+            f"{name} is no level of a line", needed=f"one of {', '.join(LEVEL_DIMENSIONS)}"
+        )
+    if isinstance(value, xr.DataArray):
+        is_axis = value.dims == (name,) and name not in value.coords
+        return value.assign_coords({name: value.values}) if is_axis else value
+    if isinstance(value, str):
+        strength = line.rated_break_strength
+        known = strength if np.isfinite(strength) else None
+        value = parse_quantity(value, LEVEL_DIMENSIONS[name], rated_break_strength=known)
+    elif hasattr(value, "to_base_units"):
+        text = f"1 {value.units}"
+        value = np.asarray(value.magnitude) * parse_quantity(text, LEVEL_DIMENSIONS[name])
+    numbers = np.asarray(value)
+    if numbers.ndim > 1:
+        raise SettingsError(
+            f"{name} has several dimensions without names", found=f"shape {numbers.shape}",
+            needed="a number, one row of numbers, or an xarray.DataArray",
+        )  # fmt: skip
+    return xr.DataArray(numbers, dims=("point",)[: numbers.ndim])
+
+
+def _dataset(
+    found: DesignValues, line: LineSource, given: Mapping[str, Any], like: xr.DataArray
+) -> xr.Dataset:
+    name, dims = found.quantity, like.dims
+    kept: dict[str, Any] = {name: (dims, found.value, {"units": found.unit})}
+    for prefix, words in _INTERVALS.items():
+        for end in ("low", "high"):
+            values = getattr(found, prefix + end)
+            about = {"units": found.unit, "long_name": words}
+            kept[f"{name}_{prefix}{end}"] = (dims, values, about)
+    for one, words in {**_SHARES, **_FLAGS}.items():
+        kept[one] = (dims, getattr(found, one), {"long_name": words})
+    levels = {key: (dims, values) for key, values in given.items() if key not in like.coords}
+    about = {
+        "line": line.name, "source": found.source, "rule": found.rule,
+        "warnings": "\n".join(found.warnings), "errata": "\n".join(found.errata),
+        "notes": "\n".join(found.notes),
+    }  # fmt: skip
+    return xr.Dataset(kept, {**like.coords, **levels}, about)
+
+
+def run(
+    campaign: str | Path,
+    *,
+    processed: str | Path = "processed",
+    reports: str | Path = "reports",
+    tests: Sequence[str] = (),
+    force: bool = False,
+    jobs: int = 1,
+    units: UnitSystem = "si",
+) -> xr.DataTree | xr.Dataset:
+    """Reduce a campaign, as ``reduction run`` does, and open what it made.
+
+    Parameters
+    ----------
+    campaign : str or pathlib.Path
+        The campaign.toml.
+    processed, reports : str or pathlib.Path
+        Folders of the products and of the report.
+    tests : sequence of str, optional
+        Only these.
+    force : bool
+        Whether to redo tests that did not change.
+    jobs : int
+        How many tests at once; above one, call it below ``if __name__ == "__main__":``.
+    units : {"si", "us"}
+        What the report shows; files are SI.
+
+    Returns
+    -------
+    campaign : xarray.DataTree
+        As of `reduction.open_campaign`.
+
+    Raises
+    ------
+    ReductionError
+        If the campaign cannot be read, or every test of it failed.
+
+    Warns
+    -----
+    UserWarning
+        For each test that failed; the others are reduced all the same.
+    """
+    loaded = load_campaign(Path(campaign))
+    with local_workers(jobs) if jobs > 1 else nullcontext() as workers:
+        result = run_campaign(
+            loaded, processed=Path(processed), reports=Path(reports), clock=time.perf_counter,
+            tests=tuple(tests), force=force, command="reduction run campaign.toml", units=units,
+            workers=workers,
+        )  # fmt: skip
+    for one in result.tests:
+        if one.exit_status:
+            python_warnings.warn(f"{one.test}: {one.message}", stacklevel=2)
+    return open_campaign(result.processed)

@@ -1,0 +1,91 @@
+"""The Python interface gives what the commands give."""
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import reduction
+from reduction.quantities.units import parse_quantity
+from reduction.record.errors import DataError, SettingsError
+
+ROOT = Path(__file__).parents[2]
+LINE = "nylon-8-strand-plaited-0.5in-new"
+LEVELS = {"frequency": "0.3 Hz", "mean_tension": "20 %RBS", "tension_amplitude": "8 %RBS"}
+
+
+def of_command(*arguments):
+    done = subprocess.run(
+        [sys.executable, "-m", "reduction", "lookup", *arguments, "--json"],
+        capture_output=True, text=True, check=True, cwd=ROOT,
+    )  # fmt: skip
+    return json.loads(done.stdout)
+
+
+def test_the_package_shows_its_public_names_alone():
+    names = dir(reduction)
+    assert 4 < len(names) <= 30 and names == sorted(names)
+    assert all(hasattr(reduction, name) for name in names)
+
+
+def test_a_look_up_is_that_of_the_command():
+    options = [
+        part for key, text in LEVELS.items() for part in (f"--{key.replace('_', '-')}", text)
+    ]
+    said = of_command(LINE, "--quantity", "K_ap", *options)
+    found = reduction.look_up(LINE, "K_ap", **LEVELS)
+    assert float(found.apparent_spring_constant) == pytest.approx(said["value"])
+    ends = [float(found[f"apparent_spring_constant_{end}"]) for end in ("low", "high")]
+    assert said["interval"] == pytest.approx(ends)
+    assert found.apparent_spring_constant.attrs["units"] == said["unit"]
+    assert bool(found.is_inside) is said["inside"]
+
+
+def test_levels_are_texts_numbers_quantities_rows_and_named_arrays():
+    import pint
+
+    plain = reduction.look_up(LINE, "K_ap", **LEVELS).apparent_spring_constant
+    tension = float(reduction.look_up(LINE, "K_ap", **LEVELS).mean_tension)
+    in_pounds = tension / parse_quantity("1 lbf", "force") * pint.UnitRegistry().lbf
+    for level in (tension, [tension, tension], in_pounds):
+        found = reduction.look_up(LINE, "K_ap", **LEVELS | {"mean_tension": level})
+        np.testing.assert_allclose(found.apparent_spring_constant, float(plain), rtol=1e-12)
+    axes = {
+        "mean_tension": xr.DataArray([tension, 1.1 * tension], dims="mean_tension"),
+        "frequency": xr.DataArray([0.1, 0.3, 0.5], dims="frequency"),
+    }
+    grid = reduction.look_up(LINE, "K_ap", **LEVELS | axes).apparent_spring_constant
+    np.testing.assert_allclose(grid.frequency, [0.1, 0.3, 0.5])
+    assert grid.sizes == {"mean_tension": 2, "frequency": 3}
+    assert float(grid.isel(mean_tension=0, frequency=1)) == pytest.approx(float(plain))
+
+
+def test_the_example_of_the_documentation_runs():
+    page = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"^```python\n(.*?)^```$", page, re.M | re.S)
+    names = {}
+    exec(code, names)  # noqa: S102 - the documentation's own example
+    assert names["low"] < names["value"] < names["high"]
+    assert float(names["curve"].sel(frequency=0.3)) == pytest.approx(names["value"])
+
+
+def test_what_is_not_known_is_refused():
+    with pytest.raises(DataError):
+        reduction.look_up(LINE, "K_ap", **LEVELS | {"frequency": "5 Hz"})
+    with pytest.raises(SettingsError, match="temperature is no level"):
+        reduction.look_up(LINE, "K_ap", **LEVELS, temperature=20.0)
+    with pytest.raises(SettingsError, match="several dimensions"):
+        reduction.look_up(LINE, "K_ap", **LEVELS | {"frequency": np.full((2, 2), 0.3)})
+
+
+def test_a_run_gives_the_campaign_that_it_made(tmp_path):
+    campaign = ROOT / "raw" / "buoy-technology-1997" / "campaign.toml"
+    made = reduction.run(campaign, processed=tmp_path / "p", reports=tmp_path / "r")
+    with made, reduction.open_campaign(tmp_path / "p" / "buoy-technology-1997") as opened:
+        assert set(made.children) == set(opened.children) == {"static"}
+    assert (tmp_path / "r" / "buoy-technology-1997" / "index.html").is_file()
