@@ -30,5 +30,5 @@ __version__ = "0.1.0"
 
 
 def __dir__() -> list[str]:
-    """Public names alone."""
-    return __all__
+    """Public names, and what every module has."""
+    return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})

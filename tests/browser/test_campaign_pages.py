@@ -79,14 +79,16 @@ def test_the_answer_is_that_of_the_archives(campaigns, visit):
              cell => [cell.textContent, cell.dataset.value])).toArray()"""
     )
     assert len(rows) >= 12
-    for (specimen, _), (test, _), _, _, whole, *branches, _, _, _ in rows:
+    for (specimen, _), (test, _), _, _, constant, _, whole, *branches, _, _ in rows:
         with netCDF4.Dataset(made.processed / f"{test}.nc") as archive:
             names = list(archive["specimen"][:])
             own = names.index(specimen)
             modulus = float(archive["cycles/test_dynamic_modulus"][own])
+            force = float(archive["cycles/test_apparent_spring_constant"][own])
             middle = float(np.mean(archive["cycles/mean_strain"][own]))
             curves = np.ma.filled(archive["tangent_modulus"][own], np.nan)
             bins = archive["strain_bin"][:]
+        assert float(constant[1]) == pytest.approx(force, rel=1e-12)
         assert float(whole[1]) == pytest.approx(modulus, rel=1e-12)
         assert shown_as(modulus / 1e6, whole[0])
         for (text, exact), curve in zip(branches, curves, strict=True):
