@@ -43,7 +43,7 @@ def level_text(number, unit):
 
 def shown_by_command(question, lines, monkeypatch):
     """Row, warnings, other tables, sentences, or the refusal, of `reduction lookup`."""
-    monkeypatch.setattr(command, "_lines_of", lambda source: lines)
+    monkeypatch.setattr(command, "lines_of_source", lambda source: lines)
     output = Told(question["system"])
     wanted = LookupRequest(
         quantity=question["quantity"],

@@ -12,7 +12,7 @@ from scipy import stats
 
 from reduction.batch import run_campaign as batch_run
 from reduction.campaign.load import load_campaign
-from reduction.cli.lookup import _lines_of
+from reduction.cli.lookup import lines_of_source
 from reduction.cli.printed_numbers import as_given, within
 from reduction.cli.usage import grouped
 from reduction.lines.lookup_product import LineCurve, LineSource
@@ -53,7 +53,7 @@ def made(campaigns, tmp_path_factory):
     name = "nylon-synthetic"
     (processed / name).symlink_to(campaigns(name).processed, target_is_directory=True)
     page = write_design_page(processed, folder / "reports")
-    return page, processed, page_lines(processed, _lines_of)
+    return page, processed, page_lines(processed, lines_of_source)
 
 
 def assert_same(asked, wanted, found):

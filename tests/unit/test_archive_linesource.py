@@ -7,7 +7,7 @@ from scipy import stats
 
 from reduction.archive.open import open_archive
 from reduction.archive.surfaces_dataset import surfaces_of
-from reduction.cli.lookup import _lines_of
+from reduction.cli.lookup import lines_of_source
 from reduction.experiments.designs import box_behnken
 from reduction.experiments.surface_discrepancy import discrepancy_of
 from reduction.experiments.surface_points import evaluate_surfaces
@@ -115,7 +115,7 @@ def test_curves_of_a_test_are_by_branch(folder):
 
 
 def test_a_slow_pull_gives_rest_stiffness_and_strain_over_tension(folder):
-    (line,) = _lines_of(str(folder / "Q01.nc"))
+    (line,) = lines_of_source(str(folder / "Q01.nc"))
     assert line.quantities == ("quasi_static_spring_constant", "strain")
     with open_archive(folder / "Q01.nc") as archive:
         grid = archive["tension_grid"].to_numpy()
@@ -148,7 +148,7 @@ def test_a_slow_pull_gives_rest_stiffness_and_strain_over_tension(folder):
 
 
 def test_the_line_of_an_experiment_is_of_its_specimens(folder):
-    line = _lines_of(str(folder / "surfaces.nc"))[0]
+    line = lines_of_source(str(folder / "surfaces.nc"))[0]
     assert (line.kind, line.material) == ("rope", "nylon (synthetic)")
     assert (line.construction, line.condition) == ("double braid", "new, wet")
     assert line.diameter == pytest.approx(0.0127)
@@ -183,20 +183,20 @@ def test_specimens_of_an_experiment_are_sought_in_the_archives_of_all_tests(
         test = test.assign_coords(specimen=[name])
         test["specimen_condition"] = ("specimen", [condition])
         test.to_netcdf(tmp_path / f"R0{place + 1}.nc", engine="netcdf4")
-    (line,) = _lines_of(str(tmp_path / "surfaces.nc"))
+    (line,) = lines_of_source(str(tmp_path / "surfaces.nc"))
     assert line.material == "nylon (synthetic)"
     assert line.condition == ""
 
 
 def test_surfaces_of_tethers_refuse_zero_tension(folder, tmp_path):
     """A synthetic campaign, whose specimen is called a tether."""
-    rope = _lines_of(str(folder / "surfaces.nc"))[0]
+    rope = lines_of_source(str(folder / "surfaces.nc"))[0]
     shutil.copy(folder / "surfaces.nc", tmp_path)
     with open_archive(folder / "R01.nc") as archive:
         tests = archive.load()
     tests["specimen_kind"] = ("specimen", ["rubber tether"])
     tests.to_netcdf(tmp_path / "R01.nc", engine="netcdf4")
-    tether = _lines_of(str(tmp_path / "surfaces.nc"))[0]
+    tether = lines_of_source(str(tmp_path / "surfaces.nc"))[0]
     assert tether.is_tether
     lowest = 0.12 * rope.rated_break_strength
     at_zero = {"frequency": 0.3, "mean_tension": lowest, "tension_amplitude": lowest}
@@ -241,7 +241,7 @@ def test_an_archive_without_a_curve_is_refused_by_its_name(folder, tmp_path):
     path = tmp_path / "bare.nc"
     bare.to_netcdf(path, engine="netcdf4")
     with pytest.raises(ArchiveError, match=r"nothing that can be looked up; found .*bare\.nc"):
-        _lines_of(str(path))
+        lines_of_source(str(path))
 
 
 def test_bins_without_a_cycle_between_others_are_no_part_of_the_range(folder):
