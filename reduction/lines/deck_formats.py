@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 import scipy
@@ -16,6 +16,7 @@ import scipy
 from reduction.archive.write import write_text_atomically
 from reduction.lines.deck_moordyn import (
     MOST_POINTS,
+    OpenFastForm,
     moordyn_files,
     moorpy_files,
     openfast_files,
@@ -390,9 +391,11 @@ _MOORDYN_FORMS: dict[str, _WrittenCurve] = {
     "syrope": "none",
 }
 
+_OPENFAST_FORMS = {form: _MOORDYN_FORMS[form] for form in get_args(OpenFastForm)}
+
 _CODES: dict[str, _MooringCode] = {
     "moordyn": _MooringCode(moordyn_files, MOST_POINTS, _MOORDYN_FORMS),
-    "openfast": _MooringCode(openfast_files, MOST_POINTS, _MOORDYN_FORMS),
+    "openfast": _MooringCode(openfast_files, MOST_POINTS, _OPENFAST_FORMS),
     "moorpy": _MooringCode(moorpy_files, MOST_POINTS, {"table": "points", "library": "none"}),
     "whoi-cable": _MooringCode(
         _one_file(_whoicable_text), CABLE_POINTS, {"expression": "pieces", "table": "points"}

@@ -34,9 +34,19 @@ What MoorPy 1.3 does with a file that is not to its liking, and what is done her
   names: both are written;
 * a least or greatest diameter in the library ends in an error: none is written.
 
-OpenFAST's MoorDyn module: the grammar of MoorDyn, other options, tables sought elsewhere.
+OpenFAST's MoorDyn module (MoorDyn-F): the grammar of MoorDyn, with other options.
 
-Not run by the tests of this package: OpenFAST is no Python package.
+What the `moordyn_driver` of OpenFAST 5.0 does with a file that is not to its liking, and what is
+done here about it:
+
+* a table beside a damping below zero, which MoorDyn-C takes for a share of critical, ends it: the
+  damping is written as a number;
+* the name of a line type is cut at 20 signs and then not found, that of a table at 40: both are
+  shortened;
+* alpha and beta of a stiffness that grows with load mean something else there (K_ap 114 kN where
+  MoorDyn-C and the three parameters have 50), and it knows no Syrope: neither form is written.
+
+The tests run it where a program `moordyn_driver` is on the path; it is no Python package.
 
 References
 ----------
@@ -47,7 +57,8 @@ References
 from __future__ import annotations
 
 import math
-from typing import Literal
+from hashlib import sha256
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -172,7 +183,9 @@ def _steps(mass: float, stiffness: float, damping: float, apart: float) -> tuple
     return _SEGMENTS, min(step, _LONGEST_STEP)
 
 
-MoorDynForm = Literal["table", "damped-table", "static-dynamic", "load-dependent", "syrope"]
+OpenFastForm = Literal["table", "damped-table", "static-dynamic"]
+
+MoorDynForm = Literal[OpenFastForm, "load-dependent", "syrope"]
 
 MOST_POINTS = 30
 """Rows that a table of MoorDyn may have. [1]"""
@@ -304,20 +317,26 @@ def _said(line: ExportLine) -> tuple[str, ...]:
     )
 
 
-def _table_files(line: ExportLine, stem: str, *, is_damped: bool) -> dict[str, str]:
+def _table_files(
+    line: ExportLine, stem: str, *, is_damped: bool, takes_share: bool = True
+) -> dict[str, str]:
+    """Deck and table; ``takes_share`` is whether damping may be a share of critical."""
     curve = thin_curve(line.strain, line.tension, most=MOST_POINTS)
     table = f"{stem}_table.txt"
     damping = _dashpot_of(line) if is_damped else None
-    head = header_lines(
-        line,
-        curve,
-        *_said(line),
-        _NUMERICAL if damping is None else damping_words(damping),
-        f"{table} belongs beside this file",
-    )
-    coefficient = 0.0 if damping is None else damping.coefficient
-    row = _line_type(line, table, number(coefficient or NUMERICAL_DAMPING))
     steepest = float(np.max(np.diff(curve.tension) / np.diff(curve.strain)))
+    coefficient = 0.0 if damping is None else damping.coefficient
+    written, words = coefficient or NUMERICAL_DAMPING, _NUMERICAL
+    if damping is not None:
+        words = damping_words(damping)
+    elif not takes_share:
+        written = fast_damping(steepest, line.needed("linear_density"), segment_length(line))
+        words = (
+            f"internal damping {plain_number(written, 4)} N s: {_FAST_SHARE:g} of critical for "
+            f"segments of {segment_length(line):g} m, numerical, not measured"
+        )
+    head = header_lines(line, curve, *_said(line), words, f"{table} belongs beside this file")
+    row = _line_type(line, table, number(written))
     strain = line.strain[-1] / 2
     return {
         "": _deck(
@@ -485,19 +504,42 @@ _LEFT_OUT = ("0 writeLog", "1 disableOutTime", "10 TmaxIC", "0.1 dtIC", NO_GRAVI
 _ABOUT_GRAVITY = "gravity is that of OpenFAST: the line sags, and has more tension than its strain"
 
 
-def openfast_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -> dict[str, str]:
+_NAME, _FILE = 20, 40
+"""Signs after which MoorDyn-F cuts the name of a line type, and of a table. [1]"""
+
+_DIGEST = 6
+
+
+def _shortened(name: str, most: int) -> str:
+    """NAME within MOST signs, told apart by a digest where it is cut."""
+    if len(name) <= most:
+        return name
+    return f"{name[: most - _DIGEST - 1]}_{sha256(name.encode()).hexdigest()[:_DIGEST]}"
+
+
+def openfast_files(line: ExportLine, stem: str, *, form: OpenFastForm = "table") -> dict[str, str]:
     """Files of a line type for OpenFAST, the input file of its MoorDyn module first."""
-    files = moordyn_files(line, stem, form=form)
-    remarks = ["grammar of MoorDyn, not run in OpenFAST", _ABOUT_GRAVITY]
-    if form in ("table", "syrope"):
-        remarks.append(
-            "files that are named here are sought beside the executable: put them there, or write "
-            "the path"
-        )
-    if form == "syrope":
-        remarks.append("Syrope needs an OpenFAST of June 2026 or later")
+    if form not in get_args(OpenFastForm):
+        raise SettingsError(
+            "the form of an OpenFAST line is not known", found=repr(form),
+            needed=", ".join(get_args(OpenFastForm)),
+        )  # fmt: skip
+    stem = _shortened(stem, _FILE - len("_table.txt"))
+    files = (
+        _table_files(line, stem, is_damped=False, takes_share=False)
+        if form == "table"
+        else moordyn_files(line, stem, form=form)
+    )
+    remarks = [f"for MoorDyn of OpenFAST 5.0, run with its driver; {_ABOUT_GRAVITY}"]
+    if len(files) > 1:
+        remarks.append("the table is sought in the folder where the program starts")
     first, *rest = files.pop("").split("\n")
     said = header_lines(line, None, *remarks)
     said = said[next(place for place, text in enumerate(said) if text.startswith("Remark")) :]
-    kept = [row for row in rest if row not in _LEFT_OUT]
+    named, short = f"{line.identifier} ", f"{_shortened(line.identifier, _NAME)} "
+    kept = [
+        row.replace(named, short, 1) if row.startswith((named, f"1 {named}")) else row
+        for row in rest
+        if row not in _LEFT_OUT
+    ]
     return {"": "\n".join([first, *said, *kept]), **files}

@@ -32,15 +32,7 @@ def whole(text):
 @pytest.mark.parametrize("to", ["moordyn", "openfast", "moorpy"])
 def test_a_deck_has_the_coefficients_and_their_source(export, to):
     text = export(to, *WATER)
-    (row,) = (
-        moordyn_sections(text)["LINE TYPES"]
-        if to != "openfast"
-        else [
-            next(
-                line.split() for line in text.split("\n") if line.startswith(NAME.replace(".", "_"))
-            )
-        ]
-    )
+    (row,) = moordyn_sections(text)["LINE TYPES"]
     # Cd Ca CdAx CaAx
     assert [float(value) for value in row[-4:]] == [1.6, 0.9, 0.02, 0.1]
     assert SAID in whole(text)

@@ -55,8 +55,6 @@ def test_every_format_has_a_row_with_its_forms():
         for name in re.findall(r"`([\w-]+)`", names)
     }
     assert set(forms) == set(FORMATS)
-    assert forms.pop("openfast") == ["moordyn"]  # the forms are told there
-    assert FORMS["openfast"] == FORMS["moordyn"]
     assert all(tuple(told) == FORMS.get(name, ()) for name, told in forms.items())
 
 

@@ -4,7 +4,7 @@ import pytest
 from export_lines import constant, line
 
 from reduction.lines.deck_formats import FORMATS, FORMS, WhoiCableForm, export_line
-from reduction.lines.deck_moordyn import MoorDynForm, MoorPyForm
+from reduction.lines.deck_moordyn import MoorDynForm, MoorPyForm, OpenFastForm
 from reduction.record.errors import SettingsError
 
 
@@ -34,7 +34,7 @@ def test_forms_are_handed_on(tmp_path):
 
 def test_a_format_is_told_the_forms_that_its_writer_knows():
     known = {
-        "moordyn": MoorDynForm, "openfast": MoorDynForm, "moorpy": MoorPyForm,
+        "moordyn": MoorDynForm, "openfast": OpenFastForm, "moorpy": MoorPyForm,
         "whoi-cable": WhoiCableForm,
     }  # fmt: skip
     assert FORMS == {to: get_args(known[to]) if to in known else () for to in FORMS}

@@ -1,0 +1,53 @@
+"""MoorDyn of OpenFAST, by its driver: the line of a deck, stretched as it is told."""
+
+import shutil
+import subprocess
+
+import numpy as np
+from export_readers import moordyn_sections
+
+DRIVER = shutil.which("moordyn_driver")
+PROBLEM = """the line of a deck, stretched
+--- ENVIRONMENT ---
+0.0 Gravity
+1025.0 rhoW
+{depth} WtrDepth
+--- MOORDYN ---
+"{deck}" MDInputFile
+"out" OutRootName
+{end} TMax
+{step} dtC
+1 InputsMode
+"motion.txt" InputsFile
+0 NumTurbines
+--- INITIAL POSITIONS ---
+X Y Z surge_init sway_init heave_init roll_init pitch_init
+(m) (m) (m) (m) (m) (m) (rad) (rad)
+0 0 0 0 0 0 0 0
+"""
+
+
+def stretched(folder, deck, time, strain):
+    """Strain, as MoorDyn had it, and tension at the upper end, at every step of its own."""
+    text = (folder / deck).read_text().replace("\nFairTen1\n", "\nFairTen1\nPoint2Pz\n")
+    (folder / deck).write_text(text)
+    sections = moordyn_sections(text)
+    length = float(sections["LINES"][0][4])
+    anchor = float(sections["POINTS"][0][4])
+    (depth,) = (row[0] for row in sections["OPTIONS"] if row[1] == "WtrDpth")
+    height = anchor + length * (1 + np.asarray(strain))
+    motion = np.column_stack([time, 0 * height, 0 * height, height])
+    np.savetxt(folder / "motion.txt", motion, fmt="%.10g")
+    (folder / "driver.inp").write_text(
+        PROBLEM.format(depth=depth, deck=deck, end=time[-1], step=time[1] - time[0])
+    )
+    done = subprocess.run(
+        [DRIVER, "driver.inp"], cwd=folder, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout[-1500:]
+    rows = (folder / "out.MD.out").read_text().split("\n")
+    (head,) = (place for place, row in enumerate(rows) if row.split()[:1] == ["Time"])
+    table = np.array([row.split() for row in rows[head + 2 :] if row.strip()], dtype=float)
+    column = {name.lower(): place for place, name in enumerate(rows[head].split())}
+    at = table[:, column["point2pz"]]
+    return table[:, 0], (at - anchor) / length - 1, table[:, column["fairten1"]]
