@@ -43,8 +43,12 @@ done here about it:
   damping is written as a number;
 * the name of a line type is cut at 20 signs and then not found, that of a table at 40: both are
   shortened;
-* alpha and beta of a stiffness that grows with load mean something else there (K_ap 114 kN where
-  MoorDyn-C and the three parameters have 50), and it knows no Syrope: neither form is written.
+* a stiffness that grows with load does not settle there: K_ap of one line was 104, 49.5 and 47.5 kN
+  after 30, 80 and 90 cycles, where MoorDyn-C and the three parameters have 50. The law in its
+  source is the same and the cause was not found, so that the form is not written;
+* it starts a line with the whole strain in its slow spring, and a viscoelastic one relaxes from
+  there: the header says so;
+* it knows no Syrope: there is no such form.
 
 The tests run it where a program `moordyn_driver` is on the path; it is no Python package.
 
@@ -533,6 +537,11 @@ def openfast_files(line: ExportLine, stem: str, *, form: OpenFastForm = "table")
     remarks = [f"for MoorDyn of OpenFAST 5.0, run with its driver; {_ABOUT_GRAVITY}"]
     if len(files) > 1:
         remarks.append("the table is sought in the folder where the program starts")
+    if form == "static-dynamic":
+        remarks.append(
+            "the program starts with the whole strain in the slow spring: leave out the first ten "
+            "relaxation times"
+        )
     first, *rest = files.pop("").split("\n")
     said = header_lines(line, None, *remarks)
     said = said[next(place for place, text in enumerate(said) if text.startswith("Remark")) :]
