@@ -278,11 +278,7 @@ def moordyn_files(line: ExportLine, stem: str, *, form: MoorDynForm = "table") -
         None,
         *_said(line),
         *_stiffness_words(part),
-        ""
-        if form == "static-dynamic"
-        else "MoorDyn takes the running tension of the slow part for "
-        "the mean: about it K_ap of a cycle is 2 to 4 percent above that of static-dynamic on the "
-        "published lines",
+        *(() if form == "static-dynamic" else (_running_words(part),)),
         f"BA_d {plain_number(fast, 4)} N s: {_FAST_SHARE:g} of critical for segments of {apart:g} "
         "m, numerical, not measured; without it the integration grows",
     )
@@ -310,6 +306,20 @@ def _stiffness_words(part: Viscoelasticity) -> tuple[str, ...]:
         f"Maxwell form",
         f"found at {part.holds}" if part.holds else "",
         "a spring constant holds about a mean; the strain of the deck starts at zero tension",
+    )
+
+
+def _running_words(part: Viscoelasticity) -> str:
+    """What a cycle has where the stiffness follows the running tension."""
+    if not math.isfinite(part.frequency):
+        return "MoorDyn takes the running tension of the slow part for the mean"
+    running, held = part.running_stiffness_at(part.frequency), part.stiffness_at(part.frequency)
+    return (
+        "MoorDyn takes the running tension of the slow part for the mean: a small cycle at "
+        f"{plain_number(part.frequency, 4)} Hz has K_ap {plain_number(abs(running))} N "
+        f"({100 * (abs(running) / abs(held) - 1):+.1f} percent) and "
+        f"{100 * (running.imag / held.imag - 1):+.1f} percent of energy against static-dynamic, "
+        "which keeps both: take it where the energy counts"
     )
 
 

@@ -137,10 +137,14 @@ class Viscoelasticity:
         """Time by which strain follows tension at the frequency; infinite without one. [s]."""
         if not math.isfinite(self.frequency):
             return math.inf
-        turned = 2j * math.pi * self.frequency * self.relaxation_time
-        slow, fast = self.static_stiffness, self.fast_stiffness
-        stiffness = slow + (fast - slow) * turned / (1 + turned)
+        stiffness = self.stiffness_at(self.frequency)
         return stiffness.imag / stiffness.real / (2 * math.pi * self.frequency)
+
+    def stiffness_at(self, frequency: float) -> complex:
+        """Complex stiffness, tension over strain, at a frequency in Hz. [N]."""
+        turned = 2j * math.pi * frequency * self.relaxation_time
+        slow, fast = self.static_stiffness, self.fast_stiffness
+        return slow + (fast - slow) * turned / (1 + turned)
 
     def apparent_stiffness_at(self, frequency: float) -> float:
         """Tension amplitude over strain amplitude, K_ap, at a frequency in Hz. [N]."""
@@ -150,6 +154,27 @@ class Viscoelasticity:
         """Energy of a cycle, H, at a frequency in Hz and a tension amplitude in N. [J m-1]."""
         found = hysteresis_energy(**self._three, frequency=frequency, tension_amplitude=amplitude)
         return float(found)
+
+    def running_stiffness_at(self, frequency: float) -> complex:
+        r"""Complex stiffness where EA_d follows the running slow tension, as in MoorDyn. [N].
+
+        Notes
+        -----
+        With slow strain x, EA_d = g(x) = alpha + beta EA_1 x and EA_1 = g EA_s / (g - EA_s):
+        T = g (e - x) and BA_s dx/dt = g e - (g + EA_1) x, made linear about the mean, where
+        EA_1 x is the mean tension.
+        """
+        slow, fast = self.static_stiffness, self.fast_stiffness
+        beta = self.dynamic_stiffness_per_mean_tension
+        series = fast * slow / (fast - slow)
+        mean = self.mean_tension / slow
+        part = self.mean_tension / series
+        of_series = -(slow**2) / (fast - slow) ** 2
+        growth = beta * series / (1 - beta * of_series * part)
+        rate = 2j * math.pi * frequency * self.slow_dashpot_coefficient
+        held = rate + fast + series - growth * mean + (1 + of_series) * growth * part
+        follows = fast / held
+        return fast * (1 - follows) + growth * (mean - part) * follows
 
     @property
     def _three(self) -> dict[str, float]:

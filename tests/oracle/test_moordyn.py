@@ -56,6 +56,34 @@ def test_the_dynamic_stiffness_is_that_of_the_three_parameters(tmp_path, form, p
     assert found == pytest.approx(expected, rel=0.02)
 
 
+@pytest.mark.parametrize(
+    "name", ["polyester-double-braid-0.5in-new", "polyester-double-braid-0.5in-5-years"]
+)
+def test_a_running_stiffness_has_the_loop_that_its_header_tells(tmp_path, name):
+    source, frequency = published_sources()[name], 0.3
+    strength = source.rated_break_strength
+    levels = {
+        "frequency": frequency, "mean_tension": 0.21 * strength,
+        "tension_amplitude": 0.085 * strength,
+    }  # fmt: skip
+    one = line_from_lookup(source, levels=levels, linear_density=0.11)
+    part = one.viscoelasticity
+    files = moordyn_files(one, "deck", form="load-dependent")
+    write(tmp_path, files)
+    amplitude = levels["tension_amplitude"] / part.apparent_stiffness
+    mean = levels["mean_tension"] / part.static_stiffness
+    _, tension = run(tmp_path, mean=mean, amplitude=amplitude, frequency=frequency, cycles=20)
+    # the tension of a step is that at its end
+    phase = 2 * np.pi * np.arange(1, 201) / 200
+    waves = np.stack([np.ones(200), np.sin(phase), np.cos(phase)], axis=1)
+    _, *found = np.linalg.lstsq(waves, tension[-200:], rcond=None)[0] / amplitude
+    expected = part.running_stiffness_at(frequency)
+    assert np.hypot(*found) == pytest.approx(abs(expected), rel=0.01)
+    assert found[1] == pytest.approx(expected.imag, rel=0.02)
+    energy = 100 * (expected.imag / part.stiffness_at(frequency).imag - 1)
+    assert f"{energy:+.1f} percent of energy" in " ".join(files[""].split())
+
+
 @pytest.mark.parametrize("part", [constant(), pytest.param(growing(), marks=pytest.mark.nightly)])
 def test_the_slow_stiffness_is_static(tmp_path, part):
     form = "load-dependent" if part.dynamic_stiffness_per_mean_tension else "static-dynamic"
