@@ -30,6 +30,7 @@ What MoorPy 1.3 does with a file that is not to its liking, and what is done her
   ``.txt``; anything else becomes 1,000 MN without a word: ``|name.txt|`` is written;
 * the table ends at a line with ``---``; without it, or with a line after it, reading fails;
 * the table is sought in the working folder: the header says so;
+* 1.2 has no line without EA, and so none with a table: the header says so;
 * the slope of the dynamic stiffness is ``EAD_LM`` in 1.3 and ``EAd_MBL_Lm`` in its own list of
   names: both are written;
 * a least or greatest diameter in the library ends in an error: none is written.
@@ -458,6 +459,7 @@ def moorpy_files(line: ExportLine, stem: str, *, form: MoorPyForm = "table") -> 
         line.volume_diameter[1],
         f"hydrodynamic coefficients: {line.hydrodynamics.source}",
         f"MoorPy seeks {table} in the working folder: start it there",
+        "MoorPy 1.2, which RAFT 2.0 brings, takes no table (KeyError 'EA'): use 1.3, or a library",
         "with a table MoorPy takes the line as straight, and halves its weight to the ends",
     )
     steepest = float(np.max(np.diff(curve.tension) / np.diff(curve.strain)))
