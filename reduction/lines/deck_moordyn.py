@@ -317,10 +317,11 @@ def _running_words(part: Viscoelasticity) -> str:
     running, held = part.running_stiffness_at(part.frequency), part.stiffness_at(part.frequency)
     return (
         "MoorDyn takes the running tension of the slow part for the mean: a small cycle at "
-        f"{plain_number(part.frequency, 4)} Hz has K_ap {plain_number(abs(running))} N "
-        f"({100 * (abs(running) / abs(held) - 1):+.1f} percent) and "
-        f"{100 * (running.imag / held.imag - 1):+.1f} percent of energy against static-dynamic, "
-        "which keeps both: take it where the energy counts"
+        f"{plain_number(part.frequency, 4)} Hz differs from static-dynamic by "
+        f"{100 * (abs(running) / abs(held) - 1):+.1f} percent in K_ap, "
+        f"{plain_number(abs(running))} N, and by "
+        f"{100 * (running.imag / held.imag - 1):+.1f} percent in hysteresis energy; where the "
+        "energy matters, use static-dynamic"
     )
 
 

@@ -156,7 +156,7 @@ class Viscoelasticity:
         return float(found)
 
     def running_stiffness_at(self, frequency: float) -> complex:
-        r"""Complex stiffness where EA_d follows the running slow tension, as in MoorDyn. [N].
+        """Complex stiffness where EA_d follows the running slow tension, as in MoorDyn. [N].
 
         Notes
         -----

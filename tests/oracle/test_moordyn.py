@@ -81,7 +81,7 @@ def test_a_running_stiffness_has_the_loop_that_its_header_tells(tmp_path, name):
     assert np.hypot(*found) == pytest.approx(abs(expected), rel=0.01)
     assert found[1] == pytest.approx(expected.imag, rel=0.02)
     energy = 100 * (expected.imag / part.stiffness_at(frequency).imag - 1)
-    assert f"{energy:+.1f} percent of energy" in " ".join(files[""].split())
+    assert f"{energy:+.1f} percent in hysteresis energy" in " ".join(files[""].split())
 
 
 @pytest.mark.parametrize("part", [constant(), pytest.param(growing(), marks=pytest.mark.nightly)])
