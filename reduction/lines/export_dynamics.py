@@ -331,7 +331,7 @@ def _said_identified(
     return (
         f"K_1 {plain_number(spring)} N and tau {plain_number(part.relaxation_time, 4)} s "
         f"are identified from the surfaces "
-        f"of K_ap and H and from K_0 at these levels: the exported line gives back K_ap "
+        f"of K_ap and H and from K_0 at these levels: the three-parameter line gives back K_ap "
         f"{plain_number(part.apparent_stiffness)} N and H "
         f"{plain_number(part.hysteresis_energy_at(part.frequency, amplitude), 4)} J/m there"
         + _said_known(half, is_exact=is_exact)
