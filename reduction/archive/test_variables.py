@@ -61,6 +61,7 @@ COEFFICIENTS = {
     "splice_strain_ratio": "splice_strain_ratio",
     "splice_offset": "splice_offset",
     "splice_strain_curvature": "splice_strain_curvature",
+    "splice_strain_cubic": "splice_strain_cubic",
     "free_length_intercept": "free_length_intercept",
     "free_length_slope": "free_length_slope",
     "free_fraction": "free_fraction",

@@ -435,6 +435,12 @@ OF_RECORD: tuple[Quantity, ...] = (
             tables=("splice_coefficients",),
         ),
         measured(
+            "splice_strain_cubic",
+            "1",
+            "splice strain over the cube of the strain of the free length",
+            tables=("splice_coefficients",),
+        ),
+        measured(
             "free_length_intercept",
             "m",
             "free length of the fitted line at position zero",

@@ -2,11 +2,16 @@ r"""The laws that tape readings at the splice toes can carry, each fitted, judge
 
 Every law says by how much the splices lengthen,
 
-.. math:: \varepsilon_s = s_0 + \rho\,\varepsilon + \kappa\,\varepsilon^2 + c F^n
+.. math:: \varepsilon_s = s_0 + \rho\,\varepsilon + \kappa\,\varepsilon^2 + \gamma\,\varepsilon^3 + c F^n
 
 and they differ in the terms that they have: the splices strain by the tension that they carry
 (:math:`c, n`), by a share of what the free length does (:math:`\rho`), by a share that changes
-along the stroke (:math:`\kappa`), by both, or after they have bedded in (:math:`s_0`).
+along the stroke (:math:`\kappa, \gamma`), by both, or after they have bedded in (:math:`s_0`).
+
+Tape readings tell a law of tension from one of strain by their bend alone, and a loop of the one has
+another width than a loop of the other.  Each side therefore has laws that bend as they need: a power
+of the tension, a cubic in the strain.  None may have splices that shorten as the free length stretches
+at one tension, which a mixture would otherwise use to imitate a curve.
 
 References
 ----------
@@ -35,6 +40,7 @@ LAWS: dict[str, tuple[str, ...]] = {
     "mixture": ("strain", "tension"),
     "marks-linear": ("offset", "strain"),
     "strain-curve": ("strain", "square"),
+    "strain-cubic": ("strain", "square", "cube"),
     "bedded tension-driven": ("offset", "tension"),
     "bedded curve": ("offset", "strain", "square"),
     "bedded mixture": ("offset", "strain", "tension"),
@@ -42,7 +48,7 @@ LAWS: dict[str, tuple[str, ...]] = {
 }
 """Laws and the terms of the splice strain that each of them has."""
 
-TERMS = ("offset", "strain", "square", "tension")
+TERMS = ("offset", "strain", "square", "cube", "tension")
 """Of `FittedLaw.values`: the last one is the splice strain at the reference tension."""
 
 REJECTED = 0.001
@@ -69,6 +75,14 @@ _NOWHERE = 1e12
 # of the splices' length: what splices settle by when they are first loaded; a law of position has
 # besides what its line or curve cannot follow below the lowest mark
 _BEDDING, _INTERCEPT = 0.03, 0.1
+
+_MOST_FALL = 2.0  # standard errors of the splice strain per free strain, below which it falls
+
+# of the weight of laws, for a side that fits: of two laws with this and the rest, the 95 % interval
+# about their mean reaches both, as 1.96 sqrt(w (1 - w)) >= 1 - w
+_LEAST = 1 / (1 + 1.96**2)
+
+_SPARE = 2  # marks more than coefficients, for a cubic to be tried
 
 _SPAN = 1.5  # of tension, from which an exponent is looked for
 
@@ -122,7 +136,7 @@ class SpliceReadings:
 class FittedLaw:
     """One law at its best: coefficients of `TERMS`, exponent and relaxed lengths, with covariance.
 
-    Shape (7,) and (7, 7), zero of a term that it lacks; the last two are by how much free and
+    Shape (8,) and (8, 8), zero of a term that it lacks; the last two are by how much free and
     splice length are longer than the slack rows say, relative.  ``chi_square`` is against the
     stated error of the tape, with ``freedom``; ``chance`` is its probability, ``criterion`` that
     of Akaike.
@@ -144,7 +158,7 @@ class FittedLaw:
     @property
     def n_terms(self) -> int:
         """Number of its coefficients."""
-        return len(LAWS[self.name]) + int(self.covariance[4, 4] > 0)
+        return len(LAWS[self.name]) + int(self.covariance[5, 5] > 0)
 
 
 @dataclass(frozen=True)
@@ -154,12 +168,12 @@ class SpliceAverage:
 
     Parameters
     ----------
-    values : ndarray, shape (7,)
+    values : ndarray, shape (8,)
         Mean coefficients of `TERMS`, mean exponent, and by how much relaxed free and splice length
         are longer than the slack rows say, relative. [1]
-    covariance : ndarray, shape (7, 7)
+    covariance : ndarray, shape (8, 8)
         By the tape alone. [1]
-    between : ndarray, shape (7, 7)
+    between : ndarray, shape (8, 8)
         By which law it is. [1]
     reference : float
         Tension at which the splices strain by the last of the coefficients. [N]
@@ -214,7 +228,10 @@ def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAv
     A law passes whose misfit, against the stated error of the tape, has a chance of one in a
     thousand or more.  Laws that pass are weighed by Akaike's criterion,
     :math:`w \propto e^{-\mathrm{AIC}/2}`; equally where one of them has fewer marks than
-    coefficients and two, since the misfit then says nothing.  What the laws differ by is a source
+    coefficients and two, since the misfit then says nothing.  Where a law of tension alone and one
+    of strain alone both fit, neither has less than a fifth: their bend tells them apart, the width
+    of a loop hangs on which it is, and that the true bend is a power or a cubic is an assumption.
+    What the laws differ by is a source
     of uncertainty of its own, the second term of
 
     .. math:: \sum w_k C_k + \sum w_k (\theta_k - \bar\theta)(\theta_k - \bar\theta)^T
@@ -258,14 +275,14 @@ def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAv
     )
     criterion = np.array([law.criterion for law in laws])
     weight = np.exp(-(criterion - criterion[passing].min()) / 2) if is_known else np.ones(len(laws))
-    weight = np.where(passing, weight, 0.0) / weight[passing].sum()
+    weight = _with_both_sides(laws, np.where(passing, weight, 0.0) / weight[passing].sum())
     values = np.array([law.values for law in laws])
     mean = weight @ values
     # powers of like exponents add up to one of their mean, weighed by what each strains
-    share = weight * values[:, 3]
-    mean[4] = share @ values[:, 4] / share.sum() if share.sum() > 0 else 1.0
+    share = weight * values[:, 4]
+    mean[5] = share @ values[:, 5] / share.sum() if share.sum() > 0 else 1.0
     away = values - mean
-    away[values[:, 3] == 0, 4] = 0.0
+    away[values[:, 4] == 0, 5] = 0.0
     offset, variance = _offsets(kept, laws[int(np.argmax(weight))], slip)
     return SpliceAverage(
         values=mean,
@@ -279,6 +296,24 @@ def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAv
         test_variance=variance,
         set_aside=set_aside,
     )
+
+
+def _with_both_sides(laws: Sequence[FittedLaw], weight: Floats) -> Floats:
+    """Weights with as much for laws of tension alone, and of strain alone, as an interval needs."""
+    terms = [frozenset(LAWS[law.name]) - {"offset"} for law in laws]
+    sides = np.array(
+        [[only == {"tension"} for only in terms], ["tension" not in only for only in terms]]
+    )
+    fits = np.array([law.chance >= _DOUBT for law in laws]) & (weight > 0)
+    if not (sides & fits).any(axis=1).all():
+        return weight
+    least = np.where(sides, np.where(fits, weight, 0.0), 0.0)
+    raised = least * (np.maximum(_LEAST / least.sum(axis=1, keepdims=True), 1.0))
+    fixed = (raised > least).any(axis=0)
+    kept = np.where(fixed, raised.max(axis=0), weight)
+    free = kept[~fixed].sum()
+    kept[~fixed] *= (1 - kept[fixed].sum()) / (free if free > 0 else 1.0)
+    return np.asarray(kept)
 
 
 @dataclass(frozen=True)
@@ -299,7 +334,7 @@ def _judged(readings: SpliceReadings) -> _Judged:
         (found.criterion, float(slip))
         for slip in readings.tape * _SLIPS
         for name in LAWS
-        if (found := _fit(readings, name, float(best.values[4]), float(slip))) is not None
+        if (found := _fit(readings, name, float(best.values[5]), float(slip))) is not None
     ]
     criterion, slip = min(tried)
     # one more number was found from the marks
@@ -342,7 +377,7 @@ def _law(readings: SpliceReadings, name: str, slip: float) -> FittedLaw | None:
         return at_one
     bend = (below.criterion - 2 * best + above.criterion) / _STEP**2
     slope = (above.values - below.values) / (2 * _STEP)
-    slope[4] = 1.0
+    slope[5] = 1.0
     return replace(
         law,
         covariance=law.covariance + 2 / max(bend, 1e-6) * np.outer(slope, slope),
@@ -358,6 +393,7 @@ def _terms(readings: SpliceReadings, exponent: float) -> dict[str, Floats]:
         "offset": (~readings.is_slack).astype(np.float64),
         "strain": np.where(readings.is_slack, 0.0, free),
         "square": np.where(readings.is_slack, 0.0, free**2),
+        "cube": np.where(readings.is_slack, 0.0, free**3),
         "tension": np.where(readings.is_slack, 0.0, (load / readings.reference) ** exponent),
     }
 
@@ -370,9 +406,11 @@ def _fit(readings: SpliceReadings, name: str, exponent: float, slip: float) -> F
         is_known = readings.is_slack | (np.nan_to_num(readings.tension) > 0)
         if not is_known.all():
             return None
+    loaded = ~readings.is_slack
+    if "cube" in LAWS[name] and loaded.sum() < len(LAWS[name]) + _SPARE:
+        return None
     columns = _terms(readings, exponent)
     design = np.stack([columns[term] for term in LAWS[name]], axis=1)
-    loaded = ~readings.is_slack
     # columns by their size: a tension has another than a strain
     size = np.sqrt((design**2).sum(axis=0))
     if (size == 0).any() or np.linalg.matrix_rank(design[loaded] / size, tol=1e-3) < len(places):
@@ -394,10 +432,10 @@ def _fit(readings: SpliceReadings, name: str, exponent: float, slip: float) -> F
         solved = normal @ weighed.T @ readings.splice
         values = np.append(np.zeros(len(TERMS)), exponent)
         values[places] = solved[:-2] / size
-        slope = np.where(loaded, values[1] + 2 * values[2] * readings.free, 0.0)
-        per_tension = exponent * values[3] * columns["tension"]
+        slope = np.where(loaded, _per_strain(readings.free) @ values[1:4], 0.0)
+        per_tension = exponent * values[4] * columns["tension"]
     # splices that shorten under load, or that stretch more than what they hold
-    if values[3] < 0 or (1 + readings.share * slope).min() <= 0.05:
+    if values[4] < 0 or (1 + readings.share * slope).min() <= 0.05:
         return None
     lengths = solved[-2:]
     residual = readings.splice - whole @ solved
@@ -406,9 +444,13 @@ def _fit(readings: SpliceReadings, name: str, exponent: float, slip: float) -> F
     chi_square = float(misfit @ np.linalg.solve(covariance[np.ix_(judged, judged)], misfit))
     chi_square += float(solved @ known @ solved)
     scale = np.concatenate([1 / size, np.ones(2)])
-    at = np.array([*places, 5, 6])
-    own = np.zeros((7, 7))
+    at = np.array([*places, 6, 7])
+    own = np.zeros((8, 8))
     own[np.ix_(at, at)] = normal * np.outer(scale, scale)
+    falling = _per_strain(readings.free[loaded])
+    spare = _MOST_FALL * np.sqrt(np.einsum("ri,ij,rj->r", falling, own[1:4, 1:4], falling))
+    if (falling @ values[1:4] < -spare).any():
+        return None
     spread = np.linalg.slogdet(covariance[np.ix_(judged, judged)] / readings.tape**2)[1]
     if slip > 0:
         slack = np.diag(_of_rows(readings, slope, 0.0))[~loaded] / readings.tape**2
@@ -425,6 +467,11 @@ def _fit(readings: SpliceReadings, name: str, exponent: float, slip: float) -> F
         criterion=misfit_term + 2.0 * len(places) + spread,
         residual=residual,
     )
+
+
+def _per_strain(free: Floats) -> Floats:
+    """Slopes of the terms in the strain of the free length; shape (n_rows, 3)."""
+    return np.stack([np.ones_like(free), 2 * free, 3 * free**2], axis=-1)
 
 
 def _of_rows(
@@ -475,15 +522,15 @@ def _outlier(readings: SpliceReadings, slip: float) -> int | None:
             return None
         errors = []
         for law in others:
-            columns = _terms(readings, float(law.values[4]))
+            columns = _terms(readings, float(law.values[5]))
             design = np.array([columns[term][row] for term in TERMS])
-            slope = law.values[1] + 2 * law.values[2] * readings.free[row]
+            slope = float(_per_strain(readings.free[row]) @ law.values[1:4])
             own = readings.tape**2 * (2 * (1 + readings.share * slope) ** 2 + 1) + slip**2
             if readings.tension_uncertainty.size:
-                of_tension = law.values[4] * law.values[3] * design[3]
+                of_tension = law.values[5] * law.values[4] * design[4]
                 own += (of_tension * readings.tension_uncertainty[row]) ** 2
-            of_law = float(design @ law.covariance[:4, :4] @ design)
-            away = readings.splice[row] - design @ law.values[:4]
+            of_law = float(design @ law.covariance[:5, :5] @ design)
+            away = readings.splice[row] - design @ law.values[:5]
             errors.append(abs(away) / np.sqrt(own + of_law))
         far[row] = min(errors)
     worst = int(np.argmax(far))

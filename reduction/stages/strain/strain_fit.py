@@ -904,24 +904,24 @@ def _fit_mixed(readings: PooledMarks, average: SpliceAverage | None) -> _MixedFi
     given = _splice_readings(readings, relaxed)
     if average is None:
         average = average_over_laws(readings)
-    free, splice = (float(one) for one in relaxed.values * (1 + average.values[5:]))
+    free, splice = (float(one) for one in relaxed.values * (1 + average.values[6:]))
     tests = list(dict.fromkeys(marks.test))
     own = [tests.index(test) for test in dict.fromkeys(np.array(marks.test)[readings.is_own])]
     offset, of_slip = _own_offset(average, own[0] if own else None)
     names = (
         "relaxed_free_length", "relaxed_splice_length", "splice_offset", "splice_strain_ratio",
-        "splice_strain_curvature", "splice_compliance", "splice_exponent",
+        "splice_strain_curvature", "splice_strain_cubic", "splice_compliance", "splice_exponent",
     )  # fmt: skip
-    strained, exponent = (float(one) for one in average.values[3:5])
+    strained, exponent = (float(one) for one in average.values[4:6])
     compliance = strained * average.reference**-exponent
-    values = [free, splice, *average.values[:3].tolist(), compliance, exponent]
+    values = [free, splice, *average.values[:4].tolist(), compliance, exponent]
     values[2] += offset
     # from the strain at the reference tension to that at one newton, and to lengths
-    to_si = np.zeros((7, 7))
-    to_si[[0, 1], [5, 6]] = relaxed.values
-    to_si[[2, 3, 4, 5, 6], [0, 1, 2, 3, 4]] = 1.0
-    to_si[5, 3] = average.reference**-exponent
-    to_si[5, 4] = -compliance * np.log(average.reference)
+    to_si = np.zeros((8, 8))
+    to_si[[0, 1], [6, 7]] = relaxed.values
+    to_si[[2, 3, 4, 5, 6, 7], [0, 1, 2, 3, 4, 5]] = 1.0
+    to_si[6, 4] = average.reference**-exponent
+    to_si[6, 5] = -compliance * np.log(average.reference)
     covariance = to_si @ average.covariance @ to_si.T
     between = to_si @ average.between @ to_si.T
     covariance[2, 2] += of_slip
@@ -1012,9 +1012,11 @@ def _on_laws(fit: _MixedFit, readings: PooledMarks) -> tuple[Note, ...]:
 def _effect_on_modulus(model: StrainModel, law: FittedLaw, reference: float) -> float:
     """Change of a modulus by another law, over the middle of what was marked."""
     other = dict(model.coefficients)
-    strained, exponent = (float(one) for one in law.values[3:5])
-    names = ("splice_offset", "splice_strain_ratio", "splice_strain_curvature")
-    other |= dict(zip(names, law.values[:3].tolist(), strict=True))
+    strained, exponent = (float(one) for one in law.values[4:6])
+    names = (
+        "splice_offset", "splice_strain_ratio", "splice_strain_curvature", "splice_strain_cubic",
+    )  # fmt: skip
+    other |= dict(zip(names, law.values[:4].tolist(), strict=True))
     other |= {
         "splice_compliance": strained * reference**-exponent, "splice_exponent": exponent,
     }  # fmt: skip

@@ -372,13 +372,14 @@ def _mixed_strain(
     splice_offset: float,
     splice_strain_ratio: float,
     splice_strain_curvature: float,
+    splice_strain_cubic: float,
     splice_compliance: float,
     splice_exponent: float,
 ) -> Floats:
     r"""Strain where the splices strain by what they carry, and by what the free length does.
 
     .. math:: \ell_0 (1 + \varepsilon)
-       + \ell_s (1 + s_0 + \rho\varepsilon + \kappa\varepsilon^2 + c F^n) = p
+       + \ell_s (1 + s_0 + \rho\varepsilon + \kappa\varepsilon^2 + \gamma\varepsilon^3 + c F^n) = p
 
     Notes
     -----
@@ -392,6 +393,7 @@ def _mixed_strain(
     >>> strain = _mixed_strain(
     ...     [6.5518], [450.0], relaxed_free_length=2.55, relaxed_splice_length=1.19,
     ...     splice_offset=0.0, splice_strain_ratio=0.11, splice_strain_curvature=0.0,
+    ...     splice_strain_cubic=0.0,
     ...     splice_compliance=0.11 / 450, splice_exponent=1.0)
     >>> print(strain.round(4))
     [1.]
@@ -407,11 +409,32 @@ def _mixed_strain(
         splice_compliance * np.maximum(load, 0.0) ** splice_exponent if splice_compliance else 0.0
     )
     excess = place * (1 / relaxed_free_length) - 1 - share * (1 + splice_offset + by_tension)
-    if splice_strain_curvature == 0:
+    if splice_strain_curvature == splice_strain_cubic == 0:
         return np.asarray(excess / slope)
-    root = slope**2 + 4 * share * splice_strain_curvature * excess
-    with np.errstate(invalid="ignore"):
-        return np.asarray(2 * excess / (slope + np.sqrt(root)))
+    if splice_strain_cubic == 0:
+        root = slope**2 + 4 * share * splice_strain_curvature * excess
+        with np.errstate(invalid="ignore"):
+            return np.asarray(2 * excess / (slope + np.sqrt(root)))
+    return _cubic_root(excess, slope, share * splice_strain_curvature, share * splice_strain_cubic)
+
+
+def _cubic_root(excess: Floats, slope: float, square: float, cube: float) -> Floats:
+    """Root of a rising cubic through zero, by Newton; NaN where it has none in reach."""
+    root = np.asarray(excess / slope)
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        for _ in range(_MOST_STEPS):
+            missing = excess - root * (slope + root * (square + root * cube))
+            step = missing / (slope + root * (2 * square + 3 * root * cube))
+            root = root + step
+            if not np.nanmax(np.abs(step), initial=0.0) > _ROUNDING:
+                break
+        missing = excess - root * (slope + root * (square + root * cube))
+        return np.where(np.abs(missing) <= 10 * _ROUNDING * (1 + np.abs(excess)), root, np.nan)
+
+
+_MOST_STEPS = 30  # of Newton; five do
+
+_ROUNDING = 1e-14  # of the strain 1
 
 
 def _marked_line_strain(
@@ -743,7 +766,9 @@ def position_by_model(model: StrainModel, *, strain: ArrayLike, tension: ArrayLi
 def _mixed_length(strain: Floats, tension: Floats, known: dict[str, float]) -> Floats:
     compliance, exponent = known["splice_compliance"], known["splice_exponent"]
     by_tension = compliance * np.maximum(tension, 0.0) ** exponent if compliance else 0.0
-    by_strain = known["splice_strain_ratio"] + known["splice_strain_curvature"] * strain
+    by_strain = known["splice_strain_ratio"] + strain * (
+        known["splice_strain_curvature"] + known["splice_strain_cubic"] * strain
+    )
     splices = 1 + known["splice_offset"] + by_strain * strain + by_tension
     return np.asarray(
         known["relaxed_free_length"] * (1 + strain) + known["relaxed_splice_length"] * splices
