@@ -2,16 +2,17 @@ r"""The laws that tape readings at the splice toes can carry, each fitted, judge
 
 Every law says by how much the splices lengthen,
 
-.. math:: \varepsilon_s = s_0 + \rho\,\varepsilon + \kappa\,\varepsilon^2 + \gamma\,\varepsilon^3 + c F^n
+.. math:: \varepsilon_s = s_0 + \rho\,\varepsilon + \kappa\,\varepsilon^2
+   + \gamma\,\varepsilon^3 + c F^n
 
 and they differ in the terms that they have: the splices strain by the tension that they carry
 (:math:`c, n`), by a share of what the free length does (:math:`\rho`), by a share that changes
 along the stroke (:math:`\kappa, \gamma`), by both, or after they have bedded in (:math:`s_0`).
 
-Tape readings tell a law of tension from one of strain by their bend alone, and a loop of the one has
-another width than a loop of the other.  Each side therefore has laws that bend as they need: a power
-of the tension, a cubic in the strain.  None may have splices that shorten as the free length stretches
-at one tension, which a mixture would otherwise use to imitate a curve.
+Tape readings tell a law of tension from one of strain by their bend alone, and a loop of the one
+has another width than a loop of the other.  Each side therefore has laws that bend as they need, a
+power of the tension and a cubic in the strain, and none may have splices that shorten as the free
+length stretches at one tension: a mixture would use that to imitate a curve.
 
 References
 ----------
