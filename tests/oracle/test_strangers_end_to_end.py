@@ -25,7 +25,7 @@ pytestmark = pytest.mark.slow
 SEED = 7
 LAWS = (
     "tether-tension-smooth", "tether-ratio-kinked", "tether-mixture-both",
-    "tether-saturating-smooth", "tether-stiffening-both", "tether-slip-slow-kinked", "line-angle",
+    "tether-saturating-smooth", "tether-stiffening-kinked", "tether-slip-slow-kinked", "line-angle",
 )  # fmt: skip
 OF_EACH, OF_ALL = 0.6, 0.9
 

@@ -1,0 +1,62 @@
+"""Laws of the splices where tape readings leave open whether strain or tension drives them."""
+
+import numpy as np
+import pytest
+
+from reduction.stages.strain.splice_laws import LAWS, SpliceReadings, fit_splice_laws
+
+FREE = np.array([0.0, 0.5, 0.8, 1.0, 1.3, 1.6, 1.9, 2.2, 2.5])
+# a rubber that softens, then stiffens
+TENSION = 300.0 * FREE * (1 - 0.25 * FREE + 0.09 * FREE**2)
+TAPE = 1e-3
+
+
+def readings(splice, tension=TENSION):
+    """Marks of one test without error, read with a tape of the stated one."""
+    return SpliceReadings(
+        FREE, splice, tension, np.zeros(FREE.size, int), FREE == 0, 0.45, TAPE, np.zeros((2, 2)),
+        tension_uncertainty=np.zeros(FREE.size),
+    )  # fmt: skip
+
+
+def stiffening(bend=2.0, at_one=0.2):
+    """Splices that follow the free strain along a curve that steepens."""
+    return at_one * FREE * (1 + (FREE / bend) ** 2) / (1 + bend**-2)
+
+
+def test_splices_that_steepen_with_the_free_strain_are_not_taken_for_driven_by_tension():
+    found = fit_splice_laws(readings(stiffening()))
+    assert found.laws[0].name == "strain-cubic"
+    assert found.laws[0].values[1:5] == pytest.approx([0.16, 0.0, 0.04, 0.0], abs=1e-6)
+    assert found.values[4] == pytest.approx(0.0, abs=0.01)
+
+
+def test_no_law_has_splices_that_shorten_as_the_free_length_stretches():
+    found = fit_splice_laws(readings(stiffening(1.5)))
+    slopes = np.stack([np.ones(FREE.size), 2 * FREE, 3 * FREE**2], axis=1)[1:]
+    for law in found.laws:
+        spread = np.sqrt(np.einsum("ri,ij,rj->r", slopes, law.covariance[1:4, 1:4], slopes))
+        assert (slopes @ law.values[1:4] >= -2 * spread - 1e-12).all(), law.name
+
+
+def test_a_side_that_fits_is_reached_by_the_interval_of_the_average():
+    """With 21 % of the weight, 1.96 standard deviations of two laws reach the lighter one."""
+    found = fit_splice_laws(readings(0.2 * (TENSION / TENSION[3]) ** 1.2))
+    by_strain = [
+        weight for law, weight in zip(found.laws, found.weight, strict=True)
+        if "tension" not in LAWS[law.name]
+    ]  # fmt: skip
+    assert found.laws[0].name == "tension-driven"
+    assert sum(by_strain) >= 1 / (1 + 1.96**2) - 1e-12
+    lightest = next(law for law in found.laws if law.name == "strain-cubic")
+    away = abs(found.values[4] - lightest.values[4])
+    assert 1.96 * np.sqrt(found.between[4, 4]) >= away
+
+
+def test_a_cubic_is_not_tried_with_fewer_than_five_loaded_marks():
+    kept = np.array([0, 1, 3, 5, 8])
+    few = SpliceReadings(
+        FREE[kept], 0.2 * FREE[kept], TENSION[kept], np.zeros(kept.size, int), FREE[kept] == 0,
+        0.45, TAPE, np.zeros((2, 2)), tension_uncertainty=np.zeros(kept.size),
+    )  # fmt: skip
+    assert "strain-cubic" not in {law.name for law in fit_splice_laws(few).laws}
