@@ -12,8 +12,9 @@ from reduction.cli.curves import deployed_line, is_of_pieces, piece_source, rule
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain
 from reduction.lines.archive_source import SURFACES, experiments_with_pulls
+from reduction.lines.client_runs import LIMITS, ClientCheck, in_words, verify_deck
 from reduction.lines.composite import compose
-from reduction.lines.deck_formats import closeness_of, export_line
+from reduction.lines.deck_formats import FORMS, closeness_of, export_line
 from reduction.lines.deck_moordyn import fast_damping, segment_length
 from reduction.lines.export_dynamics import Syrope
 from reduction.lines.export_line import (
@@ -33,7 +34,7 @@ from reduction.lines.export_sources import (
 )
 from reduction.lines.published_source import published_sources
 from reduction.quantities.units import Dimension, parse_quantity
-from reduction.record.errors import SettingsError
+from reduction.record.errors import DataError, SettingsError
 
 _HYDRODYNAMICS_NEEDED = 'two numbers, "1.6, 0.02": across the line, along it'
 
@@ -199,6 +200,7 @@ def export_source(
     syrope: tuple[str | None, str | None],
     levels: dict[str, str | None],
     extrapolate: str,
+    verify: bool,
     output: CommandOutput,
 ) -> None:
     """Write the curve of a source in a format, and say what was written."""
@@ -230,6 +232,14 @@ def export_source(
     line = _with_syrope(line, *syrope, form=form, rated_break_strength=strength)
     there = set(out.parent.iterdir()) if out.parent.is_dir() else set()
     paths = export_line(line, to, out, form=form, units=output.system)
+    checks: list[ClientCheck] = []
+    if verify:
+        checks = verify_deck(line, to, form or next(iter(FORMS.get(to, ())), ""), paths)
+        line = replace(line, notes=(*line.notes, *in_words(checks)))
+        # the header carries what the program gave
+        paths = export_line(line, to, out, form=form, units=output.system)
+        if not all(one.is_kept for one in checks):
+            output.raise_status(DataError.exit_status)
     notes = (*guards_of(line), *closeness_of(line, to, form), *line.notes)
     output.say(f"{line.name}: {line.curve}")
     for text in (*line.sources, *(f"note: {note}" for note in notes)):
@@ -247,6 +257,20 @@ def export_source(
             "sources": list(line.sources),
             "notes": list(notes),
             "synthetic": line.is_synthetic,
+            "checks": [
+                {
+                    "program": one.program,
+                    "quantity": one.quantity,
+                    "at": one.at,
+                    "promised": plain(one.promised),
+                    "found": plain(one.found),
+                    "unit": one.unit,
+                    "error": plain(one.error),
+                    "limit": LIMITS[one.quantity],
+                    "kept": one.is_kept,
+                }
+                for one in checks
+            ],
             "hydrodynamics": asdict(line.hydrodynamics),
             **{
                 name: {"value": plain(getattr(line, name)), "unit": unit}

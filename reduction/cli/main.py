@@ -514,6 +514,9 @@ def export(
     extrapolate: Annotated[
         str, typer.Option(help="Outside the levels: refuse or flag.")
     ] = "refuse",
+    verify: Annotated[
+        bool, typer.Option("--verify", help="Run the deck in its program, and say what it gave.")
+    ] = False,
     allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
@@ -547,6 +550,7 @@ def export(
                     "tension_amplitude": tension_amplitude,
                 },
                 extrapolate=extrapolate,
+                verify=verify,
                 output=output,
             )
 

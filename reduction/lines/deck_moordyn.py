@@ -7,8 +7,8 @@ MoorDyn: look-up table, static and dynamic stiffness, stiffness that grows with 
 What MoorDyn 2.7 does with a file that is not to its liking, and what is done here about it:
 
 * a line end after the last row, or more than 30 rows, and it does not start: neither is written;
-* below the first and beyond the last row it keeps the tension: the first row is 0 0, the header
-  gives the last one;
+* below the first and beyond the last row it keeps the tension: the first row is 0 0, the last one
+  lies beyond the curve, straight on;
 * a loop gives nonsense, and a table beside ``|EA_d`` is replaced by its last secant: neither is
   possible here;
 * a Syrope line without initial conditions ends in a segmentation fault: they are always written;
@@ -62,6 +62,7 @@ References
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from hashlib import sha256
 from typing import Literal, get_args
 
@@ -70,9 +71,11 @@ import numpy as np
 from reduction.lines.deck_text import header_lines, number, one_line, real_number
 from reduction.lines.export_dynamics import Syrope, Viscoelasticity
 from reduction.lines.export_line import (
+    CONTINUED,
     CycleDamping,
     ExportLine,
     ThinnedCurve,
+    continued_tension,
     damping_words,
     thin_curve,
 )
@@ -220,6 +223,23 @@ def _table_text(line: ExportLine, curve: ThinnedCurve) -> str:
     )
 
 
+def _continued(line: ExportLine, curve: ThinnedCurve) -> ThinnedCurve:
+    """One row more, straight on: these programs keep the last tension beyond the last row."""
+    further = float(f"{(1 + CONTINUED) * float(curve.strain[-1]):.10g}")
+    beyond = float(continued_tension(line, further))
+    return replace(
+        curve,
+        strain=np.append(curve.strain, further),
+        tension=np.append(curve.tension, float(f"{beyond:.10g}")),
+    )
+
+
+_BEYOND = (
+    f"the last row of the table is {100 * CONTINUED:g} percent beyond the end of the curve, "
+    "straight on at its last slope: no test went there, and beyond it the last tension is kept"
+)
+
+
 def fast_damping(stiffness: float, linear_density: float, apart: float) -> float:
     """Numerical damping of the fast spring, a tenth of critical for the segments of a deck. [N s].
 
@@ -337,7 +357,7 @@ def _table_files(
     line: ExportLine, stem: str, *, is_damped: bool, takes_share: bool = True
 ) -> dict[str, str]:
     """Deck and table; ``takes_share`` is whether damping may be a share of critical."""
-    curve = thin_curve(line.strain, line.tension, most=MOST_POINTS)
+    curve = thin_curve(line.strain, line.tension, most=MOST_POINTS - 1)
     table = f"{stem}_table.txt"
     damping = _dashpot_of(line) if is_damped else None
     steepest = float(np.max(np.diff(curve.tension) / np.diff(curve.strain)))
@@ -351,7 +371,9 @@ def _table_files(
             f"internal damping {plain_number(written, 4)} N s: {_FAST_SHARE:g} of critical for "
             f"segments of {segment_length(line):g} m, numerical, not measured"
         )
-    head = header_lines(line, curve, *_said(line), words, f"{table} belongs beside this file")
+    head = header_lines(
+        line, curve, *_said(line), words, _BEYOND, f"{table} belongs beside this file"
+    )
     row = _line_type(line, table, number(written))
     strain = line.strain[-1] / 2
     return {
@@ -364,7 +386,7 @@ def _table_files(
             damping=coefficient,
             lag=coefficient / steepest if is_damped else math.inf,
         ),
-        table: _table_text(line, curve),
+        table: _table_text(line, _continued(line, curve)),
     }
 
 
@@ -452,13 +474,14 @@ def moorpy_files(line: ExportLine, stem: str, *, form: MoorPyForm = "table") -> 
         raise SettingsError(
             "the form of a MoorPy line is not known", found=repr(form), needed="table or library"
         )
-    curve, table = thin_curve(line.strain, line.tension, most=MOST_POINTS), f"{stem}_moorpy.txt"
+    curve, table = thin_curve(line.strain, line.tension, most=MOST_POINTS - 1), f"{stem}_moorpy.txt"
     row = _line_type(line, f"|{table}|", number(NUMERICAL_DAMPING))
     head = header_lines(
         line,
         curve,
         line.volume_diameter[1],
         f"hydrodynamic coefficients: {line.hydrodynamics.source}",
+        _BEYOND,
         f"MoorPy seeks {table} in the working folder: start it there",
         "MoorPy 1.2, which RAFT 2.0 brings, takes no table (KeyError 'EA'): use 1.3, or a library",
         "with a table MoorPy takes the line as straight, and halves its weight to the ends",
@@ -467,7 +490,7 @@ def moorpy_files(line: ExportLine, stem: str, *, form: MoorPyForm = "table") -> 
     text = _deck(
         line, row, head, strain=float(line.strain[-1]) / 2, stiffness=steepest, program="MoorPy"
     )
-    return {"": text, table: f"{_table_text(line, curve)}\n---"}
+    return {"": text, table: f"{_table_text(line, _continued(line, curve))}\n---"}
 
 
 def _library(line: ExportLine) -> str:

@@ -82,6 +82,8 @@ class Viscoelasticity:
         At which they were found; NaN where they hold at every one. [Hz]
     growth : str
         In words: how beta was found, or why it is zero.
+    tension_amplitude : float
+        At which they were found; NaN where they hold at every one. [N]
     """
 
     static_stiffness: float
@@ -92,6 +94,7 @@ class Viscoelasticity:
     holds: str = ""
     frequency: float = math.nan
     growth: str = ""
+    tension_amplitude: float = math.nan
 
     def __post_init__(self) -> None:
         """Check that the line is stiffer when it is fast."""
@@ -630,6 +633,7 @@ def _part(
         mean_tension=float(levels["mean_tension"]),
         holds=f"{holds} (SI)",
         frequency=levels.get("frequency", math.nan),
+        tension_amplitude=levels.get("tension_amplitude", math.nan),
     )
 
 

@@ -539,6 +539,46 @@ def curve_from_zero(strain: ArrayLike, tension: ArrayLike) -> tuple[Floats, Floa
     return at, load, words
 
 
+CONTINUED = 0.3
+"""Of its greatest strain, by which a curve goes on straight in a table. [1]"""
+
+_LAST = 0.02  # of the greatest strain: what the slope of the end is taken over
+
+
+def end_slope(strain: Floats, tension: Floats) -> float:
+    """Slope of the last fiftieth of a curve that begins at 0 0. [N].
+
+    Examples
+    --------
+    >>> print(round(end_slope(np.array([0.0, 0.5, 1.0]), np.array([0.0, 20.0, 60.0])), 3))
+    80.0
+    """
+    end = float(strain[-1])
+    below = float(np.interp((1 - _LAST) * end, strain, tension))
+    return (float(tension[-1]) - below) / (_LAST * end)
+
+
+def continued_tension(line: ExportLine, strain: ArrayLike) -> Floats:
+    """Tension that is promised at a strain: of the curve from 0 0, and straight beyond its end.
+
+    Parameters
+    ----------
+    line : ExportLine
+        With its curve.
+    strain : array_like, shape (...)
+        At least zero. [1]
+
+    Returns
+    -------
+    tension : ndarray, shape (...)
+        [N]
+    """
+    at, load, _ = curve_from_zero(line.strain, line.tension)
+    wanted = np.asarray(strain, dtype=np.float64)
+    beyond = np.maximum(wanted - at[-1], 0.0) * end_slope(at, load)
+    return np.asarray(np.interp(wanted, at, load) + beyond)
+
+
 def thin_curve(strain: ArrayLike, tension: ArrayLike, *, most: int) -> ThinnedCurve:
     """Choose few points of a curve so that straight lines between them stay close to it.
 

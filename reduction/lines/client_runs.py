@@ -1,0 +1,524 @@
+"""Written decks, run in the programs that they are for, beside what was promised.
+
+A line is stretched through its curve and beyond its end, and where a form has damping, in a sine of
+the levels that it was made for.  What is promised comes from the line, not from the deck: its curve
+with the straight line that goes on beyond, the three parameters in closed form, or the curve with
+its dashpot.  Programs run in a folder and a process of their own; one that is not installed is
+named.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import math
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from reduction.lines.export_dynamics import Viscoelasticity
+from reduction.lines.export_line import CycleDamping, ExportLine, continued_tension
+from reduction.quantities.digits import plain_number
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Floats
+
+LIMITS = {"tension": 0.01, "strain": 0.01, "EA": 0.01, "K_ap": 0.01, "H": 0.03}
+"""Greatest difference from what was promised, as a share of it. [1]"""
+
+_SHARES = np.array([0.05, 0.2, 0.5, 0.8, 1.0, 1.2])  # of the end of a curve
+_LEAST = 1e-3  # of the greatest tension, below which an error is a share of this
+_OF_MEAN = 0.05  # of a mean strain, as the amplitude of a cycle of a linear line
+_AT_REST = 0.1  # strain at which a linear line rests
+_IN_A_CYCLE = 200
+_SETTLED = 1e-3  # of a change, that is left when a cycle is read
+_MOST_CYCLES = 400
+_GROWN = 3  # cycles until a sine has its amplitude
+
+
+@dataclass(frozen=True)
+class ClientCheck:
+    """One number of a program beside the promised one; ``scale`` is what the error is of."""
+
+    program: str
+    quantity: str
+    at: str
+    unit: str
+    promised: float
+    found: float
+    scale: float
+
+    @property
+    def error(self) -> float:
+        """Difference over the scale. [1]."""
+        return (self.found - self.promised) / self.scale
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether the program keeps what was promised."""
+        return abs(self.error) <= LIMITS[self.quantity]
+
+
+def verify_deck(line: ExportLine, to: str, form: str, paths: Sequence[Path]) -> list[ClientCheck]:
+    """Run written files in the program that they are for.
+
+    Parameters
+    ----------
+    line : ExportLine
+        Whose numbers are promised.
+    to, form : str
+        Format and form.
+    paths : sequence of pathlib.Path
+        What was written, the deck last.
+
+    Returns
+    -------
+    checks : list of ClientCheck
+        Every number that was looked at.
+
+    Raises
+    ------
+    SettingsError
+        If no program runs the form, or the program is not installed.
+    DataError
+        If the program ends with an error.
+    """
+    run = _RUNS.get((to, form))
+    if run is None:
+        raise SettingsError(
+            f"nothing here runs --to {to}" + (f" --form {form}" if form else ""),
+            needed="--verify with " + ", ".join(f"{one} {kind}" for one, kind in _RUNS),
+        )
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for path in paths:
+            shutil.copy(path, folder / path.name)
+        return run(line, folder, paths[-1].name)
+
+
+def in_words(checks: Sequence[ClientCheck]) -> tuple[str, ...]:
+    """One sentence a quantity: how far the program is from what was promised.
+
+    Examples
+    --------
+    >>> one = ClientCheck("MoorDyn 2.7", "K_ap", "0.3 Hz", "N", 500.0, 501.0, 500.0)
+    >>> in_words([one])[0].split(" (")[0]
+    'run in MoorDyn 2.7: K_ap within 0.20 percent of what is promised'
+    """
+    said = []
+    for quantity in dict.fromkeys(one.quantity for one in checks):
+        of_it = [one for one in checks if one.quantity == quantity]
+        worst = max(of_it, key=lambda one: abs(one.error))
+        lost = [one for one in of_it if not one.is_kept]
+        doubt = "DOUBTFUL: " if lost else ""
+        said.append(
+            f"{doubt}run in {worst.program}: {quantity} within {100 * abs(worst.error):.2f} "
+            f"percent of what is promised ({plain_number(worst.found, 6)} {worst.unit} for "
+            f"{plain_number(worst.promised, 6)} {worst.unit} at {worst.at})"
+        )
+    return tuple(said)
+
+
+def _needed(what: str, found: object, how: str) -> None:
+    if found is None:
+        raise SettingsError(f"{what} is not installed", needed=how)
+
+
+def _run(arguments: Sequence[str], folder: Path, what: str) -> str:
+    done = subprocess.run(  # noqa: S603 - programs on the path, or this Python
+        arguments, cwd=folder, capture_output=True, text=True, errors="replace", check=False
+    )
+    if done.returncode:
+        told = (done.stderr.strip() or done.stdout.strip())[-400:]
+        raise DataError(f"{what} ended with status {done.returncode}", found=told or "no message")
+    return done.stdout + done.stderr
+
+
+@dataclass(frozen=True)
+class _Cycle:
+    """A sine that a form is made for, and the loop that is promised of it."""
+
+    mean: float
+    amplitude: float
+    frequency: float
+    n_cycles: int
+    stiffness: float
+    energy: float
+
+    @property
+    def at(self) -> str:
+        """In words."""
+        return f"{self.frequency:.3g} Hz, strain {self.mean:.4g} +- {self.amplitude:.3g}"
+
+    def checks(self, program: str, stiffness: float, energy: float) -> list[ClientCheck]:
+        """K_ap and H beside what is promised."""
+        rows = (
+            ("K_ap", "N", self.stiffness, stiffness), ("H", "J/m", self.energy, energy),
+        )  # fmt: skip
+        return [
+            ClientCheck(program, name, self.at, unit, promised, found, promised)
+            for name, unit, promised, found in rows
+        ]
+
+
+def _cycle_of(line: ExportLine, form: str) -> _Cycle | None:
+    """The cycle of a form; None of a form without damping of its own."""
+    if form == "damped-table" and line.damping is not None:
+        return _cycle_about_a_curve(line, line.damping)
+    part = line.viscoelasticity
+    if form not in ("static-dynamic", "load-dependent") or part is None:
+        return None
+    frequency = part.frequency if math.isfinite(part.frequency) else 1 / (2 * math.pi * part.lag)
+    is_running = form == "load-dependent"
+    modulus = part.running_stiffness_at(frequency) if is_running else part.stiffness_at(frequency)
+    mean = part.mean_tension / part.static_stiffness if part.mean_tension > 0 else _AT_REST
+    size = part.tension_amplitude / abs(modulus)
+    amplitude = size if math.isfinite(size) else _OF_MEAN * mean
+    return _Cycle(
+        mean, amplitude, frequency, _cycles_to_settle(part, frequency), abs(modulus),
+        math.pi * amplitude**2 * modulus.imag,
+    )  # fmt: skip
+
+
+def _cycles_to_settle(part: Viscoelasticity, frequency: float) -> int:
+    settled = -math.log(_SETTLED) * part.relaxation_time * frequency
+    return min(_MOST_CYCLES, _GROWN + 2 + math.ceil(settled))
+
+
+def _cycle_about_a_curve(line: ExportLine, damping: CycleDamping) -> _Cycle:
+    """About the mean of the test, whose curve ends at the turn of its cycle."""
+    amplitude = damping.strain_amplitude
+    mean = float(line.strain[-1]) - amplitude
+    turns = continued_tension(line, np.array([mean + amplitude, mean - amplitude]))
+    phase = 2 * np.pi * np.arange(_IN_A_CYCLE) / _IN_A_CYCLE
+    rate = 2 * np.pi * damping.frequency * amplitude * np.cos(phase)
+    loop = continued_tension(line, mean + amplitude * np.sin(phase)) + damping.coefficient * rate
+    stiffness = max(float(np.ptp(loop)), float(turns[0] - turns[1])) / (2 * amplitude)
+    return _Cycle(
+        mean, amplitude, damping.frequency, _GROWN + 3, stiffness, damping.hysteresis_energy
+    )
+
+
+def _loop(strain: Floats, tension: Floats) -> tuple[float, float]:
+    """Range of tension over that of strain, and the area, of one whole cycle. [N; J/m]."""
+    area = float(np.trapezoid(np.append(tension, tension[0]), np.append(strain, strain[0])))
+    return float(np.ptp(tension) / np.ptp(strain)), area
+
+
+def _tensions(program: str, line: ExportLine, strain: Floats, found: Floats) -> list[ClientCheck]:
+    promised = continued_tension(line, strain)
+    least = _LEAST * float(line.tension[-1])
+    return [
+        ClientCheck(program, "tension", f"strain {e:.4g}", "N", float(t), float(f),
+                    max(float(t), least))
+        for e, t, f in zip(strain, promised, found, strict=True)
+    ]  # fmt: skip
+
+
+def _slow_tensions(
+    program: str, part: Viscoelasticity, strain: Floats, found: Floats
+) -> list[ClientCheck]:
+    return [
+        ClientCheck(program, "tension", f"strain {e:.4g} at rest", "N", part.static_stiffness * e,
+                    float(f), part.static_stiffness * e)
+        for e, f in zip(strain, found, strict=True)
+    ]  # fmt: skip
+
+
+_MOORDYN = """
+import json, math, sys
+import moordyn
+job = json.load(open("job.json"))
+system = moordyn.Create(sys.argv[1])
+if system is None:
+    raise SystemExit("MoorDyn does not take the deck")
+length, low, step, time, out = job["length"], job["low"], job["step"], 0.0, []
+at = lambda strain: [0.0, 0.0, low + length * (1 + strain)]
+if moordyn.Init(system, at(job["strain"][0]), [0.0, 0.0, 0.0]):
+    raise SystemExit("MoorDyn does not start")
+line = moordyn.GetLine(system, 1)
+for strain, rate in zip(job["strain"], job["rate"]):
+    moordyn.Step(system, at(strain), [0.0, 0.0, rate * length], time, step)
+    time += step
+    out.append(moordyn.GetLineFairTen(line))
+moordyn.Close(system)
+json.dump(out, open("out.json", "w"))
+"""
+_MOORPY = """
+import json, sys
+import moorpy
+job = json.load(open("job.json"))
+system, out = moorpy.System(sys.argv[1]), []
+(line,) = system.lineList
+low = job["low"]
+system.pointList[0].setPosition([0.0, 0.0, low])
+for strain in job["strain"]:
+    system.pointList[1].setPosition([0.0, 0.0, low + job["length"] * (1 + strain)])
+    line.staticSolve()
+    out.append(float(line.TB))
+json.dump(out, open("out.json", "w"))
+"""
+_MOORPY_LIBRARY = """
+import json, sys
+from moorpy.helpers import getLineProps
+job = json.load(open("job.json"))
+found = getLineProps(job["diameter"], job["name"], source=sys.argv[1])
+json.dump({name: float(found[name]) for name in ("EA", "EAd", "EAd_Lm")}, open("out.json", "w"))
+"""
+
+
+def _deck_numbers(text: str) -> tuple[float, float]:
+    """Unstretched length of the line of a deck, and height of its lower end. [m]."""
+    rows = [row.split() for row in text.split("\n")]
+    anchor = next(row for row in rows if row[:2] == ["1", "Fixed"])
+    head = next(place for place, row in enumerate(rows) if "UnstrLen" in row)
+    return float(rows[head + 2][4]), float(anchor[4])
+
+
+def _in_python(driver: str, folder: Path, deck: str, what: str, **job: object) -> Any:
+    (folder / "job.json").write_text(json.dumps(job), encoding="utf-8")
+    _run([sys.executable, "-c", driver, deck], folder, what)
+    return json.loads((folder / "out.json").read_text())
+
+
+# strains at the ends of even steps [s], the first at the start; gives strain and tension at each
+_Stretch = Callable[[Floats, float], tuple[Floats, Floats]]
+
+
+def _by_moordyn(form: str) -> Callable[[ExportLine, Path, str], list[ClientCheck]]:
+    def run(line: ExportLine, folder: Path, deck: str) -> list[ClientCheck]:
+        _needed("MoorDyn", importlib.util.find_spec("moordyn"), "pip install moordyn")
+        program = f"MoorDyn {version('moordyn')}"
+        length, low = _deck_numbers((folder / deck).read_text())
+
+        def stretch(strain: Floats, step: float) -> tuple[Floats, Floats]:
+            found = _in_python(
+                _MOORDYN, folder, deck, program, length=length, low=low, step=step,
+                strain=strain[:-1].tolist(), rate=(np.diff(strain) / step).tolist(),
+            )  # fmt: skip
+            return strain[1:], np.array(found)
+
+        return _stretched(program, line, form, stretch)
+
+    return run
+
+
+def _stretched(
+    program: str,
+    line: ExportLine,
+    form: str,
+    stretch: _Stretch,
+    *,
+    in_a_cycle: int = _IN_A_CYCLE,
+    least_rest: float = 10.0,
+) -> list[ClientCheck]:
+    """Rest at strains, then the cycle that the form is made for."""
+    part = None if form in ("table", "damped-table") else line.viscoelasticity
+    strains, rest = np.array([0.5, 1.0]) * _AT_REST, least_rest
+    if part is None:
+        strains = _SHARES * float(line.strain[-1])
+        if form == "damped-table" and line.damping is not None:
+            rest = max(rest, 10 / line.damping.frequency)
+    else:
+        rest = max(rest, -math.log(_SETTLED / 10) * part.relaxation_time)
+    step = max(0.05, rest / 1000)
+    n_rise, n_rest = 10, math.ceil(rest / step)
+    before = np.concatenate([strains[:1], strains[:-1]])
+    rises = np.linspace(before, strains, n_rise, endpoint=False, axis=1)
+    held = np.concatenate([rises, np.repeat(strains[:, None], n_rest, axis=1)], axis=1)
+    # the driver of OpenFAST smooths what it is told over some steps: strain is what it had
+    had, found = (
+        one[n_rise + n_rest // 2 :: n_rise + n_rest]
+        for one in stretch(np.append(held.ravel(), strains[-1]), step)
+    )
+    checks = (
+        _tensions(program, line, had, found)
+        if part is None
+        else _slow_tensions(program, part, had, found)
+    )
+    cycle = _cycle_of(line, form)
+    if cycle is None:
+        return checks
+    turned = np.arange(in_a_cycle * cycle.n_cycles + 1) / in_a_cycle
+    grown = np.minimum(turned / _GROWN, 1.0)
+    strain, tension = stretch(
+        cycle.mean + cycle.amplitude * grown * np.sin(2 * np.pi * turned),
+        1 / cycle.frequency / in_a_cycle,
+    )
+    return checks + cycle.checks(program, *_loop(strain[-in_a_cycle:], tension[-in_a_cycle:]))
+
+
+_OPENFAST = """the line of a deck, stretched
+--- ENVIRONMENT ---
+0.0 Gravity
+1025.0 rhoW
+{depth} WtrDepth
+--- MOORDYN ---
+"{deck}" MDInputFile
+"out" OutRootName
+{end} TMax
+{step} dtC
+1 InputsMode
+"motion.txt" InputsFile
+0 NumTurbines
+--- INITIAL POSITIONS ---
+X Y Z surge_init sway_init heave_init roll_init pitch_init
+(m) (m) (m) (m) (m) (m) (rad) (rad)
+0 0 0 0 0 0 0 0
+"""
+
+
+def _by_openfast(form: str) -> Callable[[ExportLine, Path, str], list[ClientCheck]]:
+    def run(line: ExportLine, folder: Path, deck: str) -> list[ClientCheck]:
+        driver = shutil.which("moordyn_driver")
+        _needed("moordyn_driver, of OpenFAST,", driver, "on the path; benchmarks/build_clients.sh")
+        text = (folder / deck).read_text()
+        length, low = _deck_numbers(text)
+        depth = re.search(r"^(\S+) WtrDpth$", text, re.MULTILINE)
+
+        (folder / deck).write_text(text.replace("\nFairTen1\n", "\nFairTen1\nPoint2Pz\n"))
+
+        def stretch(strain: Floats, step: float) -> tuple[Floats, Floats]:
+            time, height = step * np.arange(strain.size), low + length * (1 + strain)
+            rows = np.column_stack([time, 0 * height, 0 * height, height])
+            np.savetxt(folder / "motion.txt", rows, fmt="%.10g")
+            (folder / "driver.inp").write_text(
+                _OPENFAST.format(
+                    depth=depth[1] if depth else 200, deck=deck, end=time[-1], step=step
+                )
+            )
+            _run([str(driver), "driver.inp"], folder, "moordyn_driver")
+            told = (folder / "out.MD.out").read_text().split("\n")
+            (head,) = (place for place, row in enumerate(told) if row.split()[:1] == ["Time"])
+            table = np.array([row.split() for row in told[head + 2 :] if row.strip()], dtype=float)
+            names = told[head].lower().split()
+            # positions as the program has them: it smooths what it is told
+            place, tension = (
+                np.interp(time[1:], table[:, 0], table[:, names.index(name)])
+                for name in ("point2pz", "fairten1")
+            )
+            return (place - low) / length - 1, tension
+
+        return _stretched(
+            "moordyn_driver", line, form, stretch, in_a_cycle=20 * _IN_A_CYCLE, least_rest=60.0
+        )
+
+    return run
+
+
+def _by_moorpy(line: ExportLine, folder: Path, deck: str) -> list[ClientCheck]:
+    _needed("MoorPy", importlib.util.find_spec("moorpy"), "pip install moorpy")
+    program, strain = f"MoorPy {version('moorpy')}", _SHARES * float(line.strain[-1])
+    length, low = _deck_numbers((folder / deck).read_text())
+    found = _in_python(
+        _MOORPY, folder, deck, program, length=length, low=low, strain=strain.tolist()
+    )
+    return _tensions(program, line, strain, np.array(found))
+
+
+def _by_moorpy_library(line: ExportLine, folder: Path, deck: str) -> list[ClientCheck]:
+    _needed("MoorPy", importlib.util.find_spec("moorpy"), "pip install moorpy")
+    program, part = f"MoorPy {version('moorpy')}", line.viscoelasticity
+    if part is None:
+        return []
+    found: dict[str, float] = dict(
+        _in_python(
+            _MOORPY_LIBRARY, folder, deck, program, diameter=1e3 * line.needed("diameter"),
+            name=line.identifier,
+        )
+    )  # fmt: skip
+    mean = part.mean_tension if part.mean_tension > 0 else 0.0
+    rows = (
+        ("EA", part.static_stiffness, found["EA"]),
+        ("K_ap", part.apparent_stiffness, found["EAd"] + found["EAd_Lm"] * mean),
+    )
+    return [
+        ClientCheck(program, name, f"{mean:.6g} N", "N", promised, value, promised)
+        for name, promised, value in rows
+    ]
+
+
+_CABLE = """
+Problem Description
+    title = "a line under an end force"
+    type = general
+Analysis Parameters
+    static-relaxation = 0.1
+    static-iterations = 5000
+    static-tolerance = 1e-6
+Environment
+    rho = 1025.0
+    gravity = 9.81
+    depth = 100.0
+Buoys
+    ball type = sphere d = 0.5 m = 1.0
+Anchors
+    clump
+Layout
+    terminal = {{ anchor = clump }}
+    segment = {{ length = 10.0 material = "{name}" nodes = (101, 1.0) }}
+    terminal = {{ buoy = ball x-force = 1.0 z-force = {force} }}
+{material}
+"""
+_CABLE_LENGTH, _WEIGHTLESS = (
+    10.0,
+    "1.0e-4",
+)  # [m]; [N/m], so that the force of the end is that of all
+
+
+def _by_cable(line: ExportLine, folder: Path, deck: str) -> list[ClientCheck]:
+    cable, reader = shutil.which("cable"), shutil.which("res2asc")
+    _needed("cable, of WHOI Cable,", cable, "on the path; benchmarks/build_clients.sh")
+    _needed("res2asc, of WHOI Cable,", reader, "on the path; benchmarks/build_clients.sh")
+    material = re.sub(
+        r"^(\s+wet = ).*$", rf"\g<1>{_WEIGHTLESS}", (folder / deck).read_text(), flags=re.MULTILINE
+    )
+    checks = []
+    for force in _SHARES * float(line.tension[-1]):
+        text = _CABLE.format(name=line.identifier, force=float(force), material=material)
+        (folder / "x.cbl").write_text(text)
+        told = _run(
+            [str(cable), "-in", "x.cbl", "-out", "x.crs", "-static", "-nocpp", "-quit"], folder,
+            "cable",
+        )  # fmt: skip
+        if "Static solution complete" not in told:
+            raise DataError(f"cable found no equilibrium at {force:.6g} N", found=told[-300:])
+        _run([str(reader), "-in", "x.crs", "-variables", "z", "x", "T", "-static", "s.txt"],
+             folder, "res2asc")  # fmt: skip
+        depth, aside, _ = np.loadtxt(folder / "s.txt", skiprows=2).T
+        found = float(np.hypot(np.ptp(depth), np.ptp(aside))) / _CABLE_LENGTH - 1
+        promised = _strain_at(line, float(force))
+        checks.append(
+            ClientCheck("WHOI Cable", "strain", f"{force:.6g} N", "", promised, found, promised)
+        )
+    return checks
+
+
+def _strain_at(line: ExportLine, force: float) -> float:
+    """Strain at a tension, on the curve and the straight line beyond it."""
+    strain = np.linspace(0.0, 2 * float(line.strain[-1]), 20_001)
+    return float(np.interp(force, continued_tension(line, strain), strain))
+
+
+_RUNS: dict[tuple[str, str], Callable[[ExportLine, Path, str], list[ClientCheck]]] = {
+    **{
+        ("moordyn", form): _by_moordyn(form)
+        for form in ("table", "damped-table", "static-dynamic", "load-dependent")
+    },
+    **{
+        ("openfast", form): _by_openfast(form)
+        for form in ("table", "damped-table", "static-dynamic")
+    },
+    ("moorpy", "table"): _by_moorpy,
+    ("moorpy", "library"): _by_moorpy_library,
+    ("whoi-cable", "expression"): _by_cable,
+    ("whoi-cable", "table"): _by_cable,
+}
