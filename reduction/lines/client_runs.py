@@ -59,7 +59,7 @@ class ClientCheck:
     @property
     def error(self) -> float:
         """Difference over the scale. [1]."""
-        return (self.found - self.promised) / self.scale
+        return float((self.found - self.promised) / self.scale)
 
     @property
     def is_kept(self) -> bool:
@@ -176,7 +176,11 @@ def _cycle_of(line: ExportLine, form: str) -> _Cycle | None:
     part = line.viscoelasticity
     if form not in ("static-dynamic", "load-dependent") or part is None:
         return None
-    frequency = part.frequency if math.isfinite(part.frequency) else 1 / (2 * math.pi * part.lag)
+    frequency = (
+        part.frequency
+        if math.isfinite(part.frequency)
+        else 1 / (2 * math.pi * part.relaxation_time)
+    )
     is_running = form == "load-dependent"
     modulus = part.running_stiffness_at(frequency) if is_running else part.stiffness_at(frequency)
     mean = part.mean_tension / part.static_stiffness if part.mean_tension > 0 else _AT_REST
@@ -328,7 +332,9 @@ def _stretched(
         if form == "damped-table" and line.damping is not None:
             rest = max(rest, 10 / line.damping.frequency)
     else:
-        rest = max(rest, -math.log(_SETTLED / 10) * part.relaxation_time)
+        # a stiffness that follows the running tension settles as slowly as the slow spring
+        slower = part.fast_stiffness / part.static_stiffness if form == "load-dependent" else 1.0
+        rest = max(rest, -math.log(_SETTLED / 10) * slower * part.relaxation_time)
     step = max(0.05, rest / 1000)
     n_rise, n_rest = 10, math.ceil(rest / step)
     before = np.concatenate([strains[:1], strains[:-1]])

@@ -15,7 +15,7 @@ import scipy
 
 from reduction.archive.write import write_text_atomically
 from reduction.lines.deck_moordyn import (
-    MOST_POINTS,
+    TABLE_POINTS,
     OpenFastForm,
     moordyn_files,
     moorpy_files,
@@ -394,9 +394,9 @@ _MOORDYN_FORMS: dict[str, _WrittenCurve] = {
 _OPENFAST_FORMS = {form: _MOORDYN_FORMS[form] for form in get_args(OpenFastForm)}
 
 _CODES: dict[str, _MooringCode] = {
-    "moordyn": _MooringCode(moordyn_files, MOST_POINTS, _MOORDYN_FORMS),
-    "openfast": _MooringCode(openfast_files, MOST_POINTS, _OPENFAST_FORMS),
-    "moorpy": _MooringCode(moorpy_files, MOST_POINTS, {"table": "points", "library": "none"}),
+    "moordyn": _MooringCode(moordyn_files, TABLE_POINTS, _MOORDYN_FORMS),
+    "openfast": _MooringCode(openfast_files, TABLE_POINTS, _OPENFAST_FORMS),
+    "moorpy": _MooringCode(moorpy_files, TABLE_POINTS, {"table": "points", "library": "none"}),
     "whoi-cable": _MooringCode(
         _one_file(_whoicable_text), CABLE_POINTS, {"expression": "pieces", "table": "points"}
     ),

@@ -195,8 +195,8 @@ OpenFastForm = Literal["table", "damped-table", "static-dynamic"]
 
 MoorDynForm = Literal[OpenFastForm, "load-dependent", "syrope"]
 
-MOST_POINTS = 30
-"""Rows that a table of MoorDyn may have. [1]"""
+TABLE_POINTS = 29
+"""Rows of a curve: MoorDyn takes 30, and one goes on beyond its end. [1]"""
 
 NUMERICAL_DAMPING = -1.0
 """Internal damping where none was measured, as MoorDyn takes it: share of critical. [1]"""
@@ -357,7 +357,7 @@ def _table_files(
     line: ExportLine, stem: str, *, is_damped: bool, takes_share: bool = True
 ) -> dict[str, str]:
     """Deck and table; ``takes_share`` is whether damping may be a share of critical."""
-    curve = thin_curve(line.strain, line.tension, most=MOST_POINTS - 1)
+    curve = thin_curve(line.strain, line.tension, most=TABLE_POINTS)
     table = f"{stem}_table.txt"
     damping = _dashpot_of(line) if is_damped else None
     steepest = float(np.max(np.diff(curve.tension) / np.diff(curve.strain)))
@@ -415,7 +415,7 @@ def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
             needed="original working curve, alpha, beta, k1, k2 and where the line starts",
             hint="For a published line with levels: --working-curve, --greatest-mean-tension.",
         )
-    curve = thin_curve(part.strain, part.tension, most=MOST_POINTS)
+    curve = thin_curve(part.strain, part.tension, most=TABLE_POINTS)
     working, settings = f"{stem}_owc.dat", f"{stem}_syrope.dat"
     alpha, beta = part.dynamic_stiffness, part.dynamic_stiffness_per_mean_tension
     row = _line_type(
@@ -474,7 +474,7 @@ def moorpy_files(line: ExportLine, stem: str, *, form: MoorPyForm = "table") -> 
         raise SettingsError(
             "the form of a MoorPy line is not known", found=repr(form), needed="table or library"
         )
-    curve, table = thin_curve(line.strain, line.tension, most=MOST_POINTS - 1), f"{stem}_moorpy.txt"
+    curve, table = thin_curve(line.strain, line.tension, most=TABLE_POINTS), f"{stem}_moorpy.txt"
     row = _line_type(line, f"|{table}|", number(NUMERICAL_DAMPING))
     head = header_lines(
         line,

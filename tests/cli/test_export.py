@@ -28,15 +28,19 @@ def test_a_reduced_test_becomes_a_deck_and_its_table(command, synthetic, tmp_pat
     deck = (tmp_path / "t.dat").read_text()
     assert "SYNTHETIC" in deck
     assert moordyn_sections(deck)["LINE TYPES"][0][3] == "t_table.txt"
-    strain, _ = moordyn_table((tmp_path / "t_table.txt").read_text())
+    strain, tension = moordyn_table((tmp_path / "t_table.txt").read_text())
     low, high = answer["tested"]["strain"]
-    assert strain[1] < low < high < strain[-1]
+    assert strain[1] < low < high < strain[-2]
     with reading(archive) as dataset:
         middle, half = (
             float(dataset[name].values[0]) for name in ("test_mean_strain", "test_strain_amplitude")
         )
     # the turns of the mean cycle, which no trimmed branch reaches
-    assert [strain[1], strain[-1]] == pytest.approx([middle - half, middle + half])
+    assert [strain[1], strain[-2]] == pytest.approx([middle - half, middle + half])
+    # and one row straight on, since MoorDyn keeps the last tension
+    assert strain[-1] == pytest.approx(1.3 * strain[-2])
+    slopes = np.diff(tension)[-2:] / np.diff(strain)[-2:]
+    assert slopes[1] == pytest.approx(slopes[0], rel=0.01)
     assert "a straight line goes on to the turns" in " ".join(answer["notes"])
 
 

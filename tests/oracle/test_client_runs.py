@@ -1,0 +1,115 @@
+"""`export --verify`: written decks, run in their programs, beside closed forms and planted faults."""
+
+import importlib.util
+import shutil
+
+import numpy as np
+import pytest
+from export_lines import constant, growing, line
+
+from reduction.lines.client_runs import in_words, verify_deck
+from reduction.lines.deck_formats import export_line
+from reduction.lines.export_line import CycleDamping
+from reduction.record.errors import SettingsError
+
+NEEDED = {
+    "moordyn": importlib.util.find_spec("moordyn"),
+    "moorpy": importlib.util.find_spec("moorpy"),
+    "openfast": shutil.which("moordyn_driver"),
+    "whoi-cable": shutil.which("cable"),
+}
+FREQUENCY, AMPLITUDE = 0.1, 0.05
+DASHPOT = 50.0
+LOST = 2 * np.pi**2 * FREQUENCY * AMPLITUDE**2 * DASHPOT
+LINES = {
+    "table": line(),
+    "expression": line(),
+    "damped-table": line(damping=CycleDamping(DASHPOT, FREQUENCY, AMPLITUDE, LOST, 0.01 * LOST)),
+    "static-dynamic": line(viscoelasticity=constant()),
+    "load-dependent": line(viscoelasticity=growing()),
+    "library": line(viscoelasticity=growing(), rated_break_strength=5e4),
+}
+FORMS = [
+    ("moordyn", "table"), ("moordyn", "damped-table"), ("moordyn", "static-dynamic"),
+    ("moordyn", "load-dependent"), ("moorpy", "table"), ("moorpy", "library"),
+    ("openfast", "table"), ("openfast", "damped-table"), ("openfast", "static-dynamic"),
+    ("whoi-cable", "expression"), ("whoi-cable", "table"),
+]  # fmt: skip
+pytestmark = pytest.mark.slow
+
+
+def needs(to):
+    if NEEDED[to] is None:
+        pytest.skip(f"no program for {to}")
+
+
+@pytest.mark.parametrize(("to", "form"), FORMS)
+def test_every_program_keeps_what_a_form_promises(tmp_path, to, form):
+    needs(to)
+    one = LINES[form]
+    paths = export_line(one, to, tmp_path / "deck.dat", form=form)
+    checks = verify_deck(one, to, form, paths)
+    assert checks
+    assert {check.quantity: round(check.error, 4) for check in checks if not check.is_kept} == {}
+    assert all("DOUBTFUL" not in words for words in in_words(checks))
+
+
+def test_the_promise_is_that_of_the_three_parameters(tmp_path):
+    needs("moordyn")
+    part = constant()
+    one = line(viscoelasticity=part)
+    paths = export_line(one, "moordyn", tmp_path / "deck.dat", form="static-dynamic")
+    checks = {
+        check.quantity: check for check in verify_deck(one, "moordyn", "static-dynamic", paths)
+    }
+    frequency, amplitude = (
+        float(checks["K_ap"].at.split(mark)[place].split(" ")[0])
+        for mark, place in ((" Hz", 0), ("+- ", 1))
+    )
+    turned = 2j * np.pi * frequency * part.relaxation_time
+    rise = part.fast_stiffness - part.static_stiffness
+    modulus = part.static_stiffness + rise * turned / (1 + turned)
+    assert checks["K_ap"].promised == pytest.approx(abs(modulus), rel=2e-3)
+    assert checks["H"].promised == pytest.approx(np.pi * amplitude**2 * modulus.imag, rel=5e-3)
+    assert checks["tension"].promised == pytest.approx(part.static_stiffness * 0.1, rel=1e-3)
+
+
+@pytest.mark.parametrize(("first", "factor"), [(3, 1.02), (-1, 0.9)])
+def test_a_table_that_is_wrong_is_found(tmp_path, first, factor):
+    """The last row is the one beyond the curve, where only the strain of 1.2 times its end looks."""
+    needs("moordyn")
+    one = line()
+    table, deck = export_line(one, "moordyn", tmp_path / "deck.dat")
+    rows = table.read_text().split("\n")
+    for place in range(len(rows))[first:]:
+        strain, tension = map(float, rows[place].split())
+        rows[place] = f"{strain:.10g} {factor * tension:.10g}"
+    table.write_text("\n".join(rows))
+    checks = verify_deck(one, "moordyn", "table", [table, deck])
+    assert any(not check.is_kept for check in checks)
+    assert in_words(checks)[0].startswith("DOUBTFUL: run in MoorDyn")
+
+
+def test_a_dashpot_that_is_a_tenth_off_is_found_by_its_energy(tmp_path):
+    needs("moordyn")
+    one = LINES["damped-table"]
+    table, deck = export_line(one, "moordyn", tmp_path / "deck.dat", form="damped-table")
+    text = deck.read_text()
+    assert " 50 0 " in text
+    deck.write_text(text.replace(" 50 0 ", " 55 0 "))
+    lost = [one.quantity for one in verify_deck(one, "moordyn", "damped-table", [table, deck])
+            if not one.is_kept]  # fmt: skip
+    assert lost == ["H"]
+
+
+def test_a_format_that_nothing_runs_is_refused(tmp_path):
+    paths = export_line(line(), "abaqus", tmp_path / "x.inp")
+    with pytest.raises(SettingsError, match="nothing here runs --to abaqus"):
+        verify_deck(line(), "abaqus", "", paths)
+
+
+def test_a_program_that_is_not_there_is_named(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    paths = export_line(line(), "openfast", tmp_path / "x.dat")
+    with pytest.raises(SettingsError, match="moordyn_driver, of OpenFAST, is not installed"):
+        verify_deck(line(), "openfast", "table", paths)
