@@ -41,6 +41,7 @@ _AT_REST = 0.1  # strain at which a linear line rests
 _IN_A_CYCLE = 200
 _SETTLED = 1e-3  # of a change, that is left when a cycle is read
 _MOST_CYCLES = 400
+_BEGINS = 3  # rests before the first one
 _GROWN = 3  # cycles until a sine has its amplitude
 
 
@@ -252,7 +253,9 @@ line = moordyn.GetLine(system, 1)
 for strain, rate in zip(job["strain"], job["rate"]):
     moordyn.Step(system, at(strain), [0.0, 0.0, rate * length], time, step)
     time += step
-    out.append(moordyn.GetLineFairTen(line))
+    top, bottom = moordyn.GetLineFairTen(line), math.hypot(*moordyn.GetLineNodeTen(line, 0))
+    # of accelerations that grow along the line: this mean is the tension without inertia
+    out.append((top + 2 * bottom) / 3)
 moordyn.Close(system)
 json.dump(out, open("out.json", "w"))
 """
@@ -340,10 +343,12 @@ def _stretched(
     before = np.concatenate([strains[:1], strains[:-1]])
     rises = np.linspace(before, strains, n_rise, endpoint=False, axis=1)
     held = np.concatenate([rises, np.repeat(strains[:, None], n_rest, axis=1)], axis=1)
+    # from where the deck begins: OpenFAST has that strain in its slow spring
+    first = np.full(_BEGINS * n_rest, strains[0])
     # the driver of OpenFAST smooths what it is told over some steps: strain is what it had
     had, found = (
-        one[n_rise + n_rest // 2 :: n_rise + n_rest]
-        for one in stretch(np.append(held.ravel(), strains[-1]), step)
+        one[first.size + n_rise + 9 * n_rest // 10 :: n_rise + n_rest]
+        for one in stretch(np.concatenate([first, held.ravel(), strains[-1:]]), step)
     )
     checks = (
         _tensions(program, line, had, found)
@@ -407,11 +412,12 @@ def _by_openfast(form: str) -> Callable[[ExportLine, Path, str], list[ClientChec
             table = np.array([row.split() for row in told[head + 2 :] if row.strip()], dtype=float)
             names = told[head].lower().split()
             # positions as the program has them: it smooths what it is told
-            place, tension = (
+            place, top, bottom = (
                 np.interp(time[1:], table[:, 0], table[:, names.index(name)])
-                for name in ("point2pz", "fairten1")
+                for name in ("point2pz", "fairten1", "anchten1")
             )
-            return (place - low) / length - 1, tension
+            # of accelerations that grow along the line: this mean is the tension without inertia
+            return (place - low) / length - 1, (top + 2 * bottom) / 3
 
         return _stretched(
             "moordyn_driver", line, form, stretch, in_a_cycle=20 * _IN_A_CYCLE, least_rest=60.0

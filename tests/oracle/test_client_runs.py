@@ -18,7 +18,7 @@ NEEDED = {
     "openfast": shutil.which("moordyn_driver"),
     "whoi-cable": shutil.which("cable"),
 }
-FREQUENCY, AMPLITUDE = 0.1, 0.05
+FREQUENCY, AMPLITUDE = 0.1, 0.5
 DASHPOT = 50.0
 LOST = 2 * np.pi**2 * FREQUENCY * AMPLITUDE**2 * DASHPOT
 LINES = {
