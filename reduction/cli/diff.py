@@ -80,7 +80,10 @@ def _export_revision(checkout: Path, revision: str, scratch: Path) -> Path:
         )
     source = scratch / "source"
     with tarfile.open(fileobj=BytesIO(packed.stdout)) as files:
-        files.extractall(source, filter="data")
+        if hasattr(tarfile, "data_filter"):
+            files.extractall(source, filter="data")
+        else:  # Python before 3.11.4, as Debian 12 has it; the archive is git's own
+            files.extractall(source)  # noqa: S202
     return source
 
 
