@@ -14,7 +14,7 @@ from reduction.cli.printed_numbers import plain
 from reduction.lines.archive_source import SURFACES, experiments_with_pulls
 from reduction.lines.client_runs import LIMITS, ClientCheck, in_words, verify_deck
 from reduction.lines.composite import compose
-from reduction.lines.deck_formats import FORMS, closeness_of, export_line
+from reduction.lines.deck_formats import FORMS, TABLES, closeness_of, export_line, export_table
 from reduction.lines.deck_moordyn import fast_damping, segment_length
 from reduction.lines.export_dynamics import Syrope
 from reduction.lines.export_line import (
@@ -33,6 +33,7 @@ from reduction.lines.export_sources import (
     line_from_lookup,
 )
 from reduction.lines.published_source import published_sources
+from reduction.lines.surface_table import surface_table
 from reduction.quantities.units import Dimension, parse_quantity
 from reduction.record.errors import DataError, SettingsError
 
@@ -214,6 +215,10 @@ def export_source(
         )
     if not out.name:
         raise SettingsError("--out names no file", found=repr(str(out)), needed="a file")
+    surfaces = _surfaces_of(sources) if to in TABLES else None
+    if surfaces == Path(sources[0]) and not any(levels.values()):
+        _export_surfaces(surfaces, to, out, specimen=specimen, form=form, output=output)
+        return
     values: dict[str, Any] = {
         name: parse_quantity(text, _DIMENSIONS[name])
         for name, text in stated.items()
@@ -280,6 +285,37 @@ def export_source(
                     ("rated_break_strength", "N"),
                 )
             },
+        }
+    )
+
+
+def _export_surfaces(
+    path: Path,
+    to: str,
+    out: Path,
+    *,
+    specimen: str | None,
+    form: str | None,
+    output: CommandOutput,
+) -> None:
+    """Write the coefficients of response surfaces as a table."""
+    if form is not None:
+        raise SettingsError(f"{to} has no form '{form}'", found=form, needed=f"no --form with {to}")
+    table = surface_table(path, specimen=specimen, units="si" if to == "netcdf" else output.system)
+    was_there = out.exists()
+    paths = export_table(table, to, out, units=output.system)
+    output.say(table.title)
+    for text in (*table.sources, *(f"note: {note}" for note in table.notes)):
+        output.say(f"  {text}")
+    output.say(f"{'written over' if was_there else 'written'}: {out}")
+    output.answer(
+        {
+            "title": table.title,
+            "format": to,
+            "rows": int(table.columns[0].values.size),
+            "files": [str(one) for one in paths],
+            "sources": list(table.sources),
+            "synthetic": table.is_synthetic,
         }
     )
 

@@ -354,7 +354,8 @@ def _expression(start: Floats, powers: Floats) -> str:
     return text
 
 
-_TABLES = ("csv", "json", "latex", "markdown", "netcdf")
+TABLES = ("csv", "json", "latex", "markdown", "netcdf")
+"""Formats of a table of values."""
 
 _WrittenCurve = Literal["points", "pieces", "none"]
 
@@ -407,7 +408,7 @@ _CODES: dict[str, _MooringCode] = {
 FORMS = {name: tuple(form for form in code.forms if form) for name, code in _CODES.items()}
 """What the format of a mooring code can be told, the first where nothing is said."""
 
-FORMATS = (*_TABLES, *FORMS)
+FORMATS = (*TABLES, *FORMS)
 
 _TAILS = ("_table", "_owc", "_syrope", "_moorpy")
 
@@ -418,7 +419,7 @@ def export_line(
     line: ExportLine, to: str, path: Path, *, form: str | None = None, units: UnitSystem = "si"
 ) -> list[Path]:
     """Write a line in a format."""
-    if to in _TABLES:
+    if to in TABLES:
         _refuse_form(to, form, ())
         return export_table(curve_table(line), to, path, units=units)
     if to not in FORMS:

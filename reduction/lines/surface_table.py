@@ -1,0 +1,195 @@
+"""Coefficients of the response surfaces of a campaign as one table, with their covariance."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from reduction.archive.open import reading
+from reduction.lines.export_tables import TableColumn, ValueTable
+from reduction.quantities.units import UnitSystem, display_unit
+from reduction.record.errors import DataError
+from reduction.record.measurement import Floats
+
+_COVARIANCE = "_covariance_factor"
+_COEFFICIENT = "_coefficient"
+
+
+def surface_table(
+    path: Path, *, specimen: str | None = None, units: UnitSystem = "si"
+) -> ValueTable:
+    r"""Every surface of an archive: coefficients, standard uncertainties, covariance.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        ``surfaces.nc``.
+    specimen : str, optional
+        One experiment, by its name; all unless said.
+    units : {"si", "us"}
+        Of coefficients; surfaces of a logarithm stay in SI, since their constant hangs on the unit.
+
+    Returns
+    -------
+    table : ValueTable
+        Shape (n_experiments * n_responses * n_terms,); a response that is not fitted has no row.
+
+    Raises
+    ------
+    DataError
+        If there is no surface, or none of that name.
+
+    Notes
+    -----
+    A response is :math:`\sum_i B_i X_i` with the term :math:`X_i` of the levels: coded, -1 at the
+    lowest and 1 at the highest, or engineering, as they are.  The covariance is of the coded
+    coefficients of one response, of the scatter and of what the runs share,
+
+    .. math:: C = \sigma^2 (X^T X)^{-1} + \sum_k c_k c_k^T
+    """
+    with reading(path) as archive:
+        names = [str(one) for one in archive["experiment"].values]
+        chosen = [place for place, name in enumerate(names) if specimen in (None, name)]
+        responses = [
+            str(name).removesuffix(_COVARIANCE)
+            for name in archive.variables
+            if str(name).endswith(_COVARIANCE)
+        ]
+        parts = [
+            found
+            for place in chosen
+            for response in responses
+            if (found := _rows(archive, place, response, units)) is not None
+        ]
+        title = f"{archive.attrs.get('title', path.parent.name)}: response surfaces"
+        is_synthetic = archive.attrs.get("synthetic") == "yes"
+        source = (
+            f"{path.parent.name}/{path.name}, {archive.attrs.get('source', 'no source stated')}"
+        )
+    if not parts:
+        raise DataError(
+            f"{path} has no surface" + (f" of '{specimen}'" if specimen else ""),
+            needed="one of " + ", ".join(names) if specimen else "an experiment with a fit",
+        )
+    n_terms = parts[0]["coefficient"].size
+    columns = [
+        TableColumn(name, "", _MEANING[name], np.concatenate([part[name] for part in parts]))
+        for name in _MEANING
+    ]
+    covariance = np.concatenate([part["covariance"] for part in parts])
+    columns += [
+        TableColumn(f"covariance_B{place + 1}", "", f"with B{place + 1}, coded, in unit squared",
+                    covariance[:, place])
+        for place in range(n_terms)
+    ]  # fmt: skip
+    return ValueTable(title, tuple(columns), (source,), _ABOUT, is_synthetic)
+
+
+_MEANING = {
+    "experiment": "by its name in the campaign",
+    "response": "quantity; with log_ before it the surface is of its natural logarithm",
+    "term": "number of the term, as the reports count",
+    "term_name": "product of levels that the coefficient multiplies",
+    "unit": "of the coded coefficient",
+    "coefficient": "of coded levels",
+    "coefficient_standard_uncertainty": "of the coded coefficient (k = 1)",
+    "degrees_of_freedom": "of the scatter",
+    "unit_engineering": "of the coefficient of levels as they are",
+    "coefficient_engineering": "of levels as they are",
+    "coefficient_engineering_standard_uncertainty": "of the coefficient of levels (k = 1)",
+    "levels": "lowest and highest level of each factor, coded -1 and 1",
+}
+
+_ABOUT = (
+    "the response is the sum of coefficient times term",
+    "covariance: of the coded coefficients of one response, scatter and shared errors together",
+)
+
+
+def _rows(
+    archive: xr.Dataset, place: int, response: str, units: UnitSystem
+) -> dict[str, np.ndarray] | None:
+    """Columns of one surface."""
+
+    def of(name: str) -> Floats:
+        return np.asarray(archive[f"{response}{name}"].to_numpy()[place], dtype=np.float64)
+
+    coefficient = of(_COEFFICIENT)
+    if not np.isfinite(coefficient).any():
+        return None
+    is_log = response.startswith("log_")
+    system: UnitSystem = "si" if is_log else units
+    unit, factor = _shown(archive[f"{response}{_COEFFICIENT}"].attrs.get("units", "1"), system)
+    names = [str(one) for one in archive["factor_name"].to_numpy()[place]]
+    shown = [_shown(str(one), system) for one in archive["factor_unit"].to_numpy()[place]]
+    terms = [str(one) for one in archive["term_name"].to_numpy()[place]]
+    powers = np.array([[_power(term, name) for name in names] for term in terms])
+    per_level = factor / np.prod(np.array([one[1] for one in shown]) ** powers, axis=1)
+    contribution = np.nan_to_num(of(f"{_COEFFICIENT}_uncertainty_contribution"))
+    covariance = of("_sigma") ** 2 * of(_COVARIANCE) + contribution.T @ contribution
+    n_terms = len(terms)
+    low, high = (archive[f"factor_{end}"].to_numpy()[place] for end in ("low", "high"))
+    levels = "; ".join(
+        f"{name} {one[1] * a:.6g} to {one[1] * b:.6g} {one[0]}"
+        for name, one, a, b in zip(names, shown, low, high, strict=True)
+    )
+    return {
+        "experiment": np.full(n_terms, str(archive["experiment"].to_numpy()[place])),
+        "response": np.full(n_terms, response),
+        "term": np.array([f"B{number + 1}" for number in range(n_terms)]),
+        "term_name": np.array(terms),
+        "unit": np.full(n_terms, unit),
+        "coefficient": factor * coefficient,
+        "coefficient_standard_uncertainty": factor * of(f"{_COEFFICIENT}_standard_uncertainty"),
+        "degrees_of_freedom": np.full(n_terms, of("_degrees_of_freedom")),
+        "unit_engineering": np.array(
+            [_over(unit, [one[0] for one in shown], row) for row in powers]
+        ),
+        "coefficient_engineering": per_level * of(f"{_COEFFICIENT}_engineering"),
+        "coefficient_engineering_standard_uncertainty": (
+            per_level * of(f"{_COEFFICIENT}_engineering_standard_uncertainty")
+        ),
+        "levels": np.full(n_terms, levels),
+        "covariance": factor**2 * covariance,
+    }
+
+
+def _shown(unit: str, units: UnitSystem) -> tuple[str, float]:
+    """Unit and factor; foot-pounds per foot are pounds."""
+    shown, factor = display_unit(unit, units)
+    return ("lbf" if shown == "ft lbf / ft" else shown), factor
+
+
+def _power(term: str, name: str) -> int:
+    """Power of a level in a term.
+
+    Examples
+    --------
+    >>> _power("frequency^2", "frequency"), _power("frequency*mean", "mean"), _power("mean", "rate")
+    (2, 1, 0)
+    """
+    return sum(
+        int(one.partition("^")[2] or 1) for one in term.split("*") if one.partition("^")[0] == name
+    )
+
+
+def _over(unit: str, factors: list[str], powers: np.ndarray) -> str:
+    """Unit of a coefficient of levels.
+
+    Examples
+    --------
+    >>> _over("J m-1", ["Hz", "N"], np.array([1, 2]))
+    'J m-1 Hz-1 N-2'
+    >>> _over("N", ["N"], np.array([1]))
+    '1'
+    """
+    power: dict[str, int] = {}
+    for name, exponent in re.findall(r"([A-Za-z]+)(-?\d+)?", unit):
+        power[name] = power.get(name, 0) + int(exponent or 1)
+    for name, exponent in zip(factors, powers.tolist(), strict=True):
+        power[name] = power.get(name, 0) - int(exponent)
+    words = [name if of == 1 else f"{name}{of}" for name, of in power.items() if of and name != "1"]
+    return " ".join(words) or "1"
