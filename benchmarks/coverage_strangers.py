@@ -200,6 +200,8 @@ def report(found: list[Realisation]) -> tuple[str, bool]:
         )
         for cell in sorted({name for one in several for name in one.cells}):
             pairs = [np.array(one.cells[cell]) for one in several if one.cells.get(cell)]
+            if not pairs:  # every number of it was withheld
+                continue
             held = [part[:, 0] <= part[:, 1] for part in pairs]
             error, half = np.concatenate(pairs).T
             low, high = resampled(held, rng)
