@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from reduction.archive.campaign_tree import open_campaign
     from reduction.archive.open import open_archive
-    from reduction.python_interface import look_up, run
+    from reduction.python_interface import export, fit_surface, look_up, predict_hose, run
 else:
     _PLACES = {
+        "export": "python_interface",
+        "fit_surface": "python_interface",
         "look_up": "python_interface",
         "open_archive": "archive.open",
         "open_campaign": "archive.campaign_tree",
+        "predict_hose": "python_interface",
         "run": "python_interface",
     }
 
@@ -24,7 +27,16 @@ else:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-__all__ = ["__version__", "look_up", "open_archive", "open_campaign", "run"]
+__all__ = [
+    "__version__",
+    "export",
+    "fit_surface",
+    "look_up",
+    "open_archive",
+    "open_campaign",
+    "predict_hose",
+    "run",
+]
 
 __version__ = "0.1.0"
 

@@ -1,4 +1,4 @@
-"""What a script calls: run a campaign, look up design values.
+"""What a script calls: run a campaign, look up, export, predict a hose, fit a surface.
 
 Opening archives and campaigns is `reduction.archive`'s; both are reached as ``reduction.<name>``.
 """
@@ -9,6 +9,7 @@ import time
 import warnings as python_warnings
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, Literal
 
@@ -16,9 +17,14 @@ import numpy as np
 import xarray as xr
 
 from reduction.archive.campaign_tree import open_campaign
+from reduction.batch.prediction_product import hoses_dataset
 from reduction.batch.run_campaign import run_campaign
 from reduction.batch.workers import local_workers
+from reduction.campaign.experiment_plans import load_spec, read_runs
+from reduction.campaign.hose_spec import load_hose
 from reduction.campaign.load import load_campaign
+from reduction.cli.experiments import fit_series, notes_of_fit
+from reduction.cli.export import ExportedFiles, ExportRequest, write_export
 from reduction.cli.lookup import (
     LEVEL_DIMENSIONS,
     lines_of_source,
@@ -28,7 +34,9 @@ from reduction.cli.lookup import (
 from reduction.lines import line_lookup
 from reduction.lines.line_lookup import Branch
 from reduction.lines.lookup_product import DesignValues, LineSource
+from reduction.prediction.hose_prediction import predict_from_plan
 from reduction.quantities.units import UnitSystem, parse_quantity
+from reduction.readers.raw_log import hash_source
 from reduction.record.errors import SettingsError
 
 _INTERVALS = {
@@ -206,3 +214,154 @@ def run(
         if one.exit_status:
             python_warnings.warn(f"{one.test}: {one.message}", stacklevel=2)
     return open_campaign(result.processed)
+
+
+def export(
+    source: str | Path | Sequence[str | Path], to: str, out: str | Path, **options: Any
+) -> ExportedFiles:
+    """Write a curve for a mooring code or as a table, as ``reduction export`` does.
+
+    Parameters
+    ----------
+    source : str, pathlib.Path, or a sequence of them
+        A published line by its name, an archive, ``processed/<campaign>``, or several tests.
+    to : str
+        Format, such as ``"moordyn"`` or ``"csv"``.
+    out : str or pathlib.Path
+        The file.
+    **options : str or bool
+        Those of the command, such as ``form="static-dynamic"``, ``frequency="0.3 Hz"`` or
+        ``diameter="26 mm"``; ``units="us"`` of a table.
+
+    Returns
+    -------
+    done : ExportedFiles
+        ``paths`` that were written, ``notes`` on what they hold that was not tested (also in their
+        headers), and with ``verify=True`` the ``checks`` by the program.
+
+    Raises
+    ------
+    ReductionError
+        If the source cannot be written so.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     done = export("nylon-double-braid-0.5in-new", "csv", Path(folder, "rope.csv"))
+    ...     [file.name for file in done.paths if file.is_file()]
+    ['rope.csv']
+    """
+    known = {one.name for one in fields(ExportRequest)} - {"sources", "to", "out"}
+    if unknown := sorted(set(options) - known):
+        raise SettingsError(
+            f"export has no option {unknown[0]}", needed=f"one of {', '.join(sorted(known))}"
+        )
+    sources = (source,) if isinstance(source, str | Path) else source
+    request = ExportRequest(tuple(map(str, sources)), to, Path(out), **options)
+    return write_export(request)
+
+
+def predict_hose(spec: str | Path) -> xr.Dataset:
+    """Predict a stretch hose, as ``reduction predict hose`` does.
+
+    Parameters
+    ----------
+    spec : str or pathlib.Path
+        The SPEC.toml of the hose.
+
+    Returns
+    -------
+    hose : xarray.Dataset
+        Tension, fill pressure and angle of the cords against strain, and the events, in the form
+        of ``predictions.nc``.
+
+    Raises
+    ------
+    ReductionError
+        If the hose cannot be built so.
+    """
+    path = Path(spec)
+    plan, _ = load_hose(path)
+    return hoses_dataset(
+        [predict_from_plan(plan)],
+        campaign_id=plan.name,
+        attributes={"title": f"Prediction of hose {plan.name}"},
+        source=hash_source(path, path.name),
+        command=f"reduction predict hose {path.name}",
+    )
+
+
+def fit_surface(runs: str | Path, spec: str | Path | None = None) -> xr.Dataset:
+    r"""Fit quadratic response surfaces to a table of runs, as ``reduction surface`` does.
+
+    Parameters
+    ----------
+    runs : str or pathlib.Path
+        A CSV of runs: levels of the factors and responses, a row for each run.
+    spec : str or pathlib.Path, optional
+        The SPEC.toml with low and high levels.
+
+    Returns
+    -------
+    surfaces : xarray.Dataset
+        Over ``response`` and ``term``: ``coefficient`` of coded levels, -1 to 1, with its
+        ``covariance``, ``coefficient_engineering`` of levels as they are, standard uncertainties,
+        ``r2``, ``sigma``, and tests for lack of fit.  Units are of the response, ``response_unit``.
+
+    Raises
+    ------
+    ReductionError
+        If the runs do not carry the ten terms, or their levels are none of the plan.
+
+    Warns
+    -----
+    UserWarning
+        For each note that could move the surface.
+
+    Notes
+    -----
+    The covariance is that of the scatter, :math:`\sigma^2 (X^T X)^{-1}`: a table of runs says
+    nothing of errors that its runs share.
+    """
+    path = Path(runs)
+    loaded = None if spec is None else load_spec(Path(spec))
+    series = read_runs(path, loaded)
+    found = fit_series(series, loaded, path)
+    for text in notes_of_fit(series, found):
+        python_warnings.warn(text, stacklevel=2)
+    variance = found.sigma[:, np.newaxis, np.newaxis] ** 2
+    by_term, by_response = ("response", "term"), ("response",)
+    return xr.Dataset(
+        {
+            "coefficient": (by_term, found.coefficient),
+            "coefficient_standard_uncertainty": (by_term, found.coefficient_standard_uncertainty),
+            "covariance": (
+                ("response", "term", "other_term"),
+                variance * found.covariance_factor[found.pattern],
+            ),
+            "coefficient_engineering": (by_term, found.coefficient_engineering),
+            "coefficient_engineering_standard_uncertainty": (
+                by_term,
+                found.coefficient_engineering_standard_uncertainty,
+            ),
+            "p_value": (by_term, found.p_value),
+            "r2": (by_response, found.r2),
+            "sigma": (by_response, found.sigma),
+            "degrees_of_freedom": (by_response, found.degrees_of_freedom),
+            "lack_of_fit_f": (by_response, found.lack_of_fit.f),
+            "lack_of_fit_p_value": (by_response, found.lack_of_fit.p_value),
+            "low": (("factor",), found.low),
+            "high": (("factor",), found.high),
+        },
+        {
+            "response": list(found.response_names),
+            "response_unit": (by_response, list(series.response_units)),
+            "transform": (by_response, list(found.transform)),
+            "term": list(found.term_names),
+            "other_term": list(found.term_names),
+            "factor": list(found.factor_names),
+            "factor_unit": (("factor",), list(series.factor_units)),
+        },
+        {"title": f"Response surfaces of {path.name}"},
+    )

@@ -69,8 +69,23 @@ def write_hoses(
     command: str,
 ) -> None:
     """Write predicted hoses as one archive."""
+    dataset = hoses_dataset(
+        hoses, campaign_id=campaign_id, attributes=attributes, source=source, command=command
+    )
+    write_archive(dataset, path)
+
+
+def hoses_dataset(
+    hoses: Sequence[PredictedHose],
+    *,
+    campaign_id: str,
+    attributes: Mapping[str, str],
+    source: Source,
+    command: str,
+) -> xr.Dataset:
+    """Predicted hoses in the form of the archive."""
     settings = {hose.plan.name: _settings_of_hose(hose.plan) for hose in hoses}
-    dataset = predictions_to_dataset(
+    return predictions_to_dataset(
         hoses,
         origin=Origin(
             campaign_id=campaign_id,
@@ -82,7 +97,6 @@ def write_hoses(
             command=command,
         ),
     )
-    write_archive(dataset, path)
 
 
 def _settings_of_hose(plan: HosePlan) -> dict[str, Any]:

@@ -637,21 +637,33 @@ def fit_runs(path: Path, spec_path: Path | None, *, output: CommandOutput) -> No
             _show_effects(effects, runs, notes, output)
             output.answer(_frame(runs, notes) | _effects_document(effects, runs))
             return
-        surfaces = _fit(runs, spec)
-        drift = drift_over_order(surfaces, runs.run_order)
-    notes = (
-        *runs.notes,
-        *map(str, surfaces.notes),
-        *_unstated(runs),
-        *map(str, negative_surfaces(surfaces)),
-        *map(str, drifting_responses(surfaces, drift)),
-    )
+    surfaces = fit_series(runs, spec, path)
+    drift = drift_over_order(surfaces, runs.run_order)
+    notes = notes_of_fit(runs, surfaces)
     _show_surfaces(surfaces, runs, notes, output)
     documents = {
         name: _surface_document(surfaces, index, runs, drift)
         for index, name in enumerate(surfaces.response_names)
     }
     output.answer(_frame(runs, notes) | {"fit": "quadratic", "responses": documents})
+
+
+def notes_of_fit(runs: RunSeries, surfaces: ResponseSurfaces) -> tuple[str, ...]:
+    """What a reader of surfaces has to know."""
+    drift = drift_over_order(surfaces, runs.run_order)
+    return (
+        *runs.notes,
+        *map(str, surfaces.notes),
+        *_unstated(runs),
+        *map(str, negative_surfaces(surfaces)),
+        *map(str, drifting_responses(surfaces, drift)),
+    )
+
+
+def fit_series(runs: RunSeries, spec: ExperimentSpec | None, path: Path) -> ResponseSurfaces:
+    """Quadratic surfaces of a table of runs; errors name its file."""
+    with at_place(f"{path}: "):
+        return _fit(runs, spec)
 
 
 def _fit(runs: RunSeries, spec: ExperimentSpec | None) -> ResponseSurfaces:

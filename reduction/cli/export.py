@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, cast
 
@@ -32,9 +32,10 @@ from reduction.lines.export_sources import (
     line_from_composite,
     line_from_lookup,
 )
+from reduction.lines.export_tables import ValueTable
 from reduction.lines.published_source import published_sources
 from reduction.lines.surface_table import surface_table
-from reduction.quantities.units import Dimension, parse_quantity
+from reduction.quantities.units import Dimension, UnitSystem, parse_quantity
 from reduction.record.errors import DataError, SettingsError
 
 _HYDRODYNAMICS_NEEDED = 'two numbers, "1.6, 0.02": across the line, along it'
@@ -187,137 +188,174 @@ _LEVELS: dict[str, Dimension] = {
 }
 
 
-def export_source(
-    sources: Sequence[str],
-    *,
-    to: str,
-    out: Path,
-    form: str | None,
-    curve: str | None,
-    precedence: str | None,
-    specimen: str | None,
-    stated: dict[str, str | None],
-    water: tuple[str | None, str | None, str | None],
-    syrope: tuple[str | None, str | None],
-    levels: dict[str, str | None],
-    extrapolate: str,
-    verify: bool,
-    output: CommandOutput,
-) -> None:
-    """Write the curve of a source in a format, and say what was written."""
-    if extrapolate not in ("refuse", "flag"):
+@dataclass(frozen=True)
+class ExportRequest:
+    """What is exported, how, and what the user states of the line, in words with units."""
+
+    sources: tuple[str, ...]
+    to: str
+    out: Path
+    form: str | None = None
+    curve: str | None = None
+    precedence: str | None = None
+    specimen: str | None = None
+    diameter: str | None = None
+    linear_density: str | None = None
+    wet_linear_density: str | None = None
+    rated_break_strength: str | None = None
+    drag: str | None = None
+    added_mass: str | None = None
+    hydrodynamics_source: str | None = None
+    working_curve: str | None = None
+    greatest_mean_tension: str | None = None
+    frequency: str | None = None
+    mean_tension: str | None = None
+    tension_amplitude: str | None = None
+    extrapolate: str = "refuse"
+    verify: bool = False
+    units: UnitSystem = "si"
+
+
+@dataclass(frozen=True)
+class ExportedFiles:
+    """What an export wrote: a line, or a table of the coefficients of response surfaces."""
+
+    exported: ExportLine | ValueTable
+    paths: tuple[Path, ...]
+    notes: tuple[str, ...] = ()
+    checks: tuple[ClientCheck, ...] = ()
+
+
+def write_export(request: ExportRequest) -> ExportedFiles:
+    """Write the curve of a source in a format, or the coefficients of response surfaces.
+
+    Raises
+    ------
+    ReductionError
+        If the source, the form or a level is not known, or the source cannot be written so.
+    """
+    if request.extrapolate not in ("refuse", "flag"):
         raise SettingsError(
-            "--extrapolate is not known", found=repr(extrapolate), needed="refuse or flag"
+            "--extrapolate is not known", found=repr(request.extrapolate), needed="refuse or flag"
         )
-    if curve not in (None, "mean", "ascending", "descending"):
+    if request.curve not in (None, "mean", "ascending", "descending"):
         raise SettingsError(
-            "--curve is not known", found=repr(curve), needed="mean, ascending or descending"
+            "--curve is not known",
+            found=repr(request.curve),
+            needed="mean, ascending or descending",
         )
+    to, out, form, sources = request.to, request.out, request.form, request.sources
     if not out.name:
         raise SettingsError("--out names no file", found=repr(str(out)), needed="a file")
+    levels = {name: text for name in _LEVELS if (text := getattr(request, name)) is not None}
     surfaces = _surfaces_of(sources) if to in TABLES else None
-    if surfaces == Path(sources[0]) and not any(levels.values()):
-        _export_surfaces(surfaces, to, out, specimen=specimen, form=form, output=output)
-        return
+    if surfaces == Path(sources[0]) and not levels:
+        return _written_surfaces(surfaces, request)
     values: dict[str, Any] = {
-        name: parse_quantity(text, _DIMENSIONS[name])
-        for name, text in stated.items()
-        if text is not None
+        name: parse_quantity(text, dimension)
+        for name, dimension in _DIMENSIONS.items()
+        if (text := getattr(request, name)) is not None
     }
+    water = _stated_hydrodynamics(request.drag, request.added_mass, request.hydrodynamics_source)
     line = _line_of(
         sources,
-        cast("CurveName | None", curve),
-        precedence=precedence,
-        specimen=specimen,
-        stated=values | _stated_hydrodynamics(*water),
-        levels={name: text for name, text in levels.items() if text is not None},
-        extrapolate=cast('Literal["refuse", "flag"]', extrapolate),
+        cast("CurveName | None", request.curve),
+        precedence=request.precedence,
+        specimen=request.specimen,
+        stated=values | water,
+        levels=levels,
+        extrapolate=cast('Literal["refuse", "flag"]', request.extrapolate),
     )
-    strength = _strength_of_shares(sources, values)
-    line = _with_syrope(line, *syrope, form=form, rated_break_strength=strength)
-    there = set(out.parent.iterdir()) if out.parent.is_dir() else set()
-    paths = export_line(line, to, out, form=form, units=output.system)
+    line = _with_syrope(
+        line,
+        request.working_curve,
+        request.greatest_mean_tension,
+        form=form,
+        rated_break_strength=_strength_of_shares(sources, values),
+    )
+    paths = export_line(line, to, out, form=form, units=request.units)
     checks: list[ClientCheck] = []
-    if verify:
+    if request.verify:
         checks = verify_deck(line, to, form or next(iter(FORMS.get(to, ())), ""), paths)
         line = replace(line, notes=(*line.notes, *in_words(checks)))
         # the header carries what the program gave
-        paths = export_line(line, to, out, form=form, units=output.system)
-        if not all(one.is_kept for one in checks):
-            output.raise_status(DataError.exit_status)
+        paths = export_line(line, to, out, form=form, units=request.units)
     notes = (*guards_of(line), *closeness_of(line, to, form), *line.notes)
-    output.say(f"{line.name}: {line.curve}")
-    for text in (*line.sources, *(f"note: {note}" for note in notes)):
-        output.say(f"  {text}")
-    for path in paths:
-        output.say(f"{'written over' if path in there else 'written'}: {path}")
-    output.answer(
-        {
-            "line": line.name,
-            "format": to,
-            "form": form,
-            "curve": line.curve,
-            "tested": {"strain": plain(line.tested), "unit": "1"},
-            "files": [str(path) for path in paths],
-            "sources": list(line.sources),
-            "notes": list(notes),
-            "synthetic": line.is_synthetic,
-            "checks": [
-                {
-                    "program": one.program,
-                    "quantity": one.quantity,
-                    "at": one.at,
-                    "promised": plain(one.promised),
-                    "found": plain(one.found),
-                    "unit": one.unit,
-                    "error": plain(one.error),
-                    "limit": LIMITS[one.quantity],
-                    "kept": one.is_kept,
-                }
-                for one in checks
-            ],
-            "hydrodynamics": asdict(line.hydrodynamics),
-            **{
-                name: {"value": plain(getattr(line, name)), "unit": unit}
-                for name, unit in (
-                    ("diameter", "m"),
-                    ("linear_density", "kg m-1"),
-                    ("rated_break_strength", "N"),
-                )
-            },
-        }
-    )
+    return ExportedFiles(line, tuple(paths), notes, tuple(checks))
 
 
-def _export_surfaces(
-    path: Path,
-    to: str,
-    out: Path,
-    *,
-    specimen: str | None,
-    form: str | None,
-    output: CommandOutput,
-) -> None:
+def _written_surfaces(path: Path, request: ExportRequest) -> ExportedFiles:
     """Write the coefficients of response surfaces as a table."""
+    to, form = request.to, request.form
     if form is not None:
         raise SettingsError(f"{to} has no form '{form}'", found=form, needed=f"no --form with {to}")
-    table = surface_table(path, specimen=specimen, units="si" if to == "netcdf" else output.system)
-    was_there = out.exists()
-    paths = export_table(table, to, out, units=output.system)
-    output.say(table.title)
-    for text in (*table.sources, *(f"note: {note}" for note in table.notes)):
+    units = "si" if to == "netcdf" else request.units
+    table = surface_table(path, specimen=request.specimen, units=units)
+    paths = export_table(table, to, request.out, units=request.units)
+    return ExportedFiles(table, tuple(paths), tuple(table.notes))
+
+
+def export_source(request: ExportRequest, *, output: CommandOutput) -> None:
+    """Write an export, and say what was written."""
+    folder = request.out.parent
+    there = set(folder.iterdir()) if folder.is_dir() else set()
+    done = write_export(request)
+    what = done.exported
+    is_line = isinstance(what, ExportLine)
+    output.say(f"{what.name}: {what.curve}" if isinstance(what, ExportLine) else what.title)
+    for text in (*what.sources, *(f"note: {note}" for note in done.notes)):
         output.say(f"  {text}")
-    output.say(f"{'written over' if was_there else 'written'}: {out}")
+    for path in done.paths if is_line else done.paths[:1]:
+        output.say(f"{'written over' if path in there else 'written'}: {path}")
+    if not all(one.is_kept for one in done.checks):
+        output.raise_status(DataError.exit_status)
     output.answer(
         {
-            "title": table.title,
-            "format": to,
-            "rows": int(table.columns[0].values.size),
-            "files": [str(one) for one in paths],
-            "sources": list(table.sources),
-            "synthetic": table.is_synthetic,
+            "format": request.to,
+            "files": [str(path) for path in done.paths],
+            "sources": list(what.sources),
+            "synthetic": what.is_synthetic,
+            **(
+                _line_document(what, request, done)
+                if isinstance(what, ExportLine)
+                else {"title": what.title, "rows": int(what.columns[0].values.size)}
+            ),
         }
     )
+
+
+def _line_document(line: ExportLine, request: ExportRequest, done: ExportedFiles) -> dict[str, Any]:
+    """What is known of an exported line, for JSON."""
+    return {
+        "line": line.name,
+        "form": request.form,
+        "curve": line.curve,
+        "tested": {"strain": plain(line.tested), "unit": "1"},
+        "notes": list(done.notes),
+        "checks": [
+            {
+                "program": one.program,
+                "quantity": one.quantity,
+                "at": one.at,
+                "promised": plain(one.promised),
+                "found": plain(one.found),
+                "unit": one.unit,
+                "error": plain(one.error),
+                "limit": LIMITS[one.quantity],
+                "kept": one.is_kept,
+            }
+            for one in done.checks
+        ],
+        "hydrodynamics": asdict(line.hydrodynamics),
+        **{
+            name: {"value": plain(getattr(line, name)), "unit": unit}
+            for name, unit in (
+                ("diameter", "m"),
+                ("linear_density", "kg m-1"),
+                ("rated_break_strength", "N"),
+            )
+        },
+    }
 
 
 def _line_of(

@@ -524,35 +524,35 @@ def export(
 ) -> None:
     """Write a curve for a mooring code, or as a table."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
-        from reduction.cli.export import export_source
+        from reduction.cli.export import ExportRequest, export_source
         from reduction.cli.remote_paths import local_sources
 
         with local_sources(sources, allow_remote=allow_remote, output=output) as here:
-            export_source(
-                here,
+            request = ExportRequest(
+                sources=tuple(here),
                 to=to,
                 out=out,
                 form=form,
                 curve=curve,
                 precedence=precedence,
                 specimen=specimen,
-                stated={
-                    "diameter": diameter,
-                    "linear_density": linear_density,
-                    "wet_linear_density": wet_linear_density,
-                    "rated_break_strength": rated_break_strength,
-                },
-                water=(drag, added_mass, hydrodynamics_source),
-                syrope=(working_curve, greatest_mean_tension),
-                levels={
-                    "frequency": frequency,
-                    "mean_tension": mean_tension,
-                    "tension_amplitude": tension_amplitude,
-                },
+                diameter=diameter,
+                linear_density=linear_density,
+                wet_linear_density=wet_linear_density,
+                rated_break_strength=rated_break_strength,
+                drag=drag,
+                added_mass=added_mass,
+                hydrodynamics_source=hydrodynamics_source,
+                working_curve=working_curve,
+                greatest_mean_tension=greatest_mean_tension,
+                frequency=frequency,
+                mean_tension=mean_tension,
+                tension_amplitude=tension_amplitude,
                 extrapolate=extrapolate,
                 verify=verify,
-                output=output,
+                units=output.system,
             )
+            export_source(request, output=output)
 
 
 def reproduce(

@@ -31,7 +31,9 @@ def test_the_package_shows_its_public_names_alone():
     names = dir(reduction)
     assert len(names) <= 30 and all(hasattr(reduction, name) for name in names)
     shown = {name for name in names if not name.startswith("__")}
-    assert shown == {"look_up", "open_archive", "open_campaign", "run"}
+    assert shown == {
+        "export", "fit_surface", "look_up", "open_archive", "open_campaign", "predict_hose", "run"
+    }  # fmt: skip
 
 
 def test_a_look_up_is_that_of_the_command():
@@ -90,3 +92,66 @@ def test_a_run_gives_the_campaign_that_it_made(tmp_path):
     with made, reduction.open_campaign(tmp_path / "p" / "buoy-technology-1997") as opened:
         assert set(made.children) == set(opened.children) == {"static"}
     assert (tmp_path / "r" / "buoy-technology-1997" / "index.html").is_file()
+
+
+def test_an_export_is_that_of_the_command(tmp_path):
+    stated = {"linear_density": "0.1 kg/m", "wet_linear_density": "0.01 kg/m"}
+    options = {"form": "static-dynamic", **stated, **LEVELS}
+    done = reduction.export(LINE, "moordyn", tmp_path / "python.dat", **options)
+    said = [part for key, text in options.items() for part in (f"--{key.replace('_', '-')}", text)]
+    subprocess.run(
+        [sys.executable, "-m", "reduction", "export", LINE, "--to", "moordyn",
+         "--out", str(tmp_path / "command.dat"), *said],
+        capture_output=True, check=True, cwd=ROOT,
+    )  # fmt: skip
+    assert done.paths[0] == tmp_path / "python.dat" and not done.checks
+    assert done.paths[0].read_bytes() == (tmp_path / "command.dat").read_bytes()
+    with pytest.raises(SettingsError, match="no option diametre"):
+        reduction.export(LINE, "csv", tmp_path / "x.csv", diametre="26 mm")
+
+
+def test_a_surface_of_runs_is_the_polynomial_that_made_them(tmp_path):
+    levels = np.array(
+        [
+            [a, b, 0] for a in (-1, 1) for b in (-1, 1)
+        ] + [[a, 0, b] for a in (-1, 1) for b in (-1, 1)]
+        + [[0, a, b] for a in (-1, 1) for b in (-1, 1)] + [[0, 0, 0]] * 3
+    )  # fmt: skip
+    one, two, three = levels.T
+    value = 5 + 0.5 * one**2 - 0.2 * two**2 + 2 * one - three + 0.3 * one * two
+    scatter = 1e-3 * np.array([*[0.0] * 12, -1, 0, 1])
+    rows = zip(one, two, three, 1000 * (value + scatter), strict=True)
+    runs = tmp_path / "runs.csv"
+    heads = "frequency,mean_tension,tension_amplitude,apparent_spring_constant [N]"
+    body = "".join(",".join(f"{float(cell)!r}" for cell in row) + "\n" for row in rows)
+    runs.write_text(heads + "\n" + body, encoding="utf-8")
+    found = reduction.fit_surface(runs)
+    (surface,) = found.coefficient.transpose("response", "term").values
+    terms = [str(name) for name in found.term.values]
+    wanted = dict.fromkeys(terms, 0.0)
+    first, second, third = (str(name) for name in found.factor.values)
+    wanted |= {terms[0]: 5.0, first: 2.0, third: -1.0}
+    wanted |= {f"{first}^2": 0.5, f"{second}^2": -0.2, f"{first}*{second}": 0.3}
+    assert set(wanted) == set(terms)
+    np.testing.assert_allclose(surface, [1000 * wanted[name] for name in terms], atol=1e-9)
+    np.testing.assert_allclose(
+        np.sqrt(np.diagonal(found.covariance.values[0])),
+        found.coefficient_standard_uncertainty.values[0],
+    )
+    # two degrees of freedom are those of three centre runs, three those of the balance
+    assert float(found.sigma[0]) == pytest.approx(np.sqrt(2 / 5))
+
+
+def test_a_predicted_hose_is_that_of_the_command(tmp_path):
+    text = (ROOT / "docs" / "predictions.md").read_text(encoding="utf-8")
+    spec = tmp_path / "hose.toml"
+    spec.write_text(re.findall(r"```toml\n(.*?)```", text, re.DOTALL)[0], encoding="utf-8")
+    subprocess.run(
+        [sys.executable, "-m", "reduction", "predict", "hose", str(spec), "--out", str(tmp_path)],
+        capture_output=True, check=True, cwd=ROOT,
+    )  # fmt: skip
+    with reduction.open_archive(tmp_path / "predictions.nc") as said:
+        found = reduction.predict_hose(spec)
+        assert set(said.data_vars) == set(found.data_vars)
+        for name in ("tension", "fill_pressure"):
+            np.testing.assert_array_equal(found[name], said[name])
