@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,6 +17,7 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
+from reduction import __version__
 from reduction.archive.atomic_write import take_away
 from reduction.archive.csv_columns import (
     OUTCOME_TABLES,
@@ -40,6 +43,7 @@ from reduction.archive.csv_definitions import (
 from reduction.archive.open import Opener, reading
 from reduction.archive.shared_errors import components_of, shared_contributions
 from reduction.archive.variables import stored
+from reduction.archive.write import write_text_atomically
 from reduction.quantities.flags import BRANCH_VALUES
 from reduction.quantities.names import QUANTITIES, RESPONSE_PATTERNS, SURFACE_NAMES
 from reduction.quantities.row import SUFFIXES
@@ -392,6 +396,46 @@ def write_tables(
         if name not in filled:
             take_away(files[name].path)
     return [files[name].path for name in filled]
+
+
+_STAMP = "written-from.json"
+"""What the tables of a folder were written from, and what they were then."""
+
+
+def refresh_tables(
+    archives: Sequence[Path], folder: Path, *, opener: Opener = reading, **products: Path
+) -> list[Path]:
+    """Write the tables of a folder anew, unless archives and tables are those of the last time."""
+    stamp = folder / _STAMP
+    before = _stamp_in(stamp)
+    made_from = {
+        "version": __version__,
+        "archives": {path.name: _digest(path) for path in [*archives, *products.values()]},
+    }
+    if before is not None:
+        paths = [folder / name for name in before["tables"]]
+        now = {path.name: _digest(path) for path in paths if path.is_file()}
+        if before == made_from | {"tables": now}:
+            return paths
+    paths = write_tables(archives, folder, opener=opener, **products)
+    tables = {path.name: _digest(path) for path in paths}
+    write_text_atomically(stamp, json.dumps(made_from | {"tables": tables}, indent=1) + "\n")
+    return paths
+
+
+def _stamp_in(path: Path) -> dict[str, Any] | None:
+    """The stamp of a folder; None where there is none that can be read."""
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    is_stamp = isinstance(found, dict) and isinstance(found.get("tables"), dict)
+    return found if is_stamp else None
+
+
+def _digest(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def table_of(archive: xr.Dataset, name: str) -> pd.DataFrame:
