@@ -3,25 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Literal
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from rich.table import Table
 
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import as_given, plain, short, table_of, within
-from reduction.lines.archive_source import archives_of_lines, lines_of_archive, with_unique_names
-from reduction.lines.deck_formats import export_table
-from reduction.lines.export_tables import (
-    TENSIONS,
-    ValueTable,
-    format_of_file,
-    table_of_difference,
-    table_of_values,
-)
 from reduction.lines.line_consistency import (
     DASHPOT,
     ENERGY,
@@ -35,7 +27,7 @@ from reduction.lines.line_consistency import (
 from reduction.lines.line_curve import evaluate_curve
 from reduction.lines.line_lookup import Branch, look_up
 from reduction.lines.line_search import LineDifference, compare_values, find_lines
-from reduction.lines.lookup_product import DesignValues, LineSource
+from reduction.lines.lookup_product import TENSIONS, DesignValues, LineSource
 from reduction.lines.published_source import published_sources
 from reduction.lines.tether_comparison import compared_tethers
 from reduction.quantities.names import SINGLE_QUANTITIES
@@ -44,6 +36,9 @@ from reduction.quantities.units import Dimension, UnitSystem, display_unit, pars
 from reduction.record.errors import ArchiveError, DataError, SettingsError
 from reduction.record.measurement import Bools, Floats
 from reduction.stages.three_parameter_line.line_product import REASONS
+
+if TYPE_CHECKING:
+    from reduction.lines.export_tables import ValueTable
 
 _OF_CYCLES = (
     "apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant",
@@ -63,6 +58,13 @@ def lines_of_source(source: str) -> list[LineSource]:
         return list(published.values())
     if source in published:
         return [published[source]]
+    # xarray and the archive, which published lines do without, are half of the time of a look-up
+    from reduction.lines.archive_source import (
+        archives_of_lines,
+        lines_of_archive,
+        with_unique_names,
+    )
+
     path = Path(source)
     if path.is_file():
         lines = lines_of_archive(path)
@@ -378,7 +380,7 @@ def _described(line: LineSource) -> dict[str, Any]:
 
 def look_up_values(source: str, wanted: LookupRequest, *, output: CommandOutput) -> None:
     """Print design values; several values of a level, parted by commas, make a grid."""
-    form = None if wanted.out is None else format_of_file(wanted.out)
+    form = _form_of(wanted.out)
     line = one_line_of(
         find_lines(lines_of_source(source), **wanted.search), wanted.quantity, wanted.name
     )
@@ -389,17 +391,35 @@ def look_up_values(source: str, wanted: LookupRequest, *, output: CommandOutput)
         line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **points
     )
     _show(line, found, points, output)
-    files = _write_table(table_of_values(line, found, points), wanted.out, form, output)
+    files = _write_table(
+        lambda tables: tables.table_of_values(line, found, points), wanted.out, form, output
+    )
     output.answer(_document(line, found, points, grid=wanted.grid) | {"files": files})
 
 
+def _form_of(out: Path | None) -> str | None:
+    """Format that the name of a file asks for."""
+    if out is None:
+        return None
+    from reduction.lines.export_tables import format_of_file
+
+    return format_of_file(out)
+
+
 def _write_table(
-    table: ValueTable, out: Path | None, form: str | None, output: CommandOutput
+    table_of: Callable[[ModuleType], ValueTable],
+    out: Path | None,
+    form: str | None,
+    output: CommandOutput,
 ) -> list[str]:
     """Write the table where a file was named, and say so."""
     if out is None or form is None:
         return []
-    paths = export_table(table, form, out, units=output.system)
+    # these bring xarray and the archive, which an answer on the screen does without
+    from reduction.lines import export_tables
+    from reduction.lines.deck_formats import export_table
+
+    paths = export_table(table_of(export_tables), form, out, units=output.system)
     for path in paths:
         output.say(f"written: {path}")
     return [str(path) for path in paths]
@@ -673,7 +693,7 @@ def look_up_against(
     source: str, other: str, wanted: LookupRequest, *, output: CommandOutput
 ) -> None:
     """Print values of two lines, their difference and ratio, and whether the intervals allow it."""
-    form = None if wanted.out is None else format_of_file(wanted.out)
+    form = _form_of(wanted.out)
     lines = lines_of_source(source)
     first = one_line_of(find_lines(lines, **wanted.search), wanted.quantity, wanted.name)
     second = _other(lines, other, wanted.quantity, first)
@@ -692,8 +712,12 @@ def look_up_against(
         found = replace(found, notes=(*pair.notes, *found.notes))
         output.say(pair.notes[0] + "; " + pair.notes[1])
     _show_difference(first, second, found, points, others, output)
-    table = table_of_difference(first, second, found, points, others)
-    files = _write_table(table, wanted.out, form, output)
+    files = _write_table(
+        lambda tables: tables.table_of_difference(first, second, found, points, others),
+        wanted.out,
+        form,
+        output,
+    )
     document = _difference_document(first, second, found, points, others, grid=wanted.grid)
     output.answer(document | {"files": files})
 

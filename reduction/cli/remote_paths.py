@@ -10,9 +10,8 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from signal import SIG_DFL, Signals, default_int_handler, getsignal, signal
 from threading import current_thread, main_thread
+from typing import TYPE_CHECKING
 
-from reduction.campaign.load import staged_campaign
-from reduction.campaign.plan import Campaign
 from reduction.cli.output import CommandOutput
 from reduction.cli.progress import campaign_progress
 from reduction.readers.remote_files import (
@@ -26,6 +25,9 @@ from reduction.readers.remote_files import (
 from reduction.record.errors import SettingsError
 from reduction.record.plain_text import shown_address
 
+if TYPE_CHECKING:
+    from reduction.campaign.plan import Campaign
+
 # a machine that is shut down or a queue that ends a job; a terminal that is closed, where there are
 _REQUESTS = [one for one in Signals if one.name in ("SIGTERM", "SIGHUP")]
 
@@ -33,6 +35,8 @@ _REQUESTS = [one for one in Signals if one.name in ("SIGTERM", "SIGHUP")]
 @contextmanager
 def campaign_at(path: Path, *, allow_remote: bool, output: CommandOutput) -> Iterator[Campaign]:
     """Load a campaign with its logs at hand."""
+    from reduction.campaign.load import staged_campaign  # a look-up needs no campaign
+
     with ExitStack() as opened:
         opened.enter_context(in_order())
         with campaign_progress(output) as bar:

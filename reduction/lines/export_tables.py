@@ -25,7 +25,7 @@ from reduction.archive.atomic_write import atomic_file
 from reduction.lines.deck_text import number
 from reduction.lines.export_line import CurveSpread, ExportLine, curve_from_zero, range_of
 from reduction.lines.line_search import LineDifference
-from reduction.lines.lookup_product import DesignValues, LineSource
+from reduction.lines.lookup_product import TENSIONS, DesignValues, LineSource
 from reduction.quantities.names import quantity
 from reduction.quantities.row import COMPONENT
 from reduction.quantities.units import UnitSystem, display_unit
@@ -253,9 +253,6 @@ def _as_markdown(text: str) -> str:
     plain = escape(" ".join(text.split()), quote=False)
     return re.sub(r"[\\`|]|\](?=\()", lambda sign: "\\" + sign[0], plain)
 
-
-TENSIONS = ("mean_tension", "tension_amplitude", "tension")
-"""Levels that are shares of a break strength as well."""
 
 _OF_SUFFIX = {
     ".csv": "csv",

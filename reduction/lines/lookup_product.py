@@ -22,6 +22,9 @@ from reduction.record.contributions import Component
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 
+TENSIONS = ("mean_tension", "tension_amplitude", "tension")
+"""Levels that are shares of a break strength as well."""
+
 
 @dataclass(frozen=True)
 @read_only_arrays

@@ -248,6 +248,22 @@ def test_the_start_of_a_command_loads_no_heavy_package():
     assert done.stdout == "[]\n"
 
 
+def test_a_look_up_of_a_published_line_loads_no_package_of_archives_or_tables():
+    heavy = {"pandas", "scipy.stats", "xarray", "netCDF4", "pyarrow", "plotly"}
+    code = f"""
+import sys
+sys.argv = ["reduction", "lookup", "nylon-double-braid-0.5in-new", "--quantity", "K_ap", "--quiet",
+            "--frequency", "0.3 Hz", "--mean-tension", "21 %RBS", "--tension-amplitude", "8.5 %RBS"]
+from reduction.cli.main import app
+try:
+    app()
+except SystemExit as end:
+    print(end.code, sorted({heavy} & set(sys.modules)))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "0 []\n"
+
+
 @pytest.mark.slow
 def test_a_run_in_which_every_test_fails_has_a_page_that_says_so(small, command):
     for name in ("A.csv", "B.csv"):
