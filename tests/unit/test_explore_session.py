@@ -62,7 +62,7 @@ def test_an_archive_stands_while_nothing_is_changed(session):
 
 
 def test_numbers_that_are_shown_are_those_of_a_run_after_the_save(place, monkeypatch):
-    for name in ("write_tables", "write_report"):  # what is made of archives takes long
+    for name in ("refresh_tables", "write_report"):  # what is made of archives takes long
         monkeypatch.setattr(f"reduction.batch.run_campaign.{name}", lambda *given, **more: [])
     session = session_of(place)
     changes = {"cycles.trim_threshold": "0.9", "modulus.window": "6 %"}
