@@ -17,7 +17,7 @@ import numpy as np
 
 from reduction import __version__
 from reduction.archive.campaign_products import outcomes_to_dataset
-from reduction.archive.csv_tables import refresh_tables
+from reduction.archive.csv_tables import refresh_tables, write_tables
 from reduction.archive.open import Opener, read_once, reading
 from reduction.archive.product_files import OF_CAMPAIGN, SUPERSEDED, archives_of_tests
 from reduction.archive.rope_properties import CHANGES_LENGTH, properties_to_dataset, step_of_archive
@@ -478,7 +478,8 @@ def _run(
     stray = [path.name for path in gone if path.stem.startswith(unknown)]
     superseded = _put_aside([path for path in gone if path.name not in stray], folder)
     if archives or products:
-        tables = refresh_tables(archives, folder / "tables", opener=opener, **products)
+        write = write_tables if force else refresh_tables
+        tables = write(archives, folder / "tables", opener=opener, **products)
         write_catalogue([*archives, *products.values()], folder / FILE_NAME, opener=opener)
     if archives or products or statuses:  # where all tests failed the page says that and why
         progress.stage("report", 0)
