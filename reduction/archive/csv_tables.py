@@ -413,10 +413,9 @@ def refresh_tables(
         "archives": {path.name: _digest(path) for path in [*archives, *products.values()]},
     }
     if before is not None:
-        paths = [folder / name for name in before["tables"]]
-        now = {path.name: _digest(path) for path in paths if path.is_file()}
+        now = {path.name: _digest(path) for path in folder.glob("*.csv")}
         if before == made_from | {"tables": now}:
-            return paths
+            return [folder / name for name in before["tables"]]
     paths = write_tables(archives, folder, opener=opener, **products)
     tables = {path.name: _digest(path) for path in paths}
     write_text_atomically(stamp, json.dumps(made_from | {"tables": tables}, indent=1) + "\n")

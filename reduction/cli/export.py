@@ -301,11 +301,10 @@ def export_source(request: ExportRequest, *, output: CommandOutput) -> None:
     there = set(folder.iterdir()) if folder.is_dir() else set()
     done = write_export(request)
     what = done.exported
-    is_line = isinstance(what, ExportLine)
     output.say(f"{what.name}: {what.curve}" if isinstance(what, ExportLine) else what.title)
     for text in (*what.sources, *(f"note: {note}" for note in done.notes)):
         output.say(f"  {text}")
-    for path in done.paths if is_line else done.paths[:1]:
+    for path in done.paths:
         output.say(f"{'written over' if path in there else 'written'}: {path}")
     if not all(one.is_kept for one in done.checks):
         output.raise_status(DataError.exit_status)

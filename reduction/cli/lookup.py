@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from types import ModuleType
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -391,9 +390,12 @@ def look_up_values(source: str, wanted: LookupRequest, *, output: CommandOutput)
         line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **points
     )
     _show(line, found, points, output)
-    files = _write_table(
-        lambda tables: tables.table_of_values(line, found, points), wanted.out, form, output
-    )
+    files: list[str] = []
+    if wanted.out is not None and form is not None:
+        # brings xarray, which an answer on the screen does without
+        from reduction.lines.export_tables import table_of_values
+
+        files = _write_table(table_of_values(line, found, points), wanted.out, form, output)
     output.answer(_document(line, found, points, grid=wanted.grid) | {"files": files})
 
 
@@ -406,20 +408,11 @@ def _form_of(out: Path | None) -> str | None:
     return format_of_file(out)
 
 
-def _write_table(
-    table_of: Callable[[ModuleType], ValueTable],
-    out: Path | None,
-    form: str | None,
-    output: CommandOutput,
-) -> list[str]:
-    """Write the table where a file was named, and say so."""
-    if out is None or form is None:
-        return []
-    # these bring xarray and the archive, which an answer on the screen does without
-    from reduction.lines import export_tables
+def _write_table(table: ValueTable, out: Path, form: str, output: CommandOutput) -> list[str]:
+    """Write the table of an answer, and say so."""
     from reduction.lines.deck_formats import export_table
 
-    paths = export_table(table_of(export_tables), form, out, units=output.system)
+    paths = export_table(table, form, out, units=output.system)
     for path in paths:
         output.say(f"written: {path}")
     return [str(path) for path in paths]
@@ -712,12 +705,12 @@ def look_up_against(
         found = replace(found, notes=(*pair.notes, *found.notes))
         output.say(pair.notes[0] + "; " + pair.notes[1])
     _show_difference(first, second, found, points, others, output)
-    files = _write_table(
-        lambda tables: tables.table_of_difference(first, second, found, points, others),
-        wanted.out,
-        form,
-        output,
-    )
+    files: list[str] = []
+    if wanted.out is not None and form is not None:
+        from reduction.lines.export_tables import table_of_difference
+
+        table = table_of_difference(first, second, found, points, others)
+        files = _write_table(table, wanted.out, form, output)
     document = _difference_document(first, second, found, points, others, grid=wanted.grid)
     output.answer(document | {"files": files})
 

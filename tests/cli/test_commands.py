@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -262,6 +263,24 @@ except SystemExit as end:
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "0 []\n"
+
+
+@pytest.mark.slow
+def test_the_answer_in_the_readme_is_the_one_that_its_command_prints(synthetic, command, tmp_path):
+    processed = tmp_path / "processed"
+    shutil.copytree(synthetic.processed, processed / "tmt-synthetic")
+    done = command(
+        "run", RAW / "campaign.toml", "--processed", processed, "--reports", tmp_path / "reports"
+    )
+    printed = [re.split(r"  +", line.strip()) for line in done.stdout.splitlines()]
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    head, *rows = re.search(r"^```text\n(specimen .*?)^```", text, re.M | re.S)[1].splitlines()
+    heads = re.split(r"  +", head.strip())
+    (whole,) = [line for line in printed if line[0] == "specimen"]
+    places = [whole.index(name) for name in heads]
+    answers = [[line[place] for place in places] for line in printed if len(line) == len(whole)]
+    assert len(rows) == 2
+    assert [re.split(r"  +", row.strip()) for row in rows] == answers[1:3]
 
 
 @pytest.mark.slow
