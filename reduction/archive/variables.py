@@ -60,6 +60,7 @@ def note_values(notes: Sequence[Note]) -> Values:
         "note_stage": texts([one.stage for one in notes]),
         "note_code": texts([one.code for one in notes]),
         "note_severity": texts([one.severity for one in notes]),
+        "note_effect": np.array([one.numbers.get("effect", np.nan) for one in notes], dtype=float),
     }
 
 
@@ -71,11 +72,17 @@ def read_notes(archive: xr.Dataset, *, of: tuple[str, str] | None = None) -> tup
         archive.variables[name].values.astype(str).tolist()
         for name in ("note", "note_stage", "note_code", "note_severity")
     ]
-    rows = zip(*columns, strict=True)
+    rows = zip(*columns, archive.variables["note_effect"].values.tolist(), strict=True)
     owners = archive.variables[of[0]].values.astype(str) if of else columns[0]
     found = (
-        Note(code, cast("Severity", severity), stage=stage, text=text)
-        for (text, stage, code, severity), owner in zip(rows, owners, strict=True)
+        Note(
+            code,
+            cast("Severity", severity),
+            stage=stage,
+            numbers={"effect": effect} if np.isfinite(effect) else {},
+            text=text,
+        )
+        for (text, stage, code, severity, effect), owner in zip(rows, owners, strict=True)
         if of is None or owner == of[1]
     )
     return tuple(dict.fromkeys(found))

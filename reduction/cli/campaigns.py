@@ -494,6 +494,8 @@ def _show_answers(
     if not output.is_text or not (made or not tests):
         return frozenset()
     found = read_answers(processed, units=output.system, only=made, opener=opener)
+    if found.is_synthetic:
+        output.say("SYNTHETIC DATA: no specimen was tested.")
     for answers in found.tables:
         output.say(answers.caption)
         table = Table(box=None, pad_edge=False)

@@ -47,6 +47,13 @@ AXES: tuple[Quantity, ...] = (
             "warning, refusal or note: how serious the note is",
             tables=("notes", "experiment_notes"),
         ),
+        stated(
+            "note_effect",
+            "1",
+            "by what share the answer would move, where that is known",
+            "size of a possible error",
+            tables=("notes", "experiment_notes"),
+        ),
         group="notes",
     ),
 )

@@ -531,11 +531,10 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "identity-open": (
         "warning",
         lambda effect, error, is_coarse: (
-            f"the closed-cycle identity leaves {effect:+.1%} of the stroke-mean modulus (standard"
-            f" error {error:.1%}): strain and tension may not be sampled together (lag); or tension"
-            " may change while strain stands (a dwell), or strain may not be that of the rubber"
-            " alone (slip, slack)"
-            f"{'; or a branch has few samples for its curvature' if is_coarse else ''}"
+            "the mean slopes of the two branches and the tension lost in a cycle do not agree:"
+            f" {effect:+.1%} of the modulus is left (standard error {error:.1%}). Possible causes:"
+            " a lag between the channels, a dwell at the turns, slip or slack"
+            f"{', or too few samples for the curvature' if is_coarse else ''}"
         ),
     ),
     "slip-cycles-missing": (

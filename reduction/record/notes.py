@@ -89,19 +89,20 @@ def note(code: str, subject: str = "", /, **numbers: Any) -> Note:
     return Note(code, SENTENCES[code][0], subject=subject, numbers=numbers)
 
 
+def urgency(one: Note) -> tuple[int, float]:
+    """Rank of a note among those as serious: causes first, then by how far they move an answer."""
+    place = CAUSES.index(one.code) if one.code in CAUSES else len(CAUSES)
+    effect = one.numbers.get("effect")
+    far = abs(effect) if isinstance(effect, int | float) and isfinite(effect) else 0.0
+    return place, -far
+
+
 def by_severity(notes: Iterable[Note]) -> tuple[Note, ...]:
     """Notes, most serious first, causes before what follows, then by how far they move an answer.
 
     Those alike keep their order.
     """
-
-    def rank(one: Note) -> tuple[int, int, float]:
-        place = CAUSES.index(one.code) if one.code in CAUSES else len(CAUSES)
-        effect = one.numbers.get("effect")
-        far = abs(effect) if isinstance(effect, int | float) and isfinite(effect) else 0.0
-        return SEVERITIES.index(one.severity), place, -far
-
-    return tuple(sorted(notes, key=rank))
+    return tuple(sorted(notes, key=lambda one: (SEVERITIES.index(one.severity), urgency(one))))
 
 
 def full_note(stage: str, text: str) -> str:

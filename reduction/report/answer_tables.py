@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import hypot
 
 import numpy as np
 
@@ -22,7 +23,6 @@ from reduction.report.test_view import (
     DRAWN,
     TestView,
     all_specimens,
-    any_synthetic,
     drawn_interval,
     expanded_of,
     factor_words,
@@ -168,7 +168,7 @@ def budget_table(view: TestView, answers: Sequence[AnswerBudget]) -> PageTable |
     return make_table(
         "Share of each source in the variance of the answers.",
         ("number", "value", "unit", "k [1]", *(f"{source_words(one)} [%]" for one in sources)),
-        rows, synthetic=view.is_synthetic, is_compact=True,
+        rows, is_compact=True,
         remarks=[
             f"±: expanded uncertainty, 95 % ({factors}).{names}{_LINE_NAMES if has_line else ''}",
             *([f"{DRAWN} Shares are of first order."] if any(one.drawn for one in answers) else []),
@@ -219,7 +219,7 @@ def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
         f"Design {'stiffness' if is_of_lines else 'moduli'}. EA: tension amplitude over strain"
         f" amplitude.{whole} Ascending, descending: {tangents} at mid-strain. Means over the"
         " cycles.",
-        columns, found, synthetic=any_synthetic(tests), is_compact=True,
+        columns, found, is_compact=True,
         is_tall=len(found) > _MOST_ROWS,
         remarks=[
             plus_minus_of_tests(
@@ -233,6 +233,134 @@ def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
             " interval.",
         ],
     )  # fmt: skip
+
+
+_SAME_STRAINS = 0.8
+"""Strains that two tests have in common, over all that either has: so much is the same range."""
+
+_UNLIKE = 1.25
+"""Ratio of two values of EA that a reader would not expect over the same strains."""
+
+_LIKE_CONDITIONS = 1.15
+"""Amplitudes or frequencies that are this near explain no such ratio."""
+
+
+def unlike_tests_table(tests: Sequence[TestView]) -> PageTable | None:
+    """Return pairs of tests of one specimen that differ over the same strains; None without any.
+
+    Beside each pair stands what the log shows to be different between them: amplitude, frequency,
+    surroundings, and what the specimen went through in between.  Parts of a test that is compared
+    as a whole are left out.
+    """
+    by_specimen: dict[str, list[_Level]] = {}
+    for view in tests:
+        if not (view.attribute("part_of") or view.is_of_earlier_run):
+            for name, level in _levels(view):
+                by_specimen.setdefault(name, []).append(level)
+    rows = [
+        _unlike_row(name, first, second)
+        for name, own in by_specimen.items()
+        for later, second in enumerate(own)
+        for first in own[:later]
+        if first.is_unlike(second)
+    ]
+    if not rows:
+        return None
+    units = tests[0].units
+    force = shown("tension", units)
+    return make_table(
+        "Tests of one specimen over the same strains with different EA, and what differs between"
+        " them.",
+        ("specimen", "tests", shown("strain", units).label("strain"), force.label("EA, first"),
+         force.label("EA, second"), "ratio", "what differs"),
+        rows, is_compact=True, is_tall=len(rows) > _MOST_ROWS,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Level:
+    """EA of a test with its half-width [N], and the strains that it is of [1]."""
+
+    view: TestView
+    place: int
+    low: float
+    high: float
+    constant: float
+    half_width: float
+
+    def is_unlike(self, other: _Level) -> bool:
+        """Return whether two tests over the same strains have values of EA far apart."""
+        shared = min(self.high, other.high) - max(self.low, other.low)
+        union = max(self.high, other.high) - min(self.low, other.low)
+        ratio = other.constant / self.constant
+        return (
+            shared >= _SAME_STRAINS * union
+            and not 1 / _UNLIKE < ratio < _UNLIKE
+            and abs(other.constant - self.constant) > hypot(self.half_width, other.half_width)
+        )
+
+    def of(self, name: str) -> float:
+        """A number of the test, of this specimen; not a number where the archive has none."""
+        found = self.view.array(name)
+        if found is None:
+            return float("nan")
+        return float(np.broadcast_to(found, (len(self.view.specimens),))[self.place])
+
+
+def _levels(view: TestView) -> Iterator[tuple[str, _Level]]:
+    """Give each specimen of a test with its level."""
+    middle, half = view.array("test_mean_strain"), view.array("test_strain_amplitude")
+    constant = view.array(_OF_ROPE)
+    if middle is None or half is None or constant is None:
+        return
+    spread = np.nan_to_num(expanded_of(view, _OF_ROPE, constant).half)
+    low, high = middle - half, middle + half
+    for place in np.flatnonzero(np.isfinite(constant)).tolist():
+        values = (float(own[place]) for own in (low, high, constant, spread))
+        yield view.specimens[place], _Level(view, place, *values)
+
+
+def _unlike_row(name: str, first: _Level, second: _Level) -> list[TableCell]:
+    force = shown("tension", first.view.units)
+    low, high = max(first.low, second.low), min(first.high, second.high)
+    return [
+        words(name),
+        words(f"{first.view.id}, {second.view.id}"),
+        span(low, high, shown("strain", first.view.units), places=0),
+        *(measured(one.constant, one.half_width, force) for one in (first, second)),
+        number(second.constant / first.constant, digits=3),
+        words("; ".join(_differences(first, second))),
+    ]
+
+
+def _differences(first: _Level, second: _Level) -> Iterator[str]:
+    """Say what differs between two tests, and what does not."""
+    ratios = {
+        "strain amplitude": (second.high - second.low) / (first.high - first.low),
+        "frequency": second.of("test_frequency") / first.of("test_frequency"),
+    }
+    for what, ratio in ratios.items():
+        if not 1 / _LIKE_CONDITIONS < ratio < _LIKE_CONDITIONS and np.isfinite(ratio):
+            yield f"{what} {ratio:.2f} times"
+    for what in ("medium", "temperature"):
+        before, after = first.view.attribute(what), second.view.attribute(what)
+        if before and after and before != after:
+            yield f"{what} {before}, then {after}"
+    highest = np.nanmax([first.high, first.of("earlier_maximum_strain")])
+    reached = second.of("earlier_maximum_strain")
+    if reached > _LIKE_CONDITIONS * highest:
+        yield (
+            f"stretched to {100 * reached:.0f} % in between, where {100 * highest:.0f} % was the"
+            " most before: softening by a greater stretch"
+        )
+    cycles = second.of("earlier_cycles") - first.of("earlier_cycles")
+    if cycles > 0:
+        yield f"{cycles:,.0f} cycles between their starts"
+    alike = [
+        what for what, ratio in ratios.items() if 1 / _LIKE_CONDITIONS < ratio < _LIKE_CONDITIONS
+    ]
+    if alike:
+        yield f"{' and '.join(alike)} alike within {100 * (_LIKE_CONDITIONS - 1):.0f} %"
 
 
 def _rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]]:
@@ -348,7 +476,7 @@ def conformity_table(
     return make_table(
         "Statements of conformity with the limits that were agreed.",
         ("quantity", "test", "at", "result", "limits", "unit", "limit from", "statement"), rows,
-        synthetic=any_synthetic(tests),
+
         remarks=[
             f"±: expanded uncertainty, 95 %{f' ({factors})' if factors else ''}.",
             RULES[details.decision_rule],

@@ -15,7 +15,7 @@ from reduction.archive.write import read_details, write_text_atomically
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
 from reduction.record.plain_text import bare_cell
-from reduction.report.answer_tables import design_modulus_table
+from reduction.report.answer_tables import design_modulus_table, unlike_tests_table
 from reduction.report.campaign_sections import (
     ALL_COMPARISONS,
     CampaignView,
@@ -282,6 +282,7 @@ class CampaignAnswers:
     """
 
     tables: tuple[PageTable, ...]
+    is_synthetic: bool
     doubts: tuple[SummaryFinding, ...]
     answered: frozenset[str]
 
@@ -325,13 +326,19 @@ def read_answers(
         for one in find_faults(tests, statuses, not_shown, whole.findings)
         if one.severity == "warning"
     ]
-    moduli = design_modulus_table(tests)
-    rows = () if moduli is None else moduli.rows
+    own = _answers_of(tests)
     return CampaignAnswers(
-        tables=(*whole.answers, *(() if moduli is None else (moduli,))),
+        tables=(*whole.answers, *own),
+        is_synthetic=any_synthetic(tests) or whole.is_synthetic,
         doubts=tuple(doubts),
-        answered=frozenset(row[1].text for row in rows),
+        answered=frozenset(row[1].text for table in own for row in table.rows),
     )
+
+
+def _answers_of(tests: Sequence[TestView]) -> list[PageTable]:
+    """Return the design moduli, and pairs of tests that are unlike over the same strains."""
+    tables = (design_modulus_table(tests), unlike_tests_table(tests))
+    return [table for table in tables if table is not None]
 
 
 def _page_of(
@@ -355,7 +362,6 @@ def _page_of(
     ]
     first, comparisons = _first_figure(tests, comparisons)
     intervals = [interval_table(view) for view in tests]
-    moduli = design_modulus_table(tests)
     speakers = [*tests, *whole.views]
     speaker = speakers[0] if speakers else None
     of_tests = tiles(tests, statuses, faults)
@@ -386,7 +392,7 @@ def _page_of(
         instrument_notes=instrument_sentences(tests),
         tests=test_table(tests, statuses),
         first=first,
-        answers=[*whole.answers, *([moduli] if moduli else [])],
+        answers=[*whole.answers, *_answers_of(tests)],
         designs=design_tables(tests),
         segments=segment_table(tests),
         intervals=[table for table in intervals if table is not None],

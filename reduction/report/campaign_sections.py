@@ -14,7 +14,7 @@ from reduction.archive.open import Opener, reading
 from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
-from reduction.record.notes import Note
+from reduction.record.notes import Note, urgency
 from reduction.report.campaign_summary import SummaryFinding, Tile
 from reduction.report.experiment_report import (
     anova_table,
@@ -269,7 +269,10 @@ def _make_hose_section(view: HoseView) -> TestSection:
 
 def _hose_findings(view: HoseView) -> list[SummaryFinding]:
     """Return what a reader must know of a hose before its numbers."""
-    return [SummaryFinding(one.severity, (f"hose {view.name}",), str(one)) for one in view.notes]
+    return [
+        SummaryFinding(one.severity, (f"hose {view.name}",), str(one), urgency(one))
+        for one in view.notes
+    ]
 
 
 def _hose_tiles(views: Sequence[HoseView]) -> list[Tile]:
@@ -352,7 +355,9 @@ def _comparison_findings(view: ComparisonView) -> list[SummaryFinding]:
         found.append(SummaryFinding("note", of, f"{view.verdict[:1].upper()}{view.verdict[1:]}."))
     if view.is_identified is False:
         found += [SummaryFinding("warning", of, sentence) for sentence in _identified(view)]
-    return found + [SummaryFinding(one.severity, of, str(one)) for one in _other_notes(view)]
+    return found + [
+        SummaryFinding(one.severity, of, str(one), urgency(one)) for one in _other_notes(view)
+    ]
 
 
 def _comparison_tiles(views: Sequence[ComparisonView]) -> list[Tile]:

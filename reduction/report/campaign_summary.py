@@ -5,14 +5,15 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
+from reduction.record.note_sentences import CAUSES
 from reduction.record.note_sentences import Severity as NoteSeverity
-from reduction.record.notes import SEVERITIES, full_note
-from reduction.report.test_view import OF_NO_TEST, Status, TestView, all_specimens, any_synthetic
+from reduction.record.notes import SEVERITIES, full_note, urgency
+from reduction.report.test_view import OF_NO_TEST, Status, TestView, all_specimens
 from reduction.report.text_style import (
     NOT_GIVEN,
     PageTable,
@@ -46,17 +47,20 @@ _NO_TEST = (
 _MOST_NAMES = 200
 """Characters of the list of specimens under the title."""
 
+_FIRST = (0, float("-inf"))
+
 # an archive counts the holds of each specimen apart, the page goes by time
 _NUMBER = re.compile(r"[-+]?\d[\d.,]*(e[-+]?\d+)?")
 
 
 @dataclass(frozen=True)
 class SummaryFinding:
-    """One thing that a reader must know, with the tests it concerns."""
+    """One thing that a reader must know, with the tests it concerns; the urgent ones first."""
 
     severity: Severity
     tests: tuple[str, ...]
     text: str
+    urgency: tuple[int, float] = (len(CAUSES), 0.0)
 
 
 @dataclass(frozen=True)
@@ -75,17 +79,21 @@ def find_faults(
     unreadable: Mapping[str, str],
     others: Sequence[SummaryFinding] = (),
 ) -> list[SummaryFinding]:
-    """Return failures, then warnings, notes and refusals; the same text of many tests once."""
-    gathered: dict[tuple[Severity, str], list[tuple[str, str]]] = {}
-    for severity, test, pattern, text in _all_faults(tests, statuses, unreadable):
-        gathered.setdefault((severity, pattern), []).append((test, text))
+    """Return failures, then warnings, notes and refusals, by how far each could move an answer.
+
+    The same text of many tests stands once, with that of the test in which it matters most.
+    """
+    gathered: dict[tuple[Severity, str], list[SummaryFinding]] = {}
+    for pattern, one in _all_faults(tests, statuses, unreadable):
+        gathered.setdefault((one.severity, pattern), []).append(one)
     found = []
-    for (severity, _), own in gathered.items():
-        texts = list(dict.fromkeys(text for _, text in own))
-        more = f" (and {len(texts) - 1} more like it)" if len(texts) > 1 else ""
-        names = tuple(dict.fromkeys(test for test, _ in own))
-        found.append(SummaryFinding(severity, names, texts[0] + more))
-    return sorted([*found, *others], key=lambda one: _ORDER.index(one.severity))
+    for own in gathered.values():
+        worst = min(own, key=lambda one: one.urgency)
+        n_texts = len({one.text for one in own})
+        more = f" (and {n_texts - 1} more like it)" if n_texts > 1 else ""
+        names = tuple(dict.fromkeys(name for one in own for name in one.tests))
+        found.append(replace(worst, tests=names, text=worst.text + more))
+    return sorted([*found, *others], key=lambda one: (_ORDER.index(one.severity), one.urgency))
 
 
 def grouped_notes(view: TestView) -> list[tuple[str, list[str]]]:
@@ -139,15 +147,14 @@ def test_table(tests: Sequence[TestView], statuses: Sequence[Status]) -> PageTab
         if row.test not in shown_ids:
             empty = [words("")] * 6
             rows.append([words(row.test), *empty, words(f"{_words(row.status)}, {_NOT_SHOWN}")])
-    synthetic = any_synthetic(tests)
     force = shown("tension", tests[0].units if tests else "si")
     columns = (
         "test", "kind", "specimens",
         force.label("tension of the cycles") if is_by_load else "target strain [%]",
         "strain reached [%]",
-        "cycles found [1]", "samples [1]", "status",
+        "cycles found", "samples", "status",
     )  # fmt: skip
-    return make_table("Tests in the order they were made.", columns, rows, synthetic=synthetic)
+    return make_table("Tests in the order they were made.", columns, rows)
 
 
 def tiles(
@@ -172,33 +179,37 @@ def _tile(number: int, noun: str, target: str, *, is_bad: bool = False) -> Tile:
 
 def _all_faults(
     tests: Sequence[TestView], statuses: Sequence[Status], unreadable: Mapping[str, str]
-) -> Iterator[tuple[Severity, str, str, str]]:
-    """Give severity, test, what makes two of them alike, and the text."""
+) -> Iterator[tuple[str, SummaryFinding]]:
+    """Give what makes two findings alike, and the finding of one test."""
+
+    def of_file(severity: Severity, name: str, text: str) -> tuple[str, SummaryFinding]:
+        return text, SummaryFinding(severity, (name,), text, _FIRST)
+
     for name, message in unreadable.items():
-        text = f"This file is not shown: {message}"
-        yield "failure", name, text, text
+        yield of_file("failure", name, f"This file is not shown: {message}")
     archived = {view.id for view in tests}
     for row in statuses:
         if row.status == "failed":
-            text = row.message or "failed without a message"
-            yield "failure", row.test, text, text
+            yield of_file("failure", row.test, row.message or "failed without a message")
             if row.test in archived:
-                text = "What is shown below is an earlier run, kept."
-                yield "failure", row.test, text, text
+                yield of_file("failure", row.test, "What is shown below is from an earlier run.")
         elif row.test not in archived:
             text = f"No archive; status is {_words(row.status)}. {row.message}"
-            yield "warning", row.test, text, text
+            yield of_file("warning", row.test, text)
     for view in tests:
         status = view.status
         if status and status.status == OF_NO_TEST:
-            yield "warning", view.id, _NO_TEST, _NO_TEST
+            yield of_file("warning", view.id, _NO_TEST)
         archived_hash = " ".join(view.attribute("raw_file_sha256").split())
         if status and status.status != "failed" and status.raw_sha256 not in ("", archived_hash):
             text = "The archive was made from other raw files than status.csv."
-            yield "warning", view.id, text, text
+            yield of_file("warning", view.id, text)
         for one in view.notes:
             text = str(one)
-            yield one.severity, view.id, _pattern(view, text), full_note(one.stage, text)
+            finding = SummaryFinding(
+                one.severity, (view.id,), full_note(one.stage, text), urgency(one)
+            )
+            yield _pattern(view, text), finding
 
 
 def _pattern(view: TestView, note: str) -> str:

@@ -189,7 +189,7 @@ def _item_table(details: ReportDetails, tests: Sequence[TestView]) -> PageTable:
     return make_table(
         "Items as they were received.",
         ("item", "identification", "description", "condition on receipt", "received"), rows,
-        synthetic=any_synthetic(tests),
+
     )  # fmt: skip
 
 
@@ -216,7 +216,7 @@ def _calibration_table(details: ReportDetails, tests: Sequence[TestView]) -> Pag
     return make_table(
         "Instruments and their calibration.",
         ("instrument", "identification", "certificate", "traceable to", "calibrated", "due"),
-        rows, synthetic=any_synthetic(tests),
+        rows,
     )  # fmt: skip
 
 
@@ -400,7 +400,7 @@ def _answers(view: TestView) -> PageTable | None:
     ]  # fmt: skip
     return make_table(
         f"Test {view.id}.", ("quantity", "item", "result", "unit", "k [1]"), rows,
-        synthetic=view.is_synthetic,
+
         remarks=[
             f"±: expanded uncertainty, coverage 95 % ({factor_words(factors_of(rows))}).",
             *([DRAWN] if any(one.drawn for one in answers) else []),
@@ -442,7 +442,7 @@ def _by_columns(table: PageTable) -> list[PageTable]:
         remarks = table.remarks if order == len(parts) - 1 else ()
         found.append(
             make_table(
-                caption, [table.columns[place] for place in places], rows, synthetic=False,
+                caption, [table.columns[place] for place in places], rows,
                 remarks=remarks,
             )
         )  # fmt: skip
@@ -477,7 +477,7 @@ def _raw_file_table(tests: Sequence[TestView], *, synthetic: bool) -> PageTable 
         return None
     return make_table(
         "Logs that the results were made from.", ("test", "file", "SHA-256"), rows,
-        synthetic=synthetic,
+
     )  # fmt: skip
 
 

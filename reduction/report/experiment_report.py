@@ -36,6 +36,7 @@ from reduction.experiments.surface_points import (
 from reduction.quantities.names import QUANTITIES, RESPONSES
 from reduction.record.contributions import coverage_factor, effective_degrees_of_freedom
 from reduction.record.measurement import Bools, Floats, Integers
+from reduction.record.notes import urgency
 from reduction.report.answer_tables import AnswerBudget
 from reduction.report.campaign_summary import SummaryFinding
 from reduction.report.figure_data import (
@@ -1225,7 +1226,7 @@ def line_of_runs_table(view: ExperimentView, tests: Mapping[str, TestView]) -> P
         add_line(sheet.texts("run", [view.runs[k]]), test)
         sheet.numbers("K_1 from surfaces", constant[[k]], "tension")
         sheets.append(sheet.numbers("tau from surfaces", time[[k]], "time"))
-    found = Sheet.stack(sheets, view)
+    found = Sheet.stack(sheets)
     return found.table(
         "The three-parameter line of each run; at the right K_1 and tau from surfaces of E' and E''"
         " at the same levels, which smooth over the runs.",
@@ -1370,7 +1371,7 @@ def coefficient_budget_table(
         f"{in_words(name).capitalize()}: share of each source in the variance of the coefficients.",
         ("coefficient, coded", answers[0].unit.label("value"), "k [1]",
          *(f"{source_words(one)} [%]" for one in sources)),
-        rows, synthetic=view.is_synthetic, is_compact=True,
+        rows, is_compact=True,
         remarks=[f"±: expanded uncertainty, 95 % ({factors}).", source_meanings(sources)],
     )  # fmt: skip
 
@@ -1394,7 +1395,9 @@ def experiment_findings(view: ExperimentView) -> list[SummaryFinding]:
             for one in surfaces.response_names
             for text in negative_words(view, surfaces, one, negative)
         ]
-    return found + [SummaryFinding(one.severity, (name,), str(one)) for one in view.notes]
+    return found + [
+        SummaryFinding(one.severity, (name,), str(one), urgency(one)) for one in view.notes
+    ]
 
 
 def negative_words(

@@ -184,7 +184,7 @@ class _Groups(Sheet):
     def __init__(self, view: OutcomeView, rows: Sequence[Row]) -> None:
         columns = {name: ("row", [row[name] for row in rows]) for name in rows[0]} if rows else {}
         super().__init__(
-            Calculated(view.units, view.is_synthetic, xr.Dataset(columns)), ("row",)
+            Calculated(view.units, xr.Dataset(columns)), ("row",)
         )  # fmt: skip
         self.rows = rows
         self.names = group_names([_group(row) for row in rows], view.units)
@@ -411,7 +411,7 @@ def answer_of_ropes(views: Sequence[RopeView]) -> PageTable | None:
     if not views:
         return None
     units = views[0].units
-    sheet = Sheet(Calculated(units, any(view.is_synthetic for view in views)))
+    sheet = Sheet(Calculated(units))
     sheet.texts("rope", [view.specimen for view in views])
     for name in PROPERTY_NAMES:
         unit = shown("tension" if name.endswith("stiffness") else "strain", units)
@@ -564,7 +564,7 @@ def _of_steps(
         for one in columns:
             sheet.counts(*one[:2]) if one[1] in _COUNTED else sheet.all_of(one)
         sheets.append(sheet.texts("why there is no number", reason))
-    found = Sheet.stack(sheets, view)
+    found = Sheet.stack(sheets)
     if not found.is_known:
         return None
     return found.table(caption, optional=found.headings, tall=16, remarks=[found.about()])

@@ -155,7 +155,7 @@ def hose_design_table(view: HoseView) -> PageTable:
             for source, sheet in (("given", given), ("geometry", found))
             for heading, column in zip(sheet.headings, sheet.columns, strict=True)
         ],
-        synthetic=view.is_synthetic,
+
         remarks=[
             f"Law of the rubber: {view.text('rubber_law')}. ±: expanded uncertainty, 95 %"
             f" ({_K}), of what is stated; a number without ± counts as known.",

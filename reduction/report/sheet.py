@@ -46,22 +46,17 @@ Source = str | Iterable[Any]
 
 
 class _Shows(Protocol):
-    """What a table is of: anything with units, that is synthetic or not."""
+    """What a table is of: anything with units."""
 
     @property
     def units(self) -> UnitSystem:
         """What a reader is shown."""
-
-    @property
-    def is_synthetic(self) -> bool:
-        """True where no specimen was ever pulled."""
 
 
 class Calculated(NamedTuple):
     """What is calculated and has no archive."""
 
     units: UnitSystem
-    is_synthetic: bool = False
     data: xr.Dataset = xr.Dataset()
 
 
@@ -90,11 +85,9 @@ class Sheet:
     """Variables that stand in the table with their uncertainty."""
     places: dict[str, Integers] = field(init=False)
     views: list[Any] = field(init=False)
-    is_synthetic: bool = field(init=False)
 
     def __post_init__(self) -> None:
         self.views = [self.view]
-        self.is_synthetic = self.view.is_synthetic
         own = self.view.sizes if isinstance(self.view, RowView) else {}
         sizes: dict[str, int] = {**{str(dim): n for dim, n in self.data.sizes.items()}, **own}
         shape = [sizes.get(dim, 0) for dim in self.dims]
@@ -107,14 +100,13 @@ class Sheet:
             self.keep(np.isfinite(self.of(self.where)))
 
     @classmethod
-    def stack(cls, sheets: Iterable[Sheet], of: _Shows | None = None) -> Sheet:
+    def stack(cls, sheets: Iterable[Sheet]) -> Sheet:
         """Return the rows of several sheets of equal columns, one below the other."""
         all_of = list(sheets)
         if not all_of:
             return cls(Calculated("si"))
         found = all_of[0]
         found.views = [one.view for one in all_of]
-        found.is_synthetic = any(view.is_synthetic for view in ([of] if of else found.views))
         found.columns = [
             [cell for column in same for cell in column]
             for same in zip(*(one.columns for one in all_of), strict=True)
@@ -276,7 +268,7 @@ class Sheet:
         if not rows:
             return None
         return make_table(
-            caption, [heading for heading, _ in pairs], rows, synthetic=self.is_synthetic,
+            caption, [heading for heading, _ in pairs], rows,
             remarks=remarks, is_tall=is_tall or len(rows) > tall, is_compact=is_compact,
         )  # fmt: skip
 
@@ -293,9 +285,7 @@ class Sheet:
             [words(heading), *column]
             for heading, column in zip(self.headings, self.columns, strict=True)
         ]
-        return make_table(
-            caption, (corner, *heads), rows, synthetic=self.is_synthetic, remarks=remarks
-        )
+        return make_table(caption, (corner, *heads), rows, remarks=remarks)
 
     @property
     def is_known(self) -> bool:

@@ -407,7 +407,7 @@ def _piece_table(source: PieceSource, curve: CompositeCurve, units: UnitSystem) 
             "test", "kind", "branch", percent.label("from strain"), percent.label("to strain"),
             force.label("from tension"), force.label("to tension"),
         ),
-        rows, synthetic=source.is_synthetic, is_tall=len(rows) > 12,
+        rows, is_tall=len(rows) > 12,
     )  # fmt: skip
 
 
@@ -446,7 +446,7 @@ def _working_table(found: DeployedLine, units: UnitSystem) -> PageTable | None:
             "of its strength [%]", force.label("least by the tolerance"),
             force.label("greatest by the tolerance"),
         ),
-        rows, synthetic=found.source.is_synthetic,
+        rows,
         remarks=[
             f"±: expanded uncertainty, 95 % ({factor_words([NORMAL])}), of the curve at that"
             " length. EA is that of the cycle, peak to valley, or of 5 % of the length to each side"

@@ -37,7 +37,6 @@ from reduction.report.test_view import (
     NORMAL,
     TestView,
     all_specimens,
-    any_synthetic,
     drawn_interval,
     expand,
     expanded_of,
@@ -98,7 +97,7 @@ def specimen_table(tests: Sequence[TestView], units: UnitSystem) -> PageTable:
             .numbers("rated break strength", "rated_break_strength")
         )  # fmt: skip
     caption = "Specimens before their first test; the diameter is the mean of the readings."
-    empty = make_table(caption, ("specimen",), (), synthetic=any_synthetic(tests))
+    empty = make_table(caption, ("specimen",), ())
     return Sheet.stack(sheets).table(caption) or empty
 
 
@@ -226,7 +225,7 @@ def _design_table(tests: Sequence[TestView], specimen: str, step: float) -> Page
         return None
     unit = shown("stress", tests[0].units)
     levels = sorted({level for _, cells in columns for level in cells})
-    sheet = Sheet(Calculated(tests[0].units, any_synthetic(tests)))
+    sheet = Sheet(Calculated(tests[0].units))
     sheet.texts("strain [%]", [f"{100 * step * level:g}" for level in levels])
     for view, cells in columns:
         sheet.cells(unit.label(view.id), [cells.get(level, words("")) for level in levels])

@@ -294,7 +294,7 @@ def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> PageTable 
     ]
     return make_table(
         "What is stated of the instruments.", ("error, with its unit", *columns), rows,
-        synthetic=any_synthetic(tests), remarks=remarks,
+        remarks=remarks,
     )  # fmt: skip
 
 

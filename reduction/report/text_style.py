@@ -275,15 +275,13 @@ def make_table(
     columns: Sequence[str],
     rows: Sequence[Sequence[TableCell]],
     *,
-    synthetic: bool,
     is_tall: bool = False,
     remarks: Sequence[str] = (),
     is_compact: bool = False,
 ) -> PageTable:
-    """Return a table; the caption says where the data are synthetic."""
-    text = f"{caption} SYNTHETIC DATA." if synthetic else caption
+    """Return a table, its missing numbers aligned with the others."""
     cells = tuple(tuple(row) for row in rows)
-    plain = PageTable(text, tuple(columns), cells, is_tall, tuple(remarks), is_compact)
+    plain = PageTable(caption, tuple(columns), cells, is_tall, tuple(remarks), is_compact)
     missing = TableCell(NOT_GIVEN, is_number=True)
     aligned = tuple(
         tuple(

@@ -72,16 +72,14 @@ def test_a_range_has_both_ends_to_the_same_place():
 
 def test_the_caption_says_where_data_are_synthetic():
     rows = [[words("a"), number(1.0)]]
-    assert make_table("Caption.", ("a", "b"), rows, synthetic=True).caption == (
-        "Caption. SYNTHETIC DATA."
-    )
-    assert make_table("Caption.", ("a", "b"), rows, synthetic=False).number_columns == (False, True)
+    assert make_table("Caption.", ("a", "b"), rows).caption == ("Caption. SYNTHETIC DATA.")
+    assert make_table("Caption.", ("a", "b"), rows).number_columns == (False, True)
     assert words("").text == NOT_GIVEN
 
 
 def test_what_is_missing_stands_flush_right_in_a_column_of_numbers():
     rows = [[words("a"), number(1.0), words("")], [words(""), words(""), words("b")]]
-    table = make_table("Caption.", ("name", "value", "remark"), rows, synthetic=False)
+    table = make_table("Caption.", ("name", "value", "remark"), rows)
     assert [cell.is_number for cell in table.rows[1]] == [False, True, False]
     assert not table.rows[0][2].is_number
 

@@ -567,36 +567,79 @@ def draw_cycle_bias(view: ComparisonView) -> list[Figure]:
 
 
 def draw_all_comparisons(views: Sequence[ComparisonView]) -> list[Figure]:
-    """Draw the relative difference of each comparison in one figure; nothing for one alone."""
+    """Draw all tests with their predictions, and the relative differences; not for one alone."""
     if len(views) < 2:
         return []
     groups: dict[tuple[str, ...], list[ComparisonView]] = {}
     for view in views:
         groups.setdefault((view.test, view.specimen, view.hose, view.loading), []).append(view)
-    data: list[Trace] = []
-    for index, own in enumerate(groups.values()):
-        first = own[0]
+    firsts = [own[0] for own in groups.values()]
+    names = [", ".join(view.name for view in own) for own in groups.values()]
+    is_synthetic = any(view.is_synthetic for view in views)
+    force = shown("tension", views[0].units)
+    shares: list[Trace] = []
+    for index, (first, name) in enumerate(zip(firsts, names, strict=True)):
         measured = first.of_curve("measured_tension", first.judged)
         counts = _is_worth_a_ratio(measured)
         share = np.full(measured.shape, np.nan)
         share[counts] = 100 * first.difference[counts] / measured[counts]
+        shares.append(
+            line(_percent(first), share, name=name, colour=colour(index),
+                 dash=_PULLED.get(first.loading, "dot"), width=2)
+        )  # fmt: skip
+    return [
+        *_kept(
+            make_figure(
+                "comparisons-tension", "Measured and predicted tension of the hoses",
+                "Solid: predicted from construction alone, shaded with its 95 % interval. Dashed:"
+                " measured in a static test, at the curve that is judged; dotted: in a dynamic"
+                " test.",
+                _tensions(firsts, names, force), synthetic=is_synthetic, height=460, is_wide=True,
+                xaxis=_strain_axis(), yaxis=axis(force.label("tension"), rangemode="tozero"),
+            )
+        ),
+        *_kept(
+            make_figure(
+                "comparisons-relative", "Relative difference of all comparisons",
+                "Predicted less measured over measured tension, at the judged curve of each; solid:"
+                " static, dashed: dynamic. Left out where less than"
+                f" {100 * _LEAST_TENSION:g} % of the greatest tension of the test was measured:"
+                " there any difference is large beside it.",
+                shares, synthetic=is_synthetic, height=460, is_wide=True,
+                xaxis=_strain_axis(), yaxis=axis("difference over measured tension [%]"),
+            )
+        ),
+    ]  # fmt: skip
+
+
+def _tensions(views: Sequence[ComparisonView], names: Sequence[str], force: Shown) -> list[Trace]:
+    """Return the prediction of each hose, where it reaches farthest, and its measured curves."""
+    hoses = dict.fromkeys(view.hose for view in views)
+    data: list[Trace] = []
+    for place, hose in enumerate(hoses):
+        own = [view for view in views if view.hose == hose]
+        farthest = max(own, key=lambda view: float(view.array("strain")[-1]))
+        predicted = force.factor * farthest.array("predicted_tension")
+        spread = farthest.array_like("predicted_tension_standard_uncertainty", predicted)
+        half = NORMAL * force.factor * spread
+        strain = _percent(farthest)
+        if np.any(half > 0):
+            data.append(
+                band(strain, predicted - half, predicted + half, name=f"{hose}: 95 % interval",
+                     colour=colour(place), alpha=_ALPHA)
+            )  # fmt: skip
+        data.append(
+            line(strain, predicted, name=f"{hose}, predicted", colour=colour(place), width=2.6)
+        )
+    for view, name in zip(views, names, strict=True):
         data.append(
             line(
-                _percent(first), share, name=", ".join(view.name for view in own),
-                colour=colour(index), dash=_PULLED.get(first.loading, "dot"), width=2,
+                _percent(view), force.factor * view.of_curve("measured_tension", view.judged),
+                name=f"{name}, measured", colour=colour(list(hoses).index(view.hose)),
+                dash="dot" if view.loading == "dynamic" else "dash", width=1.6,
             )
         )  # fmt: skip
-    return _kept(
-        make_figure(
-            "comparisons-relative", "Relative difference of all comparisons",
-            "Predicted less measured over measured tension, at the judged curve of each; solid:"
-            " static, dashed: dynamic. Left out where less than"
-            f" {100 * _LEAST_TENSION:g} % of the greatest tension of the test was measured: there"
-            " any difference is large beside it.",
-            data, synthetic=any(view.is_synthetic for view in views), height=460, is_wide=True,
-            xaxis=_strain_axis(), yaxis=axis("difference over measured tension [%]"),
-        )
-    )  # fmt: skip
+    return data
 
 
 def _percent(view: ComparisonView) -> Floats:
