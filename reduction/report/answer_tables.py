@@ -226,10 +226,10 @@ def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
                 factors_of(found), [view for view, rows in by_test if rows],
                 [_OF_ROPE, *([] if is_of_lines else [_WHOLE]), _TANGENT],
             ),
-            "Cycles used: of the whole cycle, then of the tangents where those differ."
-            f" {NOT_GIVEN}: a branch has no trustworthy value there, and its section says why."
-            " A modulus holds for the strains of its own test: a greater amplitude or a higher"
-            " mean has another. Status: 'check' where something could move an answer beyond its"
+            "Cycles used: for the whole cycle, then for the tangents if different."
+            f" {NOT_GIVEN}: no trustworthy value on that branch; the section of the test says why."
+            " A modulus holds for the strain range of its test; another amplitude or mean gives"
+            " another modulus. Status 'check': something could move the answer beyond its"
             " interval.",
         ],
     )  # fmt: skip

@@ -401,13 +401,17 @@ def _page_of(
     )
 
 
+_FIRST_HEIGHT = 380
+"""So that the answers begin on the first screen. [px]"""
+
+
 def _first_figure(
     tests: Sequence[TestView], comparisons: Sequence[Part]
 ) -> tuple[Figure | None, list[Part]]:
     """Take what stands on the first screen out of the figures over several tests or hoses."""
     levels = draw_stiffness_levels(tests)
     if levels:
-        return levels[0], list(comparisons)
+        return replace(levels[0], height=_FIRST_HEIGHT), list(comparisons)
     found = [place for place, part in enumerate(comparisons) if part.figures]
     if not found:
         return None, list(comparisons)
@@ -419,7 +423,7 @@ def _first_figure(
         replace(part, figures=part.figures[1:]),
         *comparisons[place + 1 :],
     ]
-    return part.figures[0], rest
+    return replace(part.figures[0], height=_FIRST_HEIGHT), rest
 
 
 def _read_statuses(path: Path) -> list[Status]:

@@ -152,8 +152,8 @@ def test_tension_sampled_late_is_noted_and_sound_channels_are_not(triangle):
     assert abs(found.mean_identity_residual[0]) < 0.001
     assert -0.011 < found.mean_identity_residual[1] < -0.007
     (note,) = map(str, found.notes)
-    assert note.startswith("late: the closed-cycle identity leaves -0.")
-    assert "may not be sampled together (lag)" in note
+    assert note.startswith("late: the mean slopes of the two branches")
+    assert ": -0." in note and "a lag between the channels" in note
     assert "few samples" not in note
 
 
@@ -168,7 +168,7 @@ def test_what_noise_explains_or_is_below_half_a_percent_is_not_noted(triangle):
 
 def test_few_samples_a_branch_are_named_among_the_causes(triangle):
     (note,) = map(str, judged(0.02, triangle, per_cycle=20).notes)
-    assert "few samples for its curvature" in note
+    assert "few samples for the curvature" in note
 
 
 def test_one_cycle_has_a_mean_and_no_error_and_no_note(triangle):

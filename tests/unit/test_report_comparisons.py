@@ -78,14 +78,6 @@ def all_figures(one):
     return [*draw_comparison(one), *draw_error(one), *draw_cycle_bias(one)]
 
 
-def all_tables(one):
-    found = [
-        compared_curve_table(one), compared_event_table(one), energy_table(one), calibration_table(one),
-        correlation_table(one), verdict_table([one]),
-    ]  # fmt: skip
-    return [table for table in found if table is not None]
-
-
 LITTLE = {"is_informative": False, "verdict": "agrees within U, 9 N: so wide that little is said"}
 NOT_JUDGED = {
     "largest_ratio": np.nan, "coverage_factor": np.nan, "agrees": False,
@@ -276,7 +268,7 @@ def test_two_cycles_are_points_without_a_line():
 
 def test_all_comparisons_are_lines_over_their_measured_tension():
     found = views()
-    (figure,) = draw_all_comparisons(found)
+    _, figure = draw_all_comparisons(found)
     lines = traces(figure)
     assert [*lines] == ["alike", "apart", "trade"]
     assert lines["trade"]["line"]["dash"] == "dash"
@@ -292,8 +284,9 @@ def test_all_comparisons_are_lines_over_their_measured_tension():
 
 def test_one_test_with_one_hose_is_one_line_however_it_was_fitted():
     twice = replace(agreeing(), name="again")
-    (figure,) = draw_all_comparisons(views(agreeing(), twice))
+    tension, figure = draw_all_comparisons(views(agreeing(), twice))
     assert [trace["name"] for trace in figure.data] == ["alike, again"]
+    assert [name for name in traces(tension) if "measured" in name] == ["alike, again, measured"]
     assert draw_all_comparisons([view(agreeing())]) == []
 
 
@@ -467,10 +460,6 @@ def test_plotly_takes_every_figure_and_nothing_is_unlabelled(named):
         assert figure.layout["title"]["subtitle"]["text"] == "SYNTHETIC DATA"
         assert "[" in figure.layout["xaxis"]["title"]["text"]
         assert "[" in figure.layout["yaxis"]["title"]["text"]
-    for table in all_tables(view(one, synthetic="yes")):
-        assert table.caption.endswith("SYNTHETIC DATA.")
-    for table in all_tables(view(one)):
-        assert "SYNTHETIC" not in table.caption
 
 
 @pytest.fixture(scope="module")

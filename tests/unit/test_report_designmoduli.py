@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.report.answer_tables import design_modulus_table
+from reduction.report.answer_tables import design_modulus_table, unlike_tests_table
 from reduction.report.test_view import OF_NO_TEST, Status, TestView
 from reduction.report.text_style import NOT_GIVEN
 
@@ -39,6 +39,7 @@ def make_view(test="T-1", *, units="si", kind="rubber tether", whole=(1.2e6, 1.1
         "note": ("note", [text for _, text, _ in notes]),
         "note_code": ("note", ["fixture" for _ in notes]),
         "note_severity": ("note", [severity for *_, severity in notes]),
+        "note_effect": ("note", np.full(len(notes), NAN)),
     }
     own = {
         S: ["new", "used"], "branch_name": ["ascending", "descending"],
@@ -143,3 +144,42 @@ def test_numbers_of_an_earlier_run_say_so_in_their_row():
         now = replace(make_view("T-2"), status=Status("T-2", "unchanged"))
         names = [row[1] for row in texts(design_modulus_table([old, now]))]
         assert names == ["T-1 (earlier run)", "T-2"] * 2
+
+
+def with_level(view, *, middle, half, whole, **more):
+    """The same test over other strains, with another modulus of the whole cycle [Pa]."""
+    new = {
+        "test_mean_strain": (S, [middle, middle]),
+        "test_strain_amplitude": (S, [half, half]),
+        "test_apparent_spring_constant": (S, 500e-6 * np.array([whole, whole])),
+        **{name: (S, [value, value]) for name, value in more.items()},
+    }
+    return replace(view, data=view.data.assign(new))
+
+
+def test_tests_of_one_specimen_that_differ_over_the_same_strains_stand_side_by_side():
+    early = with_level(make_view("early"), middle=1.5, half=0.5, whole=1.4e6, earlier_cycles=0,
+                       earlier_maximum_strain=1.2)  # fmt: skip
+    late = with_level(make_view("late"), middle=1.52, half=0.53, whole=0.7e6, earlier_cycles=30,
+                      earlier_maximum_strain=2.8)  # fmt: skip
+    first, second = texts(unlike_tests_table([early, late]))
+    assert [first[0], second[0]] == ["new", "used"]
+    assert first[1:3] == ["early, late", "100 to 200"]
+    assert first[5] == "0.500"
+    assert "stretched to 280 % in between, where 200 % was the most before" in first[6]
+    assert "30 cycles" in first[6] and "strain amplitude and frequency alike" in first[6]
+
+
+def test_other_strains_parts_of_a_test_and_like_values_are_no_such_pair():
+    level = {"middle": 1.5, "half": 0.5, "whole": 1.4e6}
+    one = with_level(make_view("one"), **level)
+    others = [
+        with_level(make_view("elsewhere"), middle=2.2, half=0.5, whole=0.7e6),
+        with_level(make_view("like"), middle=1.5, half=0.5, whole=1.3e6),
+    ]
+    part = with_level(make_view("part"), middle=1.5, half=0.5, whole=0.7e6)
+    part.data.attrs["part_of"] = "one"
+    assert unlike_tests_table([one, *others, part]) is None
+    slow = with_level(make_view("slow"), middle=1.5, half=0.5, whole=0.7e6, test_frequency=0.01)
+    (row, _) = texts(unlike_tests_table([one, slow]))
+    assert row[6].startswith("frequency 0.10 times")

@@ -70,9 +70,8 @@ def test_a_range_has_both_ends_to_the_same_place():
     assert span(np.nan, 1.0, MPA, places=1).text == NOT_GIVEN
 
 
-def test_the_caption_says_where_data_are_synthetic():
+def test_numbers_stand_in_a_column_of_their_own_and_nothing_is_a_dash():
     rows = [[words("a"), number(1.0)]]
-    assert make_table("Caption.", ("a", "b"), rows).caption == ("Caption. SYNTHETIC DATA.")
     assert make_table("Caption.", ("a", "b"), rows).number_columns == (False, True)
     assert words("").text == NOT_GIVEN
 

@@ -24,6 +24,7 @@ DATA = xr.Dataset(
         "note_stage": ("said", ["", ""]),
         "note_code": ("said", ["one", "two"]),
         "note_severity": ("said", ["warning", "note"]),
+        "note_effect": ("said", [np.nan, np.nan]),
     },
     attrs={"synthetic": "Yes"},
 )

@@ -196,8 +196,8 @@ def draw_stiffness_levels(tests: Sequence[TestView]) -> list[Figure]:
     return [
         make_figure(
             "campaign-stiffness-levels", "EA of the cycles against mean tension",
-            "EA of each test, tension amplitude over strain amplitude, against its mean tension;"
-            " a colour a frequency; bars: 95 % interval.",
+            "EA of each test: tension amplitude over strain amplitude. One colour per frequency;"
+            " bars: 95 % interval.",
             data, synthetic=any_synthetic(own), height=420, is_wide=True,
             xaxis=axis(force.label("mean tension")), yaxis=axis(force.label("EA")),
         )
@@ -381,13 +381,12 @@ def draw_specimens_together(tests: Sequence[TestView]) -> list[Figure]:
     if not any(trace["name"] in map(plot_text, names) for trace in data):
         return []
     left = [view.id for view in curved if view not in chosen]
-    rest = f" Not in it: {shorten(', '.join(left), 100)}." if left else ""
+    rest = f" Not shown: {shorten(', '.join(left), 100)}." if left else ""
     return [
         make_figure(
             "campaign-together", f"Modulus of {shorten(' and '.join(names), 40)}, all tests",
-            "Tangent modulus against strain, mean over the cycles of each test; a colour a"
-            " specimen, ascending solid, descending dashed. Shaded: least to greatest of all"
-            " cycles of both branches, of the tests that reach a strain."
+            "Mean tangent modulus of each test. One colour per specimen; ascending solid,"
+            " descending dashed. Shaded: range over all cycles and both branches."
             f"{rest}",
             data, synthetic=any_synthetic(chosen), height=480, is_wide=True,
             annotations=labels if len(labels) <= _MOST_LABELS else [],
