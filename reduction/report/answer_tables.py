@@ -167,7 +167,7 @@ def budget_table(view: TestView, answers: Sequence[AnswerBudget]) -> PageTable |
     factors = factor_words(k for one in answers for k in one.cell.factors)
     return make_table(
         "Share of each source in the variance of the answers.",
-        ("number", "value", "unit", "k [1]", *(f"{source_words(one)} [%]" for one in sources)),
+        ("number", "value", "unit", "k", *(f"{source_words(one)} [%]" for one in sources)),
         rows, is_compact=True,
         remarks=[
             f"±: expanded uncertainty, 95 % ({factors}).{names}{_LINE_NAMES if has_line else ''}",

@@ -139,7 +139,7 @@ def _make_experiment_section(view: ExperimentView, tests: Mapping[str, TestView]
         title=f"Experiment {view.name}",
         subtitle=f"{kind} design over {of}; {len(view.runs)} runs",
         parts=tuple(part for part in parts if part.figures or part.tables or part.sentences),
-        notes=(("What a reader of the numbers has to know", notes),) if notes else (),
+        notes=(("Notes on these numbers", notes),) if notes else (),
         provenance=provenance,
         documents=documents,
         noun="experiment",
@@ -228,10 +228,10 @@ def _capital(text: str) -> str:
 
 
 _HOLDS = (
-    "Predicted from the construction alone: no hose was pulled for it. It holds for a slow pull of"
-    " a long, straight, closed hose full of water, on the static curve of one cord; not in"
-    " compression, where a hose buckles, not over cycles or at speed, where cords and rubber are"
-    " stiffer, and not at the ends, which in a real hose often give way first."
+    "Predicted from the construction alone, without any test of the hose. Valid for a slow pull on"
+    " a long, straight, closed, water-filled hose, with the static curve of one cord. Not valid in"
+    " compression, where a hose buckles; for cycles or fast pulls, where cords and rubber are"
+    " stiffer; or at the ends, which often fail first in a real hose."
 )
 
 
@@ -260,7 +260,7 @@ def _make_hose_section(view: HoseView) -> TestSection:
             f" {view.text('rubber_law')} rubber"
         ),
         parts=tuple(part for part in parts if part.figures or part.tables or part.sentences),
-        notes=(("What a reader of the numbers has to know", notes),) if notes else (),
+        notes=(("Notes on these numbers", notes),) if notes else (),
         provenance=provenance,
         documents=documents,
         noun="hose",
@@ -298,10 +298,11 @@ def _story(view: HoseView) -> str:
         return f"{100 * events[name].strain:.1f}\N{NO-BREAK SPACE}% ({load} {force.unit})"
 
     start = (
-        f"The rubber alone carries up to {at('pick_up')}, where the cords pick up; before, they are"
-        f" slack by up to {-100 * events['deepest_slack'].cord_strain:.1f} % of their length."
+        f"The rubber carries all load up to {at('pick_up')}, where the cords pick up; before that"
+        f" the cords are slack by up to {-100 * events['deepest_slack'].cord_strain:.1f} % of their"
+        " length."
         if view.is_slack_at_first
-        else "The cords carry from the first: there is no slack zone at this angle."
+        else "The cords carry load from the start: there is no slack zone at this angle."
     )
     return (
         f"{start} The working load is reached at {at('working')}; the cords break at"
@@ -309,7 +310,7 @@ def _story(view: HoseView) -> str:
     )
 
 
-_TAKE_NONE = ". The fitted values are one choice of many, and their intervals do not hold"
+_TAKE_NONE = ". Other values fit as well; the intervals of the fitted values do not apply"
 
 
 def _make_comparison_section(view: ComparisonView) -> TestSection:
@@ -338,7 +339,7 @@ def _make_comparison_section(view: ComparisonView) -> TestSection:
             f"test {view.test} ({view.loading}), specimen {view.specimen}, against hose {view.hose}"
         ),
         parts=tuple(part for part in parts if part.figures or part.tables),
-        notes=(("What a reader of the numbers has to know", notes),) if notes else (),
+        notes=(("Notes on these numbers", notes),) if notes else (),
         provenance=provenance,
         documents=documents,
         noun="comparison",
@@ -383,13 +384,13 @@ def _shape(view: ComparisonView) -> str:
     """Say what chi square says, which sees a wrong shape inside the band."""
     probability = view.scalar("chi_square_probability")
     if not np.isfinite(probability):
-        return "Nothing is stated of which a shape of the difference could be made."
+        return "No uncertainty is stated, so the shape of the difference cannot be judged."
     chance = "less than 0.01 %" if probability < 1e-4 else f"{100 * probability:.2g} %"
     return (
-        f"Chi square over all strains together is {view.scalar('chi_square'):.4g} with"
+        f"Chi-square over all strains is {view.scalar('chi_square'):.4g} with"
         f" {view.scalar('chi_square_freedom'):.0f} degrees of freedom; the stated errors alone"
-        f" reach that in {chance} of all cases. It sees a wrong shape inside the band, and is given"
-        " beside the verdict."
+        f" exceed that in {chance} of cases. It detects a wrong shape inside the band, and is"
+        " given in addition to the verdict."
     )
 
 
@@ -400,12 +401,12 @@ def _identified(view: ComparisonView) -> list[str]:
     needed = 100 * view.scalar("needed_change")
     if view.is_identified:
         return [
-            "The curve tells these numbers apart: along the direction that it sees least, one"
-            f" plausible error changes it by {100 * view.scalar('least_change'):.2g} %, where"
+            "The curve determines these numbers: in the direction to which it is least sensitive,"
+            f" one plausible error changes it by {100 * view.scalar('least_change'):.2g} %;"
             f" {needed:.2g} % is needed."
         ]
     return [
-        f"The curve does not tell the fitted numbers apart: {view.text('identifiability')}, where"
+        f"The curve does not determine the fitted numbers: {view.text('identifiability')}, where"
         f" {needed:.2g} % is needed{_TAKE_NONE}."
     ]
 

@@ -32,16 +32,16 @@ _ORDER: tuple[Severity, ...] = ("failure", "warning", "note", "refusal")
 
 _NOT_SHOWN = "no archive"
 
-_STATUS_WORDS = {OF_NO_TEST: "of an earlier run: no test of the campaign now"}
+_STATUS_WORDS = {OF_NO_TEST: "from an earlier run; the campaign no longer has this test"}
 
 _HEADINGS: dict[NoteSeverity, str] = {
-    "warning": "Doubts of the data, or of a number",
-    "refusal": "Numbers that are not given, and why",
-    "note": "Also to know",
+    "warning": "Check before use",
+    "refusal": "Numbers withheld, and why",
+    "note": "For information",
 }
 
 _NO_TEST = (
-    "The campaign has no such test now: what is shown is of an earlier run, whose archive was left."
+    "The campaign no longer has this test; what is shown comes from the archive of an earlier run."
 )
 
 _MOST_NAMES = 200
@@ -150,11 +150,11 @@ def test_table(tests: Sequence[TestView], statuses: Sequence[Status]) -> PageTab
     force = shown("tension", tests[0].units if tests else "si")
     columns = (
         "test", "kind", "specimens",
-        force.label("tension of the cycles") if is_by_load else "target strain [%]",
+        force.label("tension range") if is_by_load else "target strain [%]",
         "strain reached [%]",
         "cycles found", "samples", "status",
     )  # fmt: skip
-    return make_table("Tests in the order they were made.", columns, rows)
+    return make_table("Tests in order.", columns, rows)
 
 
 def tiles(
@@ -186,7 +186,7 @@ def _all_faults(
         return text, SummaryFinding(severity, (name,), text, _FIRST)
 
     for name, message in unreadable.items():
-        yield of_file("failure", name, f"This file is not shown: {message}")
+        yield of_file("failure", name, f"This file cannot be shown: {message}")
     archived = {view.id for view in tests}
     for row in statuses:
         if row.status == "failed":
@@ -202,7 +202,7 @@ def _all_faults(
             yield of_file("warning", view.id, _NO_TEST)
         archived_hash = " ".join(view.attribute("raw_file_sha256").split())
         if status and status.status != "failed" and status.raw_sha256 not in ("", archived_hash):
-            text = "The archive was made from other raw files than status.csv."
+            text = "The raw files of the archive are not those of status.csv."
             yield of_file("warning", view.id, text)
         for one in view.notes:
             text = str(one)

@@ -399,7 +399,7 @@ def _answers(view: TestView) -> PageTable | None:
         for one in answers
     ]  # fmt: skip
     return make_table(
-        f"Test {view.id}.", ("quantity", "item", "result", "unit", "k [1]"), rows,
+        f"Test {view.id}.", ("quantity", "item", "result", "unit", "k"), rows,
 
         remarks=[
             f"±: expanded uncertainty, coverage 95 % ({factor_words(factors_of(rows))}).",

@@ -909,15 +909,15 @@ def _kinds(view: ExperimentView, name: str) -> list[str]:
 
 
 _PRINTED = (
-    "F as CG-D-39-80 prints it counts the mean among the terms and in the error (10 and 4 degrees"
-    " of freedom for fifteen runs); it stands here to be compared with the report, no more."
+    "F as printed in CG-D-39-80 counts the mean among the terms and in the error (10 and 4 degrees"
+    " of freedom for fifteen runs); it is given only for comparison with the report."
 )
 
 _OF_RUNS = "scatter of the runs about the surface"
 
-_ONE_LINE = "that one line was tested"
+_ONE_LINE = "differences between lines (one was tested)"
 
-NOT_OF_RUNS = "what all runs share: calibration, gauge length, the one line that was tested"
+NOT_OF_RUNS = "errors common to all runs: calibration, gauge length, the one line tested"
 
 """What no scatter of runs has in it."""
 
@@ -986,12 +986,11 @@ def caution_table(view: ExperimentView) -> PageTable | None:
     own = view.own_rows("caution")
     return (
         Sheet(view)
-        .texts("what", [row["caution_kind"].replace("-", " ") for row in own])
+        .texts("kind", [row["caution_kind"].replace("-", " ") for row in own])
         .texts("runs", [row.get("caution_runs", "") or "all runs" for row in own])
-        .texts("what is so", [row["caution"] for row in own])
-        .texts("what can be done", [row.get("caution_hint", "") for row in own])
-        .table("Cautions: what is wrong with the runs as they were made, before any number is"
-               " read.")
+        .texts("caution", [row["caution"] for row in own])
+        .texts("remedy", [row.get("caution_hint", "") for row in own])
+        .table("Cautions about the runs as they were made.")
     )  # fmt: skip
 
 
@@ -1012,14 +1011,16 @@ def effect_table(view: ExperimentView, name: str) -> PageTable | None:
         .measured("effect", effect[order], response_unit(name, view.units), spread)
         .numbers("share of the mean", effect[order] / view.scalar(f"{name}_mean"), PERCENT, 3)
         .numbers("t", view.array(f"{name}_effect_t")[order], "number")
-        .probabilities("p [1]", view.array(f"{name}_effect_p_value")[order])
+        .probabilities("p", view.array(f"{name}_effect_p_value")[order])
         .texts("significant", np.where(is_factor, counts, "")[order])
     )
     return sheet.table(
-        f"{in_words(name).capitalize()}: effects, mean at the high level less that at the low one.",
-        remarks=["A dummy is a column that no factor uses: what it shows is scatter and"
-                 " interactions.", plus_minus(sheet.factors, "effects of the dummies",
-                                               left_out=NOT_OF_RUNS)],
+        f"{in_words(name).capitalize()}: effects (mean at the high level minus mean at the low"
+        " level).",
+        remarks=[
+            "A dummy is a column without a factor: it shows scatter and interactions.",
+            plus_minus(sheet.factors, "effects of the dummies", left_out=NOT_OF_RUNS),
+        ],
     )  # fmt: skip
 
 
@@ -1056,14 +1057,14 @@ def answer_table(view: ExperimentView, surfaces: ResponseSurfaces) -> PageTable 
                 for k, base, unit in kept
             ],
         )
-        .cells("in the middle", [shown_ for shown_, _ in cells])
+        .cells("at the centre", [shown_ for shown_, _ in cells])
         .cells(f"{100 * middle.confidence:g} % interval", [ends for _, ends in cells])
-        .cells("least in the range", [number(float(least[k]), unit) for k, _, unit in kept])
-        .cells("greatest in the range", [number(float(greatest[k]), unit) for k, _, unit in kept])
+        .cells("minimum", [number(float(least[k]), unit) for k, _, unit in kept])
+        .cells("maximum", [number(float(greatest[k]), unit) for k, _, unit in kept])
         .table(
-            f"Experiment {view.name}: each response by its surface, in the middle of the tested"
-            f" range ({middles}) and over all of it.",
-            remarks=[f"The interval is of the surface and holds {_held(sources)}. Not in it:"
+            f"Experiment {view.name}: responses from the fitted surfaces, at the centre of the"
+            f" tested range ({middles}) and over the whole range.",
+            remarks=[f"The interval is that of the surface: {_held(sources)}. Not included:"
                      f" {_left_out(sources)}."],
         )
     )  # fmt: skip
@@ -1080,7 +1081,7 @@ def quality_table(view: ExperimentView, surfaces: ResponseSurfaces) -> PageTable
     for heading, shares in (("r²", surfaces.r2), ("adjusted r²", surfaces.adjusted_r2),
                             ("predicted r²", surfaces.predicted_r2)):  # fmt: skip
         sheet.cells(
-            f"{heading}{within} [1]",
+            f"{heading}{within}",
             [TableCell(share_text(float(one)), repr(float(one)), is_number=True) for one in shares],
         )
     n_terms = len(surfaces.term_names) - 1
@@ -1091,16 +1092,16 @@ def quality_table(view: ExperimentView, surfaces: ResponseSurfaces) -> PageTable
         )
         .numbers("F of all terms", surfaces.overall_f, "number")
         .texts("degrees of freedom", [f"{n_terms}, {one}" for one in surfaces.degrees_of_freedom])
-        .probabilities("p of F [1]", surfaces.overall_p_value)
+        .probabilities("p of F", surfaces.overall_p_value)
         .numbers("F of lack of fit", lack.f, "number")
-        .probabilities("p of lack of fit [1]", lack.p_value)
+        .probabilities("p of lack of fit", lack.p_value)
     )
     is_printed = bool(np.isfinite(surfaces.printed_f).any())
     if is_printed:
-        sheet.numbers("F as CG-D-39-80 prints it", surfaces.printed_f, "number")
+        sheet.numbers("F as printed in CG-D-39-80", surfaces.printed_f, "number")
     return sheet.table(
-        "Quality of each surface. p: probability of such an F if the terms were nil, or if the"
-        " surface fitted.",
+        "Quality of each surface. p: probability of an F this large if the terms were zero (F of"
+        " all terms) or the surface were adequate (lack of fit).",
         is_compact=True, remarks=[_PRINTED] if is_printed else [],
     )  # fmt: skip
 
@@ -1126,7 +1127,7 @@ def surface_coefficient_table(
         sheet.numbers("shared part of ±, coded", coded.shared, unit, 2)
     (
         sheet.numbers("t", surfaces.t[index], "number")
-        .probabilities("p [1]", surfaces.p_value[index])
+        .probabilities("p", surfaces.p_value[index])
         .cells("coefficient, in units", [_to_compute_with(*one) for one in computed])
         .texts("its unit", [superscript(one.unit) for one in engineering])
     )
@@ -1150,8 +1151,8 @@ def surface_coefficient_table(
             " units go together, so that a value of the surface is far better known than the sum of"
             " theirs.",
             plus_minus(sheet.factors, _held(sources), left_out=_left_out(sources)),
-            "Shared part: what of ± all runs share, with the same k; the parts add by their"
-            " squares. t and p are of the scatter alone." if sources else "",
+            "Shared part: the part of ± common to all runs, with the same k; parts combine in"
+            " quadrature. t and p are for the scatter alone." if sources else "",
         ])),
     )  # fmt: skip
 
@@ -1163,7 +1164,7 @@ def anova_table(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
     square = Shown(_squared(unit.unit), unit.factor**2)
     is_large = bool(np.nanmax(anova.sum_of_squares[index]) * square.factor >= _LARGE)
     sheet = Sheet(view).texts("source", anova.source)
-    sheet.counts("degrees of freedom [1]", anova.degrees_of_freedom[index])
+    sheet.counts("degrees of freedom", anova.degrees_of_freedom[index])
     for heading, values in (("sum of squares", anova.sum_of_squares[index]),
                             ("mean square", anova.mean_square[index])):  # fmt: skip
         sheet.cells(
@@ -1177,7 +1178,7 @@ def anova_table(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
         )
     return (
         sheet.numbers("F", anova.f[index], "number")
-        .probabilities("p [1]", anova.p_value[index])
+        .probabilities("p", anova.p_value[index])
         .texts("tested against", anova.error_term)
         .table(
             f"{in_words(name).capitalize()}: analysis of variance, each source after those above"
@@ -1189,7 +1190,7 @@ def anova_table(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
 def _held(sources: Sequence[str]) -> str:
     """Say what the uncertainty of a surface holds."""
     told = ", ".join(source_words(one) for one in sources)
-    return f"{_OF_RUNS}; and what all runs share: {told}" if told else _OF_RUNS
+    return f"{_OF_RUNS}; and errors common to all runs: {told}" if told else _OF_RUNS
 
 
 def _left_out(sources: Sequence[str]) -> str:
@@ -1264,7 +1265,7 @@ def form_table(view: ExperimentView) -> PageTable | None:
                 for a, b in zip(low, high, strict=True)
             ],
         )
-        .probabilities("p if nil [1]", "stiffness_p_value")
+        .probabilities("p if zero", "stiffness_p_value")
     )
     return sheet.table(
         "Coefficients of the stiffness forms of mooring codes.",
@@ -1281,7 +1282,7 @@ def form_quality_table(view: ExperimentView) -> PageTable | None:
     strength = float(np.nanmax(view.per_run("run_rated_break_strength")))
     unit = response_unit("apparent_spring_constant", view.units)
     return (
-        sheet.counts("coefficients [1]", "stiffness_n_coefficients")
+        sheet.counts("coefficients", "stiffness_n_coefficients")
         .numbers("r²", "stiffness_r2")
         .numbers("adjusted r²", "stiffness_adjusted_r2")
         .numbers("predicted r²", "stiffness_predicted_r2")
@@ -1369,7 +1370,7 @@ def coefficient_budget_table(
     factors = factor_words(k for one in answers for k in one.cell.factors)
     return make_table(
         f"{in_words(name).capitalize()}: share of each source in the variance of the coefficients.",
-        ("coefficient, coded", answers[0].unit.label("value"), "k [1]",
+        ("coefficient, coded", answers[0].unit.label("value"), "k",
          *(f"{source_words(one)} [%]" for one in sources)),
         rows, is_compact=True,
         remarks=[f"±: expanded uncertainty, 95 % ({factors}).", source_meanings(sources)],

@@ -430,7 +430,7 @@ def _about(sheet: Sheet, views: Sequence[RopeView]) -> str:
         return plus_minus(sheet.factors, left_out=_NOT_IN_ROPE_NUMBERS)
     told = ", ".join(source_words(one) for one in shared)
     return plus_minus(
-        sheet.factors, f"{_CYCLE_SCATTER}; and what all samples share: {told}", left_out=""
+        sheet.factors, f"{_CYCLE_SCATTER}; and errors common to all samples: {told}", left_out=""
     )
 
 
@@ -494,7 +494,7 @@ def bedding_table(view: RopeView) -> PageTable | None:
     """Return what bedding-in did."""
     return _of_steps(
         view, "specimen", "bedding_permanent_strain", "Bedding-in.",
-        ("cycles [1]", "bedding_cycles"),
+        ("cycles", "bedding_cycles"),
         ("stiffness of the first cycle", "bedding_first_stiffness"),
         ("stiffness of the last cycle", "bedding_last_stiffness"),
         ("last over first", "bedding_stiffening"),
@@ -509,7 +509,7 @@ def level_table(view: RopeView) -> PageTable | None:
         ("mean tension", "dynamic_mean_tension"),
         ("tension amplitude", "dynamic_tension_amplitude"),
         ("frequency", "dynamic_frequency"),
-        ("cycles [1]", "dynamic_cycles"),
+        ("cycles", "dynamic_cycles"),
         ("dynamic stiffness", "dynamic_stiffness"),
         ("over strength", "dynamic_stiffness_over_strength"),
         ("change a cycle", "dynamic_stiffness_drift"),

@@ -48,15 +48,17 @@ _ROWS = 24
 _K = factor_words([NORMAL])
 
 _TOGETHER = (
-    "An event moves along the curve with what is uncertain: its tension is known better than the"
-    " tension at a held strain, which the band of the figure shows."
+    "Strain and tension of an event vary together: its tension is better known than the tension at"
+    " a fixed strain, which the band in the figure shows."
 )
 
-_SIGN = "Differences are predicted less measured: below zero the hose is stiffer than predicted."
+_SIGN = (
+    "Differences are predicted minus measured: negative where the hose is stiffer than predicted."
+)
 
 _PLUS_MINUS = (
-    f"±: expanded uncertainty, 95 % ({_K}) of the difference, of test and of prediction together,"
-    " as stated for both."
+    f"±: expanded uncertainty, 95 % ({_K}), of the difference, combining what is stated for test"
+    " and prediction."
 )
 
 
@@ -65,14 +67,14 @@ def _plus_minus_of_hoses(views: Sequence[HoseView]) -> list[str]:
     named = (name for view in views for name in view.sources)
     sources = dict.fromkeys(SOURCE_WORDS.get(name, name.replace("_", " ")) for name in named)
     if not sources:
-        return ["No number of the construction has a stated uncertainty, so none is given."]
+        return ["No uncertainty is stated for the construction, so none is given."]
     without = [view.name for view in views if not view.sources]
     said = (
-        f"±: expanded uncertainty, 95 % ({_K}), carried through from what is stated of the"
-        f" construction: {', '.join(sources)}. Not in it: the model itself (straight hose, constant"
-        " volume, static cord, law of the rubber)."
+        f"±: expanded uncertainty, 95 % ({_K}), from the stated uncertainty of the construction:"
+        f" {', '.join(sources)}. Not included: errors of the model (straight hose, constant"
+        " volume, static cord curve, rubber law)."
     )
-    return [said, *([f"Nothing is stated of {', '.join(without)}."] if without else [])]
+    return [said, *([f"No uncertainty is stated for {', '.join(without)}."] if without else [])]
 
 
 def answer_of_hoses(views: Sequence[HoseView]) -> PageTable | None:
@@ -91,8 +93,7 @@ def answer_of_hoses(views: Sequence[HoseView]) -> PageTable | None:
         .measured("tension where cords break", "event_tension")
         for view in views
     ).table(
-        "Predicted hoses, from construction alone: strain where the cords pick up, strain and"
-        " tension at the working load and where the cords break.",
+        "Predicted hoses, from the construction alone: cord pick-up, working load and cord break.",
         remarks=_plus_minus_of_hoses(views),
     )
 
@@ -185,9 +186,9 @@ def layer_table(view: HoseView) -> PageTable | None:
         .texts("within its limits", map(_bears, low, high, tensile, compressive))
     )
     return sheet.table(
-        f"Layers of hose {view.name} that are to carry no load: their strain up to the working load"
-        " and the angles that keep them within their limits.",
-        remarks=["Strains of a layer that follows the hose; it adds nothing to the tension, also"
+        f"Non-structural layers of hose {view.name}: strain up to the working load, and the angles"
+        " that keep them within their limits.",
+        remarks=["Strains of a layer that follows the hose; it adds nothing to the tension, even"
                  " where it is stretched beyond its limit."],
     )  # fmt: skip
 
@@ -203,12 +204,10 @@ def _bears(low: float, high: float, tensile: float, compressive: float) -> str:
 def cord_table(view: HoseView) -> PageTable | None:
     """Return the measured points of one cord."""
     scales = view.scalar("cord_load_scale"), view.scalar("cord_strain_scale")
-    remarks = [
-        "A static pull; between the points a monotone cubic, beyond the last the cord is broken."
-    ]
+    remarks = ["Static pull; monotone cubic between the points; the cord breaks at the last one."]
     if scales != (1.0, 1.0):
         remarks.append(
-            f"The prediction has the loads times {scales[0]:g} and the strains times {scales[1]:g}."
+            f"The prediction uses loads times {scales[0]:g} and strains times {scales[1]:g}."
         )
     sheet = Sheet(view, ("cord_point",))
     load = sheet.of("cord_curve_load")
@@ -257,26 +256,25 @@ def verdict_table(views: Sequence[ComparisonView]) -> PageTable | None:
         .texts("comparison", [view.name])
         .texts("test", [view.test])
         .texts("hose", [view.hose])
-        .texts("pulled", [view.loading])
+        .texts("loading", [view.loading])
         .texts("verdict", [view.short_verdict])
         .numbers("bias", "tension_bias", digits=3)
         .numbers("RMS", "tension_rms", digits=3)
         .numbers("relative RMS", "tension_relative_rms", PERCENT, 3)
-        .numbers("worst", "worst_tension_difference", digits=3)
+        .numbers("largest difference", "worst_tension_difference", digits=3)
         .numbers("at strain", "worst_strain", PERCENT, 3)
         .numbers("largest ratio", "largest_ratio", digits=3)
-        .numbers("at most", "coverage_factor", digits=3)
+        .numbers("limit", "coverage_factor", digits=3)
         for view in views
     ).table(
-        "Tests against their predicted hoses, at the judged curve of each.",
+        "Tests compared with their predicted hoses.",
         is_compact=True,
         remarks=[
-            f"{_SIGN} Relative RMS: over the RMS of the measured tension.",
-            "Largest ratio: difference over its standard uncertainty, at its largest; \"differs\""
-            " where it is more than a right prediction shows in 95 % of all cases (at most)."
-            " \"Agrees\" says that an error of the model cannot be seen, not that there is none;"
-            " \"says little\" is agreement within a band so wide that it could hardly differ."
-            " Bias, RMS and worst have no uncertainty of their own: the ratio has.",
+            f"{_SIGN} Relative RMS: RMS difference over RMS measured tension.",
+            "Largest ratio: largest difference over its standard uncertainty. The verdict is"
+            " \"differs\" above the limit, which a correct prediction stays below in 95 % of cases;"
+            " \"agrees\" means that no model error can be detected, not that there is none; \"says"
+            " little\" means that the uncertainty is too wide to tell.",
         ],
     )  # fmt: skip
 
@@ -297,13 +295,13 @@ def compared_curve_table(view: ComparisonView) -> PageTable | None:
             *(left.get(heading, words("")) for heading in sheet.headings[1:]),
         )
     return sheet.table(
-        f"Predicted less measured tension of each curve, {view.name}.",
+        f"Predicted minus measured tension of each curve, {view.name}.",
         remarks=[
-            "The prediction is elastic and has no loop: either branch is off by half of it, so the"
-            f" {view.judged} is judged."
+            "The prediction is elastic, so each branch differs from it by half the hysteresis; the"
+            f" {view.judged} is compared."
         ]
         if view.judged == "midline"
-        else [f"The test has no other curve than its {view.judged} branch, which is judged."],
+        else [f"The test has only its {view.judged} branch, which is compared."],
     )
 
 
@@ -313,11 +311,11 @@ def compared_event_table(view: ComparisonView) -> PageTable | None:
     (sheet.texts("event", [event.words for event in view.events]).shown("compared events"))
     missing = not np.isfinite(sheet.of("event_measured_tension")).all()
     return sheet.table(
-        f"What happens to the cords, {view.name}: at the predicted strain the tension, and at the"
-        " predicted tension the strain.",
+        f"Cord events, {view.name}: measured tension at the predicted strain, and measured strain"
+        " at the predicted tension.",
         remarks=[
             f"{_SIGN} {_PLUS_MINUS}",
-            *([f"{NOT_GIVEN}: the test did not go there."] if missing else []),
+            *([f"{NOT_GIVEN}: not reached in the test."] if missing else []),
         ],
     )
 
@@ -329,10 +327,10 @@ def energy_table(view: ComparisonView) -> PageTable | None:
         .spans("between strains", "energy_strain_low", "energy_strain_high", PERCENT, places=1)
         .shown("compared energies")
         .table(
-            f"Energy taken up by a length of hose at rest, {view.name}.",
-            remarks=["The prediction has no loop, and lies below the ascending branch by about half"
-                     " of it even where the midline agrees. No uncertainty is carried to an"
-                     " energy."],
+            f"Energy absorbed per unit relaxed length of hose, {view.name}.",
+            remarks=["The prediction has no hysteresis: it lies below the ascending branch by about"
+                     " half the loop even where the midline agrees. No uncertainty is given for"
+                     " energies."],
         )
     )  # fmt: skip
 
@@ -359,12 +357,12 @@ def calibration_table(view: ComparisonView) -> PageTable | None:
         remarks=[
             plus_minus(
                 sheet.factors,
-                "scatter of the test, what its stated errors may imitate, and neighbouring strains"
-                " that err alike", left_out="an error of the model",
+                "scatter of the test, its stated errors, and the correlation of neighbouring"
+                " strains", left_out="errors of the model",
             )
-            + " An interval is not cut at the bounds.",
-            f"Residuals are worth {view.scalar('effective_points'):.0f} independent points; scatter"
-            f" to be added for them to be explained: {added} {force.unit}.",
+            + " Intervals are not cut at the bounds.",
+            f"The residuals are worth {view.scalar('effective_points'):.0f} independent points;"
+            f" extra scatter needed to explain them: {added} {force.unit}.",
         ],
     )  # fmt: skip
 
@@ -379,9 +377,9 @@ def correlation_table(view: ComparisonView) -> PageTable | None:
         sheet.cells(name, map(_correlation, column))
     index = view.scalar("collinearity")
     if np.isinf(index):
-        said = "none, since the curve does not answer to one of them at all."
+        said = "none: the curve does not respond to one of them."
     else:
-        said = f"{number_text(index, 3)}; above 10 to 15 it is called poor."
+        said = f"{number_text(index, 3)}; above 10 to 15 is poor."
     return sheet.table(
         f"Correlation of the fitted numbers, {view.name}.",
         remarks=[f"Collinearity index: {said}"],
@@ -534,7 +532,7 @@ def armour_design_table(found: PredictedArmour, units: UnitSystem) -> PageTable 
         .numbers("core radius", of_layers(found, "core_radius"), "small length")
         .numbers("elastic modulus", of_layers(found, "elastic_modulus"), "stress")
         .numbers("poisson ratio", of_layers(found, "poisson_ratio"), "number")
-        .counts("wires [1]", of_layers(found, "n_wires"))
+        .counts("wires", of_layers(found, "n_wires"))
         .texts("lay", found.layers.lay)
         .table("Layers as given, the innermost first.")
     )
@@ -654,7 +652,7 @@ def wave_coefficient_table(found: PredictedWaveLoad) -> PageTable | None:
         Sheet(Calculated("si"))
         .texts("source", [one.source for one in published])
         .texts("wave theory", [one.wave_theory for one in published])
-        .cells("drag [1]", [_pair(*one.drag_coefficient) for one in published])
+        .cells("drag", [_pair(*one.drag_coefficient) for one in published])
         .numbers("inertia", [one.inertia_coefficient for one in published], "number", 3)
         .texts("said of them", [one.comment for one in published])
         .row(

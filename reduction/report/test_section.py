@@ -118,9 +118,9 @@ def _history_table(view: TestView) -> PageTable | None:
         return None
     sheet = Sheet(view, ("specimen",)).texts("specimen", "specimen")
     sheet.texts("earlier tests", [text or "none" for text in sheet.of("earlier_tests", "")])
-    sheet.counts("earlier cycles [1]", "earlier_cycles")
+    sheet.counts("earlier cycles", "earlier_cycles")
     if "earlier_flex_cycles" in view.data:
-        sheet.counts("earlier flex cycles [1]", "earlier_flex_cycles")
+        sheet.counts("earlier flex cycles", "earlier_flex_cycles")
     (
         sheet.numbers("greatest strain seen", "earlier_maximum_strain", PERCENT)
         .numbers("greatest tension seen", "earlier_maximum_tension")
@@ -295,7 +295,7 @@ def _segments(view: TestView) -> Sheet:
         .measured("segment modulus", "segment_modulus")
         .spans("strain range", "segment_strain_low", "segment_strain_high", PERCENT, places=1)
         .spans("tension range", "segment_tension_low", "segment_tension_high")
-        .counts("cycles [1]", averaged[sheet.places["specimen"]])
+        .counts("cycles", averaged[sheet.places["specimen"]])
         .texts("strain method", "strain_method")
     )
 
@@ -414,7 +414,7 @@ def _flag_table(view: TestView) -> PageTable | None:
     sheet = Sheet(view, ("channel",)).texts("channel", "channel")
     for name, column in zip(view.texts("quality_mask"), counts.T, strict=True):
         if column.any():
-            sheet.counts(f"{name.replace('_', ' ')} [1]", column)
+            sheet.counts(name.replace("_", " "), column)
     return sheet.table(
         f"Samples flagged, of {view.scalar('n_rows_kept'):,.0f} kept and"
         f" {view.scalar('n_rows_read'):,.0f} read; nothing is deleted."

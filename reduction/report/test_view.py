@@ -258,7 +258,7 @@ def natural_order(name: str) -> tuple[tuple[int, int, str], ...]:
 
 
 NOTHING_STATED = (
-    "No error of the instruments is stated: the uncertainty holds scatter and tape readings alone."
+    "No instrument errors are stated: the uncertainty includes only scatter and tape readings."
 )
 
 _PERCENT = Shown("%", 100.0)
@@ -287,13 +287,13 @@ def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> PageTable 
     without = [view.id for view in tests if not _is_stated(view)]
     has_one_cell = any(one.has_one_load_cell for one in statements)
     remarks = [
-        "Standard uncertainties (k = 1), as computed from what campaign.toml states; what has no"
-        " row counts as known.",
-        *(["All tension channels share the errors of one load cell."] if has_one_cell else []),
-        *([f"Nothing is stated of {', '.join(without)}."] if without else []),
+        "Standard uncertainties (k = 1) from campaign.toml; anything without a row is treated as"
+        " exact.",
+        *(["All tension channels share one load cell."] if has_one_cell else []),
+        *([f"Nothing is stated for {', '.join(without)}."] if without else []),
     ]
     return make_table(
-        "What is stated of the instruments.", ("error, with its unit", *columns), rows,
+        "Stated instrument errors.", ("error", *columns), rows,
         remarks=remarks,
     )  # fmt: skip
 
@@ -322,16 +322,16 @@ def _rows(units: UnitSystem) -> tuple[tuple[str, str, Shown], ...]:
         ("diameter", "mean diameter", small),
         ("strain_gain", "strain, by its method", _PERCENT),
         ("rated_break_strength", "rated break strength", _PERCENT),
-        ("stiffness", "stiffness, for the temperature of the test", _PERCENT),
-        ("attached_mass", "mass beside a moving load cell", Shown("kg", 1.0)),
-        ("linear_density", "mass a length of the specimens", Shown("kg/m", 1.0)),
+        ("stiffness", "stiffness, from test temperature", _PERCENT),
+        ("attached_mass", "mass attached to a moving load cell", Shown("kg", 1.0)),
+        ("linear_density", "mass per length of the specimens", Shown("kg/m", 1.0)),
         ("machine_compliance", "compliance of frame, load cell and grips", Shown("m/N", 1.0)),
     )
 
 
 DRAWN = (
-    "In brackets: the 95 % interval by Monte Carlo, of the same errors, where they are so large"
-    " that they do not propagate linearly."
+    "In brackets: 95 % interval by Monte Carlo, where the same errors are too large to propagate"
+    " linearly."
 )
 
 MANY = np.inf
@@ -440,11 +440,11 @@ def plus_minus(
     Examples
     --------
     >>> plus_minus([2.26], "tape readings", left_out="position scale")
-    '±: expanded uncertainty, 95 % (k = 2.26): tape readings. Not in it: position scale.'
+    '±: expanded uncertainty, 95 % (k = 2.26): tape readings. Not included: position scale.'
     """
     factor = factor_words(factors)
     head = f"{mark}: expanded uncertainty, 95 %{f' ({factor})' if factor else ''}"
-    tail = f" Not in it: {left_out}." if left_out else ""
+    tail = f" Not included: {left_out}." if left_out else ""
     return f"{head}: {found_from}.{tail}"
 
 
@@ -460,7 +460,9 @@ def plus_minus_of_tests(
     shared = shared_sources(views, names)
     held = found_from
     if shared:
-        held += f"; and what all samples share: {', '.join(source_words(one) for one in shared)}"
+        held += (
+            f"; and errors common to all samples: {', '.join(source_words(one) for one in shared)}"
+        )
     said = plus_minus(factors, held, left_out="", mark=mark)
     if set(shared) - FROM_READINGS:
         return said
@@ -468,8 +470,8 @@ def plus_minus_of_tests(
         nothing = NOTHING_STATED if shared else NOTHING_STATED.replace(" and tape readings", "")
         return f"{said} {nothing}"
     if any(f"{name}_uncertainty_contribution" in view.data for view in views for name in names):
-        return f"{said} Nothing that is stated of the instruments reaches it."
-    return f"{said} Not in it: {_INSTRUMENTS}."
+        return f"{said} No stated instrument error affects it."
+    return f"{said} Not included: {_INSTRUMENTS}."
 
 
 @dataclass(frozen=True)

@@ -84,7 +84,7 @@ class Shown:
 
     def label(self, words: str) -> str:
         """Words with the unit behind them in brackets, for an axis or a column."""
-        return f"{words} [{self.unit}]"
+        return words if self.unit == "1" else f"{words} [{self.unit}]"
 
 
 DEGREES = Shown("deg", 180 / np.pi)

@@ -235,7 +235,7 @@ def _slips(view: TestView, *, is_long: bool) -> tuple[list[Trace], list[Trace]]:
 def _about_band(view: TestView) -> str:
     if not view.texts("uncertainty_source"):
         return plus_minus([NORMAL], "noise, regression", mark="Band, ±")
-    held = "noise, regression; and what all samples share, which moves all cycles alike"
+    held = "noise, regression; and errors common to all samples, which move all cycles together"
     return plus_minus([NORMAL], held, left_out="", mark="Band, ±")
 
 

@@ -473,7 +473,7 @@ def draw_comparison(view: ComparisonView) -> list[Figure]:
 def _shaded(view: ComparisonView) -> str:
     """Say what the bands hold."""
     shared = ", ".join(source_words(one) for one in view.shared_sources)
-    of_test = f"scatter, and what all samples share: {shared}" if shared else "scatter alone"
+    of_test = f"scatter, and errors common to all samples: {shared}" if shared else "scatter alone"
     return (
         f"Shaded: expanded uncertainty, 95 % ({factor_words([NORMAL])}), of the prediction from"
         f" what is stated of the hose, and of the judged curve of the test: {of_test}."

@@ -159,7 +159,7 @@ def _about_cycles(view: TestView) -> str:
     """Say what the band of a single cycle is."""
     if not shared_sources([view], ["tangent_modulus"]):
         return plus_minus([NORMAL], "noise, regression", mark="Band, ±")
-    held = "noise, regression; and what all samples share, which moves both cycles alike"
+    held = "noise, regression; and errors common to all samples, which move both cycles together"
     return plus_minus([NORMAL], held, left_out="", mark="Band, ±")
 
 
