@@ -84,7 +84,7 @@ class Shown:
 
     def label(self, words: str) -> str:
         """Words with the unit behind them in brackets, for an axis or a column."""
-        return words if self.unit == "1" else f"{words} [{self.unit}]"
+        return f"{words} [{self.unit}]"
 
 
 DEGREES = Shown("deg", 180 / np.pi)
@@ -281,7 +281,8 @@ def make_table(
 ) -> PageTable:
     """Return a table, its missing numbers aligned with the others."""
     cells = tuple(tuple(row) for row in rows)
-    plain = PageTable(caption, tuple(columns), cells, is_tall, tuple(remarks), is_compact)
+    headings = tuple(map(_without_unit_of_one, columns))
+    plain = PageTable(caption, headings, cells, is_tall, tuple(remarks), is_compact)
     missing = TableCell(NOT_GIVEN, is_number=True)
     aligned = tuple(
         tuple(
@@ -295,7 +296,12 @@ def make_table(
 
 def words(text: str) -> TableCell:
     """Return a cell of text."""
-    return TableCell(text or NOT_GIVEN)
+    return TableCell(_without_unit_of_one(text) or NOT_GIVEN)
+
+
+def _without_unit_of_one(text: str) -> str:
+    """A plain number needs no unit in a table; an axis shows it."""
+    return text.removesuffix(" [1]")
 
 
 def number(value: float, unit: Shown | None = None, *, digits: int = 4) -> TableCell:

@@ -220,7 +220,7 @@ def test_the_page_and_the_table_show_what_is_shared(tmp_path):
     reduced(tmp_path / "base")
     html = (tmp_path / "base" / "r" / "rope-programme" / "index.html").read_text(encoding="utf-8")
     section = html[html.index("Programme of rope R-1") :]
-    told = re.search(r"what all samples share: ([^<]*)", section)
+    told = re.search(r"errors common to all samples: ([^<]*)", section)
     assert told is not None
     assert "tension gain" in told[1]
     assert "position offset" not in told[1]

@@ -147,7 +147,7 @@ def test_every_sheet_has_number_revision_page_and_the_word_synthetic(client, ric
     assert '"Report 17, revision 1 \\28 amended\\29 "' in sheet
     assert '"Page " counter(page) " of " counter(pages)' in sheet
     assert "SYNTHETIC DATA" in sheet
-    assert page.count("SYNTHETIC DATA") > 10
+    assert page.count("SYNTHETIC DATA") >= page.count("<svg") + 2
 
 
 def test_measured_data_are_not_called_synthetic(client, stepwise_test):
@@ -185,7 +185,7 @@ def test_numbers_are_those_of_the_archive(client, rich_test, tmp_path):
         r'data-value="([^"]*)"', page.partition("<caption>Test T-1")[2].partition("</table>")[0]
     )
     assert {float(stiffness[0]), float(energy[0])} <= {float(one) for one in exact}
-    assert rows[0] == ["quantity", "item", "result", "unit", "k [1]"]
+    assert rows[0] == ["quantity", "item", "result", "unit", "k"]
     assert {row[1] for row in rows[1:]} <= {"new", "used"}
 
 
@@ -278,10 +278,10 @@ def test_what_the_software_did_with_a_test_stands_there_only_where_it_failed(
     status = tmp_path / "status.csv"
     head = "test,status,exit_status,message,raw_sha256,seconds\r\n"
     status.write_text(head + "T-1,unchanged,0,,,0\r\n")
-    assert rows_of(client(ReportDetails(), rich_test), "Tests in the order")[0][-1] == "samples [1]"
+    assert rows_of(client(ReportDetails(), rich_test), "Tests in order")[0][-1] == "samples"
     status.write_text(head + "T-1,reduced,0,,,0\r\nT-2,failed,3,broken log,,0\r\n")
     page = client(ReportDetails())
-    assert rows_of(page, "Tests in the order")[-1][-1] == "failed, no archive"
+    assert rows_of(page, "Tests in order")[-1][-1] == "failed, no archive"
     assert "T-2: broken log" in text_of(page)
 
 

@@ -73,6 +73,7 @@ def test_a_line_says_how_many_cycles_of_which_strain_and_what_is_doubted():
         strain_amplitude=(("specimen", "cycle"), [[0.25, 0.25]]),
         note=("note", ["tests: a plain note"]), note_stage=("note", ["tests"]),
         note_code=("note", ["plain"]), note_severity=("note", ["note"]),
+        note_effect=("note", [np.nan]),
     )  # fmt: skip
     assert brief(view) == "2 cycles, strain 75.0 to 125.0 %"
     doubted = replace(view, data=view.data.assign(note_severity=("note", ["warning"])))

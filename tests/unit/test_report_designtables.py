@@ -77,7 +77,7 @@ def test_each_specimen_has_a_table_and_each_table_says_what_the_plus_minus_is():
     for table in tables:
         assert table.remarks == (
             "±: expanded uncertainty, 95 % (k = 2.26): scatter between cycles, noise, regression. No"
-            " error of the instruments is stated: the uncertainty holds scatter alone.",
+            " instrument errors are stated: the uncertainty includes only scatter.",
         )
 
 

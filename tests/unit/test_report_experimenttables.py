@@ -46,7 +46,6 @@ def test_runs_stand_as_planned_and_as_reached_with_the_share_of_the_break_streng
         100 * peak / STRENGTH, abs=0.05
     )
     assert texts(table)[0][1] == "-1, -1, 0"
-    assert "SYNTHETIC" in table.caption
     assert "remark" not in table.columns
 
 
@@ -113,7 +112,7 @@ def test_a_column_of_squares_has_powers_of_ten_in_every_row_or_in_none():
 def test_the_statistic_of_the_report_stands_where_it_can_be_formed_and_nowhere_else():
     view = view_of(surface_experiment())
     table = quality_table(view, view.surfaces)
-    assert table.columns[-1] == "F as CG-D-39-80 prints it [1]"
+    assert table.columns[-1] == "F as printed in CG-D-39-80"
     assert "counts the mean" in table.remarks[0]
     surfaces = replace(view.surfaces, printed_f=np.full(view.surfaces.printed_f.shape, np.nan))
     without = quality_table(view, surfaces)

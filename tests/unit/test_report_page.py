@@ -240,7 +240,7 @@ def test_tests_stand_in_their_order_and_parts_behind_the_whole(report, rich_test
         for one, number in zip(order, numbers, strict=True)
     ]
     page = report(*tests)
-    rows = page.rows("Tests in the order")
+    rows = page.rows("Tests in order")
     assert [row[0][1] for row in rows[1:]] == ["T-2", "A-end", "T-10"]
 
 
@@ -253,7 +253,7 @@ def test_parts_of_a_test_stand_in_the_order_in_which_they_began(report, rich_tes
         renamed(rich_test, "T-2"),
         replace(renamed(rich_test, "T-3"), record=late),
     )
-    rows = page.rows("Tests in the order")
+    rows = page.rows("Tests in order")
     assert [row[0][1] for row in rows[1:]] == ["T-2", "B-start", "A-end", "T-3"]
 
 
@@ -264,7 +264,7 @@ def test_a_part_whose_whole_has_no_order_stands_behind_it_all_the_same(report, r
         renamed(rich_test, "part", part_of="T-1"),
     )
     unordered = [replace(one, description=replace(one.description, order=None)) for one in tests]
-    rows = report(*unordered).rows("Tests in the order")
+    rows = report(*unordered).rows("Tests in order")
     assert [row[0][1] for row in rows[1:]] == ["T-1", "part", "T-2"]
 
 
@@ -289,14 +289,14 @@ def test_the_summary_of_a_campaign_is_shown_as_it_stands(report, rich_test):
 
 def test_the_page_does_not_tell_the_run_that_made_an_archive_from_a_later_one(report, rich_test):
     page = report(rich_test, status=STATUS + "T-1,unchanged,0,,,0.1\r\n")
-    assert page.rows("Tests in the order")[1][-1][1] == "check"
+    assert page.rows("Tests in order")[1][-1][1] == "check"
 
 
 def test_of_a_test_without_notes_none_are_said(report, bare_test):
     test = renamed(replace(bare_test, notes=()), "T-1")
     with_notes = bool(test.all_notes())
     page = report(test, status=STATUS + "T-1,unchanged,0,,,0.1\r\n")
-    assert page.rows("Tests in the order")[1][-1][1] == "reduced"
+    assert page.rows("Tests in order")[1][-1][1] == "reduced"
     assert not with_notes
 
 
@@ -312,7 +312,7 @@ def test_failures_come_first_and_a_kept_archive_is_called_old(report, rich_test)
     assert "is from an earlier run" in wrong
     assert wrong.index("one cycle") < wrong.index("Warnings")
     assert "status is no work" in wrong
-    rows = page.rows("Tests in the order")
+    rows = page.rows("Tests in order")
     assert ["T-9", "failed, no archive"] in [[row[0][1], row[-1][1]] for row in rows]
 
 
@@ -329,7 +329,7 @@ def test_notes_that_differ_in_numbers_alone_stand_once_on_top_and_all_in_their_s
 
 def test_an_archive_from_other_raw_files_is_a_warning(report, rich_test):
     page = report(rich_test, status=STATUS + "T-1,reduced,0,,abc,0.1\r\n")
-    assert "other raw files than status.csv" in "".join(page.text)
+    assert "are not those of status.csv" in "".join(page.text)
 
 
 def test_a_file_that_is_no_archive_is_named_and_the_others_are_shown(report, rich_test, tmp_path):
@@ -477,7 +477,7 @@ def test_what_to_check_stands_before_the_answers_and_leads_to_the_whole_list(rep
 def test_the_notes_of_a_test_stand_under_headings_most_serious_first(report, rich_test):
     text = "".join(report(rich_test).text)
     text = text[text.index("All notes on this test") :]
-    places = [text.index(words) for words in ("Doubts of the data", "Numbers that are not given")]
+    places = [text.index(words) for words in ("Check before use", "Numbers withheld")]
     assert places == sorted(places)
     assert places[0] < text.index("the last cycle is broken") < places[1]
 
@@ -492,11 +492,11 @@ def test_an_archive_of_a_test_that_the_campaign_has_no_more_says_so(report, rich
     status = STATUS + "T-1,reduced,0,,,1\r\n"
     page = report(rich_test, renamed(rich_test, "T-9"), status=status)
     text = " ".join("".join(page.text).split())
-    assert "T-9 The campaign has no such test now" in text
+    assert "T-9 The campaign no longer has this test" in text
     assert "T-1 The campaign has no such test now" not in text
-    rows = {row[0][1]: row[-1][1] for row in page.rows("Tests in the order they were made")[1:]}
+    rows = {row[0][1]: row[-1][1] for row in page.rows("Tests in order")[1:]}
     assert rows["T-1"] == "reduced"
-    assert rows["T-9"] == "of an earlier run: no test of the campaign now"
+    assert rows["T-9"] == "from an earlier run; the campaign no longer has this test"
 
 
 def test_an_archive_of_the_campaign_that_nothing_stands_for_now_says_so(rich_test, write, tmp_path):

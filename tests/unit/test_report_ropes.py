@@ -123,7 +123,7 @@ def test_ropes_are_listed_by_the_tension_of_their_cycles(view):
     assert "target strain [%]" in test_table([view], []).columns
     rope = as_rope(view)
     table = test_table([rope], [])
-    (place,) = [k for k, name in enumerate(table.columns) if name.startswith("tension of the")]
+    (place,) = [k for k, name in enumerate(table.columns) if name.startswith("tension range")]
     low = np.nanmean(rope.array("mean_tension") - rope.array("tension_amplitude"))
     assert float(table.rows[0][place].value.split()[0]) == pytest.approx(low)
 
@@ -172,4 +172,4 @@ def test_an_archive_of_experiments_that_cannot_be_read_is_a_failure_and_the_page
     (tmp_path / "surfaces.nc").write_bytes(b"no archive")
     html = write_report(tmp_path, tmp_path / "out").read_text(encoding="utf-8")
     assert "surfaces.nc" in html
-    assert "This file is not shown" in html
+    assert "This file cannot be shown" in html

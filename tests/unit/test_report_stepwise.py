@@ -44,14 +44,14 @@ def test_a_stated_gain_and_diameter_are_among_what_the_page_says_it_holds(weighe
     said = " ".join(interval_table(view).remarks)
     for held in ("tension gain", "diameter", "gauge length"):
         assert held in said
-    assert "Not in it" not in said and NOTHING_STATED not in said
-    assert "share: " + said.split("share: ")[1] in draw_steps(view)[1].caption
+    assert "Not included" not in said and NOTHING_STATED not in said
+    assert "all samples: " + said.split("all samples: ")[1] in draw_steps(view)[1].caption
 
 
 def test_where_nothing_is_stated_the_gauge_length_of_the_readings_is_in_it_alone(weighed):
     view = view_of(weighed, InstrumentErrors("tether"))
     (said,) = interval_table(view).remarks
-    assert "all samples share: gauge length." in said and NOTHING_STATED in said
+    assert "common to all samples: gauge length." in said and NOTHING_STATED in said
 
 
 def test_the_bars_of_a_test_with_weights_are_those_of_its_intervals(weighed):

@@ -90,7 +90,7 @@ def test_long_tests_and_parts_of_them_are_left_out_and_named():
         make_view("T-4-start", [0.9, 1.1], 3.0, part_of="T-4-long"),
     ]
     (figure,) = draw_specimens_together(views)
-    assert "Not in it: T-4-long, T-4-start." in figure.caption
+    assert "Not shown: T-4-long, T-4-start." in figure.caption
     assert max(y for trace in figure.data for y in trace["y"] if y is not None) < 2.1
     (alone,) = draw_specimens_together(views[1:])
     assert "Not in it" not in alone.caption

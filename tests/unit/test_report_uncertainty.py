@@ -107,7 +107,7 @@ def test_a_segment_is_shown_with_its_expanded_uncertainty_and_k():
     )
     assert table.remarks == (
         "±: expanded uncertainty, 95 % (k = 1.96 to 2.26): scatter between cycles, noise,"
-        " regression; and what all samples share: tension gain, strain calibration, diameter.",
+        " regression; and errors common to all samples: tension gain, strain calibration, diameter.",
     )
 
 
@@ -124,7 +124,7 @@ def test_an_archive_that_keeps_no_shared_errors_still_renders_and_says_what_it_h
 def test_the_words_under_a_table_are_true_of_what_is_stated_and_of_what_reaches_it():
     only_tape = make_view(None, sources=("splice_method", *["strain_calibration"] * 3))
     said = segment_table([only_tape]).remarks[0]
-    assert said.endswith(f"share: strain calibration, splice method. {NOTHING_STATED}")
+    assert said.endswith(f"all samples: strain calibration, splice method. {NOTHING_STATED}")
     stated = make_view()
     zero = stated.data["test_apparent_spring_constant_uncertainty_contribution"] * 0.0
     nothing = TestView(
@@ -132,10 +132,10 @@ def test_the_words_under_a_table_are_true_of_what_is_stated_and_of_what_reaches_
     )
     name = "test_apparent_spring_constant"
     assert plus_minus_of_tests([2.0], [nothing], [name]).endswith(
-        "Nothing that is stated of the instruments reaches it."
+        "No stated instrument error affects it."
     )
     assert plus_minus_of_tests([2.0], [stated], ["peak_tension_per_decade"]).endswith(
-        "Not in it: errors of the instruments."
+        "Not included: errors of the instruments."
     )
     assert shared_sources([stated], [name]) == ["tension_gain"]
 
@@ -216,11 +216,10 @@ def test_hatching_is_explained_where_it_is_and_an_unknown_source_has_a_look_and_
 def test_the_numbers_of_the_bars_stand_in_a_table_with_their_meanings():
     view = make_view(units="us")
     table = budget_table(view, answer_budgets(view))
-    assert table.columns[:5] == ("number", "value", "unit", "k [1]", "random [%]")
+    assert table.columns[:5] == ("number", "value", "unit", "k", "random [%]")
     assert texts(table)[3] == ["K_ap, new", "131.5 ± 2.2", "lbf", "1.99", "36.0", "64.0", "0.0",
                                "0.0"]  # fmt: skip
     assert "fit to the readings at the splice marks" in table.remarks[1]
-    assert "SYNTHETIC" in table.caption
     part = next(one for one in make_section(view).parts if "uncertainty" in one.heading)
     assert part.folded is not None and part.folded.tables
     assert part.sentences == ()
@@ -242,7 +241,7 @@ def test_what_is_stated_of_the_instruments_stands_in_the_units_of_the_page():
         ["lag between the channels [ms]", "5.00"],
         ["mean diameter [in]", "0.00394"],
     ]
-    assert "known" in table.remarks[0]
+    assert "treated as exact" in table.remarks[0]
     assert instrument_sentences([make_view()]) == []
 
 
@@ -250,10 +249,10 @@ def test_tests_that_were_reduced_with_other_statements_have_a_column_each():
     other = make_view(STATED | {"tension_gain": 0.01, "has_one_load_cell": True}, test="T-2")
     silent = make_view(None, test="T-3")
     table = instrument_table([make_view(), other, silent], "si")
-    assert table.columns == ("error, with its unit", "T-1", "T-2")
+    assert table.columns == ("error", "T-1", "T-2")
     assert texts(table)[0] == ["gain of tension [%]", "0.250", "1.00"]
-    assert "All tension channels share the errors of one load cell." in table.remarks
-    assert any(text.startswith("Nothing is stated of T-3") for text in table.remarks)
+    assert "All tension channels share one load cell." in table.remarks
+    assert any(text.startswith("Nothing is stated for T-3") for text in table.remarks)
 
 
 def with_curve(view, *, is_old=False):
@@ -339,7 +338,7 @@ def test_a_coefficient_holds_what_the_runs_share_and_shows_it_beside():
     answer = answer_table(view, surfaces)
     ends = [float(end) for end in answer.rows[0][2].value.split()]
     assert ends == [low[0, 0], high[0, 0]]
-    assert "tension gain, lag. Not in it: that one line was tested" in answer.remarks[0]
+    assert "tension gain, lag. Not included: differences between lines" in answer.remarks[0]
 
 
 def test_surfaces_that_know_nothing_shared_have_no_such_column():
@@ -351,7 +350,7 @@ def test_surfaces_that_know_nothing_shared_have_no_such_column():
     k = stats.t.ppf(0.975, bare.surfaces.term_degrees_of_freedom[0].min())
     random = bare.surfaces.coefficient_standard_uncertainty[0, 0]
     assert (high - low)[0, 0] / 2 == pytest.approx(k * random, rel=1e-6)
-    assert "what all runs share: calibration" in answer_table(bare, bare.surfaces).remarks[0]
+    assert "errors common to all runs: calibration" in answer_table(bare, bare.surfaces).remarks[0]
 
 
 def shared_view(view, rows):
