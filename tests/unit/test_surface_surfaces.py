@@ -297,6 +297,11 @@ def test_random_blocks_widen_the_mean_alone(lines):
         ({"low": HIGH, "high": LOW}, SettingsError, "high level of factor 1 does not lie above"),
         ({"transforms": ["log"]}, SettingsError, "the transforms do not pair up"),
         (
+            {"transforms": "log-times-frequency", "factor_names": ["rate", "m", "a"]},
+            SettingsError,
+            "multiplied by the frequency, which is no factor; found rate, m, a",
+        ),
+        (
             {"transforms": "square"},
             SettingsError,
             "found square; needed none, log, box-cox or log-times-frequency",
