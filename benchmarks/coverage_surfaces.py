@@ -15,10 +15,13 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
 from reduction.experiments.designs import box_behnken
+from reduction.experiments.experiment_fit import _scales
 from reduction.experiments.response_surfaces import fit_surfaces
 from reduction.experiments.surface_points import evaluate_surfaces
 from reduction.record.measurement import Floats
@@ -27,7 +30,11 @@ from reduction.uncertainty.surface_errors import with_shared_at_points
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from strangers.ropes import _closed_form, draw_line, line_response
 
-RESPONSES = ("K_ap", "H", "K_1", "tau")
+FACTORS = ("frequency", "mean_tension", "tension_amplitude")
+RESPONSES = (
+    "apparent_spring_constant", "hysteresis_energy", "dissipation_spring_constant",
+    "relaxation_time",
+)  # fmt: skip
 LOW, HIGH = np.array([0.1, 0.12, 0.05]), np.array([0.5, 0.30, 0.12])
 N_POINTS = 40
 
@@ -70,6 +77,7 @@ LAWS: dict[str, Callable[[np.random.Generator], Law]] = {
     "line, tau falling": lambda rng: line(rng, "falling"),
     "line, tau constant": lambda rng: line(rng, "constant"),
     "constant loss angle": lambda rng: line(rng, "angle"),
+    "spring-pot": lambda rng: line(rng, "fractional"),
     "three relaxation times": relaxing,
 }
 
@@ -94,10 +102,15 @@ def realisation(law: str, seed: int) -> tuple[Floats, Floats]:
 
     scatter = np.exp(rng.uniform(np.log([2e-4, 1e-3]), np.log([4e-3, 1e-2])))
     truth = responses(there, (0.0, 0.0))
+    measured = responses(levels, tuple(scatter))
+    names = tuple(f"R{number}" for number in range(len(levels)))
+    runs: Any = SimpleNamespace(
+        level=levels, response=measured, names=names, specimen=("line",) * len(levels)
+    )
+    scales, _ = _scales(runs, FACTORS, LOW, HIGH, RESPONSES, {})
     surfaces = fit_surfaces(
-        coded, responses(levels, tuple(scatter)), factor_names=("f", "m", "a"),
-        response_names=RESPONSES, low=LOW, high=HIGH, units="coded", with_tests=False,
-        transforms=("none", "log", "none", "log"),
+        levels, measured, factor_names=FACTORS, response_names=RESPONSES, low=LOW, high=HIGH,
+        with_tests=False, transforms=[scales[name] for name in RESPONSES],  # type: ignore[misc]
     )  # fmt: skip
     values = evaluate_surfaces(surfaces, points, units="coded")
     stated = with_shared_at_points(surfaces, values, np.zeros((0, *surfaces.coefficient.shape)), [])

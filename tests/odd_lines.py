@@ -66,8 +66,35 @@ def _tether(chance):
     )  # fmt: skip
 
 
+def _own(chance):
+    """Surfaces of known runs, tau as f tau, with a slow pull; K_1 is not that of the others."""
+    terms = np.vstack([quadratic_exponents(3), [[3, 0, 0], [2, 1, 0], [0, 1, 3]]])
+
+    def of(quantity, mean, **fields):
+        root = 0.004 * abs(mean) * chance.normal(0, 1, (len(terms), 4))
+        more = {
+            "discrepancy": root @ root.T, "discrepancy_exponents": terms,
+            "discrepancy_degrees_of_freedom": 12.0,
+        }  # fmt: skip
+        return _shared(quantity, mean, chance, (CELL, GAUGE), spread=0.004, **more, **fields)
+
+    at = np.linspace(1000.0, 8000.0, 8)
+    pull = LineCurve(
+        "quasi_static_spring_constant", "mean_tension", 1000.0, 8000.0, at=at, value=8e4 + 4 * at,
+        standard_uncertainty=np.full(8, 4e3), degrees_of_freedom=np.full(8, 11.0),
+        component=(CELL, CLOCK), contribution=chance.normal(0, 1e3, (2, 8)),
+    )  # fmt: skip
+    surfaces = [
+        of("apparent_spring_constant", 2e5),
+        of("hysteresis_energy", np.log(7.6), exponent=0.0),
+        of("dissipation_spring_constant", 1.6e5),
+        of("relaxation_time", np.log(0.53), exponent=0.0, frequency_column=0),
+    ]
+    return _rope("own", surfaces, slow_pulls={"slow pull Q01": pull})
+
+
 def odd_lines():
-    """Lines by name: surfaces on other scales with shared errors, open ones, curves with gaps."""
+    """Lines by name: own surfaces, others on other scales with shared errors, open ones, curves with gaps."""
     chance = np.random.default_rng(3)
     spring, time, apparent, energy = (
         "dissipation_spring_constant", "relaxation_time", "apparent_spring_constant",
@@ -110,6 +137,7 @@ def odd_lines():
                 _surface(energy, 30.0, chance, degrees_of_freedom=0.0),
             ],
         ),
+        _own(chance),
         _tether(chance),
         LineSource(
             "pull", "made up", "", "", "", 0.02, 3e4,

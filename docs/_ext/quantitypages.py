@@ -26,7 +26,8 @@ tables; files are SI. `NAME_standard_uncertainty` has the unit of `NAME`. The he
 _RESPONSES = f"""\
 In `surfaces.nc` a name is made of a response and what is said of it. `<response>` is one of
 {", ".join(f"`{name}`" for name in RESPONSES)},
-or one of them after `log_` (natural logarithm of the number in SI) or `box_cox_`; `<unit>` is its
+or one of them after `log_` (natural logarithm of the number in SI),
+`log_frequency_times_` (of its product with the frequency in Hz) or `box_cox_`; `<unit>` is its
 unit, 1 where it is transformed; `<response unit>` is that of the response in both cases. In a
 table whose rows are of several responses the name begins with `response_`, and the columns `unit`
 and `response_unit` say what `[unit]` and `[response_unit]` are."""

@@ -698,7 +698,9 @@ class ExperimentSection(_SpecSection):
     quasi_static: dict[Identifier, Text] = Field(default_factory=dict)
     """Test (or test/step) with the slow pull, by specimen."""
     responses: tuple[Response, ...] = get_args(Response)[:4]
-    transform: dict[Response, Literal["none", "log", "box-cox"]] = Field(default_factory=dict)
+    transform: dict[Response, Literal["none", "log", "box-cox", "log-times-frequency"]] = Field(
+        default_factory=dict
+    )
     specimens_as: Literal["blocks", "random"] = "blocks"
     """How several specimens of one line enter: a mean of each, or a draw from many."""
     term_reduction: Literal["none", "aicc"] = "none"

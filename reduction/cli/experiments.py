@@ -53,7 +53,7 @@ _ROUNDING = 1e-9
 
 def _fitted_unit(unit: str, transform: str) -> str:
     """Unit of the coefficients of a response; empty where none is stated."""
-    names = {"none": unit, "log": f"ln({unit})"}
+    names = {"none": unit, "log": f"ln({unit})", "log-times-frequency": f"ln(Hz {unit})"}
     return names.get(transform, f"Box-Cox({unit})") if unit else ""
 
 

@@ -485,7 +485,7 @@ def _slow_pulls_at(line: LineSource, points: Mapping[str, Floats]) -> list[tuple
 def _show_consistent(
     line: LineSource, found: DesignValues, points: Mapping[str, Floats], output: CommandOutput
 ) -> None:
-    """Of a published rope: every K_0, and the K_1 and tau that go with its K_ap and H."""
+    """Of a rope with slow pulls: every K_0, and the K_1 and tau that go with its K_ap and H."""
     force, scale = output.unit("N")
     if found.quantity == K_0 and len(line.slow_pulls) > 1:
         misfit = {
@@ -508,10 +508,15 @@ def _show_consistent(
     heads, levels = _shown_levels(
         points, line.rated_break_strength, found.value.size, output.system
     )
-    output.say("as printed, and with the K_1 and tau that K_ap, H and K_0 give by the line model:")
+    stated = "printed" if line.is_printed else "of surface"
+    output.say(
+        f"as {stated}, and with the K_1 and tau that K_ap, H and K_0 give by the line model:"
+        if line.is_printed
+        else "by the surfaces, and the K_1 and tau that K_ap, H and K_0 give by the line model:"
+    )
     table = table_of(
         *heads, "K_0 by", *(f"{name}\n[{force}]" for name in ("K_ap", "K_0")),
-        f"K_1 printed\n[{force}]", f"K_1 solved\n[{force}]", "tau printed\n[s]",
+        f"K_1 {stated}\n[{force}]", f"K_1 solved\n[{force}]", f"tau {stated}\n[s]",
         "tau solved\n[s]", "remark", texts=0,
     )  # fmt: skip
     _fold_last(table)
@@ -519,13 +524,21 @@ def _show_consistent(
     for place, cells in enumerate(levels):
         for one in found_values:
             columns = (
-                (one.printed[K_AP], scale), (one.quasi_static_spring_constant, scale),
-                (one.printed.get(K_1, nothing), scale), (one.dissipation_spring_constant, scale),
-                (one.printed.get(TIME, nothing), 1.0), (one.relaxation_time, 1.0),
+                (one.of_surfaces[K_AP], scale), (one.quasi_static_spring_constant, scale),
+                (one.of_surfaces.get(K_1, nothing), scale),
+                (one.dissipation_spring_constant, scale),
+                (one.of_surfaces.get(TIME, nothing), 1.0), (one.relaxation_time, 1.0),
             )  # fmt: skip
             remark = REASONS[int(one.reason.ravel()[place])]
-            if not remark and one.is_impossible.ravel()[place]:
+            if not remark and line.is_printed and one.is_impossible.ravel()[place]:
                 remark = "printed K_ap is above K_0 + printed K_1"
+            apart = [
+                symbol
+                for symbol, name in (("K_1", K_1), ("tau", TIME))
+                if one.is_apart(name).ravel()[place]
+            ]
+            if apart:
+                remark = f"{' and '.join(apart)}: outside the interval"
             table.add_row(
                 *cells, one.slow_pull,
                 *(short(by * float(column.ravel()[place])) for column, by in columns),
@@ -664,12 +677,18 @@ def _document(
         "consistent": [
             {
                 "slow_pull": one.slow_pull,
-                "printed": {name: of(values) for name, values in one.printed.items()},
-                "units": {name: quantity_of(name).unit for name in (*one.printed, K_0, K_1, TIME)},
+                "of_surfaces": {name: of(values) for name, values in one.of_surfaces.items()},
+                "units": {
+                    name: quantity_of(name).unit for name in (*one.of_surfaces, K_0, K_1, TIME)
+                },
                 K_0: of(one.quasi_static_spring_constant),
                 K_1: of(one.dissipation_spring_constant),
                 TIME: of(one.relaxation_time),
-                "impossible_as_printed": of(one.is_impossible),
+                "impossible": of(one.is_impossible),
+                "difference_half_width": {
+                    name: of(values) for name, values in one.half_width.items()
+                },
+                "apart": {name: of(one.is_apart(name)) for name in one.half_width},
             }
             for one in (
                 consistent_values(line, **points)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any, Literal
 
 import numpy as np
@@ -39,6 +40,7 @@ from reduction.experiments.stiffness_forms import (
     fit_del_vecchio_stiffness,
     fit_mean_load_stiffness,
 )
+from reduction.experiments.surface_discrepancy import discrepancy_of
 from reduction.experiments.surface_warnings import (
     drift_over_order,
     drifting_responses,
@@ -308,7 +310,9 @@ def _single_time_of_runs(
     return check, [note("single-time", verdict=VERDICTS[int(check.verdict)])]
 
 
-_PREFIX: dict[str, Transform] = {"log_": "log", "box_cox_": "box-cox"}
+_PREFIX: dict[str, Transform] = {
+    "log_": "log", "box_cox_": "box-cox", "log_frequency_times_": "log-times-frequency"
+}  # fmt: skip
 
 _FROM_SLOW_PULL = {"dissipation_spring_constant", "relaxation_time", "dashpot_coefficient"}
 
@@ -449,7 +453,8 @@ def _scales(
     Scatter about a surface of logarithms is compared with that about a surface as measured over
     the geometric mean of the runs (Box and Cox): where the usual scale has so much more that a
     ratio of two variances of equal degrees of freedom would be as large in one case of twenty, the
-    other scale is taken.
+    other scale is taken.  A time is fitted as product with the frequency where a quadratic may miss
+    less of that (`_with_frequency`).
     """
     scales = dict(stated)
     notes: list[Note] = []
@@ -485,7 +490,42 @@ def _scales(
             to = "its logarithm" if usual == "none" else "the response as measured"
             ratio = float(own / other)
             notes.append(note("scale-by-runs", response=name, scale=to, ratio=ratio, p=p))
+    times = [one for one in _TIMES if scales.get(one) == "log" and one not in stated]
+    if times and "frequency" in names and low[names.index("frequency")] > 0:
+        scales |= _with_frequency(runs, names, low, high, response_names, times)
     return scales, notes
+
+
+_TIMES = ("relaxation_time", "dashpot_coefficient")
+"""Fall as 1/f where the loss angle is constant."""
+
+
+def _with_frequency(
+    runs: RunTable,
+    names: tuple[str, ...],
+    low: Floats,
+    high: Floats,
+    response_names: tuple[str, ...],
+    times: list[str],
+) -> dict[str, str]:
+    """Responses that are fitted as products with the frequency: where a quadratic misses less.
+
+    Three levels of the frequency carry the logarithm of a power of it without residuals, whatever
+    its exponent, so that scatter cannot choose: what may be missed between the levels does, as the
+    root mean square of the discrepancy over a grid of the tested range.
+    """
+    on_log: Transform = "log"
+    on_product: Transform = "log-times-frequency"
+    rows = [response_names.index(one) for one in times]
+    trial = fit_surfaces(
+        runs.level, runs.response[2 * rows], factor_names=names, low=low, high=high,
+        response_names=[f"{scale} {one}" for scale in (on_log, on_product) for one in times],
+        run_names=runs.names, blocks=_specimen_blocks(runs), with_tests=False,
+        transforms=[scale for scale in (on_log, on_product) for _ in times],
+    )  # fmt: skip
+    grid = np.array(list(product(np.linspace(-1, 1, 5), repeat=len(names))))
+    missed = np.mean(discrepancy_of(trial).at(grid) ** 2, axis=1).reshape(2, len(times))
+    return {one: on_product for one, less in zip(times, missed[1] < missed[0], strict=True) if less}
 
 
 def _surfaces(

@@ -24,6 +24,7 @@ import numpy as np
 from numpy import int8
 from numpy.typing import NDArray
 
+from reduction.experiments.response_transform import multipliers
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 from reduction.record.notes import Note
 
@@ -292,9 +293,10 @@ class ResponseSurfaces:
     term_names : tuple of str, length n_terms
         B1, B2, .. in printed order: mean, squares, linear terms, interactions.
     transform : tuple of str, length n_responses
-        ``none``, ``log`` or ``box-cox``: everything below is of the transformed response.
+        ``none``, ``log``, ``box-cox`` or ``log-times-frequency`` (the logarithm of the product
+        of the frequency and the response): everything below is of the transformed response.
     transform_exponent : ndarray, shape (n_responses,)
-        Of Box and Cox; 1 for none, 0 for log. [1]
+        Of Box and Cox; 1 for none, 0 for a logarithm. [1]
     transform_exponent_interval : ndarray, shape (n_responses, 2)
         By profile likelihood; NaN where the exponent was not found from the runs. [1]
     coefficient, coefficient_standard_uncertainty : ndarray, shape (n_responses, n_terms)
@@ -385,3 +387,10 @@ shape (n_responses, n_terms)
     def labels(self) -> tuple[str, ...]:
         """B1, B2, .. as printed, length n_terms."""
         return tuple(f"B{number + 1}" for number in range(len(self.term_names)))
+
+    def multiplier(self, coded: Floats) -> Floats:
+        """`multipliers` of the responses at points (n_points, n_factors); NaN where below zero."""
+        found = multipliers(
+            self.transform, coded, factor_names=self.factor_names, low=self.low, high=self.high
+        )
+        return np.where(found > 0, found, np.nan)

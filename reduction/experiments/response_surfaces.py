@@ -20,7 +20,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from math import comb
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -53,7 +53,12 @@ from reduction.experiments.least_squares_fit import (
     statistics_from_r2,
 )
 from reduction.experiments.response_matrix import times
-from reduction.experiments.response_transform import Transform, box_cox_exponent, transform
+from reduction.experiments.response_transform import (
+    Transform,
+    box_cox_exponent,
+    multipliers,
+    transform,
+)
 from reduction.experiments.run_sheet import covariance_factor
 from reduction.experiments.stationary_point import canonical_analysis
 from reduction.experiments.surface_statistics import (
@@ -296,8 +301,8 @@ def fit_surfaces(
         Specimen of each run, where there are several.
     block_treatment : {'fixed', 'random'}
         These specimens, or draws from those of their kind.
-    transforms : {'none', 'log', 'box-cox'} or one a response
-        Scale each response is fitted on.
+    transforms : {'none', 'log', 'box-cox', 'log-times-frequency'} or one a response
+        Scale each response is fitted on; the last one wants a factor called ``frequency``.
     replicate_tolerance : float
         Runs count as repeats where no coded level differs by more. [1]
     with_tests : bool
@@ -312,8 +317,8 @@ def fit_surfaces(
     Raises
     ------
     SettingsError
-        If names or transforms do not pair up, a run is named twice, or a high level is not
-        above its low one.
+        If names or transforms do not pair up, a run is named twice, a high level is not
+        above its low one, or a frequency to multiply by is not there or not above zero.
     DataError
         If a run has a value and no levels, a level or response is infinite, a factor never
         moves, there is one block, a response to be transformed is not above zero, or there are
@@ -380,7 +385,14 @@ def fit_surfaces(
     values = measured.copy()
     if set(scale) != {"none"}:
         bent = np.array([kind != "none" for kind in scale])
-        values[bent] = transform(measured[bent], power[bent, None])
+        factor = multipliers(scale, coded, factor_names=factor_names, low=low, high=high)
+        if np.any(factor <= 0):
+            raise SettingsError(
+                "a response is to be multiplied by a frequency that is not above zero",
+                found=f"{np.nanmin(factor):g}",
+                needed="levels of the frequency in Hz, with its low and its high one stated",
+            )
+        values[bent] = transform((factor * measured)[bent], power[bent, None])
     index = None if grouping is None else grouping[1]
     fit = fit_least_squares(matrix, values, n_baseline=baseline.shape[1], block=index)
     fit = replace(fit, reason=np.where(np.isnan(power), np.int8(6), fit.reason))
@@ -486,14 +498,14 @@ def _scales(
     """Scale of each response, its exponent, and the interval of an exponent that was found."""
     count = measured.shape[0]
     scale = (transforms,) * count if isinstance(transforms, str) else tuple(transforms)
-    strange = sorted(set(scale) - {"none", "log", "box-cox"})
+    strange = sorted(set(scale) - set(get_args(Transform)))
     if len(scale) != count or strange:
         raise SettingsError(
             "the transforms do not pair up with the responses",
             found=", ".join(strange) or f"{len(scale)} transforms, {count} responses",
-            needed="none, log or box-cox, one for all or one a response",
+            needed="none, log, box-cox or log-times-frequency, one for all or one a response",
         )
-    power = np.array([0.0 if kind == "log" else 1.0 for kind in scale])
+    power = np.array([0.0 if kind.startswith("log") else 1.0 for kind in scale])
     interval = np.full((count, 2), np.nan)
     sought = np.flatnonzero([kind == "box-cox" for kind in scale])
     if sought.size:

@@ -4,7 +4,12 @@ Responses that cannot be negative, fitted on another scale and brought back.
 
 .. math::
 
-    z = \frac{y^\lambda - 1}{\lambda} \quad (\lambda \ne 0), \qquad z = \ln y \quad (\lambda = 0)
+    z = \frac{y^\lambda - 1}{\lambda} \quad (\lambda \ne 0), \qquad z = \ln y \quad (\lambda = 0),
+    \qquad z = \ln (f y)
+
+The last one is for a relaxation time: of a rope whose loss angle hardly changes with the frequency
+f it falls as 1/f, which no quadratic of f follows between three levels, while the product of both
+is nearly constant.
 
 The printed quadratic surfaces of H, K_1 and tau of [1]_ fall below zero inside their own
 ranges; a surface of ln y cannot.
@@ -23,18 +28,19 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import boxcox, chdtri
 
+from reduction.experiments.designs import engineering_from_coded
 from reduction.experiments.response_matrix import highest_of_each, patterns_of, times
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats
 
-Transform = Literal["none", "log", "box-cox"]
+Transform = Literal["none", "log", "box-cox", "log-times-frequency"]
 
 
 def transform(values: ArrayLike, exponent: ArrayLike) -> Floats:
@@ -179,6 +185,60 @@ def retransformed_mean(values: ArrayLike, exponent: ArrayLike, *, sigma: ArrayLi
     return np.asarray(
         middle * np.where(power == 0, np.exp(np.where(power == 0, scatter**2, 0.0) / 2), second)
     )
+
+
+def multipliers(
+    transforms: Sequence[str],
+    coded: ArrayLike,
+    *,
+    factor_names: Sequence[str],
+    low: ArrayLike,
+    high: ArrayLike,
+) -> Floats:
+    """What each response is multiplied by before it is transformed: the frequency, or 1.
+
+    Parameters
+    ----------
+    transforms : sequence of str, length n_responses
+        Scale of each response.
+    coded : array_like, shape (n_points, n_factors)
+        Levels of the factors. [1]
+    factor_names : sequence of str, length n_factors
+        In the order of the columns.
+    low, high : array_like, shape (n_factors,)
+        Levels that are -1 and +1. [SI unit of each factor]
+
+    Returns
+    -------
+    multipliers : ndarray, shape (n_responses, n_points)
+        The frequency for log-times-frequency. [Hz, or 1]
+
+    Raises
+    ------
+    SettingsError
+        If a response is to be multiplied by the frequency, which is no factor.
+
+    Examples
+    --------
+    >>> of = {"factor_names": ["frequency"], "low": [0.1], "high": [0.5]}
+    >>> print(multipliers(["log", "log-times-frequency"], [[-1.0], [0.5]], **of))
+    [[1.  1. ]
+     [0.1 0.4]]
+    """
+    points = np.asarray(coded, dtype=np.float64)
+    found = np.ones((len(transforms), len(points)))
+    rows = [row for row, kind in enumerate(transforms) if kind == "log-times-frequency"]
+    if not rows:
+        return found
+    names = list(factor_names)
+    if "frequency" not in names:
+        raise SettingsError(
+            "a response is to be multiplied by the frequency, which is no factor",
+            found=", ".join(names),
+            needed="a factor called frequency, or the transform log",
+        )
+    found[rows] = engineering_from_coded(points, low=low, high=high)[:, names.index("frequency")]
+    return found
 
 
 LIMITS = (-2.0, 2.0)

@@ -82,7 +82,7 @@ def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
 
     .. math::
 
-        a_k^2 = \tfrac12\left[b_k^2 + (2 b_{kk} / \rho_k)^2\right], \qquad
+        a_k^2 = \max\left[b_k^2, (2 b_{kk} / \rho_k)^2\right], \qquad
         \gamma_\alpha^2 = \theta \prod_k \rho_k^{2 \alpha_k} / \bar\rho^2
 
     Parameters
@@ -103,8 +103,10 @@ def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
     Notes
     -----
     Method: the bias of [2]_ with the sizes of its terms drawn, as the discrepancy of [1]_.  Along
-    a factor the terms fall as those of its logarithm, :math:`\rho^n / n`, with one amplitude from
-    slope and curvature.  Terms of several factors have one scale, from the interactions and from
+    a factor the terms fall as those of its logarithm, :math:`\rho^n / n`, with one amplitude: the
+    larger of what slope and curvature say, since a relaxation within the range bends more than the
+    logarithm of its slope, and halfway through it has a slope without curvature.  Terms of several
+    factors have one scale, from the interactions and from
     what the runs scatter about the surface beyond their repeats (or at all, where none is
     repeated): the only terms of third order of which a Box-Behnken design sees anything.  From
     every square the part that scatter alone gives is taken off.  Signs are independent.  A
@@ -125,7 +127,7 @@ def discrepancy_of(surfaces: ResponseSurfaces) -> SurfaceDiscrepancy:
     ...     transforms="log")
     >>> between = np.array([[-0.5], [0.5]])
     >>> print(discrepancy_of(found).at(between).round(3))
-    [[0.044 0.044]]
+    [[0.045 0.045]]
     >>> fitted = found.coefficient @ model_matrix(between, found.exponents).T
     >>> print(abs(np.log(law(between[:, 0])) - fitted).round(3))
     [[0.063 0.037]]
@@ -200,11 +202,11 @@ def _sizes(
     # one factor by itself: slope and curvature say how large the series is
     amplitude = np.array(
         [
-            np.mean([
+            max(
                 square[(powers == np.eye(ratio.size)[k] * order).all(axis=1)][0]
                 * (order / ratio[k] ** (order - 1)) ** 2
                 for order in (1, 2)
-            ])
+            )
             for k in range(ratio.size)
         ]
     )  # fmt: skip

@@ -359,13 +359,17 @@ def evaluate_surfaces(
     power = surfaces.transform_exponent[:, None]
     plain = np.array([kind == "none" for kind in surfaces.transform])[:, None]
 
+    multiplier = surfaces.multiplier(coded)
+
     def back(values: Floats) -> Floats:
-        return np.where(plain, values, back_transform(values, np.where(plain, 1.0, power)))
+        found = np.where(plain, values, back_transform(values, np.where(plain, 1.0, power)))
+        return np.asarray(found / multiplier)
 
     def interval(half: Floats) -> Floats:
         return np.stack([back(fitted - half), back(fitted + half)], axis=-1)
 
     mean = retransformed_mean(fitted, np.where(plain, 1.0, power), sigma=np.hypot(sigma, between))
+    mean = mean / multiplier
     return SurfaceValues(
         coded=coded,
         engineering=engineering_from_coded(coded, **limits),

@@ -28,7 +28,7 @@ from reduction.experiments.surface_points import greatest_leverage
 from reduction.lines.archive_pieces import alignment_words
 from reduction.lines.line_lookup import Branch
 from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
-from reduction.quantities.names import RESPONSES, quantity
+from reduction.quantities.names import RESPONSES, SCALES, quantity
 from reduction.record.contributions import Component
 from reduction.record.errors import ArchiveError, DataError
 from reduction.record.measurement import Bools, Floats
@@ -144,7 +144,7 @@ def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
     ]
 
 
-_SCALES = ("log_", "box_cox_", "")
+_SCALES = (*SCALES, "")
 """A surface on a scale that was asked for stands before the one of the quantity itself."""
 
 _TEXTS = {
@@ -290,6 +290,9 @@ def _surface(
         degrees_of_freedom=float(fitted.degrees_of_freedom[index]),
         greatest_leverage=float(greatest_leverage(fitted, plan)[index]),
         exponent=float(fitted.transform_exponent[index]),
+        frequency_column=fitted.factor_names.index("frequency")
+        if fitted.transform[index] == "log-times-frequency"
+        else None,
         discrepancy=np.array(missed.moment[index]),
         discrepancy_exponents=np.array(missed.exponents),
         discrepancy_degrees_of_freedom=float(missed.degrees_of_freedom[index]),
@@ -390,10 +393,17 @@ def lines_of_open_archive(
         kinds = archive.variables["experiment_kind"].values.astype(str).tolist()
         wanted = {one for name in names for one in _specimens_of(archive, name)}
         known = _specimens(path, wanted, opener)
-        return [
+        made = [
             _line_source_of_experiment(archive, name, specimens=known)
             for name, kind in zip(names, kinds, strict=True)
             if kind == "box-behnken" and surface_names(archive, name)
+        ]
+        settings = json.loads(str(archive.attrs.get("settings", "{}")))
+        return [
+            replace(one, slow_pulls=_slow_pulls(path, settings.get(one.name, {}), opener))
+            if set(one.factor_names) == _OF_A_CYCLE
+            else one
+            for one in made
         ]
     if not any(name in archive for name in CURVES):
         return []
@@ -403,6 +413,25 @@ def lines_of_open_archive(
     return [
         _line_of_curves(archive, place, name, curves) for place, name, curves in found if curves
     ]
+
+
+_OF_A_CYCLE = {"frequency", "mean_tension", "tension_amplitude"}
+
+
+def _slow_pulls(path: Path, settings: Mapping[str, Any], opener: Opener) -> dict[str, LineCurve]:
+    """K_0 by the slow pull of each specimen of an experiment, as far as its archive is there."""
+    pulls = settings.get("quasi_static", {})
+    found = {}
+    for specimen, test in pulls.items():
+        try:
+            pulled = _pull_of(path.parent, test, specimen, opener)
+        except ArchiveError:
+            continue
+        label = f"slow pull {test}" + (f" of {specimen}" if len(pulls) > 1 else "")
+        found[label] = next(
+            one for one in pulled.curves if one.quantity == "quasi_static_spring_constant"
+        )
+    return found
 
 
 def experiments_with_pulls(path: Path) -> list[LineSource]:
@@ -452,10 +481,11 @@ def experiments_with_pulls(path: Path) -> list[LineSource]:
     return made
 
 
-def _pull_of(folder: Path, test: str, specimen: str) -> LineSource:
+def _pull_of(folder: Path, test: str, specimen: str, opener: Opener = reading) -> LineSource:
     """K_0 and strain of one slow pull over tension."""
-    for path in archives_of_tests(folder):
-        with reading(path) as archive:
+    # most archives have the name of their test
+    for path in sorted(archives_of_tests(folder), key=lambda one: one.stem != test):
+        with opener(path) as archive:
             if archive.attrs.get("test") == test:
                 found = _line_source_of_test(archive, specimen)
                 curves = tuple(one for one in found.curves if one.quantity not in _OVER_STRAIN)

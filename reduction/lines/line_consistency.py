@@ -1,4 +1,4 @@
-r"""Whether K_ap, H, K_0, K_1 and tau of a published line hold together, and what would.
+r"""Whether K_ap, H, K_0, K_1 and tau of a line hold together, and what would.
 
 A spring K_0 beside a Maxwell element has an apparent spring constant between K_0 and K_0 + K_1,
 whatever its relaxation time and the frequency.  The surfaces of a report are fitted one by one, so
@@ -14,6 +14,10 @@ from fitted K_ap and H: what the runs scatter about those is, to first order, or
 quadratic, so that the two agree better than s says, and a z is rather too small.  z is Student's t
 of the five degrees of freedom of s; of ten coefficients one is beyond 4.77 in 5 % of such columns.
 
+Of the surfaces of a campaign the runs are known, and with them the interval of each at a point:
+there K_1 and tau of their own surfaces are held against those that K_ap, H and K_0 give, by the
+interval of the difference, in which errors that all of them share stand with their signs.
+
 References
 ----------
 .. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
@@ -22,20 +26,24 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import stdtrit
 
-from reduction.experiments.designs import box_behnken, coded_from_engineering, model_matrix
-from reduction.experiments.run_sheet import variance_factor
-from reduction.lines.line_curve import evaluate_curve
+from reduction.experiments.designs import box_behnken, model_matrix
+from reduction.lines.line_curve import evaluate_curve, half_width_of_parts
+from reduction.lines.line_surface import SurfacePoints, evaluate_surface
 from reduction.lines.lookup_product import LineSource, LineSurface
 from reduction.quantities.digits import plain_number
 from reduction.quantities.names import quantity as quantity_of
+from reduction.record.contributions import Component, Contributions, merged
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 from reduction.stages.three_parameter_line.line_model import identify_by_amplitude
+from reduction.stages.three_parameter_line.line_product import LineParameters
 
 K_AP, ENERGY, K_0, K_1, TIME, DASHPOT = (
     "apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant",
@@ -57,33 +65,45 @@ class ConsistentValues:
     ----------
     slow_pull : str
         Which K_0 was taken, in words.
-    printed : dict of str to ndarray
+    of_surfaces : dict of str to ndarray
         K_ap, H, K_1 and tau, as far as the line has surfaces of them. [N], [J m-1], [s]
     quasi_static_spring_constant : ndarray
         K_0 of that slow pull at the mean tension. [N]
     dissipation_spring_constant, relaxation_time : ndarray
-        Solved from the printed K_ap and H; NaN where there is no solution. [N], [s]
+        Solved from the K_ap and H of the surfaces; NaN where there is no solution. [N], [s]
     excess : ndarray
-        Printed K_ap less K_0 and printed K_1: above zero no line is so; NaN without K_1. [N]
+        K_ap less K_0 and K_1 of the surfaces: above zero no line is so; NaN without K_1. [N]
     excess_uncertainty : ndarray
         Standard uncertainty of it, of the surfaces alone. [N]
+    half_width : dict of str to ndarray
+        Of the 95 % interval of K_1 and of tau, of its surface less solved; empty for a line of
+        which the coefficients alone are printed. [N], [s]
     reason : ndarray of int
         Why there is no solution: `reduction.stages.three_parameter_line.line_product.REASONS`.
     """
 
     slow_pull: str
-    printed: dict[str, Floats]
+    of_surfaces: dict[str, Floats]
     quasi_static_spring_constant: Floats
     dissipation_spring_constant: Floats
     relaxation_time: Floats
     excess: Floats
     excess_uncertainty: Floats
+    half_width: dict[str, Floats]
     reason: Integers
 
     @property
     def is_impossible(self) -> Bools:
-        """Printed K_ap above the sum of K_0 and printed K_1."""
+        """K_ap above the sum of K_0 and K_1 of the surfaces."""
         return np.asarray(self.excess > 0)
+
+    def is_apart(self, name: str) -> Bools:
+        """K_1 or tau of its surface outside the interval about the solved one."""
+        if name not in self.half_width:
+            return np.zeros(self.reason.shape, dtype=bool)
+        return np.asarray(
+            np.abs(self.of_surfaces[name] - getattr(self, name)) > self.half_width[name]
+        )
 
 
 @dataclass(frozen=True)
@@ -130,7 +150,7 @@ def consistent_values(
     mean_tension: ArrayLike,
     tension_amplitude: ArrayLike,
 ) -> tuple[ConsistentValues, ...]:
-    """A line at points as printed, and K_1 and tau that hold with its K_ap and H.
+    """A line at points by its surfaces, and K_1 and tau that hold with its K_ap and H.
 
     Parameters
     ----------
@@ -167,44 +187,114 @@ def consistent_values(
         *(np.asarray(one, dtype=np.float64) for one in (frequency, mean_tension, tension_amplitude))
     )
     shape = rate.shape
-    at = np.stack([rate.ravel(), mean.ravel(), amplitude.ravel()], axis=1)
-    columns, spread = {}, {}
-    for name in (K_AP, ENERGY, *SOLVED):
-        if name in line.surfaces:
-            columns[name], spread[name] = (one.reshape(shape) for one in _at(line, name, at))
+    levels = {"frequency": rate, "mean_tension": mean, "tension_amplitude": amplitude}
+    at = np.stack([levels[name].ravel() for name in line.factor_names], axis=1)
+    points = {
+        name: evaluate_surface(line.surfaces[name], at)
+        for name in (K_AP, ENERGY, *SOLVED)
+        if name in line.surfaces
+    }
+    columns = {name: one.value.reshape(shape) for name, one in points.items()}
+    spread = {name: one.random.reshape(shape) for name, one in points.items()}
     nothing = np.full(shape, np.nan)
     found = []
     for label, curve in line.slow_pulls.items():
-        rest = evaluate_curve(curve, mean).value
-        solved = identify_by_amplitude(
-            apparent_spring_constant=columns[K_AP],
-            hysteresis_energy=columns[ENERGY],
-            tension_amplitude=amplitude,
-            frequency=rate,
-            quasi_static_spring_constant=rest,
-        )
+        pull = evaluate_curve(curve, mean)
+        # a printed curve is shown as far as its page has it
+        rest = pull.value if line.is_printed else np.where(pull.is_inside, pull.value, np.nan)
+
+        def solve(apparent: Floats, energy: Floats, rest: Floats) -> LineParameters:
+            return identify_by_amplitude(
+                apparent_spring_constant=apparent,
+                hysteresis_energy=energy,
+                tension_amplitude=amplitude,
+                frequency=rate,
+                quasi_static_spring_constant=rest,
+            )
+
+        inputs = (columns[K_AP], columns[ENERGY], rest)
+        solved = solve(*inputs)
+        half = {}
+        if not line.is_printed:
+            parts = [
+                _part(line, points, K_AP, shape),
+                _part(line, points, ENERGY, shape),
+                _Part(curve.component, pull.contribution, pull.random, pull.freedom),
+            ]
+            half = {
+                name: _half_of_difference(
+                    [(_slope(solve, name, inputs, place), one) for place, one in enumerate(parts)]
+                    + [(np.full(shape, -1.0), _part(line, points, name, shape))]
+                )
+                for name in SOLVED
+                if name in points
+            }
         found.append(
             ConsistentValues(
                 slow_pull=label,
-                printed=columns,
+                of_surfaces=columns,
                 quasi_static_spring_constant=rest,
                 dissipation_spring_constant=solved.dissipation_spring_constant,
                 relaxation_time=solved.relaxation_time,
                 excess=columns[K_AP] - rest - columns.get(K_1, nothing),
                 excess_uncertainty=np.hypot(spread[K_AP], spread.get(K_1, nothing)),
+                half_width=half,
                 reason=np.asarray(solved.reason),
             )
         )
     return tuple(found)
 
 
-def _at(line: LineSource, name: str, at: Floats) -> tuple[Floats, Floats]:
-    """A printed surface at points (n_points, 3), and one standard uncertainty of it."""
-    surface = line.surfaces[name]
-    coded = coded_from_engineering(at, low=surface.low, high=surface.high)
-    terms = model_matrix(coded, surface.exponents)
-    leverage = variance_factor(terms, surface.covariance_factor)
-    return terms @ surface.coefficient, surface.sigma * np.sqrt(leverage)
+class _Part(NamedTuple):
+    """What is not known of one number at points: errors that it shares with others, and its own."""
+
+    component: tuple[Component, ...]
+    contribution: Floats
+    random: Floats
+    freedom: Floats
+
+
+def _part(
+    line: LineSource, points: Mapping[str, SurfacePoints], name: str, shape: tuple[int, ...]
+) -> _Part:
+    component, at = line.surfaces[name].component, points[name]
+    return _Part(
+        component,
+        at.contribution.reshape(len(component), *shape),
+        at.random.reshape(shape),
+        at.random_freedom.reshape(shape),
+    )
+
+
+_STEP = 1e-4
+
+
+def _slope(
+    solve: Callable[..., LineParameters], name: str, inputs: tuple[Floats, ...], place: int
+) -> Floats:
+    """Derivative of a solved number over one of the numbers that it is solved from."""
+    up, down = (
+        getattr(solve(*(one * (1 + side * (k == place)) for k, one in enumerate(inputs))), name)
+        for side in (_STEP, -_STEP)
+    )
+    return np.asarray((up - down) / (2 * _STEP * inputs[place]))
+
+
+def _half_of_difference(parts: Sequence[tuple[Floats, _Part]]) -> Floats:
+    """Half width of the 95 % interval of a weighted sum; NaN where a part is not known."""
+    together = merged(
+        [
+            Contributions(one.component, {str(place): one.contribution})
+            for place, (_, one) in enumerate(parts)
+        ]
+    )
+    rows = sum(weight * together.values[str(place)] for place, (weight, _) in enumerate(parts))
+    return half_width_of_parts(
+        np.stack([np.abs(weight) * one.random for weight, one in parts]),
+        np.stack([one.freedom for _, one in parts]),
+        rows,
+        together.degrees_of_freedom,
+    )
 
 
 def refitted_surfaces(line: LineSource) -> tuple[RefittedSurface, ...]:
@@ -236,7 +326,7 @@ def refitted_surfaces(line: LineSource) -> tuple[RefittedSurface, ...]:
     6 1.11 -11.7
     6 1.016 -8.6
     """
-    if not ({K_AP, ENERGY} <= line.surfaces.keys()):
+    if not (line.is_printed and {K_AP, ENERGY} <= line.surfaces.keys()):
         return ()
     known = line.surfaces[K_AP]
     coded = box_behnken(3).coded
@@ -304,6 +394,10 @@ def consistency_warnings(
     """
     if quantity not in (K_AP, K_1, TIME, DASHPOT) or not line.slow_pulls:
         return ()
+    if not line.is_printed:
+        asked = {DASHPOT: SOLVED, TIME: (TIME,)}.get(quantity, (K_1,))
+        values = consistent_values(line, **levels)
+        return tuple(text for name in asked for text in _of_surfaces(values, name))
     refits = refitted_surfaces(line)
     found: list[str] = []
     is_impossible = False
@@ -314,6 +408,29 @@ def consistency_warnings(
     for name in asked or ((K_1,) if is_impossible else ()):
         found += column_warnings(line, name, refits)
     return tuple(found)
+
+
+def _of_surfaces(values: tuple[ConsistentValues, ...], name: str) -> tuple[str, ...]:
+    """Of the points where K_1 or tau is apart by every slow pull, the worst."""
+    if not values:
+        return ()
+    everywhere = np.all([one.is_apart(name) for one in values], axis=0)
+    if not everywhere.any():
+        return ()
+    first = values[0]
+    off = np.abs(first.of_surfaces[name] - getattr(first, name)) / first.half_width[name]
+    worst = int(np.argmax(np.where(everywhere, off, -np.inf)))
+    unit = quantity_of(name).unit
+    solved = " or ".join(
+        f"{plain_number(getattr(one, name).ravel()[worst], 4)} {unit} ({one.slow_pull}; the 95 % "
+        f"interval about it is +-{plain_number(one.half_width[name].ravel()[worst], 2)} {unit})"
+        for one in values
+    )
+    own = plain_number(first.of_surfaces[name].ravel()[worst], 4)
+    return (
+        f"the surfaces do not hold together at {int(everywhere.sum())} of {everywhere.size} "
+        f"points: {name} of its own surface is {own} {unit}, and K_ap, H and K_0 give {solved}",
+    )
 
 
 def _of_points(values: tuple[ConsistentValues, ...]) -> tuple[str, ...]:
@@ -328,7 +445,7 @@ def _of_points(values: tuple[ConsistentValues, ...]) -> tuple[str, ...]:
         return f"{plain_number(numbers.ravel()[worst], 4)} N"
 
     sums = " or ".join(
-        f"{of(one.quasi_static_spring_constant + one.printed[K_1])} ({one.slow_pull}; "
+        f"{of(one.quasi_static_spring_constant + one.of_surfaces[K_1])} ({one.slow_pull}; "
         f"z {_shown(float((one.excess / one.excess_uncertainty).ravel()[worst]))})"
         for one in values
     )
@@ -336,8 +453,8 @@ def _of_points(values: tuple[ConsistentValues, ...]) -> tuple[str, ...]:
     return (
         f"the printed numbers cannot hold together at {int(everywhere.sum())} of "
         f"{everywhere.size} points: K_ap of a line is at most K_0 + K_1, and is "
-        f"{of(values[0].printed[K_AP])} where K_0 + K_1 is {sums}; K_ap and H need a K_1 of "
-        f"{solved}, printed is {of(values[0].printed[K_1])}",
+        f"{of(values[0].of_surfaces[K_AP])} where K_0 + K_1 is {sums}; K_ap and H need a K_1 of "
+        f"{solved}, printed is {of(values[0].of_surfaces[K_1])}",
     )
 
 

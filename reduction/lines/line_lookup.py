@@ -4,15 +4,6 @@ Peak and minimum tension of a cycle, and the rule of the source for how high or 
 
 Numbers of a look-up with what has to be told of them.
 
-A quadratic surface at points, with its intervals, in one pass over blocks of points.
-
-.. math:: \hat y = x^T b, \qquad
-          \hat y \pm t_{\nu_{eff}} \sqrt{s^2 (1 + h) + \textstyle\sum_k (x^T c_k)^2}, \qquad
-          h = x^T C x
-
-with the contribution c_k of each error that the runs share, and the degrees of freedom of Welch and
-Satterthwaite; of the surface itself with h in place of 1 + h.
-
 Design values of a curve at points: value, interval, what was tested, loads.
 
 Design values of a surface at points: value, intervals, what was tested, loads.
@@ -28,8 +19,6 @@ References
    MA, Tech. Rep. WHOI-2005-10, Dec. 2005, sec. 2.3.2.
 .. [4] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, eq. 5, App. C.
-.. [5] JCGM 100:2008, "Evaluation of measurement data - Guide to the expression of uncertainty
-   in measurement," 5.2.2, G.4.1.
 .. [6] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
    Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 4.4.
 """
@@ -45,14 +34,10 @@ from numpy.typing import ArrayLike
 
 from reduction.experiments.designs import (
     box_behnken,
-    coded_from_engineering,
     model_matrix,
     quadratic_exponents,
 )
-from reduction.experiments.response_transform import back_transform, back_transformed_change
-from reduction.experiments.run_sheet import variance_factor
-from reduction.experiments.surface_discrepancy import discrepancy_at
-from reduction.experiments.surface_points import ABOVE_LEVERAGE, is_within_levels
+from reduction.experiments.surface_points import ABOVE_LEVERAGE
 from reduction.lines.line_consistency import consistency_warnings
 from reduction.lines.line_curve import (
     End,
@@ -64,15 +49,12 @@ from reduction.lines.line_curve import (
     shared_half_width,
     shared_of,
 )
+from reduction.lines.line_surface import evaluate_surface
 from reduction.lines.lookup_product import DesignValues, LineCurve, LineSource, LineSurface
 from reduction.quantities.digits import plain_number
 from reduction.quantities.names import quantity as quantity_of
-from reduction.record.arrays import run_blocks
 from reduction.record.contributions import (
     Component,
-    combined_standard_uncertainty,
-    coverage_factor,
-    effective_degrees_of_freedom,
 )
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
@@ -322,134 +304,6 @@ def _scatter_note(of: LineSurface | LineCurve, words: tuple[str, str]) -> str:
     return f"the interval is of {told}: how lines differ among each other is not in it"
 
 
-_BLOCK = 16_384
-
-
-@dataclass(frozen=True)
-@read_only_arrays
-class _SurfacePoints:
-    """A surface at points; arrays have the shape (n_points,).
-
-    ``low`` and ``high`` hold one more run there with 95 %, ``surface_low`` and
-    ``surface_high`` the surface itself; NaN where sigma is not known. [unit of the quantity]
-    ``contribution``, of shape (n_components, n_points), is what each error that the runs share adds
-    to the value; ``random`` and ``run_random`` are one standard uncertainty of what is of the
-    surface alone, and of one more run beside that. [unit of the quantity]  ``random_freedom`` are
-    the degrees of freedom of the first. [1]
-    """
-
-    value: Floats
-    low: Floats
-    high: Floats
-    surface_low: Floats
-    surface_high: Floats
-    leverage: Floats
-    contribution: Floats
-    random: Floats
-    random_freedom: Floats
-    run_random: Floats
-    is_inside: Bools
-
-
-def _evaluate_surface(surface: LineSurface, points: ArrayLike) -> _SurfacePoints:
-    """Value of a surface at points, with two intervals.
-
-    Notes
-    -----
-    Source: [4]_, eq. 5 with the coding of App. C.  A transformed quantity is brought back: value
-    and intervals are of its median.  The factor of an interval is that of [5]_, as of every other
-    number.
-
-    Examples
-    --------
-    The centre of a surface is its first coefficient:
-
-    >>> exponents = quadratic_exponents(3)
-    >>> surface = LineSurface(
-    ...     "apparent_spring_constant", np.array([3.451, *[0.0] * 9]), exponents,
-    ...     np.array([0.1, 768, 320]), np.array([0.5, 1920, 768]), np.eye(10) / 3, 0.1, 5, 0.75,
-    ... )
-    >>> print(_evaluate_surface(surface, [[0.3, 1344, 544]]).value)
-    [3.451]
-    """
-    given = np.asarray(points, dtype=np.float64)
-    if given.ndim != 2 or given.shape[1] != surface.low.size:
-        raise DataError(
-            "the points do not pair up with the factors of the surface",
-            found=f"shape {given.shape}", needed=f"(n_points, {surface.low.size})",
-        )  # fmt: skip
-    size = given.shape[0]
-    names = ("value", "low", "high", "surface_low", "surface_high", "leverage", "random",
-             "random_freedom", "run_random")  # fmt: skip
-    out = {name: np.empty(size) for name in names}
-    moved = np.empty((surface.contribution.shape[0], size))
-    inside = np.empty(size, dtype=bool)
-    sigma = surface.sigma if surface.degrees_of_freedom > 0 else float("nan")
-    few = np.array([one.degrees_of_freedom for one in surface.component])
-    # a level in round shares of a strength may lie beyond the one that is printed in whole units
-    rounded = surface.rounding if surface.rounding.size else np.zeros(surface.low.size)
-    allowed = 2 * rounded / (surface.high - surface.low)
-
-    def with_missed(scatter: Floats, missed: Floats) -> tuple[Floats, Floats]:
-        """Scatter with what a quadratic may miss, and the degrees of freedom of both."""
-        freedom = effective_degrees_of_freedom(
-            scatter,
-            surface.degrees_of_freedom,
-            contribution=missed[None],
-            of_contribution=[surface.discrepancy_degrees_of_freedom],
-        )
-        return np.hypot(scatter, missed), freedom
-
-    def half_of(random: Floats, freedom: Floats, rows: Floats) -> Floats:
-        """Half width of a 95 % interval."""
-        if not rows.size:
-            return coverage_factor(freedom) * random
-        effective = effective_degrees_of_freedom(
-            random, freedom, contribution=rows, of_contribution=few
-        )
-        return coverage_factor(effective) * combined_standard_uncertainty(rows, random)
-
-    def fill(block: slice) -> None:
-        coded = coded_from_engineering(given[block], low=surface.low, high=surface.high)
-        terms = model_matrix(coded, surface.exponents)
-        leverage = variance_factor(terms, surface.covariance_factor)
-        centre = terms @ surface.coefficient
-        # one error of all runs moves the whole surface, and the next run with it
-        rows = surface.contribution @ terms.T if surface.component else np.empty((0, centre.size))
-        missed = np.zeros(centre.size)
-        if surface.discrepancy.size:
-            more = model_matrix(coded, surface.discrepancy_exponents)
-            missed = discrepancy_at(more, surface.discrepancy)
-        random, freedom = with_missed(sigma * np.sqrt(leverage), missed)
-        run_random, run_freedom = with_missed(sigma * np.sqrt(1 + leverage), missed)
-        half, own = half_of(run_random, run_freedom, rows), half_of(random, freedom, rows)
-        for name, values in (
-            ("value", centre),
-            ("low", centre - half),
-            ("high", centre + half),
-            ("surface_low", centre - own),
-            ("surface_high", centre + own),
-            ("leverage", leverage),
-            ("random", random),
-            ("random_freedom", freedom),
-            ("run_random", run_random),
-        ):
-            out[name][block] = values
-        moved[:, block] = rows
-        inside[block] = is_within_levels(coded, allowed=allowed)
-
-    run_blocks(fill, [slice(start, start + _BLOCK) for start in range(0, size, _BLOCK)])
-    if surface.exponent != 1:
-        # of one standard uncertainty to either side
-        scaled = out["value"]
-        moved = back_transformed_change(scaled, moved, surface.exponent)
-        for name in ("random", "run_random"):
-            out[name] = back_transformed_change(scaled, out[name], surface.exponent)
-        for name in ("value", "low", "high", "surface_low", "surface_high"):
-            out[name] = back_transform(out[name], surface.exponent)
-    return _SurfacePoints(**out, contribution=moved, is_inside=inside)
-
-
 def sigma_from_r2(coefficient: ArrayLike, r2: float, *, n_factors: int = 3) -> float:
     r"""Scatter of a run about a surface of which only coefficients and r2 are printed.
 
@@ -588,7 +442,7 @@ def _values_of_surface(
 
     Notes
     -----
-    See `reduction.lines.line_lookup._evaluate_surface` for a run and the surface, and
+    See `reduction.lines.line_surface.evaluate_surface` for a run and the surface, and
     `reduction.lines.line_curve.interval_between_lines` for other lines.
 
     Examples
@@ -613,7 +467,7 @@ def _values_of_surface(
     columns = np.broadcast_arrays(*(given[name] for name in line.factor_names))
     shape = columns[0].shape
     at = np.stack([one.ravel() for one in columns], axis=1)
-    points = _evaluate_surface(surface, at)
+    points = evaluate_surface(surface, at)
     boxes = [(surface.low, surface.high), *surface.alternative_boxes]
     # the first of all is the surface itself
     choices = [
@@ -622,7 +476,7 @@ def _values_of_surface(
         for one in (surface.coefficient, *surface.alternatives)
     ]
     others = [
-        _evaluate_surface(replace(surface, coefficient=one, low=low, high=high), at)
+        evaluate_surface(replace(surface, coefficient=one, low=low, high=high), at)
         for low, high, one in choices[1:]
     ]
 

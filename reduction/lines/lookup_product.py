@@ -51,6 +51,8 @@ class LineSurface:
         Of any run: where a point has more, nothing was tested. [1]
     exponent : float
         Of Box and Cox; 1 where the quantity was fitted as it is, 0 for its logarithm. [1]
+    frequency_column : int or None
+        Factor by which the quantity was multiplied before it was fitted; None for none.
     discrepancy : ndarray, shape (n_all, n_all)
         Moment of what a quadratic may miss, over ``discrepancy_exponents``; empty where the runs
         are not known. [as coefficient, squared]
@@ -91,6 +93,7 @@ class LineSurface:
     degrees_of_freedom: float
     greatest_leverage: float
     exponent: float = 1.0
+    frequency_column: int | None = None
     discrepancy: Floats = field(default_factory=lambda: np.empty((0, 0)))
     discrepancy_exponents: Integers = field(default_factory=lambda: np.empty((0, 0), dtype=np.intp))
     discrepancy_degrees_of_freedom: float = float("inf")
@@ -233,8 +236,8 @@ class LineSource:
     strength_of : str
         Of which other line the rated break strength is, in words; empty where it is its own.
     slow_pulls : dict of str to LineCurve
-        K_0 over mean tension by each printed way to it, by its name in words; of a published rope
-        with response surfaces alone.
+        K_0 over mean tension by each printed way to it, or by each slow pull of an experiment, by
+        its name in words; of a rope with response surfaces alone.
     notes : tuple of str
         What holds of all of it.
     """
@@ -257,6 +260,11 @@ class LineSource:
     strength_of: str = ""
     slow_pulls: dict[str, LineCurve] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+
+    @property
+    def is_printed(self) -> bool:
+        """Of its surfaces the coefficients alone are known, and not the runs."""
+        return not any(one.discrepancy.size for one in self.surfaces.values())
 
     @property
     def is_tether(self) -> bool:

@@ -90,7 +90,8 @@ def surface_table(
 
 _MEANING = {
     "experiment": "by its name in the campaign",
-    "response": "quantity; with log_ before it the surface is of its natural logarithm",
+    "response": "quantity; with log_ before it the surface is of its natural logarithm, with "
+    "log_frequency_times_ of that of the frequency times it",
     "term": "number of the term, as the reports count",
     "term_name": "product of levels that the coefficient multiplies",
     "unit": "of the coded coefficient",

@@ -85,6 +85,7 @@ def _line_data(line: LineSource) -> dict[str, Any]:
             "notes": list(line.notes),
             "rule": line.rule,
             "slow_pulls": {of: _curve(one) for of, one in line.slow_pulls.items()},
+            "is_printed": line.is_printed,
             **_refits(line),
             "is_tether": line.is_tether,
             "quantities": list(line.quantities),
@@ -110,12 +111,14 @@ def _surface(surface: LineSurface) -> dict[str, Any]:
     return {
         "quantity": surface.quantity,
         "exponents": surface.exponents.tolist(),
+        "discrepancy_exponents": surface.discrepancy_exponents.tolist(),
+        "frequency_column": surface.frequency_column,
         **{
             name: _numbers(getattr(surface, name))
             for name in (
                 "coefficient", "low", "high", "covariance_factor", "sigma", "degrees_of_freedom",
                 "greatest_leverage", "exponent", "contribution", "alternatives", "rounding",
-                "line_scatter", "n_lines",
+                "line_scatter", "n_lines", "discrepancy", "discrepancy_degrees_of_freedom",
             )
         },
         "alternative_boxes": [[_numbers(end) for end in box] for box in surface.alternative_boxes],

@@ -35,7 +35,12 @@ RESPONSES = (
 )
 """What a response surface can be of."""
 
-SCALES = {"log_": "logarithm of {}", "box_cox_": "Box-Cox transform of {}"}
+SCALES = {
+    "log_frequency_times_": "logarithm of frequency times {}",
+    "log_": "logarithm of {}",
+    "box_cox_": "Box-Cox transform of {}",
+}
+"""What stands before a response in the name of a surface of its transform, longest first."""
 
 SURFACE_NAMES = (*RESPONSES, *(f"{scale}{name}" for scale in SCALES for name in RESPONSES))
 """Names of surfaces: of a response, or of its transform, which has no unit."""

@@ -396,8 +396,7 @@ def _scale_words(name: str) -> str:
     """Say on what scale a surface was fitted where it was not the response itself."""
     if name == _base_response(name):
         return ""
-    scale = "logarithm" if name.startswith("log_") else "Box-Cox transform"
-    return f", fitted to its {scale} and brought back (medians)"
+    return f", fitted to the {in_words(name)} and brought back (medians)"
 
 
 def _given(figure: Figure) -> list[Figure]:
@@ -925,7 +924,11 @@ _LARGE = 1e9
 
 """From here on a column of squares has powers of ten in every row, not in some."""
 
-_ON_SCALE = {"log": ", by its logarithm", "box-cox": ", by its Box-Cox transform"}
+_ON_SCALE = {
+    "log": ", by its logarithm",
+    "box-cox": ", by its Box-Cox transform",
+    "log-times-frequency": ", by the logarithm of frequency times it",
+}
 
 
 def run_table(

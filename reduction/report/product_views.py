@@ -20,7 +20,7 @@ from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.outcome_groups import Group
 from reduction.experiments.outcomes import Outcome
 from reduction.prediction.hose_geometry import NEUTRAL_ANGLE
-from reduction.quantities.names import QUANTITIES, RESPONSES
+from reduction.quantities.names import QUANTITIES, RESPONSES, SCALES
 from reduction.quantities.row import COMPONENT
 from reduction.quantities.units import UnitSystem, combined_unit, display_unit
 from reduction.record.measurement import Floats
@@ -505,10 +505,8 @@ def in_words(name: str) -> str:
     >>> in_words("log_relaxation_time"), in_words("mean_tension")
     ('logarithm of relaxation time', 'mean tension')
     """
-    for prefix, words in (("log_", "logarithm of "), ("box_cox_", "Box-Cox transform of ")):
-        if name.startswith(prefix):
-            return words + name.removeprefix(prefix).replace("_", " ")
-    return name.replace("_", " ")
+    scale = next((one for one in SCALES if name.startswith(one)), "")
+    return SCALES.get(scale, "{}").format(name.removeprefix(scale).replace("_", " "))
 
 
 def response_unit(name: str, system: UnitSystem) -> Shown:

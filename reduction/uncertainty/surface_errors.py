@@ -44,6 +44,7 @@ from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.response_transform import back_transform, back_transformed_change
 from reduction.experiments.surface_discrepancy import discrepancy_of
 from reduction.experiments.surface_points import SurfaceValues
+from reduction.quantities.names import SCALES
 from reduction.record.contributions import (
     combined_standard_uncertainty,
     coverage_factor,
@@ -201,11 +202,15 @@ def with_shared_at_points(
     kind = np.array(surfaces.transform) == "none"
     exponent = np.where(kind, 1.0, surfaces.transform_exponent)[:, None]
 
+    multiplier = surfaces.multiplier(values.coded)
+
     def back(scaled: Floats) -> Floats:
-        return np.where(kind[:, None], scaled, back_transform(scaled, exponent))
+        found = np.where(kind[:, None], scaled, back_transform(scaled, exponent))
+        return np.asarray(found / multiplier)
 
     def change(moved: Floats) -> Floats:
-        return np.where(kind[:, None], moved, back_transformed_change(fitted, moved, exponent))
+        found = np.where(kind[:, None], moved, back_transformed_change(fitted, moved, exponent))
+        return np.asarray(found / multiplier)
 
     def with_missed(scatter: Floats) -> tuple[Floats, Floats]:
         few = effective_degrees_of_freedom(
@@ -244,9 +249,6 @@ def with_shared_at_points(
     )
 
 
-_TRANSFORMED = ("log_", "box_cox_")
-
-
 def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
     """Carry what the runs share to the coefficients of every surface."""
     surfaces, shared = result.surfaces, result.runs.shared
@@ -264,6 +266,9 @@ def with_shared_surfaces(result: ExperimentResult) -> ExperimentResult:
     for index, name in enumerate(surfaces.response_names):
         of = _measured(name)
         own = shared.values[of] * _slope_of_scale(result, surfaces, index, of)
+        if surfaces.transform[index] == "log-times-frequency" and "frequency" in shared.values:
+            # of the product both factors err
+            own = own + shared.values["frequency"] / surfaces.multiplier(surfaces.coded)[index]
         several = _of_several_runs(own, level)
         rows.append(
             _coefficient_contributions(
@@ -293,9 +298,7 @@ def _of_several_runs(response: Floats, level: Floats) -> Bools:
 
 def _measured(name: str) -> str:
     """The response that a surface is of, whatever its scale."""
-    for prefix in _TRANSFORMED:
-        name = name.removeprefix(prefix)
-    return name
+    return name.removeprefix(next((one for one in SCALES if name.startswith(one)), ""))
 
 
 def _slope_of_scale(

@@ -1,5 +1,6 @@
 """The synthetic nylon line, from its logs to the three-parameter line of each run."""
 
+import json
 import shutil
 import subprocess
 import sys
@@ -168,6 +169,22 @@ def test_surfaces_give_back_the_line_at_the_centre_and_the_edges(
     expected = truth[response] * unit
     assert len(set(zip(x, y, z, strict=True))) == 13
     assert value.to_numpy() == pytest.approx(expected.to_numpy(), rel=tolerance)
+
+
+def test_own_surfaces_stand_beside_the_k_1_and_tau_of_their_k_ap_and_h(run, truth, command):
+    levels = ("--frequency", "0.3 Hz", "--mean-tension", "21 %RBS", "--tension-amplitude")
+    ask = ("lookup", run.processed, "--line", "nylon", "--quantity", "K_1", *levels, "8.5 %RBS")
+    found = json.loads(command(*ask, "--json").stdout)
+    assert found["warnings"] == []
+    (one,) = found["consistent"]
+    centre = truth.loc[(truth.filter(like="x_") == 0).all(axis=1)].iloc[0]
+    for name, unit in (("dissipation_spring_constant", LBF), ("relaxation_time", 1.0)):
+        assert one[name] == pytest.approx(centre[name] * unit, rel=0.03)
+        assert one["of_surfaces"][name] == pytest.approx(centre[name] * unit, rel=0.03)
+        assert one["apart"][name] is False
+    shown = " ".join(command(*ask).stdout.split())
+    assert "by the surfaces, and the K_1 and tau that K_ap, H and K_0 give" in shown
+    assert one["slow_pull"] in shown
 
 
 def test_engineering_coefficients_are_the_same_surface(surfaces):

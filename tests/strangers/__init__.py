@@ -69,6 +69,8 @@ for _name, _text in (
     ("falling", "tau falls with the frequency as f^-n"),
     ("constant", "tau is constant"),
     ("angle", "the loss angle is constant"),
+    ("fractional", "in place of the dashpot a spring-pot, the derivative of a broken order"),
+    ("spectrum", "in place of one relaxation time three, over two decades"),
 ):
     _register(f"line-{_name}", f"Line of three parameters: {_text}", ropes.make_line, damping=_name)
 _register("hold-settling", "Relaxation, crosshead creeps 5-50 um after the ramp", bench.make_hold)

@@ -408,18 +408,18 @@ def line_response(
 ) -> dict[str, Array]:
     """Truth at any point: K_ap, H of the steady cycle, K_0 at the mean, K_1, tau.
 
-    K_1 and tau are the constants of the law (for a constant loss angle: of the equivalent line);
+    K_1 and tau are the constants of the law (of one that is no such line: of the equivalent line);
     ``..._closed_form`` are those that K_ap, H and K_0 give.
     """
     frequency, mean, amplitude = np.broadcast_arrays(
         *(np.atleast_1d(np.asarray(x, dtype=float)) for x in (frequency, mean, amplitude))
     )
     static = static_stiffness(mean, c)
-    if c["loss_angle"] > 0.0:
-        modulus = _angle_stiffness(frequency, mean, amplitude, c)
-        strain = amplitude / modulus
-        energy = np.pi * amplitude * strain * np.sin(c["loss_angle"])
-        apparent = modulus
+    if _is_linear(c):
+        modulus = _complex_stiffness(frequency, mean, amplitude, c)
+        apparent = np.abs(modulus)
+        strain = amplitude / apparent
+        energy = np.pi * amplitude * strain * np.sin(np.angle(modulus))
     else:
         slow = float(np.max(2.0 * np.pi * frequency * line_constants(frequency, mean, 0, c)[1]))
         cycles = int(np.ceil(8.0 * slow)) + 3
@@ -438,7 +438,7 @@ def line_response(
         "relaxation_time_closed_form": time,
         "strain_amplitude": strain,
     }
-    if c["loss_angle"] > 0.0:
+    if _is_linear(c):
         out |= {"dissipation_spring_constant": first, "relaxation_time": time}
     else:
         law = line_constants(frequency, mean, amplitude, c)
@@ -446,17 +446,39 @@ def line_response(
     return out
 
 
-def _angle_stiffness(
+def _is_linear(c: dict[str, float]) -> bool:
+    """Whether the law is a complex stiffness about the mean, and no line with one tau."""
+    return c["loss_angle"] > 0.0 or "order" in c or "share_1" in c
+
+
+def _complex_stiffness(
     frequency: Array | float, mean: Array | float, swing: Array | float, c: dict[str, float]
 ) -> Array:
-    """K_ap of a rope of constant loss angle: a power of the frequency (exact for that angle)."""
-    power = 2.0 * c["loss_angle"] / np.pi
-    ratio = 1.0 + c["rise"] * (1.0 + c["K_1_swing"] * (swing / c["strength"] - 0.085))
-    return static_stiffness(np.asarray(mean), c) * ratio * (np.asarray(frequency) / 0.3) ** power
+    """Storage and loss stiffness about a mean tension, as one complex number.
+
+    A constant loss angle (a power of the frequency, exact for that angle); a spring-pot in series
+    with a spring, beside K_0 (fractional Zener); or three Maxwell elements beside K_0.
+    """
+    mean, swing, frequency = np.asarray(mean), np.asarray(swing), np.asarray(frequency)
+    if c["loss_angle"] > 0.0:
+        power = 2.0 * c["loss_angle"] / np.pi
+        ratio = 1.0 + c["rise"] * (1.0 + c["K_1_swing"] * (swing / c["strength"] - 0.085))
+        size = static_stiffness(mean, c) * ratio * (frequency / 0.3) ** power
+        return size * np.exp(1j * c["loss_angle"])
+    stiffness, tau = line_constants(0.3, mean, swing, c)
+    turn = 2j * np.pi * frequency * tau
+    if "order" in c:
+        share = turn ** c["order"] / (1.0 + turn ** c["order"])
+    else:
+        share = sum(
+            c[f"share_{k}"] * turn * c[f"time_{k}"] / (1.0 + turn * c[f"time_{k}"])
+            for k in (1, 2, 3)
+        )
+    return static_stiffness(mean, c) + stiffness * share
 
 
 def draw_line(rng: np.random.Generator, damping: str) -> dict[str, float]:
-    """Draw the constants of a rope: damping is falling, constant or angle."""
+    """Draw the constants of a rope: damping is falling, constant, angle, fractional or spectrum."""
     strength = rng.uniform(2.5e4, 9e4)
     polyester = bool(rng.random() < 0.4)
     k_21 = strength * (rng.uniform(3.5, 6.0) if polyester else rng.uniform(1.6, 2.6))
@@ -476,6 +498,12 @@ def draw_line(rng: np.random.Generator, damping: str) -> dict[str, float]:
         "loss_angle": rng.uniform(0.06, 0.2) if damping == "angle" else 0.0,
         "rise": rng.uniform(0.8, 2.0),
     }
+    if damping == "fractional":
+        c["order"] = rng.uniform(0.25, 0.75)
+    if damping == "spectrum":
+        shares = rng.dirichlet((2.0, 2.0, 2.0))
+        for k, share in enumerate(shares, start=1):
+            c |= {f"share_{k}": share, f"time_{k}": 10.0 ** (k - 2 + rng.uniform(-0.3, 0.3))}
     return {name: float(value) for name, value in c.items()}
 
 
@@ -488,13 +516,13 @@ def _run_strain(
     """
     frequency, mean, swing = run
     step = time[1] - time[0]
-    if c["loss_angle"] > 0.0:
-        modulus = float(_angle_stiffness(frequency, mean, swing, c))
+    if _is_linear(c):
+        modulus = complex(_complex_stiffness(frequency, mean, swing, c))
         strain = static_strain(np.minimum(tension, mean), c)
         phase = 2.0 * np.pi * frequency * (time[first:] - time[first])
         grow = np.clip(phase / (2.0 * np.pi) / 2.0, 0.0, 1.0)
-        wave = np.sin(phase - c["loss_angle"]) * grow
-        strain[first:] = float(static_strain(np.array(mean), c)) + swing / modulus * wave
+        wave = np.sin(phase - np.angle(modulus)) * grow
+        strain[first:] = float(static_strain(np.array(mean), c)) + swing / abs(modulus) * wave
         return strain
     k_1, tau = (float(x) for x in line_constants(frequency, mean, swing, c))
     static = np.zeros_like(tension)
@@ -532,7 +560,8 @@ def make_line(
     Parameters
     ----------
     damping
-        falling (tau as f^-n, n in 0.6-1), constant (tau), or angle (constant loss angle).
+        falling (tau as f^-n, n in 0.6-1), constant (tau), angle (constant loss angle), fractional
+        (a spring-pot of order 0.25-0.75) or spectrum (three relaxation times over two decades).
     interior
         number of random interior points with their truth (arrays ``interior/...``).
     """

@@ -1,4 +1,4 @@
-"""K_ap, H, K_0, K_1 and tau of the published lines against each other."""
+"""K_ap, H, K_0, K_1 and tau of published lines and of own surfaces against each other."""
 
 import dataclasses
 
@@ -15,10 +15,13 @@ from reduction.lines.line_consistency import (
 from reduction.lines.line_lookup import look_up
 from reduction.lines.lookup_product import LineCurve
 from reduction.lines.published_source import published_sources
+from reduction.record.contributions import Component
 from reduction.stages.three_parameter_line.line_model import (
     apparent_spring_constant,
     hysteresis_energy,
+    identify_by_amplitude,
 )
+from reduction.stages.three_parameter_line.line_product import REASONS
 
 LBF = 4.4482216152605
 K_AP, H, K_1, TAU = (
@@ -52,16 +55,16 @@ def test_consistent_values_of_every_line_obey_the_line_model(name):
         np.testing.assert_array_equal(solved, one.reason == 0)
         assert solved.sum() >= 10
         rest, spring = one.quasi_static_spring_constant, one.dissipation_spring_constant
-        assert (one.printed[K_AP] <= (rest + spring) * (1 + 1e-12))[solved].all()
+        assert (one.of_surfaces[K_AP] <= (rest + spring) * (1 + 1e-12))[solved].all()
         back = {
             "quasi_static_spring_constant": rest[solved],
             "dissipation_spring_constant": spring[solved],
             "relaxation_time": one.relaxation_time[solved],
             "frequency": levels["frequency"][solved],
         }
-        assert apparent_spring_constant(**back) == pytest.approx(one.printed[K_AP][solved])
+        assert apparent_spring_constant(**back) == pytest.approx(one.of_surfaces[K_AP][solved])
         energy = hysteresis_energy(**back, tension_amplitude=levels["tension_amplitude"][solved])
-        assert energy == pytest.approx(one.printed[H][solved])
+        assert energy == pytest.approx(one.of_surfaces[H][solved])
 
 
 def test_how_many_design_points_of_the_page_are_impossible():
@@ -164,6 +167,95 @@ def test_a_wrong_column_of_a_line_of_one_law_is_found():
     told = consistency_warnings(line, K_1, design(line))
     assert "cannot hold together" in told[0]
     assert "as printed does not follow" in told[1]
+
+
+CELL = Component("load cell gain", "1", 1)
+OF_CELL, OF_RUNS, OF_PULL = 0.01, 0.01, 0.02
+AT = {"frequency": 0.3, "mean_tension": 6000.0, "tension_amplitude": 2000.0}
+
+
+def own_line(**wrong):
+    """The same law as surfaces of runs that are known, under one load cell; columns times ``wrong``."""
+    line = line_of(stiffening, loss, [2e4, 4.0])
+    terms, nothing = quadratic_exponents(3), np.zeros((10, 10))
+    surfaces = {
+        name: dataclasses.replace(
+            one,
+            coefficient=wrong.get(name, 1.0) * one.coefficient,
+            sigma=OF_RUNS * one.coefficient[0],
+            degrees_of_freedom=1e9,
+            discrepancy=nothing,
+            discrepancy_exponents=terms,
+            component=(CELL,),
+            # a time has no gain
+            contribution=(name != TAU) * OF_CELL * one.coefficient[None],
+        )
+        for name, one in line.surfaces.items()
+    }
+    at = np.array([0.0, 1e4])
+    value = 2e4 + 4.0 * at
+    pull = LineCurve(
+        "quasi_static_spring_constant", "mean_tension", 1e3, 9e3, coefficient=np.array([2e4, 4.0]),
+        at=at, standard_uncertainty=np.hypot(OF_CELL, OF_PULL) * value,
+        component=(CELL,), contribution=OF_CELL * value[None],
+    )  # fmt: skip
+    return dataclasses.replace(line, surfaces=surfaces, slow_pulls={"slow pull Q01": pull})
+
+
+def test_the_interval_about_solved_values_is_that_of_drawn_errors():
+    line, rng = own_line(), np.random.default_rng(5)
+    (found,) = consistent_values(line, **AT)
+    surface = line.surfaces[K_AP]
+    levels = np.array([AT[name] for name in line.factor_names])
+    coded = (levels - (surface.low + surface.high) / 2) / ((surface.high - surface.low) / 2)
+    row = model_matrix(coded[None], quadratic_exponents(3))[0]
+    cell = rng.normal(size=40_000)
+
+    def drawn(name):
+        one = line.surfaces[name]
+        leverage = row @ one.covariance_factor @ row
+        own = one.sigma * np.sqrt(leverage) * rng.normal(size=cell.size)
+        return row @ one.coefficient + own + cell * (one.contribution[0] @ row)
+
+    rest = (2e4 + 4.0 * AT["mean_tension"]) * (
+        1 + OF_CELL * cell + OF_PULL * rng.normal(size=cell.size)
+    )
+    columns = {name: drawn(name) for name in (K_AP, H, K_1, TAU)}
+    solved = identify_by_amplitude(
+        apparent_spring_constant=columns[K_AP], hysteresis_energy=columns[H],
+        tension_amplitude=AT["tension_amplitude"], frequency=AT["frequency"],
+        quasi_static_spring_constant=rest,
+    )  # fmt: skip
+    for name in (K_1, TAU):
+        spread = np.std(columns[name] - getattr(solved, name))
+        assert found.half_width[name] == pytest.approx(1.96 * spread, rel=0.03)
+        assert not found.is_apart(name)
+
+
+@pytest.mark.parametrize("name", [K_1, TAU])
+def test_own_surfaces_are_warned_of_outside_their_intervals_alone(name):
+    (found,) = consistent_values(own_line(), **AT)
+
+    def moved(share):
+        """A surface below the solved value by a share of the interval."""
+        value = getattr(found, name) - share * found.half_width[name]
+        return own_line(**{name: float(value / found.of_surfaces[name])})
+
+    at = {key: np.array([value]) for key, value in AT.items()}
+    assert consistency_warnings(moved(0.9), name, at) == ()
+    (told,) = consistency_warnings(moved(1.1), name, at)
+    assert told.startswith(f"the surfaces do not hold together at 1 of 1 points: {name}")
+    assert "slow pull Q01" in told
+    # the columns of own surfaces were fitted to runs that are known, not to a page
+    assert refitted_surfaces(own_line(**{name: 0.5})) == ()
+
+
+def test_beyond_its_slow_pull_an_own_line_has_no_solved_values():
+    (found,) = consistent_values(own_line(), **AT | {"mean_tension": 9500.0})
+    assert np.isnan(found.dissipation_spring_constant)
+    assert REASONS[int(found.reason)]
+    at = {name: np.array([value]) for name, value in AT.items()} | {"mean_tension": [9500.0]}
+    assert consistency_warnings(own_line(**{K_1: 0.5}), K_1, at) == ()
 
 
 def test_no_other_line_is_spoken_of():

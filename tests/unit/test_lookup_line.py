@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
-from reduction.lines.line_lookup import _evaluate_surface, cycle_loads, look_up, sigma_from_r2
+from reduction.lines.line_lookup import cycle_loads, look_up, sigma_from_r2
+from reduction.lines.line_surface import evaluate_surface
 from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
 from reduction.record.errors import DataError, SettingsError
 
@@ -145,14 +146,14 @@ def test_a_logarithm_is_brought_back():
         "hysteresis_energy", np.log(B[:1]), EXPONENTS[:1], LOW, HIGH, np.eye(1) / 15, 0.1, 14.0,
         0.1, exponent=0.0,
     )  # fmt: skip
-    found = _evaluate_surface(surface, [[0.3, 200.0, 100.0]])
+    found = evaluate_surface(surface, [[0.3, 200.0, 100.0]])
     assert found.value == pytest.approx(1e4)
     assert found.high / found.value == pytest.approx(found.value / found.low)
 
 
 def test_points_of_another_number_of_factors_are_refused():
     with pytest.raises(DataError, match="do not pair up with the factors"):
-        _evaluate_surface(SURFACE, [[0.3, 200.0]])
+        evaluate_surface(SURFACE, [[0.3, 200.0]])
     with pytest.raises(DataError, match="low does not fit the surface"):
         LineSurface("x", B, EXPONENTS, LOW[:2], HIGH, INVERSE, 1.0, 5.0, 0.75)
 
@@ -216,7 +217,7 @@ def test_both_choices_of_the_levels_are_in_the_intervals():
     line = replace(LINE, surfaces={"apparent_spring_constant": open_levels})
     found = look_up(line, "apparent_spring_constant", **CENTRE)
     one, two = (
-        _evaluate_surface(replace(SURFACE, low=low, high=high), [[0.3, 200.0, 100.0]])
+        evaluate_surface(replace(SURFACE, low=low, high=high), [[0.3, 200.0, 100.0]])
         for low, high in ((LOW, HIGH), other)
     )
     assert found.value == one.value

@@ -8,8 +8,9 @@ from scipy import stats
 
 from reduction.experiments.designs import box_behnken, model_matrix, quadratic_exponents
 from reduction.lines.line_curve import own_half_width, shared_half_width, shared_of
-from reduction.lines.line_lookup import _evaluate_surface, look_up
+from reduction.lines.line_lookup import look_up
 from reduction.lines.line_search import compare_values
+from reduction.lines.line_surface import evaluate_surface
 from reduction.lines.lookup_product import LineSource, LineSurface
 from reduction.record.contributions import Component
 from reduction.record.errors import DataError
@@ -99,7 +100,7 @@ def test_two_surfaces_under_one_cell_differ_by_what_is_of_each_alone():
     one = look_up(line(surface(NAME, B, row, (CELL,), sigma=150.0)), NAME, **AT)
     found = compare_values(one, one)
     h = np.asarray(
-        _evaluate_surface(
+        evaluate_surface(
             surface(NAME, B, row, (CELL,), sigma=150.0), [[0.2, 150.0, 70.0], [0.4, 150.0, 70.0]]
         ).leverage
     )

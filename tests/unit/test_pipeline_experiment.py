@@ -6,6 +6,7 @@ import pytest
 from reduction.experiments.designs import FactorLevels, box_behnken, plackett_burman
 from reduction.experiments.experiment import RunTable
 from reduction.experiments.experiment_fit import LineOfRuns, fit_experiment
+from reduction.experiments.surface_points import evaluate_surfaces
 from reduction.record.notes import note
 
 FACTORS = (
@@ -81,6 +82,42 @@ def test_energy_and_time_are_read_from_logarithms_where_nothing_is_stated():
     assert surfaces.response_names[3:] == ("log_hysteresis_energy", "log_relaxation_time")
     stated = fit(*made(), transform=dict.fromkeys(NAMES, "none")).surfaces
     assert stated.response_names == NAMES
+
+
+@pytest.mark.parametrize(
+    ("exponent", "scale"),
+    [(0.0, "log"), (0.3, "log"), (0.8, "log-times-frequency"), (1.0, "log-times-frequency")],
+)
+def test_a_time_that_falls_with_the_frequency_is_fitted_as_product_with_it(exponent, scale):
+    """Three levels leave ln f^-n no residual: a quadratic misses n of it, or 1 - n of the product."""
+    runs, line = made()
+    response = runs.response.copy()
+    response[2] = TIME * (runs.frequency / 0.3) ** -exponent * np.exp(0.2 * runs.coded_plan[:, 1])
+    surfaces = fit(RunTable(**{**vars(runs), "response": response}), line).surfaces
+    place = surfaces.transform.index(scale)
+    prefix = {"log": "log_", "log-times-frequency": "log_frequency_times_"}[scale]
+    assert f"{prefix}relaxation_time" in surfaces.response_names
+    assert surfaces.response_names[-1] == f"{prefix}relaxation_time"
+    found = evaluate_surfaces(surfaces, [[-0.5, 0.0, 0.0], [0.5, 1.0, 0.0]], units="coded")
+    truth = TIME * (np.array([0.2, 0.4]) / 0.3) ** -exponent * np.exp([0.0, 0.2])
+    # 0.070 and 0.041 are what the parabola through ln f at 0.1, 0.3 and 0.5 Hz misses there
+    least = exponent if scale == "log" else 1 - exponent
+    off = np.log(found.value[surfaces.response_names.index(f"{prefix}relaxation_time")] / truth)
+    assert np.abs(off) == pytest.approx(least * np.array([0.07037, 0.04120]), abs=1e-5)
+    assert place >= 3
+
+
+def test_a_scale_that_is_stated_is_kept_where_the_time_falls():
+    runs, line = made()
+    response = runs.response.copy()
+    response[2] = TIME * 0.3 / runs.frequency
+    falling = RunTable(**{**vars(runs), "response": response})
+    stated = fit(falling, line, transform={"relaxation_time": "log"}).surfaces
+    assert "log_frequency_times_relaxation_time" not in stated.response_names
+    asked = fit(falling, line, transform={"relaxation_time": "log-times-frequency"}).surfaces
+    place = asked.response_names.index("log_frequency_times_relaxation_time")
+    # f tau is one number
+    assert asked.coefficient[place] == pytest.approx([np.log(0.3 * TIME), *[0.0] * 9], abs=1e-9)
 
 
 @pytest.mark.parametrize(("place", "law"), [(1, lambda plane: plane), (0, np.exp)])

@@ -296,7 +296,16 @@ def test_random_blocks_widen_the_mean_alone(lines):
         ({"factor_names": ["f"]}, SettingsError, "the levels do not pair up with the factors"),
         ({"low": HIGH, "high": LOW}, SettingsError, "high level of factor 1 does not lie above"),
         ({"transforms": ["log"]}, SettingsError, "the transforms do not pair up"),
-        ({"transforms": "square"}, SettingsError, "found square; needed none, log or box-cox"),
+        (
+            {"transforms": "log-times-frequency", "factor_names": ["rate", "m", "a"]},
+            SettingsError,
+            "multiplied by the frequency, which is no factor; found rate, m, a",
+        ),
+        (
+            {"transforms": "square"},
+            SettingsError,
+            "found square; needed none, log, box-cox or log-times-frequency",
+        ),
         ({"blocks": ["A"] * 15}, DataError, "there is one block"),
         ({"blocks": ["A", "B"]}, SettingsError, "names of the blocks do not pair up"),
     ],

@@ -1,4 +1,4 @@
-// Whether the printed numbers of a line hold together, as reduction.lines.line_consistency has it.
+// Whether the numbers of a line hold together, as reduction.lines.line_consistency has it.
 
 const AP = "apparent_spring_constant", LOST = "hysteresis_energy", REST = "quasi_static_spring_constant";
 
@@ -18,29 +18,78 @@ function solvedLine(apparent, energy, amplitude, rate, rest) {
   return { spring: excess + lost / turn, time: turn / (2 * Math.PI * rate), reason: 0 };
 }
 
-// Of each slow pull what is printed at a point and what would hold together there.
+const STEP = 1e-4;
+
+// Half width of the 95 % interval of a weighted sum of numbers that share errors.
+function halfOfDifference(parts) {
+  const shared = new Map();
+  for (const [weight, one] of parts) {
+    one.component.forEach(([source, of, number, freedom], place) => {
+      const key = JSON.stringify([source, of, number]);
+      const [sum] = shared.get(key) ?? [0];
+      shared.set(key, [sum + weight * one.contribution[place], freedom]);
+    });
+  }
+  const rows = [...shared.values()];
+  return halfWidthOfParts(parts.map(([weight, one]) => Math.abs(weight) * one.random),
+    parts.map(([, one]) => one.freedom), rows.map((one) => one[0]), rows.map((one) => one[1]));
+}
+
+// Of each slow pull what the surfaces give at a point and what would hold together there.
 function consistentValues(line, at) {
   if (!line.surfaces[AP] || !line.surfaces[LOST]) return [];
-  const printed = {}, spread = {};
+  const found = {}, printed = {};
   for (const name of [AP, LOST, SPRING, TIME].filter((one) => line.surfaces[one])) {
-    const found = evaluateSurface(line.surfaces[name], line.factors.map((factor) => at[factor]));
-    [printed[name], spread[name]] = [found.value, found.random];
+    const surface = line.surfaces[name];
+    found[name] = { ...evaluateSurface(surface, line.factors.map((factor) => at[factor])), component: surface.component };
+    printed[name] = found[name].value;
   }
   return Object.entries(line.slow_pulls).map(([of, curve]) => {
-    const rest = evaluateCurve(curve, at.mean_tension).value;
+    const pull = { ...evaluateCurve(curve, at.mean_tension), component: curve.component };
+    const rest = line.is_printed || pull.inside ? pull.value : NaN;
+    const solve = ([apparent, energy, slow]) => (
+      solvedLine(apparent, energy, at.tension_amplitude, at.frequency, slow));
+    const inputs = [printed[AP], printed[LOST], rest], solved = solve(inputs);
+    const slope = (key, place) => {
+      const [up, down] = [STEP, -STEP].map((side) => (
+        solve(inputs.map((one, other) => (other === place ? one * (1 + side) : one)))[key]));
+      return (up - down) / (2 * STEP * inputs[place]);
+    };
+    const half = {};
+    for (const [name, key] of [[SPRING, "spring"], [TIME, "time"]]) {
+      if (line.is_printed || !found[name]) continue;
+      half[name] = halfOfDifference([...[found[AP], found[LOST], pull].map((one, place) => [slope(key, place), one]),
+        [-1, found[name]]]);
+    }
     return {
-      of, printed, rest,
-      ...solvedLine(printed[AP], printed[LOST], at.tension_amplitude, at.frequency, rest),
+      of, printed, rest, half, ...solved,
+      isApart: Object.fromEntries(Object.entries({ [SPRING]: "spring", [TIME]: "time" }).map(([name, key]) => (
+        [name, name in half && Math.abs(printed[name] - solved[key]) > half[name]]))),
       excess: printed[AP] - rest - (printed[SPRING] ?? NaN),
-      uncertainty: Math.hypot(spread[AP], spread[SPRING] ?? NaN),
+      uncertainty: Math.hypot(found[AP].random, found[SPRING]?.random ?? NaN),
     };
   });
+}
+
+// Of K_1 or tau of its own surface, that it is not what the other surfaces give.
+function apartWarning(values, name) {
+  if (!values.length || !values.every((one) => one.isApart[name])) return [];
+  const [key, unit] = name === SPRING ? ["spring", "N"] : ["time", "s"];
+  const solved = values.map((one) => `${plainNumber(one[key], 4)} ${unit} (${one.of}; the 95 % interval about it `
+    + `is +-${plainNumber(one.half[name], 2)} ${unit})`).join(" or ");
+  return [`the surfaces do not hold together at 1 of 1 points: ${name} of its own surface is `
+    + `${plainNumber(values[0].printed[name], 4)} ${unit}, and K_ap, H and K_0 give ${solved}`];
 }
 
 // What a person has to know before the number.
 function warningsOf(line, found, at) {
   const told = [...found.warnings], columns = line.column_warnings, { quantity } = found;
   if (![AP, SPRING, TIME, DASHPOT].includes(quantity)) return told;
+  if (!line.is_printed) {
+    const values = consistentValues(line, at);
+    const names = { [DASHPOT]: [SPRING, TIME], [TIME]: [TIME] }[quantity] ?? [SPRING];
+    return distinct([...told, ...names.flatMap((name) => apartWarning(values, name))]);
+  }
   const values = quantity === TIME ? [] : consistentValues(line, at);
   const isImpossible = values.length > 0 && values.every((one) => one.excess > 0);
   if (isImpossible) {
@@ -71,14 +120,22 @@ function moreTables(line, found, at, system) {
   const values = [AP, LOST, SPRING, TIME, DASHPOT].includes(found.quantity) ? consistentValues(line, at) : [];
   if (!values.length) return [];
   const levels = levelCells(line, at, system);
+  const stated = line.is_printed ? "printed" : "of surface";
+  const remarkOf = (one) => {
+    const apart = [["K_1", SPRING], ["tau", TIME]].filter(([, name]) => one.isApart[name]).map(([symbol]) => symbol);
+    if (apart.length) return `${apart.join(" and ")}: outside the interval`;
+    return DATA.reasons[one.reason] || (line.is_printed && one.excess > 0 ? "printed K_ap is above K_0 + printed K_1" : "-");
+  };
   return [{
-    intro: "as printed, and with the K_1 and tau that K_ap, H and K_0 give by the line model:",
+    intro: line.is_printed
+      ? "as printed, and with the K_1 and tau that K_ap, H and K_0 give by the line model:"
+      : "by the surfaces, and the K_1 and tau that K_ap, H and K_0 give by the line model:",
     heads: [...levels.map((one) => one[0]), "K_0 by", `K_ap\n[${force}]`, `K_0\n[${force}]`,
-      `K_1 printed\n[${force}]`, `K_1 solved\n[${force}]`, "tau printed\n[s]", "tau solved\n[s]", "remark"],
+      `K_1 ${stated}\n[${force}]`, `K_1 solved\n[${force}]`, `tau ${stated}\n[s]`, "tau solved\n[s]", "remark"],
     rows: values.map((one) => [
       ...levels.map((cell) => cell[1]), one.of,
       ...[[one.printed[AP], scale], [one.rest, scale], [one.printed[SPRING] ?? NaN, scale], [one.spring, scale],
         [one.printed[TIME] ?? NaN, 1], [one.time, 1]].map(([number, by]) => short(by * number)),
-      DATA.reasons[one.reason] || (one.excess > 0 ? "printed K_ap is above K_0 + printed K_1" : "-")]),
+      remarkOf(one)]),
   }];
 }

@@ -7,7 +7,7 @@ function lineOf(line, key, group) {
   const numbers = ["diameter", "rated_break_strength", "tensile_strength", "linear_density", "wet_linear_density"];
   const decoded = (one, texts) => Object.fromEntries(Object.entries(one)
     .map(([name, value]) => [name, texts.includes(name) ? value : numbersOf(value)]));
-  const ofSurface = ["quantity", "errata", "notes"];
+  const ofSurface = ["quantity", "errata", "notes", "frequency_column"];
   const ofCurve = ["quantity", "variable", "branch", "spread_of", "range_note", "errata", "notes", "warnings", "is_inverse_slope"];
   const components = (one) => ({
     ...one, component: one.component.map(([source, of, number, freedom]) => [source, of, number, numbersOf(freedom)]),

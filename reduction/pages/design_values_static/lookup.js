@@ -98,7 +98,7 @@ function valuesOfSurface(line, surface, levels, flag) {
   return told(line, surface, points, {
     loads: loadsOfLine(line, levels), words, more: [],
     is_untested: points.inside && points.leverage > DATA.above_leverage * surface.greatest_leverage,
-    freedom: surface.degrees_of_freedom,
+    freedom: points.freedom,
   });
 }
 

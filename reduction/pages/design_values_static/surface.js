@@ -17,32 +17,49 @@ function backTransformedChange(value, change, exponent) {
   return Number.isFinite(half) ? half : NaN;
 }
 
-function evaluateSurface(surface, at, choice = {}) {
-  const low = choice.low ?? surface.low, high = choice.high ?? surface.high;
-  const coefficient = choice.coefficient ?? surface.coefficient;
-  const coded = at.map((x, j) => (x - (high[j] + low[j]) / 2) / ((high[j] - low[j]) / 2));
-  const terms = surface.exponents.map((powers) => {
+// Products of powers of coded levels.
+function termsOf(exponents, coded) {
+  return exponents.map((powers) => {
     let term = 1;
     powers.forEach((power, j) => {
       for (let time = 0; time < power; time += 1) term *= coded[j];
     });
     return term;
   });
+}
+
+// Standard uncertainty of what a quadratic may miss at a point; none where the runs are not known.
+function missedAt(surface, coded) {
+  const terms = termsOf(surface.discrepancy_exponents, coded);
+  const square = sumOf(surface.discrepancy.map((row, place) => (
+    terms[place] * sumOf(row.map((moment, other) => moment * terms[other])))));
+  return Math.sqrt(Math.max(square, 0));
+}
+
+function evaluateSurface(surface, at, choice = {}) {
+  const low = choice.low ?? surface.low, high = choice.high ?? surface.high;
+  const coefficient = choice.coefficient ?? surface.coefficient;
+  const coded = at.map((x, j) => (x - (high[j] + low[j]) / 2) / ((high[j] - low[j]) / 2));
+  const terms = termsOf(surface.exponents, coded);
   const dot = (other) => sumOf(terms.map((term, place) => term * other[place]));
   const leverage = dot(terms.map((_, place) => dot(surface.covariance_factor.map((row) => row[place]))));
   const centre = dot(coefficient);
   const rows = surface.component.length ? surface.contribution.map(dot) : [];
   const few = surface.component.map((one) => one[3]);
   const sigma = surface.degrees_of_freedom > 0 ? surface.sigma : NaN;
-  const random = sigma * Math.sqrt(leverage), run = sigma * Math.sqrt(1 + leverage);
-  const halfOf = (part) => (rows.length
-    ? coverageFactor(effectiveFreedom(part, surface.degrees_of_freedom, rows, few)) * combined(rows, part)
-    : coverageFactor(surface.degrees_of_freedom) * part);
-  const half = halfOf(run), own = halfOf(random);
+  const missed = missedAt(surface, coded);
+  const withMissed = (scatter) => [Math.hypot(scatter, missed), effectiveFreedom(
+    scatter, surface.degrees_of_freedom, [missed], [surface.discrepancy_degrees_of_freedom])];
+  const [random, freedom] = withMissed(sigma * Math.sqrt(leverage));
+  const [run, runFreedom] = withMissed(sigma * Math.sqrt(1 + leverage));
+  const halfOf = (part, own) => (rows.length
+    ? coverageFactor(effectiveFreedom(part, own, rows, few)) * combined(rows, part)
+    : coverageFactor(own) * part);
+  const half = halfOf(run, runFreedom), own = halfOf(random, freedom);
   const rounded = surface.rounding.length ? surface.rounding : at.map(() => 0);
   const found = {
     value: centre, low: centre - half, high: centre + half, surface_low: centre - own,
-    surface_high: centre + own, leverage, random, run, contribution: rows,
+    surface_high: centre + own, leverage, random, freedom, run, contribution: rows,
     inside: coded.every((x, j) => Math.abs(x) <= 1 + EDGE + (2 * rounded[j]) / (high[j] - low[j])),
   };
   if (surface.exponent !== 1) {
@@ -52,6 +69,13 @@ function evaluateSurface(surface, at, choice = {}) {
     found.run = back(run);
     for (const name of ["value", "low", "high", "surface_low", "surface_high"]) {
       found[name] = backTransform(found[name], surface.exponent);
+    }
+  }
+  if (surface.frequency_column !== null) {
+    const frequency = at[surface.frequency_column];
+    found.contribution = found.contribution.map((one) => one / frequency);
+    for (const name of ["value", "low", "high", "surface_low", "surface_high", "random", "run"]) {
+      found[name] /= frequency;
     }
   }
   return found;
