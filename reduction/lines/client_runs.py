@@ -199,7 +199,7 @@ def _cycle_of(line: ExportLine, form: str) -> _Cycle | None:
     )  # fmt: skip
 
 
-_OF_GAP = 0.5  # to the greatest mean tension, above which the line is another one
+_OF_GAP = 0.1  # to the greatest mean tension, above which the line is another one; a small cycle
 
 
 def _cycle_on_a_working_curve(syrope: Syrope, line: ExportLine) -> _Cycle | None:
