@@ -572,6 +572,29 @@ class _LineDynamics:
     notes: tuple[str, ...]
 
 
+def slow_and_waves(
+    source: LineSource, levels: Mapping[str, float] | None = None
+) -> tuple[float, float, str] | None:
+    """K_0, K_ap, and in words where: at levels, or in the middle of the tested ones. [N].
+
+    None where a source has not both.
+    """
+    if not {_REST, _APPARENT} <= set(source.quantities) or _APPARENT not in source.surfaces:
+        return None
+    surface = source.surfaces[_APPARENT]
+    middle = ((surface.low + surface.high) / 2).tolist()
+    at = levels or dict(zip(source.factor_names, middle, strict=True))
+    if set(at) != {"frequency", "mean_tension", "tension_amplitude"}:
+        return None
+    rest, apparent = (float(_value(source, name, at, "flag").value) for name in (_REST, _APPARENT))
+    if not (rest > 0 and apparent > 0):
+        return None
+    return rest, apparent, (
+        f"{plain_number(at['frequency'], 3)} Hz, {plain_number(at['mean_tension'] / 1e3, 3)} kN +- "
+        f"{plain_number(at['tension_amplitude'] / 1e3, 3)} kN"
+    )  # fmt: skip
+
+
 def line_dynamics(
     source: LineSource, levels: Mapping[str, float], extrapolate: Extrapolate = "refuse"
 ) -> _LineDynamics:
