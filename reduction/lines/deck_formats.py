@@ -88,12 +88,21 @@ def _orcaflex_text(line: ExportLine) -> str:
     curve = thin_curve(line.strain, line.tension, most=ORCAFLEX_POINTS)
     volume, words = line.volume_diameter
     mass, water = line.needed("linear_density"), line.hydrodynamics
+    nominal = line.diameter if line.diameter > 0 else volume
+    share = volume / nominal
+    normal, axial = share * water.normal_drag, share * water.axial_drag
     head = header_lines(
         line,
         curve,
         "syntax checked only: OrcaFlex was not run, look at the line type before it is used",
-        words,
+        words.removesuffix(f"; drag refers to it, and not to the nominal {1000 * nominal:.4g} mm"),
         f"hydrodynamic coefficients: {water.source}",
+        f"OD, for buoyancy and added mass, is the volume-equivalent diameter {1000 * volume:.4g} "
+        f"mm; drag diameters are the nominal one, {1000 * nominal:.4g} mm: Cd of the volume "
+        f"diameter, {water.normal_drag:.4g} across and {water.axial_drag:.4g} along, as MoorDyn "
+        f"has them, is times {share:.4g} here, since Cd times diameter is the drag; Ca refers to "
+        f"the displaced volume in both, and of the nominal one would be {share**2:.4g} times as "
+        "much",
         "bending and torsion stiffness 0: not measured",
         "units of the file: kN, te, m",
     )
@@ -126,7 +135,9 @@ def _orcaflex_text(line: ExportLine) -> str:
         f'    EA: "{name}"',
         "    GJ: ~",
         "    PoissonRatio: 0.5",
-        f"    Cd: [{real_number(water.normal_drag)}, ~, {real_number(water.axial_drag)}]",
+        f"    Cd: [{real_number(normal)}, ~, {real_number(axial)}]",
+        f"    NormalDragLiftDiameter: {real_number(nominal)}",
+        f"    AxialDragLiftDiameter: {real_number(nominal)}",
         f"    Ca: [{real_number(water.normal_added_mass)}, ~, "
         f"{real_number(water.axial_added_mass)}]",
         "",
