@@ -11,6 +11,8 @@ What MoorDyn 2.7 does with a file that is not to its liking, and what is done he
   lies beyond the curve, straight on;
 * a loop gives nonsense, and a table beside ``|EA_d`` is replaced by its last secant: neither is
   possible here;
+* a Syrope line whose dynamic stiffness does not grow is divided by zero, and starts at another
+  tension: it grows by a millionth;
 * a Syrope line without initial conditions ends in a segmentation fault: they are always written;
 * its own choice of a time step (CFL) takes the stiffness of a table as zero, and the line blows up:
   the deck states a step, from the steepest part of the curve;
@@ -407,6 +409,9 @@ def _dashpot_of(line: ExportLine) -> CycleDamping:
     return line.damping
 
 
+_NO_GROWTH = 1e-6  # of the dynamic stiffness, over a curve: zero ends in no number
+
+
 def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
     part = line.syrope
     if part is None:
@@ -418,6 +423,13 @@ def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
     curve = thin_curve(part.strain, part.tension, most=TABLE_POINTS)
     working, settings = f"{stem}_owc.dat", f"{stem}_syrope.dat"
     alpha, beta = part.dynamic_stiffness, part.dynamic_stiffness_per_mean_tension
+    no_growth = ""
+    if not beta:
+        beta = _NO_GROWTH * alpha / float(part.tension[-1])
+        no_growth = (
+            f"beta {beta:.3g} in place of zero, by which MoorDyn divides: the dynamic stiffness "
+            "grows by a millionth over the curve"
+        )
     row = _line_type(
         line,
         f"SYROPE:{settings}|{number(alpha)}|{number(beta)}",
@@ -436,6 +448,7 @@ def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
         *_said(line),
         f"Syrope, working curves of the form {part.form}; the curve named here is the original one",
         _working_words(part, line.viscoelasticity),
+        no_growth,
         _BEYOND,
         f"{settings} and {working} belong beside this file",
     )

@@ -90,6 +90,15 @@ def test_a_small_cycle_of_a_syrope_is_that_of_springs_in_series():
     assert one.about_mean.stiffness_at(0.1) == pytest.approx(expected, rel=1e-9)
 
 
+def test_a_syrope_whose_stiffness_does_not_grow_starts_where_it_is_told_to(tmp_path):
+    """MoorDyn divides by the growth."""
+    needs("moordyn")
+    one = line(syrope=syrope(fast_damping=2e3, dynamic_stiffness_per_mean_tension=0.0))
+    paths = export_line(one, "moordyn", tmp_path / "deck.dat", form="syrope")
+    checks = verify_deck(one, "moordyn", "syrope", paths)
+    assert [one.quantity for one in checks if not one.is_kept] == []
+
+
 def test_a_line_for_raft_is_the_straight_one_through_the_turns(tmp_path):
     """Tension over length, mass, volume and drag of the whole line are those of the cycle."""
     one = LINES[""]
