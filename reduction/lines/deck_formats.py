@@ -32,6 +32,7 @@ from reduction.lines.export_line import (
     local_words,
     straight_cycle,
     thin_curve,
+    without_damping,
 )
 from reduction.lines.export_tables import ValueTable, curve_table, table_text_of, write_netcdf
 from reduction.quantities.digits import plain_number
@@ -104,6 +105,7 @@ def _orcaflex_text(line: ExportLine) -> str:
         f"the displaced volume in both, and of the nominal one would be {share**2:.4g} times as "
         "much",
         "bending and torsion stiffness 0: not measured",
+        without_damping(line),
         "units of the file: kN, te, m",
     )
     name = f"{line.identifier} axial stiffness"
@@ -378,6 +380,7 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
         f"added mass along the line, {along:g}, left out: Cable has none" if along else "",
         words,
         f"hydrodynamic coefficients: {water.source}",
+        without_damping(line),
         f"EI and GJ {_SMALL:g}: not measured; wet in N/m in water of {SEA_WATER:g} kg/m3",
         "EA: secant over the whole curve, as a first guess of the program",
         "Cable needs some horizontal force for a static solution",

@@ -80,6 +80,7 @@ from reduction.lines.export_line import (
     continued_tension,
     damping_words,
     thin_curve,
+    without_damping,
 )
 from reduction.quantities.digits import plain_number
 from reduction.record.errors import SettingsError
@@ -374,7 +375,13 @@ def _table_files(
             f"segments of {segment_length(line):g} m, numerical, not measured"
         )
     head = header_lines(
-        line, curve, *_said(line), words, _BEYOND, f"{table} belongs beside this file"
+        line,
+        curve,
+        *_said(line),
+        words,
+        "" if is_damped else without_damping(line),
+        _BEYOND,
+        f"{table} belongs beside this file",
     )
     row = _line_type(line, table, number(written))
     strain = line.strain[-1] / 2
@@ -522,6 +529,7 @@ def moorpy_files(line: ExportLine, stem: str, *, form: MoorPyForm = "table") -> 
         curve,
         line.volume_diameter[1],
         f"hydrodynamic coefficients: {line.hydrodynamics.source}",
+        without_damping(line),
         _BEYOND,
         f"MoorPy seeks {table} in the working folder: start it there",
         "MoorPy 1.2, which RAFT 2.0 brings, takes no table (KeyError 'EA'): use 1.3, or --to raft",
@@ -552,6 +560,7 @@ def _library(line: ExportLine) -> str:
         None,
         words,
         f"hydrodynamic coefficients: {water.source}",
+        without_damping(line),
         f"holds for the diameter {1000 * diameter:.4g} mm alone: nothing is known of others",
         f"found at {part.holds}" if part.holds else "",
         "the dynamic stiffness is K_ap at that frequency, since the library has no damping; "

@@ -657,6 +657,18 @@ def straight_cycle(line: ExportLine) -> StraightCycle | None:
     )  # fmt: skip
 
 
+def without_damping(line: ExportLine) -> str:
+    """What a form that has no damping leaves out; nothing where no cycle of the line is known."""
+    cycle = straight_cycle(line)
+    if cycle is None:
+        return ""
+    return (
+        f"no damping in this form: the hysteresis energy of a cycle, "
+        f"{plain_number(cycle.hysteresis_energy, 4)} J/m at {cycle.holds}, is NOT in it; K_ap is "
+        f"{plain_number(cycle.stiffness, 6)} N"
+    )
+
+
 def thin_curve(strain: ArrayLike, tension: ArrayLike, *, most: int) -> ThinnedCurve:
     """Choose few points of a curve so that straight lines between them stay close to it.
 

@@ -147,6 +147,16 @@ def test_a_dashpot_that_is_a_tenth_off_is_found_by_its_energy(tmp_path):
     assert lost == ["H"]
 
 
+@pytest.mark.parametrize(
+    ("to", "form"),
+    [("moordyn", "table"), ("moorpy", "table"), ("whoi-cable", "table"), ("orcaflex", None)],
+)
+def test_a_form_without_damping_says_how_much_is_left_out(tmp_path, to, form):
+    *_, deck = export_line(LINES["damped-table"], to, tmp_path / "deck.dat", form=form)
+    head = " ".join(deck.read_text().replace("#", "").replace("/*", "").replace("*/", "").split())
+    assert f"{LOST:.4g} J/m at {FREQUENCY:g} Hz, strain 1 +- {AMPLITUDE:g}, is NOT in it" in head
+
+
 def test_a_format_that_nothing_runs_is_refused(tmp_path):
     paths = export_line(line(), "abaqus", tmp_path / "x.inp")
     with pytest.raises(SettingsError, match="nothing here runs --to abaqus"):
