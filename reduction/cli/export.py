@@ -16,7 +16,7 @@ from reduction.lines.client_runs import LIMITS, ClientCheck, in_words, verify_de
 from reduction.lines.composite import compose
 from reduction.lines.deck_formats import FORMS, TABLES, closeness_of, export_line, export_table
 from reduction.lines.deck_moordyn import fast_damping, segment_length
-from reduction.lines.export_dynamics import Syrope
+from reduction.lines.export_dynamics import Syrope, slow_and_waves
 from reduction.lines.export_line import (
     CYLINDER,
     ExportLine,
@@ -35,6 +35,7 @@ from reduction.lines.export_sources import (
 from reduction.lines.export_tables import ValueTable
 from reduction.lines.published_source import published_sources
 from reduction.lines.surface_table import surface_table
+from reduction.quantities.digits import plain_number
 from reduction.quantities.units import Dimension, UnitSystem, parse_quantity
 from reduction.record.errors import DataError, SettingsError
 
@@ -280,8 +281,44 @@ def write_export(request: ExportRequest) -> ExportedFiles:
         line = replace(line, notes=(*line.notes, *in_words(checks)))
         # the header carries what the program gave
         paths = export_line(line, to, out, form=form, units=request.units)
-    notes = (*guards_of(line), *closeness_of(line, to, form), *line.notes)
+    notes = (
+        *_stiffness_said(request), *guards_of(line), *closeness_of(line, to, form), *line.notes
+    )  # fmt: skip
     return ExportedFiles(line, tuple(paths), notes, tuple(checks))
+
+
+_DYNAMIC = ("static-dynamic", "load-dependent", "syrope", "library")
+
+_FOR_WAVES = {
+    "moordyn": "--form static-dynamic",
+    "openfast": "--form static-dynamic",
+    "moorpy": "--form library",
+}
+
+
+def _stiffness_said(request: ExportRequest) -> tuple[str, ...]:
+    """Which stiffness of a published rope is written, and which is not."""
+    source = published_sources().get(request.sources[0]) if len(request.sources) == 1 else None
+    if source is None:
+        return ()
+    strength = source.rated_break_strength
+    levels = {
+        name: parse_quantity(text, dimension, rated_break_strength=strength)
+        for name, dimension in _LEVELS.items()
+        if (text := getattr(request, name)) is not None
+    }
+    found = slow_and_waves(source, levels)
+    if found is None:
+        return ()
+    rest, apparent, at = found
+    slow = f"slow-pull stiffness K_0 {plain_number(rest / 1e3, 3)} kN"
+    waves = f"for waves K_ap {plain_number(apparent / 1e3, 3)} kN ({at})"
+    if request.to == "raft":
+        return (f"written: {waves}; not in it: {slow}",)
+    if request.form in _DYNAMIC:
+        return (f"written: {slow}; {waves}",)
+    also = _FOR_WAVES.get(request.to, "--to moordyn --form static-dynamic, or --to raft")
+    return (f"written: {slow}; {waves}: {also}",)
 
 
 def _written_surfaces(path: Path, request: ExportRequest) -> ExportedFiles:

@@ -470,7 +470,7 @@ def export(
         str,
         typer.Option(
             "--to",
-            help="csv, json, latex, markdown, netcdf, moordyn, moorpy, openfast, orcaflex, "
+            help="csv, json, latex, markdown, netcdf, moordyn, moorpy, openfast, raft, orcaflex, "
             "whoi-cable or abaqus.",
             show_default=False,
         ),

@@ -18,15 +18,16 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from reduction.lines.export_dynamics import Viscoelasticity
-from reduction.lines.export_line import CycleDamping, ExportLine, continued_tension
+from reduction.lines.deck_moordyn import deck_length, working_frequency
+from reduction.lines.export_dynamics import Syrope, Viscoelasticity
+from reduction.lines.export_line import ExportLine, continued_tension, straight_cycle
 from reduction.quantities.digits import plain_number
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats
@@ -96,7 +97,7 @@ def verify_deck(line: ExportLine, to: str, form: str, paths: Sequence[Path]) -> 
     if run is None:
         raise SettingsError(
             f"nothing here runs --to {to}" + (f" --form {form}" if form else ""),
-            needed="--verify with " + ", ".join(f"{one} {kind}" for one, kind in _RUNS),
+            needed="--verify with " + ", ".join(f"{one} {kind}".strip() for one, kind in _RUNS),
         )
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -172,8 +173,13 @@ class _Cycle:
 
 def _cycle_of(line: ExportLine, form: str) -> _Cycle | None:
     """The cycle of a form; None of a form without damping of its own."""
-    if form == "damped-table" and line.damping is not None:
-        return _cycle_about_a_curve(line, line.damping)
+    if form == "syrope" and line.syrope is not None:
+        return _cycle_on_a_working_curve(line.syrope, line)
+    if form == "damped-table" and line.damping is not None and (of := straight_cycle(line)):
+        return _Cycle(
+            of.strain, of.strain_amplitude, line.damping.frequency, _GROWN + 3, of.stiffness,
+            of.hysteresis_energy,
+        )  # fmt: skip
     part = line.viscoelasticity
     if form not in ("static-dynamic", "load-dependent") or part is None:
         return None
@@ -193,23 +199,31 @@ def _cycle_of(line: ExportLine, form: str) -> _Cycle | None:
     )  # fmt: skip
 
 
+_OF_GAP = 0.1  # to the greatest mean tension, above which the line is another one; a small cycle
+
+
+def _cycle_on_a_working_curve(syrope: Syrope, line: ExportLine) -> _Cycle | None:
+    """A cycle whose slow tension stays below the greatest mean one; None where there is no room."""
+    about, gap = syrope.about_mean, syrope.greatest_mean_tension - syrope.mean_tension
+    frequency, part = working_frequency(syrope, line), line.viscoelasticity
+    modulus = about.stiffness_at(frequency)
+    # of what the spring of EA_d does not take, in strain
+    slow = abs(1 - modulus / about.fast_stiffness)
+    series = about.static_stiffness / (1 - about.static_stiffness / about.fast_stiffness)
+    amplitude = _OF_GAP * min(gap, syrope.mean_tension) / (slow * series)
+    if part is not None and part.tension_amplitude > 0:
+        amplitude = min(amplitude, part.tension_amplitude / abs(modulus))
+    if not amplitude > 0:
+        return None
+    return _Cycle(
+        syrope.initial_strain, amplitude, frequency, _cycles_to_settle(about, frequency),
+        abs(modulus), math.pi * amplitude**2 * modulus.imag,
+    )  # fmt: skip
+
+
 def _cycles_to_settle(part: Viscoelasticity, frequency: float) -> int:
     settled = -math.log(_SETTLED) * part.relaxation_time * frequency
     return min(_MOST_CYCLES, _GROWN + 2 + math.ceil(settled))
-
-
-def _cycle_about_a_curve(line: ExportLine, damping: CycleDamping) -> _Cycle:
-    """About the mean of the test, whose curve ends at the turn of its cycle."""
-    amplitude = damping.strain_amplitude
-    mean = float(line.strain[-1]) - amplitude
-    turns = continued_tension(line, np.array([mean + amplitude, mean - amplitude]))
-    phase = 2 * np.pi * np.arange(_IN_A_CYCLE) / _IN_A_CYCLE
-    rate = 2 * np.pi * damping.frequency * amplitude * np.cos(phase)
-    loop = continued_tension(line, mean + amplitude * np.sin(phase)) + damping.coefficient * rate
-    stiffness = max(float(np.ptp(loop)), float(turns[0] - turns[1])) / (2 * amplitude)
-    return _Cycle(
-        mean, amplitude, damping.frequency, _GROWN + 3, stiffness, damping.hysteresis_energy
-    )
 
 
 def _loop(strain: Floats, tension: Floats) -> tuple[float, float]:
@@ -328,9 +342,18 @@ def _stretched(
     least_rest: float = 10.0,
 ) -> list[ClientCheck]:
     """Rest at strains, then the cycle that the form is made for."""
-    part = None if form in ("table", "damped-table") else line.viscoelasticity
+    part = None if form in ("table", "damped-table", "syrope") else line.viscoelasticity
     strains, rest = np.array([0.5, 1.0]) * _AT_REST, least_rest
-    if part is None:
+    if form == "syrope" and (syrope := line.syrope) is not None:
+        # from its working curve to the original one, and beyond that
+        line = replace(line, strain=syrope.strain, tension=syrope.tension)
+        end = float(syrope.strain[-1])
+        top = float(np.interp(syrope.greatest_mean_tension, syrope.tension, syrope.strain))
+        beyond = top + (end - top) * np.array([0.25, 0.5, 1.0])
+        strains = np.concatenate([[syrope.initial_strain], beyond, [_SHARES[-1] * end]])
+        slowest = syrope.slow_damping / syrope.dynamic_stiffness
+        rest = max(rest, -math.log(_SETTLED / 10) * slowest)
+    elif part is None:
         strains = _SHARES * float(line.strain[-1])
         if form == "damped-table" and line.damping is not None:
             rest = max(rest, 10 / line.damping.frequency)
@@ -355,6 +378,10 @@ def _stretched(
         if part is None
         else _slow_tensions(program, part, had, found)
     )
+    if form == "syrope" and line.syrope is not None:
+        mean = line.syrope.mean_tension
+        start = ClientCheck(program, "tension", "its start", "N", mean, float(found[0]), mean)
+        checks = [start, *checks[1:]]
     cycle = _cycle_of(line, form)
     if cycle is None:
         return checks
@@ -458,6 +485,59 @@ def _by_moorpy_library(line: ExportLine, folder: Path, deck: str) -> list[Client
     ]
 
 
+_RAFT = """
+import json, sys
+import numpy, raft, yaml
+job = json.load(open("job.json"))
+mooring = yaml.safe_load(open(sys.argv[1]))["mooring"]
+buoy = dict(
+    name="buoy", type="rigid", rA=[0, 0, -1], rB=[0, 0, 1], shape="circ", gamma=0.0, potMod=False,
+    stations=[0, 1], d=1.0, t=0.01, Cd=1.0, Ca=1.0, CdEnd=0.0, CaEnd=[0.0, 0.0],
+)
+keys = "wind_speed wind_heading turbulence turbine_status yaw_misalign wave_spectrum wave_period "
+keys = (keys + "wave_height wave_heading current_speed current_heading").split()
+(fowt,) = raft.Model(dict(
+    settings=dict(min_freq=0.01, max_freq=0.2, XiStart=0, nIter=4),
+    site=dict(water_depth=mooring["water_depth"], rho_water=1025.0, rho_air=0.0, mu_air=0.0,
+              shearExp=0.0),
+    cases=dict(keys=keys, data=[[0, 0, 0, "parked", 0, "still", 12, 1, 0, 0, 0]]),
+    platform=dict(potModMaster=1, dlsMax=5.0, members=[buoy]),
+    mooring=mooring,
+)).fowtList
+out = []
+for rise in job["rise"]:
+    fowt.setPosition(numpy.array([0, 0, rise, 0, 0, 0], dtype=float))
+    out.append([float(fowt.ms.getTensions().mean()), float(fowt.C_moor[2, 2])])
+json.dump(out, open("out.json", "w"))
+"""
+
+
+def _by_raft(line: ExportLine, folder: Path, deck: str) -> list[ClientCheck]:
+    _needed("RAFT", importlib.util.find_spec("raft"), "pip install openraft, in a venv of its own")
+    program, cycle = f"RAFT {version('openraft')}", straight_cycle(line)
+    if cycle is None:
+        return []
+    length, share = deck_length(line), np.array([0.0, -1.0, 1.0])
+    found = np.array(
+        _in_python(_RAFT, folder, deck, program,
+                   rise=(length * cycle.strain_amplitude * share).tolist())
+    )  # fmt: skip
+    promised = float(continued_tension(line, cycle.strain))
+    # of a test its middle between the turns, which are those of the curve
+    if line.damping is not None:
+        promised = cycle.tension
+    by_turns = (found[2, 0] - found[1, 0]) / (2 * cycle.strain_amplitude)
+    rows = (
+        ("tension", "the middle of the cycle", promised, found[0, 0]),
+        ("K_ap", cycle.holds, cycle.stiffness, by_turns),
+        ("K_ap", "the stiffness of a platform on it", cycle.stiffness, length * found[0, 1]),
+    )
+    return [
+        ClientCheck(program, name, at, "N", wanted, float(value), wanted)
+        for name, at, wanted, value in rows
+    ]
+
+
 _CABLE = """
 Problem Description
     title = "a line under an end force"
@@ -523,7 +603,7 @@ def _strain_at(line: ExportLine, force: float) -> float:
 _RUNS: dict[tuple[str, str], Callable[[ExportLine, Path, str], list[ClientCheck]]] = {
     **{
         ("moordyn", form): _by_moordyn(form)
-        for form in ("table", "damped-table", "static-dynamic", "load-dependent")
+        for form in ("table", "damped-table", "static-dynamic", "load-dependent", "syrope")
     },
     **{
         ("openfast", form): _by_openfast(form)
@@ -531,6 +611,7 @@ _RUNS: dict[tuple[str, str], Callable[[ExportLine, Path, str], list[ClientCheck]
     },
     ("moorpy", "table"): _by_moorpy,
     ("moorpy", "library"): _by_moorpy_library,
+    ("raft", ""): _by_raft,
     ("whoi-cable", "expression"): _by_cable,
     ("whoi-cable", "table"): _by_cable,
 }

@@ -17,6 +17,7 @@ from reduction.archive.write import write_text_atomically
 from reduction.lines.deck_moordyn import (
     TABLE_POINTS,
     OpenFastForm,
+    deck_length,
     moordyn_files,
     moorpy_files,
     openfast_files,
@@ -29,7 +30,9 @@ from reduction.lines.export_line import (
     damping_words,
     local_share,
     local_words,
+    straight_cycle,
     thin_curve,
+    without_damping,
 )
 from reduction.lines.export_tables import ValueTable, curve_table, table_text_of, write_netcdf
 from reduction.quantities.digits import plain_number
@@ -86,13 +89,23 @@ def _orcaflex_text(line: ExportLine) -> str:
     curve = thin_curve(line.strain, line.tension, most=ORCAFLEX_POINTS)
     volume, words = line.volume_diameter
     mass, water = line.needed("linear_density"), line.hydrodynamics
+    nominal = line.diameter if line.diameter > 0 else volume
+    share = volume / nominal
+    normal, axial = share * water.normal_drag, share * water.axial_drag
     head = header_lines(
         line,
         curve,
         "syntax checked only: OrcaFlex was not run, look at the line type before it is used",
-        words,
+        words.removesuffix(f"; drag refers to it, and not to the nominal {1000 * nominal:.4g} mm"),
         f"hydrodynamic coefficients: {water.source}",
+        f"OD, for buoyancy and added mass, is the volume-equivalent diameter {1000 * volume:.4g} "
+        f"mm; drag diameters are the nominal one, {1000 * nominal:.4g} mm: Cd of the volume "
+        f"diameter, {water.normal_drag:.4g} across and {water.axial_drag:.4g} along, as MoorDyn "
+        f"has them, is times {share:.4g} here, since Cd times diameter is the drag; Ca refers to "
+        f"the displaced volume in both, and of the nominal one would be {share**2:.4g} times as "
+        "much",
         "bending and torsion stiffness 0: not measured",
+        without_damping(line),
         "units of the file: kN, te, m",
     )
     name = f"{line.identifier} axial stiffness"
@@ -124,12 +137,90 @@ def _orcaflex_text(line: ExportLine) -> str:
         f'    EA: "{name}"',
         "    GJ: ~",
         "    PoissonRatio: 0.5",
-        f"    Cd: [{real_number(water.normal_drag)}, ~, {real_number(water.axial_drag)}]",
+        f"    Cd: [{real_number(normal)}, ~, {real_number(axial)}]",
+        f"    NormalDragLiftDiameter: {real_number(nominal)}",
+        f"    AxialDragLiftDiameter: {real_number(nominal)}",
         f"    Ca: [{real_number(water.normal_added_mass)}, ~, "
         f"{real_number(water.axial_added_mass)}]",
         "",
     ]
     return "\n".join(text)
+
+
+def _raft_text(line: ExportLine) -> str:
+    """The mooring section of a design for RAFT, whose lines have one stiffness.
+
+    Notes
+    -----
+    RAFT takes from it the mean position and the motion in waves, so that its line is the straight
+    one through the turns of the cycle.  That has no tension at the strain e0, and is written as a
+    line of 1 + e0 times the length and K_ap (1 + e0): tension over length is the same, and so are
+    mass, volume and drag of the whole line.
+    """
+    cycle = straight_cycle(line)
+    if cycle is None:
+        raise SettingsError(
+            f"no cycle of {line.name} is known, and RAFT takes one stiffness alone",
+            needed="--frequency, --mean-tension and --tension-amplitude of a line with surfaces, "
+            "below the end of its curve, or the archive of a cyclic test and its mean curve",
+        )
+    share = 1 + cycle.slack_strain
+    if share <= 0:
+        raise SettingsError(
+            f"the straight line of the cycle of {line.name} has tension at any length",
+            found=f"no tension at strain {cycle.slack_strain:.4g}", needed="a strain above -1",
+        )  # fmt: skip
+    length, (volume, words), water = deck_length(line), line.volume_diameter, line.hydrodynamics
+    mass = line.needed("linear_density")
+    strain, tension, _ = curve_from_zero(line.strain, line.tension)
+    straight = cycle.tension + cycle.stiffness * (strain - cycle.strain)
+    off = np.abs(straight - tension) / tension[-1]
+    inside = np.abs(strain - cycle.strain) <= 3 * cycle.strain_amplitude
+    head = header_lines(
+        line,
+        None,
+        "RAFT has one stiffness and no damping in a line: this is the straight line of one cycle, "
+        f"K_ap {plain_number(cycle.stiffness, 6)} N about {plain_number(cycle.tension, 6)} N and "
+        f"strain {cycle.strain:.6g}, {cycle.holds}",
+        f"its hysteresis energy, {plain_number(cycle.hysteresis_energy, 4)} J/m, is NOT in it",
+        f"it differs from the slow curve by up to {100 * float(off[inside].max(initial=0)):.2g} "
+        "percent of the greatest tension within three amplitudes of the mean, and by "
+        f"{100 * float(off.max()):.2g} percent over the whole of it: export again for another mean",
+        f"a line of {length:g} m is written as {length * share:.6g} m, the length at which the "
+        f"straight line has no tension: take {share:.6g} times the length of yours, too; "
+        "stiffness, mass and diameter are per length of that, so that the whole line keeps its own",
+        words,
+        f"hydrodynamic coefficients: {water.source}",
+    )
+    strength = line.rated_break_strength
+    of_area = math.sqrt(share)
+    rows = {
+        "diameter": volume / of_area,
+        "mass_density": mass / share,
+        "stiffness": cycle.stiffness * share,
+        "breaking_load": strength if math.isfinite(strength) else 0.0,
+        "cost": 0.0,
+        "transverse_added_mass": water.normal_added_mass,
+        "tangential_added_mass": water.axial_added_mass,
+        "transverse_drag": water.normal_drag / of_area,
+        "tangential_drag": water.axial_drag / of_area,
+    }
+    deep = length * (1 + cycle.strain)
+    text = [
+        "mooring:",
+        f"  water_depth: {real_number(2 * deep)}",
+        "  points:",
+        f"    - {{name: anchor, type: fixed, location: [0.0, 0.0, {real_number(-deep)}]}}",
+        "    - {name: fairlead, type: vessel, location: [0.0, 0.0, 0.0]}",
+        "  lines:",
+        f'    - {{name: line, endA: anchor, endB: fairlead, type: "{line.identifier}", '
+        f"length: {real_number(length * share)}}}",
+        "  line_types:",
+        f'    - name: "{line.identifier}"',
+        *(f"      {name}: {real_number(value)}" for name, value in rows.items()),
+        "",
+    ]
+    return "\n".join([*(f"# {one}" for one in head), *text])
 
 
 _DEGREE = 2
@@ -289,6 +380,7 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
         f"added mass along the line, {along:g}, left out: Cable has none" if along else "",
         words,
         f"hydrodynamic coefficients: {water.source}",
+        without_damping(line),
         f"EI and GJ {_SMALL:g}: not measured; wet in N/m in water of {SEA_WATER:g} kg/m3",
         "EA: secant over the whole curve, as a first guess of the program",
         "Cable needs some horizontal force for a static solution",
@@ -401,6 +493,7 @@ _CODES: dict[str, _MooringCode] = {
     "whoi-cable": _MooringCode(
         _one_file(_whoicable_text), CABLE_POINTS, {"expression": "pieces", "table": "points"}
     ),
+    "raft": _MooringCode(_one_file(_raft_text), 0, {"": "none"}),
     "orcaflex": _MooringCode(_one_file(_orcaflex_text), ORCAFLEX_POINTS),
     "abaqus": _MooringCode(_one_file(_abaqus_text), ABAQUS_POINTS),
 }

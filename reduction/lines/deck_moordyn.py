@@ -11,6 +11,8 @@ What MoorDyn 2.7 does with a file that is not to its liking, and what is done he
   lies beyond the curve, straight on;
 * a loop gives nonsense, and a table beside ``|EA_d`` is replaced by its last secant: neither is
   possible here;
+* a Syrope line whose dynamic stiffness does not grow is divided by zero, and starts at another
+  tension: it grows by a millionth;
 * a Syrope line without initial conditions ends in a segmentation fault: they are always written;
 * its own choice of a time step (CFL) takes the stiffness of a table as zero, and the line blows up:
   the deck states a step, from the steepest part of the curve;
@@ -78,6 +80,7 @@ from reduction.lines.export_line import (
     continued_tension,
     damping_words,
     thin_curve,
+    without_damping,
 )
 from reduction.quantities.digits import plain_number
 from reduction.record.errors import SettingsError
@@ -107,14 +110,14 @@ _COLUMNS = (
 )
 
 
-def _length(line: ExportLine) -> float:
+def deck_length(line: ExportLine) -> float:
     """Of the line of a deck: its own where it has one. [m]."""
     return line.unstretched_length if math.isfinite(line.unstretched_length) else _LENGTH
 
 
 def segment_length(line: ExportLine) -> float:
     """Length of a segment of the line of a deck. [m]."""
-    return _length(line) / _SEGMENTS
+    return deck_length(line) / _SEGMENTS
 
 
 def _line_type(line: ExportLine, stiffness: str, damping: str) -> str:
@@ -139,7 +142,7 @@ def _deck(
     program: str = "MoorDyn",
 ) -> str:
     """A whole input file: one line between two points, with a strain that it may have."""
-    length = _length(line)
+    length = deck_length(line)
     segments, step = _steps(line.needed("linear_density"), stiffness, damping, segment_length(line))
     step = min(step, max(_SHARE_OF_LAG * lag, _SHORTEST_STEP))
     # the upper end stays under water however long the line is
@@ -372,7 +375,13 @@ def _table_files(
             f"segments of {segment_length(line):g} m, numerical, not measured"
         )
     head = header_lines(
-        line, curve, *_said(line), words, _BEYOND, f"{table} belongs beside this file"
+        line,
+        curve,
+        *_said(line),
+        words,
+        "" if is_damped else without_damping(line),
+        _BEYOND,
+        f"{table} belongs beside this file",
     )
     row = _line_type(line, table, number(written))
     strain = line.strain[-1] / 2
@@ -407,6 +416,9 @@ def _dashpot_of(line: ExportLine) -> CycleDamping:
     return line.damping
 
 
+_NO_GROWTH = 1e-6  # of the dynamic stiffness, over a curve: zero ends in no number
+
+
 def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
     part = line.syrope
     if part is None:
@@ -418,6 +430,13 @@ def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
     curve = thin_curve(part.strain, part.tension, most=TABLE_POINTS)
     working, settings = f"{stem}_owc.dat", f"{stem}_syrope.dat"
     alpha, beta = part.dynamic_stiffness, part.dynamic_stiffness_per_mean_tension
+    no_growth = ""
+    if not beta:
+        beta = _NO_GROWTH * alpha / float(part.tension[-1])
+        no_growth = (
+            f"beta {beta:.3g} in place of zero, by which MoorDyn divides: the dynamic stiffness "
+            "grows by a millionth over the curve"
+        )
     row = _line_type(
         line,
         f"SYROPE:{settings}|{number(alpha)}|{number(beta)}",
@@ -435,6 +454,9 @@ def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
         curve,
         *_said(line),
         f"Syrope, working curves of the form {part.form}; the curve named here is the original one",
+        _working_words(part, line.viscoelasticity),
+        no_growth,
+        _BEYOND,
         f"{settings} and {working} belong beside this file",
     )
     return {
@@ -445,11 +467,37 @@ def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
             strain=part.initial_strain,
             stiffness=alpha + beta * float(part.tension[-1]),
             damping=part.fast_damping,
+            lag=replace(part.about_mean, frequency=working_frequency(part, line)).lag,
             conditions=conditions,
         ),
         settings: _syrope_text(part, working),
-        working: _table_text(line, curve),
+        working: _table_text(
+            line, _continued(replace(line, strain=part.strain, tension=part.tension), curve)
+        ),
     }
+
+
+def working_frequency(syrope: Syrope, line: ExportLine) -> float:
+    """Of the levels of a line; where it has none, that at which its dashpot takes most. [Hz]."""
+    part = line.viscoelasticity
+    if part is not None and math.isfinite(part.frequency):
+        return part.frequency
+    return 1 / (2 * math.pi * syrope.about_mean.relaxation_time)
+
+
+def _working_words(syrope: Syrope, part: Viscoelasticity | None) -> str:
+    """What a cycle has on the working curve, whose slope takes the place of K_0."""
+    about = syrope.about_mean
+    slope = f"slope of the working curve at the mean {plain_number(about.static_stiffness, 6)} N"
+    if part is None or not math.isfinite(part.frequency):
+        return slope
+    found, asked = about.stiffness_at(part.frequency), part.stiffness_at(part.frequency)
+    return (
+        f"{slope}, K_0 {plain_number(part.static_stiffness, 6)} N: a small cycle at "
+        f"{plain_number(part.frequency, 4)} Hz has K_ap {plain_number(abs(found), 6)} N, "
+        f"{100 * (abs(found) / abs(asked) - 1):+.1f} percent from static-dynamic, and "
+        f"{100 * (found.imag / asked.imag - 1):+.1f} percent in hysteresis energy at equal stretch"
+    )
 
 
 def _syrope_text(part: Syrope, working: str) -> str:
@@ -481,9 +529,10 @@ def moorpy_files(line: ExportLine, stem: str, *, form: MoorPyForm = "table") -> 
         curve,
         line.volume_diameter[1],
         f"hydrodynamic coefficients: {line.hydrodynamics.source}",
+        without_damping(line),
         _BEYOND,
         f"MoorPy seeks {table} in the working folder: start it there",
-        "MoorPy 1.2, which RAFT 2.0 brings, takes no table (KeyError 'EA'): use 1.3, or a library",
+        "MoorPy 1.2, which RAFT 2.0 brings, takes no table (KeyError 'EA'): use 1.3, or --to raft",
         "with a table MoorPy takes the line as straight, and halves its weight to the ends",
     )
     steepest = float(np.max(np.diff(curve.tension) / np.diff(curve.strain)))
@@ -511,6 +560,7 @@ def _library(line: ExportLine) -> str:
         None,
         words,
         f"hydrodynamic coefficients: {water.source}",
+        without_damping(line),
         f"holds for the diameter {1000 * diameter:.4g} mm alone: nothing is known of others",
         f"found at {part.holds}" if part.holds else "",
         "the dynamic stiffness is K_ap at that frequency, since the library has no damping; "

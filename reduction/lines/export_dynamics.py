@@ -58,6 +58,8 @@ from reduction.uncertainty.propagation import line_contributions
 
 _STEPS = 201
 
+_SLOPE = 1e-4  # of a mean tension, over which the slope of a working curve is taken
+
 
 @dataclass(frozen=True)
 class Viscoelasticity:
@@ -322,6 +324,31 @@ class Syrope:
             share = (math.sqrt(rest**2 + 4 * self.k2 * share) - rest) / (2 * self.k2)
         return top * (self.k1 + share * (1 - self.k1))
 
+    @property
+    def about_mean(self) -> Viscoelasticity:
+        """What a small cycle about the mean tension has, on the working curve of the greatest one.
+
+        Notes
+        -----
+        MoorDyn has BA_s dz/dt = (e - e_w) (alpha + beta T_w) on the working curve T_w(e_w), with
+        z = e_w - ln(1 + beta T_w / alpha) / beta: linear about the mean, a spring EA_d in series
+        with BA_s beside a spring that makes the slope of the working curve of both.
+        """
+        step = _SLOPE * self.mean_tension
+        strains = [
+            replace(self, mean_tension=self.mean_tension + side * step).initial_strain
+            for side in (-1, 0)
+        ]
+        slow = step / (strains[1] - strains[0])
+        fast = self.dynamic_stiffness + self.dynamic_stiffness_per_mean_tension * self.mean_tension
+        return Viscoelasticity(
+            static_stiffness=slow,
+            dynamic_stiffness=self.dynamic_stiffness,
+            dashpot_coefficient=self.slow_damping * (1 - slow / fast) ** 2,
+            dynamic_stiffness_per_mean_tension=self.dynamic_stiffness_per_mean_tension,
+            mean_tension=self.mean_tension,
+        )
+
 
 def _said_identified(
     part: Viscoelasticity, amplitude: float, half: Mapping[str, Floats], *, is_exact: bool
@@ -543,6 +570,29 @@ class _LineDynamics:
     part: Viscoelasticity
     sources: tuple[str, ...]
     notes: tuple[str, ...]
+
+
+def slow_and_waves(
+    source: LineSource, levels: Mapping[str, float] | None = None
+) -> tuple[float, float, str] | None:
+    """K_0, K_ap, and in words where: at levels, or in the middle of the tested ones. [N].
+
+    None where a source has not both.
+    """
+    if not {_REST, _APPARENT} <= set(source.quantities) or _APPARENT not in source.surfaces:
+        return None
+    surface = source.surfaces[_APPARENT]
+    middle = ((surface.low + surface.high) / 2).tolist()
+    at = levels or dict(zip(source.factor_names, middle, strict=True))
+    if set(at) != {"frequency", "mean_tension", "tension_amplitude"}:
+        return None
+    rest, apparent = (float(_value(source, name, at, "flag").value) for name in (_REST, _APPARENT))
+    if not (rest > 0 and apparent > 0):
+        return None
+    return rest, apparent, (
+        f"{plain_number(at['frequency'], 3)} Hz, {plain_number(at['mean_tension'] / 1e3, 3)} kN +- "
+        f"{plain_number(at['tension_amplitude'] / 1e3, 3)} kN"
+    )  # fmt: skip
 
 
 def line_dynamics(

@@ -579,6 +579,96 @@ def continued_tension(line: ExportLine, strain: ArrayLike) -> Floats:
     return np.asarray(np.interp(wanted, at, load) + beyond)
 
 
+@dataclass(frozen=True)
+class StraightCycle:
+    """The straight line through the turns of a cycle, and the energy that is not in it.
+
+    Parameters
+    ----------
+    strain, tension : float
+        In the middle of the cycle. [1], [N]
+    strain_amplitude : float
+        Half the range. [1]
+    stiffness : float
+        Range of tension over that of strain, K_ap. [N]
+    hysteresis_energy : float
+        [J m-1]
+    holds : str
+        In words: levels of the cycle.
+    """
+
+    strain: float
+    tension: float
+    strain_amplitude: float
+    stiffness: float
+    hysteresis_energy: float
+    holds: str
+
+    @property
+    def slack_strain(self) -> float:
+        """Strain at which the straight line has no tension. [1]."""
+        return self.strain - self.tension / self.stiffness
+
+
+_IN_A_CYCLE = 200
+
+
+def straight_cycle(line: ExportLine) -> StraightCycle | None:
+    """The cycle of a line about its mean; None where none is known.
+
+    Notes
+    -----
+    Of a test, the cycle whose upper turn is the end of its curve; of a line with surfaces, the one
+    at the levels, about its curve at the mean tension.
+
+    Examples
+    --------
+    >>> strain = np.array([0.0, 1.0])
+    >>> line = ExportLine("a", strain, 100 * strain, "mean", (0, 1), sources=("none",),
+    ...                   damping=cycle_damping(math.pi, 1 / (2 * math.pi), 0.25))
+    >>> found = straight_cycle(line)
+    >>> print(found.strain, found.tension, round(found.stiffness, 2))
+    0.75 75.0 101.27
+    """
+    part, damping = line.viscoelasticity, line.damping
+    if damping is not None:
+        amplitude = damping.strain_amplitude
+        mean = float(line.strain[-1]) - amplitude
+        turns = continued_tension(line, np.array([mean - amplitude, mean + amplitude]))
+        phase = 2 * np.pi * np.arange(_IN_A_CYCLE) / _IN_A_CYCLE
+        rate = 2 * np.pi * damping.frequency * amplitude * np.cos(phase)
+        loop = continued_tension(line, mean + amplitude * np.sin(phase))
+        reach = max(float(np.ptp(loop + damping.coefficient * rate)), float(np.ptp(turns)))
+        return StraightCycle(
+            mean, float(turns.mean()), amplitude, reach / (2 * amplitude),
+            damping.hysteresis_energy,
+            f"{damping.frequency:.4g} Hz, strain {mean:.4g} +- {amplitude:.4g}",
+        )  # fmt: skip
+    if part is None or not (part.mean_tension > 0 and math.isfinite(part.tension_amplitude)):
+        return None
+    strain, tension, _ = curve_from_zero(line.strain, line.tension)
+    if part.mean_tension > tension[-1]:
+        return None
+    stiffness = part.apparent_stiffness
+    return StraightCycle(
+        float(np.interp(part.mean_tension, tension, strain)), part.mean_tension,
+        part.tension_amplitude / stiffness, stiffness,
+        part.hysteresis_energy_at(part.frequency, part.tension_amplitude), part.holds,
+    )  # fmt: skip
+
+
+def without_damping(line: ExportLine) -> str:
+    """What a form that has no damping leaves out; nothing where no cycle of the line is known."""
+    cycle = straight_cycle(line)
+    if cycle is None:
+        return ""
+    return (
+        f"no damping in this form: the hysteresis energy of a cycle, "
+        f"{plain_number(cycle.hysteresis_energy, 4)} J/m at {cycle.holds}, is NOT in it; K_ap is "
+        f"{plain_number(cycle.stiffness, 6)} N"
+    )
+
+
 def thin_curve(strain: ArrayLike, tension: ArrayLike, *, most: int) -> ThinnedCurve:
     """Choose few points of a curve so that straight lines between them stay close to it.
 

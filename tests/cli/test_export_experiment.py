@@ -55,6 +55,19 @@ def test_a_rope_of_ones_own_runs_in_moordyn_with_the_stiffness_of_its_law(
     found = complex(sine, cosine) * np.exp(-2j * np.pi / 200)
     assert abs(found) / stretch == pytest.approx(stiffness, rel=0.02)
     assert np.pi * stretch * found.imag == pytest.approx(energy, rel=0.05)
+    # beside what the campaign itself has there, which is what the deck promises
+    for name, value in (
+        ("K_ap", abs(found) / stretch), ("H", np.pi * stretch * found.imag),
+    ):  # fmt: skip
+        asked = command(
+            "lookup",
+            nylon_campaign.processed / "surfaces.nc",
+            "--quantity",
+            name,
+            *CENTRE,
+            "--json",
+        )
+        assert value == pytest.approx(json.loads(asked.stdout)["value"], rel=0.02)
 
 
 def test_the_archive_of_surfaces_is_the_same_line_as_its_folder(nylon_campaign, command, tmp_path):

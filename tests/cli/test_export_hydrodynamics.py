@@ -1,6 +1,7 @@
 """Options --drag and --added-mass of the export, as each format writes them."""
 
 import json
+import math
 import re
 
 import pytest
@@ -41,8 +42,16 @@ def test_a_deck_has_the_coefficients_and_their_source(export, to):
 
 def test_orcaflex_and_cable_have_them_as_their_grammar_is(export):
     text = export("orcaflex", *WATER)
-    assert "Cd: [1.6, ~, 0.02]" in text
+    # nominal 1/2 in; volume of 0.11 kg/m of polyester, 1380 kg/m3: Cd times diameter stays
+    volume, nominal = math.sqrt(4 * 0.11 / 1380 / math.pi), 0.0127
+    across, along = (float(value) for value in re.search(r"Cd: \[(\S+), ~, (\S+)\]", text).groups())
+    assert (across * nominal, along * nominal) == pytest.approx((1.6 * volume, 0.02 * volume))
+    for way in ("Normal", "Axial"):
+        (found,) = re.findall(rf"{way}DragLiftDiameter: (\S+)", text)
+        assert float(found) == pytest.approx(nominal)
+    assert float(re.search(r" OD: (\S+)", text)[1]) == pytest.approx(volume)
     assert "Ca: [0.9, ~, 0.1]" in text
+    assert f"is times {volume / nominal:.4g} here" in whole(text)
     assert SAID in whole(text)
     text = export("whoi-cable", *WATER)
     _, rows = cable_material(text)

@@ -5,7 +5,8 @@ import shutil
 
 import numpy as np
 import pytest
-from export_lines import constant, growing, line
+import yaml
+from export_lines import constant, growing, line, syrope
 
 from reduction.lines.client_runs import in_words, verify_deck
 from reduction.lines.deck_formats import export_line
@@ -17,6 +18,7 @@ NEEDED = {
     "moorpy": importlib.util.find_spec("moorpy"),
     "openfast": shutil.which("moordyn_driver"),
     "whoi-cable": shutil.which("cable"),
+    "raft": importlib.util.find_spec("raft"),
 }
 FREQUENCY, AMPLITUDE = 0.1, 0.5
 DASHPOT = 50.0
@@ -27,11 +29,14 @@ LINES = {
     "damped-table": line(damping=CycleDamping(DASHPOT, FREQUENCY, AMPLITUDE, LOST, 0.01 * LOST)),
     "static-dynamic": line(viscoelasticity=constant()),
     "load-dependent": line(viscoelasticity=growing()),
+    "syrope": line(syrope=syrope(fast_damping=2e3)),
+    "": line(damping=CycleDamping(DASHPOT, FREQUENCY, AMPLITUDE, LOST, 0.01 * LOST)),
     "library": line(viscoelasticity=growing(), rated_break_strength=5e4),
 }
 FORMS = [
     ("moordyn", "table"), ("moordyn", "damped-table"), ("moordyn", "static-dynamic"),
-    ("moordyn", "load-dependent"), ("moorpy", "table"), ("moorpy", "library"),
+    ("moordyn", "load-dependent"), ("moordyn", "syrope"), ("moorpy", "table"),
+    ("moorpy", "library"), ("raft", ""),
     ("openfast", "table"), ("openfast", "damped-table"), ("openfast", "static-dynamic"),
     ("whoi-cable", "expression"), ("whoi-cable", "table"),
 ]  # fmt: skip
@@ -47,7 +52,7 @@ def needs(to):
 def test_every_program_keeps_what_a_form_promises(tmp_path, to, form):
     needs(to)
     one = LINES[form]
-    paths = export_line(one, to, tmp_path / "deck.dat", form=form)
+    paths = export_line(one, to, tmp_path / "deck.dat", form=form or None)
     checks = verify_deck(one, to, form, paths)
     assert checks
     assert {check.quantity: round(check.error, 4) for check in checks if not check.is_kept} == {}
@@ -72,6 +77,46 @@ def test_the_promise_is_that_of_the_three_parameters(tmp_path):
     assert checks["K_ap"].promised == pytest.approx(abs(modulus), rel=2e-3)
     assert checks["H"].promised == pytest.approx(np.pi * amplitude**2 * modulus.imag, rel=5e-3)
     assert checks["tension"].promised == pytest.approx(part.static_stiffness * 0.1, rel=1e-3)
+
+
+def test_a_small_cycle_of_a_syrope_is_that_of_springs_in_series():
+    """EA_d in series with BA_s beside the spring that gives the slope of the working curve."""
+    one = syrope(k1=0.2)
+    top = float(np.interp(one.greatest_mean_tension, one.tension, one.strain))
+    slope = one.greatest_mean_tension / (0.8 * top)
+    fast = one.dynamic_stiffness + one.dynamic_stiffness_per_mean_tension * one.mean_tension
+    slow = 1 / (1 / slope - 1 / fast) + 2j * np.pi * 0.1 * one.slow_damping
+    expected = 1 / (1 / fast + 1 / slow)
+    assert one.about_mean.stiffness_at(0.1) == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_syrope_whose_stiffness_does_not_grow_starts_where_it_is_told_to(tmp_path):
+    """MoorDyn divides by the growth."""
+    needs("moordyn")
+    one = line(syrope=syrope(fast_damping=2e3, dynamic_stiffness_per_mean_tension=0.0))
+    paths = export_line(one, "moordyn", tmp_path / "deck.dat", form="syrope")
+    checks = verify_deck(one, "moordyn", "syrope", paths)
+    assert [one.quantity for one in checks if not one.is_kept] == []
+
+
+def test_a_line_for_raft_is_the_straight_one_through_the_turns(tmp_path):
+    """Tension over length, mass, volume and drag of the whole line are those of the cycle."""
+    one = LINES[""]
+    (path,) = export_line(one, "raft", tmp_path / "mooring.yaml")
+    mooring = yaml.safe_load(path.read_text())["mooring"]
+    (made,), (kind,) = mooring["lines"], mooring["line_types"]
+    strain = 1.5 - np.array([0.0, 2 * AMPLITUDE])
+    turns = np.interp(strain, one.strain, one.tension)
+    # the dashpot takes 1.5 % more than the turns here
+    rate = 2 * np.pi * FREQUENCY * AMPLITUDE * DASHPOT
+    found = kind["stiffness"] * (10 * (1 + strain) / made["length"] - 1)
+    assert float(found.mean()) == pytest.approx(float(turns.mean()), rel=1e-9)
+    assert np.hypot(np.ptp(turns) / 2, rate) == pytest.approx(np.ptp(found) / 2, rel=0.02)
+    assert kind["mass_density"] * made["length"] == pytest.approx(10 * one.linear_density)
+    assert kind["diameter"] ** 2 * made["length"] == pytest.approx(10 * one.diameter**2)
+    drag = kind["transverse_drag"] * kind["diameter"] * made["length"]
+    assert drag == pytest.approx(1.2 * one.diameter * 10)
+    assert f"{LOST:.4g} J/m, is NOT in it" in " ".join(path.read_text().replace("#", "").split())
 
 
 @pytest.mark.parametrize(("first", "factor"), [(3, 1.02), (-1, 0.9)])
@@ -100,6 +145,16 @@ def test_a_dashpot_that_is_a_tenth_off_is_found_by_its_energy(tmp_path):
     lost = [one.quantity for one in verify_deck(one, "moordyn", "damped-table", [table, deck])
             if not one.is_kept]  # fmt: skip
     assert lost == ["H"]
+
+
+@pytest.mark.parametrize(
+    ("to", "form"),
+    [("moordyn", "table"), ("moorpy", "table"), ("whoi-cable", "table"), ("orcaflex", None)],
+)
+def test_a_form_without_damping_says_how_much_is_left_out(tmp_path, to, form):
+    *_, deck = export_line(LINES["damped-table"], to, tmp_path / "deck.dat", form=form)
+    head = " ".join(deck.read_text().replace("#", "").replace("/*", "").replace("*/", "").split())
+    assert f"{LOST:.4g} J/m at {FREQUENCY:g} Hz, strain 1 +- {AMPLITUDE:g}, is NOT in it" in head
 
 
 def test_a_format_that_nothing_runs_is_refused(tmp_path):

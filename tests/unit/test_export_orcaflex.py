@@ -11,7 +11,7 @@ from reduction.record.errors import SettingsError
 
 KEYS = {
     "Name", "Category", "OD", "ID", "MassPerUnitLength", "EIx", "EIy", "EA", "GJ", "PoissonRatio",
-    "Cd", "Ca",
+    "Cd", "Ca", "NormalDragLiftDiameter", "AxialDragLiftDiameter",
 }  # fmt: skip
 
 

@@ -5,13 +5,15 @@ from export_lines import constant, line
 
 from reduction.lines.deck_formats import FORMATS, FORMS, WhoiCableForm, export_line
 from reduction.lines.deck_moordyn import MoorDynForm, MoorPyForm, OpenFastForm
+from reduction.lines.export_line import cycle_damping
 from reduction.record.errors import SettingsError
 
 
 @pytest.mark.parametrize("to", FORMATS)
 def test_the_file_that_was_asked_for_is_there_and_is_the_last(to, tmp_path):
     path = tmp_path / "my line.dat"
-    written = export_line(line(), to, path)
+    # a code with one stiffness takes that of a cycle
+    written = export_line(line(damping=cycle_damping(10.0, 0.1, 0.5)), to, path)
     assert written[-1] == path
     assert set(tmp_path.iterdir()) == set(written)
     assert all(" " not in one.name for one in written[:-1])
