@@ -11,7 +11,11 @@ from typing import Any, Literal, cast
 from reduction.cli.curves import deployed_line, is_of_pieces, piece_source, rule_of
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain
-from reduction.lines.archive_source import SURFACES, experiments_with_pulls
+from reduction.lines.archive_source import (
+    SURFACES,
+    experiments_with_pulls,
+    ropes_with_pulls,
+)
 from reduction.lines.client_runs import LIMITS, ClientCheck, in_words, verify_deck
 from reduction.lines.composite import compose
 from reduction.lines.deck_formats import FORMS, TABLES, closeness_of, export_line, export_table
@@ -369,9 +373,11 @@ def _line_of(
 ) -> ExportLine:
     """The line that SOURCE means: a published one, that of an archive, or a composite of tests."""
     surfaces = _surfaces_of(sources) if levels else None
-    if surfaces is not None:
+    is_folder = len(sources) == 1 and Path(sources[0]).is_dir()
+    if surfaces is not None or (levels and is_folder):
         chosen = {"--curve": curve, "--precedence": precedence}
-        return _of_experiment(surfaces, chosen, specimen, levels, extrapolate, stated)
+        path = surfaces or Path(sources[0])
+        return _of_levels(path, chosen, specimen, levels, extrapolate, stated)
     if is_of_pieces(sources):
         if levels:
             raise _levels_choose_nothing(levels, "several tests")
@@ -440,7 +446,7 @@ def _surfaces_of(sources: Sequence[str]) -> Path | None:
     )
 
 
-def _of_experiment(
+def _of_levels(
     path: Path,
     chosen: dict[str, str | None],
     specimen: str | None,
@@ -448,19 +454,19 @@ def _of_experiment(
     extrapolate: Literal["refuse", "flag"],
     stated: dict[str, Any],
 ) -> ExportLine:
-    """The line of an experiment: K_ap and H of its surfaces, K_0 and the curve of its slow pull."""
+    """A rope of a campaign: K_ap and H by its surfaces or levels, K_0 and curve by a slow pull."""
     given = [f"{name} {value}" for name, value in chosen.items() if value is not None]
     if given:
         raise SettingsError(
-            "the curve of an experiment is that of its slow pull", found=", ".join(given),
+            "the curve that goes with levels is that of the slow pull", found=", ".join(given),
             needed="levels without them",
         )  # fmt: skip
     _refuse_half_levels(str(path), levels)
-    lines = experiments_with_pulls(path)
+    lines = experiments_with_pulls(path) if path.name == SURFACES else ropes_with_pulls(path)
     found = [one for one in lines if specimen in (None, one.name, one.name.split(" ")[-1])]
     if len(found) != 1:
         raise SettingsError(
-            "which experiment is meant is not said" if found else f"there is no '{specimen}'",
+            "which line is meant is not said" if found else f"there is no '{specimen}'",
             found=str(path),
             needed="--specimen with one of " + ", ".join(f'"{one.name}"' for one in lines),
         )
@@ -516,5 +522,5 @@ def _levels_choose_nothing(levels: dict[str, str], where: str) -> SettingsError:
     return SettingsError(
         f"levels of a cycle choose nothing in {where}",
         found=", ".join(f"--{name.replace('_', '-')}" for name in levels),
-        needed="a published line, or a campaign with an experiment and a slow pull",
+        needed="a published line, or a campaign with cycles of a rope and a slow pull",
     )

@@ -318,6 +318,8 @@ def lookup(
     condition: Annotated[str | None, typer.Option(help='Search: "new", "5 years".')] = None,
     diameter: Annotated[str | None, typer.Option(help='Search: "0.5 in".')] = None,
     tolerance: Annotated[str | None, typer.Option(help='Of the diameter, "3 %" if unsaid.')] = None,
+    medium: Annotated[str | None, typer.Option(help='Tested in: "wet", "dry".')] = None,
+    temperature: Annotated[str | None, typer.Option(help='Tested at: "5 degC".')] = None,
     extrapolate: Annotated[
         Extrapolation, typer.Option(help="Outside what was tested.")
     ] = Extrapolation.REFUSE,
@@ -370,6 +372,11 @@ def lookup(
             extrapolate=extrapolate.value,
             grid=table,
             out=out,
+            conditions={
+                name: text
+                for name, text in (("medium", medium), ("temperature", temperature))
+                if text is not None
+            },
         )
         named = [source] if against is None else [source, against]
         with local_sources(named, allow_remote=allow_remote, output=output) as here:
