@@ -45,6 +45,7 @@ from reduction.stages.three_parameter_line.line_product import REASONS
 
 if TYPE_CHECKING:
     from reduction.lines.export_tables import ValueTable
+    from reduction.lines.population import PopulationValues
 
 _OF_CYCLES = (
     "apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant",
@@ -182,10 +183,10 @@ MOST_POINTS = 100_000
 class LookupRequest:
     """What is to be looked up: options as they were given.
 
-    ``levels`` are texts with units, by name; ``search`` what `find_lines` takes, ``conditions`` what
-    `in_conditions` does; ``name`` the line of SOURCE; ``grid`` whether a level may have several
-    values, and one that is not given its low, centre and high, or those of each test; ``out`` the
-    file of a table.
+    ``levels`` are texts with units, by name; ``search`` what `find_lines` takes, ``conditions``
+    what `in_conditions` does; ``name`` the line of SOURCE; ``grid`` whether a level may have
+    several values, and one that is not given its low, centre and high, or those of each test;
+    ``out`` the file of a table.
     """
 
     quantity: str
@@ -221,9 +222,9 @@ def _points_of(
 ) -> tuple[list[dict[str, Floats]], bool]:
     """Points at which lines are looked up, by level, and whether slack ones were left out."""
     lines = (line, *others)
-    rows = _tested_rows(wanted, line) if wanted.grid and not others else None
+    rows = _tested_rows(wanted, line) if wanted.grid else None
     if rows is not None:
-        return [rows], False
+        return [rows for _ in lines], False
     filled = _filled(wanted, lines) if wanted.grid else {}
     # in the order of the factors, whatever was said first
     names = list(dict.fromkeys([*filled, *wanted.levels]))
@@ -474,6 +475,93 @@ def look_up_values(source: str, wanted: LookupRequest, *, output: CommandOutput)
 
         files = _write_table(table_of_values(line, found, points), wanted.out, form, output)
     output.answer(_document(line, found, points, grid=wanted.grid) | {"files": files})
+
+
+def look_up_population(
+    source: str, wanted: LookupRequest, share: float, *, output: CommandOutput
+) -> None:
+    """Print the mean of all specimens of one kind, another specimen, and tolerance limits."""
+    from reduction.lines.population import population_values, specimens_of_kind
+
+    form = _form_of(wanted.out)
+    lines = find_lines(lines_of_source(source), **wanted.search)
+    having = [_in_conditions(line, wanted) for line in lines if wanted.quantity in line.quantities]
+    chosen = specimens_of_kind(having, wanted.quantity, wanted.name)
+    points, _ = _points_of(wanted, chosen[0], *chosen[1:])
+    every = [
+        look_up(line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **at)
+        for line, at in zip(chosen, points, strict=True)
+    ]
+    found = population_values(chosen, every, share)
+    values, kind = found.values, replace(chosen[0], name=f"{len(chosen)} specimens")
+    unit, factor = output.unit(values.unit)
+    output.say_each("warning", values.warnings)
+    output.say(f"{values.quantity} of {kind.name}; {values.source}")
+    if output.is_text:
+        output.show(_population_table(kind, found, points[0], unit, factor, output.system))
+    _said_of_lines(output, (kind, values))
+    files: list[str] = []
+    if wanted.out is not None and form is not None:
+        from reduction.lines.export_tables import table_of_population
+
+        files = _write_table(table_of_population(kind, found, points[0]), wanted.out, form, output)
+
+    def of(numbers: Any) -> Any:
+        shaped = np.atleast_1d(numbers).ravel()
+        return plain(shaped if wanted.grid else shaped[0])
+
+    output.answer(
+        _document(kind, values, points[0], grid=wanted.grid)
+        | {
+            "population": {
+                "specimens": dict(zip(found.specimens, map(of, found.of_specimens), strict=True)),
+                "standard_deviation": of(found.standard_deviation),
+                "share": found.share,
+                "confidence": found.confidence,
+                "one_sided_factor": found.one_sided_factor,
+                "two_sided_factor": found.two_sided_factor,
+                "lower_limit": of(found.lower),
+                "upper_limit": of(found.upper),
+                "two_sided_limits": [of(found.both_low), of(found.both_high)],
+                "shared_half_width": of(found.shared_half_width),
+            },
+            "files": files,
+        }
+    )
+
+
+def _population_table(
+    kind: LineSource,
+    found: PopulationValues,
+    points: Mapping[str, Floats],
+    unit: str,
+    factor: float,
+    system: UnitSystem,
+) -> Table:
+    values, share = found.values, f"{100 * found.share:g} %"
+    heads, levels = _shown_levels(points, kind.rated_break_strength, values.value.size, system)
+    table = table_of(
+        *heads, f"mean\n[{unit}]", "standard\ndeviation", "95 % of the mean\nof the kind",
+        "95 % of\nanother specimen", f"{share} are\nabove", f"{share} are\nbelow",
+        f"{share} are\nbetween", texts=0,
+    )  # fmt: skip
+    for place, numbers in enumerate(levels):
+
+        def of(numbers: Floats, place: int = place) -> float:
+            return float(numbers.ravel()[place])
+
+        half = factor * (of(values.kind_high) - of(values.kind_low)) / 2
+        table.add_row(
+            *numbers, within(factor * of(values.value), half),
+            short(factor * of(found.standard_deviation), 3),
+            _span(factor, of(values.kind_low), of(values.kind_high)),
+            _span(factor, of(values.line_low), of(values.line_high)),
+            # no stiffness, no energy is below zero
+            within(factor * of(found.lower), half) if of(found.lower) > 0 else "no limit",
+            within(factor * of(found.upper), half),
+            _span(factor, max(of(found.both_low), 0.0), of(found.both_high)),
+        )  # fmt: skip
+    return table
 
 
 def _in_conditions(line: LineSource, wanted: LookupRequest) -> LineSource:

@@ -318,6 +318,10 @@ def lookup(
     condition: Annotated[str | None, typer.Option(help='Search: "new", "5 years".')] = None,
     diameter: Annotated[str | None, typer.Option(help='Search: "0.5 in".')] = None,
     tolerance: Annotated[str | None, typer.Option(help='Of the diameter, "3 %" if unsaid.')] = None,
+    population: Annotated[
+        str | None,
+        typer.Option(help='All specimens as one line; limits of a share of the kind: "95 %".'),
+    ] = None,
     medium: Annotated[str | None, typer.Option(help='Tested in: "wet", "dry".')] = None,
     temperature: Annotated[str | None, typer.Option(help='Tested at: "5 degC".')] = None,
     extrapolate: Annotated[
@@ -344,11 +348,14 @@ def lookup(
             LookupRequest,
             list_sources,
             look_up_against,
+            look_up_population,
             look_up_values,
             name_of_quantity,
             parsed_search,
         )
         from reduction.cli.remote_paths import local_sources
+        from reduction.quantities.units import parse_quantity
+        from reduction.record.errors import SettingsError
 
         words = {"material": material, "construction": construction, "condition": condition}
         search = parsed_search(words, diameter, tolerance)
@@ -380,7 +387,15 @@ def lookup(
         )
         named = [source] if against is None else [source, against]
         with local_sources(named, allow_remote=allow_remote, output=output) as here:
-            if against is None:
+            if population is not None and against is not None:
+                raise SettingsError(
+                    "a population is not compared", found=f"--population with --against {against}",
+                    needed="one of them",
+                )  # fmt: skip
+            if population is not None:
+                share = parse_quantity(population, "number")
+                look_up_population(here[0], wanted, share, output=output)
+            elif against is None:
                 look_up_values(here[0], wanted, output=output)
             else:
                 look_up_against(here[0], here[1], wanted, output=output)
