@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, cast
 
+from reduction.archive.workbook import sheets_of_tables, write_workbook
 from reduction.cli.curves import deployed_line, is_of_pieces, piece_source, rule_of
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain
@@ -38,7 +39,7 @@ from reduction.lines.export_sources import (
 )
 from reduction.lines.export_tables import ValueTable
 from reduction.lines.published_source import published_sources
-from reduction.lines.surface_table import surface_table
+from reduction.lines.surface_table import printed_table, surface_table
 from reduction.quantities.units import Dimension, UnitSystem, parse_quantity
 from reduction.record.errors import DataError, SettingsError
 
@@ -222,9 +223,9 @@ class ExportRequest:
 
 @dataclass(frozen=True)
 class ExportedFiles:
-    """What an export wrote: a line, or a table of the coefficients of response surfaces."""
+    """What an export wrote: a line, the coefficients of response surfaces, or all tables."""
 
-    exported: ExportLine | ValueTable
+    exported: ExportLine | ValueTable | str
     paths: tuple[Path, ...]
     notes: tuple[str, ...] = ()
     checks: tuple[ClientCheck, ...] = ()
@@ -252,6 +253,9 @@ def write_export(request: ExportRequest) -> ExportedFiles:
     if not out.name:
         raise SettingsError("--out names no file", found=repr(str(out)), needed="a file")
     levels = {name: text for name in _LEVELS if (text := getattr(request, name)) is not None}
+    tables = Path(sources[0]) / "tables"
+    if to == "xlsx" and not levels and len(sources) == 1 and tables.is_dir():
+        return _written_workbook(tables, request)
     surfaces = _surfaces_of(sources) if to in TABLES else None
     if surfaces == Path(sources[0]) and not levels:
         return _written_surfaces(surfaces, request)
@@ -291,12 +295,31 @@ def write_export(request: ExportRequest) -> ExportedFiles:
 def _written_surfaces(path: Path, request: ExportRequest) -> ExportedFiles:
     """Write the coefficients of response surfaces as a table."""
     to, form = request.to, request.form
-    if form is not None:
-        raise SettingsError(f"{to} has no form '{form}'", found=form, needed=f"no --form with {to}")
-    units = "si" if to == "netcdf" else request.units
-    table = surface_table(path, specimen=request.specimen, units=units)
+    if form not in (None, "printed"):
+        raise SettingsError(
+            f"{to} of surfaces has no form '{form}'", found=form, needed="printed, or no --form"
+        )
+    if form == "printed":
+        table = printed_table(path, specimen=request.specimen)
+    else:
+        units = "si" if to == "netcdf" else request.units
+        table = surface_table(path, specimen=request.specimen, units=units)
     paths = export_table(table, to, request.out, units=request.units)
     return ExportedFiles(table, tuple(paths), tuple(table.notes))
+
+
+def _written_workbook(tables: Path, request: ExportRequest) -> ExportedFiles:
+    """Write the answer tables of a campaign as one workbook."""
+    if request.form is not None or request.specimen is not None:
+        raise SettingsError(
+            "a workbook has all tables of a campaign, as they are",
+            found=f"--form {request.form}" if request.form else f"--specimen {request.specimen}",
+            needed="neither",
+        )
+    sheets = sheets_of_tables(tables)
+    write_workbook(request.out, sheets)
+    what = f"answer tables of {tables.parent.name}: {len(sheets) - 2} tables, SI"
+    return ExportedFiles(what, (request.out,))
 
 
 def export_source(request: ExportRequest, *, output: CommandOutput) -> None:
@@ -305,24 +328,31 @@ def export_source(request: ExportRequest, *, output: CommandOutput) -> None:
     there = set(folder.iterdir()) if folder.is_dir() else set()
     done = write_export(request)
     what = done.exported
-    output.say(f"{what.name}: {what.curve}" if isinstance(what, ExportLine) else what.title)
-    for text in (*what.sources, *(f"note: {note}" for note in done.notes)):
+    sources = () if isinstance(what, str) else what.sources
+    if isinstance(what, ExportLine):
+        output.say(f"{what.name}: {what.curve}")
+    else:
+        output.say(what.title if isinstance(what, ValueTable) else what)
+    for text in (*sources, *(f"note: {note}" for note in done.notes)):
         output.say(f"  {text}")
     for path in done.paths:
         output.say(f"{'written over' if path in there else 'written'}: {path}")
     if not all(one.is_kept for one in done.checks):
         output.raise_status(DataError.exit_status)
+    document: dict[str, Any] = {}
+    if isinstance(what, ExportLine):
+        document = _line_document(what, request, done)
+    elif isinstance(what, ValueTable):
+        document = {"title": what.title, "rows": int(what.columns[0].values.size)}
+    else:
+        document = {"title": what}
     output.answer(
         {
             "format": request.to,
             "files": [str(path) for path in done.paths],
-            "sources": list(what.sources),
-            "synthetic": what.is_synthetic,
-            **(
-                _line_document(what, request, done)
-                if isinstance(what, ExportLine)
-                else {"title": what.title, "rows": int(what.columns[0].values.size)}
-            ),
+            "sources": list(sources),
+            "synthetic": None if isinstance(what, str) else what.is_synthetic,
+            **document,
         }
     )
 

@@ -333,7 +333,8 @@ def lookup(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Write the values: FILE.csv, .json, .tex, .md or .nc.", callback=written_here
+            help="Write the values: FILE.csv, .json, .tex, .md, .nc or .xlsx.",
+            callback=written_here,
         ),
     ] = None,
     what_there_is: Annotated[bool, typer.Option("--list", help="What SOURCE holds.")] = False,
@@ -492,7 +493,7 @@ def export(
         str,
         typer.Option(
             "--to",
-            help="csv, json, latex, markdown, netcdf, moordyn, moorpy, openfast, orcaflex, "
+            help="csv, json, latex, markdown, netcdf, xlsx, moordyn, moorpy, openfast, orcaflex, "
             "whoi-cable or abaqus.",
             show_default=False,
         ),

@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reduction import __version__
 from reduction.archive.atomic_write import atomic_file
+from reduction.archive.workbook import Cell, Sheet
 from reduction.lines.deck_text import number
 from reduction.lines.export_line import CurveSpread, ExportLine, curve_from_zero, range_of
 from reduction.lines.line_search import LineDifference
@@ -255,12 +256,29 @@ def _as_markdown(text: str) -> str:
     return re.sub(r"[\\`|]|\](?=\()", lambda sign: "\\" + sign[0], plain)
 
 
+def sheets_of_table(table: ValueTable, *, units: UnitSystem = "si") -> list[Sheet]:
+    """A table as the sheets of a workbook: its values, and what they are."""
+    heads, columns = [], []
+    for column in table.columns:
+        unit, factor = display_unit(column.unit, units) if column.unit else ("", 1.0)
+        heads.append(f"{column.name} [{unit}]" if unit else column.name)
+        columns.append([_plain(value, factor) for value in column.values.tolist()])
+    about: list[tuple[Cell, ...]] = [("title", table.title)]
+    about += [("", text) for text in _said(table)]
+    about += [(head, column.meaning) for head, column in zip(heads, table.columns, strict=True)]
+    return [
+        Sheet("values", heads, [list(row) for row in zip(*columns, strict=True)]),
+        Sheet("about", ("what", "meaning"), about),
+    ]
+
+
 _OF_SUFFIX = {
     ".csv": "csv",
     ".json": "json",
     ".tex": "latex",
     ".md": "markdown",
     ".nc": "netcdf",
+    ".xlsx": "xlsx",
 }
 
 _PERCENT = "percent_of_break_strength"
