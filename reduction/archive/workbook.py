@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -48,7 +49,7 @@ def write_workbook(path: Path, sheets: Iterable[Sheet]) -> None:
         If a table has more rows than a sheet, or the disk refuses.
     """
     try:
-        from xlsxwriter import Workbook  # type: ignore[import-untyped]
+        library = import_module("xlsxwriter")
     except ImportError:
         raise SettingsError(
             "xlsx is written by XlsxWriter, which is not installed", found="no module xlsxwriter",
@@ -57,7 +58,7 @@ def write_workbook(path: Path, sheets: Iterable[Sheet]) -> None:
     taken: set[str] = set()
     try:
         with atomic_file(path) as part:
-            book = Workbook(str(part), {"in_memory": True})
+            book = library.Workbook(str(part), {"in_memory": True})
             book.set_properties({"created": _MADE})
             bold = book.add_format({"bold": True, "text_wrap": True, "valign": "top"})
             quoted = book.add_format({"quote_prefix": True})

@@ -564,6 +564,95 @@ def _population_table(
     return table
 
 
+def look_up_ranked(source: str, wanted: LookupRequest, *, output: CommandOutput) -> None:
+    """Print lines in the order of a quantity at one load, ties marked."""
+    from reduction.lines.line_rank import outside_words, rank_lines
+
+    lines = [
+        _in_conditions(line, wanted)
+        for line in find_lines(lines_of_source(source), **wanted.search)
+        if wanted.quantity in line.quantities and wanted.name in (None, line.name)
+    ]
+    if not lines:
+        raise SettingsError(f"no line has {wanted.quantity}", found=source, needed="two or more")
+    points = [
+        {name: float(_numbers(name, text, line)[0]) for name, text in wanted.levels.items()}
+        for line in lines
+    ]
+    found = rank_lines(
+        lines, wanted.quantity, points, branch=wanted.branch, extrapolate=wanted.extrapolate
+    )
+    unit, factor = output.unit(quantity_of(wanted.quantity).unit)
+    size, per_metre = ("in", 1 / 0.0254) if output.units == "us" else ("mm", 1e3)
+    place = {one.line.name: number for number, one in enumerate(found.ranked, start=1)}
+    table = table_of(
+        "rank", "line", f"diameter\n[{size}]", f"value\n[{unit}]", "95 % of\nthese lines",
+        "95 % of\nanother line", "ties with\n(these lines)", "ties with\n(another line)", "remark",
+        texts=2,
+    )  # fmt: skip
+    _fold_last(table)
+    said = {}
+    for one in found.ranked:
+        values = one.values
+        half = factor * float(values.surface_high - values.surface_low) / 2
+        beyond = "; ".join(
+            outside_words(out, *_shown(out.name, output.system)) for out in one.outside
+        )
+        remarks = [beyond, *(_remarks(values, 0) if not beyond else _remarks(values, 0)[1:])]
+        said[one.line.name] = "; ".join(text for text in remarks if text)
+        table.add_row(
+            f"{place[one.line.name]}{'=' if one.ties else ''}", one.line.name,
+            short(per_metre * one.line.diameter, 4), within(factor * float(values.value), half),
+            *(_span(factor, float(low), float(high)) for low, high in (
+                (values.surface_low, values.surface_high), (values.line_low, values.line_high),
+            )),
+            *("no interval" if names is None else
+              ", ".join(str(place[name]) for name in names) or "none"
+              for names in (one.ties, one.kind_ties)),
+            said[one.line.name] or "-",
+        )  # fmt: skip
+    output.say(f"{wanted.quantity}, from the least to the greatest")
+    output.show(table)
+    for name, why in found.left_out:
+        output.say(f"not ranked: {name}: {why}")
+    for erratum in found.errata:
+        output.say(
+            f"erratum {erratum.id}: {erratum.place} prints the other way ({erratum.printed}); it "
+            f"is {erratum.corrected}"
+        )
+    output.say("a tie: the 95 % intervals overlap, and the order may be the other one")
+    output.answer(
+        {
+            "quantity": wanted.quantity,
+            "unit": quantity_of(wanted.quantity).unit,
+            "ranked": [
+                {
+                    "rank": place[one.line.name],
+                    "line": one.line.name,
+                    "diameter": plain(one.line.diameter),
+                    "levels": at,
+                    "value": plain(float(one.values.value)),
+                    "interval": [
+                        plain(float(one.values.surface_low)), plain(float(one.values.surface_high)),
+                    ],
+                    "line_interval": [
+                        plain(float(one.values.line_low)), plain(float(one.values.line_high)),
+                    ],
+                    "ties": list(one.ties),
+                    "line_ties": None if one.kind_ties is None else list(one.kind_ties),
+                    "inside": bool(one.values.is_inside.all()),
+                    "remark": said[one.line.name],
+                    "source": one.values.source,
+                }
+                for one in found.ranked
+                for at in [points[lines.index(one.line)]]
+            ],
+            "left_out": dict(found.left_out),
+            "errata": [one.id for one in found.errata],
+        }
+    )  # fmt: skip
+
+
 def _in_conditions(line: LineSource, wanted: LookupRequest) -> LineSource:
     return in_conditions(
         line, wanted.quantity, wanted.conditions, is_flagged=wanted.extrapolate == "flag"

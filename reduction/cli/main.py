@@ -322,6 +322,9 @@ def lookup(
         str | None,
         typer.Option(help='All specimens as one line; limits of a share of the kind: "95 %".'),
     ] = None,
+    rank: Annotated[
+        bool, typer.Option("--rank", help="All lines in order at one load, ties marked.")
+    ] = False,
     medium: Annotated[str | None, typer.Option(help='Tested in: "wet", "dry".')] = None,
     temperature: Annotated[str | None, typer.Option(help='Tested at: "5 degC".')] = None,
     extrapolate: Annotated[
@@ -350,6 +353,7 @@ def lookup(
             list_sources,
             look_up_against,
             look_up_population,
+            look_up_ranked,
             look_up_values,
             name_of_quantity,
             parsed_search,
@@ -388,12 +392,17 @@ def lookup(
         )
         named = [source] if against is None else [source, against]
         with local_sources(named, allow_remote=allow_remote, output=output) as here:
-            if population is not None and against is not None:
+            ways = {"--population": population, "--against": against, "--rank": rank or None}
+            asked = [name for name, said in ways.items() if said is not None]
+            if len(asked) > 1 or (rank and (table or out is not None)):
                 raise SettingsError(
-                    "a population is not compared", found=f"--population with --against {against}",
-                    needed="one of them",
-                )  # fmt: skip
-            if population is not None:
+                    "a look-up has one way to put lines together",
+                    found=" and ".join([*asked, *(["--table or --out"] if rank else [])]),
+                    needed="one of them, and of --rank a single load on the screen",
+                )
+            if rank:
+                look_up_ranked(here[0], wanted, output=output)
+            elif population is not None:
                 share = parse_quantity(population, "number")
                 look_up_population(here[0], wanted, share, output=output)
             elif against is None:

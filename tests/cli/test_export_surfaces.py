@@ -166,7 +166,7 @@ def test_a_workbook_has_every_table_with_units_and_numbers_as_numbers(command, a
         place = own.index(column)
         for row, as_text in zip(rows, wanted, strict=True):
             if isinstance(row[place], float):
-                assert row[place] == float(as_text[place])
+                assert row[place] == pytest.approx(float(as_text[place]), rel=1e-14)
             else:
                 assert row[place] == as_text[place]
         assert isinstance(rows[0][place], str if column == "test" else float)
