@@ -210,6 +210,10 @@ def experiment(
 def surface(
     runs: Annotated[Path, typer.Argument(metavar="RUNS.csv", show_default=False, callback=here)],
     spec: OptionalSpecPath = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Write tables and a page with figures here.", callback=written_here),
+    ] = None,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
@@ -218,7 +222,7 @@ def surface(
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.experiments import fit_runs
 
-        fit_runs(runs, spec, output=output)
+        fit_runs(runs, spec, out=out, output=output)
 
 
 class PredictionName(StrEnum):
