@@ -17,7 +17,15 @@ from reduction.record.measurement import Floats
 from reduction.report.figure_data import Figure, Trace, axis, line, make_figure, plain_numbers
 from reduction.report.single_pages import write_single_page
 from reduction.report.test_section import Part, make_part
-from reduction.report.text_style import COLOURS, PageTable, TableCell, make_table, number, words
+from reduction.report.text_style import (
+    COLOURS,
+    PageTable,
+    TableCell,
+    count,
+    make_table,
+    number,
+    words,
+)
 
 _POINTS = 31
 
@@ -128,7 +136,7 @@ def _part(
     unit, factor = display_unit(runs.response_units[index] or "1", units)
     scale = factor if transform == "none" else 1.0
     fitted_in = unit if transform == "none" else transform
-    label = f"{name} [{unit}]"
+    label = f"{name} [{unit}]" if runs.response_units[index] else name
     columns = (
         scale * surfaces.coefficient[index],
         scale * surfaces.coefficient_standard_uncertainty[index],
@@ -140,12 +148,19 @@ def _part(
         [words(one), words(term), *(number(float(column[place])) for column in columns)]
         for place, (one, term) in enumerate(named)
     ]
-    squared = (1.0, scale**2, scale**2, 1.0, 1.0)
+    freedom, *others = _columns(surfaces.anova)
+    squared = (scale**2, scale**2, 1.0, 1.0)
     rows: list[list[TableCell]] = [
-        [words(source), *(number(by * float(one[index][place]))
-                          for one, by in zip(_columns(surfaces.anova), squared, strict=True))]
+        [
+            words(source),
+            count(float(freedom[index][place])),
+            *(
+                number(by * float(one[index][place]))
+                for one, by in zip(others, squared, strict=True)
+            ),
+        ]
         for place, source in enumerate(surfaces.anova.source)
-    ]  # fmt: skip
+    ]
     tables: list[PageTable] = [
         make_table(
             f"Coefficients of {name}, of coded levels [{fitted_in}]; r2"
