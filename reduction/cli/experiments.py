@@ -627,12 +627,19 @@ _NEAR_A_LEVEL = 0.1
 """Coded distance from -1 or 1 at which a level of a screening is still that level."""
 
 
-def fit_runs(path: Path, spec_path: Path | None, *, output: CommandOutput) -> None:
-    """Fit what SPEC.toml asks for to a table of runs, and print it."""
+def fit_runs(
+    path: Path, spec_path: Path | None, *, out: Path | None, output: CommandOutput
+) -> None:
+    """Fit what SPEC.toml asks for to a table of runs, and print it; with ``out``, write it too."""
     spec = None if spec_path is None else load_spec(spec_path)
     runs = read_runs(path, spec)
     with at_place(f"{path}: "):
         if spec is not None and spec.keys.kind == "plackett-burman":
+            if out is not None:
+                raise SettingsError(
+                    "effects of a screening are printed alone", found=f"--out {out}",
+                    needed="--json, which has all of them",
+                )  # fmt: skip
             effects, notes = _screen(runs)
             _show_effects(effects, runs, notes, output)
             output.answer(_frame(runs, notes) | _effects_document(effects, runs))
@@ -645,7 +652,20 @@ def fit_runs(path: Path, spec_path: Path | None, *, output: CommandOutput) -> No
         name: _surface_document(surfaces, index, runs, drift)
         for index, name in enumerate(surfaces.response_names)
     }
-    output.answer(_frame(runs, notes) | {"fit": "quadratic", "responses": documents})
+    files: list[Path] = []
+    if out is not None:
+        # brings the page, which an answer on the screen does without
+        from reduction.report.surface_page import write_surfaces
+
+        files = write_surfaces(
+            surfaces, runs, out, name=path.stem, notes=notes, units=output.system
+        )
+        for one in files:
+            output.say(f"written: {one}")
+    output.answer(
+        _frame(runs, notes)
+        | {"fit": "quadratic", "responses": documents, "files": [str(one) for one in files]}
+    )
 
 
 def notes_of_fit(runs: RunSeries, surfaces: ResponseSurfaces) -> tuple[str, ...]:

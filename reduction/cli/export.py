@@ -8,10 +8,15 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, cast
 
+from reduction.archive.workbook import sheets_of_tables, write_workbook
 from reduction.cli.curves import deployed_line, is_of_pieces, piece_source, rule_of
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain
-from reduction.lines.archive_source import SURFACES, experiments_with_pulls
+from reduction.lines.archive_source import (
+    SURFACES,
+    experiments_with_pulls,
+    ropes_with_pulls,
+)
 from reduction.lines.client_runs import LIMITS, ClientCheck, in_words, verify_deck
 from reduction.lines.composite import compose
 from reduction.lines.deck_formats import FORMS, TABLES, closeness_of, export_line, export_table
@@ -34,7 +39,7 @@ from reduction.lines.export_sources import (
 )
 from reduction.lines.export_tables import ValueTable
 from reduction.lines.published_source import published_sources
-from reduction.lines.surface_table import surface_table
+from reduction.lines.surface_table import printed_table, surface_table
 from reduction.quantities.digits import plain_number
 from reduction.quantities.units import Dimension, UnitSystem, parse_quantity
 from reduction.record.errors import DataError, SettingsError
@@ -219,9 +224,9 @@ class ExportRequest:
 
 @dataclass(frozen=True)
 class ExportedFiles:
-    """What an export wrote: a line, or a table of the coefficients of response surfaces."""
+    """What an export wrote: a line, the coefficients of response surfaces, or all tables."""
 
-    exported: ExportLine | ValueTable
+    exported: ExportLine | ValueTable | str
     paths: tuple[Path, ...]
     notes: tuple[str, ...] = ()
     checks: tuple[ClientCheck, ...] = ()
@@ -249,6 +254,9 @@ def write_export(request: ExportRequest) -> ExportedFiles:
     if not out.name:
         raise SettingsError("--out names no file", found=repr(str(out)), needed="a file")
     levels = {name: text for name in _LEVELS if (text := getattr(request, name)) is not None}
+    tables = Path(sources[0]) / "tables"
+    if to == "xlsx" and not levels and len(sources) == 1 and tables.is_dir():
+        return _written_workbook(tables, request)
     surfaces = _surfaces_of(sources) if to in TABLES else None
     if surfaces == Path(sources[0]) and not levels:
         return _written_surfaces(surfaces, request)
@@ -324,12 +332,31 @@ def _stiffness_said(request: ExportRequest) -> tuple[str, ...]:
 def _written_surfaces(path: Path, request: ExportRequest) -> ExportedFiles:
     """Write the coefficients of response surfaces as a table."""
     to, form = request.to, request.form
-    if form is not None:
-        raise SettingsError(f"{to} has no form '{form}'", found=form, needed=f"no --form with {to}")
-    units = "si" if to == "netcdf" else request.units
-    table = surface_table(path, specimen=request.specimen, units=units)
+    if form not in (None, "printed"):
+        raise SettingsError(
+            f"{to} of surfaces has no form '{form}'", found=form, needed="printed, or no --form"
+        )
+    if form == "printed":
+        table = printed_table(path, specimen=request.specimen)
+    else:
+        units = "si" if to == "netcdf" else request.units
+        table = surface_table(path, specimen=request.specimen, units=units)
     paths = export_table(table, to, request.out, units=request.units)
     return ExportedFiles(table, tuple(paths), tuple(table.notes))
+
+
+def _written_workbook(tables: Path, request: ExportRequest) -> ExportedFiles:
+    """Write the answer tables of a campaign as one workbook."""
+    if request.form is not None or request.specimen is not None:
+        raise SettingsError(
+            "a workbook has all tables of a campaign, as they are",
+            found=f"--form {request.form}" if request.form else f"--specimen {request.specimen}",
+            needed="neither",
+        )
+    sheets = sheets_of_tables(tables)
+    write_workbook(request.out, sheets)
+    what = f"answer tables of {tables.parent.name}: {len(sheets) - 2} tables, SI"
+    return ExportedFiles(what, (request.out,))
 
 
 def export_source(request: ExportRequest, *, output: CommandOutput) -> None:
@@ -338,24 +365,31 @@ def export_source(request: ExportRequest, *, output: CommandOutput) -> None:
     there = set(folder.iterdir()) if folder.is_dir() else set()
     done = write_export(request)
     what = done.exported
-    output.say(f"{what.name}: {what.curve}" if isinstance(what, ExportLine) else what.title)
-    for text in (*what.sources, *(f"note: {note}" for note in done.notes)):
+    sources = () if isinstance(what, str) else what.sources
+    if isinstance(what, ExportLine):
+        output.say(f"{what.name}: {what.curve}")
+    else:
+        output.say(what.title if isinstance(what, ValueTable) else what)
+    for text in (*sources, *(f"note: {note}" for note in done.notes)):
         output.say(f"  {text}")
     for path in done.paths:
         output.say(f"{'written over' if path in there else 'written'}: {path}")
     if not all(one.is_kept for one in done.checks):
         output.raise_status(DataError.exit_status)
+    document: dict[str, Any] = {}
+    if isinstance(what, ExportLine):
+        document = _line_document(what, request, done)
+    elif isinstance(what, ValueTable):
+        document = {"title": what.title, "rows": int(what.columns[0].values.size)}
+    else:
+        document = {"title": what}
     output.answer(
         {
             "format": request.to,
             "files": [str(path) for path in done.paths],
-            "sources": list(what.sources),
-            "synthetic": what.is_synthetic,
-            **(
-                _line_document(what, request, done)
-                if isinstance(what, ExportLine)
-                else {"title": what.title, "rows": int(what.columns[0].values.size)}
-            ),
+            "sources": list(sources),
+            "synthetic": None if isinstance(what, str) else what.is_synthetic,
+            **document,
         }
     )
 
@@ -406,9 +440,11 @@ def _line_of(
 ) -> ExportLine:
     """The line that SOURCE means: a published one, that of an archive, or a composite of tests."""
     surfaces = _surfaces_of(sources) if levels else None
-    if surfaces is not None:
+    is_folder = len(sources) == 1 and Path(sources[0]).is_dir()
+    if surfaces is not None or (levels and is_folder):
         chosen = {"--curve": curve, "--precedence": precedence}
-        return _of_experiment(surfaces, chosen, specimen, levels, extrapolate, stated)
+        path = surfaces or Path(sources[0])
+        return _of_levels(path, chosen, specimen, levels, extrapolate, stated)
     if is_of_pieces(sources):
         if levels:
             raise _levels_choose_nothing(levels, "several tests")
@@ -477,7 +513,7 @@ def _surfaces_of(sources: Sequence[str]) -> Path | None:
     )
 
 
-def _of_experiment(
+def _of_levels(
     path: Path,
     chosen: dict[str, str | None],
     specimen: str | None,
@@ -485,19 +521,19 @@ def _of_experiment(
     extrapolate: Literal["refuse", "flag"],
     stated: dict[str, Any],
 ) -> ExportLine:
-    """The line of an experiment: K_ap and H of its surfaces, K_0 and the curve of its slow pull."""
+    """A rope of a campaign: K_ap and H by its surfaces or levels, K_0 and curve by a slow pull."""
     given = [f"{name} {value}" for name, value in chosen.items() if value is not None]
     if given:
         raise SettingsError(
-            "the curve of an experiment is that of its slow pull", found=", ".join(given),
+            "the curve that goes with levels is that of the slow pull", found=", ".join(given),
             needed="levels without them",
         )  # fmt: skip
     _refuse_half_levels(str(path), levels)
-    lines = experiments_with_pulls(path)
+    lines = experiments_with_pulls(path) if path.name == SURFACES else ropes_with_pulls(path)
     found = [one for one in lines if specimen in (None, one.name, one.name.split(" ")[-1])]
     if len(found) != 1:
         raise SettingsError(
-            "which experiment is meant is not said" if found else f"there is no '{specimen}'",
+            "which line is meant is not said" if found else f"there is no '{specimen}'",
             found=str(path),
             needed="--specimen with one of " + ", ".join(f'"{one.name}"' for one in lines),
         )
@@ -553,5 +589,5 @@ def _levels_choose_nothing(levels: dict[str, str], where: str) -> SettingsError:
     return SettingsError(
         f"levels of a cycle choose nothing in {where}",
         found=", ".join(f"--{name.replace('_', '-')}" for name in levels),
-        needed="a published line, or a campaign with an experiment and a slow pull",
+        needed="a published line, or a campaign with cycles of a rope and a slow pull",
     )

@@ -24,9 +24,16 @@ from reduction.lines.line_consistency import (
     refitted_surfaces,
 )
 from reduction.lines.line_curve import evaluate_curve
+from reduction.lines.line_levels import SAME_LEVEL, levels_of_tests
 from reduction.lines.line_lookup import Branch, look_up
-from reduction.lines.line_search import LineDifference, compare_values, find_lines
-from reduction.lines.lookup_product import TENSIONS, DesignValues, LineSource
+from reduction.lines.line_search import (
+    LineDifference,
+    compare_values,
+    conditions_of,
+    find_lines,
+    in_conditions,
+)
+from reduction.lines.lookup_product import TENSIONS, DesignValues, LineLevels, LineSource
 from reduction.lines.published_source import published_sources
 from reduction.lines.tether_comparison import compared_tethers
 from reduction.quantities.names import SINGLE_QUANTITIES
@@ -38,14 +45,16 @@ from reduction.stages.three_parameter_line.line_product import REASONS
 
 if TYPE_CHECKING:
     from reduction.lines.export_tables import ValueTable
+    from reduction.lines.population import PopulationValues
 
 _OF_CYCLES = (
     "apparent_spring_constant", "hysteresis_energy", "quasi_static_spring_constant",
     "dissipation_spring_constant", "relaxation_time", "dashpot_coefficient",
 )  # fmt: skip
 
-# tension along a curve over strain is kept by the name of its branches
-_OF_CURVES = {"tension": "branch_tension"}
+# tension along a curve over strain is kept by the name of its branches; rope programmes call K_ap
+# dynamic stiffness
+_BY_WORDS = {"tension": "branch_tension", "dynamicstiffness": "apparent_spring_constant"}
 
 _ENDINGS = (".nc", ".toml", ".csv")
 
@@ -58,11 +67,7 @@ def lines_of_source(source: str) -> list[LineSource]:
     if source in published:
         return [published[source]]
     # xarray and the archive, which published lines do without, are half of the time of a look-up
-    from reduction.lines.archive_source import (
-        archives_of_lines,
-        lines_of_archive,
-        with_unique_names,
-    )
+    from reduction.lines.archive_source import lines_of_archive, lines_of_folder
 
     path = Path(source)
     if path.is_file():
@@ -74,9 +79,7 @@ def lines_of_source(source: str) -> list[LineSource]:
             )  # fmt: skip
         return lines
     if path.is_dir():
-        lines = with_unique_names(
-            [(one.stem, lines_of_archive(one)) for one in archives_of_lines(path)]
-        )
+        lines = lines_of_folder(path)
         if lines:
             return lines
     if _is_path(source):
@@ -96,13 +99,13 @@ def name_of_quantity(text: str) -> str:
 
     Examples
     --------
-    >>> [name_of_quantity(text) for text in ("K_ap", "tension", "loss_factor")]
-    ['apparent_spring_constant', 'branch_tension', 'loss_factor']
+    >>> [name_of_quantity(text) for text in ("K_ap", "tension", "dynamic_stiffness", "loss_factor")]
+    ['apparent_spring_constant', 'branch_tension', 'apparent_spring_constant', 'loss_factor']
     """
     symbols = {
         SINGLE_QUANTITIES[name].source.split(",")[0].split()[-1].replace("_", ""): name
         for name in _OF_CYCLES
-    } | _OF_CURVES
+    } | _BY_WORDS
     return symbols.get(text.replace("_", ""), text)
 
 
@@ -142,6 +145,10 @@ def one_line_of(lines: Sequence[LineSource], quantity: str, name: str | None) ->
             hint=f'Such as `--line "{lines[0].name}"`.',
         )
     having = [line for line in named if quantity in line.quantities]
+    if not having and name is not None:
+        # a rope is called by its specimen, and so are its tests
+        parts = [line for line in lines if name in (line.name.split(" ")[-1], *line.specimens)]
+        having = [line for line in parts if quantity in line.quantities]
     if not having and len(named) > 1:
         raise SettingsError(
             f"none of {len(named)} lines has {quantity}",
@@ -176,9 +183,10 @@ MOST_POINTS = 100_000
 class LookupRequest:
     """What is to be looked up: options as they were given.
 
-    ``levels`` are texts with units, by name; ``search`` what `find_lines` takes; ``name`` the line
-    of SOURCE; ``grid`` whether a level may have several values, and one that is not given its
-    low, centre and high; ``out`` the file of a table.
+    ``levels`` are texts with units, by name; ``search`` what `find_lines` takes, ``conditions``
+    what `in_conditions` does; ``name`` the line of SOURCE; ``grid`` whether a level may have
+    several values, and one that is not given its low, centre and high, or those of each test;
+    ``out`` the file of a table.
     """
 
     quantity: str
@@ -189,6 +197,7 @@ class LookupRequest:
     extrapolate: Literal["refuse", "flag"] = "refuse"
     grid: bool = False
     out: Path | None = None
+    conditions: Mapping[str, str] = field(default_factory=dict)
 
 
 def parsed_search(
@@ -213,6 +222,9 @@ def _points_of(
 ) -> tuple[list[dict[str, Floats]], bool]:
     """Points at which lines are looked up, by level, and whether slack ones were left out."""
     lines = (line, *others)
+    rows = _tested_rows(wanted, line) if wanted.grid else None
+    if rows is not None:
+        return [rows for _ in lines], False
     filled = _filled(wanted, lines) if wanted.grid else {}
     # in the order of the factors, whatever was said first
     names = list(dict.fromkeys([*filled, *wanted.levels]))
@@ -246,6 +258,29 @@ def _points_of(
         )
     kept = [{name: values[taut] for name, values in at.items()} for at in points]
     return kept, not taut.all()
+
+
+def _tested_rows(wanted: LookupRequest, line: LineSource) -> dict[str, Floats] | None:
+    """Levels of single tests, those that differ; of those that are asked for where some are."""
+    levels = _levels_of(line, wanted.quantity)
+    if levels is None:
+        return None
+    at = np.stack([one for one, _ in levels_of_tests(levels)])
+    for place, name in enumerate(levels.variables):
+        if name in wanted.levels:
+            asked = _numbers(name, wanted.levels[name], line)
+            near = np.abs(at[:, place, None] - asked) <= SAME_LEVEL * np.abs(asked)
+            at = at[near.any(axis=1)]
+    if not len(at):
+        return None
+    return {name: at[:, place].copy() for place, name in enumerate(levels.variables)}
+
+
+def _levels_of(line: LineSource, quantity: str) -> LineLevels | None:
+    """Tests at single levels that a look-up of the quantity is made from."""
+    if quantity in line.surfaces or any(one.quantity == quantity for one in line.curves):
+        return None
+    return next((one for one in line.levels if one.quantity == quantity), None)
 
 
 def _filled(wanted: LookupRequest, lines: Sequence[LineSource]) -> dict[str, Floats]:
@@ -325,7 +360,33 @@ def list_sources(source: str, search: Mapping[str, Any], *, output: CommandOutpu
             ", ".join(line.quantities),
         )  # fmt: skip
     output.show(table)
+    for line in lines:
+        if len(line.levels) and len(line.levels[0].tests) > 1:
+            _show_levels(line, output)
     output.answer({"lines": [_described(line) for line in lines]})
+
+
+def _show_levels(line: LineSource, output: CommandOutput) -> None:
+    """Levels at which a rope was tested, by test, with EA."""
+    levels = line.levels[0]
+    of, factor = output.unit(quantity_of(levels.quantity).unit)
+    points = {name: levels.at[:, place] for place, name in enumerate(levels.variables)}
+    heads, cells = _shown_levels(
+        points, line.rated_break_strength, len(levels.tests), output.system
+    )
+    keys = list(dict.fromkeys(key for one in levels.conditions for key in one))
+    table = table_of(
+        "test", *heads, f"{levels.quantity.replace('_', ' ')}\n[{of}]", "\n[MBL]", *keys,
+        title=f"Levels of {line.name}, each known where it was tested and between two of them",
+    )  # fmt: skip
+    for place, test in enumerate(levels.tests):
+        value = float(levels.value[place])
+        table.add_row(
+            test, *cells[place], short(factor * value),
+            short(value / line.rated_break_strength, 3),
+            *(levels.conditions[place].get(key, "-") for key in keys),
+        )  # fmt: skip
+    output.show(table)
 
 
 def _described(line: LineSource) -> dict[str, Any]:
@@ -370,8 +431,24 @@ def _described(line: LineSource) -> dict[str, Any]:
         ],
         "range_units": {
             name: quantity_of(name).unit
-            for name in (*line.factor_names, *(curve.variable for curve in line.curves))
+            for name in (
+                *line.factor_names,
+                *(curve.variable for curve in line.curves),
+                *(name for one in line.levels for name in one.variables),
+            )
         },
+        "levels": [
+            {
+                "quantity": one.quantity,
+                "unit": quantity_of(one.quantity).unit,
+                "tests": list(one.tests),
+                **{name: plain(one.at[:, place]) for place, name in enumerate(one.variables)},
+                "value": plain(one.value),
+                "conditions": list(one.conditions),
+            }
+            for one in line.levels
+        ],
+        "conditions": line.conditions,
         "rule": line.rule,
         "notes": list(line.notes),
     }
@@ -383,6 +460,7 @@ def look_up_values(source: str, wanted: LookupRequest, *, output: CommandOutput)
     line = one_line_of(
         find_lines(lines_of_source(source), **wanted.search), wanted.quantity, wanted.name
     )
+    line = _in_conditions(line, wanted)
     (points,), left_out = _points_of(wanted, line)
     if left_out:
         output.say("combinations whose amplitude is above the mean tension are left out")
@@ -397,6 +475,188 @@ def look_up_values(source: str, wanted: LookupRequest, *, output: CommandOutput)
 
         files = _write_table(table_of_values(line, found, points), wanted.out, form, output)
     output.answer(_document(line, found, points, grid=wanted.grid) | {"files": files})
+
+
+def look_up_population(
+    source: str, wanted: LookupRequest, share: float, *, output: CommandOutput
+) -> None:
+    """Print the mean of all specimens of one kind, another specimen, and tolerance limits."""
+    from reduction.lines.population import population_values, specimens_of_kind
+
+    form = _form_of(wanted.out)
+    lines = find_lines(lines_of_source(source), **wanted.search)
+    having = [_in_conditions(line, wanted) for line in lines if wanted.quantity in line.quantities]
+    chosen = specimens_of_kind(having, wanted.quantity, wanted.name)
+    points, _ = _points_of(wanted, chosen[0], *chosen[1:])
+    every = [
+        look_up(line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **at)
+        for line, at in zip(chosen, points, strict=True)
+    ]
+    found = population_values(chosen, every, share)
+    values, kind = found.values, replace(chosen[0], name=f"{len(chosen)} specimens")
+    unit, factor = output.unit(values.unit)
+    output.say_each("warning", values.warnings)
+    output.say(f"{values.quantity} of {kind.name}; {values.source}")
+    if output.is_text:
+        output.show(_population_table(kind, found, points[0], unit, factor, output.system))
+    _said_of_lines(output, (kind, values))
+    files: list[str] = []
+    if wanted.out is not None and form is not None:
+        from reduction.lines.export_tables import table_of_population
+
+        files = _write_table(table_of_population(kind, found, points[0]), wanted.out, form, output)
+
+    def of(numbers: Any) -> Any:
+        shaped = np.atleast_1d(numbers).ravel()
+        return plain(shaped if wanted.grid else shaped[0])
+
+    output.answer(
+        _document(kind, values, points[0], grid=wanted.grid)
+        | {
+            "population": {
+                "specimens": dict(zip(found.specimens, map(of, found.of_specimens), strict=True)),
+                "standard_deviation": of(found.standard_deviation),
+                "share": found.share,
+                "confidence": found.confidence,
+                "one_sided_factor": found.one_sided_factor,
+                "two_sided_factor": found.two_sided_factor,
+                "lower_limit": of(found.lower),
+                "upper_limit": of(found.upper),
+                "two_sided_limits": [of(found.both_low), of(found.both_high)],
+                "shared_half_width": of(found.shared_half_width),
+            },
+            "files": files,
+        }
+    )
+
+
+def _population_table(
+    kind: LineSource,
+    found: PopulationValues,
+    points: Mapping[str, Floats],
+    unit: str,
+    factor: float,
+    system: UnitSystem,
+) -> Table:
+    values, share = found.values, f"{100 * found.share:g} %"
+    heads, levels = _shown_levels(points, kind.rated_break_strength, values.value.size, system)
+    table = table_of(
+        *heads, f"mean\n[{unit}]", "standard\ndeviation", "95 % of the mean\nof the kind",
+        "95 % of\nanother specimen", f"{share} are\nabove", f"{share} are\nbelow",
+        f"{share} are\nbetween", texts=0,
+    )  # fmt: skip
+    for place, numbers in enumerate(levels):
+
+        def of(numbers: Floats, place: int = place) -> float:
+            return float(numbers.ravel()[place])
+
+        half = factor * (of(values.kind_high) - of(values.kind_low)) / 2
+        table.add_row(
+            *numbers, within(factor * of(values.value), half),
+            short(factor * of(found.standard_deviation), 3),
+            _span(factor, of(values.kind_low), of(values.kind_high)),
+            _span(factor, of(values.line_low), of(values.line_high)),
+            # no stiffness, no energy is below zero
+            within(factor * of(found.lower), half) if of(found.lower) > 0 else "no limit",
+            within(factor * of(found.upper), half),
+            _span(factor, max(of(found.both_low), 0.0), of(found.both_high)),
+        )  # fmt: skip
+    return table
+
+
+def look_up_ranked(source: str, wanted: LookupRequest, *, output: CommandOutput) -> None:
+    """Print lines in the order of a quantity at one load, ties marked."""
+    from reduction.lines.line_rank import outside_words, rank_lines
+
+    lines = [
+        _in_conditions(line, wanted)
+        for line in find_lines(lines_of_source(source), **wanted.search)
+        if wanted.quantity in line.quantities and wanted.name in (None, line.name)
+    ]
+    if not lines:
+        raise SettingsError(f"no line has {wanted.quantity}", found=source, needed="two or more")
+    points = [
+        {name: float(_numbers(name, text, line)[0]) for name, text in wanted.levels.items()}
+        for line in lines
+    ]
+    found = rank_lines(
+        lines, wanted.quantity, points, branch=wanted.branch, extrapolate=wanted.extrapolate
+    )
+    unit, factor = output.unit(quantity_of(wanted.quantity).unit)
+    size, per_metre = ("in", 1 / 0.0254) if output.units == "us" else ("mm", 1e3)
+    place = {one.line.name: number for number, one in enumerate(found.ranked, start=1)}
+    table = table_of(
+        "rank", "line", f"diameter\n[{size}]", f"value\n[{unit}]", "95 % of\nthese lines",
+        "95 % of\nanother line", "ties with\n(these lines)", "ties with\n(another line)", "remark",
+        texts=2,
+    )  # fmt: skip
+    _fold_last(table)
+    said = {}
+    for one in found.ranked:
+        values = one.values
+        half = factor * float(values.surface_high - values.surface_low) / 2
+        beyond = "; ".join(
+            outside_words(out, *_shown(out.name, output.system)) for out in one.outside
+        )
+        remarks = [beyond, *(_remarks(values, 0) if not beyond else _remarks(values, 0)[1:])]
+        said[one.line.name] = "; ".join(text for text in remarks if text)
+        table.add_row(
+            f"{place[one.line.name]}{'=' if one.ties else ''}", one.line.name,
+            short(per_metre * one.line.diameter, 4), within(factor * float(values.value), half),
+            *(_span(factor, float(low), float(high)) for low, high in (
+                (values.surface_low, values.surface_high), (values.line_low, values.line_high),
+            )),
+            *("no interval" if names is None else
+              ", ".join(str(place[name]) for name in names) or "none"
+              for names in (one.ties, one.kind_ties)),
+            said[one.line.name] or "-",
+        )  # fmt: skip
+    output.say(f"{wanted.quantity}, from the least to the greatest")
+    output.show(table)
+    for name, why in found.left_out:
+        output.say(f"not ranked: {name}: {why}")
+    for erratum in found.errata:
+        output.say(
+            f"erratum {erratum.id}: {erratum.place} prints the other way ({erratum.printed}); it "
+            f"is {erratum.corrected}"
+        )
+    output.say("a tie: the 95 % intervals overlap, and the order may be the other one")
+    output.answer(
+        {
+            "quantity": wanted.quantity,
+            "unit": quantity_of(wanted.quantity).unit,
+            "ranked": [
+                {
+                    "rank": place[one.line.name],
+                    "line": one.line.name,
+                    "diameter": plain(one.line.diameter),
+                    "levels": at,
+                    "value": plain(float(one.values.value)),
+                    "interval": [
+                        plain(float(one.values.surface_low)), plain(float(one.values.surface_high)),
+                    ],
+                    "line_interval": [
+                        plain(float(one.values.line_low)), plain(float(one.values.line_high)),
+                    ],
+                    "ties": list(one.ties),
+                    "line_ties": None if one.kind_ties is None else list(one.kind_ties),
+                    "inside": bool(one.values.is_inside.all()),
+                    "remark": said[one.line.name],
+                    "source": one.values.source,
+                }
+                for one in found.ranked
+                for at in [points[lines.index(one.line)]]
+            ],
+            "left_out": dict(found.left_out),
+            "errata": [one.id for one in found.errata],
+        }
+    )  # fmt: skip
+
+
+def _in_conditions(line: LineSource, wanted: LookupRequest) -> LineSource:
+    return in_conditions(
+        line, wanted.quantity, wanted.conditions, is_flagged=wanted.extrapolate == "flag"
+    )
 
 
 def _form_of(out: Path | None) -> str | None:
@@ -441,22 +701,25 @@ def _table(
 ) -> Table:
     """One row a point; of the intervals those that are known."""
     heads, levels = _shown_levels(points, line.rated_break_strength, found.value.size, system)
+    is_levels = _levels_of(line, found.quantity) is not None
+    run, of = "one more run", "the surface" if found.interval_of else "the one test"
+    if is_levels:
+        run, of = "one more test", "the tests"
     intervals = [
         (head, low.ravel(), high.ravel())
         for head, low, high in (
-            ("95 % of\none more run", found.low, found.high),
-            (
-                f"95 % of\nthe {'surface' if found.interval_of else 'one test'}",
-                found.surface_low,
-                found.surface_high,
-            ),
+            (f"95 % of\n{run}", found.low, found.high),
+            (f"95 % of\n{of}", found.surface_low, found.surface_high),
             ("95 % of\nanother line", found.line_low, found.line_high),
         )
         if np.isfinite(low).any()
     ]
     is_weaker = np.isfinite(line.tensile_strength)
+    # a stiffness over the break strength is what rope makers and rules state
+    is_share = is_levels and found.unit == "N" and np.isfinite(line.rated_break_strength)
     table = table_of(
-        *heads, f"value\n[{unit}]", *(head for head, _, _ in intervals),
+        *heads, f"value\n[{unit}]", *(("value\n[MBL]",) if is_share else ()),
+        *(head for head, _, _ in intervals),
         "peak\n[%RBS]", "minimum\n[%RBS]",
         *(("peak [% of what\nit still has]",) if is_weaker else ()), "remark", texts=0,
     )  # fmt: skip
@@ -468,6 +731,11 @@ def _table(
             within(
                 factor * float(found.value.ravel()[place]),
                 *(factor * float(high[place] - low[place]) / 2 for _, low, high in intervals),
+            ),
+            *(
+                (short(float(found.value.ravel()[place]) / line.rated_break_strength, 3),)
+                if is_share
+                else ()
             ),
             *(_span(factor, low[place], high[place]) for _, low, high in intervals),
             *(short(100 * float(share.ravel()[place]), 4) for share in shares),
@@ -577,6 +845,10 @@ def _said_of_lines(output: CommandOutput, *pairs: tuple[LineSource, DesignValues
         for what, value in (("in air", line.linear_density), ("in water", line.wet_linear_density)):
             if np.isfinite(value):
                 told.append(f"linear density{of} {what}: {short(value)} kg/m")
+        conditions = conditions_of(line, found.quantity)
+        if conditions:
+            words = ", ".join(f"{name} {text}" for name, text in conditions.items())
+            told.append(f"tested in{of}: {words}")
         told.append(f"rule: {found.rule}")
         if found.errata:
             told.append(f"errata that touch it{of}: {', '.join(found.errata)}")
@@ -640,6 +912,11 @@ def _document(
         "level_units": {name: quantity_of(name).unit for name in points},
         "value": of(found.value),
         "unit": found.unit,
+        "value_over_strength": of(
+            found.value / line.rated_break_strength
+            if found.unit == "N"
+            else np.full(found.value.shape, np.nan)
+        ),
         "below_zero": of(found.is_below_zero),
         "interval": [of(found.low), of(found.high)],
         "interval_of": found.interval_of or None,
@@ -669,6 +946,7 @@ def _document(
         "wet_linear_density": plain(line.wet_linear_density),
         "linear_density_unit": "kg m-1",
         "source": found.source,
+        "conditions": conditions_of(line, found.quantity),
         "warnings": list(found.warnings),
         "slow_pulls": {
             name: of(values)
@@ -709,6 +987,7 @@ def look_up_against(
     lines = lines_of_source(source)
     first = one_line_of(find_lines(lines, **wanted.search), wanted.quantity, wanted.name)
     second = _other(lines, other, wanted.quantity, first)
+    first, second = (_in_conditions(line, wanted) for line in (first, second))
     pair = compared_tethers(first, second)
     if pair is not None:
         first, second = pair.first, pair.second

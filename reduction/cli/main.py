@@ -210,6 +210,10 @@ def experiment(
 def surface(
     runs: Annotated[Path, typer.Argument(metavar="RUNS.csv", show_default=False, callback=here)],
     spec: OptionalSpecPath = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Write tables and a page with figures here.", callback=written_here),
+    ] = None,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
@@ -218,7 +222,7 @@ def surface(
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.experiments import fit_runs
 
-        fit_runs(runs, spec, output=output)
+        fit_runs(runs, spec, out=out, output=output)
 
 
 class PredictionName(StrEnum):
@@ -318,6 +322,15 @@ def lookup(
     condition: Annotated[str | None, typer.Option(help='Search: "new", "5 years".')] = None,
     diameter: Annotated[str | None, typer.Option(help='Search: "0.5 in".')] = None,
     tolerance: Annotated[str | None, typer.Option(help='Of the diameter, "3 %" if unsaid.')] = None,
+    population: Annotated[
+        str | None,
+        typer.Option(help='All specimens as one line; limits of a share of the kind: "95 %".'),
+    ] = None,
+    rank: Annotated[
+        bool, typer.Option("--rank", help="All lines in order at one load, ties marked.")
+    ] = False,
+    medium: Annotated[str | None, typer.Option(help='Tested in: "wet", "dry".')] = None,
+    temperature: Annotated[str | None, typer.Option(help='Tested at: "5 degC".')] = None,
     extrapolate: Annotated[
         Extrapolation, typer.Option(help="Outside what was tested.")
     ] = Extrapolation.REFUSE,
@@ -327,7 +340,8 @@ def lookup(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Write the values: FILE.csv, .json, .tex, .md or .nc.", callback=written_here
+            help="Write the values: FILE.csv, .json, .tex, .md, .nc or .xlsx.",
+            callback=written_here,
         ),
     ] = None,
     what_there_is: Annotated[bool, typer.Option("--list", help="What SOURCE holds.")] = False,
@@ -342,11 +356,15 @@ def lookup(
             LookupRequest,
             list_sources,
             look_up_against,
+            look_up_population,
+            look_up_ranked,
             look_up_values,
             name_of_quantity,
             parsed_search,
         )
         from reduction.cli.remote_paths import local_sources
+        from reduction.quantities.units import parse_quantity
+        from reduction.record.errors import SettingsError
 
         words = {"material": material, "construction": construction, "condition": condition}
         search = parsed_search(words, diameter, tolerance)
@@ -370,10 +388,28 @@ def lookup(
             extrapolate=extrapolate.value,
             grid=table,
             out=out,
+            conditions={
+                name: text
+                for name, text in (("medium", medium), ("temperature", temperature))
+                if text is not None
+            },
         )
         named = [source] if against is None else [source, against]
         with local_sources(named, allow_remote=allow_remote, output=output) as here:
-            if against is None:
+            ways = {"--population": population, "--against": against, "--rank": rank or None}
+            asked = [name for name, said in ways.items() if said is not None]
+            if len(asked) > 1 or (rank and (table or out is not None)):
+                raise SettingsError(
+                    "a look-up has one way to put lines together",
+                    found=" and ".join([*asked, *(["--table or --out"] if rank else [])]),
+                    needed="one of them, and of --rank a single load on the screen",
+                )
+            if rank:
+                look_up_ranked(here[0], wanted, output=output)
+            elif population is not None:
+                share = parse_quantity(population, "number")
+                look_up_population(here[0], wanted, share, output=output)
+            elif against is None:
                 look_up_values(here[0], wanted, output=output)
             else:
                 look_up_against(here[0], here[1], wanted, output=output)
@@ -470,7 +506,8 @@ def export(
         str,
         typer.Option(
             "--to",
-            help="csv, json, latex, markdown, netcdf, moordyn, moorpy, openfast, raft, orcaflex, "
+            help="csv, json, latex, markdown, netcdf, xlsx, moordyn, moorpy, openfast, raft, "
+            "orcaflex, "
             "whoi-cable or abaqus.",
             show_default=False,
         ),

@@ -18,7 +18,7 @@ import xarray as xr
 
 from reduction.archive.open import Opener, reading
 from reduction.archive.product_files import archives_of_tests
-from reduction.archive.shared_errors import components_of
+from reduction.archive.shared_errors import components_of, shared_contributions
 from reduction.archive.surfaces_dataset import surface_names, surfaces_of
 from reduction.archive.uncertainty_budget import random_freedom
 from reduction.archive.variables import stored
@@ -27,9 +27,11 @@ from reduction.experiments.surface_discrepancy import discrepancy_of
 from reduction.experiments.surface_points import greatest_leverage
 from reduction.lines.archive_pieces import alignment_words
 from reduction.lines.line_lookup import Branch
-from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
+from reduction.lines.line_search import joined_conditions
+from reduction.lines.lookup_product import LineCurve, LineLevels, LineSource, LineSurface
+from reduction.quantities.digits import plain_number
 from reduction.quantities.names import RESPONSES, SCALES, quantity
-from reduction.record.contributions import Component
+from reduction.record.contributions import Component, Contributions, stacked
 from reduction.record.errors import ArchiveError, DataError
 from reduction.record.measurement import Bools, Floats
 
@@ -39,6 +41,18 @@ _OVER_TENSION = {
     "quasi_static_spring_constant": ("quasi_static_spring_constant", "mean_tension"),
     "quasi_static_strain": ("strain", "tension"),
 }
+
+CYCLE = ("frequency", "mean_tension", "tension_amplitude")
+"""Levels of a cyclic test in load."""
+
+_AT_LEVELS = (
+    "apparent_spring_constant", "hysteresis_energy", "loss_factor", "storage_spring_constant",
+    "loss_spring_constant",
+)  # fmt: skip
+
+_ROPES = ("rope", "wire")
+
+_CONDITIONS = ("medium", "soak", "temperature", "date", "rest")
 
 _Parts = dict[str, Any]  # fields of `LineCurve` that say how well it is known
 
@@ -193,6 +207,7 @@ def _line_source_of_experiment(
         rated_break_strength=strength,
         factor_names=factors,
         surfaces=surfaces,
+        specimens=_specimens_of(dataset, experiment),
         notes=_synthetic(dataset),
         **_agreed([(specimens or {}).get(one, {}) for one in _specimens_of(dataset, experiment)]),
     )
@@ -348,6 +363,75 @@ def _line_source_of_test(dataset: xr.Dataset, specimen: str) -> LineSource:
     return _line_of_curves(dataset, place, specimen, curves)
 
 
+def _levels_of_specimen(dataset: xr.Dataset, place: int) -> tuple[LineLevels, ...]:
+    """What a cyclic test of a rope has at its own level; nothing of a tether, or of bedding in."""
+    is_rope = "specimen_kind" in dataset and str(dataset["specimen_kind"].values[place]) in _ROPES
+    names = [f"test_{one}" for one in CYCLE]
+    is_level = (
+        dataset.attrs.get("test_kind") == "cyclic" and "bedding_first_stiffness" not in dataset
+    )
+    if not (is_rope and is_level and all(one in dataset for one in names)):
+        return ()
+    at = np.array([[float(dataset.variables[one].values[place]) for one in names]])
+    if not np.isfinite(at).all():
+        return ()
+    return tuple(
+        _one_level(dataset, place, name, at)
+        for name in _AT_LEVELS
+        if np.isfinite(dataset.variables[f"test_{name}"].values[place])
+    )
+
+
+def _one_level(dataset: xr.Dataset, place: int, name: str, at: Floats) -> LineLevels:
+    stored_as = f"test_{name}"
+    known = shared_contributions(dataset, stored_as, place)
+    random = f"{stored_as}_random_standard_uncertainty"
+    random = random if random in dataset else f"{stored_as}_standard_uncertainty"
+    freedom = np.broadcast_to(
+        random_freedom(dataset, stored_as), dataset.variables[stored_as].shape
+    )
+    return LineLevels(
+        quantity=name,
+        variables=CYCLE,
+        at=at,
+        value=np.array([float(dataset.variables[stored_as].values[place])]),
+        random_standard_uncertainty=np.array([float(dataset.variables[random].values[place])]),
+        degrees_of_freedom=np.array([float(freedom[place])]),
+        tests=(str(dataset.attrs.get("test", "")),),
+        component=tuple(known),
+        contribution=np.array(list(known.values()), dtype=np.float64).reshape(len(known), 1),
+        conditions=(_conditions(dataset),),
+    )
+
+
+def _conditions(dataset: xr.Dataset) -> dict[str, str]:
+    """In which a test was made, as far as the campaign states it."""
+    return {one: str(dataset.attrs[one]) for one in _CONDITIONS if dataset.attrs.get(one)}
+
+
+def _joined(parts: Sequence[LineLevels]) -> LineLevels:
+    """Levels of one quantity from several tests."""
+    shared = stacked(
+        [Contributions(one.component, {"value": np.array(one.contribution)}) for one in parts]
+    )
+
+    def rows(name: str) -> Floats:
+        return np.concatenate([getattr(one, name) for one in parts])
+
+    return replace(
+        parts[0],
+        at=rows("at"),
+        value=rows("value"),
+        random_standard_uncertainty=rows("random_standard_uncertainty"),
+        degrees_of_freedom=rows("degrees_of_freedom"),
+        tests=tuple(test for one in parts for test in one.tests),
+        component=shared.component,
+        contribution=shared.values["value"].reshape(len(shared.component), -1),
+        conditions=tuple(own for one in parts for own in one.conditions),
+        notes=tuple(dict.fromkeys(text for one in parts for text in one.notes)),
+    )
+
+
 def _line_of_curves(
     dataset: xr.Dataset, place: int, specimen: str, curves: tuple[LineCurve, ...]
 ) -> LineSource:
@@ -359,6 +443,9 @@ def _line_of_curves(
         if strength in dataset
         else float("nan"),
         curves=curves,
+        levels=_levels_of_specimen(dataset, place),
+        conditions=_conditions(dataset),
+        specimens=(specimen,),
         notes=_synthetic(dataset),
         **_facts(dataset, place),
     )
@@ -367,6 +454,9 @@ def _line_of_curves(
 def _synthetic(dataset: xr.Dataset) -> tuple[str, ...]:
     return ("synthetic data",) if dataset.attrs.get("synthetic") == "yes" else ()
 
+
+CHANGE_IN_LENGTH = "change_in_length.nc"
+"""File of the change-in-length properties of a campaign."""
 
 SURFACES = "surfaces.nc"
 """File of the surfaces of a campaign, beside the archives of its tests."""
@@ -432,6 +522,143 @@ def _slow_pulls(path: Path, settings: Mapping[str, Any], opener: Opener) -> dict
             one for one in pulled.curves if one.quantity == "quasi_static_spring_constant"
         )
     return found
+
+
+def lines_of_folder(folder: Path) -> list[LineSource]:
+    """Every line of a processed campaign that has something to look up.
+
+    A rope that is in several tests, and in no experiment with surfaces, is one line more: K_ap, H
+    and loss factor at the level of each test, original and static stiffness, and K_0 and strain of
+    its slow pull.  It bears the name of the specimen, its tests are called TEST SPECIMEN.
+    """
+    found = [(path.stem, lines_of_archive(path)) for path in archives_of_lines(folder)]
+    named = with_unique_names(found)
+    fitted = {one for line in named if line.surfaces for one in line.specimens}
+    tests: dict[str, list[LineSource]] = {}
+    for line in named:
+        if not line.surfaces and not fitted & set(line.specimens):
+            tests.setdefault(line.specimens[0], []).append(line)
+    ropes = [
+        _rope(folder, name, own)
+        for name, own in tests.items()
+        if len(own) > 1 and any(line.levels for line in own)
+    ]
+    pooled = {line.name for line in ropes}
+    lines = []
+    for line in named:
+        if line.surfaces:
+            runs = [one for one in named if one.levels and set(one.specimens) & set(line.specimens)]
+            lines.append(replace(line, conditions=joined_conditions(r.conditions for r in runs)))
+        else:
+            is_pooled = line.specimens[0] in pooled
+            lines.append(_without_pooled(line, ropes) if is_pooled else line)
+    return [*ropes, *(line for line in lines if line.surfaces or line.curves or line.levels)]
+
+
+def ropes_with_pulls(folder: Path) -> list[LineSource]:
+    """Ropes of a processed campaign with levels and a slow pull.
+
+    Raises
+    ------
+    DataError
+        If there is none.
+    """
+    lines = [line for line in lines_of_folder(folder) if line.levels]
+    found = [line for line in lines if line.curves and not line.surfaces]
+    if not found:
+        why = (text for line in lines for text in line.absent.values())
+        raise DataError(
+            "no rope of the campaign has levels in load and one slow pull, which K_0 is of",
+            found=", ".join(line.name for line in lines) or "no rope with levels",
+            needed="cyclic tests in load and a quasi-static test of the same specimen",
+            hint=next(why, ""),
+        )
+    return found
+
+
+def _rope(folder: Path, name: str, tests: Sequence[LineSource]) -> LineSource:
+    """What all tests of one rope give together."""
+    by_quantity: dict[str, list[LineLevels]] = {}
+    for line in tests:
+        for one in line.levels:
+            by_quantity.setdefault(one.quantity, []).append(one)
+    pulls = [line for line in tests if any(one.is_inverse_slope for one in line.curves)]
+    absent = {}
+    if len(pulls) > 1:
+        why = "there are several slow pulls, and each is a line: " + ", ".join(
+            line.name for line in pulls
+        )
+        absent = {one.quantity: why for one in pulls[0].curves}
+    n_tests = sum(bool(line.levels) for line in tests)
+    return replace(
+        tests[0],
+        name=name,
+        source=f"{folder.name}, specimen {name}: levels of {n_tests} tests"
+        + (f", slow pull {pulls[0].source}" if len(pulls) == 1 else ""),
+        curves=pulls[0].curves if len(pulls) == 1 else (),
+        levels=(*(_joined(parts) for parts in by_quantity.values()), *_changes(folder, name)),
+        conditions=pulls[0].conditions if len(pulls) == 1 else {},
+        absent=absent,
+        notes=tuple(dict.fromkeys(text for line in tests for text in line.notes)),
+    )
+
+
+def _without_pooled(line: LineSource, ropes: Sequence[LineSource]) -> LineSource:
+    """A test of a rope without what the line of the rope has."""
+    own = next(one for one in ropes if one.name == line.specimens[0])
+    kept = tuple(one for one in line.curves if not any(one is taken for taken in own.curves))
+    return replace(line, levels=(), curves=kept)
+
+
+_CHANGES = {
+    "original stiffness": "original_stiffness",
+    "static stiffness": "static_stiffness",
+}
+
+
+def _changes(folder: Path, specimen: str) -> list[LineLevels]:
+    """Original and static stiffness of a rope, between the tensions that each is a chord of."""
+    path = folder / CHANGE_IN_LENGTH
+    if not path.is_file():
+        return []
+    with reading(path) as archive:
+        names = archive.variables["property_name"].values.astype(str)
+        value = archive.variables["property_stiffness"].values
+        is_own = archive.variables["property_specimen"].values.astype(str) == specimen
+        found: dict[str, list[LineLevels]] = {}
+        for place in np.flatnonzero(is_own & np.isfinite(value) & np.isin(names, list(_CHANGES))):
+            one = _one_change(archive, int(place), _CHANGES[str(names[place])])
+            found.setdefault(one.quantity, []).append(one)
+        return [_joined(parts) for parts in found.values()]
+
+
+def _one_change(archive: xr.Dataset, place: int, name: str) -> LineLevels:
+    def number(what: str) -> float:
+        return float(archive.variables[f"property_{what}"].values[place])
+
+    ends = np.array([number("low_tension"), number("high_tension")])
+    known = shared_contributions(archive, "property_stiffness", place)
+    whole = "stiffness_standard_uncertainty"
+    random = "stiffness_random_standard_uncertainty"
+    remark = str(archive.variables["property_remark"].values[place])
+    return LineLevels(
+        quantity=name,
+        variables=CYCLE[1:],
+        at=np.array([[ends.mean(), np.ptp(ends) / 2]]),
+        value=np.array([number("stiffness")]),
+        random_standard_uncertainty=np.array(
+            [number(random if f"property_{random}" in archive else whole)]
+        ),
+        degrees_of_freedom=np.array([number("stiffness_degrees_of_freedom")]),
+        tests=(str(archive.variables["property_test"].values[place]),),
+        component=tuple(known),
+        contribution=np.array(list(known.values()), dtype=np.float64).reshape(len(known), 1),
+        conditions=({},),
+        notes=(
+            f"a chord between {plain_number(ends[0], 4)} and {plain_number(ends[1], 4)} N",
+            *((remark,) if remark else ()),
+        ),
+    )
 
 
 def experiments_with_pulls(path: Path) -> list[LineSource]:

@@ -13,6 +13,7 @@ from typing import Literal, get_args
 import numpy as np
 import scipy
 
+from reduction.archive.workbook import write_workbook
 from reduction.archive.write import write_text_atomically
 from reduction.lines.deck_moordyn import (
     TABLE_POINTS,
@@ -34,7 +35,13 @@ from reduction.lines.export_line import (
     thin_curve,
     without_damping,
 )
-from reduction.lines.export_tables import ValueTable, curve_table, table_text_of, write_netcdf
+from reduction.lines.export_tables import (
+    ValueTable,
+    curve_table,
+    sheets_of_table,
+    table_text_of,
+    write_netcdf,
+)
 from reduction.quantities.digits import plain_number
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import SettingsError
@@ -446,7 +453,7 @@ def _expression(start: Floats, powers: Floats) -> str:
     return text
 
 
-TABLES = ("csv", "json", "latex", "markdown", "netcdf")
+TABLES = ("csv", "json", "latex", "markdown", "netcdf", "xlsx")
 """Formats of a table of values."""
 
 _WrittenCurve = Literal["points", "pieces", "none"]
@@ -528,7 +535,7 @@ def export_line(
 
 
 def export_table(table: ValueTable, to: str, path: Path, *, units: UnitSystem = "si") -> list[Path]:
-    """Write a table of values as csv, json, latex, markdown or netcdf.
+    """Write a table of values as csv, json, latex, markdown, netcdf or xlsx.
 
     Parameters
     ----------
@@ -555,6 +562,8 @@ def export_table(table: ValueTable, to: str, path: Path, *, units: UnitSystem = 
     """
     if to == "netcdf":
         write_netcdf(table, path)
+    elif to == "xlsx":
+        write_workbook(path, sheets_of_table(table, units=units))
     else:
         write_text_atomically(path, table_text_of(table, to, units=units))
     return [path]

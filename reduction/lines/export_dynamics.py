@@ -351,7 +351,12 @@ class Syrope:
 
 
 def _said_identified(
-    part: Viscoelasticity, amplitude: float, half: Mapping[str, Floats], *, is_exact: bool
+    part: Viscoelasticity,
+    amplitude: float,
+    half: Mapping[str, Floats],
+    *,
+    is_exact: bool,
+    measured_as: str,
 ) -> str:
     """K_1 and tau, what they give back, and how well they are known.
 
@@ -360,7 +365,7 @@ def _said_identified(
     spring = part.fast_stiffness - part.static_stiffness
     return (
         f"K_1 {plain_number(spring)} N and tau {plain_number(part.relaxation_time, 4)} s "
-        f"are identified from the surfaces "
+        f"are identified from {measured_as} "
         f"of K_ap and H and from K_0 at these levels: the three-parameter line gives back K_ap "
         f"{plain_number(part.apparent_stiffness)} N and H "
         f"{plain_number(part.hysteresis_energy_at(part.frequency, amplitude), 4)} J/m there"
@@ -496,9 +501,14 @@ def _said_of_value(found: DesignValues) -> str:
     """Where one design value is from."""
     known = math.isfinite(float(found.surface_high))
     is_vague = known and float(found.surface_low) < 0
+    of = (
+        found.surface_interval_of
+        if found.surface_interval_of.startswith("the tests")
+        else ("the surface")
+    )
     return (
         f"{found.source}: {found.quantity} {plain_number(float(found.value), 6)} {found.unit}, "
-        + (f"95 percent of the surface {_interval_of(found)}" if known else "no interval known")
+        + (f"95 percent of {of} {_interval_of(found)}" if known else "no interval known")
         + (": its lower end is below zero: not told from zero" if is_vague else "")
         + (f", errata {', '.join(found.errata)}" if found.errata else "")
         + ("" if found.is_inside else ", OUTSIDE what was tested")
@@ -637,7 +647,11 @@ def line_dynamics(
             part = _part(rest, spring, float(line.relaxation_time), levels)
             notes = [
                 _said_identified(
-                    part, amplitude, half, is_exact=not np.isfinite(rest.surface_high)
+                    part,
+                    amplitude,
+                    half,
+                    is_exact=not np.isfinite(rest.surface_high),
+                    measured_as="the surfaces" if _APPARENT in source.surfaces else "the tests",
                 ),
                 _said_printed(float(rest.value), printed, measured, frequency, amplitude),
                 *_warnings_of_identified(line, half, measured[_ENERGY]),
@@ -694,7 +708,9 @@ def _value(
     if quantity in source.surfaces:
         names = source.factor_names
     else:
-        names = tuple(one.variable for one in source.curves if one.quantity == quantity)
+        rows = [one.variables for one in source.levels if one.quantity == quantity]
+        curves = [one.variable for one in source.curves if one.quantity == quantity]
+        names = tuple(curves or (name for one in rows for name in one))
     # a pull is over the tension, which is the mean of the cycles
     given = {
         name: levels["mean_tension"] if name == "tension" else levels[name]

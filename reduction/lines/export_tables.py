@@ -11,7 +11,7 @@ import json
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -22,10 +22,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from reduction import __version__
 from reduction.archive.atomic_write import atomic_file
+from reduction.archive.workbook import Cell, Sheet
 from reduction.lines.deck_text import number
 from reduction.lines.export_line import CurveSpread, ExportLine, curve_from_zero, range_of
 from reduction.lines.line_search import LineDifference
 from reduction.lines.lookup_product import TENSIONS, DesignValues, LineSource
+from reduction.lines.population import PopulationValues
 from reduction.quantities.names import quantity
 from reduction.quantities.row import COMPONENT
 from reduction.quantities.units import UnitSystem, display_unit
@@ -254,12 +256,29 @@ def _as_markdown(text: str) -> str:
     return re.sub(r"[\\`|]|\](?=\()", lambda sign: "\\" + sign[0], plain)
 
 
+def sheets_of_table(table: ValueTable, *, units: UnitSystem = "si") -> list[Sheet]:
+    """A table as the sheets of a workbook: its values, and what they are."""
+    heads, columns = [], []
+    for column in table.columns:
+        unit, factor = display_unit(column.unit, units) if column.unit else ("", 1.0)
+        heads.append(f"{column.name} [{unit}]" if unit else column.name)
+        columns.append([_plain(value, factor) for value in column.values.tolist()])
+    about: list[tuple[Cell, ...]] = [("title", table.title)]
+    about += [("", text) for text in _said(table)]
+    about += [(head, column.meaning) for head, column in zip(heads, table.columns, strict=True)]
+    return [
+        Sheet("values", heads, [list(row) for row in zip(*columns, strict=True)]),
+        Sheet("about", ("what", "meaning"), about),
+    ]
+
+
 _OF_SUFFIX = {
     ".csv": "csv",
     ".json": "json",
     ".tex": "latex",
     ".md": "markdown",
     ".nc": "netcdf",
+    ".xlsx": "xlsx",
 }
 
 _PERCENT = "percent_of_break_strength"
@@ -310,6 +329,28 @@ def table_of_values(
         notes=(*found.warnings, *_about(line), f"rule: {found.rule}", *found.notes),
         is_synthetic=_is_synthetic(line),
     )
+
+
+def table_of_population(
+    kind: LineSource, found: PopulationValues, levels: Mapping[str, ArrayLike]
+) -> ValueTable:
+    """Specimens of one kind together, with tolerance limits, one row a point."""
+    table = table_of_values(kind, found.values, levels)
+    unit, of = found.values.unit, f"{100 * found.share:g} % of the population"
+    limit = f"with {100 * found.confidence:g} % confidence {of} are"
+    added = [
+        _column("standard_deviation", unit, "between the specimens", found.standard_deviation),
+        _column("lower_limit", unit, f"{limit} above", found.lower),
+        _column("upper_limit", unit, f"{limit} below", found.upper),
+        _column("two_sided_limit_low", unit, f"{limit} between this and the other", found.both_low),
+        _column("two_sided_limit_high", unit, f"{limit} between this and the other",
+                found.both_high),
+        *(
+            _column(f"specimen_{place + 1}", unit, f"of {name}", found.of_specimens[place])
+            for place, name in enumerate(found.specimens)
+        ),
+    ]  # fmt: skip
+    return replace(table, columns=(*table.columns, *added))
 
 
 def table_of_difference(

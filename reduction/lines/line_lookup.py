@@ -49,8 +49,15 @@ from reduction.lines.line_curve import (
     shared_half_width,
     shared_of,
 )
+from reduction.lines.line_levels import completed_levels, evaluate_levels, refuse_mixed_conditions
 from reduction.lines.line_surface import evaluate_surface
-from reduction.lines.lookup_product import DesignValues, LineCurve, LineSource, LineSurface
+from reduction.lines.lookup_product import (
+    DesignValues,
+    LineCurve,
+    LineLevels,
+    LineSource,
+    LineSurface,
+)
 from reduction.quantities.digits import plain_number
 from reduction.quantities.names import quantity as quantity_of
 from reduction.record.contributions import (
@@ -233,7 +240,7 @@ def _refuse_slack(line: LineSource, loads: _CycleLoads) -> None:
 
 def _design_values(
     line: LineSource,
-    of: LineSurface | LineCurve,
+    of: LineSurface | LineCurve | LineLevels,
     *,
     loads: _CycleLoads,
     inside: Bools,
@@ -283,7 +290,7 @@ def _design_values(
         is_above_rule=loads.is_above_rule,
         rule=line.rule,
         source=line.source,
-        errata=of.errata,
+        errata=() if isinstance(of, LineLevels) else of.errata,
         notes=tuple(dict.fromkeys(notes)),
         warnings=of.warnings if isinstance(of, LineCurve) else (),
         branch=of.branch if isinstance(of, LineCurve) else "",
@@ -292,7 +299,7 @@ def _design_values(
     )
 
 
-def _scatter_note(of: LineSurface | LineCurve, words: tuple[str, str]) -> str:
+def _scatter_note(of: LineSurface | LineCurve | LineLevels, words: tuple[str, str]) -> str:
     """What the intervals hold, and what they do not."""
     if isinstance(of, LineSurface) and np.isfinite(of.line_scatter):
         return (
@@ -403,6 +410,56 @@ def _values_of_curve(
         high=nothing,
         surface_low=value - half,
         surface_high=value + half,
+        kind_low=nothing,
+        kind_high=nothing,
+        line_low=nothing,
+        line_high=nothing,
+    )
+
+
+_TEST = "the tests at this level, of this specimen"
+
+_MORE_TEST = "one more test at this level, of this specimen"
+
+
+def _values_of_levels(
+    line: LineSource, levels: LineLevels, given: Mapping[str, Floats]
+) -> DesignValues:
+    """Design values at levels of single tests; see `reduction.lines.line_levels`."""
+    refuse_mixed_conditions(levels, line.name)
+    whole = completed_levels(levels, given, line.name)
+    columns = np.broadcast_arrays(*whole.values())
+    shape = columns[0].shape
+    found = evaluate_levels(levels, np.stack([one.ravel() for one in columns], axis=1), line.name)
+    nothing = np.full(shape, np.nan)
+    # of a test that went slack the valley is noise about zero
+    ends = dict(whole)
+    if "tension_amplitude" in ends:
+        ends["tension_amplitude"] = np.minimum(ends["tension_amplitude"], ends["mean_tension"])
+    is_apart = bool(np.isfinite(found.random).all())
+
+    def part(values: Floats) -> Floats:
+        return values.reshape(shape) if is_apart else np.empty(0)
+
+    has_run = bool(np.isfinite(found.low).any())
+    return _design_values(
+        line,
+        levels,
+        loads=_loads_of_line(line, ends, shape),
+        inside=np.ones(shape, dtype=bool),
+        untested=np.zeros(shape, dtype=bool),
+        words=(_MORE_TEST if has_run else "", _TEST),
+        more=found.notes,
+        component=levels.component,
+        contribution=found.contribution.reshape(len(levels.component), *shape),
+        random_standard_uncertainty=part(found.random),
+        random_degrees_of_freedom=part(found.freedom),
+        run_standard_uncertainty=part(found.run_random) if has_run else np.empty(0),
+        value=found.value.reshape(shape),
+        low=found.low.reshape(shape),
+        high=found.high.reshape(shape),
+        surface_low=found.test_low.reshape(shape),
+        surface_high=found.test_high.reshape(shape),
         kind_low=nothing,
         kind_high=nothing,
         line_low=nothing,
@@ -584,7 +641,8 @@ def look_up(
     **levels : array_like, shape (...)
         By name: the factors of the surface (``frequency``, ``mean_tension``,
         ``tension_amplitude``), or the variable of the curve (``mean_tension``, ``tension``,
-        ``strain``). They are broadcast together. [SI]
+        ``strain``), or levels of single tests, of which those that all tests have alike may be
+        left out. They are broadcast together. [SI]
 
     Returns
     -------
@@ -627,6 +685,11 @@ def look_up(
             raise _no_branch(quantity, line, branch)
         return _warned(line, _values_of_surface(line, surface, given, extrapolate), given)
     curves = [one for one in line.curves if one.quantity == quantity]
+    tested = next((one for one in line.levels if one.quantity == quantity), None)
+    if tested is not None and surface is None and not curves:
+        if branch is not None:
+            raise _no_branch(quantity, line, branch)
+        return _warned(line, _values_of_levels(line, tested, given), given)
     if not curves and surface is None:
         why = line.absent.get(quantity)
         raise SettingsError(
@@ -649,7 +712,7 @@ def look_up(
 def _warned(line: LineSource, found: DesignValues, given: dict[str, Floats]) -> DesignValues:
     """The values with what other numbers of the line say against them."""
     told = consistency_warnings(line, found.quantity, given)
-    return replace(found, warnings=tuple(dict.fromkeys((*found.warnings, *told))))
+    return replace(found, warnings=tuple(dict.fromkeys((*line.warnings, *found.warnings, *told))))
 
 
 def _numbers(levels: Mapping[str, ArrayLike]) -> dict[str, Floats]:

@@ -28,8 +28,8 @@ References
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -41,8 +41,9 @@ from reduction.lines.line_curve import (
     shared_half_width,
     shared_of,
 )
-from reduction.lines.lookup_product import DesignValues, LineSource
-from reduction.record.errors import SettingsError
+from reduction.lines.lookup_product import DesignValues, LineLevels, LineSource
+from reduction.quantities.units import parse_quantity
+from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
 
 DIAMETER_TOLERANCE = 0.03
@@ -126,6 +127,123 @@ def _there_is(lines: Sequence[LineSource]) -> str:
     if sizes:
         parts.append(f"diameter {', '.join(sizes)} mm")
     return "; ".join(parts) or "lines of which more is known"
+
+
+SAME_TEMPERATURE = 2.0
+"""Difference of two temperatures that are one: what a room holds. [K]"""
+
+
+def in_conditions(
+    line: LineSource, quantity: str, asked: Mapping[str, str], *, is_flagged: bool = False
+) -> LineSource:
+    """A line as far as it was tested in the conditions that are asked for.
+
+    Of tests at single levels those that were made so remain.
+
+    Parameters
+    ----------
+    line : LineSource
+        As found.
+    quantity : str
+        That is wanted: a slow pull and the cycles of one line may have been tested apart.
+    asked : mapping of str to str
+        ``medium``, by its words, and ``temperature``, with a unit, within `SAME_TEMPERATURE`.
+    is_flagged : bool
+        Keep what was tested in other conditions, with a warning.
+
+    Returns
+    -------
+    line : LineSource
+        The line itself where nothing is asked.
+
+    Raises
+    ------
+    DataError
+        If nothing was tested so, or nothing is stated, and ``is_flagged`` is false.
+    SettingsError
+        If a temperature is none.
+
+    Examples
+    --------
+    >>> rope = LineSource("rope", "", "nylon", "", "new", 0.05, 3e5, conditions={"medium": "wet"})
+    >>> in_conditions(rope, "strain", {"medium": "wet"}) is rope
+    True
+    >>> in_conditions(rope, "strain", {"medium": "dry"}, is_flagged=True).warnings
+    ('NOT TESTED at medium dry: the value is of medium wet',)
+    """
+    if not asked:
+        return line
+    levels = []
+    for one in line.levels:
+        rows = [row for row, own in enumerate(one.conditions) if _is_condition(own, asked)]
+        levels.append(one if len(rows) == len(one.tests) else _only(one, rows))
+    of_levels = next((one for one in levels if one.quantity == quantity), None)
+    is_so = bool(of_levels.tests) if of_levels else _is_condition(line.conditions, asked)
+    if is_so:
+        return replace(line, levels=tuple(levels)) if of_levels else line
+    stated = conditions_of(line, quantity)
+    found = ", ".join(f"{name} {text}" for name, text in asked.items())
+    tested = ", ".join(f"{name} {stated.get(name, 'not stated')}" for name in asked)
+    if is_flagged:
+        warning = f"NOT TESTED at {found}: the value is of {tested}"
+        return replace(line, warnings=(warning, *line.warnings))
+    raise DataError(
+        f"{quantity} of {line.name} was not tested so", found=found, needed=tested,
+        hint="Stiffness depends on it; --extrapolate flag gives what was tested, flagged.",
+    )  # fmt: skip
+
+
+def _only(levels: LineLevels, rows: list[int]) -> LineLevels:
+    """Some of the tests."""
+    return replace(
+        levels, at=levels.at[rows], value=levels.value[rows],
+        random_standard_uncertainty=levels.random_standard_uncertainty[rows],
+        degrees_of_freedom=levels.degrees_of_freedom[rows],
+        contribution=levels.contribution[:, rows] if levels.component else levels.contribution,
+        tests=tuple(levels.tests[row] for row in rows),
+        conditions=tuple(levels.conditions[row] for row in rows),
+    )  # fmt: skip
+
+
+def _is_condition(own: Mapping[str, str], asked: Mapping[str, str]) -> bool:
+    """Whether every test of a line was made so."""
+    media = own.get("medium", "").split(_AND)
+    if not all(_has_words(one, asked["medium"]) for one in media if "medium" in asked):
+        return False
+    if "temperature" not in asked:
+        return True
+    wanted = parse_quantity(asked["temperature"], "temperature")
+    try:
+        known = [
+            parse_quantity(one, "temperature") for one in own.get("temperature", "").split(_AND)
+        ]
+    except SettingsError:
+        return False  # not stated, or in words
+    return all(abs(one - wanted) <= SAME_TEMPERATURE + _ROUNDING for one in known)
+
+
+_AND = "; "
+
+
+def joined_conditions(every: Iterable[Mapping[str, str]]) -> dict[str, str]:
+    """Conditions of several tests, those that differ beside each other.
+
+    Examples
+    --------
+    >>> joined_conditions([{"medium": "wet", "date": "May"}, {"medium": "wet", "date": "June"}])
+    {'medium': 'wet', 'date': 'May; June'}
+    """
+    tests = list(every)
+    names = dict.fromkeys(name for one in tests for name in one)
+    return {
+        name: _AND.join(dict.fromkeys(one[name] for one in tests if name in one)) for name in names
+    }
+
+
+def conditions_of(line: LineSource, quantity: str) -> dict[str, str]:
+    """In which conditions a quantity of a line was tested."""
+    levels = next((one for one in line.levels if one.quantity == quantity), None)
+    return joined_conditions(levels.conditions if levels else (line.conditions,))
 
 
 _RANDOM_OF: dict[tuple[End, End], str] = {

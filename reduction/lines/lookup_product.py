@@ -1,4 +1,4 @@
-"""What a look-up takes, a surface or a curve of a line, and what it returns.
+"""What a look-up takes, a surface, a curve or tested levels of a line, and what it returns.
 
 References
 ----------
@@ -202,6 +202,48 @@ class LineCurve:
 
 
 @dataclass(frozen=True)
+@read_only_arrays
+class LineLevels:
+    """A quantity at the levels at which it was tested, one row per test.
+
+    Parameters
+    ----------
+    quantity : str
+        Of the vocabulary.
+    variables : tuple of str
+        Levels, in the order of the columns of ``at``.
+    at : ndarray, shape (n_tests, n_variables)
+        As the tests reached them. [SI]
+    value : ndarray, shape (n_tests,)
+        [SI]
+    random_standard_uncertainty, degrees_of_freedom : ndarray, shape (n_tests,)
+        Of what is of each test alone. [SI], [1]
+    tests : tuple of str, length n_tests
+        Where each value is from.
+    component : tuple of Component, length n_components
+        Errors that the tests share; none where nothing is known of any.
+    contribution : ndarray, shape (n_components, n_tests)
+        What each of them adds to each value, signed. [SI]
+    conditions : tuple of dict, length n_tests
+        In which each test was made, as `LineSource`.
+    notes : tuple of str
+        What else to know.
+    """
+
+    quantity: str
+    variables: tuple[str, ...]
+    at: Floats
+    value: Floats
+    random_standard_uncertainty: Floats
+    degrees_of_freedom: Floats
+    tests: tuple[str, ...]
+    component: tuple[Component, ...] = ()
+    contribution: Floats = field(default_factory=lambda: np.empty((0, 0)))
+    conditions: tuple[dict[str, str], ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class LineSource:
     """A line or tether of which something is known.
 
@@ -238,8 +280,14 @@ class LineSource:
     slow_pulls : dict of str to LineCurve
         K_0 over mean tension by each printed way to it, or by each slow pull of an experiment, by
         its name in words; of a rope with response surfaces alone.
-    notes : tuple of str
-        What holds of all of it.
+    levels : tuple of LineLevels
+        Quantities that are known at the levels of single tests.
+    conditions : dict of str to str
+        In which it was tested, as a campaign states them: ``medium``, ``temperature`` ...
+    specimens : tuple of str
+        That the numbers are of; none of a published line.
+    notes, warnings : tuple of str
+        What holds of all of it, and what of that has to be read before any value.
     """
 
     name: str
@@ -259,7 +307,11 @@ class LineSource:
     tensile_strength: float = float("nan")
     strength_of: str = ""
     slow_pulls: dict[str, LineCurve] = field(default_factory=dict)
+    levels: tuple[LineLevels, ...] = ()
+    conditions: dict[str, str] = field(default_factory=dict)
+    specimens: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
 
     @property
     def is_printed(self) -> bool:
@@ -284,8 +336,9 @@ class LineSource:
     def quantities(self) -> tuple[str, ...]:
         """What can be asked for."""
         derived = ["dashpot_coefficient"] if self.has_dashpot else []
+        of_levels = [one.quantity for one in self.levels]
         of_curves = [one.quantity for one in self.curves]
-        return tuple(dict.fromkeys([*self.surfaces, *derived, *of_curves]))
+        return tuple(dict.fromkeys([*self.surfaces, *derived, *of_levels, *of_curves]))
 
     @property
     def has_dashpot(self) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from reduction.archive.open import reading
+from reduction.lines.archive_source import CYCLE
 from reduction.lines.export_tables import TableColumn, ValueTable
 from reduction.quantities.units import UnitSystem, display_unit
 from reduction.record.errors import DataError
@@ -86,6 +87,133 @@ def surface_table(
         for place in range(n_terms)
     ]  # fmt: skip
     return ValueTable(title, tuple(columns), (source,), _ABOUT, is_synthetic)
+
+
+_PRINTED = (
+    ("apparent_spring_constant", "lb/in/in x 10^4", "N", 1e4),
+    ("hysteresis_energy", "lb-in/in", "J m-1", 1.0),
+    ("dissipation_spring_constant", "lb/in/in x 10^4", "N", 1e4),
+    ("relaxation_time", "s", "s", 1.0),
+)
+"""Responses in the order of the report, as it prints their unit, and by which power of ten."""
+
+_FACTORS = (
+    "MEAN", "f^2", "T_m^2", "dT^2", "f", "T_m", "dT", "f, T_m", "f, dT", "T_m, dT",
+)  # fmt: skip
+
+_F_CRIT = 3.48
+
+_FOOT = ("r^2", "F-STAT", "F-CRIT", "F (Hz)", "T_m (lbs)", "dT (lbs)")
+
+
+def printed_table(path: Path, *, specimen: str | None = None) -> ValueTable:
+    """Surfaces of an archive in the columns of Tables 3, 11, 14 and 17 of CG-D-39-80.
+
+    One block of rows per response: the factors B1 to B10 in coded levels, three decimals, then r2,
+    F, and the range of each level; one column per experiment.  Pounds, whatever units are asked.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        ``surfaces.nc``.
+    specimen : str, optional
+        One experiment, by its name; all unless said.
+
+    Returns
+    -------
+    table : ValueTable
+        Words and digits as printed, shape (n_responses * 16,).
+
+    Raises
+    ------
+    DataError
+        If no experiment has the factors of the report, or none is of that name.
+
+    Notes
+    -----
+    F-STAT is the ratio that the report prints, with the sum of squares of ten terms, the mean
+    counted twice, and F-CRIT its 3.48 (CG-14 of docs/errata.md); those of the regression stand in
+    the archive.
+    """
+    with reading(path) as archive:
+        names = [str(one) for one in archive["experiment"].to_numpy()]
+        chosen = [
+            place
+            for place, name in enumerate(names)
+            if specimen in (None, name)
+            and [str(one) for one in archive["factor_name"].to_numpy()[place]] == list(CYCLE)
+        ]
+        if not chosen:
+            raise DataError(
+                f"{path} has no surface over frequency, mean tension and tension amplitude"
+                + (f" of '{specimen}'" if specimen else ""),
+                found=", ".join(names), needed="an experiment with the factors of the report",
+            )  # fmt: skip
+        parts = [one for one in _PRINTED if f"{one[0]}{_COEFFICIENT}" in archive]
+        columns = {
+            names[place]: [cell for one in parts for cell in _printed_cells(archive, place, *one)]
+            for place in chosen
+        }
+        title = f"{archive.attrs.get('title', path.parent.name)}: polynomial equation coefficients"
+        source = f"{path.parent.name}/{path.name}, in the form of CG-D-39-80, Tables 3, 11, 14, 17"
+        is_synthetic = archive.attrs.get("synthetic") == "yes"
+    n_rows = len(_FACTORS) + len(_FOOT)
+    terms = [f"B{place + 1}" for place in range(len(_FACTORS))] + [""] * len(_FOOT)
+    made = {
+        "RESPONSE": np.repeat([f"{name} ({unit})" for name, unit, *_ in parts], n_rows),
+        "FACTOR": np.tile([*_FACTORS, *_FOOT], len(parts)),
+        "COEFFICIENT": np.tile(terms, len(parts)),
+        **{name: np.array(cells) for name, cells in columns.items()},
+    }
+    about = ("F-STAT and F-CRIT are formed as the report forms them; coefficients are of levels "
+             "coded -1 and 1")  # fmt: skip
+    return ValueTable(
+        title,
+        tuple(TableColumn(name, "", "as the report has it", cells) for name, cells in made.items()),
+        (source,), (about,), is_synthetic,
+    )  # fmt: skip
+
+
+def _printed_cells(
+    archive: xr.Dataset, place: int, response: str, _: str, unit: str, scale: float
+) -> list[str]:
+    """One column of one response."""
+
+    def of(name: str) -> float:
+        return float(archive[f"{response}_{name}"].to_numpy()[place])
+
+    pounds = display_unit(unit, "us")[1]
+    coefficient = archive[f"{response}{_COEFFICIENT}"].to_numpy()[place]
+    if not np.isfinite(coefficient).all():
+        return [""] * (len(_FACTORS) + len(_FOOT))
+    ranges = []
+    for number, name in enumerate(CYCLE):
+        ends = [
+            float(archive[f"factor_{end}"].to_numpy()[place, number]) for end in ("low", "high")
+        ]
+        shown = str(archive["factor_unit"].to_numpy()[place, number])
+        if name != "frequency" and shown == "1":
+            strength = archive["run_rated_break_strength"].to_numpy()[place]
+            ends = [end * float(np.nanmean(strength)) for end in ends]
+        by = display_unit("N", "us")[1] if name != "frequency" else 1.0
+        low, high = (f"{end * by:.4g}" for end in ends)
+        ranges.append(f"±{low} - ±{high}" if name == "tension_amplitude" else f"{low} - {high}")
+    return [
+        *(_three(pounds * one / scale) for one in coefficient),
+        _three(of("r2")), f"{of('printed_f'):.2f}", f"{_F_CRIT:.2f}", *ranges,
+    ]  # fmt: skip
+
+
+def _three(value: float) -> str:
+    """Three decimals without a nought before the point, as the report has them.
+
+    Examples
+    --------
+    >>> [_three(value) for value in (3.451, -0.0312, 0.0001)]
+    ['3.451', '-.031', '.000']
+    """
+    text = f"{abs(value):.3f}".removeprefix("0")
+    return f"-{text}" if value < 0 and text != ".000" else text
 
 
 _MEANING = {

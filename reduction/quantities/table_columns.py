@@ -62,6 +62,7 @@ OF_TABLES: tuple[Quantity, ...] = (
 
 OF_LOOK_UP: tuple[Quantity, ...] = (
     measured("dynamic_modulus", "Pa", "apparent spring constant over area at zero tension"),
+    measured("original_stiffness", "N", "chord of the first rise, to the peak of the first cycle"),
     stated("free_length", "m", "splice toe to splice toe", AXIS),
     stated("splice_strain", "1", "nominal strain of both splices together", AXIS),
 )

@@ -243,7 +243,7 @@ def write_wave_page(
         ),
         make_part("Coefficients", (), [wave_coefficient_table(found)]),
     ]  # fmt: skip
-    return _write(
+    return write_single_page(
         out, _title("Wave load", name), "load", parts, answer=extremes_table(found, units),
         tiles=tiles, notes=found.notes, units=units, about=_OF_WAVE,
     )  # fmt: skip
@@ -272,13 +272,13 @@ def write_armour_page(
         make_part("One wire", draw_wire(found, units), [wires_table(found, units)]),
         make_part("Where each theory holds", draw_errors(found), [use_table(found)]),
     ]  # fmt: skip
-    return _write(
+    return write_single_page(
         out, _title("Armour", name), "armour", parts, answer=layers_table(found, units),
         tiles=tiles, notes=found.notes, units=units, about=_OF_ARMOUR,
     )  # fmt: skip
 
 
-def _write(
+def write_single_page(
     out: Path,
     title: str,
     key: str,
@@ -289,9 +289,12 @@ def _write(
     notes: Sequence[str],
     units: UnitSystem,
     about: str,
+    made_from: str = "the numbers of its SPEC.toml alone",
+    subtitle: str = "Predicted: nothing of it was measured.",
 ) -> Path:
+    """Write a page of one section as ``index.html``."""
     section = TestSection(
-        key=key, title=title, subtitle="Predicted: nothing of it was measured.",
+        key=key, title=title, subtitle=subtitle,
         parts=tuple(parts), notes=(), provenance=(),
     )  # fmt: skip
     page = Page(
@@ -299,8 +302,7 @@ def _write(
         campaign=title,
         summary="",
         about=about_page(
-            units, "the numbers of its SPEC.toml alone", in_si="Notes are in SI.",
-            definitions=[about],
+            units, made_from, in_si="Notes are in SI.", definitions=[about]
         ),
         tiles=tiles,
         faults=[

@@ -337,3 +337,37 @@ def test_dummies_give_the_error_of_a_screening(fit):
     assert "standard error by the dummies" in fit(screening(), spec).stdout
     middle = screening().replace("\n1,", "\n0.5,", 1)
     told(fit(middle, spec), 4, "a level of A is neither low nor high")
+
+
+def test_a_surface_is_written_with_its_analysis_of_variance_and_figures(tmp_path, command):
+    # by definition: total about the mean, residual of least squares on ten terms
+    coded = np.array([[-1, -1, 0], [1, -1, 0], [-1, 1, 0], [1, 1, 0], [-1, 0, -1], [1, 0, -1],
+                      [-1, 0, 1], [1, 0, 1], [0, -1, -1], [0, 1, -1], [0, -1, 1], [0, 1, 1],
+                      [0, 0, 0], [0, 0, 0], [0, 0, 0]])  # fmt: skip
+    y = stiffness(coded) + 1e3 * np.sin(np.arange(15.0))
+    rows = [",".join(map(str, row)) for row in np.column_stack([coded, y]).tolist()]
+    (tmp_path / "runs.csv").write_text("\n".join(["a,b,c,=stiffness", *rows]) + "\n")
+    done = command("surface", "runs.csv", "--out", "made", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    tables = tmp_path / "made" / "tables"
+    f, mean, amplitude = coded.T
+    terms = np.column_stack(
+        [np.ones(15), coded, coded**2, f * mean, f * amplitude, mean * amplitude]
+    )
+    wanted, residual, *_ = np.linalg.lstsq(terms, y)
+    with (tables / "anova.csv").open(newline="") as file:
+        squares = {row["source"]: row for row in csv.DictReader(file)}
+    assert float(squares["residuals"]["sum_of_squares"]) == pytest.approx(residual[0], rel=1e-9)
+    assert float(squares["residuals"]["degrees_of_freedom"]) == 5
+    total = float(np.sum((y - y.mean()) ** 2))
+    assert float(squares["total"]["sum_of_squares"]) == pytest.approx(total, rel=1e-9)
+    with (tables / "coefficients.csv").open(newline="") as file:
+        found = {row["label"]: row for row in csv.DictReader(file)}
+    assert float(found["B1"]["coefficient"]) == pytest.approx(wanted[0], rel=1e-9)
+    assert found["B1"]["response"] == "'=stiffness"
+    with (tables / "runs.csv").open(newline="") as file:
+        runs = list(csv.DictReader(file))
+    assert [float(row["'=stiffness fitted"]) for row in runs] == pytest.approx(terms @ wanted)
+    page = (tmp_path / "made" / "index.html").read_text(encoding="utf-8")
+    assert page.count('"contour-0-') >= 3 or page.count("contour-0-") >= 3
+    assert "Analysis of variance" in page

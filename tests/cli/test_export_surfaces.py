@@ -2,17 +2,22 @@
 
 import csv
 import json
+import sys
+import zipfile
 
 import netCDF4
 import numpy as np
 import pytest
+from python_calamine import CalamineWorkbook
 
 from reduction.archive.open import open_archive
+from reduction.archive.workbook import sheets_of_tables, write_workbook
 from reduction.lines.archive_source import lines_of_archive
 from reduction.lines.line_lookup import look_up
+from reduction.record.errors import SettingsError
 
 NEWTON = 4.4482216152605  # in a pound
-FORMATS = ("csv", "json", "latex", "markdown", "netcdf")
+FORMATS = ("csv", "json", "latex", "markdown", "netcdf", "xlsx")
 
 
 def read_back(path, to):
@@ -20,6 +25,9 @@ def read_back(path, to):
     if to == "netcdf":
         with netCDF4.Dataset(path) as file:
             return {name: np.array(one[:]).astype(str) for name, one in file.variables.items()}
+    if to == "xlsx":
+        heads, *rows = CalamineWorkbook.from_path(path).get_sheet_by_name("values").to_python()
+        return dict(zip(heads, np.array(rows).astype(str).T, strict=True))
     text = path.read_text(encoding="utf-8")
     if to == "json":
         return {name: np.array(one).astype(str) for name, one in json.loads(text)["values"].items()}
@@ -120,3 +128,69 @@ def test_an_experiment_that_is_not_there_is_named(command, archive, tmp_path):
     assert done.returncode != 0
     assert "no surface of 'hemp'" in done.stderr
     assert "nylon" in done.stderr
+
+
+@pytest.mark.parametrize("to", ["csv", "xlsx"])
+def test_the_printed_form_has_the_columns_of_the_report_and_its_digits(
+    command, archive, tmp_path, to
+):
+    found = exported(command, archive, tmp_path / "s.out", to, "--form", "printed")
+    at = np.flatnonzero(found["RESPONSE"] == "apparent_spring_constant (lb/in/in x 10^4)")
+    assert found["FACTOR"][at][[0, 2, 9, 10]].tolist() == ["MEAN", "T_m^2", "T_m, dT", "r^2"]
+    printed = found["nylon"][at]
+    with open_archive(archive) as file:
+        wanted = file["apparent_spring_constant_coefficient"].to_numpy()[0]
+    own = [float(text) for text in printed[:10]]
+    np.testing.assert_allclose(own, wanted / NEWTON / 1e4, atol=5.01e-4)
+    # levels of 12 to 30 and 5 to 12 % of 6,400 lb, as Table 3 has them
+    assert printed[-3:].tolist() == ["0.1 - 0.5", "768 - 1920", "±320 - ±768"]
+    assert not any("log_" in one for one in found["RESPONSE"])
+
+
+def test_a_workbook_has_every_table_with_units_and_numbers_as_numbers(command, archive, tmp_path):
+    out = tmp_path / "all.xlsx"
+    done = command("export", archive.parent, "--to", "xlsx", "--out", out)
+    assert done.returncode == 0, done.stderr
+    book = CalamineWorkbook.from_path(out)
+    tables = archive.parent / "tables"
+    names = {path.stem for path in tables.glob("*.csv")} - {"columns"}
+    _, *contents = book.get_sheet_by_name("contents").to_python()
+    assert {row[0] for row in contents} == {f"{name}.csv" for name in names}
+    (name,) = (row[1] for row in contents if row[0] == "cycles.csv")
+    heads, *rows = book.get_sheet_by_name(name).to_python()
+    with (tables / "cycles.csv").open(newline="", encoding="utf-8") as file:
+        own, *wanted = csv.reader(file)
+    assert heads == own and len(rows) == len(wanted)
+    for column in ("test", next(one for one in own if one.startswith("cycle")), "apparent_spring_constant [N]",
+                   "apparent_spring_constant_standard_uncertainty [N]"):  # fmt: skip
+        place = own.index(column)
+        for row, as_text in zip(rows, wanted, strict=True):
+            if isinstance(row[place], float):
+                assert row[place] == pytest.approx(float(as_text[place]), rel=1e-14)
+            else:
+                assert row[place] == as_text[place]
+        assert isinstance(rows[0][place], str if column == "test" else float)
+
+
+def test_no_text_of_a_workbook_is_a_formula(tmp_path):
+    texts = ["=1+1", "+2", "-x", "@a", "=HYPERLINK(1)", "https://a.example"]
+    tables = tmp_path / "tables"
+    tables.mkdir()
+    (tables / "columns.csv").write_text(
+        "table,column,unit,meaning,no_uncertainty\nodd.csv,name,,a name,label\n"
+    )
+    (tables / "odd.csv").write_text("name,number [N]\n" + "".join(f"{t},007\n" for t in texts))
+    write_workbook(tmp_path / "odd.xlsx", sheets_of_tables(tables))
+    write_workbook(tmp_path / "again.xlsx", sheets_of_tables(tables))
+    assert (tmp_path / "again.xlsx").read_bytes() == (tmp_path / "odd.xlsx").read_bytes()
+    with zipfile.ZipFile(tmp_path / "odd.xlsx") as book:
+        pages = [book.read(one).decode() for one in book.namelist() if "worksheets/sheet" in one]
+    assert pages and not any("<f>" in one or "hyperlink" in one for one in pages)
+    rows = CalamineWorkbook.from_path(tmp_path / "odd.xlsx").get_sheet_by_name("odd").to_python()
+    assert rows[1:] == [[text, 7.0] for text in texts]
+
+
+def test_a_missing_library_is_named(monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "xlsxwriter", None)
+    with pytest.raises(SettingsError, match=r"pip install \"mooring-reduction\[xlsx\]\""):
+        write_workbook(tmp_path / "a.xlsx", [])

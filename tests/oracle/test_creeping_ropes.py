@@ -11,6 +11,8 @@ from typer.testing import CliRunner
 
 from reduction.archive.open import reading
 from reduction.cli.main import app
+from reduction.lines.archive_source import lines_of_folder
+from reduction.lines.line_lookup import look_up
 
 STIFFNESS = 0.03  # of the secant stiffness of each level
 NAMES = ("level-1", "level-2", "level-3")
@@ -77,6 +79,20 @@ def test_every_number_of_a_level_is_that_of_its_law(rope):
                         assert modulus * area == pytest.approx(chord, rel=STIFFNESS)
             creep = float(archive["mean_strain_per_decade"][0])
             assert creep == pytest.approx(values["creep_per_decade_record_from_3"], rel=0.05)
+
+
+def test_the_levels_of_one_rope_are_one_line_with_the_stiffness_of_the_law(rope):
+    _, truth, folder = rope
+    line = lines_of_folder(folder)[0]
+    assert line.name == "line"
+    for values in truth.tests["R-1"].values():
+        at = {name: values[name] for name in ("frequency", "mean_tension", "tension_amplitude")}
+        for quantity in ("apparent_spring_constant", "hysteresis_energy"):
+            found = look_up(line, quantity, **at)
+            assert found.surface_low < values[quantity] < found.surface_high
+    # the frequency and the amplitude that all levels have alike need not be said
+    alone = look_up(line, "apparent_spring_constant", mean_tension=at["mean_tension"])
+    assert alone.value == look_up(line, "apparent_spring_constant", **at).value
 
 
 def test_looked_up_tensions_rise_as_the_law_does(rope):

@@ -1,0 +1,321 @@
+"""Design values from tests at single levels of a cycle: at a tested level, or between two of them.
+
+Nothing is fitted and nothing is extrapolated.  Tests whose levels agree are one level: its value is
+their mean, and the interval holds the scatter between them where there are several.  Between two
+tested levels, on the straight line that joins them, the value is interpolated and the interval
+spans the intervals of both: that holds wherever the quantity rises or falls throughout between
+them, and asks for nothing else.  A frequency counts by its logarithm, since
+periods are tested in decades.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from reduction.lines.line_curve import half_width_of_parts
+from reduction.lines.lookup_product import LineLevels
+from reduction.quantities.digits import plain_number
+from reduction.quantities.names import quantity as quantity_of
+from reduction.record.errors import DataError, SettingsError
+from reduction.record.measurement import Bools, Floats, read_only_arrays
+
+SAME_LEVEL = 0.02
+"""Share within which a machine that is told one level reaches it, and two levels are one. [1]"""
+
+
+TESTED_IN = ("medium", "soak", "temperature")
+"""Conditions in which a value is another one."""
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class LevelPoints:
+    """Tested levels at points; arrays have the shape (n_points,), contributions a row per error.
+
+    ``low`` and ``high`` are of one more test, NaN where a level has a single one; ``notes`` name
+    the tests that were used.
+    """
+
+    value: Floats
+    random: Floats
+    freedom: Floats
+    run_random: Floats
+    contribution: Floats
+    test_low: Floats
+    test_high: Floats
+    low: Floats
+    high: Floats
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _Level:
+    """Tests at one level, put together."""
+
+    at: Floats
+    value: float
+    random: float
+    freedom: float
+    run_random: float
+    contribution: Floats
+    interval: tuple[float, float]
+    run_interval: tuple[float, float]
+    words: str
+
+
+def _is_same(a: Floats, b: Floats) -> Bools:
+    """Whether levels agree in every variable; the last axis is of variables."""
+    return np.asarray(
+        np.all(np.abs(a - b) <= SAME_LEVEL * np.maximum(np.abs(a), np.abs(b)), axis=-1)
+    )
+
+
+def levels_of_tests(levels: LineLevels) -> list[tuple[Floats, tuple[int, ...]]]:
+    """Levels that differ, in the order of the tests, with the tests at each.
+
+    Examples
+    --------
+    >>> at, ones = np.array([[100.0], [200.0], [101.0]]), np.ones(3)
+    >>> of = LineLevels(
+    ...     "apparent_spring_constant", ("mean_tension",), at, ones, ones, ones, tuple("abc")
+    ... )
+    >>> [(at.tolist(), tests) for at, tests in levels_of_tests(of)]
+    [([100.5], (0, 2)), ([200.0], (1,))]
+    """
+    groups: list[list[int]] = []
+    for row, at in enumerate(levels.at):
+        own = next((one for one in groups if _is_same(levels.at[one[0]], at)), None)
+        if own is None:
+            groups.append([row])
+        else:
+            own.append(row)
+    return [(levels.at[one].mean(axis=0), tuple(one)) for one in groups]
+
+
+def completed_levels(
+    levels: LineLevels, given: Mapping[str, Floats], name: str
+) -> dict[str, Floats]:
+    """What is asked for, with each level that was not stated and that all tests have alike.
+
+    Raises
+    ------
+    SettingsError
+        If a level is none of the tests', or one is missing at which the tests differ.
+    """
+    unknown = sorted(set(given) - set(levels.variables))
+    if unknown:
+        raise SettingsError(
+            f"{levels.quantity} of {name} does not vary with {', '.join(unknown)}",
+            needed="levels of " + ", ".join(levels.variables),
+        )
+    found = dict(given)
+    for place, variable in enumerate(levels.variables):
+        if variable in given:
+            continue
+        own = levels.at[:, place]
+        if not _is_same(own[:, None], own[:1, None]).all():
+            raise SettingsError(
+                f"{levels.quantity} of {name} was tested at several levels of {variable}",
+                found=", ".join(given) or "no level",
+                needed=f"--{variable.replace('_', '-')} with one of "
+                + ", ".join(_words(variable, one) for one in _distinct(own)),
+            )
+        found[variable] = np.asarray(own.mean())
+    return {variable: found[variable] for variable in levels.variables}
+
+
+def refuse_mixed_conditions(levels: LineLevels, name: str) -> None:
+    """Refuse tests that were made wet and dry, or at several temperatures, as one line."""
+    seen = {
+        tuple((key, one[key]) for key in TESTED_IN if one.get(key)) for one in levels.conditions
+    }
+    if len(seen) > 1:
+        said = sorted(", ".join(f"{key} {value}" for key, value in one) or "none" for one in seen)
+        raise SettingsError(
+            f"{levels.quantity} of {name} was tested in several conditions",
+            found="; ".join(said),
+            needed="--medium or --temperature that leaves one",
+        )
+
+
+def _distinct(values: Floats) -> list[float]:
+    """Values that differ, rising."""
+    found: list[float] = []
+    for one in np.sort(values).tolist():
+        if not found or one - found[-1] > SAME_LEVEL * one:
+            found.append(one)
+    return found
+
+
+def _words(variable: str, value: float) -> str:
+    unit = quantity_of(variable).unit
+    return f"{plain_number(value, 4)} {unit}"
+
+
+def _level_words(levels: LineLevels, at: Sequence[float]) -> str:
+    return ", ".join(
+        f"{variable.replace('_', ' ')} {_words(variable, float(value))}"
+        for variable, value in zip(levels.variables, at, strict=True)
+    )
+
+
+def _together(levels: LineLevels, at: Floats, tests: tuple[int, ...]) -> _Level:
+    """Mean of the tests at one level; of several, their scatter is in the interval."""
+    rows, n = list(tests), len(tests)
+    value = float(levels.value[rows].mean())
+    own = levels.random_standard_uncertainty[rows]
+    random, freedom = float(own[0]), float(levels.degrees_of_freedom[rows[0]])
+    run_random = np.nan
+    if n > 1:
+        scatter = float(levels.value[rows].std(ddof=1))
+        # two tests may agree by chance: never better than what each is known to
+        within = float(np.sqrt(np.sum(own**2)) / n)
+        random, freedom = max(scatter / np.sqrt(n), within), float(n - 1)
+        run_random = float(np.hypot(max(scatter, within * np.sqrt(n)), random))
+    shared = levels.contribution[:, rows].mean(axis=1) if levels.component else np.empty(0)
+    few = [one.degrees_of_freedom for one in levels.component]
+
+    def ends(spread: float) -> tuple[float, float]:
+        if not np.isfinite(spread):
+            return np.nan, np.nan
+        half = float(half_width_of_parts([spread], [freedom], shared, few))
+        return value - half, value + half
+
+    names = ", ".join(levels.tests[row] for row in rows)
+    return _Level(
+        at, value, random, freedom, run_random, shared, ends(random), ends(run_random),
+        f"{names} ({_level_words(levels, at.tolist())})",
+    )  # fmt: skip
+
+
+def _is_log(levels: LineLevels) -> Bools:
+    """Which variables are interpolated by their logarithm."""
+    return np.array([variable == "frequency" for variable in levels.variables])
+
+
+def _scaled(levels: LineLevels, at: Floats) -> Floats:
+    """Levels on the scales on which they are interpolated."""
+    return np.where(_is_log(levels), np.log(np.where(_is_log(levels), at, 1.0)), at)
+
+
+def evaluate_levels(levels: LineLevels, at: Floats, name: str) -> LevelPoints:
+    """Value at points, of a tested level or between two of them.
+
+    Parameters
+    ----------
+    levels : LineLevels
+        Tests of one line.
+    at : ndarray, shape (n_points, n_variables)
+        In the order of its variables. [SI]
+    name : str
+        Of the line, for messages.
+
+    Returns
+    -------
+    points : LevelPoints
+        [unit of the quantity]
+
+    Raises
+    ------
+    DataError
+        If a point is no tested level and not on the straight line between two of them.
+
+    Notes
+    -----
+    See the module.  A level is tested where every variable is within `SAME_LEVEL` of it; of the
+    pairs of levels with a point between them the closest one is taken.
+
+    Examples
+    --------
+    A quarter of the way from 100 to 200 N, the interval from the least to the greatest end:
+
+    >>> two = LineLevels(
+    ...     "apparent_spring_constant", ("mean_tension",), np.array([[100.0], [200.0]]),
+    ...     np.array([1000.0, 1400.0]), np.array([10.0, 20.0]), np.full(2, np.inf), ("a", "b"),
+    ... )
+    >>> found = evaluate_levels(two, np.array([[100.0], [125.0]]), "rope")
+    >>> print(found.value, found.test_low.round(1), found.test_high.round(1))
+    [1000. 1100.] [980.4 980.4] [1019.6 1439.2]
+    """
+    known = [_together(levels, place, tests) for place, tests in levels_of_tests(levels)]
+    size = len(at)
+    names = ("value", "random", "freedom", "run_random", "test_low", "test_high", "low", "high")
+    out = {one: np.full(size, np.nan) for one in names}
+    rows = np.zeros((len(levels.component), size))
+    is_found = np.zeros(size, dtype=bool)
+    said: list[str] = []
+    for one in known:
+        here = _is_same(at, one.at) & ~is_found
+        if not here.any():
+            continue
+        values = (one.value, one.random, one.freedom, one.run_random, *one.interval,
+                  *one.run_interval)  # fmt: skip
+        for column, value in zip(names, values, strict=True):
+            out[column][here] = value
+        rows[:, here] = one.contribution[:, None]
+        is_found |= here
+        said.append(f"tested: {one.words}")
+    if not is_found.all():
+        said += _fill_between(levels, known, at, out, rows, is_found)
+    if not is_found.all():
+        first = at[np.flatnonzero(~is_found)[0]]
+        near = min(known, key=lambda one: _distance(levels, one.at, first))
+        raise DataError(
+            f"{int((~is_found).sum())} of {size} points are no level at which {levels.quantity} of "
+            f"{name} was tested, nor between two of them",
+            found=_level_words(levels, first.tolist()),
+            needed=f"one of the {len(known)} tested levels; the nearest is {near.words}",
+            hint="`--list` shows every level; nothing is extrapolated, not even flagged.",
+        )
+    return LevelPoints(**out, contribution=rows, notes=tuple(dict.fromkeys(said)))
+
+
+def _distance(levels: LineLevels, a: Floats, b: Floats) -> float:
+    """Between two levels, each variable as a share of the greatest tested one."""
+    scale = np.ptp(_scaled(levels, levels.at), axis=0)
+    scale = np.where(scale > 0, scale, 1.0)
+    return float(np.linalg.norm((_scaled(levels, a) - _scaled(levels, b)) / scale))
+
+
+def _fill_between(
+    levels: LineLevels,
+    known: Sequence[_Level],
+    at: Floats,
+    out: Mapping[str, Floats],
+    rows: Floats,
+    is_found: Bools,
+) -> list[str]:
+    """Interpolate at points between two levels, closest pairs first; what is said of them."""
+    scaled = _scaled(levels, at)
+    pairs = sorted(combinations(known, 2), key=lambda two: _distance(levels, two[0].at, two[1].at))
+    said = []
+    for one, other in pairs:
+        start, way = _scaled(levels, one.at), _scaled(levels, other.at) - _scaled(levels, one.at)
+        # a variable in which both agree says nothing of how far along a point is
+        moves = ~_is_same(one.at[:, None], other.at[:, None])
+        way = np.where(moves, way, 0.0)
+        # the mean over the variables that differ of how far along each of them is
+        steps = np.where(moves, (scaled - start) / np.where(moves, way, 1.0), 0.0)
+        along = steps.sum(axis=1) / moves.sum()
+        on_line = start + along[:, None] * way
+        is_log = _is_log(levels)
+        back = np.where(is_log, np.exp(np.where(is_log, on_line, 0.0)), on_line)
+        here = ~is_found & (along > 0) & (along < 1) & _is_same(at, back)
+        if not here.any():
+            continue
+        share = along[here]
+        out["value"][here] = (1 - share) * one.value + share * other.value
+        out["test_low"][here] = min(one.interval[0], other.interval[0])
+        out["test_high"][here] = max(one.interval[1], other.interval[1])
+        rows[:, here] = np.outer(one.contribution, 1 - share) + np.outer(other.contribution, share)
+        is_found |= here
+        said.append(
+            f"not tested, interpolated between {one.words} and {other.words}: the interval spans "
+            f"those of both, and holds where {levels.quantity} only rises or only falls between "
+            "them"
+        )
+    return said

@@ -1,0 +1,237 @@
+"""Lines in the order of one quantity at one load, with ties where their intervals overlap.
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, sec. 3.2, Figure 4: the choice of a diameter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from reduction.lines.line_lookup import Branch, look_up
+from reduction.lines.lookup_product import DesignValues, LineSource
+from reduction.published.printed_cells import Erratum, cells_of, errata_of, number_of
+from reduction.quantities.digits import plain_number
+from reduction.record.errors import DataError, ReductionError, SettingsError
+
+JUST_OUTSIDE = 0.1
+"""Share of half the tested range by which a line may be outside, and is ranked and flagged. [1]"""
+
+_INCH = 0.0254
+
+_CLOSE = 1e-6
+
+
+@dataclass(frozen=True)
+class LevelOutside:
+    """A level that was not tested, and the end of the tested range that it is beyond, in SI."""
+
+    name: str
+    value: float
+    end: float
+    side: Literal["below", "above"]
+
+
+@dataclass(frozen=True)
+class RankedLine:
+    """A line at its place.
+
+    ``ties`` name the lines whose 95 % intervals overlap its own, of the lines that were tested;
+    ``kind_ties`` those with overlapping intervals of another line of each kind, None where that is
+    not known.
+    """
+
+    line: LineSource
+    values: DesignValues
+    ties: tuple[str, ...]
+    kind_ties: tuple[str, ...] | None
+    outside: tuple[LevelOutside, ...]
+
+
+@dataclass(frozen=True)
+class LineRanking:
+    """Lines from the least value to the greatest, and those that have no place, with the reason.
+
+    ``errata`` are those of sentences of a report that order some of these lines.
+    """
+
+    ranked: tuple[RankedLine, ...]
+    left_out: tuple[tuple[str, str], ...]
+    errata: tuple[Erratum, ...]
+
+
+def rank_lines(
+    lines: Sequence[LineSource],
+    quantity: str,
+    levels: Sequence[Mapping[str, Any]],
+    *,
+    branch: Branch | None = None,
+    extrapolate: Literal["refuse", "flag"] = "refuse",
+) -> LineRanking:
+    """Order lines by a quantity at one load.
+
+    Parameters
+    ----------
+    lines : sequence of LineSource
+        That have the quantity.
+    quantity : str
+        One that all of them have.
+    levels : sequence of mapping of str to float, length n_lines
+        The same load of each; shares of a break strength differ. [SI]
+    branch : {"ascending", "descending"}, optional
+        As `look_up`.
+    extrapolate : {"refuse", "flag"}
+        Whether a line that is farther outside than `JUST_OUTSIDE` has a place.
+
+    Returns
+    -------
+    ranking : LineRanking
+        A line is left out where it was not tested, or where the load is above what its source
+        allows: no choice.
+
+    Raises
+    ------
+    DataError
+        If fewer than two lines are left.
+
+    Notes
+    -----
+    Figure 4 of [1]_ as numbers.  Two lines tie where their intervals have a value in common, which
+    is more cautious than the interval of their difference.
+    """
+    found: list[tuple[LineSource, DesignValues, tuple[LevelOutside, ...]]] = []
+    left_out: list[tuple[str, str]] = []
+    for line, at in zip(lines, levels, strict=True):
+        try:
+            values = look_up(line, quantity, branch=branch, extrapolate="flag", **at)
+            if values.is_above_rule.any():
+                left_out.append((line.name, _above(values)))
+                continue
+            outside = _outside(line, quantity, at)
+            if extrapolate == "refuse" and not values.is_inside.all() and not outside:
+                look_up(line, quantity, branch=branch, **at)
+        except (DataError, SettingsError) as error:
+            left_out.append((line.name, _reason(error)))
+            continue
+        found.append((line, values, outside))
+    if len(found) < 2:
+        raise DataError(
+            f"fewer than two lines have {quantity} at this load",
+            found="; ".join(f"{name}: {why}" for name, why in left_out) or "one line",
+            needed="two or more", hint="--extrapolate flag ranks what was not tested, flagged.",
+        )  # fmt: skip
+    found.sort(key=lambda one: float(one[1].value))
+    ranked = tuple(
+        RankedLine(
+            line, values, _ties(place, found, "surface") or (), _ties(place, found, "line"), outside
+        )
+        for place, (line, values, outside) in enumerate(found)
+    )
+    return LineRanking(
+        ranked, tuple(left_out), _told_otherwise([one for one, *_ in found], quantity)
+    )
+
+
+def _above(values: DesignValues) -> str:
+    share = float(values.own_peak_share.ravel()[0])
+    return f"its peak would be {100 * share:.0f} % of its break strength, above the rule"
+
+
+def _reason(error: ReductionError) -> str:
+    parts = str(error.problem), str(error.found or "")
+    return "; ".join(part for part in parts if part)
+
+
+def _outside(line: LineSource, quantity: str, at: Mapping[str, float]) -> tuple[LevelOutside, ...]:
+    """Levels just outside the box of a surface; none where one is farther off than that."""
+    surface = line.surfaces.get(quantity)
+    if surface is None:
+        return ()
+    found = []
+    for place, name in enumerate(line.factor_names):
+        low, high = float(surface.low[place]), float(surface.high[place])
+        rounded = float(surface.rounding[place]) if surface.rounding.size else 0.0
+        beyond = max(low - rounded - at[name], at[name] - high - rounded)
+        if beyond <= _CLOSE * high:
+            continue
+        if beyond > JUST_OUTSIDE * (high - low) / 2:
+            return ()
+        is_below = at[name] < low
+        found.append(
+            LevelOutside(
+                name, at[name], low if is_below else high, "below" if is_below else "above"
+            )
+        )
+    return tuple(found)
+
+
+def _ties(
+    place: int,
+    found: Sequence[tuple[LineSource, DesignValues, tuple[LevelOutside, ...]]],
+    which: Literal["surface", "line"],
+) -> tuple[str, ...] | None:
+    """Other lines whose intervals overlap; None where there is no interval."""
+
+    def ends(values: DesignValues) -> tuple[float, float]:
+        return tuple(float(getattr(values, f"{which}_{end}").ravel()[0]) for end in ("low", "high"))  # type: ignore[return-value]
+
+    low, high = ends(found[place][1])
+    if not np.isfinite([low, high]).all():
+        return None
+    others = [(line.name, *ends(values)) for line, values, _ in found]
+    return tuple(
+        name
+        for row, (name, least, greatest) in enumerate(others)
+        if row != place and least <= high and greatest >= low
+    )
+
+
+def _told_otherwise(lines: Sequence[LineSource], quantity: str) -> tuple[Erratum, ...]:
+    """Errata of sentences of [1]_ that put two or more of these lines in an order."""
+    named: dict[str, set[str]] = {}
+    for cell in cells_of("CG-D-39-80"):
+        if not (cell.erratum and cell.column.startswith(f"{quantity} at ")):
+            continue
+        for line in lines:
+            if line.source == "CG-D-39-80" and _is_row(cell.row, line):
+                named.setdefault(cell.erratum, set()).add(line.name)
+    wanted = {one for one, names in named.items() if len(names) > 1}
+    return tuple(one for one in errata_of("CG-D-39-80") if one.id in wanted)
+
+
+def _is_row(row: str, line: LineSource) -> bool:
+    """Whether a row of the report, ``nylon | double braid | 3/4 in | new``, is of a line."""
+    words = row.split(" | ")
+    if len(words) != 4 or [words[0], words[1], words[3]] != [
+        line.material, line.construction, line.condition,
+    ]:  # fmt: skip
+        return False
+    size = number_of(words[2])
+    return size is not None and abs(size * _INCH - line.diameter) < _CLOSE
+
+
+def outside_words(found: LevelOutside, unit: str, factor: float) -> str:
+    """A level that was not tested, in words.
+
+    Examples
+    --------
+    >>> outside_words(LevelOutside("tension_amplitude", 1600.0, 1680.0, "below"), "lbf", 1.0)
+    'tension amplitude 1,600 lbf, below the 1,680 lbf that it was tested from'
+    """
+    value, end = (plain_number(factor * one, 4) for one in (found.value, found.end))
+    reach = "from" if found.side == "below" else "to"
+    return (
+        f"{found.name.replace('_', ' ')} {_thousands(value)} {unit}, {found.side} the "
+        f"{_thousands(end)} {unit} that it was tested {reach}"
+    )
+
+
+def _thousands(text: str) -> str:
+    whole, point, rest = text.partition(".")
+    return f"{int(whole):,}{point}{rest}" if whole.isdigit() else text

@@ -1,0 +1,203 @@
+"""Levels of a rope that a campaign tested without a design: looked up, interpolated, exported."""
+
+import csv
+import importlib.util
+import json
+import shutil
+
+import numpy as np
+import pytest
+from commandruns import ROOT, run_once, shared_by_processes
+from scipy import stats
+
+from reduction.archive.open import reading
+from reduction.cli.lookup import one_line_of
+from reduction.lines.archive_source import lines_of_folder
+from reduction.lines.line_levels import evaluate_levels
+from reduction.lines.line_lookup import look_up
+from reduction.lines.line_search import conditions_of, in_conditions
+from reduction.lines.lookup_product import LineLevels, LineSource
+from reduction.record.errors import DataError, SettingsError
+
+pytestmark = pytest.mark.slow
+
+LBF = 4.4482216152605
+STRENGTH = 6400 * LBF
+K_AP, KEPT = "apparent_spring_constant", ("R01", "R02", "R04", "R08", "R11", "R14", "Q01")
+
+
+def at(frequency, mean, amplitude):
+    return {
+        "frequency": frequency,
+        "mean_tension": mean * STRENGTH,
+        "tension_amplitude": amplitude * STRENGTH,
+    }
+
+
+CENTRE = at(0.3, 0.21, 0.085)
+
+
+@pytest.fixture(scope="module")
+def rope(tmp_path_factory):
+    """Six tests and the slow pull of the synthetic nylon line, without its experiment."""
+    made = run_once("nylon-synthetic", shared_by_processes(tmp_path_factory)).processed
+    folder = tmp_path_factory.mktemp("own") / "rope"
+    folder.mkdir()
+    for name in (*KEPT, "change_in_length"):
+        shutil.copy(made / f"{name}.nc", folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def lines(rope):
+    return lines_of_folder(rope)
+
+
+@pytest.fixture(scope="module")
+def line(lines):
+    return lines[0]
+
+
+@pytest.fixture(scope="module")
+def law():
+    """Numbers of the law that made the logs, by run."""
+    text = (ROOT / "raw" / "nylon-synthetic" / "truth" / "runs.csv").read_text()
+    rows = csv.DictReader(line for line in text.splitlines() if not line.startswith("#"))
+    return {row["run"]: row for row in rows}
+
+
+def test_a_tested_level_is_the_mean_of_its_tests(line, rope, law):
+    assert line.name == "line-1"
+    found = look_up(line, K_AP, **CENTRE)
+    values, shared = [], []
+    for test in ("R02", "R08", "R14"):
+        with reading(rope / f"{test}.nc") as archive:
+            values.append(float(archive[f"test_{K_AP}"][0]))
+            shared.append(archive[f"test_{K_AP}_uncertainty_contribution"].values[:, 0])
+    assert float(found.value) == pytest.approx(np.mean(values), rel=1e-12)
+    assert float(found.value) == pytest.approx(LBF * float(law["R02"][f"{K_AP}_lbf"]), rel=2e-3)
+    # the scatter of three tests beside the instruments that all of them share
+    u = np.hypot(np.std(values, ddof=1) / np.sqrt(3), np.linalg.norm(np.mean(shared, axis=0)))
+    assert float(found.surface_high - found.value) == pytest.approx(1.96 * u, rel=2e-3)
+    assert conditions_of(line, K_AP) == {"medium": "wet"}
+    energy = look_up(line, "hysteresis_energy", **CENTRE)
+    true = LBF * float(law["R02"]["hysteresis_energy_lbf"])
+    assert energy.surface_low < true < energy.surface_high
+
+
+def test_between_two_levels_the_interval_spans_both_and_outside_nothing_is_given(line, law):
+    ends = [look_up(line, K_AP, **at(0.3, mean, 0.05)) for mean in (0.12, 0.30)]
+    found = look_up(line, K_AP, **at(0.3, 0.18, 0.05))
+    low, high = (float(one.value) for one in ends)
+    assert float(found.value) == pytest.approx(low + (high - low) / 3, rel=1e-3)
+    assert found.surface_low == ends[0].surface_low
+    assert found.surface_high == ends[1].surface_high
+    assert any("not tested, interpolated between R01" in note for note in found.notes)
+    for extrapolate in ("refuse", "flag"):
+        with pytest.raises(DataError, match="the nearest is R11"):
+            look_up(line, K_AP, extrapolate=extrapolate, **at(0.3, 0.35, 0.05))
+    # inside the box, but on no line between two tests
+    with pytest.raises(DataError, match="nor between two of them"):
+        look_up(line, K_AP, **at(0.37, 0.17, 0.06))
+    with pytest.raises(SettingsError, match=r"--frequency with one of 0.3 Hz, 0.5 Hz"):
+        look_up(line, K_AP, mean_tension=0.21 * STRENGTH)
+
+
+def test_original_and_slow_stiffness_stand_beside_the_levels(line, lines, rope):
+    with reading(rope / "R01.nc") as archive:
+        tension, strain = archive["tension"].values[0], archive["strain"].values[0]
+        peak = int(archive["cycle_last_sample"].values[0])
+    top = int(np.argmax(tension[: peak + 1]))
+    start = int(np.flatnonzero(tension[:top] < 60.0)[-1])
+    chord = (tension[top] - tension[start]) / (strain[top] - strain[start])
+    assert float(look_up(line, "original_stiffness").value) == pytest.approx(chord, rel=0.01)
+    with reading(rope / "Q01.nc") as archive:
+        tension = archive["tension_grid"].values
+        own = archive["quasi_static_spring_constant"].values[0]
+    slow = look_up(line, "quasi_static_spring_constant", mean_tension=tension)
+    assert slow.value == pytest.approx(own, rel=1e-9)
+    # a modulus of one test is found by the name of the test, as before
+    assert one_line_of(lines, "tangent_modulus", "R02").name == "R02 line-1"
+    with pytest.raises(SettingsError, match="several lines have tangent_modulus"):
+        one_line_of(lines, "tangent_modulus", "line-1")
+
+
+def test_a_table_has_the_levels_that_were_tested(command, rope, tmp_path):
+    out = tmp_path / "levels.csv"
+    done = command(
+        "lookup", rope, "--quantity", "dynamic_stiffness", "--table", "--mean-tension", "21 %RBS",
+        "--medium", "wet", "--out", out,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    with out.open(newline="") as file:
+        (row,) = csv.DictReader(file)
+    with reading(rope / "R02.nc") as archive:
+        own = float(archive[f"test_{K_AP}"][0])
+    assert float(row[f"{K_AP} [N]"]) == pytest.approx(own, rel=1e-4)
+    assert f"{own / STRENGTH:.3g}" in done.stdout
+    listed = command("lookup", rope, "--list")
+    assert "Levels of line-1" in listed.stdout and "R11" in listed.stdout
+
+
+def test_a_condition_that_was_not_tested_says_so(line):
+    assert in_conditions(line, K_AP, {"medium": "wet"}).levels[0].tests == line.levels[0].tests
+    for asked, told in (
+        ({"medium": "dry"}, "medium wet"),
+        ({"temperature": "5 degC"}, "temperature not stated"),
+    ):
+        with pytest.raises(DataError, match=told):
+            in_conditions(line, K_AP, asked)
+        flagged = look_up(in_conditions(line, K_AP, asked, is_flagged=True), K_AP, **CENTRE)
+        assert flagged.warnings[0].startswith("NOT TESTED at")
+
+
+def levels(conditions):
+    n = len(conditions)
+    return LineLevels(
+        "apparent_spring_constant", ("frequency", "mean_tension"),
+        np.array([[0.1, 100.0 * (1 + row)] for row in range(n)]), np.linspace(1e3, 2e3, n),
+        np.full(n, 10.0), np.full(n, 5.0), tuple("abcd"[:n]), conditions=conditions,
+    )  # fmt: skip
+
+
+def test_wet_and_dry_tests_are_not_one_line():
+    both = levels(({"medium": "wet", "temperature": "20 degC"}, {"medium": "dry"}))
+    line = LineSource("rope", "", "nylon", "", "", 0.05, 3e5, levels=(both,))
+    with pytest.raises(SettingsError, match="several conditions; found medium dry; medium wet, "):
+        look_up(line, "apparent_spring_constant", mean_tension=100.0)
+    for asked in ({"medium": "WET"}, {"temperature": "21 degC"}):
+        wet = in_conditions(line, "apparent_spring_constant", asked)
+        found = look_up(wet, "apparent_spring_constant", mean_tension=100.0)
+        assert float(found.value) == 1e3
+        # Student's, of five degrees of freedom
+        assert float(found.surface_high) == pytest.approx(1e3 + 10 * stats.t.ppf(0.975, 5))
+    with pytest.raises(DataError, match="not tested so"):
+        in_conditions(line, "apparent_spring_constant", {"temperature": "25 degC"})
+
+
+def test_a_frequency_is_interpolated_by_its_logarithm():
+    of = LineLevels(
+        "apparent_spring_constant", ("frequency",), np.array([[0.001], [0.1]]),
+        np.array([1000.0, 2000.0]), np.zeros(2), np.full(2, np.inf), ("a", "b"),
+    )  # fmt: skip
+    assert evaluate_levels(of, np.array([[0.01]]), "rope").value == pytest.approx([1500.0])
+
+
+def test_export_writes_the_level_that_was_tested(command, line, rope, tmp_path):
+    is_there = importlib.util.find_spec("moordyn") is not None
+    levels = ("--frequency", "0.3 Hz", "--mean-tension", "21 %RBS", "--tension-amplitude")
+    asked = ("export", rope, *levels, "8.5 %RBS", "--linear-density", "0.14 kg/m")
+    done = command(
+        *asked, "--to", "moordyn", "--form", "static-dynamic", "--out", tmp_path / "rope.dat",
+        *(("--verify",) if is_there else ()), "--json",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    value = float(look_up(line, K_AP, **CENTRE).value)
+    (stated,) = (one for one in json.loads(done.stdout)["notes"] if one.startswith("K_1 "))
+    assert "identified from the tests of K_ap and H" in stated
+    if is_there:
+        checks = {one["quantity"]: one for one in json.loads(done.stdout)["checks"]}
+        assert checks["K_ap"]["found"] == pytest.approx(value, rel=0.02)
+    for to in ("csv", "netcdf"):
+        done = command(*asked, "--to", to, "--out", tmp_path / f"rope.{to}")
+        assert done.returncode == 0, done.stderr
