@@ -392,7 +392,7 @@ def test_a_broken_archive_is_named_and_hides_no_other(folder, damage, words):
 def test_a_netcdf_file_whose_parts_are_not_those_of_an_archive_is_named(tmp_path):
     path = tmp_path / "odd.nc"
     with netCDF4.Dataset(path, "w") as odd:
-        odd.setncatts({"schema_version": "1"})
+        odd.setncatts({"schema_version": SCHEMA_VERSION})
         for name, size in {"specimen": 2, "cycle": 4, "reading": 3}.items():
             odd.createDimension(name, size)
         odd.createVariable("mean_strain", "f8", ("specimen", "cycle"))[:] = 1.0
