@@ -47,8 +47,9 @@ def _prepare(app: Sphinx) -> None:
             if not (docs / name / path.name).exists():
                 path.unlink()
         # a script is run where it stands
-        if not (work / name / "processed").exists():
-            (work / name / "processed").symlink_to(work / "processed", target_is_directory=True)
+        for there in (docs.parent / "raw", work / "processed", work / "reports"):
+            if not (work / name / there.name).exists():
+                (work / name / there.name).symlink_to(there.resolve(), target_is_directory=True)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
