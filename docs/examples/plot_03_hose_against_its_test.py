@@ -6,8 +6,6 @@ A stretch hose is predicted from its cords, its wrap angle and its rubber alone;
 that, with all that was stated of either. The test is synthetic.
 """
 
-from pathlib import Path
-
 import matplotlib.pyplot as plt
 
 import reduction
@@ -15,26 +13,24 @@ import reduction
 # %%
 # The design. How steep the cords lie decides how far the hose stretches before they carry.
 
-DESIGN = """
-[hose]
-wrap_angle = "{angle} deg"
-wrap_diameter = "3.5 in"
-inner_diameter = "2.5 in"
-outer_diameter = "5 in"
-cords_per_length = "34 1/in"
-cord_diameter = "0.022 in"
-rubber_modulus = "200 psi"
-length = "96 in"
-dead_length = "4 in"
-
-[cord]
-strain = [0.0, 0.02, 0.06, 0.10, 0.14, 0.18, 0.22, 0.26]
-load = ["0 lbf", "1.73 lbf", "5.86 lbf", "10.62 lbf", "15.72 lbf", "20.85 lbf", "25.71 lbf", "30.00 lbf"]
-"""
+DESIGN = {
+    "wrap_diameter": "3.5 in",
+    "inner_diameter": "2.5 in",
+    "outer_diameter": "5 in",
+    "cords_per_length": "34 1/in",
+    "cord_diameter": "0.022 in",
+    "rubber_modulus": "200 psi",
+    "length": "96 in",
+    "dead_length": "4 in",
+}
+CORD = {
+    "strain": [0.0, 0.02, 0.06, 0.10, 0.14, 0.18, 0.22, 0.26],
+    "load": [f"{load} lbf" for load in (0.0, 1.73, 5.86, 10.62, 15.72, 20.85, 25.71, 30.0)],
+}
 figure, axes = plt.subplots()
 for angle in (60, 64, 68):
-    Path("hose.toml").write_text(DESIGN.format(angle=angle), encoding="utf-8")
-    hose = reduction.predict_hose("hose.toml").squeeze("hose")
+    spec = {"hose": {"wrap_angle": f"{angle} deg", **DESIGN}, "cord": CORD}
+    hose = reduction.predict_hose(spec).squeeze("hose")
     axes.plot(100 * hose["strain"], hose["tension"] / 1e3, label=f"{angle} deg")
     pick_up = hose.sel(hose_event="pick_up")
     print(f"{angle} deg: the cords pick up at {100 * float(pick_up['event_strain']):.0f} % strain")

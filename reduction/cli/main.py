@@ -834,7 +834,7 @@ def main(
 
 
 for command in (
-    demo, init, sniff, check, run, experiment, surface, predict, compare, composite, assembly, export,
-    lookup, budget, catalogue, report, explore, verify, diff, reproduce, schema,
+    demo, init, sniff, check, run, experiment, surface, predict, compare, composite, assembly,
+    export, lookup, budget, catalogue, report, explore, verify, diff, reproduce, schema,
 ):  # fmt: skip
     app.command()(command)
