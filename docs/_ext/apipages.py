@@ -95,7 +95,10 @@ def pages() -> dict[str, str]:
     rooms = "\n".join(f"* :doc:`{room}`: {words}" for room, words in ROOMS.items())
     toc = "\n".join(f"   {room}" for room in ROOMS)
     names = "\n".join(f".. autofunction:: {name}\n" for name in public)
-    beside = "\n".join(f".. {directive}:: {name}\n" for name, directive in BESIDE.items())
+    beside = "\n".join(
+        f".. {directive}:: {name}\n" + ("   :members: plot\n" if directive == "autoclass" else "")
+        for name, directive in BESIDE.items()
+    )
     made["api/index.rst"] = (
         f"{_titled('Python interface', '=')}\n"
         "A script needs little more than the functions of the package itself "
