@@ -136,10 +136,7 @@ def installed(built, tmp_path):
     return elsewhere, say
 
 
-ON_POSIX = pytest.mark.skipif(os.name != "posix", reason="paths of a POSIX environment")
-
-
-@ON_POSIX
+@pytest.mark.posix
 def test_the_wheel_works_in_an_environment_outside_of_the_checkout(installed):
     elsewhere, say = installed
     assert "Reduces cyclic tension tests" in say("reduction", "--help")
@@ -148,7 +145,7 @@ def test_the_wheel_works_in_an_environment_outside_of_the_checkout(installed):
     assert not list(elsewhere.iterdir())
 
 
-@ON_POSIX
+@pytest.mark.posix
 @pytest.mark.nightly
 def test_the_demonstration_of_a_wheel_gives_the_first_answer(installed):
     elsewhere, say = installed
@@ -162,7 +159,7 @@ def test_the_demonstration_of_a_wheel_gives_the_first_answer(installed):
     assert made == {name for name in campaign_files() if name.endswith(".csv")}
 
 
-@ON_POSIX
+@pytest.mark.posix
 @pytest.mark.nightly
 def test_the_pages_are_built_from_the_extra_of_their_own(built, tmp_path):
     """Whole, in an empty environment; test_docs_build.py does so in this one, the rest hidden."""
