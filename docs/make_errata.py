@@ -36,7 +36,7 @@ computed.
 
 An id names one fault for good: it is not given to another one. Link to `errata.md#` and the id in
 small letters, as `errata.md#cg-39`. In print: authors and title as in `CITATION.cff`, the version,
-and the id, as "mooring-reduction 0.1.0, erratum CG-39". `reduction reproduce --erratum CG-39`
+and the id, as "mooring-reduction 1.0.0, erratum CG-39". `reduction reproduce --erratum CG-39`
 prints one entry, `reduction reproduce --json` all of them.
 """
 

@@ -5,15 +5,18 @@ Opening archives and campaigns is `reduction.archive`'s; both are reached as ``r
 
 from __future__ import annotations
 
+import tempfile
 import time
 import warnings as python_warnings
-from collections.abc import Mapping, Sequence
-from contextlib import nullcontext
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+import pandas as pd
+import tomlkit
 import xarray as xr
 
 from reduction.archive.campaign_tree import open_campaign
@@ -128,7 +131,7 @@ def _level(name: str, value: Any, line: LineSource) -> xr.DataArray:
         strength = line.rated_break_strength
         known = strength if np.isfinite(strength) else None
         value = parse_quantity(value, LEVEL_DIMENSIONS[name], rated_break_strength=known)
-    elif hasattr(value, "to_base_units"):
+    elif _has_unit(value):
         text = f"1 {value.units}"
         value = np.asarray(value.magnitude) * parse_quantity(text, LEVEL_DIMENSIONS[name])
     numbers = np.asarray(value)
@@ -138,6 +141,53 @@ def _level(name: str, value: Any, line: LineSource) -> xr.DataArray:
             needed="a number, one row of numbers, or an xarray.DataArray",
         )  # fmt: skip
     return xr.DataArray(numbers, dims=("point",)[: numbers.ndim])
+
+
+def _has_unit(value: Any) -> bool:
+    """Whether it is a quantity of pint, or of a package like it."""
+    return hasattr(value, "to_base_units")
+
+
+def _plain(value: Any) -> Any:
+    """What a settings file says of a value: quantities become text with their unit."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(one) for key, one in value.items()}
+    if _has_unit(value):
+        numbers = np.asarray(value.magnitude).tolist()
+        unit = str(value.units)
+        if isinstance(numbers, list):
+            return [f"{one!r} {unit}" for one in numbers]
+        return f"{numbers!r} {unit}"
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    return [_plain(one) for one in value] if isinstance(value, list | tuple) else value
+
+
+def _table_of(runs: Mapping[str, Any] | pd.DataFrame | xr.Dataset) -> pd.DataFrame:
+    """Columns as a table of runs has them, with their units in the headers."""
+    if isinstance(runs, pd.DataFrame):
+        return runs
+    columns: dict[str, Any] = {}
+    for name, column in runs.items():
+        unit = column.attrs.get("units", "") if isinstance(column, xr.DataArray) else ""
+        if _has_unit(column):
+            unit, column = column.units, column.magnitude
+        columns[f"{name} [{unit}]" if unit else str(name)] = np.asarray(column)
+    return pd.DataFrame(columns)
+
+
+@contextmanager
+def _file_of(given: Any, name: str) -> Iterator[Path]:
+    """A file that is given, or one that says what is given, for as long as it is read."""
+    if isinstance(given, str | Path):
+        yield Path(given)
+        return
+    with tempfile.TemporaryDirectory(prefix="reduction-") as folder:
+        path = Path(folder, name)
+        is_table = path.suffix == ".csv"
+        text = _table_of(given).to_csv(index=False) if is_table else tomlkit.dumps(_plain(given))
+        path.write_text(text, encoding="utf-8", newline="")
+        yield path
 
 
 def _dataset(
@@ -229,7 +279,7 @@ def export(
         Format, such as ``"moordyn"`` or ``"csv"``.
     out : str or pathlib.Path
         The file.
-    **options : str or bool
+    **options : str, bool or pint.Quantity
         Those of the command, such as ``form="static-dynamic"``, ``frequency="0.3 Hz"`` or
         ``diameter="26 mm"``; ``units="us"`` of a table.
 
@@ -237,7 +287,8 @@ def export(
     -------
     done : ExportedFiles
         ``paths`` that were written, ``notes`` on what they hold that was not tested (also in their
-        headers), and with ``verify=True`` the ``checks`` by the program.
+        headers), and with ``verify=True`` the ``checks`` by the program. ``plot()`` draws the
+        curve.
 
     Raises
     ------
@@ -258,17 +309,19 @@ def export(
             f"export has no option {unknown[0]}", needed=f"one of {', '.join(sorted(known))}"
         )
     sources = (source,) if isinstance(source, str | Path) else source
-    request = ExportRequest(tuple(map(str, sources)), to, Path(out), **options)
+    stated = {name: _plain(option) for name, option in options.items()}
+    request = ExportRequest(tuple(map(str, sources)), to, Path(out), **stated)
     return write_export(request)
 
 
-def predict_hose(spec: str | Path) -> xr.Dataset:
+def predict_hose(spec: str | Path | Mapping[str, Any]) -> xr.Dataset:
     """Predict a stretch hose, as ``reduction predict hose`` does.
 
     Parameters
     ----------
-    spec : str or pathlib.Path
-        The SPEC.toml of the hose.
+    spec : str, pathlib.Path or mapping
+        The SPEC.toml of the hose, or what stands in it: ``{"hose": {"wrap_angle": "64 deg", ...},
+        "cord": {"strain": [...], "load": [...]}}``, with units in text or pint quantities.
 
     Returns
     -------
@@ -281,26 +334,31 @@ def predict_hose(spec: str | Path) -> xr.Dataset:
     ReductionError
         If the hose cannot be built so.
     """
-    path = Path(spec)
-    plan, _ = load_hose(path)
-    return hoses_dataset(
-        [predict_from_plan(plan)],
-        campaign_id=plan.name,
-        attributes={"title": f"Prediction of hose {plan.name}"},
-        source=hash_source(path, path.name),
-        command=f"reduction predict hose {path.name}",
-    )
+    with _file_of(spec, "hose.toml") as path:
+        plan, _ = load_hose(path)
+        return hoses_dataset(
+            [predict_from_plan(plan)],
+            campaign_id=plan.name,
+            attributes={"title": f"Prediction of hose {plan.name}"},
+            source=hash_source(path, path.name),
+            command=f"reduction predict hose {path.name}",
+        )
 
 
-def fit_surface(runs: str | Path, spec: str | Path | None = None) -> xr.Dataset:
+def fit_surface(
+    runs: str | Path | Mapping[str, Any] | pd.DataFrame | xr.Dataset,
+    spec: str | Path | Mapping[str, Any] | None = None,
+) -> xr.Dataset:
     r"""Fit quadratic response surfaces to a table of runs, as ``reduction surface`` does.
 
     Parameters
     ----------
-    runs : str or pathlib.Path
-        A CSV of runs: levels of the factors and responses, a row for each run.
-    spec : str or pathlib.Path, optional
-        The SPEC.toml with low and high levels.
+    runs : str, pathlib.Path, mapping, pandas.DataFrame or xarray.Dataset
+        A CSV of runs: levels of the factors and responses, a row for each run; or its columns by
+        name. Units stand in the names, ``"stiffness [N]"``, or are those of the columns (pint
+        quantities, the attribute ``units``).
+    spec : str, pathlib.Path or mapping, optional
+        The SPEC.toml with low and high levels, or what stands in it.
 
     Returns
     -------
@@ -324,10 +382,13 @@ def fit_surface(runs: str | Path, spec: str | Path | None = None) -> xr.Dataset:
     The covariance is that of the scatter, :math:`\sigma^2 (X^T X)^{-1}`: a table of runs says
     nothing of errors that its runs share.
     """
-    path = Path(runs)
-    loaded = None if spec is None else load_spec(Path(spec))
-    series = read_runs(path, loaded)
-    found = fit_series(series, loaded, path)
+    loaded = None
+    if spec is not None:
+        with _file_of(spec, "spec.toml") as path:
+            loaded = load_spec(path)
+    with _file_of(runs, "runs.csv") as path:
+        series = read_runs(path, loaded)
+        found = fit_series(series, loaded, path)
     for text in notes_of_fit(series, found):
         python_warnings.warn(text, stacklevel=2)
     variance = found.sigma[:, np.newaxis, np.newaxis] ** 2

@@ -14,7 +14,7 @@ import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
-from reduction.archive.dataset_builder import CONVENTIONS, SCHEMA_VERSION
+from reduction.archive.dataset_builder import CONVENTIONS, SCHEMA_NAME, SCHEMA_VERSION
 from reduction.archive.open import _schema_of_file
 from reduction.quantities.row import GROUPS, Quantity
 
@@ -53,6 +53,8 @@ def _global_findings(file: netCDF4.Dataset) -> Iterator[str]:
             yield f"group {name} is not one of the schema"
     if getattr(file, "Conventions", None) != CONVENTIONS:
         yield f"Conventions is not {CONVENTIONS}"
+    if getattr(file, "schema_name", None) != SCHEMA_NAME:
+        yield f"schema_name is not {SCHEMA_NAME}"
     if getattr(file, "schema_version", None) != SCHEMA_VERSION:
         yield f"schema_version is not {SCHEMA_VERSION}"
     for name in _REQUIRED:

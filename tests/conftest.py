@@ -1,6 +1,7 @@
 """Cyclic tests made from a law, for the tests of the stages that reduce them."""
 
 import gc
+import os
 from pathlib import Path
 
 import hypothesis
@@ -75,6 +76,8 @@ def pytest_collection_modifyitems(config, items):
     slow_places = {tests / name for name in (*SLOW_FOLDERS, *SLOW_FILES)}
     nightly_but = {tests / name: kept for name, kept in NIGHTLY_BUT.items()}
     for item in items:
+        if item.get_closest_marker("posix") and os.name != "posix":
+            item.add_marker(pytest.mark.skip(reason="needs a POSIX system"))
         is_property = getattr(getattr(item, "obj", None), "is_hypothesis_test", False)
         if is_nightly(config) and is_property:
             item.add_marker(pytest.mark.nightly)

@@ -46,9 +46,13 @@ def _prepare(app: Sphinx) -> None:
         for path in (work / name).glob("plot_*.py"):
             if not (docs / name / path.name).exists():
                 path.unlink()
-        # a script is run where it stands
-        if not (work / name / "processed").exists():
-            (work / name / "processed").symlink_to(work / "processed", target_is_directory=True)
+        # a script is run where it stands; a folder of it with a README would be taken for a gallery
+        (work / name / "raw").mkdir(exist_ok=True)
+        places = {one: work / one for one in ("processed", "reports")}
+        places |= {f"raw/{one}": docs.parent / "raw" / one for one in _CAMPAIGNS}
+        for place, there in places.items():
+            if not (work / name / place).exists():
+                (work / name / place).symlink_to(there.resolve(), target_is_directory=True)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -81,7 +81,7 @@ left.legend()
 # %%
 # The report has 79 % of stretch for 64 degrees and 130 % for 68 at a third of the break load, after 100,000 cycles. One
 # strain of the cord at that load cannot give both (9.5 % gives 105 and 146 %): neither is a target here. A prediction held against
-# a test is in the example :doc:`/gallery/plot_05_hose_against_measurement`; with commands::
+# a test is in the example :doc:`/gallery/plot_03_hose_against_its_test`; with commands::
 #
 #    reduction reproduce WHOI-2004-06
 #    reduction predict hose SPEC.toml

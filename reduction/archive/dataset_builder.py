@@ -24,8 +24,11 @@ from reduction.record.measurement import Origin, Source, Step
 from reduction.record.samples import release_pages
 from reduction.stages.reduced_test import ReducedTest
 
-SCHEMA_VERSION = "1"
-"""Changes when a name, dimension or meaning changes; additions leave it as it is."""
+SCHEMA_NAME = "mooring-reduction archive"
+
+SCHEMA_VERSION = "1.0"
+"""The first number rises when a name, group, dimension, unit or meaning changes or goes, the second
+when one is added: a reader of 1.0 reads 1.7."""
 
 _COMPRESSED_FROM = 4096  # values; below it a chunk and its index cost more than they save
 
@@ -271,6 +274,7 @@ def _complete(
         source = source if "synthetic" in source.lower() else f"synthetic; {source}".rstrip("; ")
     own = {
         "Conventions": CONVENTIONS,
+        "schema_name": SCHEMA_NAME,
         "schema_version": SCHEMA_VERSION,
         "title": title,
         "summary": given.pop("summary", product.pop("summary")),

@@ -1,4 +1,4 @@
-"""Opens archives: only files of this schema version."""
+"""Opens archives: files of this major version of the schema."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from reduction.archive.dataset_builder import SCHEMA_VERSION
+from reduction.archive.dataset_builder import SCHEMA_NAME, SCHEMA_VERSION
 from reduction.quantities.names import (
     COMPARISON_SCHEMA,
     OUTCOME_SCHEMA,
@@ -46,6 +46,8 @@ _LARGEST = 8_000_000  # bytes of values of one, unpacked
 _ROOM = 64_000_000  # and of all
 
 _OF_LIBRARY = re.compile(r"(\[Errno -\d+\] )?NetCDF: ")
+
+_VERSION = re.compile(r"(\d{1,4})\.\d{1,4}", re.ASCII)
 
 _MOST_PACKED = 1100  # times that deflated values can be larger than the file
 
@@ -184,7 +186,8 @@ def open_archive(path: Path | str, *, chunks: Chunks | None = None) -> xr.Datase
     Raises
     ------
     ArchiveError
-        If there is no such file, it is not netCDF or damaged, or it has another schema.
+        If there is no such file, it is not netCDF or damaged, or of another major version of the
+        schema.
     SettingsError
         If Dask is wanted and not installed, or refuses the chunks.
     """
@@ -212,16 +215,8 @@ def open_archive(path: Path | str, *, chunks: Chunks | None = None) -> xr.Datase
             needed="an archive of a reduced test",
             hint=_AGAIN,
         ) from error
-    found = dataset.attrs.get("schema_version")
-    if not isinstance(found, str) or found != SCHEMA_VERSION:
-        dataset.close()
-        raise ArchiveError(
-            f"{path} has another schema",
-            found="none" if found is None else f"version {str(found)[:40]}",
-            needed=f"version {SCHEMA_VERSION}",
-            hint="Reduce the test again with this version.",
-        )
     try:
+        _refuse_schema(path, dataset.attrs)
         _refuse(path, _fault_of_form(dataset))
     except ArchiveError:
         dataset.close()
@@ -231,6 +226,31 @@ def open_archive(path: Path | str, *, chunks: Chunks | None = None) -> xr.Datase
     # what is known to be an archive is opened again, so that a fault is one of the chunks
     dataset.close()
     return _open_in_chunks(path, chunks)
+
+
+def _refuse_schema(path: Path, attributes: Mapping[str, object]) -> None:
+    """Refuse what is of another major version, or of no schema; a later minor one adds alone."""
+    name, version = (attributes.get(f"schema_{part}") for part in ("name", "version"))
+    stated = _VERSION.fullmatch(version) if isinstance(version, str) else None
+    is_ours = name in (None, SCHEMA_NAME)
+    major = SCHEMA_VERSION.partition(".")[0]
+    if is_ours and stated is not None and stated[1] == major:
+        return
+    if is_ours and stated is not None and int(stated[1]) > int(major):
+        software = str(attributes.get("software_version", "of unknown version"))[:40]
+        raise ArchiveError(
+            f"{path} was written by a later version of this software",
+            found=f"schema version {stated[0]}, software {software}",
+            needed=f"schema version {major}.x",
+            hint="Open it with that version, or reduce the test again with this one.",
+        )
+    what = "none" if version is None else f"version {str(version)[:40]}"
+    raise ArchiveError(
+        f"{path} has another schema",
+        found=what if is_ours else f"{str(name)[:40]}, {what}",
+        needed=f"{SCHEMA_NAME}, version {major}.x",
+        hint="Reduce the test again with this version.",
+    )
 
 
 def refuse_no_file(path: Path) -> None:

@@ -410,8 +410,8 @@ def run_campaign(
     jobs: int | None,
     scheduler: str | None,
     output: CommandOutput,
-) -> None:
-    """Reduce a campaign and say what became of each test."""
+) -> dict[str, Any]:
+    """Reduce a campaign and say what became of each test; return the same for ``--json``."""
     opener = read_once()
     with (
         _chosen_workers(jobs, scheduler) as workers,
@@ -479,8 +479,8 @@ def run_campaign(
     document["design_values"] = _refresh_design_page(
         processed, reports, output, made=campaign.id, opener=opener
     )
-    output.answer(document)
     _report_failures(output, [*result.tests, *chain(*result.parts.values())])
+    return document
 
 
 _MOST_DOUBTS = 5

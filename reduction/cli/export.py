@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
+from html import escape
 from pathlib import Path
 from typing import Any, Literal, cast
 
@@ -230,6 +231,38 @@ class ExportedFiles:
     paths: tuple[Path, ...]
     notes: tuple[str, ...] = ()
     checks: tuple[ClientCheck, ...] = ()
+
+    def plot(self, **options: Any) -> Any:
+        """Draw the exported curve, as `xarray.DataArray.plot` does; it needs matplotlib.
+
+        Raises
+        ------
+        SettingsError
+            If a table of coefficients was exported, which has no curve.
+        """
+        if not isinstance(self.exported, ExportLine):
+            raise SettingsError(
+                "a table of coefficients has no curve to plot", found=self.exported.title,
+                needed="the export of a line",
+            )  # fmt: skip
+        import xarray as xr
+
+        about = {"units": "N", "long_name": f"tension of {self.exported.name}"}
+        strain = ("strain", self.exported.strain, {"units": "1"})
+        curve = xr.DataArray(self.exported.tension, {"strain": strain}, "strain", attrs=about)
+        return curve.plot(**options)
+
+    def _repr_html_(self) -> str:
+        """Show in a notebook which files were written, and what is to be known of them."""
+        checks = (
+            f"{one.program}: {one.quantity} at {one.at}: {one.found:.4g} {one.unit}, promised "
+            f"{one.promised:.4g} {one.unit}"
+            for one in self.checks
+        )
+        texts = [f"wrote {path}" for path in self.paths]
+        texts += [f"note: {note}" for note in self.notes]
+        rows = "".join(f"<li>{escape(text)}</li>" for text in (*texts, *checks))
+        return f"<ul>{rows}</ul>"
 
 
 def write_export(request: ExportRequest) -> ExportedFiles:

@@ -131,7 +131,7 @@ def run(
         from reduction.cli.remote_paths import campaign_at
 
         with campaign_at(campaign, allow_remote=allow_remote, output=output) as loaded:
-            run_campaign(
+            document = run_campaign(
                 loaded,
                 processed=processed,
                 reports=reports,
@@ -141,6 +141,22 @@ def run(
                 scheduler=scheduler,
                 output=output,
             )
+            output.answer(document)
+
+
+def demo(
+    folder: Annotated[
+        Path, typer.Argument(help="A folder without campaigns.", callback=here)
+    ] = Path("reduction-demo"),
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Units = "si",
+) -> None:
+    """Copy the synthetic campaigns of this package to a folder, and run them there."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
+        from reduction.cli.demo import run_demo
+
+        run_demo(folder, output)
 
 
 def report(
@@ -855,7 +871,7 @@ def main(
 
 
 for command in (
-    init, sniff, check, run, experiment, surface, predict, compare, composite, assembly, export,
-    lookup, budget, catalogue, report, explore, verify, diff, reproduce, schema,
+    demo, init, sniff, check, run, experiment, surface, predict, compare, composite, assembly,
+    export, lookup, budget, catalogue, report, explore, verify, diff, reproduce, schema,
 ):  # fmt: skip
     app.command()(command)

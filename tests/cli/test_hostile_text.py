@@ -8,6 +8,9 @@ import pytest
 from hostile import DeadlinePassed, alone, complaints, deadline, in_here
 from hostile_text import CASES, HEADER, campaign, log, one_line, rows, sparse
 
+# pipes, devices and links are among the cases
+pytestmark = pytest.mark.posix
+
 
 @pytest.fixture(scope="module", autouse=True)
 def loaded(command, tmp_path_factory):

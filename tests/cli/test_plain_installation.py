@@ -1,42 +1,15 @@
-"""The commands of a user with the plain wheel: nothing can be imported that it does not ask for.
-
-What the extras of pyproject.toml bring is installed beside the tests; here it is hidden from a
-process of its own and from those that it starts.
-"""
+"""The commands of a user with the plain wheel: nothing can be imported that it does not ask for."""
 
 import json
-import os
 import subprocess
 import sys
-import tomllib
-from importlib import metadata
 
 import pytest
-from commandruns import ROOT
-from packaging.requirements import Requirement
-from packaging.utils import canonicalize_name
+from hiddenpackages import environment_with, modules_hidden
 from shortcampaign import write_short
 
 pytestmark = pytest.mark.slow
 
-PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-# Python runs a module of this name at its start
-HIDING = """
-import sys
-from importlib.machinery import PathFinder
-
-HIDDEN = frozenset({hidden!r})
-
-
-class Plain(PathFinder):
-    @classmethod
-    def find_spec(cls, name, path=None, target=None):
-        is_hidden = name.partition(".")[0] in HIDDEN
-        return None if is_hidden else PathFinder.find_spec(name, path, target)
-
-
-sys.meta_path[:] = [Plain if one is PathFinder else one for one in sys.meta_path]
-"""
 EVERY_MODULE = """
 import importlib, json, pkgutil, reduction
 
@@ -53,38 +26,19 @@ print(json.dumps(lacking))
 NEEDS_AN_EXTRA = {"reduction.batch.dask_cluster": "distributed"}
 
 
-def distributions_of_the_wheel():
-    """Names of the distributions that an installation of the wheel without extras brings."""
-    names, asked = set(), [Requirement(text) for text in PROJECT["dependencies"]]
-    while asked:
-        name = canonicalize_name(asked.pop().name)
-        if name not in names:
-            names.add(name)
-            found = map(Requirement, metadata.requires(name) or ())
-            asked += [one for one in found if not one.marker or one.marker.evaluate({"extra": ""})]
-    return names
-
-
 @pytest.fixture(scope="module")
 def plain(tmp_path_factory):
     """Run a line of Python's in a folder of its own, with no package but those of the wheel."""
-    there = distributions_of_the_wheel() | {canonicalize_name(PROJECT["name"])}
-    hidden = {
-        module
-        for module, owners in metadata.packages_distributions().items()
-        if there.isdisjoint(map(canonicalize_name, owners))
-    }
+    hidden = modules_hidden()
     assert {"dask", "distributed", "fsspec", "matplotlib", "pytest"} <= hidden
     assert {"numpy", "xarray", "typer"}.isdisjoint(hidden)
     folder = tmp_path_factory.mktemp("plain")
-    (folder / "site").mkdir()
-    (folder / "site" / "sitecustomize.py").write_text(HIDING.format(hidden=sorted(hidden)))
-    paths = os.pathsep.join([str(folder / "site"), str(ROOT)])
+    environment = environment_with(folder / "site")
 
     def run(*words):
         return subprocess.run(
             [sys.executable, *map(str, words)], cwd=folder, capture_output=True, text=True,
-            check=False, env=os.environ | {"PYTHONPATH": paths},
+            check=False, env=environment,
         )  # fmt: skip
 
     return folder, run

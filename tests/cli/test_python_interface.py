@@ -4,9 +4,12 @@ import json
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
+import pint
 import pytest
 import xarray as xr
 
@@ -14,6 +17,7 @@ import reduction
 from reduction.quantities.units import parse_quantity
 from reduction.record.errors import DataError, SettingsError
 
+plt = pytest.importorskip("matplotlib.pyplot")
 ROOT = Path(__file__).parents[2]
 LINE = "nylon-8-strand-plaited-0.5in-new"
 LEVELS = {"frequency": "0.3 Hz", "mean_tension": "20 %RBS", "tension_amplitude": "8 %RBS"}
@@ -50,8 +54,6 @@ def test_a_look_up_is_that_of_the_command():
 
 
 def test_levels_are_texts_numbers_quantities_rows_and_named_arrays():
-    import pint
-
     plain = reduction.look_up(LINE, "K_ap", **LEVELS).apparent_spring_constant
     tension = float(reduction.look_up(LINE, "K_ap", **LEVELS).mean_tension)
     in_pounds = tension / parse_quantity("1 lbf", "force") * pint.UnitRegistry().lbf
@@ -97,7 +99,8 @@ def test_a_run_gives_the_campaign_that_it_made(tmp_path):
 def test_an_export_is_that_of_the_command(tmp_path):
     stated = {"linear_density": "0.1 kg/m", "wet_linear_density": "0.01 kg/m"}
     options = {"form": "static-dynamic", **stated, **LEVELS}
-    done = reduction.export(LINE, "moordyn", tmp_path / "python.dat", **options)
+    given = options | {"linear_density": pint.UnitRegistry().Quantity(0.1, "kg/m")}
+    done = reduction.export(LINE, "moordyn", tmp_path / "python.dat", **given)
     said = [part for key, text in options.items() for part in (f"--{key.replace('_', '-')}", text)]
     subprocess.run(
         [sys.executable, "-m", "reduction", "export", LINE, "--to", "moordyn",
@@ -106,6 +109,10 @@ def test_an_export_is_that_of_the_command(tmp_path):
     )  # fmt: skip
     assert done.paths[0] == tmp_path / "python.dat" and not done.checks
     assert done.paths[0].read_bytes() == (tmp_path / "command.dat").read_bytes()
+    assert f"<li>wrote {tmp_path / 'python.dat'}</li>" in done._repr_html_()
+    (drawn,) = done.plot()
+    np.testing.assert_array_equal(drawn.get_xydata()[:, 1], done.exported.tension)
+    plt.close("all")
     with pytest.raises(SettingsError, match="no option diametre"):
         reduction.export(LINE, "csv", tmp_path / "x.csv", diametre="26 mm")
 
@@ -138,6 +145,18 @@ def test_a_surface_of_runs_is_the_polynomial_that_made_them(tmp_path):
         np.sqrt(np.diagonal(found.covariance.values[0])),
         found.coefficient_standard_uncertainty.values[0],
     )
+    levels = {"frequency": one, "mean_tension": two, "tension_amplitude": three}
+    newton = pint.UnitRegistry().newton
+    of_frame = pd.read_csv(runs)
+    of_dataset = xr.Dataset({name: ("run", column) for name, column in levels.items()})
+    of_dataset["apparent_spring_constant"] = (
+        "run", 1000 * (value + scatter), {"units": "N"}
+    )  # fmt: skip
+    of_mapping = levels | {"apparent_spring_constant": 1000 * (value + scatter) * newton}
+    for table in (of_frame, of_dataset, of_mapping):
+        same = reduction.fit_surface(table)
+        np.testing.assert_allclose(same.coefficient, found.coefficient, rtol=1e-12, atol=1e-9)
+        assert same.response_unit.item() == "N"
     # two degrees of freedom are those of three centre runs, three those of the balance
     assert float(found.sigma[0]) == pytest.approx(np.sqrt(2 / 5))
 
@@ -153,5 +172,11 @@ def test_a_predicted_hose_is_that_of_the_command(tmp_path):
     with reduction.open_archive(tmp_path / "predictions.nc") as said:
         found = reduction.predict_hose(spec)
         assert set(said.data_vars) == set(found.data_vars)
+        stated = tomllib.loads(spec.read_text(encoding="utf-8"))
+        units = pint.UnitRegistry()
+        stated["hose"]["wrap_diameter"] = 3.5 * units.inch
+        stated["cord"]["load"] = np.array([0, 1.6, 5, 10, 18, 30]) * units.pound_force
+        same = reduction.predict_hose(stated)
         for name in ("tension", "fill_pressure"):
             np.testing.assert_array_equal(found[name], said[name])
+            np.testing.assert_allclose(same[name], said[name], rtol=1e-12)

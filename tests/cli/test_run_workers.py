@@ -154,6 +154,7 @@ def test_a_run_that_was_killed_goes_on_where_it_was(campaign, serial, tmp_path):
     assert done <= unchanged < SOUND and len(unchanged) <= len(done) + 2
 
 
+@pytest.mark.posix
 def test_an_interrupt_ends_the_workers_and_gives_back_the_lock(campaign, tmp_path):
     process = start(campaign, tmp_path, "--jobs", "2")
     wait_for(is_at_work(tmp_path, made=1))
@@ -184,6 +185,7 @@ def heeding(request_, how):
         signal.signal(getattr(signal, request_), before)
 
 
+@pytest.mark.posix
 @pytest.mark.parametrize(("jobs", "request_"), [(1, "SIGTERM"), (1, "SIGHUP"), (2, "SIGTERM")])
 def test_a_request_to_end_is_an_interrupt(jobs, request_, campaign, tmp_path):
     """A queue that ends a job may start the next on another machine, which cannot see it is gone."""
@@ -199,6 +201,7 @@ def test_a_request_to_end_is_an_interrupt(jobs, request_, campaign, tmp_path):
     assert products(tmp_path)  # and no lock
 
 
+@pytest.mark.posix
 def test_a_request_to_end_that_is_ignored_stays_so(campaign, serial, tmp_path):
     """As under nohup."""
     with heeding("SIGHUP", signal.SIG_IGN):
@@ -222,6 +225,7 @@ def test_a_second_run_on_the_same_products_is_refused(campaign, serial, tmp_path
     assert products(tmp_path) == serial
 
 
+@pytest.mark.posix
 def test_a_worker_of_jobs_that_is_killed_ends_the_run_with_words_and_what_was_made_is_kept(
     campaign, serial, tmp_path
 ):

@@ -1,15 +1,19 @@
 """No page is left out of the documentation, and pages that a script writes are what it writes."""
 
+import ast
 import re
 import runpy
 from pathlib import Path
 
+import pytest
 from typer.testing import CliRunner
 
+import reduction
 from reduction.campaign.model import CampaignFile
 from reduction.cli.main import app
 
 DOCS = Path(__file__).parents[2] / "docs"
+NOTEBOOKS = ("01_tether_test", "02_rope_design_values", "03_hose_against_its_test")
 
 
 def test_every_page_stands_in_the_index():
@@ -52,3 +56,26 @@ def test_every_command_and_option_is_on_its_page(monkeypatch):
         text = CliRunner().invoke(app, [name, "--help"], env={"COLUMNS": "200"}).stdout
         options = set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", text)) - {"--help"}
         assert not {one for one in options if f"`{one}`" not in part}, name
+
+
+def test_the_page_of_the_interface_lists_the_public_names_and_few_others(monkeypatch):
+    monkeypatch.syspath_prepend(DOCS / "_ext")
+    page = runpy.run_path(str(DOCS / "_ext" / "apipages.py"))["pages"]()["api/index.rst"]
+    listed = set(re.findall(r"^\.\. auto\w+:: reduction\.(.+)$", page, re.M))
+    assert {name for name in reduction.__all__ if not name.startswith("_")} <= listed
+    assert len(listed) <= 30
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_a_notebook_uses_the_public_names_alone(name):
+    tree = ast.parse((DOCS / "examples" / f"plot_{name}.py").read_text(encoding="utf-8"))
+    imported, used = set(), set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            imported |= {one.name for one in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            imported.add(node.module)
+        elif isinstance(node, ast.Attribute) and getattr(node.value, "id", "") == "reduction":
+            used.add(node.attr)
+    assert {one for one in imported if one.startswith("reduction")} == {"reduction"}
+    assert used and used <= set(reduction.__all__)

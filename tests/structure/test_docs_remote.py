@@ -24,7 +24,7 @@ def test_the_commands_with_the_option_are_named_and_so_are_those_without():
     assert {name for name in commands if f"`{name}`" in table} == having
     without = {name for name in commands if f"`{name}`" in below}
     # these take no file, or none that is a product or a log
-    assert without | having | {"reproduce", "schema"} == set(commands)
+    assert without | having | {"demo", "reproduce", "schema"} == set(commands)
     assert not without & having
 
 

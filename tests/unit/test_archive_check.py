@@ -44,7 +44,7 @@ def add_variable(name, dtype, dims):
             lambda file: file.setncattr("Conventions", "CF-1.6"),
             "Conventions is not CF-1.11 ACDD-1.3",
         ),
-        (lambda file: file.delncattr("schema_version"), "schema_version is not 1"),
+        (lambda file: file.delncattr("schema_version"), "schema_version is not 1.0"),
         (lambda file: file.delncattr("history"), "global attribute history is missing"),
         (lambda file: file.createDimension("more", None), "dimension more is unlimited"),
         (add_variable("colour", "f8", ()), "colour is not in the schema"),

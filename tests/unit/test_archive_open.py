@@ -38,14 +38,54 @@ def test_a_file_that_is_not_netcdf_is_refused(tmp_path):
         open_archive(path)
 
 
-@pytest.mark.parametrize(("version", "found"), [(None, "none"), ("0", "version 0")])
-def test_another_schema_is_refused(tmp_path, version, found):
+@pytest.fixture
+def of_schema(rich_test, write):
+    """A whole archive that states another schema."""
+
+    def change(**attributes):
+        path = write(rich_test)
+        with netCDF4.Dataset(path, "a") as file:
+            file.setncatts(attributes)
+        return path
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("attributes", "message"),
+    [
+        ({"schema_version": "0.9"}, "has another schema; found version 0.9; needed .*1.x"),
+        ({"schema_version": "1"}, "has another schema; found version 1;"),
+        ({"schema_version": "1.x"}, "has another schema"),
+        ({"schema_name": "tide gauge"}, "has another schema; found tide gauge, version 1.0"),
+        (
+            {"schema_version": "2.0", "software_version": "3.1.4"},
+            r"written by a later version .*; found schema version 2\.0, software 3\.1\.4; needed "
+            r"schema version 1\.x\. Open it with that version",
+        ),
+        ({"schema_version": "10.0"}, "written by a later version"),
+    ],
+)  # fmt: skip
+def test_another_schema_is_refused(of_schema, attributes, message):
+    with pytest.raises(ArchiveError, match=message):
+        open_archive(of_schema(**attributes))
+
+
+def test_a_file_without_a_schema_is_refused(tmp_path):
     path = tmp_path / "T-1.nc"
-    with netCDF4.Dataset(path, "w") as file:
-        if version is not None:
-            file.schema_version = version
-    with pytest.raises(ArchiveError, match=rf"has another schema; found {found}; needed version 1"):
+    netCDF4.Dataset(path, "w").close()
+    with pytest.raises(ArchiveError, match="has another schema; found none; needed .*1.x"):
         open_archive(path)
+
+
+def test_a_later_minor_version_is_read_and_what_it_adds_passed_over(of_schema):
+    path = of_schema(schema_version="1.7")
+    with netCDF4.Dataset(path, "a") as file:
+        file.createVariable("colour_of_the_tether", "f8", ())[...] = 3.0
+    with open_archive(path) as archive:
+        assert archive.attrs["schema_version"] == "1.7"
+        assert float(archive["colour_of_the_tether"]) == 3.0
+        assert "tension" in archive
 
 
 def test_the_cache_of_other_files_is_left_as_it_was(rich_test, write):

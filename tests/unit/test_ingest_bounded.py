@@ -133,6 +133,7 @@ def test_columns_on_disk_are_taken_over(path, tmp_path):
     assert not list(parts.folder.iterdir())
 
 
+@pytest.mark.posix
 def test_the_process_ends_with_the_run_however_that_ends(path):
     code = (
         "import broken_readers as readers, sys, time; from pathlib import Path;"

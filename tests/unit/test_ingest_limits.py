@@ -170,6 +170,7 @@ def test_what_a_file_unpacks_to_is_held_against_its_limit():
         watch.check_unpacked(1001, "the workbook")
 
 
+@pytest.mark.posix
 @pytest.mark.parametrize("look", [lambda path: read_log(path, _LAYOUT, name="log"), sniff_layout])
 def test_a_pipe_a_device_and_a_folder_are_no_logs(tmp_path, look):
     os.mkfifo(tmp_path / "pipe")
@@ -182,6 +183,7 @@ def test_a_pipe_a_device_and_a_folder_are_no_logs(tmp_path, look):
             look(path)
 
 
+@pytest.mark.posix
 def test_a_pipe_is_not_hashed(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(LogError, match="found a pipe; needed a regular file"):

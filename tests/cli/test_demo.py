@@ -1,0 +1,45 @@
+"""The campaigns that come with the package are copied and run; nothing that is there is lost."""
+
+import json
+
+import pytest
+from commandruns import ROOT
+from shortcampaign import write_short
+
+from reduction.cli import demo
+
+
+@pytest.fixture
+def one_short(tmp_path, monkeypatch):
+    """A package whose one campaign takes a second."""
+    monkeypatch.setattr(demo, "_PACKAGE", tmp_path / "reduction")
+    monkeypatch.setattr(demo, "_NAMES", ("short",))
+    write_short(tmp_path / "reduction" / "demo" / "short")
+    return tmp_path
+
+
+def test_the_campaigns_of_a_checkout_are_those_of_raw():
+    assert demo._campaigns() == ROOT / "raw"
+    for name in demo._NAMES:
+        assert (ROOT / "raw" / name / "campaign.toml").is_file()
+
+
+def test_each_campaign_is_copied_and_run(one_short, command):
+    folder = one_short / "Prüf stand ü"
+    done = command("demo", folder, "--json")
+    assert done.returncode == 0, done.stderr
+    (answer,) = json.loads(done.stdout)["campaigns"]
+    assert {test["id"] for test in answer["tests"]} == {"A", "B"}
+    assert (folder / "raw" / "short" / "A.csv").is_file()
+    assert (folder / "processed" / "short" / "A.nc").is_file()
+    assert (folder / "reports" / "short" / "index.html").is_file()
+
+
+def test_a_campaign_that_is_there_is_left_as_it_is(one_short, command):
+    mine = one_short / "work" / "raw" / "short" / "campaign.toml"
+    mine.parent.mkdir(parents=True)
+    mine.write_text("mine")
+    done = command("demo", one_short / "work")
+    assert done.returncode == 2
+    assert "campaigns are there already; found short" in done.stderr
+    assert mine.read_text() == "mine" and len(list(mine.parent.iterdir())) == 1
