@@ -127,7 +127,7 @@ def _of_specimen(
         yield note(
             "strain-above-band", name, strain=strain, limit=bands.greatest_strain, of=bands.of
         )
-    if not specimen.diameter or survey.plan.kind in ("relaxation", "creep"):
+    if not specimen.has_area or survey.plan.kind in ("relaxation", "creep"):
         return
     modulus = tension / specimen.area / strain
     low, high = bands.modulus
@@ -142,10 +142,10 @@ def _of_specimen(
 
 def _of_sizes(specimen: Specimen, bands: Bands | None) -> Iterator[Note]:
     """Diameter, strength and mass of a specimen against each other."""
-    if not specimen.diameter:
+    if not specimen.has_area:
         return
     readings = specimen.diameter
-    if max(readings) > 1.3 * min(readings):
+    if readings and max(readings) > 1.3 * min(readings):
         yield note("diameter-readings-apart", specimen.name, least=min(readings),
                    greatest=max(readings))  # fmt: skip
     if bands is None:

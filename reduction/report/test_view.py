@@ -320,6 +320,7 @@ def _rows(units: UnitSystem) -> tuple[tuple[str, str, Shown], ...]:
         ("position_reading", "one reading of position", length),
         ("lag", "lag between the channels", time),
         ("diameter", "mean diameter", small),
+        ("area", "area before stretch, where no diameter is stated", _PERCENT),
         ("strain_gain", "strain, by its method", _PERCENT),
         ("rated_break_strength", "rated break strength", _PERCENT),
         ("stiffness", "stiffness, for the temperature of the test", _PERCENT),
