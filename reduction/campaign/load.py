@@ -15,7 +15,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from reduction.archive.open import reading
-from reduction.archive.product_files import OF_CAMPAIGN, archives_of_tests
+from reduction.archive.product_files import OF_CAMPAIGN, archives_of_tests, campaign_of
 from reduction.campaign.experiment_plans import agree_on_pulls, plan_experiment
 from reduction.campaign.hose_spec import ComparisonSection, hose_of
 from reduction.campaign.model import (
@@ -876,8 +876,9 @@ def _id_of_products(processed: Path) -> str:
 def find_campaign(processed: Path, stated: Path | None = None, *, name: str = "") -> Path:
     """Find the campaign.toml that a folder of archives was made from.
 
-    It is looked for where it lies by habit: ``raw/ID/campaign.toml`` and ``ID/campaign.toml``,
-    beside ``processed`` and in the working folder.
+    It is looked for where the last run had it, and where it lies by habit:
+    ``raw/ID/campaign.toml`` and ``ID/campaign.toml``, beside ``processed`` and in the working
+    folder.
 
     Parameters
     ----------
@@ -911,10 +912,14 @@ def find_campaign(processed: Path, stated: Path | None = None, *, name: str = ""
             )
         return stated
     above = processed.absolute().parent.parent
+    recorded = campaign_of(processed)
     places = [
-        root / folder / name / "campaign.toml"
-        for root in (above, Path.cwd())
-        for folder in ("raw", "")
+        *([recorded] if recorded is not None else []),
+        *(
+            root / folder / name / "campaign.toml"
+            for root in (above, Path.cwd())
+            for folder in ("raw", "")
+        ),
     ]
     for path in dict.fromkeys(places):
         if _id_of(path) == name:
@@ -923,7 +928,7 @@ def find_campaign(processed: Path, stated: Path | None = None, *, name: str = ""
         f"the campaign.toml of '{name}' is not where it is looked for",
         found="none at " + " or ".join(str(path) for path in dict.fromkeys(places)),
         needed="--campaign CAMPAIGN.toml",
-        hint="An archive keeps what its numbers were made with, and no path.",
+        hint="It was moved since the run: an archive itself keeps no path.",
     )
 
 

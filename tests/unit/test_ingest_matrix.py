@@ -84,7 +84,9 @@ def test_rows_of_unequal_length_are_refused(read):
 
 
 def test_what_is_no_matrix_is_refused(read):
-    with pytest.raises(LogError, match="'data' is not a matrix; found dict"):
+    with pytest.raises(LogError, match="'data' is not a matrix; found str"):
+        read({"data": "none", **UNITS})
+    with pytest.raises(LogError, match="'data' holds no columns"):
         read({"data": {}, **UNITS})
 
 

@@ -10,7 +10,7 @@ import tomllib
 import numpy as np
 import pytest
 
-from reduction.quantities.units import parse_quantity, scale_to_si
+from reduction.quantities.units import scale_to_si
 from reduction.readers.layout import Layout
 from reduction.readers.read_log import read_log
 from reduction.readers.starter_campaign import starter_campaign
