@@ -46,7 +46,10 @@ from reduction.report.text_style import (
 OF_NO_TEST = "of_no_test"
 """Status of an archive that status.csv has no row for: the campaign has no such test now."""
 
-_REACHED = ("mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude")
+_REACHED = (
+    "apparent_spring_constant",  # whether it had settled
+    "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
