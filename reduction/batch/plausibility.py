@@ -205,7 +205,9 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
             yield note("load-falls-for-good", name, share=share)
         lead = float(levels.lead[index]) * levels.frequency
         # by more than that a channel runs backward, which its sign says
-        if -_BACKWARD < lead < -_LATE or _EARLY < lead < _BACKWARD:
+        # a damper leads by up to a quarter of a cycle, as no line does
+        early = _BACKWARD if campaign.specimens[name].can_push else _EARLY
+        if -_BACKWARD < lead < -_LATE or early < lead < _BACKWARD:
             yield note(
                 "tension-behind-position" if lead < 0 else "position-behind-tension", name,
                 delay=abs(float(levels.lead[index])),

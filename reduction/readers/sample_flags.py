@@ -308,9 +308,6 @@ _STAYS = 0.5  # of the step, at least, is left of it between the levels on its s
 _OUTER = (0.01, 0.99)
 
 
-_STAYS_SAMPLES = 3
-
-
 def _find_lone_steps(
     values: Floats, beside: Floats, *, noise: float, noise_beside: Floats, factor: float
 ) -> Integers:
@@ -335,8 +332,6 @@ def _find_lone_steps(
         some = _candidates(np.abs(np.diff(values[part])), limit) + part.start
         found.append(some[_stands_out(values, some, limit)])
     step: Integers = np.concatenate(found)
-    # what stays for a sample or two at the end of a log is not known to stay
-    step = step[(step >= _STAYS_SAMPLES) & (step < values.size - 1 - _STAYS_SAMPLES)]
     change = take_samples(values, step + 1) - take_samples(values, step)
     step = step[_level_change(values, step) * np.sign(change) > _STAYS * np.abs(change)]
     for channel, its_noise in zip(beside, noise_beside, strict=True):
