@@ -456,7 +456,7 @@ class _Start:
     def _zero(self, key: str, unit: str) -> tuple[str, list[str]]:
         load = self.loads[key]
         rest = load[: self.n_samples]
-        reading, scatter = float(np.mean(rest)), float(np.std(rest))
+        reading, scatter = float(np.median(rest)), float(np.std(rest))
         noise = 4 * scatter / math.sqrt(rest.size)
         shown = f'"{_round(reading, scatter)} {unit}"'
         at_rest = f"in the first rest ({self.words}) {key} reads {shown}"

@@ -46,7 +46,9 @@ def clock_to_seconds(
         if text in missing:
             continue
         match = CLOCK_TEXT.fullmatch(text)
-        if match is None or int(match[7]) > 23:
+        day = math.nan if match is None else _day_of(match)
+        is_no_day = match is not None and bool(match[1] or match[4]) and math.isnan(day)
+        if match is None or int(match[7]) > 23 or is_no_day:
             raise LogError(
                 path,
                 "a reading is not a clock time",
@@ -58,7 +60,7 @@ def clock_to_seconds(
             )
         hours, minutes = int(match[7]), int(match[8])
         seconds[index] = 3600 * hours + 60 * minutes + float((match[9] or "0").replace(",", "."))
-        days[index] = _day_of(match)
+        days[index] = day
     valid = np.flatnonzero(np.isfinite(seconds))
     if not valid.size:
         return seconds
@@ -69,7 +71,7 @@ def clock_to_seconds(
         day = np.cumsum(np.diff(read, prepend=read[0]) < -_DAY / 2).astype(np.float64)
     else:
         raise LogError(
-            path, "some readings of a clock have a date and some have none or one that is no day",
+            path, "some readings of a clock have a date and some have none",
             channel=channel, needed="a date in every row, or in none",
         )  # fmt: skip
     seconds[valid] = read + _DAY * day - read[0]

@@ -70,14 +70,14 @@ TEXTS = {
         "時間(秒),荷重(N),変位(mm)\n" + table([TIME, LOAD, TRAVEL]), "cp932",
     ),
     "Chinese, GB18030": (
-        "试验编号：7\n时间(s)\t位移(mm)\t力(N)\n" + table([TIME, TRAVEL, LOAD], "\t"), "gb18030",
+        "试验编号 7\n时间(s)\t位移(mm)\t力(N)\n" + table([TIME, TRAVEL, LOAD], "\t"), "gb18030",
     ),
     "Chinese, UTF-8, 载荷": (
         "时间/s,位移/mm,载荷/kN\n" + table([TIME, TRAVEL, LOAD / 1e3], digits=7), "utf-8-sig",
     ),
     "Korean": ("시간(s),변위(mm),하중(N)\n" + table([TIME, TRAVEL, LOAD]), "euc_kr"),
     "Russian": (
-        "Время, с;Перемещение, мм;Нагрузка, Н\n" + table([TIME, TRAVEL, LOAD], ";", ","), "cp1251",
+        "Время, с;Перемещение, мм;Нагрузка, Н\n" + table([TIME, TRAVEL, LOAD], ";", ","), "cp1251",  # noqa: RUF001
     ),
     "WaveMatrix": (
         '"Total Time (s)","Cycle Elapsed Time (s)","Total Cycles","Position(Linear:Position) (mm)",'
@@ -217,13 +217,13 @@ def answered(layout):
     assert position["datum"] == "displacement"  # which begins at zero
     assert position["reference_length"] == "?"
     position["reference_length"] = "2.5 m"
-    if (position_zero := layout["channels"]["tension"]["1"].get("zero")) is not None:
-        assert position_zero == "?"  # 3.5 N may be a preload: a person has to say
+    if (zero := layout["channels"]["tension"]["1"].get("zero")) is not None:
+        assert zero == "?"  # 3.5 N may be a preload: a person has to say
         layout["channels"]["tension"]["1"]["zero"] = "0 N"
     return Layout.model_validate(layout)
 
 
-def check_channels(log, layout, *, starts_at=0.0):
+def check_channels(log, layout):
     units = {key: channel.unit for key, channel in layout.channels.items()}
     factor = {
         key: 1.0 if unit == "clock" else scale_to_si(unit, layout.dimension(key))[0]
@@ -257,3 +257,71 @@ def test_the_draft_for_json_lines_reads_it(tmp_path):
     _, layout = draft(tmp_path, "log.jsonl", lines.encode())
     layout = answered(layout)
     check_channels(read_log(tmp_path / "log.jsonl", layout, name="log.jsonl"), layout)
+
+
+def text_log(load, travel=TRAVEL):
+    return ("Time (s),Stroke (mm),Load (N)\n" + table([TIME, travel, load])).encode()
+
+
+def test_a_load_below_zero_at_rest_is_proposed_as_the_zero(tmp_path):
+    text, layout = draft(tmp_path, "log.csv", text_log(LOAD - 20))
+    number, unit = layout["channels"]["tension"]["1"]["zero"].split()
+    # 3.5 - 20, to a two-thousandth of what the load travels
+    assert float(number) == pytest.approx(-16.5, abs=0.1) and unit == "N"
+    assert "guess: zero" in text and "a slack line does not push" in text
+
+
+def test_a_load_that_is_next_to_nothing_at_rest_needs_no_zero(tmp_path):
+    text, layout = draft(tmp_path, "log.csv", text_log(LOAD - 3.5))
+    assert "zero" not in layout["channels"]["tension"]["1"]
+    assert "guess: no zero is needed" in text
+
+
+@pytest.mark.parametrize(
+    ("load", "travel", "turned"),
+    [(-LOAD, TRAVEL, "tension"), (LOAD, -TRAVEL, "crosshead_position"), (LOAD, TRAVEL, None)],
+)
+def test_the_channel_that_runs_backward_gets_a_sign(tmp_path, load, travel, turned):
+    _, layout = draft(tmp_path, "log.csv", text_log(load, travel))
+    channels = {**layout["channels"], "tension": layout["channels"]["tension"]["1"]}
+    assert {key for key, one in channels.items() if one.get("sign") == -1} == {turned} - {None}
+
+
+def test_a_position_far_above_its_travel_is_a_length(tmp_path):
+    _, layout = draft(tmp_path, "log.csv", text_log(LOAD, 2500 + TRAVEL))
+    assert layout["channels"]["crosshead_position"]["datum"] == "pin-to-pin"
+
+
+def test_of_a_log_that_only_rests_nothing_is_guessed(tmp_path):
+    noise = 0.01 * np.sin(17.0 * np.arange(N) ** 2)
+    _, layout = draft(tmp_path, "log.csv", text_log(3.5 + noise, 0.02 + noise))
+    assert layout["channels"]["crosshead_position"]["datum"] == "?"
+    assert "zero" not in layout["channels"]["tension"]["1"]
+
+
+def test_a_ramp_from_the_first_sample_on_has_no_rest(tmp_path):
+    _, layout = draft(tmp_path, "log.csv", text_log(5 + 12 * TIME, 10 * TIME))
+    assert "zero" not in layout["channels"]["tension"]["1"]
+
+
+def test_logs_that_begin_unlike_share_a_layout_with_a_question(tmp_path):
+    (tmp_path / "T-1.csv").write_bytes(text_log(LOAD - 20))
+    (tmp_path / "T-2.csv").write_bytes(text_log(LOAD - 30))
+    files = starter_campaign(tmp_path)
+    (layout,) = tomllib.loads(files["campaign.toml"])["layouts"].values()
+    assert layout["channels"]["tension"]["1"]["zero"] == "?"
+    assert "the logs differ in how they begin" in files["campaign.toml"]
+
+
+@pytest.mark.parametrize("content", [b"just words\n" * 9, "荷重なし\n".encode("cp932")])
+def test_a_file_without_a_table_has_a_draft_of_questions(tmp_path, content):
+    text, layout = draft(tmp_path, "log.txt", content)
+    assert layout["format"] == "?"
+    assert "#   log.txt: no table of numbers" in text
+
+
+def test_a_specimen_of_a_single_log_is_named_and_its_sizes_are_quoted(tmp_path):
+    preamble = b"Specimen width (mm);6\nOperator;AB\n\n"
+    text, _ = draft(tmp_path, "log.csv", preamble + text_log(LOAD).replace(b",", b";"))
+    assert set(tomllib.loads(text)["specimens"]) == {"specimen-1"}
+    assert "# a log says: Specimen width (mm) 6\n" in text and "Operator" not in text
