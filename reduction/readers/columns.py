@@ -46,8 +46,8 @@ def clock_to_seconds(
         if text in missing:
             continue
         match = CLOCK_TEXT.fullmatch(text)
-        day = math.nan if match is None else _day_of(match)
-        is_no_day = match is not None and bool(match[1] or match[4]) and math.isnan(day)
+        date_of = math.nan if match is None else _day_of(match)
+        is_no_day = match is not None and bool(match[1] or match[4]) and math.isnan(date_of)
         if match is None or int(match[7]) > 23 or is_no_day:
             raise LogError(
                 path,
@@ -60,7 +60,7 @@ def clock_to_seconds(
             )
         hours, minutes = int(match[7]), int(match[8])
         seconds[index] = 3600 * hours + 60 * minutes + float((match[9] or "0").replace(",", "."))
-        days[index] = day
+        days[index] = date_of
     valid = np.flatnonzero(np.isfinite(seconds))
     if not valid.size:
         return seconds
