@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from pathlib import Path
 
+from reduction.archive.atomic_write import atomic_file
 from reduction.record.errors import ArchiveError
 
 OF_CAMPAIGN = ("surfaces", "predictions", "comparisons", "outcomes", "change_in_length")
@@ -12,6 +14,33 @@ OF_CAMPAIGN = ("surfaces", "predictions", "comparisons", "outcomes", "change_in_
 
 SUPERSEDED = "superseded"
 """Folder, beside the archives of a campaign, of those that it no longer makes."""
+
+
+CAMPAIGN_PLACE = ".campaign"
+"""File, beside the archives of a campaign, that says where the campaign.toml of the last run is."""
+
+
+def campaign_of(folder: Path) -> Path | None:
+    """Where the campaign.toml that made a folder of archives was; None where it does not say."""
+    try:
+        text = (folder / CAMPAIGN_PLACE).read_text(encoding="utf-8").strip()
+    except (OSError, ValueError):
+        return None
+    # by the folder, so that both may be moved together
+    return Path(os.path.normpath(folder.absolute() / text)) if text else None
+
+
+def record_campaign(folder: Path, campaign: Path) -> None:
+    """Say in a folder of archives which campaign.toml made them."""
+    try:
+        place = os.path.relpath(campaign.absolute(), folder.absolute())
+    except ValueError:  # another drive
+        place = str(campaign.absolute())
+    if campaign_of(folder) == Path(os.path.normpath(folder.absolute() / place)):
+        return
+    # without it the archives are as good, and the campaign is found where it lies by habit
+    with suppress(OSError), atomic_file(folder / CAMPAIGN_PLACE) as begun:
+        begun.write_text(Path(place).as_posix() + "\n", encoding="utf-8")
 
 
 def archives_in(folder: Path) -> list[Path]:

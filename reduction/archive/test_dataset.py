@@ -83,7 +83,7 @@ def strain_model_of(dataset: xr.Dataset, place: int) -> StrainModel | None:
 def _specimen_values(specimens: Sequence[Specimen]) -> Values:
     """Return what is known of each specimen before the test."""
     known = [one.mean_diameter if one.diameter else None for one in specimens]
-    area = numbers([one.area if one.diameter else None for one in specimens])
+    area = numbers([one.area if one.has_area else None for one in specimens])
     spread = numbers([one.diameter_scatter for one in specimens])
     return {
         "specimen": texts([one.name for one in specimens]),
@@ -101,7 +101,9 @@ def _specimen_values(specimens: Sequence[Specimen]) -> Values:
             [[diameter for _, diameter in one.stretched_diameters] for one in specimens]
         ),
         "area": area,
-        "area_standard_uncertainty": 2 * area * spread / numbers(known),
+        "area_standard_uncertainty": numbers(
+            [one.area_scatter if one.has_area else None for one in specimens]
+        ),
         "rated_break_strength": numbers([one.rated_break_strength for one in specimens]),
         "rated_break_strength_source": texts(
             [one.rated_break_strength_source for one in specimens]
@@ -329,7 +331,7 @@ def _sample_values(test: ReducedTest, record: Record, kept: _KeptSamples | None 
         values["strain"] = stored(test.strain)
     if test.strain_standard_uncertainty is not None:
         values["strain_standard_uncertainty"] = test.strain_standard_uncertainty
-    if any(specimen.diameter for specimen in test.specimens):
+    if any(specimen.has_area for specimen in test.specimens):
         values["nominal_stress"] = _stress(tension, flags, test.specimens)
     if test.nominal_stress_standard_uncertainty is not None:
         values["nominal_stress_standard_uncertainty"] = test.nominal_stress_standard_uncertainty
@@ -350,10 +352,10 @@ def _narrowed(numbers: Integers) -> Integers:
 
 
 def _stress(tension: Floats, flags: Integers, specimens: tuple[Specimen, ...]) -> Floats:
-    """Nominal stress where a diameter is known and tension is usable, NaN elsewhere."""
+    """Nominal stress where an area is known and tension is usable, NaN elsewhere."""
     stress: Floats = full_like(tension, np.nan)
     for row, specimen in enumerate(specimens):
-        if specimen.diameter:
+        if specimen.has_area:
             for part in sample_blocks(tension.shape[1], tension, flags, stress):
                 known = np.where(flags[row, part] & UNUSABLE, np.nan, tension[row, part])
                 stress[row, part] = nominal_stress(known, area=specimen.area)

@@ -92,7 +92,7 @@ def cycles_averaged(archive: xr.Dataset, name: str) -> Floats:
     >>> print(cycles_averaged(cycles, "test_dynamic_modulus"))
     [2]
     """
-    break_in = _break_in_cycles(str(archive.attrs.get("settings") or "{}"))
+    break_in = break_in_cycles(archive)
     for single in (name.removeprefix("test_"), _SINGLE):
         if single in archive and archive.variables[single].dims == ("specimen", "cycle"):
             known = np.isfinite(archive.variables[single].values[:, break_in:])
@@ -100,9 +100,13 @@ def cycles_averaged(archive: xr.Dataset, name: str) -> Floats:
     return np.asarray(max(archive.sizes.get("cycle", 0) - break_in, 0))
 
 
-@cache
-def _break_in_cycles(settings: str) -> int:
+def break_in_cycles(archive: xr.Dataset) -> int:
     """How many first cycles are in no mean, by the settings of an archive."""
+    return _stated_break_in(str(archive.attrs.get("settings") or "{}"))
+
+
+@cache
+def _stated_break_in(settings: str) -> int:
     stated = json.loads(settings).get("reduction", {}).get("cycles", {})
     return int(stated.get("break_in_cycles", 0))
 

@@ -127,7 +127,7 @@ def _of_specimen(
         yield note(
             "strain-above-band", name, strain=strain, limit=bands.greatest_strain, of=bands.of
         )
-    if not specimen.diameter or survey.plan.kind in ("relaxation", "creep"):
+    if not specimen.has_area or survey.plan.kind in ("relaxation", "creep"):
         return
     modulus = tension / specimen.area / strain
     low, high = bands.modulus
@@ -142,10 +142,10 @@ def _of_specimen(
 
 def _of_sizes(specimen: Specimen, bands: Bands | None) -> Iterator[Note]:
     """Diameter, strength and mass of a specimen against each other."""
-    if not specimen.diameter:
+    if not specimen.has_area:
         return
     readings = specimen.diameter
-    if max(readings) > 1.3 * min(readings):
+    if readings and max(readings) > 1.3 * min(readings):
         yield note("diameter-readings-apart", specimen.name, least=min(readings),
                    greatest=max(readings))  # fmt: skip
     if bands is None:
@@ -205,7 +205,9 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
             yield note("load-falls-for-good", name, share=share)
         lead = float(levels.lead[index]) * levels.frequency
         # by more than that a channel runs backward, which its sign says
-        if -_BACKWARD < lead < -_LATE or _EARLY < lead < _BACKWARD:
+        # a damper leads by up to a quarter of a cycle, as no line does
+        early = _BACKWARD if campaign.specimens[name].can_push else _EARLY
+        if -_BACKWARD < lead < -_LATE or early < lead < _BACKWARD:
             yield note(
                 "tension-behind-position" if lead < 0 else "position-behind-tension", name,
                 delay=abs(float(levels.lead[index])),

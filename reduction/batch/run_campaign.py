@@ -19,7 +19,12 @@ from reduction import __version__
 from reduction.archive.campaign_products import outcomes_to_dataset
 from reduction.archive.csv_tables import refresh_tables, write_tables
 from reduction.archive.open import Opener, read_once, reading
-from reduction.archive.product_files import OF_CAMPAIGN, SUPERSEDED, archives_of_tests
+from reduction.archive.product_files import (
+    OF_CAMPAIGN,
+    SUPERSEDED,
+    archives_of_tests,
+    record_campaign,
+)
 from reduction.archive.rope_properties import CHANGES_LENGTH, properties_to_dataset, step_of_archive
 from reduction.archive.write import keep_details, write_archive, write_text_atomically
 from reduction.batch.campaign_status import PartStatus, Progress, Silent, Status, TestStatus
@@ -449,6 +454,8 @@ def _run(
         command=command,
     )  # fmt: skip
     lock.confirm()  # before what is made of all tests
+    if archives_of_tests(folder):
+        record_campaign(folder, campaign.path)
     failed = {status.test for status in statuses if status.status == "failed"}
     failed |= set(wanted.failed)
     asked = {survey.plan.id for survey in chosen}

@@ -279,10 +279,14 @@ def _with_load_at_slack(
         one = load_at_slack(tension, stands, is_slack)
         found.append(one)
         zeros.append("" if one is None else zero_to_set(layouts, number, one.load))
-    notes = notes_on_zero(
-        plan.specimens, whole.position, whole.tension, found, zeros,
-        offset_uncertainty=campaign.uncertainty.tension_offset,
-    )  # fmt: skip
+    notes = [
+        one
+        for one in notes_on_zero(
+            plan.specimens, whole.position, whole.tension, found, zeros,
+            offset_uncertainty=campaign.uncertainty.tension_offset,
+        )
+        if not campaign.specimens[one.subject].can_push
+    ]  # fmt: skip
     record = replace(located.record, notes=(*notes, *located.record.notes))
     return replace(located, record=record, load_at_slack=tuple(found))
 

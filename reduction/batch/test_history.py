@@ -285,6 +285,8 @@ def fit_strain_models(
                 )
                 read_by = tuple(cells[name].get(test, "") for test in model.mark_test)
                 of_strain = judge_strain(survey.extremes, model, test_id=survey.plan.id)
+                if campaign.specimens[name].can_push:  # strain below zero is compression
+                    of_strain = ()
                 models[survey.plan.id, name] = replace(
                     model, mark_load_cell=read_by, notes=(*of_strain, *model.notes)
                 )
@@ -389,7 +391,17 @@ def _name_of(model: StrainModel, log: str) -> str:
 
 
 def _with_readings(errors: InstrumentErrors, specimen: Specimen) -> InstrumentErrors:
-    """Give a diameter of which nothing is stated what its readings say of their mean."""
+    """Give a diameter of which nothing is stated what its readings say of their mean.
+
+    The error of an area that was stated is that of the circle of the same area.
+    """
+    if specimen.cross_section:
+        readings = 0 if errors.area else len(specimen.cross_section)
+        share = errors.area or specimen.area_scatter / specimen.area
+        across = float(np.sqrt(4 * specimen.area / np.pi)) * share / 2
+        return replace(
+            errors, diameter=across if np.isfinite(across) else 0.0, diameter_readings=readings
+        )
     scatter = specimen.diameter_scatter
     if errors.diameter or not np.isfinite(scatter) or scatter == 0:
         return errors

@@ -15,7 +15,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from reduction.archive.open import reading
-from reduction.archive.product_files import OF_CAMPAIGN, archives_of_tests
+from reduction.archive.product_files import OF_CAMPAIGN, archives_of_tests, campaign_of
 from reduction.campaign.experiment_plans import agree_on_pulls, plan_experiment
 from reduction.campaign.hose_spec import ComparisonSection, hose_of
 from reduction.campaign.model import (
@@ -133,6 +133,45 @@ def _check_there(path: Path, target: Path, shown: Path) -> None:
     check_regular(shown, mode)
 
 
+def _readings(stated: tuple[float, ...] | float) -> tuple[float, ...]:
+    """Readings of one size, which may be a single one without a list."""
+    return stated if isinstance(stated, tuple) else (stated,)
+
+
+def _cross_section(path: Path, place: str, section: SpecimenSection) -> tuple[float, ...]:
+    """Area of what has no diameter: as stated, of a strip, or by the mass of its length."""
+    width, thickness = _readings(section.width), _readings(section.thickness)
+    stated = {
+        "diameter": bool(section.diameter),
+        "area": bool(section.area),
+        "width and thickness": bool(width or thickness),
+        "density": section.density is not None,
+    }
+    ways = [name for name, is_stated in stated.items() if is_stated]
+    if len(ways) > 1:
+        raise in_toml(
+            path, f"{place} states its cross-section in two ways", found=", ".join(ways),
+            needed="diameter, or area, or width and thickness, or linear_density and density",
+        )  # fmt: skip
+    if bool(width) != bool(thickness):
+        raise in_toml(
+            path, f"{place}.{'width' if width else 'thickness'} stands alone",
+            needed="width and thickness",
+        )  # fmt: skip
+    if width:
+        if len(width) != len(thickness) and 1 not in (len(width), len(thickness)):
+            raise in_toml(
+                path, f"{place}: readings of width and thickness are not of the same places",
+                found=f"{len(width)} and {len(thickness)}", needed="as many of one as of the other",
+            )  # fmt: skip
+        return tuple((np.array(width) * np.array(thickness)).tolist())
+    if section.density is not None:
+        if section.linear_density is None:
+            raise in_toml(path, f"{place}.density stands alone", needed="linear_density beside it")
+        return (section.linear_density / section.density,)
+    return _readings(section.area)
+
+
 def _specimen_of(path: Path, name: str, section: SpecimenSection) -> Specimen:
     """The specimen before its first test; an error names campaign.toml and the key."""
     place = f"specimens.{name}"
@@ -153,9 +192,15 @@ def _specimen_of(path: Path, name: str, section: SpecimenSection) -> Specimen:
             path, f"{place}.reference_tension stands alone",
             needed="gauge_length beside it, the length under that tension",
         )  # fmt: skip
-    given = section.model_dump(exclude={"stretched_diameter", "note"})
-    if isinstance(section.diameter, float):
-        given["diameter"] = (section.diameter,)
+    sizes = {"area", "width", "thickness", "density"}
+    given = section.model_dump(exclude={"stretched_diameter", "note", *sizes})
+    given["diameter"] = _readings(section.diameter)
+    given["cross_section"] = _cross_section(path, place, section)
+    if section.stretched_diameter and not section.diameter:
+        raise in_toml(
+            path, f"{place}.stretched_diameter stands alone",
+            needed="diameter beside it, the readings before stretch",
+        )  # fmt: skip
     stretched = [
         (quantity_of(path, f"{place}.stretched_diameter", stretch, "strain"), reading)
         for stretch, readings in section.stretched_diameter.items()
@@ -831,8 +876,9 @@ def _id_of_products(processed: Path) -> str:
 def find_campaign(processed: Path, stated: Path | None = None, *, name: str = "") -> Path:
     """Find the campaign.toml that a folder of archives was made from.
 
-    It is looked for where it lies by habit: ``raw/ID/campaign.toml`` and ``ID/campaign.toml``,
-    beside ``processed`` and in the working folder.
+    It is looked for where the last run had it, and where it lies by habit:
+    ``raw/ID/campaign.toml`` and ``ID/campaign.toml``, beside ``processed`` and in the working
+    folder.
 
     Parameters
     ----------
@@ -866,10 +912,14 @@ def find_campaign(processed: Path, stated: Path | None = None, *, name: str = ""
             )
         return stated
     above = processed.absolute().parent.parent
+    recorded = campaign_of(processed)
     places = [
-        root / folder / name / "campaign.toml"
-        for root in (above, Path.cwd())
-        for folder in ("raw", "")
+        *([recorded] if recorded is not None else []),
+        *(
+            root / folder / name / "campaign.toml"
+            for root in (above, Path.cwd())
+            for folder in ("raw", "")
+        ),
     ]
     for path in dict.fromkeys(places):
         if _id_of(path) == name:
@@ -878,7 +928,7 @@ def find_campaign(processed: Path, stated: Path | None = None, *, name: str = ""
         f"the campaign.toml of '{name}' is not where it is looked for",
         found="none at " + " or ".join(str(path) for path in dict.fromkeys(places)),
         needed="--campaign CAMPAIGN.toml",
-        hint="An archive keeps what its numbers were made with, and no path.",
+        hint="It was moved since the run: an archive itself keeps no path.",
     )
 
 

@@ -30,6 +30,8 @@ from reduction.campaign.unit_types import (
     Force,
     InSI,
     Number,
+    PositiveArea,
+    PositiveDensity,
     PositiveForce,
     PositiveLength,
     ReadKey,
@@ -207,6 +209,8 @@ class UncertaintySection(_UncertaintySection):
     """Between the two channels."""
     diameter: _OfLength | None = None
     """Of the mean of the readings of a specimen."""
+    area: _Relative | None = None
+    """Relative: of the area of a specimen that has no diameter."""
     tape: _OfLength | None = None
     """Of one reading of the tape at the marks: ``"0.005 ft"``."""
     strain: _Relative | None = None
@@ -254,6 +258,7 @@ def stated_errors(
         position_reading=_of_reading(position),
         lag=section.lag or 0.0,
         diameter=diameter,
+        area=section.area or 0.0,
         strain_gain=section.strain or 0.0,
         rated_break_strength=section.rated_break_strength or 0.0,
         stiffness=stiffness,
@@ -550,12 +555,19 @@ class _CampaignSection(_SpecSection):
 class SpecimenSection(_SpecSection):
     """``[specimens.NAME]``: the specimen before its first test."""
 
-    kind: Literal["rubber tether", "stretch hose", "rope", "wire", "elastomer"]
+    kind: Literal["rubber tether", "stretch hose", "rope", "wire", "elastomer", "other"]
     material: Text = ""
     construction: Text = ""
     condition: Text = ""
     diameter: tuple[PositiveLength, ...] | PositiveLength = ()
     """Readings before stretch; the nominal area uses their mean."""
+    area: tuple[PositiveArea, ...] | PositiveArea = ()
+    """Readings of the area before stretch, of what has no diameter."""
+    width: tuple[PositiveLength, ...] | PositiveLength = ()
+    """Of a strip, with ``thickness``: readings before stretch."""
+    thickness: tuple[PositiveLength, ...] | PositiveLength = ()
+    density: PositiveDensity | None = None
+    """Of the material: with ``linear_density`` it gives the area."""
     stretched_diameter: dict[str, tuple[PositiveLength, ...]] = Field(default_factory=dict)
     """Readings at a stretch, by stretch: ``{ "10 %" = ["0.997 in", "0.980 in"] }``."""
     rated_break_strength: Force | None = None

@@ -91,6 +91,7 @@ class ReadText(ReadKey):
 Length = Annotated[float, InSI("length")]
 PositiveLength = Annotated[float, InSI("length", above=0.0)]
 Force = Annotated[float, InSI("force")]
+PositiveArea = Annotated[float, InSI("area", above=0.0)]
 PositiveForce = Annotated[float, InSI("force", above=0.0)]
 Strain = Annotated[float, InSI("strain")]
 """Also a share: ``0.01`` or ``"1 %"``."""

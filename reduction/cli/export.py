@@ -242,7 +242,7 @@ class ExportedFiles:
         """
         if not isinstance(self.exported, ExportLine):
             raise SettingsError(
-                "a table of coefficients has no curve to plot", found=self.exported.title,
+                "tables have no curve to plot", found=", ".join(map(str, self.paths)),
                 needed="the export of a line",
             )  # fmt: skip
         import xarray as xr

@@ -50,7 +50,7 @@ OwnCampaign = Annotated[
     Path | None,
     typer.Option(
         metavar="CAMPAIGN.toml",
-        help="Where the campaign is, if in neither raw/CAMPAIGN/ nor CAMPAIGN/.",
+        help="Where the campaign is, if it was moved since the run.",
         show_default=False,
         callback=_here_if_given,
     ),

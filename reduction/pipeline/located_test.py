@@ -188,7 +188,7 @@ def strain_of_record(
 def parts_of_stress(record: Record, specimens: tuple[Specimen, ...]) -> dict[str, Any]:
     """Uncertainty of one reading of nominal stress, by field of `ReducedTest`."""
     spread = record.tension_standard_uncertainty
-    if not spread or not any(specimen.diameter for specimen in specimens):
+    if not spread or not any(specimen.has_area for specimen in specimens):
         return {}
     return {"nominal_stress_standard_uncertainty": np.array(spread) / areas_of(specimens)}
 

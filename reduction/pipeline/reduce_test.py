@@ -100,7 +100,7 @@ _FEWEST_SAMPLES = 10  # of a branch: below, its two ends are a good part of it
 def _plausibility_notes(
     strain: Floats,
     *,
-    specimens: tuple[str, ...],
+    specimens: tuple[Specimen, ...],
     slack_tension: float,
     waveform: Literal["triangular", "sinusoidal", "other"],
     cycles: Cycles | None,
@@ -112,20 +112,21 @@ def _plausibility_notes(
     """Name what is hardly so: sign, unit of position, slack or drift in cycles, waveform."""
     notes = []
     greatest = [finite_extremes(one)[1] for one in strain]
-    for name, one in zip(specimens, greatest, strict=True):
+    for specimen, one in zip(specimens, greatest, strict=True):
         if one > _GREATEST_STRAIN:
-            notes.append(note("strain-impossible", name, strain=one))
+            notes.append(note("strain-impossible", specimen.name, strain=one))
     if cycles is None or loops is None:
         return tuple(notes)
-    for index, name in enumerate(specimens):
+    for index, specimen in enumerate(specimens):
+        name = specimen.name
         slopes = None if curves is None else curves.tangent_modulus[index]
         slack = _taut if is_snap else _slack
         # of a channel of the wrong sign a valley says nothing about slack
         half_strain = _half_range(strain[index], cycles)
         if waveform != "sinusoidal":
             notes += _drift(name, loops, index, half_strain)
-        notes += _sign(name, loops, index, slopes) or slack(
-            name, loops.valley_tension[index], slack_tension
+        notes += _sign(name, loops, index, slopes) or (
+            [] if specimen.can_push else slack(name, loops.valley_tension[index], slack_tension)
         )
     return (*notes, *_waveform(cycles, waveform))
 
@@ -419,7 +420,7 @@ def _of_specimen(
         field.component,
         {"strain": np.array([_signed_rms(row) for row in field.strain]).reshape(-1)},
     )
-    if not specimen.diameter:
+    if not specimen.has_area:
         return merged([of_tension, of_strain])
     of_stress = Contributions(
         of_tension.component, {"nominal_stress": of_tension.values["tension"] / specimen.area}
@@ -699,11 +700,11 @@ def _notes_of_test(
     record, standstills = located.record, located.standstills
     notes = [one for specimen in specimens for one in check_constant_volume(specimen)]
     notes += of_stages
-    notes += [note("no-diameter", one.name) for one in specimens if not one.diameter]
+    notes += [note("no-diameter", one.name) for one in specimens if not one.has_area]
     if kind in HELD and not holds:
         notes.append(_no_hold(standstills, settings))
     notes += _plausibility_notes(
-        strain, specimens=record.specimens, slack_tension=standstills.slack_tension,
+        strain, specimens=specimens, slack_tension=standstills.slack_tension,
         waveform=settings.cycles.waveform, control=settings.cycles.control, cycles=located.cycles,
         loops=parts.get("loops"), curves=parts.get("curves"), is_snap=kind == "snap",
     )  # fmt: skip

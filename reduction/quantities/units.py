@@ -58,7 +58,12 @@ _PINT_SI = {
 }
 
 # as test machines write them, where pint has no such name
-_SPELLINGS = {"Sec": "s", "SEC": "s", "Secs": "s", "lb": "pound", "IN": "in", "KN": "kN"}
+_SPELLINGS = {
+    "Sec": "s", "SEC": "s", "Secs": "s", "Sek": "s", "sek": "s", "mSec": "ms", "msec": "ms",
+    "lb": "pound", "IN": "in", "KN": "kN", "MM": "mm", "Kgf": "kgf", "KGF": "kgf", "LBF": "lbf",
+    "с": "s", "сек": "s", "мм": "mm", "Н": "N", "кН": "kN",  # noqa: RUF001
+    "秒": "s", "毫米": "mm", "牛": "N", "千牛": "kN",
+}  # fmt: skip
 
 # what pint lets out when a text is no unit expression
 _NO_UNIT = (
@@ -94,7 +99,8 @@ def _pint_text(unit: str) -> str:
     text = _SPELLINGS.get(text, text)
     if text in ("", "1", "-"):
         return "dimensionless"
-    # the degree, square and dot signs that test machines write
+    # the powers, and the degree, square and dot signs, that test houses write
+    text = re.sub(r"(?<=[A-Za-z])([23])(?!\w)", r"**\1", text)
     return (
         text.replace("%", "percent")
         .replace("µ", "micro")

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import date
 from pathlib import Path
 from tokenize import TokenError
 from typing import Any, Protocol
@@ -21,7 +22,11 @@ from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.plain_text import cut
 from reduction.record.samples import ColumnWriter, check_room
 
-_CLOCK = re.compile(r"(\d{1,2}):?([0-5]\d)(?::([0-5]\d(?:[.,]\d+)?))?")
+CLOCK_TEXT = re.compile(
+    r"(?:(?:(\d{4})-(\d\d)-(\d\d)|(\d{1,2})\.(\d{1,2})\.(\d{4}))[T ]\s*)?"
+    r"(\d{1,2}):?([0-5]\d)(?::([0-5]\d(?:[.,]\d+)?))?Z?"
+)
+"""A time of day, with a date before it or none; of a date with slashes nobody knows the month."""
 
 _DAY = 86400.0
 
@@ -36,28 +41,52 @@ def clock_to_seconds(
     first_row: int,
 ) -> Floats:
     """Seconds from the first reading, shape (n_rows,); missing marks are NaN. [s]."""
-    seconds = np.full(len(texts), np.nan)
+    seconds, days = np.full((2, len(texts)), np.nan)
     for index, text in enumerate(texts):
         if text in missing:
             continue
-        match = _CLOCK.fullmatch(text)
-        if match is None or int(match[1]) > 23:
+        match = CLOCK_TEXT.fullmatch(text)
+        date_of = math.nan if match is None else _day_of(match)
+        is_no_day = match is not None and bool(match[1] or match[4]) and math.isnan(date_of)
+        if match is None or int(match[7]) > 23 or is_no_day:
             raise LogError(
                 path,
                 "a reading is not a clock time",
                 row=first_row + index if row is None else int(row[index]),
                 channel=channel,
                 found=f"'{text}'",
-                needed="hours and minutes, such as 0945, 09:45 or 09:45:30",
+                needed="hours and minutes, such as 0945, 09:45 or 09:45:30, or a date before them, "
+                "2024-05-31 09:45:30 or 31.05.2024 09:45:30",
             )
-        hours, minutes = int(match[1]), int(match[2])
-        seconds[index] = 3600 * hours + 60 * minutes + float((match[3] or "0").replace(",", "."))
+        hours, minutes = int(match[7]), int(match[8])
+        seconds[index] = 3600 * hours + 60 * minutes + float((match[9] or "0").replace(",", "."))
+        days[index] = date_of
     valid = np.flatnonzero(np.isfinite(seconds))
-    if valid.size:
-        read = seconds[valid]
-        midnights = np.cumsum(np.diff(read, prepend=read[0]) < -_DAY / 2)
-        seconds[valid] = read + _DAY * midnights - read[0]
+    if not valid.size:
+        return seconds
+    read, dates = seconds[valid], days[valid]
+    if np.isfinite(dates).all():
+        day = dates - dates[0]
+    elif np.isnan(dates).all():
+        day = np.cumsum(np.diff(read, prepend=read[0]) < -_DAY / 2).astype(np.float64)
+    else:
+        raise LogError(
+            path, "some readings of a clock have a date and some have none",
+            channel=channel, needed="a date in every row, or in none",
+        )  # fmt: skip
+    seconds[valid] = read + _DAY * day - read[0]
     return seconds
+
+
+def _day_of(match: re.Match[str]) -> float:
+    """Number of the day before a clock time; NaN where there is none."""
+    year, month, day = (
+        (match[1], match[2], match[3]) if match[1] else (match[6], match[5], match[4])
+    )
+    try:
+        return float(date(int(year), int(month), int(day)).toordinal())
+    except (TypeError, ValueError):  # no date, or the 31st of February
+        return math.nan
 
 
 _BRACKETS = {"(": ")", "[": "]", "{": "}", "<": ">"}
@@ -169,6 +198,8 @@ def check_unit(path: Path, wanted: DeclaredColumn, found: str, *, row: int | Non
     text = found.strip()
     if text[:1] in _BRACKETS and text.endswith(_BRACKETS[text[0]]):
         text = text[1:-1].strip()
+    if wanted.dimension == "force" and text == "kg":  # as a scale writes a load
+        text = "kgf"
     if text in ("", "-", wanted.unit.strip()) or not wanted.is_compared:
         return
     try:
@@ -242,11 +273,12 @@ _UNIT_WORDS = {
 """Units that a column's name may end in without brackets, by dimension."""
 
 # load_kN, Kraft/kN, "Load, kN", "F in kN", "Load kN"
-_UNIT_BEHIND_NAME = re.compile(
+UNIT_BEHIND_NAME = re.compile(
     r"(?:.*?[^\W\d_]\d*)(?:_|/|,\s*|\s+in\s+|\s+)("
     + "|".join(unit for units in _UNIT_WORDS.values() for unit in units)
     + r")\s*$"
 )
+"""A name that ends in its unit without brackets, which is the first group."""
 
 
 def keep_line(metadata: dict[str, str], line: str, row: int, layout: Layout) -> None:
@@ -283,7 +315,7 @@ def check_units(
             name = names[place][-_LONGEST_NAME:]
             if match := _UNIT_IN_NAME.match(name):
                 _check_unit_in_name(path, want, match[1])
-            elif match := _UNIT_BEHIND_NAME.match(name):
+            elif match := UNIT_BEHIND_NAME.match(name):
                 _check_unit_in_name(path, want, match[1])
                 _check_dimension_in_name(path, want, match[1])
 

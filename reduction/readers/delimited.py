@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
@@ -154,13 +154,18 @@ def _read_head(head: _Head, text: memoryview, first_row: int, layout: Layout) ->
         elif not line.strip():
             continue
         elif layout.has_name_row and not head.names:
-            head.names, head.name_row = split_line(line, layout), row
+            head.names, head.name_row = without_comment_name(split_line(line, layout)), row
         elif layout.has_unit_row and not head.units:
             head.units, head.unit_row = split_line(line, layout), row
         else:
             head.first_line, head.first_row = line, row
             return place
     return None
+
+
+def without_comment_name(names: Sequence[str]) -> list[str]:
+    """Names of the columns but for LabVIEW's last one, Comment, which most of its rows lack."""
+    return list(names[:-1] if names and names[-1].strip() == "Comment" else names)
 
 
 def _lines(text: memoryview) -> Iterator[tuple[int, str]]:

@@ -1,9 +1,10 @@
-"""JSON: a matrix of rows, with unit strings beside it."""
+"""JSON and JSON Lines: rows, records or columns, with unit strings beside them."""
 
 from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import chain
 from pathlib import Path
@@ -11,7 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from reduction.readers.columns import check_unit, declared_columns, matrix_table, read_columns
+from reduction.readers.columns import (
+    ColumnTable,
+    check_unit,
+    declared_columns,
+    matrix_table,
+    read_columns,
+)
 from reduction.readers.layout import Layout, Watch
 from reduction.readers.raw_log import RawLog, read_bytes, source_of
 from reduction.readers.text_rows import decode
@@ -24,31 +31,96 @@ _MOST_DIGITS = 300  # of whole numbers that are finite as float64
 
 
 def read_json(path: Path, layout: Layout, *, name: str, watch: Watch | None = None) -> RawLog:
-    """Read a JSON log: the matrix under the layout's ``matrix`` key, one list a row."""
+    """Read a JSON log: a matrix, records, or an object of columns, where the layout says it is."""
     watch = watch or Watch(path)
     raw, content = json_content(path, watch, layout.encoding)
-    rows = _entry(path, content, layout.matrix, "matrix")
-    table = matrix_table(
-        path,
-        _to_matrix(path, rows, layout),
-        where=f"'{layout.matrix}'",
-        names=_texts(path, content, layout.matrix_names, "matrix_names"),
-        units=_texts(path, content, layout.matrix_units, "matrix_units"),
-    )
+    setting = "matrix" if layout.matrix else "group"
+    place = layout.matrix or layout.group
+    table = json_table(path, _entry(path, content, place, setting), place, content, layout)
     for wanted in declared_columns(layout):
         channel = layout.channels.get(wanted.key)
         if channel is not None and channel.unit_key:
             stated = _entry(path, content, channel.unit_key, f"unit_key of {wanted.key}")
             check_unit(path, wanted, str(stated))
     columns, n_rows = read_columns(path, layout, table, watch=watch)
-    plain = {key: value for key, value in content.items() if not isinstance(value, (list, dict))}
+    plain = content if isinstance(content, dict) else {}
     return RawLog(
         source=source_of(raw, name),
         columns=columns,
         first_row=0,
         n_rows_read=n_rows,
-        metadata={key: str(value) for key, value in plain.items()},
+        metadata={
+            key: str(value) for key, value in plain.items() if not isinstance(value, (list, dict))
+        },
     )
+
+
+def json_table(path: Path, rows: Any, place: str, content: Any, layout: Layout) -> ColumnTable:
+    """Columns of what stands in one place of a JSON log; they are numbers once they are loaded."""
+    where = f"'{place}'" if place else "the file"
+    if isinstance(rows, dict) or (isinstance(rows, list) and rows and isinstance(rows[0], dict)):
+        if layout.matrix_names or layout.matrix_units:
+            raise LogError(
+                path, f"the columns of {where} have names of their own",
+                found="matrix_names or matrix_units in the layout", needed="neither of them",
+            )  # fmt: skip
+        if isinstance(rows, dict):
+            return _object_table(path, rows, where, layout)
+        return _record_table(path, rows, where, layout)
+    return matrix_table(
+        path,
+        _to_matrix(path, rows, where, layout),
+        where=where,
+        names=_texts(path, content, layout.matrix_names, "matrix_names"),
+        units=_texts(path, content, layout.matrix_units, "matrix_units"),
+    )
+
+
+def _object_table(path: Path, columns: dict[str, Any], where: str, layout: Layout) -> ColumnTable:
+    """An object of columns: one list of numbers a name; what is no list is no column."""
+    lists = {key: value for key, value in columns.items() if isinstance(value, list)}
+    if not lists:
+        raise LogError(
+            path, f"{where} holds no columns", found=_keys(columns),
+            needed="an object of lists of numbers, or a layout that says where it is",
+            hint='Give its place as group = "test.data", or that of a list of rows as matrix.',
+        )  # fmt: skip
+    names = tuple(lists)
+
+    def load(place: int, n_rows: int) -> Iterator[Floats]:
+        yield _numbers(path, lists[names[place]], f"'{names[place]}'", layout)
+
+    return ColumnTable(
+        names=names, units=("",) * len(names), load=load, where=where, in_order=False,
+        sizes=tuple(map(len, lists.values())),
+    )  # fmt: skip
+
+
+def _record_table(path: Path, records: list[Any], where: str, layout: Layout) -> ColumnTable:
+    """Records: one object a row; a key that a row lacks is missing there."""
+    for index, record in enumerate(records):
+        if not isinstance(record, dict):
+            raise LogError(
+                path, f"row {index + 1} of {where} is not an object", found=type(record).__name__,
+                needed="an object in every row, as in the first",
+            )  # fmt: skip
+    names = tuple(dict.fromkeys(chain.from_iterable(records)))
+
+    def load(place: int, n_rows: int) -> Iterator[Floats]:
+        values = [record.get(names[place]) for record in records]
+        yield _numbers(path, values, f"'{names[place]}'", layout)
+
+    return ColumnTable(
+        names=names, units=("",) * len(names), load=load, where=where, in_order=False,
+        sizes=(len(records),) * len(names),
+    )  # fmt: skip
+
+
+def _numbers(path: Path, values: list[Any], where: str, layout: Layout) -> Floats:
+    """One column as numbers; null and missing marks are NaN."""
+    if not set(map(type, values)) <= {float, int}:
+        values = [_number(path, value, index, where, layout) for index, value in enumerate(values)]
+    return np.array(values, dtype=np.float64)
 
 
 def _whole(digits: str) -> int | float:
@@ -67,37 +139,75 @@ def _once(path: Path, pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def json_content(path: Path, watch: Watch, encoding: str = "utf-8") -> tuple[bytes, Any]:
-    """Bytes of a JSON file, and what they say."""
+    """Bytes of a JSON file, and what they say; of JSON Lines a list with what each line says."""
     watch.check_unpacked(path.stat().st_size)
     raw = read_bytes(path)
     n_lists = raw.count(b"[") + raw.count(b"{")
     watch.check_unpacked(2 * len(raw) + _VALUE * raw.count(b",") + _LIST * n_lists)
+    # the words NaN and Infinity are not JSON; here they are text like any other mark
+    load = partial(
+        json.loads, parse_constant=str, parse_int=_whole, object_pairs_hook=partial(_once, path)
+    )
+    text = decode(path, raw, encoding)
     try:
-        # the words NaN and Infinity are not JSON; here they are text like any other mark
-        text = decode(path, raw, encoding)
-        return raw, json.loads(
-            text, parse_constant=str, parse_int=_whole, object_pairs_hook=partial(_once, path)
-        )
-    except json.JSONDecodeError as error:
-        raise LogError(
-            path, "the file is not JSON", row=error.lineno, found=error.msg, needed="a JSON object"
-        ) from error
+        try:
+            return raw, load(text)
+        except json.JSONDecodeError as error:
+            if not error.msg.startswith(_MORE):
+                raise _not_json(path, error, error.lineno) from error
+        return raw, _lines(path, text, load)
     except RecursionError as error:
         raise LogError(
             path, "the file is nested too deeply", found=str(error), needed="a list of rows"
         ) from error
 
 
+_MORE = "Extra data"  # of the decoder, where a value ends before the file does
+
+
+def _lines(path: Path, text: bytes, load: Callable[[bytes], Any]) -> list[Any]:
+    """What each line of JSON Lines says; blank lines say nothing."""
+    values = []
+    for row, line in enumerate(text.split(b"\n"), 1):
+        if line.strip():
+            try:
+                values.append(load(line))
+            except json.JSONDecodeError as error:
+                raise _not_json(path, error, row) from error
+    return values
+
+
+def _not_json(path: Path, error: json.JSONDecodeError, row: int) -> LogError:
+    return LogError(
+        path, "the file is not JSON", row=row, found=error.msg,
+        needed="JSON, or JSON Lines with one value a line",
+    )  # fmt: skip
+
+
+def _keys(content: Any) -> str:
+    return ", ".join(repr(key) for key in content) if isinstance(content, dict) else "no object"
+
+
 def _entry(path: Path, content: Any, key: str, setting: str) -> Any:
-    if not isinstance(content, dict) or key not in content:
-        there = ", ".join(repr(k) for k in content) if isinstance(content, dict) else "no object"
-        raise LogError(
-            path,
-            f"there is no key '{key}'",
-            found=there,
-            needed=f"the key that the layout gives as {setting}",
-        )
-    return content[key]
+    """What stands at a place: a key, or keys from the outermost in, parted by points."""
+    found, rest = content, key
+    while rest:
+        if isinstance(found, dict) and rest in found:
+            return found[rest]  # a key may hold a point itself
+        name, _, rest = rest.partition(".")
+        if isinstance(found, dict) and name in found:
+            found = found[name]
+        elif isinstance(found, list) and name.isdecimal() and int(name) < len(found):
+            found = found[int(name)]
+        else:
+            raise LogError(
+                path,
+                f"there is no key '{key}'",
+                found=_keys(found),
+                needed=f"the key that the layout gives as {setting}, or the keys down to it, parted"
+                " by points",
+            )
+    return found
 
 
 def _texts(path: Path, content: Any, key: str, setting: str) -> tuple[str, ...] | None:
@@ -111,35 +221,34 @@ def _texts(path: Path, content: Any, key: str, setting: str) -> tuple[str, ...] 
     return tuple(entry)
 
 
-def _to_matrix(path: Path, rows: Any, layout: Layout) -> Floats:
+def _to_matrix(path: Path, rows: Any, where: str, layout: Layout) -> Floats:
     """Rows of numbers, shape (n_rows, n_columns); null and missing marks are NaN."""
     if not isinstance(rows, list) or not all(isinstance(row, list) for row in rows):
         raise LogError(
             path,
-            f"'{layout.matrix}' is not a matrix",
+            f"{where} is not a matrix",
             found=type(rows).__name__,
-            needed="a list of rows, each a list of numbers",
+            needed="a list of rows, each a list of numbers or an object, or an object of columns",
         )
     if not rows:
-        raise LogError(
-            path, "there are no data rows", found=f"'{layout.matrix}' is empty", needed="rows"
-        )
+        raise LogError(path, "there are no data rows", found=f"{where} is empty", needed="rows")
     widths = [len(row) for row in rows]
     if len(set(widths)) > 1:
         bad = next(index for index, width in enumerate(widths) if width != widths[0])
         raise LogError(
             path,
-            f"row {bad + 1} of '{layout.matrix}' has {widths[bad]} values, the first {widths[0]}",
+            f"row {bad + 1} of {where} has {widths[bad]} values, the first {widths[0]}",
             needed=f"{widths[0]} values",
         )
     if not set(map(type, chain.from_iterable(rows))) <= {float, int}:
         rows = [
-            [_number(path, value, index, layout) for value in row] for index, row in enumerate(rows)
+            [_number(path, value, index, where, layout) for value in row]
+            for index, row in enumerate(rows)
         ]
     return np.array(rows, dtype=np.float64)
 
 
-def _number(path: Path, value: object, index: int, layout: Layout) -> float:
+def _number(path: Path, value: object, index: int, where: str, layout: Layout) -> float:
     mark = "" if value is None else value
     if isinstance(mark, str) and mark in layout.missing:
         return math.nan
@@ -147,7 +256,7 @@ def _number(path: Path, value: object, index: int, layout: Layout) -> float:
         return float(value)
     raise LogError(
         path,
-        f"a value in row {index + 1} of '{layout.matrix}' is not a number",
+        f"a value in row {index + 1} of {where} is not a number",
         found=repr(value),
         needed="a number or a declared missing mark",
     )

@@ -191,17 +191,18 @@ class Layout(BaseModel):
         self._check_load_train()
         # an MTS file of blocks states its decimal mark itself
         decimal = "" if self.format == "blocks" else self.decimal
-        # quoted fields may hold the mark that parts them: "11,044.03516"
-        is_quoted = bool(self.quote) and self.thousands == self.delimiter != " "
-        thousands = "" if is_quoted else self.thousands
+        # quoted fields may hold the mark that parts them: "11,044.03516", "0,05"
+        is_quoted = bool(self.quote) and self.delimiter != " "
+        thousands = "" if is_quoted and self.thousands == self.delimiter else self.thousands
+        decimal = "" if is_quoted and self.decimal == self.delimiter else decimal
         marks = [mark for mark in (self.delimiter, decimal, thousands) if mark]
         if len(self.delimiter) != 1 or len(set(marks)) < len(marks):
             raise SettingsError(
                 "the separators of a layout cannot be told apart",
                 found=f"delimiter {self.delimiter!r}, decimal {self.decimal!r}, "
                 f"thousands {self.thousands!r}",
-                needed="one character each, all different; thousands may be the delimiter where "
-                "fields are quoted",
+                needed="one character each, all different; decimal or thousands may be the "
+                "delimiter where fields are quoted",
             )
         quote = self.quote
         if len(quote) > 1 or quote in marks or not _are_signs(self.delimiter + quote):

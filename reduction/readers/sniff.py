@@ -15,19 +15,25 @@ from collections import Counter, deque
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import h5py  # type: ignore[import-untyped]
 import numpy as np
 
-from reduction.quantities.units import DIMENSIONS, Dimension
 from reduction.readers.bounded_reader import bounded
-from reduction.readers.columns import ColumnTable, matrix_table, stated_scale
+from reduction.readers.channel_names import (
+    FOREIGN_WORDS,
+    UNKNOWN,
+    SeenColumn,
+    is_unit,
+    propose_channels,
+)
+from reduction.readers.columns import CLOCK_TEXT, ColumnTable, matrix_table
+from reduction.readers.delimited import without_comment_name
 from reduction.readers.hdf5 import data_set, group_table, open_hdf5, read_texts
 from reduction.readers.json_matrix import json_content
-from reduction.readers.layout import CLOCK, Format, Layout, Watch
+from reduction.readers.layout import Format, Layout, Watch
 from reduction.readers.matlab import (
     matlab_table,
     open_matlab,
@@ -39,249 +45,23 @@ from reduction.readers.parquet import open_parquet, parquet_table
 from reduction.readers.raw_log import check_not_empty, unchanged, unreadable
 from reduction.readers.spreadsheet import open_workbook, read_rows
 from reduction.readers.tdms import WAVEFORM_COLUMN, open_tdms, tdms_table
-from reduction.record.errors import LogError, SettingsError
-from reduction.record.measurement import Floats
-from reduction.record.plain_text import toml_comment, toml_text
+from reduction.record.errors import LogError
+from reduction.record.plain_text import toml_text
 from reduction.record.settings import Limits
 
-UNKNOWN = "?"
-
-_NOT_MEASURED = (
-    r"sollwert|set ?point|command|target|maximum|minimum|max|min|rate|speed|velocity|"
-    r"geschwindigkeit|digital"
-)
-
-_ELONGATION = "elongation"  # a position where it is stated in a unit of length, else a strain
-
-# ranked: the first pattern that fits a column wins; the second text rules a column out
-_NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
-    "time": (
-        "time",
-        (r"^(elapsed|test|total|run|running)? ?time$", r"^(lauf|prüf|pruef|mess)?zeit$",
-         r"^time\b", r"\b(time|zeit)$", r"^t$", r"^wf increment$"),
-        r"cycle|date|datum|stamp|start",
-    ),
-    "crosshead_position": (
-        "length",
-        (r"crosshead|traverse", r"^position|^pos$", r"weg$|\bweg\b", r"extension",
-         r"displace?ment|\bdisp\b|^disp",
-         r"stroke|tool separation", r"^machine$|^maschine$", _ELONGATION),
-        _NOT_MEASURED,
-    ),
-    "tension": (
-        "force",
-        (r"load|force|kraft|tension|zuglast", r"weight|gewicht"),
-        _NOT_MEASURED + r"|friction|cell",
-    ),
-    "strain": ("strain", (r"strain|dehnung|extensometer|elongation",), _NOT_MEASURED + "|true"),
-    "cycle_counter": (
-        "number",
-        (r"^total cycles$", r"^(cycle|zyklus|zyklen|lastspiele?)( number| count(er)?)?$",
-         r"^total cycle count$", r"^cycles$"),
-        r"elapsed|time",
-    ),
-    "temperature": ("temperature", (r"^temp(erature?|eratur)?\b",), _NOT_MEASURED),
-}  # fmt: skip
-
-_MANY = ("tension", "strain")  # one a specimen
-
-_SUFFIXES = {
-    "s": "s", "sec": "s", "ms": "ms", "min": "min", "ft": "ft", "in": "inch", "mm": "mm",
-    "cm": "cm", "m": "m", "lb": "lbf", "lbs": "lbf", "lbf": "lbf", "kip": "kip", "n": "N",
-    "kn": "kN", "kgf": "kgf", "pct": "%", "percent": "%", "degc": "degC", "degf": "degF",
-}  # fmt: skip
-
-_BRACKETED = re.compile(r"\s*[\(\[]([^()\[\]]*)[\)\]]\s*$")
-
-_CLOCK = re.compile(r"([01]?\d|2[0-3]):[0-5]\d(:[0-5]\d([.,]\d+)?)?|([01]\d|2[0-3])[0-5]\d")
-
-_RISING = 0.9  # share of the steps of a time column that do not go back
-
 
 @dataclass(frozen=True)
-class _SeenColumn:
-    """One column as it was seen: ``texts`` and ``values`` (NaN where no number) of some rows."""
+class _SeenTable:
+    """A table that may be the log: its columns, the layout settings that read it, remarks."""
 
-    number: int
-    name: str = ""
-    unit: str = ""
-    values: Floats = field(default_factory=lambda: np.empty(0))
-    texts: tuple[str, ...] = ()
-    is_named: bool = True
-
-
-@dataclass(frozen=True)
-class _Proposal:
-    """Channels as lines of TOML, whether any was found, and what is a guess in them."""
-
-    lines: tuple[str, ...]
-    keys: tuple[str, ...]
-    remarks: tuple[str, ...]
+    format: Format
+    columns: list[SeenColumn]
+    settings: dict[str, object] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
+    preamble: tuple[str, ...] = ()
 
 
-@lru_cache(maxsize=4096)
-def _is_unit(text: str, dimension: Dimension | None = None) -> bool:
-    """Whether a text is a unit, of one dimension or of any."""
-    if not text:
-        return False
-    for wanted in (dimension,) if dimension is not None else DIMENSIONS:
-        try:
-            stated_scale(text, wanted)
-        except SettingsError:
-            continue
-        return True
-    return False
-
-
-def _plain(name: str) -> str:
-    """A name in lower case, without unit in brackets or suffix, words parted by blanks."""
-    text = _BRACKETED.sub("", name).strip()
-    words = [word for word in re.split(r"[\W_]+", text.lower()) if word]
-    if len(words) > 1 and words[-1] in _SUFFIXES:
-        words.pop()
-    return " ".join(words)
-
-
-def _unit(column: _SeenColumn, dimension: Dimension) -> str | None:
-    """Unit that a column states; ``?`` where it states none, None where it is another kind."""
-    stated = column.unit.strip().strip("()[]").strip()
-    bracketed = _BRACKETED.search(column.name)
-    for text in (stated, bracketed[1].strip() if bracketed else ""):
-        if _is_unit(text, dimension):
-            return "lbf" if dimension == "force" and text in ("lb", "lbs") else text
-        if _is_unit(text):
-            return None
-    suffix = re.split(r"[\s_.]+", column.name.strip())[-1]
-    unit = _SUFFIXES.get(suffix.lower(), "") if suffix != column.name.strip() else ""
-    if unit and _is_unit(unit):
-        return unit if _is_unit(unit, dimension) else None
-    return "1" if dimension == "number" else UNKNOWN
-
-
-def _is_clock(column: _SeenColumn) -> bool:
-    """Whether all texts are clock times; four digits only where one begins with 0."""
-    return (
-        bool(column.texts)
-        and all(_CLOCK.fullmatch(text) for text in column.texts)
-        and any(":" in text or text.startswith("0") for text in column.texts)
-    )
-
-
-def _fits(key: str, column: _SeenColumn) -> bool:
-    """Whether the values can be those of a channel."""
-    values = column.values[np.isfinite(column.values)]
-    if key == "time" and _is_clock(column):
-        return True
-    if not values.size:
-        return False
-    if key == "time":
-        return values.size == 1 or float(np.mean(np.diff(values) >= 0)) >= _RISING
-    if key == "cycle_counter":
-        return bool(np.all(values == np.round(values)) and np.all(np.diff(values) >= 0))
-    return True
-
-
-def _candidates(key: str, columns: Sequence[_SeenColumn]) -> list[tuple[_SeenColumn, str]]:
-    """Columns that may be a channel, best first, each with its unit."""
-    dimension, patterns, barred = _NAMES[key]
-    found = []
-    for rank, pattern in enumerate(patterns):
-        for column in columns:
-            plain = _plain(column.name)
-            if not re.search(pattern, plain) or re.search(rf"\b({barred})\b", plain):
-                continue
-            unit = _unit(column, dimension)
-            if pattern == _ELONGATION and unit == UNKNOWN:
-                continue
-            if unit is not None and _fits(key, column):
-                found.append((rank, column, unit))
-    best: dict[int, tuple[_SeenColumn, str]] = {}
-    for _, column, unit in found:
-        best.setdefault(column.number, (column, unit))
-    return list(best.values())
-
-
-def _label(column: _SeenColumn) -> str:
-    return toml_text(column.name.strip()) if column.name else str(column.number)
-
-
-def _reference(column: _SeenColumn, columns: Sequence[_SeenColumn]) -> str:
-    """The column's name where it is the only one of that name, else its number."""
-    names = [other.name.strip() for other in columns if other.is_named]
-    return _label(column) if names.count(column.name.strip()) == 1 else str(column.number)
-
-
-def _line(key: str, column: str, unit: str, *, is_commented: bool = False) -> str:
-    datum = f', datum = "{UNKNOWN}"' if key == "crosshead_position" else ""
-    text = f"{key} = {{ column = {column}, unit = {toml_text(unit)}{datum} }}"
-    if datum:
-        text += "\n# datum: pin-to-pin, or displacement with a reference_length"
-    return f"# {text}" if is_commented else text
-
-
-def _propose_channels(columns: Sequence[_SeenColumn]) -> _Proposal:
-    """Lines of a layout's ``channels`` table for the columns of a log."""
-    lines: list[str] = []
-    keys: list[str] = []
-    remarks: list[str] = []
-    used: set[int] = set()
-    first = columns[0] if columns and not any(column.name for column in columns) else None
-    if first is not None and first.values.size > 1 and np.all(np.diff(first.values) > 0):
-        unit = _unit(first, "time") or UNKNOWN
-        lines.append(_line("time", "1", unit))
-        keys.append("time")
-        used.add(1)
-        remarks.append("guess: time is column 1, because it rises all the time")
-        if unit == UNKNOWN:
-            remarks.append("unknown: the unit of column 1")
-    for key in _NAMES:
-        candidates = [c for c in _candidates(key, columns) if c[0].number not in used]
-        if not candidates:
-            continue
-        taken = sorted(candidates, key=lambda c: c[0].number) if key in _MANY else candidates[:1]
-        for place, (column, unit) in enumerate(taken, start=1):
-            full = f"{key}.{place}" if key in _MANY else key
-            if key == "time" and unit == UNKNOWN and _is_clock(column):
-                unit = CLOCK
-            lines.append(_line(full, _reference(column, columns), unit))
-            keys.append(full)
-            used.add(column.number)
-            remarks.append(f"guess: {full} is column {_label(column)}, by its name")
-            if key == "time" and np.any(np.diff(column.values) < 0):
-                remarks.append("sure: time goes back at least once")
-            if unit == UNKNOWN:
-                remarks.append(f"unknown: the unit of column {_label(column)}")
-        others = [_label(column) for column, _ in candidates if column.number not in used]
-        if others:
-            remarks.append(f"guess: {key} may also be column {', '.join(others)}")
-    if "crosshead_position" in keys:
-        remarks.append("unknown: whether the position is pin-to-pin or a displacement (datum)")
-    if any(key == "tension.2" for key in keys):
-        remarks.append("guess: each load column is one position of a specimen, in file order")
-    is_blind = not {"crosshead_position", "tension.1"} & set(keys)
-    for key in ("crosshead_position", "tension.1"):
-        if key not in keys:
-            lines.append(
-                _line(key, f'"{UNKNOWN}"', UNKNOWN, is_commented=not is_blind or bool(keys[1:]))
-            )
-            remarks.append(f"unknown: which column is {key}, if one is")
-    lines += [
-        f"# not used: column {column.number}{_described(column)}"
-        for column in columns
-        if column.number not in used
-    ]
-    return _Proposal(tuple(lines), tuple(keys), tuple(remarks))
-
-
-def _described(column: _SeenColumn) -> str:
-    name = f", {_label(column)}" if column.name else ""
-    unit = f" in {toml_comment(column.unit)}" if column.unit.strip() else ""
-    values = column.values[np.isfinite(column.values)]
-    seen = f", {values.min():g} to {values.max():g} at the start" if values.size else ""
-    return f"{name}{unit}{seen}"
-
-
-_ROWS = 400
+_ROWS = 4000
 
 _RUN = 3  # rows in a row that make a table
 
@@ -311,9 +91,18 @@ def _is_number(text: str, decimal: str) -> bool:
     return _NUMBER[decimal].fullmatch(text) is not None
 
 
+_DATE = re.compile(r"\d{1,4}[-./]\d{1,2}[-./]\d{2,4}")
+
+
+def _is_time(text: str) -> bool:
+    """Whether a field is a clock time, a date, or both."""
+    is_clock = ":" in text and CLOCK_TEXT.fullmatch(text) is not None
+    return is_clock or _DATE.fullmatch(text) is not None
+
+
 def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape | None:
     """Header and data of rows of fields; None where no table of numbers is among them."""
-    counts = [sum(_is_number(text, decimal) for text in row) for row in rows]
+    counts = [sum(_is_number(text, decimal) or _is_time(text) for text in row) for row in rows]
     data = [
         len(row) > 1 and 2 * count >= sum(map(bool, row)) > 0
         for row, count in zip(rows, counts, strict=True)
@@ -341,7 +130,7 @@ def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape |
         ):
             name_row, unit_row = above[-2], name_row
     names = rows[name_row] if name_row is not None else ()
-    units = rows[unit_row] if unit_row is not None else ()
+    units = rows[unit_row] if unit_row is not None else _labelled_units(rows[:start])
     pad = ("",) * n_fields
     return _TableShape(
         start=start,
@@ -358,18 +147,27 @@ def _look_at_table(rows: Sequence[Sequence[str]], decimal: str) -> _TableShape |
     )
 
 
+def _labelled_units(above: Sequence[Sequence[str]]) -> Sequence[str]:
+    """Units in a line of the preamble that says it holds them: ``Y_Unit_Label  mm  N``."""
+    for label, *units in filter(None, above):
+        if re.search(r"unit|einheit", label.lower()) and _is_unit_row(units):
+            return ["", *units]
+    return ()
+
+
 def _is_header(fields: Sequence[str], n_fields: int) -> bool:
     """Whether fields can be names or units of the columns: as many but for trailing blanks."""
-    return 1 < len(fields) and not any(fields[n_fields:]) and sum(map(bool, fields)) * 2 > n_fields
+    beyond = without_comment_name(fields)[n_fields:]
+    return 1 < len(fields) and not any(beyond) and sum(map(bool, fields)) * 2 > n_fields
 
 
 def _is_unit_row(fields: Sequence[str]) -> bool:
     filled = [text.strip("()[] ") for text in fields if text.strip("()[] -")]
-    known = sum(_is_unit(text) for text in filled)
+    known = sum(is_unit(text) for text in filled)
     return bool(filled) and 2 * known >= len(filled)
 
 
-def _seen_columns(table: _TableShape, decimal: str, thousands: str = "") -> list[_SeenColumn]:
+def _seen_columns(table: _TableShape, decimal: str, thousands: str = "") -> list[SeenColumn]:
     """Columns of a table with the values of its rows."""
     columns = []
     for place in range(table.n_fields):
@@ -380,7 +178,7 @@ def _seen_columns(table: _TableShape, decimal: str, thousands: str = "") -> list
             for text in plain
         ]
         columns.append(
-            _SeenColumn(place + 1, table.names[place], table.units[place], np.array(values), texts)
+            SeenColumn(place + 1, table.names[place], table.units[place], np.array(values), texts)
         )
     if columns and not columns[-1].name and not any(columns[-1].texts):
         columns.pop()  # a delimiter at the end of each line
@@ -411,16 +209,6 @@ _MARKED = (
 )
 
 
-@dataclass(frozen=True)
-class _SeenText:
-    """A text log: its columns, the layout settings that read it, and remarks."""
-
-    format: Format
-    columns: list[_SeenColumn]
-    settings: dict[str, object]
-    remarks: tuple[str, ...]
-
-
 def _decode(path: Path, head: bytes) -> tuple[str, str, str]:
     """Text, encoding, and how sure that is."""
     for mark, encoding in _MARKED:
@@ -428,17 +216,45 @@ def _decode(path: Path, head: bytes) -> tuple[str, str, str]:
             text = head.decode(encoding, errors="ignore").removeprefix("\ufeff")
             return text, encoding, f"sure: encoding {encoding}, by the byte-order mark"
     if b"\0" in head:
+        for place, encoding in ((1, "utf-16-le"), (0, "utf-16-be")):
+            # digits and separators, of which a table is made, have a zero beside them
+            if 2 * head[place::2].count(0) > len(head) / 2 and not head[1 - place :: 2].count(0):
+                text = head.decode(encoding, errors="ignore")
+                return text, encoding, f"guess: encoding {encoding}, by its zero bytes"
         raise LogError(
             path, "the file is of no known format", found="binary content",
             needed="text, .xlsx, .xls, .ods, TDMS, MATLAB, HDF5, Parquet or JSON",
         )  # fmt: skip
-    decoder = codecs.getincrementaldecoder("utf-8")()
+    plain = _decoded(head, "utf-8")
+    if plain is not None:
+        return plain, "utf-8", "sure: encoding utf-8" + (" (plain ASCII)" if head.isascii() else "")
+    read = {name: _decoded(head, name) for name in _ENCODINGS}
+    texts = {name: text for name, text in read.items() if text is not None}
+    words = {name: _n_foreign(text) for name, text in texts.items()}
+    best = max(words, key=lambda name: words[name])
+    if words[best]:
+        return texts[best], best, f"guess: encoding {best}, in which words of a log are read"
+    return texts["latin-1"], "latin-1", "guess: encoding latin-1, because it is not UTF-8"
+
+
+_ENCODINGS = ("latin-1", "cp1252", "gb18030", "cp932", "euc_kr", "big5", "cp1251")
+
+
+def _decoded(head: bytes, encoding: str) -> str | None:
+    """Text of the first bytes of a file; None where they are none in this encoding."""
     try:
-        text = decoder.decode(head)
+        return codecs.getincrementaldecoder(encoding)().decode(head)
     except UnicodeDecodeError:
-        text = head.decode("latin-1")
-        return text, "latin-1", "guess: encoding latin-1, because it is not UTF-8"
-    return text, "utf-8", "sure: encoding utf-8" + (" (plain ASCII)" if head.isascii() else "")
+        return None
+
+
+def _n_foreign(text: str) -> int:
+    """Letters beyond ASCII that stand in words of logs."""
+    found = FOREIGN_WORDS.findall("\n".join(text.split("\n", _HEADER)[:_HEADER]))
+    return sum(not letter.isascii() for word in found for letter in word)
+
+
+_HEADER = 200  # lines in which the words of a header stand
 
 
 def _split(lines: Sequence[str], delimiter: str) -> list[list[str]]:
@@ -467,11 +283,12 @@ def _best_table(lines: Sequence[str]) -> tuple[str, str, _TableShape] | None:
     for delimiter in _DELIMITERS:
         rows = _split(lines, delimiter)
         for decimal in ".,":
-            table = _look_at_table(rows, decimal) if decimal != delimiter else None
+            is_apart = decimal != delimiter or any('"' in line for line in lines[-_RUN:])
+            table = _look_at_table(rows, decimal) if is_apart else None
             if table is None:
                 continue
             fields = [text for row in table.rows for text in row if text]
-            numbers = sum(_is_number(text, decimal) for text in fields)
+            numbers = sum(_is_number(text, decimal) or _is_time(text) for text in fields)
             score = (round(numbers / len(fields), 2), numbers)
             if score > best_score and score[0] > _LEAST_SHARE[delimiter == " "]:
                 best, best_score = (delimiter, decimal, table), score
@@ -515,7 +332,7 @@ def _number_settings(
     return settings, remarks
 
 
-def _look_at_text(path: Path) -> _SeenText:
+def _look_at_text(path: Path) -> _SeenTable:
     """Shape of the table in a text file, from its first 256 kB."""
     with path.open("rb") as stream:
         head = stream.read(_HEAD)
@@ -566,12 +383,23 @@ def _look_at_text(path: Path) -> _SeenText:
     if table.unit_row is not None:
         remarks.append(f"guess: units stand in row {table.unit_row + 1}")
     is_blocks = "block_marker" in settings
-    return _SeenText("blocks" if is_blocks else "delimited", columns, settings, tuple(remarks))
+    return _SeenTable(
+        "blocks" if is_blocks else "delimited", columns, settings, tuple(remarks),
+        preamble=tuple(filter(None, map(_tidy, lines[: table.start])))[:_HEADER],
+    )  # fmt: skip
+
+
+def _tidy(line: str) -> str:
+    """A line of a preamble as one reads it, without quotes and tabs."""
+    return " ".join(re.sub(r'["\t;]+', " ", line).strip(" ,").split())[:_LONGEST_LINE]
+
+
+_LONGEST_LINE = 100
 
 
 def _named_by_comment(
-    above: Sequence[str], comment: str, delimiter: str, columns: list[_SeenColumn]
-) -> tuple[list[_SeenColumn], list[str]]:
+    above: Sequence[str], comment: str, delimiter: str, columns: list[SeenColumn]
+) -> tuple[list[SeenColumn], list[str]]:
     """Names from the last comment line, where it has as many as there are columns."""
     last = next((line for line in reversed(above) if line.startswith(comment)), "")
     names = _split([last.removeprefix(comment)], delimiter)[0]
@@ -590,16 +418,6 @@ _PART = 1 << 20  # rows that are loaded at a time
 
 Candidate = tuple[dict[str, object], ColumnTable]
 """Layout settings and the table that they read."""
-
-
-@dataclass(frozen=True)
-class _SeenTable:
-    """A table that may be the log: its columns, the layout settings that read it, remarks."""
-
-    format: Format
-    columns: list[_SeenColumn]
-    settings: dict[str, object] = field(default_factory=dict)
-    remarks: tuple[str, ...] = ()
 
 
 def _table_sheets(path: Path, watch: Watch) -> list[tuple[str, _TableShape]]:
@@ -638,7 +456,7 @@ def _look_at_sheet(path: Path, sheet: str | None, watch: Watch) -> _SeenTable:
     return _SeenTable("spreadsheet", _seen_columns(table, "."), settings, tuple(remarks))
 
 
-def _seen(table: ColumnTable) -> list[_SeenColumn]:
+def _seen(table: ColumnTable) -> list[SeenColumn]:
     """Columns of numbers that share the most common length."""
     columns, sizes = [], []
     for place, (name, unit) in enumerate(zip(table.names, table.units, strict=True)):
@@ -654,7 +472,7 @@ def _seen(table: ColumnTable) -> list[_SeenColumn]:
             continue
         if values.ndim == 1 and size > 1 and values.dtype.kind in "fiu":
             first = values[:_ROWS].astype(np.float64)
-            columns.append(_SeenColumn(place + 1, name, unit, first, is_named=bool(name)))
+            columns.append(SeenColumn(place + 1, name, unit, first, is_named=bool(name)))
             sizes.append(size)
     if not sizes:
         return []
@@ -672,7 +490,7 @@ def _named_matrix(
     for name, entries in texts.items():
         if matrix.ndim == 2 and len(entries) == matrix.shape[1]:
             filled = [text for text in entries if text]
-            kind = "units" if 2 * sum(map(_is_unit, filled)) >= len(filled) else "names"
+            kind = "units" if 2 * sum(map(is_unit, filled)) >= len(filled) else "names"
             if kind not in given:
                 given[kind] = tuple(entries)
                 settings[f"matrix_{kind}"] = name
@@ -773,7 +591,7 @@ def _look_at_binary(path: Path, kind: Format, watch: Watch) -> _SeenTable:
         else:
             parquet = stack.enter_context(open_parquet(path))
             candidates = iter([({}, parquet_table(path, parquet, watch))])
-        best: tuple[dict[str, object], list[_SeenColumn]] = ({}, [])
+        best: tuple[dict[str, object], list[SeenColumn]] = ({}, [])
         count = 0
         for settings, table in candidates:
             columns = _seen(table)
@@ -790,50 +608,106 @@ def _look_at_binary(path: Path, kind: Format, watch: Watch) -> _SeenTable:
 
 
 def _waveform(
-    file: Any, settings: Mapping[str, object], columns: list[_SeenColumn]
-) -> list[_SeenColumn]:
+    file: Any, settings: Mapping[str, object], columns: list[SeenColumn]
+) -> list[SeenColumn]:
     """Time by the waveform properties, as one more column where the channels have them."""
     group = file[settings["group"]] if "group" in settings else file.groups()[0]
     if all(channel.properties.get(WAVEFORM_COLUMN, 0) for channel in group.channels()):
-        return [_SeenColumn(len(columns) + 1, WAVEFORM_COLUMN, "s", np.arange(2.0))]
+        return [SeenColumn(len(columns) + 1, WAVEFORM_COLUMN, "s", np.arange(2.0))]
     return []
 
 
 def _look_at_json(path: Path, watch: Watch) -> _SeenTable:
-    """The largest matrix of a JSON object."""
+    """The largest table of a JSON file, wherever it stands."""
     _, content = json_content(path, watch)
-    texts, matrices = {}, {}
-    for key, value in content.items():
-        if not isinstance(value, list) or not value:
-            continue
-        if all(isinstance(entry, str) for entry in value):
-            texts[key] = value
-        elif isinstance(value[0], list):
-            first = [
-                row for row in value[:_ROWS] if isinstance(row, list) and len(row) == len(value[0])
-            ]
-            numbers = [[x if isinstance(x, (int, float)) else np.nan for x in row] for row in first]
-            matrices[key] = np.array(numbers, dtype=np.float64)
-    if not matrices:
+    best: tuple[int, str, Any] | None = None
+    waiting: deque[tuple[tuple[str, ...], Any]] = deque([((), content)])
+    while waiting:
+        keys, value = waiting.popleft()
+        size = _n_values(value)
+        if size and (best is None or size > best[0]) and not any("." in key for key in keys[1:]):
+            best = size, ".".join(keys), value
+        if isinstance(value, dict) and len(keys) < _DEEPEST:
+            waiting += [((*keys, key), entry) for key, entry in value.items()]
+    if best is None:
         raise LogError(
-            path, "no key holds a matrix of numbers", found=", ".join(map(repr, content)),
-            needed="a list of rows",
+            path, "no key holds a matrix of numbers",
+            found=", ".join(map(repr, content)) if isinstance(content, dict) else "a list",
+            needed="a list of rows, of records, or an object of columns",
         )  # fmt: skip
-    key = max(matrices, key=lambda name: matrices[name].size)
-    settings, table = _named_matrix(path, key, matrices[key], texts)
-    columns = _seen(table)
+    _, place, rows = best
+    texts = {
+        key: value
+        for key, value in (content.items() if isinstance(content, dict) else ())
+        if isinstance(value, list) and value and all(isinstance(entry, str) for entry in value)
+    }
+    settings: dict[str, object] = {"matrix": place} if place else {}
+    if isinstance(rows, dict):
+        settings = {"group": place} if place else {}
+        columns = _columns_of(rows)
+        remark = "sure: columns stand in an object"
+    elif isinstance(rows[0], dict):
+        names = list(dict.fromkeys(key for row in rows[:_ROWS] for key in row))
+        columns = _columns_of({name: [row.get(name) for row in rows[:_ROWS]] for name in names})
+        remark = "sure: the rows are records"
+    else:
+        shown = [row for row in rows[:_ROWS] if isinstance(row, list) and len(row) == len(rows[0])]
+        matrix = np.array([[_value(x) for x in row] for row in shown], dtype=np.float64)
+        settings, table = _named_matrix(path, place, matrix, texts)
+        settings = {key: value for key, value in settings.items() if value}
+        columns = _seen(table)
+        remark = f"sure: '{place}' is a matrix of {len(table.names)} columns"
     stated = {
-        name: value for name, value in content.items() if isinstance(value, str) and _is_unit(value)
+        name: value
+        for name, value in (content.items() if isinstance(content, dict) else ())
+        if isinstance(value, str) and is_unit(value)
     }
     of_time = [value for name, value in stated.items() if "time" in name.lower()]
     if columns and len(of_time) == 1 and not columns[0].name:
         columns[0] = replace(columns[0], unit=of_time[0])
-    remarks = [f"sure: '{key}' is a matrix of {len(table.names)} columns"]
+    remarks = [f"{remark}{f' at {place!r}' if place else ''}"]
     remarks += [
         f"sure: the file states {name!r} as {value!r}; give it as unit_key of its channel"
         for name, value in stated.items()
     ]
     return _SeenTable("json", columns, settings, tuple(remarks))
+
+
+_DEEPEST = 8  # keys down to a table
+
+
+def _n_values(value: Any) -> int:
+    """How many numbers a table of JSON holds: a matrix, records or columns; 0 of anything else."""
+    if isinstance(value, dict):
+        lists = [entry for entry in value.values() if _is_list_of(entry, (int, float))]
+        n_rows, n_columns = Counter(map(len, lists)).most_common(1)[0] if lists else (0, 0)
+        return n_rows * n_columns if n_rows > 1 and n_columns > 1 else 0
+    if _is_list_of(value, list):
+        return sum(isinstance(entry, (int, float)) for entry in value[0]) * len(value)
+    if _is_list_of(value, dict):
+        n_columns = sum(isinstance(entry, (int, float)) for entry in value[0].values())
+        return n_columns * len(value) if n_columns > 1 else 0
+    return 0
+
+
+def _is_list_of(value: Any, kind: type | tuple[type, ...]) -> bool:
+    return isinstance(value, list) and bool(value) and isinstance(value[0], kind)
+
+
+def _value(entry: Any) -> float:
+    return float(entry) if isinstance(entry, (int, float)) else math.nan
+
+
+def _columns_of(columns: Mapping[str, Any]) -> list[SeenColumn]:
+    """Lists of numbers of the most common length."""
+    lists = {key: entry for key, entry in columns.items() if isinstance(entry, list)}
+    length = Counter(map(len, lists.values())).most_common(1)[0][0]
+    seen: list[SeenColumn] = []
+    for key, entry in lists.items():
+        values = np.array([_value(x) for x in entry[:_ROWS]])
+        if len(entry) == length and len(key) <= _LONGEST_NAME and np.isfinite(values).any():
+            seen.append(SeenColumn(len(seen) + 1, key, "", values))
+    return seen
 
 
 _LIMITS = Limits(time=60.0)
@@ -859,16 +733,23 @@ class SniffedLayout:
         What stands behind it; each begins with ``sure:``, ``guess:`` or ``unknown:``.
     keys : tuple of str
         Channels that were found.
+    preamble : tuple of str
+        Lines above the table.
     """
 
     toml: str
     remarks: tuple[str, ...]
     keys: tuple[str, ...]
+    preamble: tuple[str, ...] = ()
 
     @property
     def settings(self) -> str:
-        """What the layout says, without comments: equal for logs that look alike."""
-        return "\n".join(line.split("  # ")[0] for line in self.toml.split("\n") if line[:1] != "#")
+        """What the layout says of the form of a log: equal for logs that look alike.
+
+        Without comments, and without what each log says by how it begins.
+        """
+        lines = [line.split("  # ")[0] for line in self.toml.split("\n") if line[:1] != "#"]
+        return re.sub(r", (sign|datum|reference_length|zero) = .*?(?=,| \})", "", "\n".join(lines))
 
 
 def format_of(path: Path) -> Format:
@@ -883,7 +764,9 @@ def format_of(path: Path) -> Format:
             return name
     if zipfile.is_zipfile(path):
         return "spreadsheet"
-    return "json" if head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{") else "delimited"
+    # a bracket opens JSON, or a section of a preamble: [Header]
+    text = head.removeprefix(b"\xef\xbb\xbf").lstrip()
+    return "json" if re.match(rb"\{|\[\s*[\[{\"\d-]", text) else "delimited"
 
 
 def _look(path: Path, sheet: str | None, watch: Watch) -> _SeenTable:
@@ -895,7 +778,7 @@ def _look(path: Path, sheet: str | None, watch: Watch) -> _SeenTable:
     if kind != "delimited":
         return bounded(_look_at_binary, path, kind, watch=watch)
     text = _look_at_text(path)
-    return _SeenTable(text.format, text.columns, text.settings, text.remarks)
+    return text
 
 
 def sheets_with_tables(path: Path) -> list[str]:
@@ -912,7 +795,7 @@ def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> 
         seen = _look(path, sheet, watch)
     if not seen.columns:
         raise LogError(path, "no columns of numbers are found", needed="a log")
-    proposal = _propose_channels(seen.columns)
+    proposal = propose_channels(seen.columns)
     lines = [f"[layouts.{name}]", f'format = "{seen.format}"']
     lines += [f"{key} = {toml_text(value)}" for key, value in seen.settings.items()]
     remarks = [*seen.remarks, *proposal.remarks]
@@ -920,4 +803,12 @@ def sniff_layout(path: Path, *, name: str = "log", sheet: str | None = None) -> 
         lines.append(f'sample_interval = "{UNKNOWN}"  # or a time channel below')
         remarks.append("unknown: the time between rows, because no column looks like time")
     lines += [f"[layouts.{name}.channels]", *proposal.lines, ""]
-    return SniffedLayout("\n".join(lines), tuple(remarks), proposal.keys)
+    return SniffedLayout("\n".join(lines), tuple(remarks), proposal.keys, seen.preamble)
+
+
+def unknown_layout() -> SniffedLayout:
+    """Propose a layout for a file in which no table was found: every line of it is a question."""
+    proposal = propose_channels([])
+    lines = ["[layouts.log]", f'format = "{UNKNOWN}"', "[layouts.log.channels]", *proposal.lines]
+    remark = "unknown: no table of numbers was found; docs/layouts.md lists the formats"
+    return SniffedLayout("\n".join([*lines, ""]), (remark,), ())

@@ -12,13 +12,14 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from reduction.readers.channel_names import UNKNOWN
 from reduction.readers.raw_log import unreadable
 from reduction.readers.sniff import (
-    UNKNOWN,
     SniffedLayout,
     format_of,
     sheets_with_tables,
     sniff_layout,
+    unknown_layout,
 )
 from reduction.record.errors import LogError
 from reduction.record.plain_text import safe_cell, toml_comment, toml_text
@@ -34,18 +35,37 @@ _SPECIMENS = """\
 # place of the ? in brackets. The same name stands in the column specimens of tests.csv in every
 # test of this specimen, so that its history is known; of several, parted by ;, the first hung
 # at tension.1.
-[specimens."?"]
-kind = "?"  # rubber tether, stretch hose, rope, wire or elastomer
+"""
+
+_SPECIMEN = """\
+kind = "?"  # rubber tether, stretch hose, rope, wire, elastomer or other
 diameter = ["?"]  # before stretch, each reading with its unit: ["1.04 in", "1.03 in"]
+# instead of it: area = "2.3 mm2", or width = "11.4 mm" and thickness = "0.2 mm", or
+# linear_density = "0.11 kg/m" and density = "1140 kg/m3"; a rope or a hose needs none of them
+"""
+
+_SPECIMEN_MORE = """\
 # material = ""  # what is known: EPDM, nylon, ...
 # rated_break_strength = ""  # with its unit: "800 lbf"
+"""
+
+_GAUGE = """\
+gauge_length = "?"  # the length that stretches, with its unit: "2.5 m"; none where there are marks
 """
 
 _NO_MARKS = """\
 # How position becomes strain. Where there are splices: tape readings at their toes, in a table
 # test,specimen,hold,near_toe_mm,far_toe_mm,far_thimble_mm
 # strain = { marks = "marks.csv" }
-# Where there are none, and no channel is a strain: gauge_length = "2.5 m" under each specimen."""
+# Where there are none, by the gauge_length of each specimen."""
+
+_SIZES = re.compile(
+    r"width|thickness|diameter|area|cross.?section|length|breite|dicke|durchmesser|länge|"
+    r"querschnitt|largeur|épaisseur|diamètre|longueur|ancho|espesor|diámetro|longitud|"
+    r"宽度|厚度|直径|标距|幅|厚さ|長さ|断面積",
+    re.IGNORECASE,
+)
+"""Words of a preamble that state a size of the specimen."""
 
 
 @dataclass(frozen=True)
@@ -106,6 +126,7 @@ def starter_campaign(folder: Path) -> dict[str, str]:
     unnamed: list[_Log] = []
     marks: list[str] = []
     refused: list[str] = []
+    blind: list[Path] = []
     for path in sorted(folder.iterdir(), key=lambda entry: _natural(entry.name)):
         if not path.is_file() or path.name.startswith(".") or path.name in _WRITTEN:
             continue
@@ -119,6 +140,8 @@ def starter_campaign(folder: Path) -> dict[str, str]:
             found = _logs_of(path)
         except LogError as error:
             refused.append(f"{path.name}: {error.problem}")
+            if path.suffix.lower() not in _NO_LOGS:
+                blind.append(path)
             continue
         named = [log for log in found if log.is_named]
         unnamed += [] if named else found
@@ -127,12 +150,53 @@ def starter_campaign(folder: Path) -> dict[str, str]:
         logs, unnamed = unnamed, []
     names = dict.fromkeys(log.file for log in unnamed)
     refused += [f"{name}: no column looks like a position or a load" for name in names]
+    if not logs:  # nothing that can be read: a draft in which a person says what the files are
+        logs = [_Log(path.name, None, unknown_layout()) for path in blind]
     if not logs:
         raise LogError(
             folder, "the folder holds no log", found="; ".join(refused) or "no files",
             needed="a file with a table of numbers, one column of it a position or a load",
         )  # fmt: skip
     return _texts(folder, logs, marks, refused)
+
+
+_NO_LOGS = (".md", ".pdf", ".png", ".jpg", ".jpeg", ".docx", ".doc", ".toml", ".zip", ".py")
+
+
+def _specimen_lines(names: list[str], logs: list[_Log], *, has_gauge: bool) -> list[str]:
+    """Sections of the specimens, with what the preambles of the logs say of their sizes."""
+    said = dict.fromkeys(
+        line for log in logs for line in log.sniffed.preamble if _SIZES.search(line)
+    )
+    lines = []
+    for name in names:
+        key = name if name != UNKNOWN else toml_text(name)
+        lines += [f"[specimens.{key}]", _SPECIMEN.rstrip()]
+        lines += [f"# a log says: {toml_comment(line)}" for line in list(said)[:_MOST_SAID]]
+        lines += [*([_GAUGE.rstrip()] if has_gauge else []), _SPECIMEN_MORE]
+    return lines
+
+
+_MOST_SAID = 12
+
+
+def _one_layout(alike: list[_Log]) -> tuple[str, list[str]]:
+    """Layout of logs that look alike; a zero or a datum in which they differ is a question."""
+    toml, remarks = alike[0].sniffed.toml, list(alike[0].sniffed.remarks)
+    texts = [log.sniffed.toml.split("\n") for log in alike]
+    merged = []
+    for number, line in enumerate(toml.split("\n")):
+        others = {text[number] for text in texts if number < len(text)}
+        if len(others) > 1 and not line.startswith("#"):
+            line = re.sub(r'zero = "[^"]*"', f'zero = "{UNKNOWN}"', line)
+            if 'datum = "' in line:
+                line = re.sub(r", datum = .*?(?= })", f', datum = "{UNKNOWN}"', line)
+            remarks.append(
+                f"unknown: {line.split(' = ')[0]}: the logs differ in how they begin; a log with a"
+                " zero or datum of its own needs a layout of its own"
+            )
+        merged.append(line)
+    return "\n".join(merged), remarks
 
 
 def _natural(name: str) -> list[tuple[int, str]]:
@@ -142,27 +206,32 @@ def _natural(name: str) -> list[tuple[int, str]]:
 
 
 def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str]) -> dict[str, str]:
-    layouts: dict[str, tuple[str, SniffedLayout]] = {}
+    layouts: dict[str, tuple[str, list[_Log]]] = {}
     taken: set[str] = set()
     rows = []
     for log in logs:
         if log.sniffed.settings not in layouts:
             wish = _slug(f"{Path(log.file).suffix[1:]}-{log.sheet}") if log.sheet else "log"
-            layouts[log.sniffed.settings] = _unique(wish, taken), log.sniffed
+            layouts[log.sniffed.settings] = _unique(wish, taken), []
+        layouts[log.sniffed.settings][1].append(log)
         name = f"{Path(log.file).stem}-{log.sheet}" if log.sheet else Path(log.file).stem
         rows.append((_slug(name), log))
+    # of one log nobody asks whether its specimens hung in another one
+    alone = [f"specimen-{i + 1}" for i in range(logs[0].n_specimens)] if len(logs) == 1 else []
+    has_strain = any(key.startswith("strain.") for log in logs for key in log.sniffed.keys)
     lines = [
         "# A first draft. Replace every ?, check every line, then: reduction check campaign.toml",
         "",
         "[campaign]",
         f'id = "{_slug(folder.resolve().name)}"',
-        'title = "?"',
-        'institution = "?"',
-        'source = "?"',
-        "# one row a log; order is its place in the history of its specimens: 1, 2, ...",
+        f"title = {toml_text(folder.resolve().name)}",
+        '# institution = ""',
+        '# source = ""  # where the logs are from',
+        "# one row per log; order is its place in the history of its specimens: 1, 2, ...",
         'tests = "tests.csv"',
         "",
-        _SPECIMENS,
+        *([] if alone else [_SPECIMENS.rstrip()]),
+        *_specimen_lines(alone or [UNKNOWN], logs, has_gauge=not marks and not has_strain),
         "[defaults]",
         'kind = "cyclic"  # bedding-in, fatigue, snap, relaxation, creep, quasi-static, tensile,',
         "# stepwise",
@@ -173,11 +242,10 @@ def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str])
     if marks:
         lines.append(f"strain = {{ marks = {toml_text(marks[0])} }}")
         refused += [f"{name}: another table of marks" for name in marks[1:]]
-    for name, sniffed in layouts.values():
-        lines += ["", *(f"# {toml_comment(remark)}" for remark in sniffed.remarks)]
-        lines.append(
-            re.sub(r"(?m)^\[layouts\.log(?=[.\]])", f"[layouts.{name}", sniffed.toml).rstrip()
-        )
+    for name, alike in layouts.values():
+        toml, remarks = _one_layout(alike)
+        lines += ["", *(f"# {toml_comment(remark)}" for remark in remarks)]
+        lines.append(re.sub(r"(?m)^\[layouts\.log(?=[.\]])", f"[layouts.{name}", toml).rstrip())
     if refused:
         lines += ["", "# not taken for logs:", *(f"#   {toml_comment(entry)}" for entry in refused)]
     table = io.StringIO()
@@ -185,7 +253,7 @@ def _texts(folder: Path, logs: list[_Log], marks: list[str], refused: list[str])
     writer.writerow(_COLUMNS)
     ids: set[str] = set()
     for wish, log in rows:
-        specimens = ";".join([UNKNOWN] * log.n_specimens)
+        specimens = ";".join(alone or [UNKNOWN] * log.n_specimens)
         layout, _ = layouts[log.sniffed.settings]
         writer.writerow((_unique(wish, ids), "", safe_cell(log.file), layout, "", specimens))
     return {"campaign.toml": "\n".join(lines) + "\n", "tests.csv": table.getvalue()}

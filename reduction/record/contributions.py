@@ -51,6 +51,8 @@ class InstrumentErrors:
         Of the mean diameter. [m]
     diameter_readings : int
         Readings whose scatter the error of the diameter is; 0 where it is stated. [1]
+    area : float
+        Relative, of an area that was stated instead of a diameter. [1]
     strain_gain : float
         Relative, of strain: what the strain method itself may miss. [1]
     rated_break_strength : float
@@ -81,6 +83,7 @@ class InstrumentErrors:
     lag: float = 0.0
     diameter: float = 0.0
     diameter_readings: int = 0
+    area: float = 0.0
     strain_gain: float = 0.0
     rated_break_strength: float = 0.0
     stiffness: float = 0.0
@@ -618,6 +621,8 @@ class StatedErrors:
         [s]
     diameter : float
         Of the mean diameter of a specimen. [m]
+    area : float
+        Relative, of the area of a specimen that has no diameter. [1]
     strain_gain, rated_break_strength, stiffness : float
         Relative: of the strain method, of the break strength, and of the stiffness for the
         temperature of the test. [1]
@@ -635,6 +640,7 @@ class StatedErrors:
     position_reading: float = 0.0
     lag: float = 0.0
     diameter: float = 0.0
+    area: float = 0.0
     strain_gain: float = 0.0
     rated_break_strength: float = 0.0
     stiffness: float = 0.0
@@ -668,6 +674,7 @@ class StatedErrors:
             position_offset=self.position_offset,
             lag=self.lag,
             diameter=self.diameter,
+            area=self.area,
             strain_gain=self.strain_gain,
             rated_break_strength=self.rated_break_strength,
             stiffness=self.stiffness,

@@ -82,10 +82,12 @@ class Specimen:
     name : str
         Key of the specimen in the campaign.
     kind : str
-        ``rubber tether``, ``stretch hose``, ``rope``, ``wire`` or ``elastomer``.
+        ``rubber tether``, ``stretch hose``, ``rope``, ``wire``, ``elastomer`` or ``other``.
     diameter : tuple of float
         Readings before stretch; the nominal area uses their mean. Empty where
         no diameter is known. [m]
+    cross_section : tuple of float
+        Readings of the area before stretch, of what has no diameter. [m2]
     stretched_diameters : tuple of (float, float)
         Pairs (strain, diameter) read on the stretched specimen, for the
         constant-volume check. [1], [m]
@@ -123,6 +125,12 @@ class Specimen:
     reference_tension: float | None = None
     linear_density: float | None = None
     wet_linear_density: float | None = None
+    cross_section: tuple[float, ...] = ()
+
+    @property
+    def has_area(self) -> bool:
+        """Whether an area before stretch is known."""
+        return bool(self.diameter or self.cross_section)
 
     @property
     def mean_diameter(self) -> float:
@@ -131,21 +139,29 @@ class Specimen:
             raise DataError(
                 f"specimen '{self.name}' has no diameter",
                 needed="at least one diameter reading before stretch",
-                hint=f"Give specimens.{self.name}.diameter in campaign.toml.",
+                hint=f"Give specimens.{self.name}.diameter in campaign.toml, or its area, or width "
+                "and thickness, or linear_density and density.",
             )
         return float(np.mean(self.diameter))
 
     @property
     def diameter_scatter(self) -> float:
         """Standard uncertainty of the mean diameter by its readings; NaN of one alone. [m]."""
-        if len(self.diameter) < 2:
-            return float("nan")
-        return float(np.std(self.diameter, ddof=1) / np.sqrt(len(self.diameter)))
+        return _scatter_of_mean(self.diameter)
 
     @property
     def area(self) -> float:
-        """Cross-sectional area at zero tension (WHOI-2005-10, eq. 2). [m2]."""
+        """Cross-sectional area at zero tension (WHOI-2005-10, eq. 2, of a diameter). [m2]."""
+        if self.cross_section:
+            return float(np.mean(self.cross_section))
         return pi * self.mean_diameter**2 / 4
+
+    @property
+    def area_scatter(self) -> float:
+        """Standard uncertainty of the area by its readings; NaN of one alone. [m2]."""
+        if self.cross_section:
+            return _scatter_of_mean(self.cross_section)
+        return 2 * self.area * self.diameter_scatter / self.mean_diameter
 
     @property
     def is_rubber(self) -> bool:
@@ -153,18 +169,29 @@ class Specimen:
         return self.kind in ("rubber tether", "elastomer")
 
     @property
+    def can_push(self) -> bool:
+        """Whether it may be under compression, which no line is: then it is never slack."""
+        return self.kind == "other"
+
+    @property
     def is_rope(self) -> bool:
         """Whether a rope laboratory's programme applies."""
         return self.kind in ("rope", "wire")
 
 
+def _scatter_of_mean(readings: tuple[float, ...]) -> float:
+    if len(readings) < 2:
+        return float("nan")
+    return float(np.std(readings, ddof=1) / np.sqrt(len(readings)))
+
+
 def areas_of(specimens: tuple[Specimen, ...]) -> Floats:
-    """Cross-sectional area of each specimen; NaN without diameter, but of rubber. [m2].
+    """Cross-sectional area of each specimen; NaN where none is known, but of rubber. [m2].
 
     A rope or a hose is known by its spring constants, which need no area; rubber without one
     is refused.
     """
-    return np.array([one.area if one.diameter or one.is_rubber else np.nan for one in specimens])
+    return np.array([one.area if one.has_area or one.is_rubber else np.nan for one in specimens])
 
 
 @dataclass(frozen=True)

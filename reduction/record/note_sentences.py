@@ -324,7 +324,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         ),
     ),
     "no-diameter": (
-        "refusal", "no diameter is stated: spring constants, but no stress and no modulus",
+        "refusal", "no diameter or area is stated: spring constants, but no stress and no modulus",
     ),
 }  # fmt: skip
 

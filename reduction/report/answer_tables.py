@@ -10,6 +10,7 @@ import numpy as np
 
 from reduction.archive.uncertainty_budget import (
     all_budgets,
+    break_in_cycles,
     budget_from_archive,
     cycles_averaged,
     place_name,
@@ -226,7 +227,8 @@ def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
                 factors_of(found), [view for view, rows in by_test if rows],
                 [_OF_ROPE, *([] if is_of_lines else [_WHOLE]), _TANGENT],
             ),
-            "Cycles used: for the whole cycle, then for the tangents if different."
+            "Cycles used: for the whole cycle, then for the tangents if different; which ones, and"
+            " whether EA had settled: its mean over the last half of them lies inside its interval."
             f" {NOT_GIVEN}: no trustworthy value on that branch; the section of the test says why."
             " A modulus holds for the strain range of its test; another amplitude or mean gives"
             " another modulus. Status 'check': something could move the answer beyond its"
@@ -396,7 +398,11 @@ def _rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]]:
                 measured(whole[place], of_whole.half[place], stress, factor=of_whole.factor[place])
             ]),
             *tangents,
-            TableCell(_used(int(averaged[place]), counts), str(averaged[place]), is_number=True),
+            TableCell(
+                _used(int(averaged[place]), counts)
+                + _which(view, place, float(constant[place]), float(of_constant.half[place])),
+                str(averaged[place]), is_number=True,
+            ),
             words(_STATUS_OF_DOUBT[any(one.severity == "warning" for one in view.notes)]),
         ]  # fmt: skip
 
@@ -443,6 +449,46 @@ def _used(n_cycles: int, counts: Sequence[int]) -> str:
     ends = dict.fromkeys(f"{one:,}" for one in (min(counts), max(counts))) if counts else {}
     of_curve = " to ".join(ends)
     return "; ".join(dict.fromkeys(text for text in (f"{n_cycles:,}", of_curve) if text))
+
+
+_FEWEST_TO_SETTLE = 4  # cycles, of which the last half is a mean
+
+
+def _which(view: TestView, place: int, mean: float, half: float) -> str:
+    """Return which cycles stand behind a row, and whether its stiffness had settled over them."""
+    single = view.array("apparent_spring_constant")
+    if single is None or single.ndim != 2:
+        return ""
+    begin = break_in_cycles(view.data)
+    return _cycles_in_words(single[place, begin:], begin + 1, mean, half)
+
+
+def _cycles_in_words(single: Floats, first: int, mean: float, half: float) -> str:
+    """Return the numbers of cycles that have a value, and how the last half of them stands.
+
+    Examples
+    --------
+    >>> falling = np.array([110.0, 104.0, 101.0, 100.0, 99.5, 99.3])
+    >>> _cycles_in_words(falling, 1, 102.3, 0.5)
+    ' (1 to 6; not settled, -2.6 %)'
+    >>> _cycles_in_words(falling, 1, 102.3, 5.0), _cycles_in_words(falling[:1], 3, 110.0, 1.0)
+    (' (1 to 6; settled)', ' (3)')
+    """
+    used = np.flatnonzero(np.isfinite(single))
+    if not used.size:
+        return ""
+    numbers = f"{first + used[0]:,}"
+    if used.size > 1:
+        numbers += f" to {first + used[-1]:,}"
+    if used.size < _FEWEST_TO_SETTLE or not half > 0:
+        return f" ({numbers})"
+    off = float(np.mean(single[used[used.size // 2 :]])) - mean
+    is_settled = abs(off) <= half
+    return (
+        f" ({numbers}; {'settled' if is_settled else f'not settled, {off / mean:+.1%}'})".replace(
+            "%", " %"
+        )
+    )
 
 
 RULES: dict[DecisionRule, str] = {

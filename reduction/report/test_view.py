@@ -46,7 +46,10 @@ from reduction.report.text_style import (
 OF_NO_TEST = "of_no_test"
 """Status of an archive that status.csv has no row for: the campaign has no such test now."""
 
-_REACHED = ("mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude")
+_REACHED = (
+    "apparent_spring_constant",  # whether it had settled
+    "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -320,6 +323,7 @@ def _rows(units: UnitSystem) -> tuple[tuple[str, str, Shown], ...]:
         ("position_reading", "one reading of position", length),
         ("lag", "lag between the channels", time),
         ("diameter", "mean diameter", small),
+        ("area", "area before stretch, where no diameter is stated", _PERCENT),
         ("strain_gain", "strain, by its method", _PERCENT),
         ("rated_break_strength", "rated break strength", _PERCENT),
         ("stiffness", "stiffness, from test temperature", _PERCENT),

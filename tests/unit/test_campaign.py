@@ -328,7 +328,7 @@ def test_all_faults_are_told_one_a_line(folder):
         + f"[tests.U]\nfile = 3\ncontrol = '{'x' * 200}'\n",
     )
     assert "campaign.toml: 6 settings cannot be used, first 'specimens.a.kind' (" in first
-    kinds = "'rubber tether', 'stretch hose', 'rope', 'wire' or 'elastomer'"
+    kinds = "'rubber tether', 'stretch hose', 'rope', 'wire', 'elastomer' or 'other'"
     assert below[0] == f"specimens.a.kind: Input should be {kinds}; found 'rubber'"
     assert below[1:4] == [
         "layouts.l.channels.tension.1.factor: Input should be greater than 0; found -1",

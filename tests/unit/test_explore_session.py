@@ -13,6 +13,7 @@ import xarray as xr
 from documentedcampaign import copied, run
 
 from reduction.archive.open import open_archive
+from reduction.archive.product_files import CAMPAIGN_PLACE
 from reduction.archive.write import write_archive
 from reduction.campaign.load import find_campaign
 from reduction.pages.explorer_campaign import (
@@ -369,8 +370,14 @@ def test_the_page_is_told_of_every_test(session):
     assert found["synthetic"] is True
 
 
+def test_the_campaign_that_made_a_folder_is_found_there_also_after_both_were_moved(place):
+    # the place is a copy of that in which the run was
+    assert find_campaign(place / "processed" / "two-tethers") == place / "raw" / "campaign.toml"
+
+
 def test_a_campaign_beside_its_products_is_found(place):
     processed = place / "processed" / "two-tethers"
+    (processed / CAMPAIGN_PLACE).unlink()
     (place / "two-tethers").mkdir()
     there = place / "two-tethers" / "campaign.toml"
     shutil.copy(place / "raw" / "campaign.toml", there)
@@ -379,6 +386,7 @@ def test_a_campaign_beside_its_products_is_found(place):
 
 def test_a_campaign_is_found_where_it_lies_by_habit(place, monkeypatch):
     processed = place / "processed" / "two-tethers"
+    (processed / CAMPAIGN_PLACE).unlink()
     (place / "raw" / "two-tethers").mkdir()
     there = place / "raw" / "two-tethers" / "campaign.toml"
     shutil.copy(place / "raw" / "campaign.toml", there)

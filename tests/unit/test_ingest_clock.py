@@ -46,3 +46,21 @@ def test_text_that_is_no_clock_time_names_its_row(text):
 def test_rows_that_are_not_consecutive_are_named():
     with pytest.raises(LogError, match=r"log\.csv:17 "):
         seconds("0945", "x", row=np.array([2, 17]))
+
+
+def test_a_date_before_the_time_counts_the_days():
+    assert seconds("2024-02-28 23:59:30", "2024-02-29T00:00:00.25", "2024-03-03 00:00:00Z") == [
+        0.0, 30.25, 3 * 86400.0 + 30.0,
+    ]  # fmt: skip
+    assert seconds("31.12.2024 12:00", "02.01.2025 12:00") == [0.0, 2 * 86400.0]
+
+
+def test_a_date_in_some_rows_is_refused():
+    with pytest.raises(LogError, match="some readings of a clock have a date and some have none"):
+        seconds("2024-02-28 10:00", "10:01")
+
+
+@pytest.mark.parametrize("text", ["03/04/2024 10:00", "31.02.2024 10:00", "2023-02-29 10:00"])
+def test_a_date_with_slashes_or_of_no_day_is_refused(text):
+    with pytest.raises(LogError, match=f"a reading is not a clock time; found '{text}'"):
+        seconds(text)

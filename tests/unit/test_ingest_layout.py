@@ -79,7 +79,7 @@ def test_a_sample_interval_is_a_time_and_takes_the_place_of_a_time_channel():
 @pytest.mark.parametrize(
     "marks",
     [
-        {"delimiter": ",", "decimal": ","},
+        {"delimiter": ",", "decimal": ",", "quote": ""},
         {"delimiter": ";", "decimal": ".", "thousands": "."},
         {"delimiter": ";;"},
         {"delimiter": ""},

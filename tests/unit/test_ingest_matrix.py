@@ -14,6 +14,8 @@ CHANNELS = {
     },
     "tension.1": {"column": 3, "unit": "lbf"},
 }  # fmt: skip
+NAMED = {"time": {"column": "t", "unit": "s"}, "tension.1": {"column": "F", "unit": "N"},
+         "temperature.1": {"column": "x", "unit": "degC"}}  # fmt: skip
 UNITS = {"displacement units": "inch", "sampling freq": 1024}
 
 
@@ -84,7 +86,9 @@ def test_rows_of_unequal_length_are_refused(read):
 
 
 def test_what_is_no_matrix_is_refused(read):
-    with pytest.raises(LogError, match="'data' is not a matrix; found dict"):
+    with pytest.raises(LogError, match="'data' is not a matrix; found str"):
+        read({"data": "none", **UNITS})
+    with pytest.raises(LogError, match="'data' holds no columns"):
         read({"data": {}, **UNITS})
 
 
@@ -112,3 +116,15 @@ def test_a_file_that_is_nested_without_end_is_refused(read):
 def test_a_key_that_stands_twice_is_refused(read):
     with pytest.raises(LogError, match="the key 'data' stands twice in an object"):
         read('{"data": [[0, 1, 2]], "displacement units": "in", "data": [[0, 1, 3]]}')
+
+
+def test_json_of_columns_records_and_lines_refuses_what_has_no_number(read):
+    with pytest.raises(LogError, match=r"there is no key 'a\.b'.*parted by points"):
+        read({"a": {"c": [1, 2]}}, matrix="", group="a.b")
+    with pytest.raises(LogError, match="a value in row 2 of 'x' is not a number; found 'up'"):
+        read([{"t": 0, "x": 1, "F": 2}, {"t": 1, "x": "up", "F": 2}], matrix="",
+             channels=NAMED)  # fmt: skip
+    with pytest.raises(LogError, match="row 2 of the file is not an object; found list"):
+        read([{"t": 0, "x": 1, "F": 2}, [1, 1, 2]], matrix="", channels=NAMED)
+    with pytest.raises(LogError, match=r"log\.json:2: the file is not JSON"):
+        read('{"t": 0, "x": 1, "F": 2}\n{"t": oops}\n', matrix="", channels=NAMED)

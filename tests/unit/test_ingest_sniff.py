@@ -30,7 +30,15 @@ def filled(settings, **channels):
     made = {**settings, "channels": {**settings["channels"], **channels}}
     made["channels"] = {key: entry for key, entry in made["channels"].items() if entry is not None}
     if "crosshead_position" in made["channels"]:
-        made["channels"]["crosshead_position"]["datum"] = "pin-to-pin"
+        position = made["channels"]["crosshead_position"]
+        made["channels"]["crosshead_position"] = {
+            "column": position["column"],
+            "unit": position["unit"],
+            "datum": "pin-to-pin",
+        }
+    for load in made["channels"].get("tension", {}).values():
+        if load.get("zero") == "?":
+            del load["zero"]
     if made.get("sample_interval") == "?":
         made["sample_interval"] = "0.1 s"
     return Layout.model_validate(made)

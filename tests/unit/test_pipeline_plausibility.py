@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.pipeline.reduce_test import _plausibility_notes
+from reduction.record.measurement import Specimen
 from reduction.record.settings import ModulusSettings
 from reduction.stages.cycles.loops import close_loops
 from reduction.stages.moduli.tangent_modulus import tangent_curves
@@ -28,7 +29,7 @@ def notes_of(triangle):
             stretch, load, area=AREA, cycles=one, settings=ModulusSettings(), break_in_cycles=0
         )
         return tuple(map(str, _plausibility_notes(
-            stretch, specimens=("new",), slack_tension=20.0, waveform=waveform, cycles=one,
+            stretch, specimens=(Specimen("new"),), slack_tension=20.0, waveform=waveform, cycles=one,
             loops=close_loops(
                 0.1 * np.arange(strain.size), load, stretch, one, waveform=waveform
             ), curves=curves,
@@ -90,7 +91,7 @@ def test_little_at_a_constant_rate_asks_for_the_waveform(notes_of, share, n_note
 
 def test_a_test_without_cycles_is_judged_by_its_strain_alone():
     notes = tuple(map(str, _plausibility_notes(
-        np.array([[0.0, np.nan, 12.0], [0.0, 1.0, 2.0]]), specimens=("new", "used"),
+        np.array([[0.0, np.nan, 12.0], [0.0, 1.0, 2.0]]), specimens=(Specimen("new"), Specimen("used")),
         slack_tension=20.0, waveform="triangular", cycles=None, loops=None, curves=None,
     )))  # fmt: skip
     assert [note.split(":")[0] for note in notes] == ["new"]

@@ -1,0 +1,503 @@
+"""Which column of an unknown log is which channel: by names, units and values.
+
+What it says is for a person to confirm, so that a wrong guess costs a look, not a number.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import unicodedata
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+
+from reduction.quantities.units import DIMENSIONS, Dimension
+from reduction.readers.columns import CLOCK_TEXT, UNIT_BEHIND_NAME, stated_scale
+from reduction.readers.layout import CLOCK
+from reduction.record.errors import SettingsError
+from reduction.record.measurement import Floats
+from reduction.record.plain_text import toml_comment, toml_text
+
+UNKNOWN = "?"
+
+_NOT_MEASURED = (
+    r"sollwert|set ?point|command|cmd|target|maximum|minimum|max|min|rate|speed|velocity|"
+    r"geschwindigkeit|digital|consigne|peak|valley|目标|指令"
+)
+
+_ELONGATION = (  # a position where it is stated in a unit of length, else a strain
+    r"elongation|allongement|alargamiento|allungamento|verlängerung|伸长|伸び|伸長|удлинение"
+)
+
+_FORCE = (
+    r"load|force|tension|kraft|zuglast|^last$|weight|gewicht|effort|\bcharge\b|fuerza|\bcarga\b|"
+    r"forza|carico|kracht|siła|力|荷重|载荷|載荷|负荷|負荷|하중|усилие|нагрузка|сила"
+)
+
+_LENGTH = (
+    r"\bweg\b|weg$|extension|displace?ment|\bdisp\b|^disp|verschiebung|d[eé]placement|chemin|"
+    r"\bcourse\b|desplazamiento|carrera|recorrido|corsa|spostamento|verplaatsing|位移|變位|変位|"
+    r"变形|変形|변위|перемещение"
+)
+
+# ranked: the first pattern that fits a column wins; the second text rules a column out
+_NAMES: dict[str, tuple[Dimension, tuple[str, ...], str]] = {
+    "time": (
+        "time",
+        (r"^(elapsed|test|total|run|running)? ?time$", r"^(lauf|prüf|pruef|mess|versuchs)?zeit$",
+         r"^time\b", r"\b(time|zeit)$", r"\b(zeit|temps|tiempo|tempo|tijd|czas|время)\b|時間|时间|"
+         r"시간|uhrzeit|time ?stamp", r"^t$", r"^wf increment$|^x value$"),
+        r"cycle|date|datum|start",
+    ),
+    "crosshead_position": (
+        "length",
+        (r"crosshead|traverse|横梁|クロスヘッド", r"actuator|kolben|ram\b",
+         r"^position|^pos$", _LENGTH,
+         r"stroke|ストローク|行程|행정|tool separation|einspannlänge", r"\bposition\b|\bpos\b",
+         r"^machine$|^maschine$", _ELONGATION),
+        _NOT_MEASURED,
+    ),
+    "tension": (
+        "force",
+        (_FORCE,),
+        _NOT_MEASURED + r"|friction|pct|percent|mbl|mbs|rbs|dehnung|stress|应力|應力|応力|spannung",
+    ),
+    "strain": (
+        "strain",
+        (r"strain|dehnung|extensometer|d[eé]formation|deformaci[oó]n|应变|應變|ひずみ|歪|변형률|"
+         r"деформация|" + _ELONGATION,),
+        _NOT_MEASURED + "|true",
+    ),
+    "cycle_counter": (
+        "number",
+        (r"^total cycles$", r"^(cycle|zyklus|zyklen|lastspiele?)( number| count(er)?)?$",
+         r"^total cycle count$", r"^cycles$"),
+        r"elapsed|time",
+    ),
+    "temperature": ("temperature", (r"^temp(erature?|eratur)?\b",), _NOT_MEASURED),
+}  # fmt: skip
+
+FOREIGN_WORDS = re.compile(
+    r"[時时]間|时间|시간|[位変變变]移|[変變变][位形]|변위|荷重|[试試][験驗验]|[载載负負]荷|[拉张張]?力|하중|"
+    r"ストローク|ひずみ|伸[长長び]|毫米|время|перемещение|нагрузка|усилие|деформация|удлинение|"
+    r"prüf|länge|für\b|déplacement|force|é\w+\b|ó\w\b",
+    re.IGNORECASE,
+)
+"""Words of logs that no code of letters but the right one reads."""
+
+_MANY = ("tension", "strain")  # one a specimen
+
+_SUFFIXES = {
+    "s": "s", "sec": "s", "ms": "ms", "min": "min", "ft": "ft", "in": "inch", "mm": "mm",
+    "cm": "cm", "m": "m", "lb": "lbf", "lbs": "lbf", "lbf": "lbf", "kip": "kip", "n": "N",
+    "kn": "kN", "kgf": "kgf", "pct": "%", "percent": "%", "degc": "degC", "degf": "degF",
+}  # fmt: skip
+
+_BRACKETED = re.compile(r"\s*[\(\[]([^()\[\]]*)[\)\]]\s*$")
+
+_FOUR_DIGITS = re.compile(r"([01]\d|2[0-3])[0-5]\d")
+
+_RISING = 0.9  # share of the steps of a time column that do not go back
+
+_SAME = 1 - 1e-6  # correlation of two columns that are one signal
+
+
+@dataclass(frozen=True)
+class SeenColumn:
+    """One column as it was seen: ``texts`` and ``values`` (NaN where no number) of some rows."""
+
+    number: int
+    name: str = ""
+    unit: str = ""
+    values: Floats = field(default_factory=lambda: np.empty(0))
+    texts: tuple[str, ...] = ()
+    is_named: bool = True
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """Channels as lines of TOML, whether any was found, and what is a guess in them."""
+
+    lines: tuple[str, ...]
+    keys: tuple[str, ...]
+    remarks: tuple[str, ...]
+
+
+@lru_cache(maxsize=4096)
+def is_unit(text: str, dimension: Dimension | None = None) -> bool:
+    """Whether a text is a unit, of one dimension or of any."""
+    if not text:
+        return False
+    for wanted in (dimension,) if dimension is not None else DIMENSIONS:
+        try:
+            stated_scale(text, wanted)
+        except SettingsError:
+            continue
+        return True
+    return False
+
+
+def _one_width(text: str) -> str:
+    """A text with the letters and brackets that East Asian programs write wide made narrow."""
+    return unicodedata.normalize("NFKC", text).strip()
+
+
+def _plain(name: str) -> str:
+    """A name in lower case, without unit in brackets or suffix, words parted by blanks."""
+    text = _BRACKETED.sub("", _one_width(name)).strip()
+    words = [word for word in re.split(r"[\W_]+", text.lower()) if word]
+    if len(words) > 1 and words[-1] in _SUFFIXES:
+        words.pop()
+    return " ".join(words)
+
+
+def _stated_units(column: SeenColumn) -> list[str]:
+    """What a column may state as its unit: in a row of units, in brackets, behind its name."""
+    name = _one_width(column.name)
+    found = [column.unit.strip().strip("()[]").strip()]
+    if bracketed := _BRACKETED.search(name):
+        found.append(bracketed[1].strip())
+    elif behind := UNIT_BEHIND_NAME.match(name):
+        found.append(behind[1])
+    else:
+        *stem, suffix = re.split(r"[\s_.,/]+", name)
+        unit = _SUFFIXES.get(suffix.lower(), suffix if is_unit(suffix) else "")
+        found.append(unit if stem else "")
+    return [text for text in found if text and text != "-"]
+
+
+def _unit(column: SeenColumn, dimension: Dimension) -> str | None:
+    """Unit that a column states; ``?`` where it states none, None where it is another kind."""
+    for text in _stated_units(column):
+        if text.startswith("%") and dimension != "strain":  # of a break strength
+            return None
+        if dimension == "force" and text in ("lb", "lbs", "kg"):
+            return {"kg": "kgf"}.get(text, "lbf")
+        if is_unit(text, dimension):
+            return text
+        if is_unit(text):
+            return None
+    if dimension == "time" and _plain(column.name) == "x value":  # as LabVIEW writes it
+        return "s"
+    return "1" if dimension == "number" else UNKNOWN
+
+
+def _is_clock(column: SeenColumn) -> bool:
+    """Whether all texts are clock times; four digits only where one begins with 0."""
+    texts = [text for text in column.texts if text]
+    return (
+        bool(texts)
+        and all(
+            (CLOCK_TEXT if ":" in text else _FOUR_DIGITS).fullmatch(text) is not None
+            for text in texts
+        )
+        and any(":" in text or text.startswith("0") for text in texts)
+    )
+
+
+def _fits(key: str, column: SeenColumn) -> bool:
+    """Whether the values can be those of a channel."""
+    values = column.values[np.isfinite(column.values)]
+    if key == "time" and _is_clock(column):
+        return True
+    if not values.size:
+        return False
+    if key == "time":
+        return values.size == 1 or float(np.mean(np.diff(values) >= 0)) >= _RISING
+    if key == "cycle_counter":
+        return bool(np.all(values == np.round(values)) and np.all(np.diff(values) >= 0))
+    return True
+
+
+def _candidates(key: str, columns: Sequence[SeenColumn]) -> list[tuple[SeenColumn, str]]:
+    """Columns that may be a channel, best first, each with its unit."""
+    dimension, patterns, barred = _NAMES[key]
+    found = []
+    for rank, pattern in enumerate(patterns):
+        for column in columns:
+            plain = _plain(column.name)
+            if not re.search(pattern, plain) or re.search(rf"\b({barred})\b", plain):
+                continue
+            unit = _unit(column, dimension)
+            if unit == UNKNOWN and (
+                (pattern == _ELONGATION and key == "crosshead_position")
+                # a word for a place beside one for a force: "Actuator Force"
+                or (key == "crosshead_position" and _is_of_force(plain))
+            ):
+                continue
+            if unit is not None and _fits(key, column):
+                found.append((rank, column, unit))
+    if any(unit != UNKNOWN for _, _, unit in found):  # what states something that is no unit
+        found = [one for one in found if one[2] != UNKNOWN or not _stated_units(one[1])]
+    best: dict[int, tuple[SeenColumn, str]] = {}
+    for _, column, unit in found:
+        best.setdefault(column.number, (column, unit))
+    return list(best.values())
+
+
+def _is_of_force(plain: str) -> bool:
+    return bool(re.search(_FORCE, plain)) and not re.search(_LENGTH, plain)
+
+
+def _by_unit(key: str, columns: Sequence[SeenColumn]) -> list[tuple[SeenColumn, str]]:
+    """The one column that states a unit of a channel's dimension, where there is one alone."""
+    dimension, _, barred = _NAMES[key]
+    found = []
+    for column in columns:
+        unit = _unit(column, dimension)
+        plain = _plain(column.name)
+        is_other = any(re.search(word, plain) for _, words, _ in _NAMES.values() for word in words)
+        is_barred = re.search(rf"\b({barred})\b", plain) is not None
+        if unit not in (None, UNKNOWN) and not (is_other or is_barred) and _fits(key, column):
+            found.append((column, str(unit)))
+    return found if len(found) == 1 else []
+
+
+def _label(column: SeenColumn) -> str:
+    return toml_text(column.name.strip()) if column.name else str(column.number)
+
+
+def _reference(column: SeenColumn, columns: Sequence[SeenColumn]) -> str:
+    """The column's name where it is the only one of that name, else its number."""
+    names = [other.name.strip() for other in columns if other.is_named]
+    return _label(column) if names.count(column.name.strip()) == 1 else str(column.number)
+
+
+def _line(key: str, column: str, unit: str, more: str = "") -> str:
+    return f"{key} = {{ column = {column}, unit = {toml_text(unit)}{more} }}"
+
+
+def _without_repeats(
+    taken: list[tuple[SeenColumn, str]],
+) -> tuple[list[tuple[SeenColumn, str]], list[str]]:
+    """Columns without those that repeat another one in another unit; and what is said of them."""
+    kept: list[tuple[SeenColumn, str]] = []
+    remarks = []
+    for column, unit in taken:
+        same = next((one for one, _ in kept if _are_one_signal(one, column)), None)
+        if same is None:
+            kept.append((column, unit))
+        else:
+            remarks.append(
+                f"guess: column {_label(column)} repeats column {_label(same)}, and is not used"
+            )
+    return kept, remarks
+
+
+def _are_one_signal(one: SeenColumn, other: SeenColumn) -> bool:
+    is_known = np.isfinite(one.values) & np.isfinite(other.values)
+    if one.values.size != other.values.size or np.count_nonzero(is_known) < 10:
+        return False
+    a, b = one.values[is_known], other.values[is_known]
+    if not (np.std(a) > 0 and np.std(b) > 0):
+        return False
+    return bool(np.corrcoef(a, b)[0, 1] > _SAME)
+
+
+def propose_channels(columns: Sequence[SeenColumn]) -> Proposal:
+    """Lines of a layout's ``channels`` table for the columns of a log."""
+    lines: list[str] = []
+    keys: list[str] = []
+    remarks: list[str] = []
+    used: set[int] = set()
+    chosen: dict[str, tuple[SeenColumn, str]] = {}
+    first = columns[0] if columns and not any(column.name for column in columns) else None
+    if first is not None and first.values.size > 1 and np.all(np.diff(first.values) > 0):
+        unit = _unit(first, "time") or UNKNOWN
+        chosen["time"] = first, unit
+        used.add(1)
+        remarks.append("guess: time is column 1, because it rises all the time")
+        if unit == UNKNOWN:
+            remarks.append("unknown: the unit of column 1")
+    for key in _NAMES:
+        if key in chosen:
+            continue
+        candidates = [c for c in _candidates(key, columns) if c[0].number not in used]
+        why = "by its name"
+        if not candidates and key in ("time", "crosshead_position", "tension"):
+            candidates = _by_unit(key, [c for c in columns if c.number not in used])
+            why = f"the only one in a unit of {_NAMES[key][0]}"
+        if not candidates:
+            continue
+        taken = candidates[:1]
+        if key in _MANY:
+            taken, repeated = _without_repeats(sorted(candidates, key=lambda c: c[0].number))
+            remarks += repeated
+            n_loads = sum(name.startswith("tension.") for name in chosen)
+            if key == "strain" and n_loads:  # one a specimen, as are the loads
+                taken = taken[:n_loads]
+        for place, (column, unit) in enumerate(taken, start=1):
+            full = f"{key}.{place}" if key in _MANY else key
+            if key == "time" and unit == UNKNOWN and _is_clock(column):
+                unit = CLOCK
+            chosen[full] = column, unit
+            used.add(column.number)
+            remarks.append(f"guess: {full} is column {_label(column)}, {why}")
+            if key == "time" and np.any(np.diff(column.values) < 0):
+                remarks.append("sure: time goes back at least once")
+            if unit == UNKNOWN:
+                remarks.append(f"unknown: the unit of column {_label(column)}")
+        others = [_label(column) for column, _ in candidates if column.number not in used]
+        if others and key not in _MANY:
+            remarks.append(f"guess: {key} may also be column {', '.join(others)}")
+    start = _Start.of(chosen)
+    for key, (column, unit) in chosen.items():
+        more, said = start.settings(key, unit) if start is not None else ("", [])
+        if key == "crosshead_position" and not more:
+            more, said = f', datum = "{UNKNOWN}"', ["unknown: whether the position is pin-to-pin or"
+                                                   " a displacement (datum)"]  # fmt: skip
+        lines.append(_line(key, _reference(column, columns), unit, more))
+        keys.append(key)
+        remarks += said
+        if key == "crosshead_position":
+            lines.append("# datum: pin-to-pin, or displacement with a reference_length, the length"
+                         " from pin to pin where it reads 0")  # fmt: skip
+    if "tension.2" in chosen:
+        remarks.append("guess: each load column is one position of a specimen, in file order")
+    is_blind = not {"crosshead_position", "tension.1"} & set(keys)
+    for key, more in (("crosshead_position", f', datum = "{UNKNOWN}"'), ("tension.1", "")):
+        if key not in keys:
+            text = _line(key, f'"{UNKNOWN}"', UNKNOWN, more)
+            is_commented = not is_blind or bool(keys[1:])
+            lines.append(f"# {text}" if is_commented else text)
+            remarks.append(f"unknown: which column is {key}, if one is")
+    lines += [
+        f"# not used: column {column.number}{_described(column)}"
+        for column in columns
+        if column.number not in used
+    ]
+    return Proposal(tuple(lines), tuple(keys), tuple(remarks))
+
+
+_STILL = 0.01  # of the seen range of a channel: it is at rest within it
+
+_LEAST_REST = 5  # samples
+
+_TOLD = 0.005  # of the seen range of a load: a reading at rest that is worth a word
+
+_FAR, _MANY_VALUES = 12.0, 10  # a range over the scatter of its steps, and values in it
+
+_OPPOSED = -0.7  # correlation of load and position where one of them has the wrong sign
+
+
+@dataclass(frozen=True)
+class _Start:
+    """How a log begins: its first rest, or its first sample where it has none."""
+
+    n_samples: int
+    words: str
+    position: Floats
+    loads: dict[str, Floats]
+
+    @classmethod
+    def of(cls, chosen: dict[str, tuple[SeenColumn, str]]) -> _Start | None:
+        """The first rest of position and loads; None where nothing moves or a value is missing."""
+        if "crosshead_position" not in chosen:
+            return None
+        position = chosen["crosshead_position"][0].values
+        loads = {key: one.values for key, (one, _) in chosen.items() if key.startswith("tension.")}
+        channels = np.array([position, *loads.values()])
+        if not np.isfinite(channels).all() or not _has_moved(position):
+            return None
+        away = np.abs(channels - np.median(channels[:, :_LEAST_REST], axis=1)[:, None])
+        # a load that is all noise has no range to be within
+        moves = np.flatnonzero(np.any(away > _STILL * np.ptp(channels, axis=1)[:, None], axis=0))
+        n_samples = _still_samples(channels, int(moves[0]))
+        words = f"the first {n_samples} samples"
+        time, unit = chosen.get("time", (None, UNKNOWN))
+        if time is not None and unit not in (UNKNOWN, CLOCK) and n_samples:
+            words += f", {time.values[n_samples - 1] - time.values[0]:.3g} {unit}"
+        return cls(n_samples, words, position, loads)
+
+    def settings(self, key: str, unit: str) -> tuple[str, list[str]]:
+        """What the start says of a channel, as TOML, and what stands behind it."""
+        if key == "crosshead_position":
+            sign, said = self._sign(key)
+            datum, more = self._datum(unit, -1 if sign else 1)
+            return sign + datum, said + more
+        if key not in self.loads:
+            return "", []
+        sign, said = self._sign(key)
+        zero, more = self._zero(key, unit) if self.n_samples >= _LEAST_REST else ("", [])
+        return sign + zero, said + more
+
+    def _sign(self, key: str) -> tuple[str, list[str]]:
+        """The sign of a channel against which tension would fall as the specimen stretches."""
+        for load in self.loads.values() if key == "crosshead_position" else [self.loads[key]]:
+            if not np.ptp(load) > 0 or not np.corrcoef(self.position, load)[0, 1] < _OPPOSED:
+                return "", []
+            is_pulled = abs(float(load.max())) > abs(float(load.min()))
+            if is_pulled == (key != "crosshead_position"):
+                return "", []  # the other one of the two has it
+        if not self.loads:
+            return "", []
+        end = "above" if key == "crosshead_position" else "below"
+        return ", sign = -1", [
+            f"guess: sign of {key}: the load falls as the position rises, and lies {end} 0"
+        ]
+
+    def _datum(self, unit: str, sign: int) -> tuple[str, list[str]]:
+        position = sign * self.position
+        begin, travel = float(position[0]), float(np.ptp(position))
+        seen = f"the position begins at {begin:g} {unit} and travels {travel:g} at the start"
+        # a length from pin to pin is above zero, and in most tests above a fourth of the travel
+        if begin > 0.25 * travel and float(position.min()) > 0.1 * travel:
+            return ', datum = "pin-to-pin"', [
+                f"guess: datum pin-to-pin, because {seen}: a displacement would begin near 0"
+            ]
+        return f', datum = "displacement", reference_length = "{UNKNOWN}"', [
+            f"guess: datum displacement, because {seen}",
+            "unknown: reference_length, the length from pin to pin where the position reads 0",
+        ]
+
+    def _zero(self, key: str, unit: str) -> tuple[str, list[str]]:
+        load = self.loads[key]
+        rest = load[: self.n_samples]
+        reading, scatter = float(np.median(rest)), float(np.std(rest))
+        noise = 4 * scatter / math.sqrt(rest.size)
+        shown = f'"{_round(reading, scatter)} {unit}"'
+        at_rest = f"in the first rest ({self.words}) {key} reads {shown}"
+        if abs(reading) <= max(_TOLD * float(np.ptp(load)), noise):
+            return "", [f"guess: no zero is needed: {at_rest}, which is next to nothing"]
+        if reading < 0 and load.max() > -load.min():
+            return f", zero = {shown}", [
+                f"guess: zero {shown}: {at_rest}, and a slack line does not push"
+            ]
+        return f', zero = "{UNKNOWN}"', [
+            f"unknown: zero: {at_rest}: that is the zero if the specimen was slack there, and"
+            f' "0 {unit}" if it was under load'
+        ]
+
+
+def _still_samples(channels: Floats, n_samples: int) -> int:
+    """How many of the first samples are a rest: none where they are the begin of a ramp."""
+    half = n_samples // 2
+    if not half:
+        return 0
+    drift = np.abs(channels[:, :half].mean(axis=1) - channels[:, half:n_samples].mean(axis=1))
+    return 0 if np.any(drift > _STILL / 4 * np.ptp(channels, axis=1)) else n_samples
+
+
+def _has_moved(position: Floats) -> bool:
+    """Whether a position has left its first rest: noise and the steps of a converter are none."""
+    if np.unique(position).size <= _MANY_VALUES:
+        return False
+    return bool(np.ptp(position) > _FAR * np.std(np.diff(position)))
+
+
+def _round(value: float, scatter: float) -> str:
+    """A mean to the digits that its scatter leaves it."""
+    share = scatter / abs(value) if value else 0.0
+    digits = max(2, min(6, 2 - math.floor(math.log10(share)))) if share else 4
+    return f"{value:.{digits}g}"
+
+
+def _described(column: SeenColumn) -> str:
+    name = f", {_label(column)}" if column.name else ""
+    unit = f" in {toml_comment(column.unit)}" if column.unit.strip() else ""
+    values = column.values[np.isfinite(column.values)]
+    seen = f", {values.min():g} to {values.max():g} at the start" if values.size else ""
+    return f"{name}{unit}{seen}"

@@ -1,0 +1,327 @@
+"""Logs as machines of other makers and countries write them, made here from one synthetic test.
+
+Only the form of each is a machine's; the numbers are one generated pull, so that what is read
+can be held against it.
+"""
+
+import json
+import tomllib
+
+import numpy as np
+import pytest
+
+from reduction.quantities.units import scale_to_si
+from reduction.readers.layout import Layout
+from reduction.readers.read_log import read_log
+from reduction.readers.starter_campaign import starter_campaign
+
+N = 241
+TIME = np.arange(N) / 20
+# at rest for two seconds, then cycles of 20 mm in 4 s
+TRAVEL = np.where(TIME < 2, 0, 10 * (1 - np.cos((TIME - 2) * np.pi / 2)))  # mm
+LOAD = 3.5 + 12 * TRAVEL + 0.05 * np.cos(37 * TIME)  # N, with what hangs on the cell
+
+
+def table(columns, separator=",", decimal=".", digits=4, quote="", end="\n"):
+    """Rows of a table as text; a column of texts stands as it is."""
+
+    def written(value):
+        text = value if isinstance(value, str) else f"{value:.{digits}f}".replace(".", decimal)
+        return f"{quote}{text}{quote}"
+
+    return "".join(separator.join(map(written, row)) + end for row in zip(*columns, strict=True))
+
+
+def clock(seconds):
+    return [
+        f"{10 + int(t) // 3600:02d}:{int(t) // 60 % 60 + 58:02d}:{t % 60:06.3f}" for t in seconds
+    ]
+
+
+PREAMBLE = "".join(f"Parameter {i}\tWert {i * 1.5:.1f}\n" for i in range(30))
+
+LVM = (
+    "LabVIEW Measurement\t\nWriter_Version\t2\nReader_Version\t2\nSeparator\tTab\n"
+    "Decimal_Separator\t.\nMulti_Headings\tNo\nX_Columns\tOne\nTime_Pref\tAbsolute\n"
+    "Date\t2024/05/03\nTime\t10:00:00.123\n***End_of_Header***\t\n\t\n"
+    "Channels\t2\t\t\nSamples\t241\t241\t\nDate\t2024/05/03\t2024/05/03\t\n"
+    "Time\t10:00:00.1\t10:00:00.1\t\nY_Unit_Label\tmm\tN\t\nX_Dimension\tTime\tTime\t\n"
+    "X0\t0.0\t0.0\t\nDelta_X\t0.05\t0.05\t\n***End_of_Header***\t\t\t\n"
+    "X_Value\tDisplacement\tForce\tComment\n"
+)
+
+TEXTS = {
+    "MTS TestSuite": (
+        "MTS TestSuite TW\nTest Run Name:,tether 7\n\n"
+        '"Crosshead ","Load ","Time "\n"(mm)","(N)","(s)"\n' + table([TRAVEL, LOAD, TIME]),
+        "utf-8",
+    ),
+    "testXpert, German": (
+        "Prüfnorm;ohne\nPrüfer;AB\nVorkraft;0,5;N\n\n"
+        "Prüfzeit;Standardweg;Standardkraft\ns;mm;N\n" + table([TIME, TRAVEL, LOAD], ";", ","),
+        "latin-1",
+    ),
+    "TRAPEZIUM, Japanese": (
+        '"試験名","引張"\n"時間","試験力","ストローク"\n"sec","N","mm"\n'
+        + table([TIME, LOAD, TRAVEL], quote='"', end="\r\n"),
+        "cp932",
+    ),
+    "Japanese, 荷重 and 変位": (
+        "時間(秒),荷重(N),変位(mm)\n" + table([TIME, LOAD, TRAVEL]), "cp932",
+    ),
+    "Chinese, GB18030": (
+        "试验编号 7\n时间(s)\t位移(mm)\t力(N)\n" + table([TIME, TRAVEL, LOAD], "\t"), "gb18030",
+    ),
+    "Chinese, UTF-8, 载荷": (
+        "时间/s,位移/mm,载荷/kN\n" + table([TIME, TRAVEL, LOAD / 1e3], digits=7), "utf-8-sig",
+    ),
+    "Korean": ("시간(s),변위(mm),하중(N)\n" + table([TIME, TRAVEL, LOAD]), "euc_kr"),
+    "Russian": (
+        "Время, с;Перемещение, мм;Нагрузка, Н\n" + table([TIME, TRAVEL, LOAD], ";", ","), "cp1251",  # noqa: RUF001
+    ),
+    "WaveMatrix": (
+        '"Total Time (s)","Cycle Elapsed Time (s)","Total Cycles","Position(Linear:Position) (mm)",'
+        '"Position(Linear:Digital Position) (mm)","Load(Linear:Load) (kN)",\n'
+        + table([TIME, TIME, np.ones(N), TRAVEL, TRAVEL, LOAD / 1e3], digits=7, end=",\n"),
+        "utf-8-sig",
+    ),
+    "LabVIEW LVM": (LVM + table([TIME, TRAVEL, LOAD], "\t"), "utf-8"),
+    "DewesoftX": (
+        "Data info\nFile name:\tTest_0001.dxd\nStart time:\t5/3/2024 10:00:00.000\n"
+        "Sample rate:\t20\tHz\nNumber of channels:\t2\n\nTime (s)\tAI 1/Force (N)\t"
+        "AI 2/Stroke (mm)\n" + table([TIME, LOAD, TRAVEL], "\t"),
+        "utf-8",
+    ),
+    "catman": (
+        PREAMBLE + "Zeit  1 - Standardmessrate [s]\tKraft [N]\tWeg [mm]\n"
+        + table([TIME, LOAD, TRAVEL], "\t", ","),
+        "cp1252",
+    ),
+    "UTF-16 with tabs": ("Time [s]\tExtension [mm]\tForce [N]\n" + table([TIME, TRAVEL, LOAD], "\t"), "utf-16"),
+    "UTF-16 without mark": (
+        "Time [s]\tExtension [mm]\tForce [N]\n" + table([TIME, TRAVEL, LOAD], "\t"), "utf-16-le",
+    ),
+    "French": (
+        "Essai;traction\nTemps;Déplacement;Effort\ns;mm;N\n" + table([TIME, TRAVEL, LOAD], ";", ","),
+        "cp1252",
+    ),
+    "French, Chemin": ("Temps (s);Chemin (mm);Force (N)\n" + table([TIME, TRAVEL, LOAD], ";", ","), "utf-8"),
+    "Spanish": ("Tiempo (s);Carrera (mm);Fuerza (N)\n" + table([TIME, TRAVEL, LOAD], ";", ","), "cp1252"),
+    "Italian": ("Tempo [s];Corsa [mm];Carico [N]\n" + table([TIME, TRAVEL, LOAD], ";", ","), "utf-8"),
+    "clock times": (
+        "Time,Crosshead (mm),Load (N)\n" + table([clock(TIME), TRAVEL, LOAD]), "utf-8",
+    ),
+    "date and clock in one column": (
+        "Timestamp,Position_mm,Force_N\n"
+        + table([[f"2024-05-03T{one}" for one in clock(TIME)], TRAVEL, LOAD]),
+        "utf-8",
+    ),
+    "date beside clock": (
+        "Datum;Uhrzeit;Weg [mm];Kraft [N]\n"
+        + table([["03.05.2024"] * N, clock(TIME), TRAVEL, LOAD], ";", ","),
+        "utf-8",
+    ),
+    "counter of milliseconds": (
+        "Zeit [ms];Weg [mm];Kraft [N]\n"
+        + table([[f"{1000 * t:.0f}" for t in TIME], TRAVEL, LOAD], ";", ","),
+        "utf-8",
+    ),
+    "names that say nothing, a row of units": (
+        "CH1;CH2;CH3\ns;mm;N\n" + table([TIME, TRAVEL, LOAD], ";", ","), "utf-8",
+    ),
+    "names that say nothing, units in brackets": (
+        "K0 [s],K1 [N],K2 [mm]\n" + table([TIME, LOAD, TRAVEL]), "utf-8",
+    ),
+    "Load Cell 1, in N and in %MBL": (
+        "Time (s),Actuator (mm),Load Cell 1 (N),Load Cell 1 (%MBL)\n"
+        + table([TIME, TRAVEL, LOAD, LOAD / 50]),
+        "utf-8",
+    ),
+    "one load in two units": (
+        "Time (s),Stroke (mm),Load (N),Load (kN)\n"
+        + table([TIME, TRAVEL, LOAD, LOAD / 1e3], digits=6),
+        "utf-8",
+    ),
+    "Bluehill Universal, results above the data": (
+        "Results Table 1\n,Maximum Load [N],Modulus [MPa]\n1,243.5,1.25\n2,243.7,1.26\n\n\n"
+        "Raw Data\n"
+        '"Time","Extension","Load","Tensile strain","Tensile stress"\n"(s)","(mm)","(N)","(%)","(MPa)"\n'
+        + table([TIME, TRAVEL, LOAD, TRAVEL / 2, LOAD / 20], quote='"'),
+        "utf-8",
+    ),
+    "blanks and units in a row": (
+        "   Time     Disp     Force\n   sec      mm       N\n"
+        + "".join(f"{t:10.3f}{x:10.4f}{f:10.4f}\n" for t, x, f in zip(TIME, TRAVEL, LOAD, strict=True)),
+        "utf-8",
+    ),
+    "units behind a slash and a comma": (
+        "time/s;displacement/mm;Load, N\n" + table([TIME, TRAVEL, LOAD], ";", ","), "utf-8",
+    ),
+    "names over two rows": (
+        "Running,Axial,Axial\nTime,Displacement,Force\n(s),(mm),(N)\n" + table([TIME, TRAVEL, LOAD]),
+        "utf-8",
+    ),
+    "a number of the row in front": (
+        "No.,Time (s),Extension (mm),Load (N)\n"
+        + table([[str(i + 1) for i in range(N)], TIME, TRAVEL, LOAD]),
+        "utf-8",
+    ),
+    "command beside feedback": (
+        "Time (s),Axial Displacement Command (mm),Axial Displacement (mm),Axial Force (N)\n"
+        + table([TIME, TRAVEL + 1, TRAVEL, LOAD]),
+        "utf-8",
+    ),
+    "quoted decimal commas parted by commas": (
+        '"Zeit [s]","Weg [mm]","Kraft [N]"\n' + table([TIME, TRAVEL, LOAD], ",", ",", quote='"'),
+        "utf-8",
+    ),
+}  # fmt: skip
+
+ROWS = [
+    dict(zip(("time", "x", "F"), map(float, row), strict=True))
+    for row in zip(TIME, TRAVEL, LOAD, strict=True)
+]
+
+JSON = {
+    "an object of columns": {"Time (s)": [*TIME], "Stroke (mm)": [*TRAVEL], "Force (N)": [*LOAD]},
+    "columns in a place": {
+        "test": {"id": "T-7", "data": {"Time (s)": [*TIME], "Stroke (mm)": [*TRAVEL], "Force (N)": [*LOAD]}},
+        "rates": [20, 20],
+    },
+    "records": [
+        {"Time (s)": t, "Stroke (mm)": x, "Force (N)": f}
+        for t, x, f in zip(TIME.tolist(), TRAVEL.tolist(), LOAD.tolist(), strict=True)
+    ],
+    "records in a place": {
+        "meta": {"operator": "AG"},
+        "result": {"rows": [
+            {"Time (s)": t, "Stroke (mm)": x, "Force (N)": f}
+            for t, x, f in zip(TIME.tolist(), TRAVEL.tolist(), LOAD.tolist(), strict=True)
+        ]},
+    },
+}  # fmt: skip
+
+
+def draft(folder, name, content):
+    """What `init` writes for a folder with one log: the campaign, and the layout of the log."""
+    (folder / name).write_bytes(content)
+    files = starter_campaign(folder)
+    document = tomllib.loads(files["campaign.toml"])
+    (layout,) = document["layouts"].values()
+    return files["campaign.toml"], layout
+
+
+def answered(layout):
+    """A layout of which a person has answered what is asked of the position alone."""
+    position = layout["channels"]["crosshead_position"]
+    assert position["datum"] == "displacement"  # which begins at zero
+    assert position["reference_length"] == "?"
+    position["reference_length"] = "2.5 m"
+    if (zero := layout["channels"]["tension"]["1"].get("zero")) is not None:
+        assert zero == "?"  # 3.5 N may be a preload: a person has to say
+        layout["channels"]["tension"]["1"]["zero"] = "0 N"
+    return Layout.model_validate(layout)
+
+
+def check_channels(log, layout):
+    units = {key: channel.unit for key, channel in layout.channels.items()}
+    factor = {
+        key: 1.0 if unit == "clock" else scale_to_si(unit, layout.dimension(key))[0]
+        for key, unit in units.items()
+    }
+    assert set(log.columns) >= {"time", "crosshead_position", "tension.1"}
+    assert "tension.2" not in log.columns
+    got = {key: factor[key] * log.columns[key] for key in units}
+    np.testing.assert_allclose(got["time"] - got["time"][0], TIME, atol=1e-9)
+    np.testing.assert_allclose(got["crosshead_position"], TRAVEL / 1e3, atol=1e-7)
+    np.testing.assert_allclose(got["tension.1"], LOAD, atol=1e-3)
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_the_draft_for_a_stranger_reads_it(tmp_path, name):
+    text, encoding = TEXTS[name]
+    _, layout = draft(tmp_path, "log.txt", text.encode(encoding))
+    layout = answered(layout)
+    check_channels(read_log(tmp_path / "log.txt", layout, name="log.txt"), layout)
+
+
+@pytest.mark.parametrize("name", JSON)
+def test_the_draft_for_json_reads_it(tmp_path, name):
+    _, layout = draft(tmp_path, "log.json", json.dumps(JSON[name]).encode())
+    layout = answered(layout)
+    check_channels(read_log(tmp_path / "log.json", layout, name="log.json"), layout)
+
+
+def test_the_draft_for_json_lines_reads_it(tmp_path):
+    lines = "\n".join(map(json.dumps, JSON["records"])) + "\n"
+    _, layout = draft(tmp_path, "log.jsonl", lines.encode())
+    layout = answered(layout)
+    check_channels(read_log(tmp_path / "log.jsonl", layout, name="log.jsonl"), layout)
+
+
+def text_log(load, travel=TRAVEL):
+    return ("Time (s),Stroke (mm),Load (N)\n" + table([TIME, travel, load])).encode()
+
+
+def test_a_load_below_zero_at_rest_is_proposed_as_the_zero(tmp_path):
+    text, layout = draft(tmp_path, "log.csv", text_log(LOAD - 20))
+    number, unit = layout["channels"]["tension"]["1"]["zero"].split()
+    # 3.5 - 20, to a two-thousandth of what the load travels
+    assert float(number) == pytest.approx(-16.5, abs=0.1) and unit == "N"
+    assert "guess: zero" in text and "a slack line does not push" in text
+
+
+def test_a_load_that_is_next_to_nothing_at_rest_needs_no_zero(tmp_path):
+    text, layout = draft(tmp_path, "log.csv", text_log(LOAD - 3.5))
+    assert "zero" not in layout["channels"]["tension"]["1"]
+    assert "guess: no zero is needed" in text
+
+
+@pytest.mark.parametrize(
+    ("load", "travel", "turned"),
+    [(-LOAD, TRAVEL, "tension"), (LOAD, -TRAVEL, "crosshead_position"), (LOAD, TRAVEL, None)],
+)
+def test_the_channel_that_runs_backward_gets_a_sign(tmp_path, load, travel, turned):
+    _, layout = draft(tmp_path, "log.csv", text_log(load, travel))
+    channels = {**layout["channels"], "tension": layout["channels"]["tension"]["1"]}
+    assert {key for key, one in channels.items() if one.get("sign") == -1} == {turned} - {None}
+
+
+def test_a_position_far_above_its_travel_is_a_length(tmp_path):
+    _, layout = draft(tmp_path, "log.csv", text_log(LOAD, 2500 + TRAVEL))
+    assert layout["channels"]["crosshead_position"]["datum"] == "pin-to-pin"
+
+
+def test_of_a_log_that_only_rests_nothing_is_guessed(tmp_path):
+    noise = 0.01 * np.sin(17.0 * np.arange(N) ** 2)
+    _, layout = draft(tmp_path, "log.csv", text_log(3.5 + noise, 0.02 + noise))
+    assert layout["channels"]["crosshead_position"]["datum"] == "?"
+    assert "zero" not in layout["channels"]["tension"]["1"]
+
+
+def test_a_ramp_from_the_first_sample_on_has_no_rest(tmp_path):
+    _, layout = draft(tmp_path, "log.csv", text_log(5 + 12 * TIME, 10 * TIME))
+    assert "zero" not in layout["channels"]["tension"]["1"]
+
+
+def test_logs_that_begin_unlike_share_a_layout_with_a_question(tmp_path):
+    (tmp_path / "T-1.csv").write_bytes(text_log(LOAD - 20))
+    (tmp_path / "T-2.csv").write_bytes(text_log(LOAD - 30))
+    files = starter_campaign(tmp_path)
+    (layout,) = tomllib.loads(files["campaign.toml"])["layouts"].values()
+    assert layout["channels"]["tension"]["1"]["zero"] == "?"
+    assert "the logs differ in how they begin" in files["campaign.toml"]
+
+
+@pytest.mark.parametrize("content", [b"just words\n" * 9, "荷重なし\n".encode("cp932")])
+def test_a_file_without_a_table_has_a_draft_of_questions(tmp_path, content):
+    text, layout = draft(tmp_path, "log.txt", content)
+    assert layout["format"] == "?"
+    assert "#   log.txt: no table of numbers" in text
+
+
+def test_a_specimen_of_a_single_log_is_named_and_its_sizes_are_quoted(tmp_path):
+    preamble = b"Specimen width (mm);6\nOperator;AB\n\n"
+    text, _ = draft(tmp_path, "log.csv", preamble + text_log(LOAD).replace(b",", b";"))
+    assert set(tomllib.loads(text)["specimens"]) == {"specimen-1"}
+    assert "# a log says: Specimen width (mm) 6\n" in text and "Operator" not in text
