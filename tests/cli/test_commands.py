@@ -109,8 +109,8 @@ def test_a_failed_test_keeps_its_older_product_and_lets_the_others_run(reduced, 
         notes = archive["note"].values.tolist()
     for name in ("new", "used"):
         assert (
-            f"{name}: 3 of 6 stretched marks are of tests that failed (A), so that their tension "
-            "is not known; the law of tension is without them"
+            f"{name}: 3 of 6 stretched marks belong to tests that failed (A), so their tension is "
+            "not known; the tension law is fitted without them"
         ) in notes
     assert not any("no hold in the logs" in note for note in notes)
 

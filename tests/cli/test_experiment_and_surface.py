@@ -198,7 +198,7 @@ def test_a_log_surface_and_one_that_goes_below_zero(fit):
         return 1e3 * np.exp(2.5 * np.sum(coded, axis=1))
 
     straight = answered(fit(table(UNITS, steep), SPEC, "--json"))
-    assert any("goes below zero among the levels" in note for note in straight["notes"])
+    assert any("falls below zero within the levels" in note for note in straight["notes"])
     bent = SPEC.replace('unit = "lbf"', 'unit = "lbf", transform = "log"')
     answer = answered(fit(table(UNITS, steep), bent, "--json"))
     found = answer["responses"]["apparent_spring_constant"]
@@ -232,7 +232,7 @@ def test_drift_over_the_order_is_told(fit):
         cells[3] = repr(float(cells[3]) * float(1 - 0.02 * order[place - 1]))
         rows[place] = ",".join(cells)
     answer = answered(fit("\n".join(rows), SPEC, "--json"))
-    assert any("drifts over the order of the runs" in note for note in answer["notes"])
+    assert any("drifts with run order" in note for note in answer["notes"])
     assert answer["responses"]["apparent_spring_constant"]["drift"]["per_run"] < 0
 
 
@@ -272,7 +272,7 @@ def test_a_run_that_stands_twice_is_refused_and_a_twin_is_a_note(fit):
     told(fit(named, SPEC), 4, "runs.csv:16 [run]: a run stands twice", "'R13', also in row 15")
     rows = table(UNITS).splitlines()
     answer = answered(fit("\n".join([*rows, rows[-1]]), SPEC, "--json"))
-    assert any("repeats, or one run twice?" in note for note in answer["notes"])
+    assert any("repeats or one run entered twice" in note for note in answer["notes"])
 
 
 def test_levels_beside_the_plan_ask_for_the_unit(fit):

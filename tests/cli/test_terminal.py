@@ -76,7 +76,7 @@ def test_what_is_left_on_the_screen_fits_it_and_is_whole(narrow):
     end = next(place for place, line in enumerate(left) if line.startswith("products:"))
     assert max(map(len, left[start:end])) <= 80
     text = " ".join(" ".join(left[start:end]).split())
-    assert "the intervals beside it would be 0.62 and 0.33 MPa" in text
+    assert "the moduli of the adjacent intervals would be 0.62 and 0.33 MPa" in text
     assert "\N{HORIZONTAL ELLIPSIS}" not in text
 
 
