@@ -1000,7 +1000,7 @@ _OF_HOSES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "cords-broken": (
         "refusal",
-        lambda strain: f"the cords are broken from {100 * strain:.1f} % strain on: no load is given",
+        lambda strain: f"the cords are broken from {100 * strain:.1f} % strain on: no load given",
     ),
     "hose-without-uncertainty": (
         "note", "no uncertainty is stated for the hose: the prediction has none",

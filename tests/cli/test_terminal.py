@@ -127,7 +127,7 @@ def test_help_is_drawn_at_a_terminal_and_plain_and_whole_in_a_pipe(at_terminal):
     assert "\N{BOX DRAWINGS LIGHT HORIZONTAL}" in drawn
     plain = reduction("--help", FORCE_COLOR="1").stdout
     assert plain.isascii() and "\x1b" not in plain and "..." not in plain.partition("Options:")[2]
-    assert "Write a starter campaign into a folder of logs, for a person to complete." in " ".join(
+    assert "Write a draft campaign.toml for a folder of logs, for you to complete." in " ".join(
         plain.split()
     )
     assert max(map(len, plain.splitlines())) <= 80

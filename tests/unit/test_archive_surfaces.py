@@ -219,7 +219,7 @@ def test_an_experiment_that_gave_no_surface_keeps_its_runs():
 
 
 def test_two_experiments_of_one_name_are_refused():
-    with pytest.raises(ArchiveError, match="an experiment stands twice; found short"):
+    with pytest.raises(ArchiveError, match="an experiment appears twice; found short"):
         build(SHORT, SHORT)
 
 

@@ -409,7 +409,9 @@ def test_another_campaign_is_refused(campaign, tmp_path, text, match):
 def test_a_folder_of_several_campaigns_or_of_none_is_refused(campaign, tmp_path):
     with pytest.raises(SettingsError, match="a folder for each campaign; found two-tethers"):
         find_campaign(campaign.parent.parent / "processed")
-    with pytest.raises(ArchiveError, match=r"there is no archive of a test in .* Run the campaign"):
+    with pytest.raises(
+        ArchiveError, match=r"there is no archive of a test in .* Run the campaign"
+    ):
         find_campaign(tmp_path)
 
 

@@ -77,7 +77,7 @@ FACTS = {
     "hose: quasi-static spring constant not given: no cubic": (
         note("no-pull", "hose", reason="no cubic"), "refusal",
     ),
-    "the cords are broken from 150.9 % strain on: no load is given": (
+    "the cords are broken from 150.9 % strain on: no load given": (
         note("cords-broken", strain=1.509), "refusal",
     ),
 }  # fmt: skip

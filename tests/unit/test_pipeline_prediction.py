@@ -63,7 +63,7 @@ def test_an_end_beyond_the_break_is_told_and_has_no_load():
     hose = predicted(greatest_strain=2.4, strain_step=0.1)
     (note,) = said(hose, "the cords are broken from")
     first = hose.prediction.strain[hose.prediction.strain > stretch_at(68, BREAK) - 1][0]
-    assert note == f"the cords are broken from {100 * first:.1f} % strain on: no load is given"
+    assert note == f"the cords are broken from {100 * first:.1f} % strain on: no load given"
     assert np.isnan(hose.prediction.tension[-1])
 
 

@@ -34,7 +34,7 @@ def check(cycles=True, record=(), **stated):
     [
         (
             {"tension_offset": 3501.0},
-            r"campaign.toml: uncertainty.tension.offset: this is no standard uncertainty for test "
+            r"campaign.toml: uncertainty.tension.offset: this is not a standard uncertainty for test "
             r"'T-1'; found 3501 N; needed at most 3500 N, ten times the greatest tension of 'new'",
         ),
         ({"tension_offset": 1e9 * 4.448}, r"uncertainty.tension.offset: .*found 4.448e\+09 N"),
