@@ -122,7 +122,7 @@ def _level(name: str, value: Any, line: LineSource) -> xr.DataArray:
     """A level in SI, with dimensions."""
     if name not in LEVEL_DIMENSIONS:
         raise SettingsError(
-            f"{name} is no level of a line", needed=f"one of {', '.join(LEVEL_DIMENSIONS)}"
+            f"{name} is not a level of a line", needed=f"one of {', '.join(LEVEL_DIMENSIONS)}"
         )
     if isinstance(value, xr.DataArray):
         is_axis = value.dims == (name,) and name not in value.coords

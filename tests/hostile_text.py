@@ -499,7 +499,7 @@ TABLES = (
         "marks with a hold of nan",
         table("marks.csv", MARKS + "T-1,new,nan,1,9,10\n"),
         3,
-        "a hold has no known name",
+        "unknown name of a hold",
     ),
     Case(
         "marks with a quote that is never closed",

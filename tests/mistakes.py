@@ -487,7 +487,7 @@ def _(folder: Path) -> None:
 
 
 @mistake("tether-unit-row-not-declared", T, "data",
-         "Below the names stands a row of units of which the layout knows nothing.",
+         "Below the names stands a row of units which the layout does not declare.",
          say(("has_unit_row", "row of units", "unit row", "units row")))
 def _(folder: Path) -> None:
     bare(folder)
@@ -497,7 +497,7 @@ def _(folder: Path) -> None:
 
 
 add("tether-volts-not-scaled", T, "band",
-    "The log holds volts of the load amplifier (100 lbf a volt) and the layout has no factor.",
+    "The log holds volts of the load amplifier (100 lbf per volt) and the layout has no factor.",
     say(LOAD, FACTOR), bare, do(scale, LOADS[T], 0.01, "{:.5f}"))
 add("tether-volts-in-header", T, "statement",
     "The header says V, and the layout declares lbf without a factor.",
@@ -505,15 +505,15 @@ add("tether-volts-in-header", T, "statement",
     do(rename, {"load_new_lb": "load_new_V", "load_used_lb": "load_used_V"}),
     do(scale, ("load_new_V", "load_used_V"), 0.01, "{:.5f}"))
 add("tether-gain-2", T, "band",
-    "The load amplifier stood at the double gain: T-6 would reach more than the rated break strength.",
+    "The load amplifier was set to double gain: T-6 would reach more than the rated break strength.",
     say(LOAD, ("gain", "factor")) + say("break strength", ("gain", "factor")),
     bare, do(scale, LOADS[T], 2.0, "{:.3f}"), keep=("T-1", "T-2", "T-6"))
 add("tether-gain-2-one-test", T, "data",
-    "In T-2 the load amplifier stood at the double gain: the stiffness of both specimens doubles from T-1 to T-2.",
+    "In T-2 the load amplifier was set to double gain: the stiffness of both specimens doubles from T-1 to T-2.",
     say(("t-2", "t-1"), ("stiff", "modulus", "spring"), ("jump", "times", "factor", "ratio", "gain")),
     do(scale, ("load_new_lb", "load_used_lb"), 2.0, "{:.3f}", only=("T-2",)))
 add("tether-gain-2-one-channel-one-test", T, "data",
-    "In T-2 the amplifier of the used tether alone stood at the double gain.",
+    "In T-2 the amplifier of the used tether alone was set to double gain.",
     say("used", ("stiff", "modulus", "spring"), ("jump", "times", "factor", "ratio", "gain")),
     do(scale, ("load_used_lb",), 2.0, "{:.3f}", only=("T-2",)))
 add("tether-factor-10", T, "band",
@@ -524,15 +524,15 @@ add("tether-factor-tenth", T, "band",
     "The factor of the tension channels is ten times too small.",
     say(LOAD, ("factor", "gain", "unit")),
     do(also, NEW, "factor = 0.1"), do(also, USED, "factor = 0.1"))
-# five per cent is less than two tethers of one batch differ by, and no statement speaks of it
+# five percent is less than two tethers of one batch differ by, and no statement speaks of it
 add("tether-gain-5-percent", T, "no",
-    "The calibration of the load cell is five per cent off in all tests.",
+    "The calibration of the load cell is five percent off in all tests.",
     say(LOAD, ("gain", "factor")), do(scale, ("load_new_lb", "load_used_lb"), 1.05, "{:.3f}"))
 add("tether-load-sign", T, "data",
     "The frame logs tension as negative, and the layout does not say sign = -1.",
     say("sign", (*LOAD, "channel", "-1")), do(scale, ("load_new_lb", "load_used_lb"), -1.0, "{:.3f}"))
 add("tether-load-sign-one-channel", T, "data",
-    "The load cell of the used tether alone is wired the other way round.",
+    "The load cell of the used tether alone is wired with reversed polarity.",
     say("sign", ("used", "tension.2", "load_used")), do(scale, ("load_used_lb",), -1.0, "{:.3f}"))
 
 
@@ -555,7 +555,7 @@ add("tether-zero-wrong-sign", T, "data",
     do(also, NEW, 'zero = "-20 lbf"'), do(also, USED, 'zero = "-20 lbf"'))
 
 
-@mistake("tether-zero-drift", T, "data", "The zero of the load cell drifts by 30 lbf in the course of a test: slack reads more after the cycles than before.",
+@mistake("tether-zero-drift", T, "data", "The zero of the load cell drifts by 30 lbf during a test: slack reads more after the cycles than before.",
          say(("zero", "slack"), ("drift", "before and after", "changes", "begin", "start", "first", "differ")))
 def _(folder: Path) -> None:
     def f(log: Log) -> None:
@@ -629,13 +629,13 @@ add("tether-thousands-point", T, "data",
     "`0.244` has a decimal point and the layout calls the point a thousands mark.",
     say(("decimal", "thousands"), ("point", '"."', "0.244", "12.2559", "`.`")),
     do(setkey, "layouts.logger", "thousands", '"."', new=True), do(setkey, "layouts.logger", "decimal", '","', new=True))
-add("tether-decimal-comma", T, "data", "The log has decimal commas, of which the layout knows nothing.",
+add("tether-decimal-comma", T, "data", "The log has decimal commas, which the layout does not declare.",
     say("decimal", ("comma", '","', "`,`")),
     do(each, as_comma, delimiter=";"), do(setkey, "layouts.logger", "delimiter", '";"'))
 add("tether-decimal-comma-and-delimiter", T, "data",
-    "Decimal commas in a log whose cells are parted by commas too: every row has more cells than the header.",
+    "Decimal commas in a log whose cells are also separated by commas: every row has more cells than the header.",
     say(("decimal", "delimiter", "fields"), ("comma", '","', "fields", "`,`")), do(each, as_comma))
-add("tether-delimiter", T, "data", "The cells are parted by semicolons and the layout says comma.",
+add("tether-delimiter", T, "data", "The cells are separated by semicolons and the layout says comma.",
     say(("delimiter", "semicolon", "parted")), do(each, lambda log: None, delimiter=";"))
 
 
@@ -647,7 +647,7 @@ def _(folder: Path) -> None:
     log.write()
 
 
-@mistake("tether-preamble", T, "data", "Three lines of the logger stand above the names, of which the layout knows nothing.",
+@mistake("tether-preamble", T, "data", "Three lines of the logger stand above the names, which the layout does not declare.",
          say(("preamble", "comment")))
 def _(folder: Path) -> None:
     for log in logs(folder):
@@ -665,7 +665,7 @@ def _(folder: Path) -> None:
     log.write()
 
 
-@mistake("tether-missing-9999", T, "data", "The logger writes -9999 where it has no value, and the layout does not say so.",
+@mistake("tether-missing-9999", T, "data", "The logger writes -9999 where it has no value, and the layout does not declare it.",
          say("9999") + say("missing", ("mark", "drop", "value")) + say(("spike", "drop-out"), LOAD))
 def _(folder: Path) -> None:
     log = logs(folder, ("T-1",))[0]
@@ -709,7 +709,7 @@ def _(folder: Path) -> None:
     log.write()
 
 
-@mistake("tether-sorted-by-position", T, "data", "A spreadsheet sorted the rows by position: time runs to and fro.",
+@mistake("tether-sorted-by-position", T, "data", "A spreadsheet sorted the rows by position: time jumps back and forth.",
          say("time", ("backward", "sort", "order", "repeat", "base", "again", "earlier", "not later")))
 def _(folder: Path) -> None:
     log = logs(folder, ("T-1",))[0]
@@ -717,7 +717,7 @@ def _(folder: Path) -> None:
     log.write()
 
 
-@mistake("tether-one-sample-in-40", T, "data", "The logger kept one row every 4 s: two or three samples a cycle.",
+@mistake("tether-one-sample-in-40", T, "data", "The logger kept one row every 4 s: two or three samples per cycle.",
          say(("sample", "rows", "rate", "points"), ("cycle", "coarse", "few", "slow")))
 def _(folder: Path) -> None:
     each(folder, lambda log: setattr(log, "rows", log.rows[::40]))
@@ -784,7 +784,7 @@ def _(folder: Path) -> None:
     each(folder, f, ("T-2",))
 
 
-add("tether-one-specimen-named-twice", T, "statement", "Both load cells are said to hold the specimen `new`.",
+add("tether-one-specimen-named-twice", T, "statement", "Both load cells are assigned to the specimen `new`.",
     say(("new", "specimen"), (*SAME, "two", "both", "once", "more than")),
     do(sub, 'specimens = ["new", "used"]', 'specimens = ["new", "new"]', times=1))
 
@@ -899,7 +899,7 @@ add("tether-time-ms-in-header", T, "statement", "The header says time_ms, and th
     do(each, lambda log: log.map("time_ms", lambda v: v * 1000, "{:.0f}")))
 
 
-@mistake("tether-sample-interval", T, "statement", "The log has no times and the layout states 1 s between rows; it was 0.1 s: the rate is a tenth of that stated.",
+@mistake("tether-sample-interval", T, "statement", "The log has no time column and the layout states 1 s between rows; it was 0.1 s: the rate is a tenth of that stated.",
          say(TIME, ("rate", "sample_interval", "interval", "times", "ratio")))
 def _(folder: Path) -> None:
     each(folder, lambda log: log.drop("time_s"))
@@ -979,9 +979,9 @@ def retape(factor: float, digits: int = 2) -> Callable[[Path], None]:
     return lambda folder: marks(folder, f)
 
 
-add("tether-marks-inches-as-feet", T, "statement", "The tape was read in inches and the columns say feet.",
+add("tether-marks-inches-as-feet", T, "statement", "The tape was read in inches and the headers say feet.",
     say(MARK, (*IN, "unit"), ("unit", "fit", "header", "factor", "thimble")), retape(12, 1))
-add("tether-marks-metres-as-feet", T, "statement", "The tape was read in metres and the columns say feet.",
+add("tether-marks-metres-as-feet", T, "statement", "The tape was read in metres and the headers say feet.",
     say(MARK, (*M, "unit"), ("unit", "fit", "header", "factor", "thimble")), retape(0.3048, 3))
 add("tether-marks-feet-as-inches-header", T, "statement", "The header of marks.csv says inches and the readings are in feet.",
     say(MARK, (*FT, "unit")), do(sub, "near_toe_ft,far_toe_ft,far_thimble_ft", "near_toe_in,far_toe_in,far_thimble_in", file="marks.csv"))
@@ -1009,7 +1009,7 @@ def _(folder: Path) -> None:
     sub(folder, "T-1,new,slack,0,2.06,10.43,12.26", "T-1,new,slack,0,2.46,17.2,19.37", file="marks.csv", times=1)
 
 
-# the toes of the two tethers differ by a few hundredths of a foot: one per cent of strain
+# the toes of the two tethers differ by a few hundredths of a foot: one percent of strain
 @mistake("tether-marks-of-the-other-tether", T, "no", "The marks of the new and the used tether are entered under each other's name.", say(MARK, SWAP))
 def _(folder: Path) -> None:
     def f(row: list[str], at: dict[str, int]) -> list[str]:
@@ -1071,7 +1071,7 @@ add("tether-gauge-in-for-ft", T, "statement", "`8.37 in` was entered for 8.37 ft
 
 
 def extensometer(factor: float, offset: float, unit: str) -> Callable[[Path], None]:
-    """Columns of an extensometer, bare of units, in per cent times factor plus offset."""
+    """Columns of an extensometer, bare of units, in percent times factor plus offset."""
 
     def f(folder: Path) -> None:
         def g(log: Log) -> None:
@@ -1089,15 +1089,15 @@ def extensometer(factor: float, offset: float, unit: str) -> Callable[[Path], No
 
 
 EXT = ("extensometer", "strain")
-add("tether-extensometer-pct-as-mm-per-m", T, "statement", "The extensometer is in per cent and declared mm/m: strain is a tenth of target_strain.",
-    say(EXT, ("unit", "%", "per cent", "percent", "mm/m"), ("target_strain", "unit", "declared", "ratio", "factor", "times")), extensometer(1, 0, "mm/m"))
-add("tether-extensometer-fraction-as-pct", T, "statement", "The extensometer is in m/m and declared per cent: strain is a hundredth of target_strain.",
+add("tether-extensometer-pct-as-mm-per-m", T, "statement", "The extensometer is in percent and declared mm/m: strain is a tenth of target_strain.",
+    say(EXT, ("unit", "%", "percent", "per cent", "mm/m"), ("target_strain", "unit", "declared", "ratio", "factor", "times")), extensometer(1, 0, "mm/m"))
+add("tether-extensometer-fraction-as-pct", T, "statement", "The extensometer is in m/m and declared percent: strain is a hundredth of target_strain.",
     say(EXT, ("target_strain", "unit", "declared", "ratio", "factor", "times")), extensometer(0.01, 0, "%"))
 add("tether-extensometer-set-to-zero-at-preload", T, "data", "The extensometer was set to zero at a stretch of 20 %: slack, it reads -20 %.",
     say(EXT, ("zero", "slack", "offset", "negative", "below")), extensometer(1, -20, "%"))
 
 # -- statements of the plan
-add("tether-target-in-percent", T, "statement", "target_strain is written in per cent without the sign: [75, 125].",
+add("tether-target-in-percent", T, "statement", "target_strain is written in percent without the sign: [75, 125].",
     say("target_strain", ("100", "%", "percent", "per cent", "ratio", "0.01", "factor", "times")),
     do(sub, "target_strain = [0.75, 1.25]", "target_strain = [75, 125]", times=1))
 add("tether-targets-of-each-other", T, "statement", "T-1 and T-2 have each other's target_strain.", say("target_strain", ("t-1", "t-2", *RATIO)),
@@ -1115,18 +1115,18 @@ add("tether-mean-tension-statement", T, "statement", "mean_tension is stated as 
 add("tether-waveform", T, "data", "The waveform is stated as sinusoidal; the branches run at a constant rate.", say("waveform", ("triang", "sinus", "constant rate")), do(setkey, "defaults", "waveform", '"sinusoidal"'))
 add("tether-kind-tensile", T, "data", "A cyclic test is stated as tensile: the log holds ten cycles and does not break.", say(("kind", "tensile"), ("cycl", "break", "broke", "failed", "n_cycles")), do(setkey, "tests.T-1", "kind", '"tensile"', new=True))
 add("tether-kind-relaxation", T, "data", "A cyclic test is stated as relaxation: the log holds ten cycles.", say(("kind", "relaxation"), ("cycl", "n_cycles")), do(setkey, "tests.T-1", "kind", '"relaxation"', new=True))
-add("tether-specimen-kind-wire", T, "band", "The rubber tether is stated as a wire: no wire bears a strain of 150 %.", say(("kind", "wire"), ("strain", "modulus", "rubber")), do(setkey, "specimens.new", "kind", '"wire"'))
+add("tether-specimen-kind-wire", T, "band", "The rubber tether is stated as a wire: no wire withstands a strain of 150 %.", say(("kind", "wire"), ("strain", "modulus", "rubber")), do(setkey, "specimens.new", "kind", '"wire"'))
 # earlier and later test of two that overlap: softening goes from the one with the smaller peak to the other in either order
-add("tether-order-reversed", T, "no", "T-2 was done before T-1; the campaign says the reverse.", say("order"),
+add("tether-order-reversed", T, "no", "T-2 was run before T-1; the campaign says the reverse.", say("order"),
     do(sub, "order = 1\n", "order = 9\n", times=1), do(sub, "order = 2\n", "order = 1\n", times=1), do(sub, "order = 9\n", "order = 2\n", times=1))
 BREAK = ("rated_break_strength", "break strength")
-add("tether-break-strength-kn-as-lbf", T, "band", "The rated break strength is 3.56 kN and was entered as 3.56 lbf: the tether bears 50 times that.", say(BREAK, ("unit", "share", "%", *KN, "times", "above", "beyond", "more than", "exceed")),
+add("tether-break-strength-kn-as-lbf", T, "band", "The rated break strength is 3.56 kN and was entered as 3.56 lbf: the tether carries 50 times that.", say(BREAK, ("unit", "share", "%", *KN, "times", "above", "beyond", "more than", "exceed")),
     do(sub, 'rated_break_strength = "800 lbf"', 'rated_break_strength = "3.56 lbf"'))
 add("tether-break-strength-kn", T, "band", "The rated break strength was entered as 800 kN: a stress at break of 1,500 MPa.", say(BREAK, ("unit", "stress", "mpa", *LBF)),
     do(sub, 'rated_break_strength = "800 lbf"', 'rated_break_strength = "800 kN"'))
-add("tether-linear-density-lb-per-ft", T, "band", "The mass a length is 0.35 lb/ft and was entered as 0.35 kg/m: a density of 640 kg/m3.", say(("linear_density", "linear density"), ("density", "kg/m", "lb/ft", "diameter")),
+add("tether-linear-density-lb-per-ft", T, "band", "The mass per length is 0.35 lb/ft and was entered as 0.35 kg/m: a density of 640 kg/m3.", say(("linear_density", "linear density"), ("density", "kg/m", "lb/ft", "diameter")),
     do(setkey, "specimens.new", "linear_density", '"0.35 kg/m"', new=True))
-add("tether-linear-density-grams", T, "band", "The mass a length is 520 g/m and was entered as 520 kg/m.", say(("linear_density", "linear density"), ("density", "kg/m", "g/m", "unit", "diameter")),
+add("tether-linear-density-grams", T, "band", "The mass per length is 520 g/m and was entered as 520 kg/m.", say(("linear_density", "linear density"), ("density", "kg/m", "g/m", "unit", "diameter")),
     do(setkey, "specimens.new", "linear_density", '"520 kg/m"', new=True))
 
 # ================================================================== ropes
@@ -1143,7 +1143,7 @@ add("rope-experiment-load-in-n", R, "statement", "The loads were logged in newto
     say((*LOAD, "mean_tension", "mean tension"), ("unit", *N, "factor", "gain"), EXPERIMENT), bare, do(scale, LOADS[R], 4.44822, "{:.2f}"), keep=ALL)
 add("rope-experiment-lbf-declared-n", R, "statement", "The loads are in pounds-force and declared N, which the header does not contradict: mean and amplitude are 0.22 of the plan.",
     say((*LOAD, "mean_tension", "mean tension"), ("unit", *LBF, "factor", "gain"), EXPERIMENT), bare, do(declare, "tension.1", "lbf", "N"), keep=ALL)
-add("rope-experiment-gain-2", R, "statement", "The load amplifier stood at the double gain: mean and amplitude are twice the plan.",
+add("rope-experiment-gain-2", R, "statement", "The load amplifier was set to double gain: mean and amplitude are twice the plan.",
     say((*LOAD, "mean_tension", "mean tension"), ("factor", "gain", "unit", "break", "ratio", "times"), EXPERIMENT), do(scale, ("load_lbf",), 2.0, "{:.2f}"), keep=ALL)
 AMP = ("tension_amplitude", "amplitude")
 add("rope-amplitude-as-range", R, "statement", "The levels of the amplitude are those of the range, from trough to crest.",
@@ -1228,21 +1228,21 @@ def _(folder: Path) -> None:
 add("rope-pull-in-n", R, "data", "The load of the slow pull alone was logged in newtons: its stiffness is above that of the waves.",
     say(("q01", "quasi_static", "quasi-static", "slow pull", "line-1"), ("unit", "gain", "factor", "jump", "stiff", "times", "ratio", "spring")),
     bare, do(scale, ("load",), 4.44822, "{:.2f}", only=("Q01",)), keep=ALL)
-add("rope-one-run-gain-2", R, "data", "In R04 the load amplifier stood at the double gain.", say("r04", ("gain", "factor", "jump", "stiff", "times", "ratio", "spring", "modulus")),
+add("rope-one-run-gain-2", R, "data", "In R04 the load amplifier was set to double gain.", say("r04", ("gain", "factor", "jump", "stiff", "times", "ratio", "spring", "modulus")),
     do(scale, ("load_lbf",), 2.0, "{:.2f}", only=("R04",)))
 add("rope-rate-inches-a-second", R, "statement", "The rate of the slow pull is stated as 10 in/s; the log shows 10 in/min.", say("rate", (*RATIO, "in/min", "60")), do(setkey, "tests.Q01", "rate", '"10 in/s"'))
 add("rope-frequency-statement", R, "statement", "frequency of R02 is stated as 18 Hz; the log shows 18 cycles a minute.", say("frequency", ("0.3", "ratio", "the log", "60")), do(setkey, "tests.R02", "frequency", '"18 Hz"', new=True))
 add("rope-rate-as-frequency", R, "statement", "The rate of R02 is stated as 3 Hz; the log shows 0.3 Hz.", say(("frequency", "rate"), (*RATIO, "0.3", "10")), do(setkey, "tests.R02", "rate", '"3 Hz"', new=True))
 add("rope-mean-tension-statement", R, "statement", "mean_tension of R02 is stated as 1344 N; the log shows 1344 lbf.", say(("mean_tension", "mean tension"), ("ratio", "the log", "4.4", "lb", "5978", "1344.")), do(setkey, "tests.R02", "mean_tension", '"1344 N"', new=True))
 add("rope-n-cycles-times-10", R, "statement", "n_cycles is 130 in campaign.toml and the log holds thirteen.", say(("n_cycles", "cycles"), "130"), do(setkey, "tests.R02", "n_cycles", "130"))
-add("rope-extensometer-declared-mm-per-m", R, "statement", "The extensometer is in per cent, as its header says, and declared mm/m.", say(("extensometer", "strain"), ("pct", "%", "per cent", "percent")), do(declare, "strain.1", "%", "mm/m"))
-add("rope-extensometer-pct-as-mm-per-m", R, "data", "The extensometer is in per cent and declared mm/m, which the header does not contradict: the stroke over its reference length is ten times as much.",
+add("rope-extensometer-declared-mm-per-m", R, "statement", "The extensometer is in percent, as its header says, and declared mm/m.", say(("extensometer", "strain"), ("pct", "%", "percent", "per cent")), do(declare, "strain.1", "%", "mm/m"))
+add("rope-extensometer-pct-as-mm-per-m", R, "data", "The extensometer is in percent and declared mm/m, which the header does not contradict: the stroke over its reference length is ten times as much.",
     say(("extensometer", "strain"), ("stroke", "position", "crosshead", "travel", "displacement", "modulus", "reference_length"), ("unit", "factor", "times", "ratio", "%", "gain")), bare, do(declare, "strain.1", "%", "mm/m"))
-add("rope-extensometer-fraction-as-pct", R, "data", "The extensometer is in m/m and declared per cent: the stroke over its reference length is a hundred times as much.",
+add("rope-extensometer-fraction-as-pct", R, "data", "The extensometer is in m/m and declared percent: the stroke over its reference length is a hundred times as much.",
     say(("extensometer", "strain"), ("stroke", "position", "crosshead", "travel", "displacement", "modulus", "reference_length"), ("unit", "factor", "times", "ratio", "gain")), bare, do(scale, ("extensometer",), 0.01, "{:.6f}"))
 add("rope-extensometer-gain-2", R, "data", "The extensometer stood at its other range: it shows half of what the stroke over its reference length does.",
     say(("extensometer", "strain"), ("stroke", "position", "crosshead", "travel", "displacement", "reference_length")), do(scale, ("extensometer_pct",), 0.5))
-add("rope-extensometer-in-mm", R, "data", "The extensometer is in mm over 24 in and declared per cent: six times what the stroke over its reference length is.",
+add("rope-extensometer-in-mm", R, "data", "The extensometer is in mm over 24 in and declared percent: six times what the stroke over its reference length is.",
     say(("extensometer", "strain"), ("stroke", "position", "crosshead", "travel", "displacement", "modulus", "reference_length"), ("unit", "factor", "times", "ratio", "gain", "mm")), bare, do(scale, ("extensometer",), 6.096, "{:.3f}"))
 
 
@@ -1318,10 +1318,10 @@ for name, value, cause in (
 add("rope-linear-density-per-100-ft", R, "band", "The mass is 8.3 lb a hundred feet and was entered as 8.3 kg/m: a density of 65,000 kg/m3.", say(("linear_density", "linear density"), ("density", "kg/m", "unit", "diameter", "lb")),
     do(setkey, "specimens.line-1", "linear_density", '"8.3 kg/m"', new=True))
 # 0.083 kg/m for lb/ft is a fill of 58 %, 0.124 kg/m one of 86 %: ropes have both
-add("rope-linear-density-lb-per-ft", R, "no", "The mass a length is 0.083 lb/ft and was entered as 0.083 kg/m.", say(("linear_density", "linear density"), ("lb", "unit")),
+add("rope-linear-density-lb-per-ft", R, "no", "The mass per length is 0.083 lb/ft and was entered as 0.083 kg/m.", say(("linear_density", "linear density"), ("lb", "unit")),
     do(setkey, "specimens.line-1", "linear_density", '"0.083 kg/m"', new=True))
 add("rope-kind-rubber", R, "band", "The rope is stated as a rubber tether: no rubber has 1 GPa.", say(("kind", "rubber"), ("modulus", "rope", "strain", "unit")), do(setkey, "specimens.line-1", "kind", '"rubber tether"'))
-add("rope-kind-wire", R, "band", "The rope is stated as a wire: no wire bears 15 % in a third of its strength.", say(("kind", "wire"), ("modulus", "strain", "rope")), do(setkey, "specimens.line-1", "kind", '"wire"'))
+add("rope-kind-wire", R, "band", "The rope is stated as a wire: no wire withstands 15 % in a third of its strength.", say(("kind", "wire"), ("modulus", "strain", "rope")), do(setkey, "specimens.line-1", "kind", '"wire"'))
 add("rope-material-hmpe", R, "band", "The line is stated as HMPE, which breaks at 3 to 4 %; the log shows 16 % in a third of the strength.", say(("material", "hmpe"), ("modulus", "strain", "stiff")), do(setkey, "specimens.line-1", "material", '"HMPE (synthetic)"'))
 
 # ================================================================== hoses
@@ -1366,11 +1366,11 @@ add("hose-bore-radius-for-diameter", H, "statement", "The radius of the bore was
 add("hose-wrap-radius-for-diameter", H, "statement", "The radius of the cords was entered as the wrap diameter: the cords would lie in the bore.", say(("wrap_diameter", "wrap diameter"), ("inner", "bore", "wall", "radius")), do(setkey, H64, "wrap_diameter", '"1.75 in"'))
 add("hose-wrap-diameter-ft", H, "statement", "`3.5 ft` was entered for a wrap diameter of 3.5 in: the cords would lie outside of the hose.", say(("wrap_diameter", "wrap diameter"), ("outer", "wall", "unit", "skin")), do(setkey, H64, "wrap_diameter", '"3.5 ft"'))
 CORDS = ("cords_per_length", "cords per length", "cords")
-add("hose-cords-one-layer", H, "statement", "The fabric was counted for half of its cords (17 an inch): the cords carry half of what was measured.",
+add("hose-cords-one-layer", H, "statement", "The fabric was counted for half of its cords (17 per inch): the cords carry half of what was measured.",
     say((*CORDS, "cord"), ("17", "cord_load_scale", "measured", "ratio", "half", "times", "factor", "verdict")), do(setkey, H64, "cords_per_length", '"17 1/in"'))
-add("hose-cords-both-layers", H, "statement", "Both layers were counted into the fabric (68 an inch): cords of 0.022 in would overlap.", say(CORDS, ("touch", "overlap", "cord_diameter", "cord diameter", "closer")), do(setkey, H64, "cords_per_length", '"68 1/in"'))
-add("hose-cords-per-foot", H, "statement", "`34 1/ft` was entered for 34 cords an inch: the cords carry a twelfth.", say((*CORDS, "cord"), ("unit", "1/in", "cord_load_scale", "measured", "ratio", "times", "factor", "12")), do(setkey, H64, "cords_per_length", '"34 1/ft"'))
-add("hose-cords-per-cm", H, "statement", "`34 1/cm` was entered for 34 cords an inch: cords of 0.022 in would overlap.", say(CORDS, ("touch", "overlap", "cord_diameter", "cord diameter", "closer", "unit")), do(setkey, H64, "cords_per_length", '"34 1/cm"'))
+add("hose-cords-both-layers", H, "statement", "Both layers were counted into the fabric (68 per inch): cords of 0.022 in would overlap.", say(CORDS, ("touch", "overlap", "cord_diameter", "cord diameter", "closer")), do(setkey, H64, "cords_per_length", '"68 1/in"'))
+add("hose-cords-per-foot", H, "statement", "`34 1/ft` was entered for 34 cords per inch: the cords carry a twelfth.", say((*CORDS, "cord"), ("unit", "1/in", "cord_load_scale", "measured", "ratio", "times", "factor", "12")), do(setkey, H64, "cords_per_length", '"34 1/ft"'))
+add("hose-cords-per-cm", H, "statement", "`34 1/cm` was entered for 34 cords per inch: cords of 0.022 in would overlap.", say(CORDS, ("touch", "overlap", "cord_diameter", "cord diameter", "closer", "unit")), do(setkey, H64, "cords_per_length", '"34 1/cm"'))
 add("hose-cord-diameter-ten-times", H, "statement", "The decimal point of the cord's diameter is in the wrong place (0.22 in): 34 of them do not fit into an inch.", say(("cord_diameter", "cord diameter", "cords"), ("touch", "overlap", "cords_per_length", "fit", "closer")), do(setkey, H64, "cord_diameter", '"0.22 in"'))
 add("hose-cord-diameter-mm", H, "band", "`0.022 mm` was entered for 0.022 in: a cord that breaks at 350 GPa.", say(("cord_diameter", "cord diameter", "cord"), ("unit", "stress", "strength", "pa", "mm")), do(setkey, H64, "cord_diameter", '"0.022 mm"'))
 
@@ -1389,7 +1389,7 @@ add("hose-cord-lbf-as-n", H, "statement", "The load of the cord is in pounds-for
     say("cord", (*LBF, "unit", "cord_load_scale", "measured", "ratio", "times", "factor")), cord(lambda s: s.replace("lbf", "N"), "load"))
 add("hose-cord-n-as-lbf", H, "statement", "The load of the cord is in newtons and was entered as lbf: the cords carry 4.4 times what was measured, and break at 2.4 GPa.",
     say("cord", (*N, "unit", "cord_load_scale", "measured", "ratio", "times", "factor", "stress", "strength")), cord(lambda s: re.sub(r'"([\d.]+) lbf"', lambda m: f'"{float(m.group(1)) * 4.44822:.2f} lbf"', s), "load"))
-add("hose-cord-strain-in-percent", H, "band", "The strain of the cord is in per cent without the sign: a nylon cord that breaks at 2,600 %.", say("cord", "strain", ("%", "per cent", "percent", "unit", "26", "100")),
+add("hose-cord-strain-in-percent", H, "band", "The strain of the cord is in percent without the sign: a nylon cord that breaks at 2,600 %.", say("cord", "strain", ("%", "percent", "per cent", "unit", "26", "100")),
     cord(lambda s: re.sub(r"[\d.]+", lambda m: f"{float(m.group(0)) * 100:.1f}", s), "strain"))
 add("hose-cord-load-of-the-fabric", H, "band", "The load is that of an inch of fabric (34 cords), entered as that of one cord: it breaks at 18 GPa.", say("cord", ("34", "cords_per_length", "unit", "stress", "strength", "cord_load_scale", "measured", "ratio", "times", "factor", "pa")),
     cord(lambda s: re.sub(r'"([\d.]+) lbf"', lambda m: f'"{float(m.group(1)) * 34:.1f} lbf"', s), "load"))
@@ -1401,7 +1401,7 @@ add("hose-dead-length-ft", H, "statement", "`4 ft` was entered for a dead length
 add("hose-length-ft-for-in", H, "statement", "`96 ft` was entered for a length of 96 in; the gauge length of the tested hose is 96 in.", say("length", ("gauge", "96 in", "unit", "2.4", "specimen", "pin-to-pin", "hose-64")), do(setkey, H64, "length", '"96 ft"'))
 add("hose-specimen-wall-for-diameter", H, "statement", "The thickness of the wall was entered as the diameter of the tested hose; its design is 5 in.", say(DIAMETER, ("outer_diameter", "outer diameter", "h64", "wall", "5 in", "modulus", "unit")), do(sub, 'diameter = ["5 in"]', 'diameter = ["1.25 in"]'))
 add("hose-specimen-diameter-cm", H, "statement", "`5 cm` was entered for a diameter of 5 in; its design is 5 in.", say(DIAMETER, ("outer_diameter", "outer diameter", "h64", "unit", "5 in", "modulus")), do(sub, 'diameter = ["5 in"]', 'diameter = ["5 cm"]'))
-add("hose-kind-wire", H, "band", "The hose is stated as a wire: no wire bears 97 %.", say(("kind", "wire"), ("strain", "modulus", "hose")), do(sub, 'kind = "stretch hose"', 'kind = "wire"'))
+add("hose-kind-wire", H, "band", "The hose is stated as a wire: no wire withstands 97 %.", say(("kind", "wire"), ("strain", "modulus", "hose")), do(sub, 'kind = "stretch hose"', 'kind = "wire"'))
 add("hose-rate-times-10", H, "statement", "The rate of L-64 is stated as 0.1 Hz; the log shows 0.01 Hz.", say(("rate", "frequency"), (*RATIO, "0.01")), do(setkey, "tests.L-64", "rate", '"0.1 Hz"'))
 add("hose-n-cycles-times-10", H, "statement", "n_cycles is 30 in campaign.toml and the log holds three.", say(("n_cycles", "cycles"), "30"), do(setkey, "tests.L-64", "n_cycles", "30"))
 add("hose-time-ms", H, "statement", "The time is in milliseconds and declared s, which the header does not contradict: a thousandth of the stated 0.01 Hz.", say(("time", "rate", "frequency"), (*u("ms"), "unit", "0.001", "1000", "1,000", *RATIO)),
@@ -1416,7 +1416,7 @@ add("hose-waveform", H, "data", "The waveform of D-64 is stated as triangular; t
 add("hose-unlogged-cycles", H, "no", "The cycles of which there is no log are 115,000 and were entered as 1,150,000.", say("unlogged_cycles"),
     do(setkey, "tests.D-64", "unlogged_cycles", "1150000"), keep=("S-64", "L-64", "S-68", "D-64"))
 # L-64 was made on a hose that does not soften
-add("hose-order-reversed", H, "no", "L-64 was done before S-64; the campaign says the reverse.", say("order"),
+add("hose-order-reversed", H, "no", "L-64 was run before S-64; the campaign says the reverse.", say("order"),
     lambda folder: (setkey(folder, "tests.S-64", "order", "2"), setkey(folder, "tests.L-64", "order", "1")))
 
 MISTAKES: tuple[Mistake, ...] = tuple(MISTAKES_)

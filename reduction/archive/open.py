@@ -259,7 +259,7 @@ def refuse_no_file(path: Path) -> None:
         return
     if path.exists():
         raise ArchiveError(
-            f"{path} is no archive",
+            f"{path} is not an archive",
             found="a folder" if path.is_dir() else "a pipe, a socket or a device",
             needed="a file",
             hint="Move it away.",

@@ -653,7 +653,7 @@ def surfaces_to_dataset(results: Sequence[ExperimentResult], *, origin: Origin) 
     names = [result.name for result in results]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
-        raise ArchiveError("an experiment stands twice", found=", ".join(twice))
+        raise ArchiveError("an experiment appears twice", found=", ".join(twice))
     values = _stacked([_values_of(result) for result in results])
     values |= {"experiment": texts(names)} | _note_values(results) | _caution_values(results)
     return build_dataset(

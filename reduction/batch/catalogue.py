@@ -301,7 +301,7 @@ def condition_of(text: str) -> Condition:
     """
     form = _FORM.fullmatch(text)
     if form is None or not form[3]:
-        raise SettingsError("--where is no condition", found=repr(text), needed=_EXAMPLE)
+        raise SettingsError("--where is not a condition", found=repr(text), needed=_EXAMPLE)
     name, operator, value = form[1], form[2].replace("==", "="), form[3]
     row = QUANTITIES.get(name)
     if row is None:

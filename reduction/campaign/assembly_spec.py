@@ -194,7 +194,7 @@ def _tethers(path: Path, keys: _AssemblyKeys) -> tuple[int, tuple[float, ...]]:
 def _check_tolerance(path: Path, keys: _AssemblyKeys, n_tethers: int, tolerance: float) -> None:
     if not 0 < tolerance < 1:
         raise in_toml(
-            path, "assembly.tolerance is no share of a length", found=f"{tolerance:g}",
+            path, "assembly.tolerance is not a fraction of a length", found=f"{tolerance:g}",
             needed="above 0, below 100 %",
         )  # fmt: skip
     if keys.free_lengths is not None or n_tethers < 2:

@@ -78,7 +78,7 @@ def _parse_factor(name: str, levels: tuple[str, str]) -> FactorLevels:
     bases = {_BASIS[share[2]] if share else "absolute" for share in shares}
     if len(bases) > 1:
         raise SettingsError(
-            f"the two levels of {name} are not given in one way",
+            f"the two levels of {name} are given in different forms",
             found=" and ".join(levels),
             needed="both in a unit, both in %RBS, or both in % of mean",
         )
@@ -111,7 +111,7 @@ def plan_experiment(
     runs: dict[str, tuple[float, ...]] = {}
     for run, coded in section.runs.items():
         product, kind = product_of(run, tests) or refuse(
-            "a run is no test of the campaign", found=run,
+            "a run is not a test of the campaign", found=run,
             needed="a test, or test/step: " + ", ".join(tests),
         )  # fmt: skip
         if kind not in _DYNAMIC:
@@ -119,13 +119,14 @@ def plan_experiment(
         is_short = len(coded) < len(factors)
         if is_short or (section.kind == "box-behnken" and len(coded) != len(factors)):
             refuse(
-                f"run '{run}' has {len(coded)} coded levels", needed=f"{len(factors)}, one a factor"
+                f"run '{run}' has {len(coded)} coded levels",
+                needed=f"{len(factors)}, one per factor",
             )
         # not (a <= 1) also catches NaN
         beyond = [level for level in coded if not abs(level) <= 1]
         if beyond:
             refuse(
-                f"run '{run}' is planned beyond the levels of its factors",
+                f"run '{run}' is planned outside the levels of its factors",
                 found=f"coded {beyond[0]:g}", needed="coded levels from -1 to 1",
             )  # fmt: skip
         runs[product] = coded
@@ -134,11 +135,11 @@ def plan_experiment(
     pulls: dict[str, str] = {}
     for specimen, pull in section.quasi_static.items():
         product, kind = product_of(pull, tests) or refuse(
-            f"the slow pull of '{specimen}' is no test of the campaign", found=pull,
+            f"the slow pull of '{specimen}' is not a test of the campaign", found=pull,
             needed="a test, or test/step: " + ", ".join(tests),
         )  # fmt: skip
         if kind not in _PULLS:
-            refuse(f"'{pull}' is no slow pull", found=kind, needed=" or ".join(_PULLS))
+            refuse(f"'{pull}' is not a slow pull", found=kind, needed=" or ".join(_PULLS))
         if specimen not in tests[pull.partition("/")[0]].specimens:
             refuse(f"the slow pull '{pull}' does not pull '{specimen}'")
         pulls[specimen] = product
@@ -147,7 +148,7 @@ def plan_experiment(
         bare = sorted(one for one in pulled if specimens[one].rated_break_strength is None)
         if bare:
             refuse(
-                "a level is a share of the break strength, which is not stated",
+                "a level is relative to the break strength, which is not stated",
                 found="no rated_break_strength of " + ", ".join(bare),
                 needed='specimens.NAME.rated_break_strength = "6400 lbf"',
             )
@@ -168,11 +169,11 @@ def _check_responses(section: ExperimentSection, refuse: Callable[..., NoReturn]
     """Each response once, and a transform for no other."""
     listed = ", ".join(section.responses)
     if len(set(section.responses)) < len(section.responses):
-        refuse("a response stands twice", found=listed, needed="each response once")
+        refuse("a response is listed twice", found=listed, needed="each response once")
     others = [name for name in section.transform if name not in section.responses]
     if others:
         refuse(
-            "a transform is for a response that is not asked for", found=", ".join(others),
+            "a transform is stated for a response that is not requested", found=", ".join(others),
             needed=f"one of responses: {listed}",
         )  # fmt: skip
 
@@ -192,8 +193,8 @@ def agree_on_pulls(
                 other, before = first.setdefault((run, specimen), (name, pull))
                 if before != pull:
                     raise SettingsError(
-                        f"{path}: run '{run}' is in two experiments that do not name one slow "
-                        f"pull of '{specimen}'",
+                        f"{path}: run '{run}' is in two experiments with different slow pulls of "
+                        f"'{specimen}'",
                         found=f"{before or 'none'} in '{other}', {pull or 'none'} in '{name}'",
                         needed="the same quasi_static in both: a run has one K_0",
                     )
@@ -305,7 +306,7 @@ def _factor(name: str, written: tuple[str | float, str | float]) -> _FactorSpec:
     units = {_written_unit(level) for level in (low, high)}
     if len(units) > 1:
         raise SettingsError(
-            f"the two levels of {name} are not given in one way",
+            f"the two levels of {name} are given in different forms",
             found=f"{low} and {high}",
             needed="both in one unit",
         )
@@ -415,7 +416,7 @@ class _CellSheet:
         if len(reached) == 1:
             return reached[0]
         if reached:
-            raise self.fault(f"two columns hold {name}", needed="one")
+            raise self.fault(f"two columns contain {name}", needed="one")
         near = get_close_matches(name, [column.name for column in self.columns], n=1)
         raise self.fault(
             f"{what} '{name}' has no column", needed=f"a column {name}" + (
@@ -432,8 +433,8 @@ class _CellSheet:
             if not _CELL_NUMBER.fullmatch(cell):
                 raise LogError(
                     self.path, "a value is not a number", row=row, channel=column.header,
-                    found=repr(cell), needed="a number with a decimal point, without its unit; "
-                    "an empty cell where there is none",
+                    found=repr(cell),
+                    needed="a number with a decimal point and no unit, or an empty cell",
                 )  # fmt: skip
             values[place] = float(cell)
             if not math.isfinite(values[place]):
@@ -459,8 +460,8 @@ def _cells(path: Path, row: int, line: str, delimiter: str) -> list[str]:
     cells = split_row(line, delimiter)
     if cells is None:
         raise LogError(
-            path, "a row of the table of runs cannot be parted into cells", row=row,
-            found=repr(cut(line, 60)), needed="one line a row, every quote closed in it",
+            path, "a row of the table of runs cannot be split into cells", row=row,
+            found=repr(cut(line, 60)), needed="one line per row, with every quote closed",
         )  # fmt: skip
     return [cell.strip() for cell in cells]
 
@@ -473,14 +474,14 @@ def _read_cells(path: Path) -> _CellSheet:
         if line.strip(" ,;\t") and not line.lstrip().startswith("#")
     ]
     if not lines:
-        raise LogError(path, "the table of runs is empty", needed="a header and one row a run")
+        raise LogError(path, "the table of runs is empty", needed="a header and one row per run")
     delimiter = max(",;\t", key=lines[0][1].count)
     table = [(row, _cells(path, row, line, delimiter)) for row, line in lines]
     (first, header), *rows = table
     if not all(header) or len(set(header)) < len(header):
         raise LogError(
             path, "the header of the runs cannot be used", row=first, found=", ".join(header),
-            needed="a name for every column, each once",
+            needed="a unique name for every column",
         )  # fmt: skip
     if all(_CELL_NUMBER.fullmatch(cell) for cell in header):
         raise LogError(
@@ -490,11 +491,11 @@ def _read_cells(path: Path) -> _CellSheet:
     for row, cells in rows:
         if len(cells) != len(header):
             raise LogError(
-                path, "a row has another number of cells than the header", row=row,
+                path, "the number of cells in a row differs from the header", row=row,
                 found=str(len(cells)), needed=str(len(header)),
             )  # fmt: skip
     if not rows:
-        raise LogError(path, "the table of runs has no rows", needed="one row a run")
+        raise LogError(path, "the table of runs has no rows", needed="one row per run")
     cells_by_column = zip(*(cells for _, cells in rows), strict=True)
     columns = []
     for name, column in zip(header, cells_by_column, strict=True):
@@ -667,10 +668,10 @@ def _same_run(sheet: _CellSheet, header: str, keys: Iterable[tuple[str, ...]]) -
     for row, key in zip(sheet.row, keys, strict=True):
         if key[-1] and seen.setdefault(key, row) != row:
             raise DataError(
-                f"{sheet.path}:{row} [{header}]: a run stands twice",
+                f"{sheet.path}:{row} [{header}]: a run is listed twice",
                 found=f"{key[-1]!r}, also in row {seen[key]}",
                 needed="each run once",
-                hint="A repeat is a run of its own and has a number of its own.",
+                hint="Give a repeat its own run number.",
             )
 
 
@@ -711,8 +712,8 @@ def read_runs(path: Path, spec: ExperimentSpec | None = None) -> RunSeries:
         first = int(np.flatnonzero(lost)[0])
         name = factors[int(np.flatnonzero(~np.isfinite(coded[first]))[0])].name
         raise DataError(
-            f"{path}:{sheet.row[first]} [{name}]: a run has a value and no level",
-            needed="the level that the run reached",
+            f"{path}:{sheet.row[first]} [{name}]: a run has a value but no level",
+            needed="the level reached in the run",
         )
     dummies = [column for column in sheet.columns if _DUMMY.fullmatch(column.name)]
     blocks, notes = _blocks(sheet)
@@ -758,7 +759,7 @@ def _blocks(sheet: _CellSheet) -> tuple[tuple[str, ...] | None, list[str]]:
     if empty:
         raise LogError(
             sheet.path, f"a run has no {name}", row=empty[0], channel=name,
-            needed="a name in every row, or in none",
+            needed="a name in every row, or in no row",
         )  # fmt: skip
     pairs = set(zip(*several.values(), strict=True))
     if len(several) > 1 and len(pairs) > len(set(labels)):

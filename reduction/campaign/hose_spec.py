@@ -200,7 +200,7 @@ def hose_of(path: Path, name: str, place: str, keys: _HoseKeys, cord: CordSectio
         ) from error  # fmt: skip
     if not 0 < keys.strain_step < 1:
         raise in_toml(
-            path, f"{place}.strain_step is no step", found=f"{keys.strain_step:g}",
+            path, f"{place}.strain_step is not a step", found=f"{keys.strain_step:g}",
             needed='above 0 and below 1, such as "1 %"',
         )  # fmt: skip
     return HosePlan(
@@ -243,7 +243,7 @@ def _uncertainties(
         where = f"{place}.standard_uncertainty.{key}"
         if key not in _DIMENSIONS:
             raise in_toml(
-                path, f"{where} is no number of a hose that may be uncertain",
+                path, f"{where} is not a number of a hose that can have an uncertainty",
                 needed="one of " + ", ".join(_DIMENSIONS),
             )  # fmt: skip
         if key in ("wrap_diameter", "layer_diameters") and getattr(keys, key) is None:
@@ -263,7 +263,7 @@ def _uncertainties(
         # a dead length may be nil and not known well
         if not (np.isfinite(number) and 0 <= number < (size or 1.0)):
             raise in_toml(
-                path, f"{where} is no standard uncertainty", found=str(text),
+                path, f"{where} is not a standard uncertainty", found=str(text),
                 needed="zero or more, below the number itself; a dead_length needs the length",
             )  # fmt: skip
         found[name] = number

@@ -240,7 +240,7 @@ def _columns(path: Path, header: list[str]) -> dict[str, tuple[int, float]]:
         stem, _, suffix = name.strip().rpartition("_")
         if stem in _LENGTHS and suffix in _SUFFIXES:
             if stem in found:
-                raise LogError(path, f"two columns hold {stem}", row=1, channel=name)
+                raise LogError(path, f"two columns contain {stem}", row=1, channel=name)
             found[stem] = (index, scale_to_si(_SUFFIXES[suffix], "length")[0])
     missing = [name for name in _LENGTHS if name not in found]
     missing += [name for name in ("test", "specimen", "hold") if name not in header]
@@ -270,7 +270,7 @@ def _check_hold(path: Path, row: int, hold: str) -> None:
         return
     if _NUMBER.fullmatch(hold.rstrip("% ")) is None:
         raise LogError(
-            path, "a hold has no known name", row=row, channel="hold", found=repr(cut(hold, 60)),
+            path, "unknown name of a hold", row=row, channel="hold", found=repr(cut(hold, 60)),
             needed="slack, min, centre, max or a strain",
         )  # fmt: skip
 
@@ -298,7 +298,7 @@ def _read_marks(path: Path, name: str = "") -> dict[str, SpliceMarks]:
         entry.lengths.append((values[0], values[1], values[2]))
         entry.place.append(MarkPlace(name or path.name, number, far_thimble))
     if not rows:
-        raise LogError(path, "the marks file has no rows", needed="one row a reading")
+        raise LogError(path, "the marks file has no rows", needed="one row per reading")
     marks = {}
     for specimen, entry in rows.items():
         table = np.array(entry.lengths)
@@ -403,7 +403,7 @@ def read_test_table(path: Path) -> dict[str, TestSection]:
     for name in header:
         if name not in _COLUMNS:
             raise _in_table(
-                path, "a column is no key of a test", row=1, channel=name,
+                path, "a column is not a key of a test", row=1, channel=name,
                 needed="one of " + ", ".join(_COLUMNS),
                 hint=f"{' and '.join(_TABLES[1:])} stand in campaign.toml, as [tests.ID]."
                 if name in _TABLES else None,
@@ -414,7 +414,9 @@ def read_test_table(path: Path) -> dict[str, TestSection]:
         cells = dict(zip(header, texts, strict=True))
         name = cells["id"].strip()
         if name in tests:
-            raise _in_table(path, "a test stands twice", row=number, channel="id", found=repr(name))
+            raise _in_table(
+                path, "a test appears twice", row=number, channel="id", found=repr(name)
+            )
         filled = _cells(path, number, cells)
         if "file" not in filled:
             raise _in_table(path, "a test has no file", row=number, channel="file")
@@ -599,7 +601,7 @@ def _plan_comparison(
     found = product_of(section.measured, tests)
     if found is None:
         raise in_toml(
-            path, f"{place}: what was measured is no test of the campaign",
+            path, f"{place}: measured is not a test of the campaign",
             found=section.measured, needed="a test, or test/step: " + ", ".join(tests),
         )  # fmt: skip
     product, kind = found
@@ -610,7 +612,7 @@ def _plan_comparison(
         )  # fmt: skip
     if section.predicted not in hoses:
         raise in_toml(
-            path, f"{place}: what is predicted is no hose of the campaign",
+            path, f"{place}: predicted is not a hose of the campaign",
             found=section.predicted, needed="one of [hoses]: " + (", ".join(hoses) or "none"),
         )  # fmt: skip
     pulled = tests[section.measured.partition("/")[0]].specimens
@@ -627,8 +629,8 @@ def _plan_comparison(
         )  # fmt: skip
     if specimens[specimen].kind != "stretch hose":
         raise in_toml(
-            path, f"{place}: '{specimen}' is no stretch hose", found=specimens[specimen].kind,
-            needed='kind = "stretch hose" of what is held against a hose',
+            path, f"{place}: '{specimen}' is not a stretch hose", found=specimens[specimen].kind,
+            needed='kind = "stretch hose"',
         )  # fmt: skip
     if len(set(section.calibrate)) < len(section.calibrate):
         raise in_toml(
@@ -863,7 +865,7 @@ def _id_of_products(processed: Path) -> str:
     inside = [one.name for one in folders if archives_of_tests(one)]
     if inside:
         raise SettingsError(
-            f"{processed} holds a folder for each campaign", found=", ".join(inside),
+            f"{processed} contains one folder per campaign", found=", ".join(inside),
             needed=f"one of them, such as {processed / inside[0]}",
         )  # fmt: skip
     raise ArchiveError(
@@ -925,10 +927,10 @@ def find_campaign(processed: Path, stated: Path | None = None, *, name: str = ""
         if _id_of(path) == name:
             return path
     raise SettingsError(
-        f"the campaign.toml of '{name}' is not where it is looked for",
+        f"the campaign.toml of '{name}' was not found",
         found="none at " + " or ".join(str(path) for path in dict.fromkeys(places)),
         needed="--campaign CAMPAIGN.toml",
-        hint="It was moved since the run: an archive itself keeps no path.",
+        hint="It was moved since the run; archives store no path.",
     )
 
 

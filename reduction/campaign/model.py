@@ -73,7 +73,7 @@ class _Limit(ReadKey):
                 raise SettingsError("a size is not in bytes", found=repr(stated), needed=needed)
         value = stated if self.dimension is None else value_in_si(stated, self.dimension)
         if not self.least <= value <= self.most:
-            raise SettingsError("this is no limit", found=repr(str(stated)), needed=needed)
+            raise SettingsError("this is not a limit", found=repr(str(stated)), needed=needed)
         return value if self.dimension == "time" else round(value)
 
 
@@ -150,7 +150,9 @@ class _Standard(ReadKey):
         most, words = _GREATEST_OF.get(self.dimension, (math.inf, ""))
         if not 0 <= found <= most:
             raise SettingsError(
-                "this is no standard uncertainty", found=str(stated), needed=f"zero or more{words}"
+                "this is not a standard uncertainty",
+                found=str(stated),
+                needed=f"zero or more{words}",
             )
         return found
 
@@ -243,7 +245,7 @@ def stated_errors(
         if specimen.diameter and diameter > _OF_DIAMETER * specimen.mean_diameter:
             raise in_toml(
                 path,
-                "uncertainty.diameter: this is no standard uncertainty of the diameter of "
+                "uncertainty.diameter: this is not a standard uncertainty of the diameter of "
                 f"'{specimen.name}'",
                 found=f"{1e3 * diameter:.4g} mm of {1e3 * specimen.mean_diameter:.4g} mm",
                 needed="at most 20 % of it, which is 40 % of every modulus",
@@ -306,7 +308,7 @@ def report_details(
     unknown = sorted(set(section.items) - set(specimens))
     if unknown:
         raise in_toml(
-            path, "report.items names what is no specimen of the campaign",
+            path, "report.items names something that is not a specimen of the campaign",
             found=", ".join(unknown), needed=f"one of {', '.join(specimens)}",
         )  # fmt: skip
     if section.limits and section.decision_rule is None:
@@ -334,7 +336,7 @@ def _limit(
     product = product_of(one.test, tests)
     if product is None:
         raise in_toml(
-            path, f"{place}.test is no test of the campaign", found=repr(one.test),
+            path, f"{place}.test is not a test of the campaign", found=repr(one.test),
             needed="one of " + ", ".join(tests) + "; of a test with steps TEST/STEP",
         )  # fmt: skip
     if one.lower is None and one.upper is None:
@@ -692,7 +694,7 @@ class TestSection(_Kept):
         """A list of file names has no room for the layout of each piece."""
         if isinstance(value, list | tuple) and any(isinstance(entry, str) for entry in value):
             raise SettingsError(
-                "the pieces of a record are not tables",
+                "the files of a record are not given as tables",
                 found=repr(value),
                 needed='a file name, or a list such as [{ file = "a.csv" }, { file = "b.csv" }]',
             )

@@ -144,14 +144,14 @@ def _columns(path: Path, header: list[str]) -> tuple[dict[str, list[_Column]], l
             continue
         elif near := get_close_matches(_word(name), (*_WORDS, *_MEASURED, "value"), cutoff=0.75):
             raise LogError(
-                path, "a column has no known name", row=1, channel=name, needed=f"{near[0]}?",
-                hint="Remarks of your own need a name that is not like one of the format.",
+                path, "unknown column name", row=1, channel=name, needed=f"{near[0]}?",
+                hint="Rename a column of your own if its name resembles a known one.",
             )  # fmt: skip
         else:
             others.append(name)
     for stem, columns in measured.items():
         if stem != "value" and len(columns) > 1:
-            raise LogError(path, f"two columns hold {stem}", row=1, channel=columns[1].header)
+            raise LogError(path, f"two columns contain {stem}", row=1, channel=columns[1].header)
         for column in columns:
             if stem != "value" and column.unit is None:
                 raise LogError(
@@ -279,13 +279,13 @@ def _read_results(path: Path) -> tuple[Outcome, ...]:
         key = (outcome.test, outcome.specimen, outcome.quantity)
         if outcome.test and seen.setdefault(key, number) != number:
             raise LogError(
-                path, f"{outcome.quantity} of a test stands twice", row=number,
+                path, f"{outcome.quantity} of a test is listed twice", row=number,
                 found=f"{outcome.test!r}, also in row {seen[key]}",
-                needed="one value of a quantity for each test and specimen",
+                needed="one value of each quantity per test and specimen",
             )  # fmt: skip
         outcomes.append(outcome)
     if not outcomes:
-        raise LogError(path, "the table of results has no rows", needed="one row an outcome")
+        raise LogError(path, "the table of results has no rows", needed="one row per outcome")
     return tuple(outcomes)
 
 
@@ -305,6 +305,6 @@ def outcomes_of(
                 table, "an outcome names an unknown specimen", row=row.row, channel="specimen",
                 found=repr(row.specimen),
                 needed="one of " + ", ".join(specimens) if specimens else "[specimens.NAME]",
-                hint="A name without a sheet, of a break or a test, stands in id.",
+                hint="Put the name of a break or test without a sheet into id.",
             )  # fmt: skip
     return source, complete_from_specimens(rows, specimens)

@@ -58,7 +58,7 @@ def read_csv_rows(
             raise fault(
                 path, f"a row of {what} cannot be parted into cells", row=number,
                 found=repr(cut(line, 60)),
-                needed="one line a row, every quote closed in it, no cell of 131,072 characters",
+                needed="one line per row, with every quote closed, no cell of 131,072 characters",
             )  # fmt: skip
         return cells
 
@@ -71,7 +71,7 @@ def read_csv_rows(
                 continue
             if len(cells) != len(header):
                 raise fault(
-                    path, "a row has another number of cells than the header", row=number,
+                    path, "the number of cells in a row differs from the header", row=number,
                     found=str(len(cells)), needed=str(len(header)),
                 )  # fmt: skip
             yield number, cells

@@ -25,7 +25,7 @@ def value_in_si(text: Number, dimension: Dimension) -> float:
     value = parse_quantity(text, dimension)
     if not abs(value) < _GREATEST:
         raise SettingsError(
-            "a number is beyond anything physical", found=str(text), needed="a finite one"
+            "a number is outside the physical range", found=str(text), needed="a finite number"
         )
     return value
 

@@ -115,7 +115,7 @@ def _places(texts: Sequence[str]) -> dict[str, str]:
         name, sign, label = text.partition("=")
         if not (sign and label.strip()):
             raise SettingsError(
-                "--at is no place", found=repr(text), needed='such as "branch=ascending"'
+                "--at is not understood", found=repr(text), needed='such as "branch=ascending"'
             )
         found[name.strip()] = parse_place(name, label)
     return found

@@ -61,10 +61,10 @@ def start_campaign(folder: Path, output: CommandOutput) -> None:
     standing = sorted(name for name in texts if (folder / name).exists())
     if standing:
         raise SettingsError(
-            f"{folder}: a campaign is there already",
+            f"{folder}: the folder already contains a campaign",
             found=", ".join(standing),
             needed="a folder without these files",
-            hint="Move them away first; nothing is written over.",
+            hint="Move them away first; existing files are not overwritten.",
         )
     for name, text in texts.items():
         with (folder / name).open("x", encoding="utf-8", newline="") as file:
@@ -109,7 +109,7 @@ def _find_browser() -> str:
         found = shutil.which(asked)
         if found is None:
             raise SettingsError(
-                "BROWSER_PROGRAM is no program", found=repr(asked),
+                "BROWSER_PROGRAM is not a program", found=repr(asked),
                 needed="Chromium, Chrome or Edge", hint=_BY_HAND,
             )  # fmt: skip
         return found
@@ -117,7 +117,7 @@ def _find_browser() -> str:
     program = next(filter(None, candidates), None)
     if program is None:
         raise SettingsError(
-            "there is no browser that could print the report",
+            "no browser found to print the report",
             found="neither Chromium nor Chrome nor Edge",
             needed="one of them on the path, or its path in BROWSER_PROGRAM",
             hint=_BY_HAND,
@@ -142,8 +142,8 @@ def _print_page(page: Path, pdf: Path, *, browser: str) -> None:
         said = _run(command, browser)
         if not (printed.is_file() and printed.read_bytes()[:5] == b"%PDF-"):
             raise ArchiveError(
-                f"{pdf} was not printed", found=f"{browser}: {said or 'no word of why'}",
-                needed="a browser that prints without a window", hint=_BY_HAND,
+                f"{pdf} was not printed", found=f"{browser}: {said or 'no reason given'}",
+                needed="a browser that can print without a window", hint=_BY_HAND,
             )  # fmt: skip
         shutil.copyfile(printed, part)
 
@@ -189,7 +189,7 @@ def _refresh_design_page(
     def unreadable(archive: Path, why: str) -> None:
         if archive.parent.name == made:
             raise ArchiveError(
-                f"{archive} cannot be read, and the page of design values is left as it was",
+                f"{archive} cannot be read, so the design-value page was not updated",
                 found=why.removesuffix("."),
                 hint="Check the disk, and run again.",
             )
@@ -336,7 +336,7 @@ def _chosen_workers(jobs: int | None, scheduler: str | None) -> Iterator[Workers
         raise SettingsError(
             "--jobs and --scheduler exclude each other",
             found=f"--jobs {jobs} --scheduler {scheduler}",
-            hint="How many workers a scheduler has is said where they are started.",
+            hint="The number of workers of a scheduler is set where they are started.",
         )
     if scheduler is None:
         with local_workers(jobs) if jobs is not None and jobs > 1 else nullcontext() as workers:
@@ -350,7 +350,7 @@ def _chosen_workers(jobs: int | None, scheduler: str | None) -> Iterator[Workers
         raise SettingsError(
             "--scheduler needs Dask, which is not installed",
             found=f"no package '{error.name}'",
-            hint="Install it with: pip install 'mooring-reduction[cluster]'. --jobs needs none.",
+            hint="Install it: pip install 'mooring-reduction[cluster]'. --jobs does not need it.",
         ) from error
     with users_cluster(scheduler) as workers:
         yield workers
@@ -536,9 +536,9 @@ def report_again(
                 written["pdfs"].append(str(_printed(client, output)))
     if is_printed and not written["client_reports"]:
         raise SettingsError(
-            "there is no report to a client to print", found=f"no report.json in {processed}",
+            "there is no client report to print", found=f"no report.json in {processed}",
             needed="[report] in campaign.toml",
-            hint="Add it and run the campaign again: what did not change is not reduced again.",
+            hint="Add it and run the campaign again; unchanged tests are not reduced again.",
         )  # fmt: skip
     root = processed.resolve().parent if folders == [processed] else processed
     output.answer(written | {"design_values": _refresh_design_page(root, reports, output)})

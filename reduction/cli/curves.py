@@ -85,7 +85,9 @@ def _published(
 ) -> PieceSource:
     if len(sources) > 1:
         raise SettingsError(
-            "a published tether stands alone", found=", ".join(sources), needed="one SOURCE"
+            "a published tether cannot be combined with other sources",
+            found=", ".join(sources),
+            needed="one SOURCE",
         )
     found = published_piece_sources()[sources[0]]
     if specimen is not None:
@@ -94,7 +96,7 @@ def _published(
         )
     if branch not in (None, found.branch):
         raise SettingsError(
-            f"{found.name} has its {found.branch} branch alone: no other is tabulated",
+            f"{found.name} has only its {found.branch} branch",
             found=str(branch),
             needed=found.branch,
         )
@@ -110,18 +112,19 @@ def _archives(source: str) -> list[Path]:
         if found:
             return found
         raise SettingsError(
-            f"{path} holds no archive of a test", needed="processed/CAMPAIGN after `reduction run`"
+            f"{path} contains no archive of a test",
+            needed="processed/CAMPAIGN after `reduction run`",
         )
     tethers = published_piece_sources()
     if source in published_sources():
         near = [name for name in tethers if source.startswith(f"{name}-")]
         raise SettingsError(
-            f"{source} is one published curve, no pieces of one",
+            f"{source} is a single published curve, not a set of pieces",
             needed=", ".join(near or tethers),
-            hint="`reduction export` and `reduction lookup` take it as it is.",
+            hint="`reduction export` and `reduction lookup` accept it as it is.",
         )
     raise SettingsError(
-        f"there is nothing called '{source}'",
+        f"unknown source '{source}'",
         needed="archives, a folder of a processed campaign, or one of " + ", ".join(tethers),
     )
 
@@ -134,7 +137,7 @@ def _specimen(datasets: Sequence[xr.Dataset], sources: Sequence[str], specimen: 
     if specimen is None and len(names) > 1:
         raise SettingsError(
             f"{where}: several specimens", found=", ".join(names), needed="one specimen",
-            hint="Say which with --specimen, or in the specification.",
+            hint="Name one with --specimen, or in the specification.",
         )  # fmt: skip
     if specimen is not None and specimen not in names:
         raise SettingsError(f"{where}: there is no specimen '{specimen}'", needed=", ".join(names))
@@ -158,7 +161,7 @@ def _table_format(path: Path) -> str:
     """Format of a table, or `PAGE`, by the name of its file."""
     if path.suffix.lower() not in _FORMATS:
         raise SettingsError(
-            "the name of the file says its format", found=path.name,
+            "unknown file format", found=path.name,
             needed="a name that ends in " + ", ".join(_FORMATS),
         )  # fmt: skip
     return _FORMATS[path.suffix.lower()]

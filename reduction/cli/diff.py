@@ -45,7 +45,7 @@ def _run_revision(revision: str, campaign: Path, scratch: Path, output: CommandO
     made = sorted(processed.iterdir()) if processed.is_dir() else []
     if not made:
         raise SettingsError(
-            f"revision {revision} makes nothing of {campaign}",
+            f"revision {revision} cannot run {campaign}",
             found=_last_line(done.stderr) or f"exit status {done.returncode}",
             hint="A key of campaign.toml may be newer than that revision.",
         )
@@ -106,7 +106,7 @@ def _install(source: Path, scratch: Path, revision: str) -> Path:
             raise SettingsError(
                 f"revision {revision} cannot be installed",
                 found=_last_line(done.stderr) or _last_line(done.stdout),
-                hint="pip needs the net, or what it has kept of it.",
+                hint="pip needs network access, or cached packages.",
             )
     return python
 

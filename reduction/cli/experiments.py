@@ -107,7 +107,7 @@ def plan_runs(kind: DesignKind, path: Path, *, out: Path | None, output: Command
 def _design(kind: DesignKind, spec: ExperimentSpec) -> Design:
     if spec.keys.kind not in (None, kind):
         raise SettingsError(
-            "the design is another than that of the command", found=f'kind = "{spec.keys.kind}"',
+            "the design in the file differs from the command", found=f'kind = "{spec.keys.kind}"',
             needed=kind,
         )  # fmt: skip
     if not spec.factors:
@@ -117,13 +117,13 @@ def _design(kind: DesignKind, spec: ExperimentSpec) -> Design:
     if kind == "box-behnken":
         if spec.keys.n_runs is not None:
             raise SettingsError(
-                "experiment.n_runs is for plackett-burman", needed="n_centre, or nothing"
+                "experiment.n_runs applies only to plackett-burman", needed="n_centre, or nothing"
             )
         return box_behnken(len(spec.factors), n_centre=spec.keys.n_centre)
     if spec.keys.n_centre is not None:
         raise SettingsError(
-            "experiment.n_centre is for box-behnken", needed="n_runs, or nothing",
-            hint="Two levels have no centre.",
+            "experiment.n_centre applies only to box-behnken", needed="n_runs, or nothing",
+            hint="A design with two levels has no centre.",
         )  # fmt: skip
     return plackett_burman(len(spec.factors), n_runs=spec.keys.n_runs)
 
@@ -690,7 +690,7 @@ def _fit(runs: RunSeries, spec: ExperimentSpec | None) -> ResponseSurfaces:
     levels = [np.unique(column[np.isfinite(column)].round(6)).size for column in runs.coded.T]
     if set(levels) == {2}:
         raise FitError(
-            "two levels a factor carry no square",
+            "two levels per factor cannot determine squares",
             needed="three levels, or a screening",
             hint='kind = "plackett-burman" under [experiment] of a SPEC.toml gives the effects.',
         )
@@ -719,7 +719,7 @@ def _screen(runs: RunSeries) -> tuple[ScreeningEffects, tuple[str, ...]]:
         raise DataError(
             f"row {runs.row[run]}: a level of {runs.factor_names[factor]} is neither low nor high",
             found=f"{runs.coded[run, factor]:.4g} coded",
-            needed="-1 or 1, as a screening of two levels has them",
+            needed="-1 or 1, as in a two-level screening",
         )
     if away.any():
         notes.append(f"levels up to {away.max():.2g} coded off the plan count as those of the plan")

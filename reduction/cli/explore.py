@@ -23,9 +23,9 @@ def serve(
     """Serve the page of a campaign until Ctrl-C, or until the system asks it to end."""
     if output.quiet and not opens:
         raise SettingsError(
-            "nobody would know the address",
+            "the address would be shown nowhere",
             found="--quiet and --no-browser",
-            needed="one of them at most",
+            needed="at most one of them",
         )
     path = find_campaign(processed, campaign)
     with campaign_progress(output) as progress:

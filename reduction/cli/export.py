@@ -61,7 +61,7 @@ def _stated_hydrodynamics(
     if drag is None and added_mass is None:
         if source is not None:
             raise SettingsError(
-                "a source of coefficients without coefficients",
+                "a source of coefficients is stated without coefficients",
                 found=f"--hydrodynamics-source {source}",
                 needed="--drag or --added-mass with it",
             )
@@ -117,12 +117,12 @@ def _with_syrope(
         return line
     if form != "syrope":
         raise SettingsError(
-            "a working curve is of a Syrope line alone", found=f"--form {form}",
+            "a working curve applies only to a Syrope line", found=f"--form {form}",
             needed="--form syrope",
         )  # fmt: skip
     if working_curve is None or greatest_mean_tension is None:
         raise SettingsError(
-            "half a Syrope line is stated",
+            "a Syrope line is only partly stated",
             found="--working-curve" if working_curve else "--greatest-mean-tension",
             needed="--working-curve and --greatest-mean-tension",
         )
@@ -285,7 +285,7 @@ def write_export(request: ExportRequest) -> ExportedFiles:
         )
     to, out, form, sources = request.to, request.out, request.form, request.sources
     if not out.name:
-        raise SettingsError("--out names no file", found=repr(str(out)), needed="a file")
+        raise SettingsError("--out is not a file name", found=repr(str(out)), needed="a file")
     levels = {name: text for name in _LEVELS if (text := getattr(request, name)) is not None}
     tables = Path(sources[0]) / "tables"
     if to == "xlsx" and not levels and len(sources) == 1 and tables.is_dir():
@@ -490,7 +490,7 @@ def _line_of(
         return _of_assembly(Path(source), chosen, levels, stated)
     if precedence is not None:
         raise SettingsError(
-            f"{source} is one curve: there are no pieces that could go before others",
+            f"{source} is a single curve, so precedence has no effect",
             found=f"--precedence {precedence}", needed="several tests, or no --precedence",
         )  # fmt: skip
     published = published_sources()
@@ -498,7 +498,7 @@ def _line_of(
         line = published[source]
         if curve == "mean" or specimen is not None:
             raise SettingsError(
-                f"{source} is one published line, and its report has no mean of the branches",
+                f"{source} is a single published line, and its report has no mean of the branches",
                 found=f"--curve {curve}" if curve == "mean" else f"--specimen {specimen}",
                 needed="--curve ascending or descending, or neither",
             )
@@ -526,7 +526,7 @@ def _line_of(
         words = source.lower().replace("-", " ").split()
         near = [name for name in published if all(word in name for word in words)]
         raise SettingsError(
-            "there is nothing of that name to export",
+            "unknown source to export",
             found=source,
             needed="archives of reduced tests or predicted hoses, processed/CAMPAIGN, or one of "
             + ", ".join(near or published),
@@ -558,7 +558,7 @@ def _of_levels(
     given = [f"{name} {value}" for name, value in chosen.items() if value is not None]
     if given:
         raise SettingsError(
-            "the curve that goes with levels is that of the slow pull", found=", ".join(given),
+            "the curve used with levels is always that of the slow pull", found=", ".join(given),
             needed="levels without them",
         )  # fmt: skip
     _refuse_half_levels(str(path), levels)
@@ -566,7 +566,7 @@ def _of_levels(
     found = [one for one in lines if specimen in (None, one.name, one.name.split(" ")[-1])]
     if len(found) != 1:
         raise SettingsError(
-            "which line is meant is not said" if found else f"there is no '{specimen}'",
+            "several lines, none named" if found else f"there is no '{specimen}'",
             found=str(path),
             needed="--specimen with one of " + ", ".join(f'"{one.name}"' for one in lines),
         )
@@ -610,7 +610,7 @@ def _of_assembly(
     given = [f"{name} {value}" for name, value in chosen.items() if value is not None]
     if given:
         raise SettingsError(
-            "the specification of an assembly says of which curve it is",
+            "the curve of an assembly is set in its specification",
             found=", ".join(given), needed="[assembly.curve]",
         )  # fmt: skip
     if levels:
@@ -620,7 +620,7 @@ def _of_assembly(
 
 def _levels_choose_nothing(levels: dict[str, str], where: str) -> SettingsError:
     return SettingsError(
-        f"levels of a cycle choose nothing in {where}",
+        f"levels of a cycle have no effect for {where}",
         found=", ".join(f"--{name.replace('_', '-')}" for name in levels),
         needed="a published line, or a campaign with cycles of a rope and a slow pull",
     )

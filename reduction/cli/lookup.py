@@ -74,7 +74,7 @@ def lines_of_source(source: str) -> list[LineSource]:
         lines = lines_of_archive(path)
         if not lines:
             raise ArchiveError(
-                "the archive has nothing that can be looked up", found=str(path),
+                "the archive contains nothing that can be looked up", found=str(path),
                 needed="moduli of a cyclic test, a slow pull, or surfaces of an experiment",
             )  # fmt: skip
         return lines
@@ -90,7 +90,7 @@ def lines_of_source(source: str) -> list[LineSource]:
         f"no line is called '{source}'",
         needed="an archive, a folder of a processed campaign, or "
         + (f"one of {', '.join(near)}" if near else f"one of {len(published)} published lines"),
-        hint="`reduction lookup published --list` says what there is.",
+        hint="List them with `reduction lookup published --list`.",
     )
 
 
@@ -123,7 +123,7 @@ def _no_products(path: Path) -> SettingsError:
     return SettingsError(
         problem,
         found=found,
-        needed="the products of a campaign, which are made first",
+        needed="the products of a campaign",
         hint=f"`reduction run raw/{campaign}/campaign.toml` makes processed/{campaign}.",
     )
 
@@ -142,7 +142,7 @@ def one_line_of(lines: Sequence[LineSource], quantity: str, name: str | None) ->
         raise SettingsError(
             f"there is no line '{name}'",
             needed=", ".join(dict.fromkeys(line.name for line in lines)),
-            hint=f'Such as `--line "{lines[0].name}"`.',
+            hint=f'Example: `--line "{lines[0].name}"`.',
         )
     having = [line for line in named if quantity in line.quantities]
     if not having and name is not None:
@@ -160,7 +160,7 @@ def one_line_of(lines: Sequence[LineSource], quantity: str, name: str | None) ->
             f"several lines have {quantity}",
             found=", ".join(dict.fromkeys(f"{line.name} ({line.source})" for line in having)),
             needed="one archive, --line NAME, or a search that leaves one",
-            hint=f'Such as `--line "{having[0].name}"`.',
+            hint=f'Example: `--line "{having[0].name}"`.',
         )
     return having[0] if having else named[0]
 
@@ -207,7 +207,7 @@ def parsed_search(
     search: dict[str, Any] = {name: text for name, text in words.items() if text is not None}
     if tolerance is not None and diameter is None:
         raise SettingsError(
-            "a tolerance is that of a diameter", found=f"--tolerance {tolerance}",
+            "a tolerance needs a diameter", found=f"--tolerance {tolerance}",
             needed="--diameter with it",
         )  # fmt: skip
     if diameter is not None:
@@ -235,13 +235,13 @@ def _points_of(
             for name in names
         ]
         if not wanted.grid and any(values.size > 1 for values in levels):
-            raise SettingsError("several values of a level make a grid", needed="--table with them")
+            raise SettingsError("several values of a level need a table", needed="--table")
         size = math.prod(values.size for values in levels)
         if size > MOST_POINTS:
             raise SettingsError(
                 "a grid has too many points for a table", found=f"{size:,}",
                 needed=f"at most {MOST_POINTS:,}",
-                hint="`reduction.lines.line_lookup.look_up` takes any number at once.",
+                hint="`reduction.lines.line_lookup.look_up` accepts any number of points.",
             )  # fmt: skip
         axes = np.meshgrid(*levels, indexing="ij") if levels else []
         points.append({name: axis.ravel() for name, axis in zip(names, axes, strict=True)})
@@ -252,9 +252,9 @@ def _points_of(
     )
     if not taut.any():
         raise DataError(
-            "no combination of the grid has an amplitude of at most its mean tension",
+            "every combination has an amplitude above its mean tension",
             found=f"{taut.size} combinations",
-            needed="a mean tension that is above an amplitude",
+            needed="a mean tension above the amplitude",
         )
     kept = [{name: values[taut] for name, values in at.items()} for at in points]
     return kept, not taut.all()
@@ -1023,7 +1023,7 @@ def _other(lines: list[LineSource], name: str, quantity: str, first: LineSource)
     alike = [line for line in having if line.name == first.name]
     if len(alike) != 1:
         raise SettingsError(
-            f"--against {name} means several lines with {quantity}: which is not said",
+            f"--against {name} matches several lines with {quantity}",
             found=", ".join(f"{line.name} ({line.source})" for line in having),
             needed=f"the name of one line, or one called {first.name} as the first is",
             hint='Of tests of one campaign: lookup processed/CAMPAIGN --line "T-1 new" --against '

@@ -21,15 +21,15 @@ from reduction.cli.usage import Commands, here, written_here
 
 
 def _here_if_given(path: Path | None) -> Path | None:
-    """A path of this machine, where one is given."""
+    """A local path, if given."""
     return None if path is None else here(path)
 
 
-Json = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, SI.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, in SI.")]
 
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Nothing but errors.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print only errors.")]
 
-Units = Annotated[str, typer.Option("--units", help="What is shown: si or us (psi, lbf, ft).")]
+Units = Annotated[str, typer.Option("--units", help="Units shown: si or us (psi, lbf, ft).")]
 
 SpecPath = Annotated[Path, typer.Argument(metavar="SPEC.toml", show_default=False, callback=here)]
 
@@ -37,20 +37,22 @@ CampaignPath = Annotated[
     Path, typer.Argument(metavar="CAMPAIGN.toml", show_default=False, callback=here)
 ]
 
-ProcessedOut = Annotated[Path, typer.Option(help="Where products go.", callback=written_here)]
+ProcessedOut = Annotated[
+    Path, typer.Option(help="Folder for archives and tables.", callback=written_here)
+]
 
-ReportsOut = Annotated[Path, typer.Option(help="Where the report goes.", callback=written_here)]
+ReportsOut = Annotated[Path, typer.Option(help="Folder for the report.", callback=written_here)]
 
 AllowRemote = Annotated[
     bool,
-    typer.Option("--allow-remote", help="Let logs and archives be addresses: s3://bucket/T-1.csv."),
+    typer.Option("--allow-remote", help="Accept URLs for logs and archives: s3://bucket/T-1.csv."),
 ]
 
 OwnCampaign = Annotated[
     Path | None,
     typer.Option(
         metavar="CAMPAIGN.toml",
-        help="Where the campaign is, if it was moved since the run.",
+        help="The campaign, if it was moved since the run.",
         show_default=False,
         callback=_here_if_given,
     ),
@@ -64,7 +66,7 @@ def init(
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Write a starter campaign into a folder of logs, for a person to complete."""
+    """Write a draft campaign.toml for a folder of logs, for you to complete."""
     with guarded(CommandOutput(json=json, quiet=quiet)) as output:
         from reduction.cli.campaigns import start_campaign
 
@@ -73,12 +75,12 @@ def init(
 
 def sniff(
     file: Annotated[
-        Path, typer.Argument(help="An unknown log.", show_default=False, callback=here)
+        Path, typer.Argument(help="Log of unknown layout.", show_default=False, callback=here)
     ],
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Look at an unknown log and print a starter layout in TOML, to be confirmed."""
+    """Propose a layout (TOML) for an unknown log, for you to confirm."""
     with guarded(CommandOutput(json=json, quiet=quiet)) as output:
         from reduction.cli.campaigns import print_layout
 
@@ -88,14 +90,14 @@ def sniff(
 def check(
     campaign: CampaignPath,
     test: Annotated[
-        list[str] | None, typer.Option("--test", help="Only this test; may be repeated.")
+        list[str] | None, typer.Option("--test", help="Only this test; can be repeated.")
     ] = None,
     allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
-    """Read and validate everything, print what was found, write nothing."""
+    """Read and check a campaign and its logs; write nothing."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.campaigns import check_campaign
         from reduction.cli.remote_paths import campaign_at
@@ -110,22 +112,22 @@ def run(
     reports: ReportsOut = Path("reports"),
     jobs: Annotated[
         int | None,
-        typer.Option(min=1, help="Worker processes on this machine; 1 where left out."),
+        typer.Option(min=1, help="Worker processes on this machine; default 1."),
     ] = None,
     scheduler: Annotated[
         str | None,
-        typer.Option(metavar="ADDRESS", help="Dask scheduler with workers, tcp://HOST:PORT."),
+        typer.Option(metavar="ADDRESS", help="Address of your Dask scheduler, tcp://HOST:PORT."),
     ] = None,
     test: Annotated[
-        list[str] | None, typer.Option("--test", help="Only this test; may be repeated.")
+        list[str] | None, typer.Option("--test", help="Only this test; can be repeated.")
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Redo unchanged tests too.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Reduce unchanged tests again.")] = False,
     allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
-    """Reduce a campaign: archive, tables and report."""
+    """Reduce a campaign: write archives, tables and report."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.campaigns import run_campaign
         from reduction.cli.remote_paths import campaign_at
@@ -163,18 +165,21 @@ def report(
     processed_dir: Annotated[
         Path,
         typer.Argument(
-            help="processed/CAMPAIGN, or processed/ for all.", show_default=False, callback=here
+            help="processed/CAMPAIGN, or processed/ for all campaigns.",
+            show_default=False,
+            callback=here,
         ),
     ],
     reports: ReportsOut = Path("reports"),
     pdf: Annotated[
-        bool, typer.Option("--pdf", help="Print the report to the client to PDF, by a browser.")
+        bool,
+        typer.Option("--pdf", help="Print the client report to PDF, with an installed browser."),
     ] = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
-    """Make the reports again, from the archives alone."""
+    """Rewrite the reports from the archives."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.campaigns import report_again
         from reduction.cli.remote_paths import in_order
@@ -184,7 +189,7 @@ def report(
 
 
 def schema(
-    json: Annotated[bool, typer.Option("--json", help="As it is in any case.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="The default output.")] = False,
     quiet: Quiet = False,
 ) -> None:
     """Print the JSON Schema of campaign.toml."""
@@ -210,7 +215,8 @@ def experiment(
     kind: Annotated[DesignName, typer.Argument(help="Design.", show_default=False)],
     spec: SpecPath,
     out: Annotated[
-        Path | None, typer.Option(help="Write the run sheet as a CSV too.", callback=written_here)
+        Path | None,
+        typer.Option(help="Also write the run sheet to a CSV file.", callback=written_here),
     ] = None,
     json: Json = False,
     quiet: Quiet = False,
@@ -234,7 +240,7 @@ def surface(
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
-    """Fit response surfaces, or effects of a screening, to a table of runs from anywhere."""
+    """Fit response surfaces, or screening effects, to any table of runs."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.experiments import fit_runs
 
@@ -250,7 +256,7 @@ class PredictionName(StrEnum):
 
 
 def predict(
-    kind: Annotated[PredictionName, typer.Argument(help="Of what.", show_default=False)],
+    kind: Annotated[PredictionName, typer.Argument(help="What to predict.", show_default=False)],
     spec: SpecPath,
     out: Annotated[
         Path | None,
@@ -262,7 +268,7 @@ def predict(
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
-    """Predict a stretch hose, a helical armour or a wave load from construction alone."""
+    """Predict a stretch hose, helical armour or wave load from its construction."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         if kind is PredictionName.HOSE:
             from reduction.cli.predictions import predict_hose as predict_it
@@ -288,7 +294,7 @@ def compare(
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
-    """Hold the archive of a test against the predicted hose of SPEC.toml."""
+    """Compare a reduced test with the predicted hose in SPEC.toml."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.predictions import compare_test
         from reduction.cli.remote_paths import local_sources
@@ -315,29 +321,35 @@ def lookup(
     source: Annotated[
         str,
         typer.Argument(
-            help="A published line, `published`, an archive, or a processed campaign.",
+            help="A published line, `published` for all, an archive, or a processed campaign.",
             show_default=False,
         ),
     ],
     quantity: Annotated[
         str | None,
-        typer.Option(help="What is wanted: its name, or K_ap, H, K_0, K_1, tau, N, tension."),
+        typer.Option(help="Quantity: full name, or K_ap, H, K_0, K_1, tau, N, tension."),
     ] = None,
-    frequency: Annotated[str | None, typer.Option(help='"0.3 Hz".')] = None,
-    mean_tension: Annotated[str | None, typer.Option(help='"4000 lbf" or "21 %RBS".')] = None,
-    tension_amplitude: Annotated[str | None, typer.Option(help="Half the range.")] = None,
-    tension: Annotated[str | None, typer.Option(help="Of a load-strain curve.")] = None,
-    strain: Annotated[str | None, typer.Option(help='"100 %".')] = None,
-    branch: Annotated[BranchName | None, typer.Option(help="Of a cycle.")] = None,
-    line: Annotated[str | None, typer.Option(help="Which line of SOURCE.")] = None,
+    frequency: Annotated[str | None, typer.Option(help='Such as "0.3 Hz".')] = None,
+    mean_tension: Annotated[
+        str | None, typer.Option(help='Such as "4000 lbf" or "21 %RBS".')
+    ] = None,
+    tension_amplitude: Annotated[
+        str | None, typer.Option(help="Amplitude, half the range.")
+    ] = None,
+    tension: Annotated[str | None, typer.Option(help="Tension on a load-strain curve.")] = None,
+    strain: Annotated[str | None, typer.Option(help='Such as "100 %".')] = None,
+    branch: Annotated[BranchName | None, typer.Option(help="Branch of the cycle.")] = None,
+    line: Annotated[str | None, typer.Option(help="Name of a line in SOURCE.")] = None,
     against: Annotated[
-        str | None, typer.Option(help="Another line: both values, difference, ratio.")
+        str | None, typer.Option(help="Compare with another line: both values, difference, ratio.")
     ] = None,
     material: Annotated[str | None, typer.Option(help='Search: "nylon".')] = None,
     construction: Annotated[str | None, typer.Option(help='Search: "double braid".')] = None,
     condition: Annotated[str | None, typer.Option(help='Search: "new", "5 years".')] = None,
     diameter: Annotated[str | None, typer.Option(help='Search: "0.5 in".')] = None,
-    tolerance: Annotated[str | None, typer.Option(help='Of the diameter, "3 %" if unsaid.')] = None,
+    tolerance: Annotated[
+        str | None, typer.Option(help='Tolerance of --diameter; default "3 %".')
+    ] = None,
     population: Annotated[
         str | None,
         typer.Option(help='All specimens as one line; limits of a share of the kind: "95 %".'),
@@ -348,10 +360,11 @@ def lookup(
     medium: Annotated[str | None, typer.Option(help='Tested in: "wet", "dry".')] = None,
     temperature: Annotated[str | None, typer.Option(help='Tested at: "5 degC".')] = None,
     extrapolate: Annotated[
-        Extrapolation, typer.Option(help="Outside what was tested.")
+        Extrapolation, typer.Option(help="Outside the tested range.")
     ] = Extrapolation.REFUSE,
     table: Annotated[
-        bool, typer.Option("--table", help="A grid; values of a level parted by commas.")
+        bool,
+        typer.Option("--table", help="Table over several values of a level, separated by commas."),
     ] = False,
     out: Annotated[
         Path | None,
@@ -360,13 +373,15 @@ def lookup(
             callback=written_here,
         ),
     ] = None,
-    what_there_is: Annotated[bool, typer.Option("--list", help="What SOURCE holds.")] = False,
+    what_there_is: Annotated[
+        bool, typer.Option("--list", help="List the contents of SOURCE.")
+    ] = False,
     allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
-    """One design value with its interval, range check and source, or a table of them."""
+    """Look up design values, with interval, tested range and source."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.lookup import (
             LookupRequest,
@@ -444,26 +459,29 @@ def composite(
         list[str],
         typer.Argument(
             metavar="SOURCE...",
-            help="processed/CAMPAIGN, archives of tests, or a published tether without the test.",
+            help="processed/CAMPAIGN, test archives, or a published tether without its test.",
             show_default=False,
         ),
     ],
-    specimen: Annotated[str | None, typer.Option(help="Where the archives hold several.")] = None,
+    specimen: Annotated[
+        str | None, typer.Option(help="Required if the archives contain several.")
+    ] = None,
     branch: Annotated[
-        CurveName | None, typer.Option(help="Of the cycles; mean unless said.", show_default=False)
+        CurveName | None,
+        typer.Option(help="Branch of the cycles; default mean.", show_default=False),
     ] = None,
     precedence: Annotated[
         str | None,
         typer.Option(
-            help="Kinds of pieces, the first one first: cyclic,static,first-loading unless said; "
-            "what is not named is not used.",
+            help="Kinds of pieces in order of precedence, default cyclic,static,first-loading; "
+            "others are not used.",
             show_default=False,
         ),
     ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Every node as .csv, .json, .nc, .md or .tex; a page as .html.",
+            help="Write all nodes to FILE.csv, .json, .nc, .md or .tex; or a page, FILE.html.",
             callback=written_here,
         ),
     ] = None,
@@ -472,7 +490,7 @@ def composite(
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
-    """One curve of tension against strain from zero, out of all tests of a specimen."""
+    """Join all tests of a specimen into one tension-strain curve from zero."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.curves import compose_tests
         from reduction.cli.remote_paths import local_sources
@@ -493,7 +511,7 @@ def assembly(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Every node as .csv, .json, .nc, .md or .tex; a page as .html.",
+            help="Write all nodes to FILE.csv, .json, .nc, .md or .tex; or a page, FILE.html.",
             callback=written_here,
         ),
     ] = None,
@@ -501,7 +519,7 @@ def assembly(
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
-    """Tethers as they are deployed: tension against length, stiffness, load of each tether."""
+    """Parallel tethers as deployed: tension against length, stiffness, load of each tether."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.curves import assemble_spec
 
@@ -513,8 +531,8 @@ def export(
         list[str],
         typer.Argument(
             metavar="SOURCE...",
-            help="A published line, an archive of a test or of hoses; of several archives, "
-            "processed/CAMPAIGN or a published tether without the test: the composite curve.",
+            help="A published line, or an archive of a test or of hoses. Several archives, "
+            "processed/CAMPAIGN or a published tether without its test give the composite curve.",
             show_default=False,
         ),
     ],
@@ -529,53 +547,61 @@ def export(
         ),
     ],
     out: Annotated[
-        Path, typer.Option("--out", help="The file.", show_default=False, callback=written_here)
+        Path, typer.Option("--out", help="Output file.", show_default=False, callback=written_here)
     ],
     form: Annotated[
-        str | None, typer.Option(help="Where a format has several, such as table.")
+        str | None, typer.Option(help="Form, if the format has several, such as table.")
     ] = None,
     curve: Annotated[
-        str | None, typer.Option(help="mean (unless said), ascending or descending.")
+        str | None, typer.Option(help="mean (default), ascending or descending.")
     ] = None,
     precedence: Annotated[
         str | None,
-        typer.Option(help="Of a composite, as in `reduction composite`.", show_default=False),
+        typer.Option(help="For a composite, as in `reduction composite`.", show_default=False),
     ] = None,
-    specimen: Annotated[str | None, typer.Option(help="Which one, or which hose.")] = None,
-    diameter: Annotated[str | None, typer.Option(help='With a unit, "26 mm".')] = None,
-    linear_density: Annotated[str | None, typer.Option(help='In air, "0.6 kg/m".')] = None,
+    specimen: Annotated[str | None, typer.Option(help="Name of the specimen or hose.")] = None,
+    diameter: Annotated[str | None, typer.Option(help='Diameter, such as "26 mm".')] = None,
+    linear_density: Annotated[
+        str | None, typer.Option(help='Mass per length in air, such as "0.6 kg/m".')
+    ] = None,
     wet_linear_density: Annotated[
-        str | None, typer.Option(help="Less the water it displaces.")
+        str | None, typer.Option(help="Mass per length minus displaced water.")
     ] = None,
-    rated_break_strength: Annotated[str | None, typer.Option(help='"28 kN".')] = None,
+    rated_break_strength: Annotated[str | None, typer.Option(help='Such as "28 kN".')] = None,
     drag: Annotated[
-        str | None, typer.Option(help='Across and along the line, "1.6, 0.02"; else a cylinder.')
+        str | None, typer.Option(help='Transverse and axial, "1.6, 0.02"; default: cylinder.')
     ] = None,
-    added_mass: Annotated[str | None, typer.Option(help='The same, "1, 0".')] = None,
+    added_mass: Annotated[str | None, typer.Option(help='Transverse and axial, "1, 0".')] = None,
     hydrodynamics_source: Annotated[
-        str | None, typer.Option(help="Where these are from, for the header.")
+        str | None, typer.Option(help="Source of these coefficients, for the header.")
     ] = None,
-    frequency: Annotated[str | None, typer.Option(help='Of the stiffness, "0.3 Hz".')] = None,
-    mean_tension: Annotated[str | None, typer.Option(help='"4000 lbf" or "21 %RBS".')] = None,
-    tension_amplitude: Annotated[str | None, typer.Option(help="Half the range.")] = None,
+    frequency: Annotated[
+        str | None, typer.Option(help='Frequency of the stiffness, such as "0.3 Hz".')
+    ] = None,
+    mean_tension: Annotated[
+        str | None, typer.Option(help='Such as "4000 lbf" or "21 %RBS".')
+    ] = None,
+    tension_amplitude: Annotated[
+        str | None, typer.Option(help="Amplitude, half the range.")
+    ] = None,
     working_curve: Annotated[
-        str | None, typer.Option(help='Of a Syrope line: form, k1, k2, "QUADRATIC, 0.2, 0.5".')
+        str | None, typer.Option(help='For a Syrope line: form, k1, k2, "QUADRATIC, 0.2, 0.5".')
     ] = None,
     greatest_mean_tension: Annotated[
-        str | None, typer.Option(help="Of a Syrope line: that it has had before.")
+        str | None, typer.Option(help="For a Syrope line: highest earlier mean tension.")
     ] = None,
     extrapolate: Annotated[
-        str, typer.Option(help="Outside the levels: refuse or flag.")
+        str, typer.Option(help="Outside the tested range: refuse or flag.")
     ] = "refuse",
     verify: Annotated[
-        bool, typer.Option("--verify", help="Run the deck in its program, and say what it gave.")
+        bool, typer.Option("--verify", help="Run the file in its program, and print the result.")
     ] = False,
     allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
-    """Write a curve for a mooring code, or as a table."""
+    """Export a line type for a mooring code, or a curve as a table."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.export import ExportRequest, export_source
         from reduction.cli.remote_paths import local_sources
@@ -610,19 +636,19 @@ def export(
 
 def reproduce(
     report: Annotated[
-        str | None, typer.Argument(metavar="[REPORT]", help="All unless said.", show_default=False)
+        str | None, typer.Argument(metavar="[REPORT]", help="Default: all.", show_default=False)
     ] = None,
     out: Annotated[
         Path | None,
         typer.Option(help="Write page and table to this folder.", callback=written_here),
     ] = None,
     erratum: Annotated[
-        str | None, typer.Option(help="One fault of a page with its evidence, such as CG-39.")
+        str | None, typer.Option(help="Show one erratum with its evidence, such as CG-39.")
     ] = None,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Recompute every printed number of the published reports: counts, errata, open cells."""
+    """Recompute all numbers printed in the source reports: counts, errata, open cells."""
     with guarded(CommandOutput(json=json, quiet=quiet)) as output:
         from reduction.cli.reproduce import reproduce_erratum, reproduce_reports
 
@@ -643,18 +669,18 @@ def budget(
     ],
     quantity: Annotated[
         str | None,
-        typer.Option(help="Such as segment_modulus; left out: what there is.", show_default=False),
+        typer.Option(help="Such as segment_modulus; default: list them.", show_default=False),
     ] = None,
     at: Annotated[
         list[str] | None,
-        typer.Option(help='Which one: "specimen=new", "branch=ascending", "strain=100 %".'),
+        typer.Option(help='Select a value: "specimen=new", "branch=ascending", "strain=100 %".'),
     ] = None,
     allow_remote: AllowRemote = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
-    """Where the uncertainty of a number comes from, largest source first."""
+    """Uncertainty budget of a number, largest source first."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.budget import list_budgets, show_budget
         from reduction.cli.remote_paths import local_sources
@@ -673,51 +699,58 @@ def catalogue(
     processed: Annotated[
         Path,
         typer.Argument(
-            metavar="PROCESSED_DIR", help="Holds a folder for each campaign.", callback=here
+            metavar="PROCESSED_DIR", help="Contains one folder per campaign.", callback=here
         ),
     ] = Path("processed"),
     campaign: Annotated[Names, typer.Option(help='Name or pattern: "tmt-*".')] = None,
     test: Annotated[Names, typer.Option(help='Name or pattern: "T-*".')] = None,
-    kind: Annotated[Names, typer.Option(help="Of the test: cyclic, relaxation, ...")] = None,
+    kind: Annotated[Names, typer.Option(help="Kind of test: cyclic, relaxation, ...")] = None,
     specimen: Annotated[Names, typer.Option(help="Name or pattern.")] = None,
     medium: Annotated[str | None, typer.Option(help='Words: "wet".')] = None,
     material: Annotated[str | None, typer.Option(help='Words: "nylon".')] = None,
     construction: Annotated[str | None, typer.Option(help='Words: "double braid".')] = None,
     condition: Annotated[str | None, typer.Option(help='Words: "new".')] = None,
     synthetic: Annotated[
-        bool | None, typer.Option("--synthetic/--measured", help="Only these.", show_default=False)
+        bool | None,
+        typer.Option(
+            "--synthetic/--measured",
+            help="Only synthetic, or only measured data.",
+            show_default=False,
+        ),
     ] = None,
     where: Annotated[
         list[str] | None,
-        typer.Option(help='"frequency >= 0.1 Hz", "mean_tension < 20 %RBS"; all have to hold.'),
+        typer.Option(
+            help='"frequency >= 0.1 Hz", "mean_tension < 20 %RBS"; repeat to combine (and).'
+        ),
     ] = None,
     quantity: Annotated[
         list[str] | None,
-        typer.Option(
-            help="A number of each test, such as apparent_spring_constant or loss_factor."
-        ),
+        typer.Option(help="Quantity to show, such as apparent_spring_constant or loss_factor."),
     ] = None,
     by_cycle: Annotated[
-        bool, typer.Option("--by-cycle", help="Of cycles 1, 2, 5, 10, ..., last; not their mean.")
+        bool, typer.Option("--by-cycle", help="Cycles 1, 2, 5, 10, ..., last instead of the mean.")
     ] = False,
-    sort: Annotated[list[str] | None, typer.Option(help="By this column.")] = None,
-    descending: Annotated[bool, typer.Option("--descending", help="From the greatest.")] = False,
-    limit: Annotated[int | None, typer.Option(min=1, help="Rows at most.")] = None,
+    sort: Annotated[list[str] | None, typer.Option(help="Sort by this column.")] = None,
+    descending: Annotated[
+        bool, typer.Option("--descending", help="Sort from the largest.")
+    ] = False,
+    limit: Annotated[int | None, typer.Option(min=1, help="Maximum number of rows.")] = None,
     export: Annotated[
         Path | None,
         typer.Option(help="Write the rows: FILE.csv or FILE.parquet, SI.", callback=written_here),
     ] = None,
     what_there_is: Annotated[
-        bool, typer.Option("--list", help="Which quantities there are, and how many numbers.")
+        bool, typer.Option("--list", help="List the quantities, and how many values each has.")
     ] = False,
     rebuild: Annotated[
-        bool, typer.Option("--rebuild", help="First make the catalogues again, from the archives.")
+        bool, typer.Option("--rebuild", help="First remake the catalogue files from the archives.")
     ] = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
-    """Tests, conditions and numbers of all campaigns."""
+    """List and filter tests, conditions and results of all campaigns."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.catalogue import list_quantities, query_of, show_catalogue
 
@@ -751,13 +784,17 @@ def explore(
         ),
     ],
     campaign: OwnCampaign = None,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Of 127.0.0.1; 0: a free one.")] = 0,
-    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page.")] = True,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port on 127.0.0.1; 0: any free port.")
+    ] = 0,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
+    ] = True,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
-    """Move the settings of a test on a local page, see what follows, save them."""
+    """Change the settings of a test on a local page, see the effect, save them."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.explore import serve
 
@@ -769,7 +806,7 @@ def verify(
         Path,
         typer.Argument(
             metavar="PROCESSED_DIR",
-            help="processed/CAMPAIGN, or processed/ for all.",
+            help="processed/CAMPAIGN, or processed/ for all campaigns.",
             show_default=False,
             callback=here,
         ),
@@ -779,7 +816,7 @@ def verify(
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Look whether raw files and products still belong together; change nothing."""
+    """Check that raw files and products still match; change nothing."""
     with guarded(CommandOutput(json=json, quiet=quiet)) as output:
         from reduction.cli.verify import verify_products
 
@@ -809,18 +846,18 @@ def diff(
         str | None,
         typer.Option(
             metavar="REV",
-            help="Run the campaign A with this git revision of the software, and with this one.",
+            help="Run campaign A with this git revision of the software and the installed one.",
             show_default=False,
         ),
     ] = None,
     exact: Annotated[
-        bool, typer.Option("--exact", help="A number moves with its last bit.")
+        bool, typer.Option("--exact", help="Count any difference, down to the last bit.")
     ] = False,
     json: Json = False,
     quiet: Quiet = False,
     units: Units = "si",
 ) -> None:
-    """Which answers changed between two products, and by how many standard uncertainties."""
+    """Compare two sets of results, in standard uncertainties."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
         from reduction.cli.diff import show_differences
 
@@ -864,7 +901,10 @@ def _version(value: bool) -> None:
 @app.callback()
 def main(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print and exit.")
+        bool,
+        typer.Option(
+            "--version", callback=_version, is_eager=True, help="Print the version and exit."
+        ),
     ] = False,
 ) -> None:
     """Reduces cyclic tension tests of compliant mooring elements."""

@@ -81,10 +81,10 @@ def local_sources(
             name = base_name(source)
             if not name.endswith(".nc"):
                 raise SettingsError(
-                    "the source is an address, and not of an archive", found=shown_address(source),
-                    needed="the address of one archive, such as s3://bucket/processed/tmt/T-1.nc; "
-                    "a folder on this machine",
-                    hint="Copy the folder here first, with aws s3 sync, rclone or the like.",
+                    "the source is a URL, but not of an archive", found=shown_address(source),
+                    needed="the URL of one archive, such as s3://bucket/processed/tmt/T-1.nc, or a "
+                    "local folder",
+                    hint="Copy the folder here first, e.g. with aws s3 sync or rclone.",
                 )  # fmt: skip
             above = base_name(shown_address(source).rpartition("/")[0]) or "campaign"
             copy = opened.enter_context(scratch_folder()) / above / name

@@ -49,8 +49,7 @@ def here(path: Path) -> Path:
     shown = _address_in(path)
     if shown:
         raise typer.BadParameter(
-            f"this command reads no address on the net; found '{shown}'; needed a file on this "
-            "machine. Download it first."
+            f"this command reads no URLs; found '{shown}'; needed a local file. Download it first."
         )
     return path
 
@@ -60,8 +59,7 @@ def written_here(path: Path | None) -> Path | None:
     shown = _address_in(path)
     if shown:
         raise typer.BadParameter(
-            f"this command writes to no address on the net; found '{shown}'; needed a path on "
-            "this machine"
+            f"this command writes to no URLs; found '{shown}'; needed a local path"
         )
     return path
 

@@ -21,8 +21,8 @@ def verify_products(
     folders = processed_folders(processed)
     if campaign is not None and folders != [processed]:
         raise SettingsError(
-            "--campaign is of one folder of products",
-            found=f"{processed}, which holds {', '.join(folder.name for folder in folders)}",
+            "--campaign applies to one folder of products",
+            found=f"{processed}, which contains {', '.join(folder.name for folder in folders)}",
             needed="processed/CAMPAIGN",
         )
     answers = []

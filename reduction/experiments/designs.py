@@ -606,7 +606,7 @@ def _check_factors(factors: tuple[FactorLevels, ...], n_columns: int) -> None:
         )
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
-        raise SettingsError("a factor stands twice", found=", ".join(twice), needed="each once")
+        raise SettingsError("a factor appears twice", found=", ".join(twice), needed="each once")
 
 
 def engineering_levels(

@@ -320,7 +320,7 @@ def fit_surfaces(
         If names or transforms do not pair up, a run is named twice, a high level is not
         above its low one, or a frequency to multiply by is not there or not above zero.
     DataError
-        If a run has a value and no levels, a level or response is infinite, a factor never
+        If a run has a value but no levels, a level or response is infinite, a factor never
         moves, there is one block, a response to be transformed is not above zero, or there are
         more than `MOST_RUNS` runs.
     FitError

@@ -184,7 +184,7 @@ class StatedSplices:
         for name, value, holds, needed in checks:
             if not holds:
                 raise SettingsError(
-                    f"{name} is no number of a splice", found=f"{value:g}", needed=needed
+                    f"{name} is not a number of a splice", found=f"{value:g}", needed=needed
                 )
 
 

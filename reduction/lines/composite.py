@@ -146,7 +146,7 @@ class CurvePiece:
         as_increasing(f"strain of {self.name}", self.strain)
         as_finite(f"tension of {self.name}", self.tension)
         if self.strain.size < _FEWEST:
-            raise DataError(f"{self.name} is no curve", found=f"{self.strain.size} points")
+            raise DataError(f"{self.name} is not a curve", found=f"{self.strain.size} points")
         if self.strain[0] <= 0 or self.tension.min() <= 0:
             raise DataError(
                 f"{self.name} holds points that are slack",
@@ -371,7 +371,7 @@ def piece_of_pull(
     end = int(back[0]) + 1 if back.size else stretch.size
     stretch, load, spread, rows = stretch[:end], load[:end], spread[:end], rows[:, :end]
     if stretch.size < _FEWEST:
-        raise DataError(f"{name} is no curve", found=f"{stretch.size} points")
+        raise DataError(f"{name} is not a curve", found=f"{stretch.size} points")
     slope = np.gradient(load, stretch)
     # more strain at one tension is less tension at one strain
     return CurvePiece(

@@ -725,7 +725,7 @@ def _numbers(levels: Mapping[str, ArrayLike]) -> dict[str, Floats]:
             found = np.array("rows of different lengths")
         if found.dtype.kind not in "iuf":
             raise SettingsError(
-                f"{name} is no real number", found=str(found.dtype), needed="numbers, in SI"
+                f"{name} is not a real number", found=str(found.dtype), needed="numbers, in SI"
             )
         if not np.all(np.isfinite(found)):
             raise SettingsError(f"{name} is not finite", needed="numbers")

@@ -240,7 +240,7 @@ def check_stated_errors(
         for limit in _limits(located, index, errors):
             if np.isfinite(limit.most) and limit.stated > limit.most:
                 raise SettingsError(
-                    f"{place}.{limit.key}: this is no standard uncertainty for test "
+                    f"{place}.{limit.key}: this is not a standard uncertainty for test "
                     f"'{located.record.test_id}'",
                     found=f"{limit.stated:.4g} {limit.unit}",
                     needed=f"at most {limit.most:.4g} {limit.unit}, {limit.what}",

@@ -208,7 +208,7 @@ def _need(name: str, value: Floats, is_good: Bools, needed: str) -> None:
     bad = np.atleast_1d(~is_good)
     found = np.atleast_1d(value)[bad].flat[0]
     where = "" if bad.size == 1 else f" of {int(bad.sum())} of {bad.size} designs"
-    raise SettingsError(f"{name}{where} is no armour", found=f"{found:g} in SI", needed=needed)
+    raise SettingsError(f"{name}{where} is not an armour", found=f"{found:g} in SI", needed=needed)
 
 
 @dataclass(frozen=True)

@@ -95,7 +95,7 @@ def _squares_of_angle(wrap_angle: ArrayLike) -> tuple[Floats, Floats]:
     if not np.all(is_angle):
         bad = np.atleast_1d(angle)[np.atleast_1d(~is_angle)][0]
         raise SettingsError(
-            "wrap_angle is no angle of a helix",
+            "wrap_angle is not an angle of a helix",
             found=f"{np.degrees(bad):g} deg",
             needed="between 0 and 90 deg from the axis",
         )
@@ -392,7 +392,7 @@ def ribbon_width(wrap_diameter: ArrayLike, wrap_angle: ArrayLike) -> Floats:
     angle = as_finite("wrap_angle", wrap_angle)
     if np.any((angle < 0) | (angle >= pi / 2)):
         raise DataError(
-            "wrap_angle is no angle of a ribbon",
+            "wrap_angle is not an angle of a ribbon",
             found=f"{np.degrees(angle).min():g} to {np.degrees(angle).max():g} deg",
             needed="from 0 to below 90 deg",
         )
@@ -480,7 +480,9 @@ def _series(name: str, values: ArrayLike) -> Floats:
 def _free(dead_length_share: float) -> float:
     if not 0 <= dead_length_share < 1:
         raise DataError(
-            "dead_length_share is no share", found=f"{dead_length_share:g}", needed="0 to below 1"
+            "dead_length_share is not a share",
+            found=f"{dead_length_share:g}",
+            needed="0 to below 1",
         )
     return 1 - dead_length_share
 
@@ -627,5 +629,5 @@ def _stretch(hose_strain: ArrayLike, dead_length_share: ArrayLike) -> Floats:
     if np.any(strain < 0):
         raise DataError("hose_strain is negative", found=f"{strain.min():g}", needed="zero or more")
     if np.any((share < 0) | (share >= 1)):
-        raise DataError("dead_length_share is no share", needed="from 0 to below 1")
+        raise DataError("dead_length_share is not a share", needed="from 0 to below 1")
     return np.asarray(1 + strain / (1 - share))

@@ -206,13 +206,13 @@ def _check(standard_uncertainty: Mapping[str, float]) -> None:
     for name, value in standard_uncertainty.items():
         if name not in HOSE_PARAMETERS:
             raise SettingsError(
-                f"standard_uncertainty.{name} is no number of a hose",
+                f"standard_uncertainty.{name} is not a number of a hose",
                 found=name,
                 needed="one of " + ", ".join(HOSE_PARAMETERS),
             )
         if not (np.isfinite(value) and value >= 0):
             raise SettingsError(
-                f"standard_uncertainty.{name} is no uncertainty",
+                f"standard_uncertainty.{name} is not an uncertainty",
                 found=f"{value:g} in SI",
                 needed="zero or more",
             )

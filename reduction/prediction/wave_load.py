@@ -792,7 +792,7 @@ def _load_difference(
     """
     if not 0 < minimum_share <= 1:
         raise SettingsError(
-            "minimum_share is no share", found=f"{minimum_share:g}", needed="above 0, at most 1"
+            "minimum_share is not a share", found=f"{minimum_share:g}", needed="above 0, at most 1"
         )
     pairs = {
         "horizontal": (extremes.horizontal, extremes.horizontal_classic),

@@ -146,7 +146,7 @@ def cells_of(report: ReportId) -> tuple[Cell, ...]:
     keys = [cell.key for cell in cells]
     if len(set(keys)) < len(keys):
         twice = next(key for key in keys if keys.count(key) > 1)
-        raise DataError(f"a printed number of {report} stands twice", found=" / ".join(twice))
+        raise DataError(f"a printed number of {report} appears twice", found=" / ".join(twice))
     return tuple(cells)
 
 

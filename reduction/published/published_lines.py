@@ -750,7 +750,7 @@ def _name_of_segment(row: str) -> _SegmentName:
     """
     found = _SEGMENT.fullmatch(row)
     if found is None:
-        raise DataError("a row is no segment", found=row, needed="a row of Tables 5 and 6")
+        raise DataError("a row is not a segment", found=row, needed="a row of Tables 5 and 6")
     return _SegmentName(
         test=found[1],
         condition="after 3000 cycles" if found[2] else "ten cycles",

@@ -20,15 +20,14 @@ _SHARED_ERROR = (COMPONENT,)
 AXES: tuple[Quantity, ...] = (
     *along(
         _SHARED_ERROR,
-        count("uncertainty_component", "number of an error that the test shares"),
-        label("uncertainty_source", "number of the design that is uncertain"),
-        label("uncertainty_source_of", "instrument, specimen or model that the error is of"),
-        count("uncertainty_source_number", "place among independent errors of one source"),
+        count("uncertainty_component", "number of the shared error"),
+        label("uncertainty_source", "source of the uncertainty"),
+        label("uncertainty_source_of", "instrument, specimen or model to which the error belongs"),
+        count("uncertainty_source_number", "index among independent errors of one source"),
         stated(
             "uncertainty_source_degrees_of_freedom",
             "1",
-            "degrees of freedom of the standard uncertainty of a shared error; infinite where "
-            "stated",
+            "degrees of freedom of the standard uncertainty of a shared error; infinite if stated",
             OF_UNCERTAINTY,
         ),
         group="uncertainty",
@@ -36,22 +35,26 @@ AXES: tuple[Quantity, ...] = (
     *along(
         _NOTE,
         label("note", "quality note"),
-        label("note_stage", "stage that gave the note", tables=("notes", "experiment_notes")),
+        label(
+            "note_stage",
+            "processing stage that made the note",
+            tables=("notes", "experiment_notes"),
+        ),
         label(
             "note_code",
-            "what the note is of, the same in every version",
+            "code of the note, the same in every version",
             tables=("notes", "experiment_notes"),
         ),
         label(
             "note_severity",
-            "warning, refusal or note: how serious the note is",
+            "severity: warning, refusal or note",
             tables=("notes", "experiment_notes"),
         ),
         stated(
             "note_effect",
             "1",
-            "by what share the answer would move, where that is known",
-            "size of a possible error",
+            "relative change of the result that the note implies, if known",
+            "magnitude of a possible error",
             tables=("notes", "experiment_notes"),
         ),
         group="notes",

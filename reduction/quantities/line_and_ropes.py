@@ -46,7 +46,7 @@ _TENSION = ("specimen", "tension_grid")
 OF_LINE: tuple[Quantity, ...] = (
     *along(
         _HOLD,
-        count("hold", "row of the holds, each specimen counted"),
+        count("hold", "row of the table of holds, one per specimen"),
     ),
     *along(
         ("prony_term",),
@@ -95,7 +95,7 @@ OF_LINE: tuple[Quantity, ...] = (
         measured(
             "test_dissipation_spring_constant",
             "N",
-            "dissipation spring constant from the means over the cycles of the test",
+            "dissipation spring constant, from cycle means of the test",
             shares_errors=True,
             tables=("line",),
             page=("line", "K_1, dissipation spring constant"),
@@ -103,7 +103,7 @@ OF_LINE: tuple[Quantity, ...] = (
         measured(
             "test_relaxation_time",
             "s",
-            "relaxation time from the means over the cycles of the test",
+            "relaxation time, from cycle means of the test",
             shares_errors=True,
             tables=("line",),
             page=("line", "tau, relaxation time"),
@@ -111,7 +111,7 @@ OF_LINE: tuple[Quantity, ...] = (
         measured(
             "test_dashpot_coefficient",
             "N s",
-            "dashpot coefficient from the means over the cycles of the test",
+            "dashpot coefficient, from cycle means of the test",
             shares_errors=True,
             tables=("line",),
             page=("line", "C = K_1 tau, dashpot coefficient"),
@@ -119,7 +119,8 @@ OF_LINE: tuple[Quantity, ...] = (
         stated(
             "test_line_conditioning",
             "1",
-            "relative error of K_1's excess over K_0 for a relative error of K_0: K_0 / (E' - K_0)",
+            "sensitivity of K_1 to K_0: relative change of E' - K_0 per relative "
+            "change of K_0, K_0 / (E' - K_0)",
             "a sensitivity",
             tables=("line",),
         ),
@@ -128,73 +129,86 @@ OF_LINE: tuple[Quantity, ...] = (
         ),
         flag(
             "test_line_uncertainty_method",
-            "how the uncertainty of K_1 and tau was propagated",
+            "method that propagated the uncertainty of K_1 and tau",
             LINE_METHODS,
             tables=("line",),
         ),
         stated(
             "test_line_without_solution_share",
             "1",
-            "share of Monte Carlo draws of loop and slow pull that have no K_1 and tau",
+            "fraction of Monte Carlo draws without K_1 and tau",
             PART,
             tables=("line",),
         ),
         stated(
             "test_dissipation_spring_constant_low",
             "N",
-            "lower end of the 95 % interval of the dissipation spring constant of the test",
+            "lower limit of the 95 % interval of the test's dissipation spring constant",
             BOUND,
             tables=("line",),
         ),
         stated(
             "test_dissipation_spring_constant_high",
             "N",
-            "upper end of the 95 % interval of the dissipation spring constant of the test",
+            "upper limit of the 95 % interval of the test's dissipation spring constant",
             BOUND,
             tables=("line",),
         ),
         stated(
             "test_relaxation_time_low",
             "s",
-            "lower end of the 95 % interval of the relaxation time of the test",
+            "lower limit of the 95 % interval of the test's relaxation time",
             BOUND,
             tables=("line",),
         ),
         stated(
             "test_relaxation_time_high",
             "s",
-            "upper end of the 95 % interval of the relaxation time of the test",
+            "upper limit of the 95 % interval of the test's relaxation time",
             BOUND,
             tables=("line",),
         ),
         stated(
             "test_dashpot_coefficient_low",
             "N s",
-            "lower end of the 95 % interval of the dashpot coefficient of the test",
+            "lower limit of the 95 % interval of the test's dashpot coefficient",
             BOUND,
             tables=("line",),
         ),
         stated(
             "test_dashpot_coefficient_high",
             "N s",
-            "upper end of the 95 % interval of the dashpot coefficient of the test",
+            "upper limit of the 95 % interval of the test's dashpot coefficient",
             BOUND,
             tables=("line",),
         ),
-        stated("pull_tension_low", "N", "lower end of the range of use of the slow pull", BOUND),
-        stated("pull_tension_high", "N", "upper end of the range of use of the slow pull", BOUND),
+        stated(
+            "pull_tension_low",
+            "N",
+            "lower limit of the usable tension range of the slow pull",
+            BOUND,
+        ),
+        stated(
+            "pull_tension_high",
+            "N",
+            "upper limit of the usable tension range of the slow pull",
+            BOUND,
+        ),
         stated(
             "pull_strain_rate",
             "s-1",
             "mean strain rate of the slow pull",
-            "what the machine did; no number is made from it",
+            "machine setting as reached; not used in any result",
         ),
         stated(
             "pull_waiting_time", "s", "time between the last dynamic test and the slow pull", STATED
         ),
-        label("pull_waiting", "time before the slow pull in the laboratory's words"),
+        label("pull_waiting", "time before the slow pull, as stated by the laboratory"),
         stated(
-            "pull_residual", "1", "standard deviation of strain about the load-strain cubic", SPREAD
+            "pull_residual",
+            "1",
+            "standard deviation of strain about the cubic load-strain fit",
+            SPREAD,
         ),
         stated(
             "pull_reference_tension", "N", "tension at which the reference length was read", STATED
@@ -203,7 +217,7 @@ OF_LINE: tuple[Quantity, ...] = (
     ),
     *along(
         ("tension_grid",),
-        stated("tension_grid", "N", "tension at which the slow pull is given", AXIS),
+        stated("tension_grid", "N", "tension at which slow-pull values are given", AXIS),
         group="line",
     ),
     *along(
@@ -219,7 +233,7 @@ OF_LINE: tuple[Quantity, ...] = (
         measured(
             "quasi_static_strain",
             "1",
-            "strain of the slow pull, by the cubic",
+            "strain of the slow pull, from the cubic fit",
             shares_errors=True,
             tables=("slow_pull",),
         ),
@@ -227,7 +241,7 @@ OF_LINE: tuple[Quantity, ...] = (
     ),
     *along(
         ("pull_term",),
-        count("pull_term", "power of tension in the load-strain cubic"),
+        count("pull_term", "power of tension in the cubic load-strain fit"),
         group="line",
     ),
     *along(
@@ -235,7 +249,7 @@ OF_LINE: tuple[Quantity, ...] = (
         measured(
             "pull_strain_coefficient",
             "1",
-            "coefficient of the load-strain cubic, tension as a number of newtons",
+            "coefficient of the cubic load-strain fit, tension in newtons",
             shares_errors=True,
             tables=("slow_pull_cubic",),
             source="003 Tables 8, 9",
@@ -243,8 +257,8 @@ OF_LINE: tuple[Quantity, ...] = (
         stated(
             "pull_spring_constant_coefficient",
             "N",
-            "coefficient of K_0 as a cubic of tension as a number of newtons",
-            "a re-expression of the load-strain cubic",
+            "coefficient of K_0 as a cubic in tension, tension in newtons",
+            "derived from the cubic load-strain fit",
             tables=("slow_pull_cubic",),
             source="003 Tables 6, 7",
         ),
@@ -252,7 +266,7 @@ OF_LINE: tuple[Quantity, ...] = (
     ),
     *along(
         ("break_share",),
-        stated("break_share", "1", "share of the rated break strength", SETTING),
+        stated("break_share", "1", "fraction of the rated break strength", SETTING),
         group="line",
     ),
     *along(
@@ -260,7 +274,7 @@ OF_LINE: tuple[Quantity, ...] = (
         measured(
             "strain_at_break_share",
             "1",
-            "strain of the slow pull at a share of the break strength",
+            "strain of the slow pull at a fraction of the break strength",
             shares_errors=True,
             tables=("strain_at_break_share",),
         ),
@@ -270,7 +284,7 @@ OF_LINE: tuple[Quantity, ...] = (
         _HOLD,
         count(
             "hold_number",
-            "number of the hold in the test, by time, one for all specimens",
+            "number of the hold in the test, in time order, the same for all specimens",
             tables=("relaxation", "creep"),
         ),
         label("hold_specimen", "specimen of the hold"),
@@ -281,44 +295,44 @@ OF_LINE: tuple[Quantity, ...] = (
             "elapsed time at the start of the hold",
             CLOCK,
             tables=("relaxation",),
-            page=("holds", "starts at"),
+            page=("holds", "start"),
         ),
         stated(
             "hold_duration",
             "s",
-            "length of the hold",
+            "duration of the hold",
             CLOCK,
             tables=("relaxation", "creep"),
-            page=("holds", "lasts"),
+            page=("holds", "duration"),
         ),
         stated(
             "hold_ramp_centre_time",
             "s",
-            "when the ramp to the hold acts as a step: zero of the time of its rate per decade",
+            "effective step time of the ramp, from which the rate per decade counts",
             CLOCK,
             tables=("relaxation", "creep"),
         ),
         stated(
             "hold_ramp_end_time",
             "s",
-            "when the ramp to the hold ends, between two samples",
+            "end of the ramp, interpolated between samples",
             CLOCK,
             tables=("relaxation", "creep"),
         ),
         stated(
             "hold_ramp_duration",
             "s",
-            "duration of the constant-rate ramp that stands for the one to the hold",
+            "duration of the equivalent constant-rate ramp",
             CLOCK,
             tables=("relaxation",),
         ),
         stated(
             "hold_logged_peak_tension",
             "N",
-            "greatest reading of tension beside the end of the ramp",
+            "maximum logged tension near the end of the ramp",
             CHECK,
             tables=("relaxation",),
-            page=("holds", "peak of the log"),
+            page=("holds", "logged peak"),
         ),
         stated(
             "hold_ramp_end_tension",
@@ -331,7 +345,7 @@ OF_LINE: tuple[Quantity, ...] = (
         measured(
             "hold_strain",
             "1",
-            "mean strain in the hold",
+            "mean strain during the hold",
             shares_errors=True,
             tables=("relaxation",),
             page=("holds", "strain"),
@@ -343,7 +357,7 @@ OF_LINE: tuple[Quantity, ...] = (
             "tension at the start of the hold",
             shares_errors=True,
             tables=("relaxation", "creep"),
-            page=("holds", "tension at its start"),
+            page=("holds", "tension at start"),
         ),
         measured(
             "hold_final_tension",
@@ -351,12 +365,12 @@ OF_LINE: tuple[Quantity, ...] = (
             "tension at the end of the hold",
             shares_errors=True,
             tables=("relaxation", "creep"),
-            page=("holds", "tension at its end"),
+            page=("holds", "tension at end"),
         ),
         measured(
             "relaxation_drop",
             "1",
-            "share of tension lost over the hold",
+            "fraction of tension lost over the hold",
             shares_errors=True,
             tables=("relaxation",),
             page=("holds", "tension lost"),
@@ -365,7 +379,7 @@ OF_LINE: tuple[Quantity, ...] = (
         measured(
             "relaxation_rate_per_decade",
             "1",
-            "share of tension lost per decade of time",
+            "fraction of tension lost per decade of time",
             shares_errors=True,
             tables=("relaxation",),
             page=("holds", "tension lost per decade of time"),
@@ -383,13 +397,19 @@ OF_LINE: tuple[Quantity, ...] = (
         measured(
             "long_time_tension",
             "N",
-            "tension the Prony series tends to",
+            "long-time limit of the Prony series",
             shares_errors=True,
             tables=("relaxation",),
         ),
-        label("hold_criterion", "how the number of Prony terms was chosen", tables=("relaxation",)),
         label(
-            "hold_refusal", "numbers of the hold that are refused, and why", tables=("relaxation",)
+            "hold_criterion",
+            "criterion that chose the number of Prony terms",
+            tables=("relaxation",),
+        ),
+        label(
+            "hold_refusal",
+            "results of the hold that are not given, and why",
+            tables=("relaxation",),
         ),
         group="holds",
     ),
@@ -424,12 +444,12 @@ OF_LINE: tuple[Quantity, ...] = (
 OF_PROGRAMME: tuple[Quantity, ...] = (
     *along(
         (),
-        label("programme_step", "what the step of a rope programme gives"),
+        label("programme_step", "result type of the rope programme step"),
         group="programme",
     ),
     *along(
         _SPECIMEN,
-        count("bedding_cycles", "cycles of the bedding-in", tables=("rope_programme",)),
+        count("bedding_cycles", "number of bedding-in cycles", tables=("rope_programme",)),
         measured(
             "bedding_first_stiffness",
             "N",
@@ -440,7 +460,7 @@ OF_PROGRAMME: tuple[Quantity, ...] = (
         measured(
             "bedding_first_stiffness_over_strength",
             "1",
-            "apparent spring constant of the first cycle over the rated break strength",
+            "apparent spring constant of the first cycle divided by the rated break strength",
             shares_errors=True,
             tables=("rope_programme",),
         ),
@@ -454,61 +474,61 @@ OF_PROGRAMME: tuple[Quantity, ...] = (
         measured(
             "bedding_last_stiffness_over_strength",
             "1",
-            "apparent spring constant of the last cycle over the rated break strength",
+            "apparent spring constant of the last cycle divided by the rated break strength",
             shares_errors=True,
             tables=("rope_programme",),
         ),
         measured(
             "bedding_stiffening",
             "1",
-            "last over first apparent spring constant",
+            "ratio of apparent spring constants, last to first cycle",
             shares_errors=True,
             tables=("rope_programme",),
         ),
         measured(
             "bedding_permanent_strain",
             "1",
-            "strain by which the foot of the loop moved from the first to the last cycle, at "
-            "one tension",
+            "shift in strain of the loop foot from the first to the last cycle, at "
+            "the same tension",
             shares_errors=True,
             tables=("rope_programme",),
         ),
         count(
             "dynamic_cycles",
-            "cycles in the dynamic stiffness, the last ones of the step",
+            "number of cycles averaged for the dynamic stiffness, the last ones of the step",
             tables=("rope_programme",),
         ),
         measured(
             "dynamic_frequency",
             "Hz",
-            "cycle frequency of the dynamic stiffness",
+            "cycle frequency at which the dynamic stiffness was measured",
             tables=("rope_programme",),
         ),
         measured(
             "dynamic_mean_tension",
             "N",
-            "mean tension of the dynamic stiffness",
+            "mean tension at which the dynamic stiffness was measured",
             shares_errors=True,
             tables=("rope_programme",),
         ),
         measured(
             "dynamic_mean_tension_over_strength",
             "1",
-            "mean tension of the dynamic stiffness over the rated break strength",
+            "mean tension of the dynamic stiffness divided by the rated break strength",
             shares_errors=True,
             tables=("rope_programme",),
         ),
         measured(
             "dynamic_tension_amplitude",
             "N",
-            "tension amplitude of the dynamic stiffness",
+            "tension amplitude at which the dynamic stiffness was measured",
             shares_errors=True,
             tables=("rope_programme",),
         ),
         measured(
             "dynamic_tension_amplitude_over_strength",
             "1",
-            "tension amplitude of the dynamic stiffness over the rated break strength",
+            "tension amplitude of the dynamic stiffness divided by the rated break strength",
             shares_errors=True,
             tables=("rope_programme",),
         ),
@@ -522,53 +542,53 @@ OF_PROGRAMME: tuple[Quantity, ...] = (
         measured(
             "dynamic_stiffness_over_strength",
             "1",
-            "dynamic stiffness over the rated break strength",
+            "dynamic stiffness divided by the rated break strength",
             shares_errors=True,
             tables=("rope_programme",),
         ),
         measured(
             "dynamic_stiffness_drift",
             "N",
-            "change of the dynamic stiffness a cycle, same cycles",
+            "change in dynamic stiffness per cycle, same cycles",
             shares_errors=True,
             tables=("rope_programme",),
         ),
         count(
             "cycles_to_failure",
-            "cycles to failure, or to the end",
+            "cycles to failure, or to the end of the test",
             tables=("rope_programme",),
             source="003 Figure 19",
         ),
         flag(
             "cycles_are_run_out",
-            "whether the specimen had not failed after the cycles",
+            "whether the specimen was still intact after these cycles",
             NO_YES,
             tables=("rope_programme",),
         ),
         stated(
             "failure_peak_tension",
             "N",
-            "greatest tension of a cycle, mean until failure",
+            "peak tension of a cycle, mean until failure",
             "mean over the cycles; each cycle has an uncertainty",
             tables=("rope_programme",),
         ),
         stated(
             "failure_peak_tension_over_strength",
             "1",
-            "greatest tension of a cycle, mean until failure, over the rated break strength",
+            "peak tension of a cycle, mean until failure, divided by the rated break strength",
             "mean over the cycles; each cycle has an uncertainty",
             tables=("rope_programme",),
         ),
         stated(
             "failure_valley_tension",
             "N",
-            "least tension of a cycle, mean until failure",
+            "minimum tension of a cycle, mean until failure",
             "mean over the cycles; each cycle has an uncertainty",
             tables=("rope_programme",),
         ),
         label(
             "failure_judged_by",
-            "what says that the specimen failed or not",
+            "evidence for failure or survival",
             tables=("rope_programme",),
         ),
         measured(
@@ -596,21 +616,21 @@ OF_PROGRAMME: tuple[Quantity, ...] = (
         measured(
             "pull_peak_tension",
             "N",
-            "greatest tension of the pull",
+            "peak tension of the pull",
             shares_errors=True,
             tables=("rope_programme", "tensile"),
         ),
         measured(
             "pull_peak_tension_over_strength",
             "1",
-            "greatest tension of the pull over the rated break strength",
+            "peak tension of the pull divided by the rated break strength",
             shares_errors=True,
             tables=("rope_programme", "tensile"),
         ),
         measured(
             "pull_peak_strain",
             "1",
-            "strain at the greatest tension of the pull",
+            "strain at the peak tension of the pull",
             shares_errors=True,
             tables=("rope_programme", "tensile"),
         ),
@@ -618,7 +638,7 @@ OF_PROGRAMME: tuple[Quantity, ...] = (
     ),
     *along(
         _PAIR,
-        count("held_pair", "number of a pair of holds, each specimen counted"),
+        count("held_pair", "number of the pair of holds, one per specimen"),
         label("held_pair_specimen", "specimen of the pair of holds"),
         count(
             "held_pair_low_hold",
@@ -647,35 +667,36 @@ OF_PROGRAMME: tuple[Quantity, ...] = (
         stated(
             "static_reference_time",
             "s",
-            "time after loading at which static_stiffness stands",
+            "time after loading to which static_stiffness refers",
             SETTING,
             tables=("static_stiffness",),
         ),
         measured(
             "static_stiffness",
             "N",
-            "force over strain between the two holds at the reference time, by the line",
+            "tension difference divided by strain difference between two holds, at "
+            "the reference time",
             shares_errors=True,
             tables=("static_stiffness",),
         ),
         measured(
             "static_stiffness_over_strength",
             "1",
-            "static stiffness over the rated break strength",
+            "static stiffness divided by the rated break strength",
             shares_errors=True,
             tables=("static_stiffness",),
         ),
         measured(
             "static_stiffness_per_decade",
             "N",
-            "change of the static stiffness in a tenfold time",
+            "change in static stiffness per decade of time",
             shares_errors=True,
             tables=("static_stiffness",),
         ),
         measured(
             "static_stiffness_per_decade_over_strength",
             "1",
-            "change of the static stiffness in a tenfold time over the rated break strength",
+            "change in static stiffness per decade of time, divided by the rated break strength",
             shares_errors=True,
             tables=("static_stiffness",),
         ),
@@ -688,7 +709,7 @@ OF_PROGRAMME: tuple[Quantity, ...] = (
     ),
     *along(
         ("held_pair_point",),
-        count("held_pair_point", "number of a point of stiffness against time"),
+        count("held_pair_point", "number of the point in stiffness against time"),
         group="programme",
     ),
     *along(
@@ -703,7 +724,7 @@ OF_PROGRAMME: tuple[Quantity, ...] = (
         stated(
             "static_stiffness_at_time",
             "N",
-            "force over strain between the two holds at that time",
+            "tension difference divided by strain difference between two holds, at that time",
             "mean of readings: static_stiffness has their scatter",
             tables=("static_stiffness_times",),
         ),
@@ -714,15 +735,15 @@ OF_PROGRAMME: tuple[Quantity, ...] = (
         measured(
             "creep_tension_over_strength",
             "1",
-            "held tension over the rated break strength",
+            "held tension divided by the rated break strength",
             shares_errors=True,
             tables=("creep",),
         ),
         measured(
             "creep_compliance_per_decade",
             "1",
-            "strain gained per decade of time, over the held tension as a share of the rated "
-            "break strength",
+            "strain gained per decade of time, divided by the held tension "
+            "relative to the rated break strength",
             shares_errors=True,
             tables=("creep",),
         ),
@@ -733,48 +754,46 @@ OF_PROGRAMME: tuple[Quantity, ...] = (
 OF_PROPERTIES: tuple[Quantity, ...] = (
     *along(
         _PROPERTY,
-        count("property", "number of a change-in-length property, in the campaign"),
-        label("property_specimen", "rope that has the property"),
+        count("property", "number of the change-in-length property in the campaign"),
+        label("property_specimen", "rope to which the property belongs"),
         label(
             "property_name",
-            "which of the six change-in-length properties",
+            "name of the change-in-length property",
             tables=("change_in_length",),
         ),
-        label(
-            "property_test", "test or step that the property is from", tables=("change_in_length",)
-        ),
+        label("property_test", "test or step that gave the property", tables=("change_in_length",)),
         stated(
             "property_low_tension",
             "N",
-            "tension from which the property is; that of a hold",
+            "lower tension of the property; that of a hold",
             "as the step has it",
             tables=("change_in_length",),
         ),
         stated(
             "property_high_tension",
             "N",
-            "tension up to which the property is; that of a hold",
+            "upper tension of the property; that of a hold",
             "as the step has it",
             tables=("change_in_length",),
         ),
         stated(
             "property_reference_time",
             "s",
-            "time after loading at, or from, which the property counts",
+            "time after loading to which the property refers",
             SETTING,
             tables=("change_in_length",),
         ),
         measured(
             "property_stiffness",
             "N",
-            "force over strain: original, static, dynamic stiffness",
+            "original, static or dynamic stiffness, force per unit strain",
             shares_errors=True,
             tables=("change_in_length",),
         ),
         measured(
             "property_stiffness_over_strength",
             "1",
-            "original, static or dynamic stiffness over the rated break strength",
+            "original, static or dynamic stiffness divided by the rated break strength",
             shares_errors=True,
             tables=("change_in_length",),
         ),
@@ -788,24 +807,24 @@ OF_PROPERTIES: tuple[Quantity, ...] = (
         stated(
             "property_stiffness_degrees_of_freedom",
             "1",
-            "degrees of freedom of the random part; infinite where it is of many samples",
+            "degrees of freedom of the random part; infinite if from many samples",
             COUNT,
         ),
         stated(
             "property_stiffness_over_strength_degrees_of_freedom",
             "1",
-            "degrees of freedom of the random part; infinite where it is of many samples",
+            "degrees of freedom of the random part; infinite if from many samples",
             COUNT,
         ),
         stated(
             "property_strain_degrees_of_freedom",
             "1",
-            "degrees of freedom of the random part; infinite where it is of many samples",
+            "degrees of freedom of the random part; infinite if from many samples",
             COUNT,
         ),
         label(
             "property_remark",
-            "why the property has no number, or what is not in it",
+            "why the property is missing, or what it excludes",
             tables=("change_in_length",),
         ),
     ),

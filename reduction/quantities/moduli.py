@@ -39,15 +39,15 @@ _SPECIMEN = ("specimen",)
 OF_MODULI: tuple[Quantity, ...] = (
     *along(
         ("selected_cycle",),
-        count("selected_cycle", "number of a cycle whose curves are kept"),
+        count("selected_cycle", "number of a cycle whose curves are stored"),
     ),
     *along(
         ("segment",),
-        count("segment", "number of the segment, from the lowest strain"),
+        count("segment", "segment number, from the lowest strain"),
     ),
     *along(
         ("strain_level",),
-        stated("strain_level", "1", "stated elongation", SETTING),
+        stated("strain_level", "1", "stated strain", SETTING),
     ),
     *along(
         ("strain_bin",),
@@ -98,7 +98,7 @@ OF_MODULI: tuple[Quantity, ...] = (
         measured(
             "branch_tension",
             "N",
-            "mean tension of the branch in the bin",
+            "mean tension of the branch in the strain bin",
             "_count",
             shares_errors=True,
             tables=("tangent_modulus",),
@@ -109,10 +109,10 @@ OF_MODULI: tuple[Quantity, ...] = (
         stated(
             "alignment_strain",
             "1",
-            "mean strain on which the cycles were laid before the mean curve was taken",
-            "a choice of where the curve lies; mean_strain_drift is how far the cycles lie apart",
+            "mean strain to which the cycles are shifted before averaging the curves",
+            "a choice of reference; see mean_strain_drift",
             tables=("trend",),
-            page=("means", "mean strain that the cycles are laid on"),
+            page=("means", "mean strain of the aligned cycles"),
             percent=True,
         ),
         group="curves",
@@ -122,7 +122,7 @@ OF_MODULI: tuple[Quantity, ...] = (
         measured(
             "tangent_modulus_untrimmed",
             "Pa",
-            "tangent modulus, whole branches",
+            "tangent modulus, untrimmed branches",
             shares_errors=True,
             tables=("tangent_modulus",),
         ),
@@ -131,7 +131,7 @@ OF_MODULI: tuple[Quantity, ...] = (
     *along(
         ("specimen", "selected_cycle", "branch_name", "strain_bin"),
         measured(
-            "tangent_modulus_by_cycle", "Pa", "tangent modulus of one cycle, trimmed branches"
+            "tangent_modulus_by_cycle", "Pa", "tangent modulus of a single cycle, trimmed branches"
         ),
         group="curves",
     ),
@@ -140,14 +140,14 @@ OF_MODULI: tuple[Quantity, ...] = (
         measured(
             "tangent_modulus_first_loading",
             "Pa",
-            "tangent modulus of the first loading of the record",
+            "tangent modulus of the first loading in the record",
             shares_errors=True,
             tables=("first_loading",),
         ),
         measured(
             "branch_tension_first_loading",
             "N",
-            "tension of the first loading in the bin",
+            "tension of the first loading in the strain bin",
             shares_errors=True,
             tables=("first_loading",),
         ),
@@ -170,15 +170,23 @@ OF_MODULI: tuple[Quantity, ...] = (
             tables=("moduli",),
         ),
         stated(
-            "segment_strain_low", "1", "lower strain end of the segment", BOUND, tables=("moduli",)
+            "segment_strain_low",
+            "1",
+            "strain at the lower end of the segment",
+            BOUND,
+            tables=("moduli",),
         ),
         stated(
-            "segment_strain_high", "1", "upper strain end of the segment", BOUND, tables=("moduli",)
+            "segment_strain_high",
+            "1",
+            "strain at the upper end of the segment",
+            BOUND,
+            tables=("moduli",),
         ),
         measured(
             "segment_modulus",
             "Pa",
-            "slope of a piecewise-linear segment",
+            "modulus of the straight-line segment",
             shares_errors=True,
             tables=("moduli",),
             source="002 Tables 5, 6",
@@ -186,7 +194,7 @@ OF_MODULI: tuple[Quantity, ...] = (
         stated(
             "segment_misfit",
             "N",
-            "rms distance of the mean branch from the segment",
+            "rms deviation of the mean branch from the segment",
             SPREAD,
             tables=("moduli",),
         ),
@@ -194,7 +202,7 @@ OF_MODULI: tuple[Quantity, ...] = (
     ),
     *along(
         (),
-        label("segment_criterion", "how the number of segments was chosen"),
+        label("segment_criterion", "criterion that chose the number of segments"),
         group="segments",
     ),
     *along(
@@ -202,7 +210,7 @@ OF_MODULI: tuple[Quantity, ...] = (
         measured(
             "stress_at_strain",
             "Pa",
-            "nominal stress of the first loading at an elongation",
+            "nominal stress at a stated strain, first loading",
             shares_errors=True,
             tables=("stress_at_strain",),
         ),
@@ -213,10 +221,10 @@ OF_MODULI: tuple[Quantity, ...] = (
         measured(
             "slack_strain_at_unloading",
             "1",
-            "strain where the specimen goes slack on unloading",
+            "strain at which the specimen goes slack on unloading",
             shares_errors=True,
             tables=("slack_strain_at_unloading",),
-            page=("means", "strain where it goes slack, unloading"),
+            page=("means", "slack strain on unloading"),
             percent=True,
         ),
         group="rubber",
@@ -226,36 +234,38 @@ OF_MODULI: tuple[Quantity, ...] = (
         label("elastomer_specimen", "specimen of the elastomer fit"),
         label("elastomer_law", "hyperelastic law"),
         stated(
-            "elastomer_rms_stress", "Pa", "root mean square residual of the elastomer fit", SPREAD
+            "elastomer_rms_stress", "Pa", "root-mean-square residual of the elastomer fit", SPREAD
         ),
-        stated("elastomer_strain_low", "1", "lower end of the strain range of the fit", BOUND),
-        stated("elastomer_strain_high", "1", "upper end of the strain range of the fit", BOUND),
-        flag("elastomer_is_stable", "whether the fitted law is stable over its range", NO_YES),
+        stated("elastomer_strain_low", "1", "lower limit of the fitted strain range", BOUND),
+        stated("elastomer_strain_high", "1", "upper limit of the fitted strain range", BOUND),
+        flag(
+            "elastomer_is_stable", "whether the fitted law is stable over the fitted range", NO_YES
+        ),
         stated(
             "elastomer_aicc",
             "1",
-            "corrected Akaike criterion of the fit, lower is better",
+            "corrected Akaike criterion of the fit (lower is better)",
             CRITERION,
         ),
         group="rubber",
     ),
     *along(
         _PARAMETER,
-        count("elastomer_parameter_fit", "number of the fit that the parameter belongs to"),
+        count("elastomer_parameter_fit", "number of the fit to which the parameter belongs"),
         label(
             "elastomer_parameter_name", "name of the parameter of the law", tables=("elastomer",)
         ),
         measured(
             "elastomer_modulus",
             "Pa",
-            "parameter of the law that is a modulus",
+            "parameter of the law with the dimension of a modulus",
             shares_errors=True,
             tables=("elastomer",),
         ),
         measured(
             "elastomer_exponent",
             "1",
-            "parameter of the law that is an exponent",
+            "dimensionless exponent of the law",
             shares_errors=True,
             tables=("elastomer",),
         ),
@@ -263,8 +273,8 @@ OF_MODULI: tuple[Quantity, ...] = (
     ),
     *along(
         _COMPARISON,
-        label("ratio_numerator", "specimen or cycles above the line of the modulus ratio"),
-        label("ratio_denominator", "specimen below the line of the modulus ratio"),
+        label("ratio_numerator", "specimen or cycles in the numerator of the modulus ratio"),
+        label("ratio_denominator", "specimen in the denominator of the modulus ratio"),
         group="comparisons",
     ),
     *along(
@@ -272,27 +282,27 @@ OF_MODULI: tuple[Quantity, ...] = (
         measured(
             "modulus_ratio",
             "1",
-            "tangent modulus of one specimen, or of some cycles, over that of another",
+            "ratio of tangent moduli of two specimens, or of cycles and a specimen",
             shares_errors=True,
             tables=("comparison",),
         ),
         stated(
             "modulus_ratio_low",
             "1",
-            "lower end of the 95 % interval of the modulus ratio",
+            "lower limit of the 95 % interval of the modulus ratio",
             BOUND,
             tables=("comparison",),
         ),
         stated(
             "modulus_ratio_high",
             "1",
-            "upper end of the 95 % interval of the modulus ratio",
+            "upper limit of the 95 % interval of the modulus ratio",
             BOUND,
             tables=("comparison",),
         ),
         flag(
             "modulus_ratio_is_different",
-            "whether the interval leaves out 1",
+            "whether the interval excludes 1",
             NO_YES,
             tables=("comparison",),
         ),

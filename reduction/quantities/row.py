@@ -16,9 +16,9 @@ TEXT = "U"
 COMPONENT = "uncertainty_component"
 """Axis of the errors that numbers share."""
 
-READING = "a reading: its uncertainty is that of the channel"
+READING = "a reading; its uncertainty is that of the channel"
 
-CLOCK = "a reading of the clock"
+CLOCK = "a clock reading"
 
 BOUND = "bound"
 
@@ -28,7 +28,7 @@ SETTING = "setting"
 
 STATED = "stated by the laboratory"
 
-STRENGTH = "as stated; what is stated of its error is in the numbers that are shares of it"
+STRENGTH = "as stated; its stated error is in the numbers divided by it"
 
 AXIS = "axis of the curve"
 
@@ -36,13 +36,13 @@ CHECK = "residual of a check"
 
 CRITERION = "criterion of a fit"
 
-STATISTIC = "a statistic of a test"
+STATISTIC = "a test statistic"
 
-SPREAD = "is itself a measure of spread"
+SPREAD = "a measure of spread"
 
-OF_UNCERTAINTY = "degrees of freedom of an uncertainty"
+OF_UNCERTAINTY = "degrees of freedom"
 
-PART = "is part of an uncertainty"
+PART = "part of an uncertainty"
 
 SUFFIXES = {
     "_random_standard_uncertainty": (
@@ -51,52 +51,52 @@ SUFFIXES = {
         "is an uncertainty",
     ),
     "_uncertainty_contribution": (
-        "signed contribution of one standard uncertainty of each shared error to {}",
+        "signed contribution of each shared error (one standard uncertainty) to {}",
         "f8",
-        "is part of an uncertainty",
+        "part of an uncertainty",
     ),
     "_standard_uncertainty": ("standard uncertainty (k=1) of {}", "f8", "is an uncertainty"),
-    "_count": ("number of cycles in the mean: {}", "i4", "count"),
-    "_minimum": ("least over the cycles: {}", "f8", "bound: least value seen"),
-    "_maximum": ("greatest over the cycles: {}", "f8", "bound: greatest value seen"),
-    "_scatter": ("standard deviation over the cycles: {}", "f8", "is itself a measure of spread"),
+    "_count": ("number of cycles averaged: {}", "i4", "count"),
+    "_minimum": ("minimum over the cycles: {}", "f8", "bound: lowest value seen"),
+    "_maximum": ("maximum over the cycles: {}", "f8", "bound: highest value seen"),
+    "_scatter": ("standard deviation over the cycles: {}", "f8", "a measure of spread"),
 }
 """Suffix: its long name, type, and why it has no uncertainty of its own."""
 
 GROUPS = {
-    "specimens": "specimens: readings of the diameter, and what they went through before",
-    "record": "rows of the log, the lag between its channels, and where the test stood still",
-    "splice": "how position became strain: method, coefficients, tape readings",
-    "cycles": "cycles one by one, means over them, trends and slips",
-    "curves": "tangent modulus of each cycle, and with the ends of the branches",
+    "specimens": "specimens: diameter readings and history",
+    "record": "rows of the log, channel lag, standstills",
+    "splice": "conversion of position to strain: method, coefficients, tape readings",
+    "cycles": "single cycles, means over cycles, trends and slips",
+    "curves": "tangent modulus of single cycles, and of untrimmed branches",
     "first_loading": "tangent modulus and tension of the first loading",
     "segments": "piecewise-linear moduli",
     "rubber": "stress at stated strains, slack strain, hyperelastic laws",
-    "line": "the three-parameter line, and slow pulls",
-    "programme": "steps of a rope laboratory's programme",
+    "line": "three-parameter line model, and slow pulls",
+    "programme": "steps of a rope test programme",
     "holds": "relaxation and creep",
-    "comparisons": "specimens of the test against each other",
-    "coefficients": "coefficients in other units, with their tests; subsets of terms",
-    "quality": "how well each surface fits",
+    "comparisons": "comparison of the specimens of the test",
+    "coefficients": "coefficients in other units, with significance tests; reduced models",
+    "quality": "goodness of fit of each surface",
     "anova": "analysis of variance",
     "stationary_point": "stationary point and principal directions of each surface",
     "runs": "runs: levels, measured, fitted, residuals",
     "points": "values of the surfaces at points and along ridges",
     "blocks": "effects of blocks",
-    "screening": "effects of a screening, and what they are confounded with",
+    "screening": "effects of a screening experiment, and their aliases",
     "stiffness": "dynamic stiffness in the forms of mooring codes",
-    "single_time": "whether one relaxation time holds over frequency",
-    "design": "the hose: angles, diameters, cords, rubber",
+    "single_time": "check of a single relaxation time over frequency",
+    "design": "hose design: angles, diameters, cords, rubber",
     "cords": "cords: load against strain, angle and spacing along the curve",
-    "layers": "helical layers that go along with the hose",
+    "layers": "non-load-bearing helical layers of the hose",
     "events": "slack, pick-up, working load and break",
     "energy": "energies of the measured and the predicted curve",
     "statistics": "statistics behind the verdict",
-    "fit": "numbers that were fitted to the measured curve",
-    "uncertainty": "random parts of uncertainties, and contributions of errors that numbers share",
-    "notes": "what to know before the numbers are used",
+    "fit": "parameters fitted to the measured curve",
+    "uncertainty": "random parts of uncertainties, and contributions of shared errors",
+    "notes": "warnings and notes on the results",
 }
-"""Groups of archives and what they hold; the root holds what somebody looks for."""
+"""Groups of archives and their contents; the root holds the most-used numbers."""
 
 _PARTS = ("_random_standard_uncertainty", "_uncertainty_contribution")
 

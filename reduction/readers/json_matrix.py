@@ -134,7 +134,7 @@ def _once(path: Path, pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(content) < len(pairs):
         names = [key for key, _ in pairs]
         twice = next(key for key in names if names.count(key) > 1)
-        raise LogError(path, f"the key '{twice}' stands twice in an object", needed="it once")
+        raise LogError(path, f"the key '{twice}' appears twice in an object", needed="it once")
     return content
 
 

@@ -298,7 +298,7 @@ def check_regular(path: Path, mode: int) -> None:
     if not stat.S_ISREG(mode):
         raise LogError(
             path,
-            "this is no file that can be read",
+            "this is not a file that can be read",
             found=_KINDS.get(stat.S_IFMT(mode), "something else"),
             needed="a regular file",
         )

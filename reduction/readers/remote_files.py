@@ -61,7 +61,7 @@ def allowed(text: str, allow_remote: bool, *, what: str) -> bool:
     # one that is chained, or leads to this machine, is none of these
     if text.partition("://")[0].lower() not in PACKAGES or "::" in text or not text.isprintable():
         raise SettingsError(
-            f"{what} is no address that can be used", found=shown,
+            f"{what} is not an address that can be used", found=shown,
             needed=f"one address that begins with {', '.join(f'{one}://' for one in PACKAGES)}; "
             "a file on this machine by its path",
         )  # fmt: skip

@@ -103,7 +103,7 @@ class InstrumentErrors:
             value = getattr(self, item.name)
             if isinstance(value, float) and not (np.isfinite(value) and value >= 0):
                 raise SettingsError(
-                    f"{item.name} of '{self.specimen}' is no standard uncertainty",
+                    f"{item.name} of '{self.specimen}' is not a standard uncertainty",
                     found=f"{value:g} in SI",
                     needed="zero or more",
                 )
@@ -152,7 +152,7 @@ class Contributions:
     def __post_init__(self) -> None:
         """Check that every quantity has a row for each component, and make arrays read-only."""
         if len(set(self.component)) != len(self.component):
-            raise SettingsError("a component stands twice among the contributions")
+            raise SettingsError("a component appears twice among the contributions")
         for name, rows in self.values.items():
             rows.setflags(write=False)
             if rows.shape[:1] != (len(self.component),):

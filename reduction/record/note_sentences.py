@@ -52,24 +52,24 @@ def _left_out(n_cycles: int) -> str:
 
 
 def _unknown_mass(mass: float, usual: float, effect: float, cell: str) -> str:
-    """What a mass that nobody stated would do."""
+    """Effect of an attached mass that nobody stated."""
     lacks = (
         "the mass between specimen and moving load cell is not stated"
         if cell
-        else "at which end the load cell is, and the mass beside it, are not stated"
+        else "the position of the load cell and the mass attached to it are not stated"
     )
     return (
-        f"{lacks}: {mass:.3g} kg at a moving load cell would move K_ap by its standard uncertainty,"
-        f" {usual:g} kg (a grip for 22 kN) by {effect:+.2%}; on the fixed frame none is felt. State"
-        " load_cell_at and attached_mass in the layout"
+        f"{lacks}: {mass:.3g} kg at a moving load cell would change K_ap by its standard"
+        f" uncertainty, {usual:g} kg (a grip for 22 kN) by {effect:+.2%}; a load cell on the fixed"
+        " frame feels none. State load_cell_at and attached_mass in the layout"
     )
 
 
 def _unknown_compliance(compliance: float, usual: float, effect: float) -> str:
-    """What give that nobody stated would do."""
+    """Effect of a machine compliance that nobody stated."""
     return (
         f"the compliance of frame, load cell and grips is not stated: {compliance:.3g} m/N would"
-        f" move K_ap by its standard uncertainty, {usual:.2g} m/N (a frame for 100 kN, without"
+        f" change K_ap by its standard uncertainty, {usual:.2g} m/N (a frame for 100 kN, without"
         f" grips) by {effect:+.2%}. State machine_compliance in the layout"
     )
 
@@ -80,15 +80,15 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note", "length at {reading} is {length}, printed {printed} ({erratum})",
     ),
     "counter-missing": (
-        "note", "the cycle counter is missing on {n_rows} rows, -1 there",
+        "note", "the cycle counter is missing in {n_rows} rows; it is set to -1 there",
     ),
     "resampled": (
         "note",
-        "{channels}: {rate:.4g} Hz resampled to the {base_rate:.4g} Hz of {base} by linear"
+        "{channels}: resampled from {rate:.4g} Hz to the {base_rate:.4g} Hz of {base} by linear"
         " interpolation",
     ),
     "channels-not-used": ("note", "read, but not part of a record: {channels}"),
-    "record-of-pieces": ("note", "one record of {n_pieces} pieces: {files}"),
+    "record-of-pieces": ("note", "one record joined from {n_pieces} files: {files}"),
     "reference-length-elsewhere": (
         "warning",
         "reference_length is stated at {stated:.4g} N, but where displacement is first zero the"
@@ -96,22 +96,22 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "rows-without-time": (
         "warning",
-        "{n_rows} rows have no time, first sample {sample}: their time is that of even steps"
-        " between the rows beside them, and their position is not used",
+        "{n_rows} rows have no time, first at sample {sample}: their time is interpolated in even"
+        " steps between the neighbouring rows, and their position is not used",
     ),
     "sampling-uneven": (
         "note",
         "the sampling rate is not constant: {n_uneven} of {n_steps} time steps differ by more than"
-        " {tolerance:.0%} from their median {median:.4g} s ({shortest:.4g} to {longest:.4g} s, gaps"
-        " apart)",
+        " {tolerance:.0%} from their median {median:.4g} s ({shortest:.4g} to {longest:.4g} s, not"
+        " counting gaps)",
     ),
     "channel-steps": (
         "note",
         lambda channel, low, high, unit, sample, time, n_more, beside: (
             f"{channel} steps from {low:.4g} to {high:.4g} {unit} between sample {sample}"
             f" ({time:.6g} s) and the next{f', and at {n_more} more' if n_more else ''}, and stays"
-            f" there, while {beside} not: a slip, a break, a zero that was set again, or another"
-            " unit from there on; numbers across it mix both"
+            f" there, while {beside} does not step. Possible causes: a slip, a break, a re-zeroed"
+            " channel, or a change of unit; results across the step mix both states"
         ),
     ),
     "rows-flagged": (
@@ -123,42 +123,43 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "rows-resampled": (
         "note", "{n_read} rows read, {n_kept} kept, flagged: {flags}",
     ),
-    "lines-not-kept": ("note", "{n_lines} more lines that are not data are not kept"),
-    "blocks-read": ("note", "{n_blocks} blocks of data"),
+    "lines-not-kept": ("note", "{n_lines} further lines without data are not stored"),
+    "blocks-read": ("note", "{n_blocks} blocks of data read"),
     "lines-between-blocks-not-kept": (
-        "note", "{n_lines} more lines between the blocks are not kept",
+        "note", "{n_lines} further lines between the blocks are not stored",
     ),
     "blocks-not-read": (
         "note",
         "{n_blocks} blocks of another kind with {n_rows} rows are not read, the first at row {row}",
     ),
     "metadata-left-out": (
-        "note", "{key!r} of the file is left out: it has {n_characters:,} characters",
+        "note", "file attribute {key!r} is not stored: it has {n_characters:,} characters",
     ),
-    "blank-rows": ("note", "{n_rows} blank rows at the end of the sheet are left out"),
+    "blank-rows": ("note", "{n_rows} blank rows at the end of the sheet are ignored"),
     "log-cut-off": (
-        "note", "the file ends inside a block of data: the logger was stopped or cut off",
+        "note", "the file ends inside a block of data: the logger was stopped or the file cut off",
     ),
     "levels-found": (
         "warning",
         lambda n_levels, steps, n_left_out: (
-            f"the log holds {n_levels} levels and states no steps: each was found in the record and"
-            f" is reduced by itself{_left_out(n_left_out)}; to keep or change them, paste into the"
-            f" table of the test in campaign.toml: {steps}"
+            f"the log contains {n_levels} load levels, but no steps are stated: the levels were"
+            f" found in the record and are reduced separately{_left_out(n_left_out)}. To fix or"
+            f" change them, paste this into the table of the test in campaign.toml: {steps}"
         ),
     ),
     "cycles-unlike": (
         "warning",
         lambda mean, ratio, steps: (
-            f"the cycles are unlike (nine tenths of their means lie {100 * mean:.0f} % of a range"
-            f" apart, their ranges a factor of {ratio:.2f}): a mean of the test is of none of them"
-            + (f"; its levels are {steps}" if steps else "")
+            f"the cycles differ (nine tenths of their means spread over {100 * mean:.0f} % of a"
+            f" range, and their ranges over a factor of {ratio:.2f}): a mean over the test"
+            " represents none of them"
+            + (f". Its levels are {steps}" if steps else "")
         ),
     ),
     "held-load-repeats": (
         "note",
-        "{n_samples} samples in holds at constant tension repeat one value of it: their flags stuck"
-        " and saturated are taken off, since the machine holds it there",
+        "{n_samples} samples in holds at constant tension repeat one value: the flags stuck and"
+        " saturated are removed there, since the machine holds the tension",
     ),
 }  # fmt: skip
 
@@ -166,220 +167,223 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "marks-count-as-exact": (
         "note",
         lambda rows="rows": (
-            f"the {rows} have no stated reading error and none to spare: they count as exact"
+            f"the {rows} have no stated reading error, and are too few to estimate one: they are"
+            " treated as exact"
         ),
     ),
     "marks-error-from-scatter": (
         "note",
         lambda freedom, rows="rows": (
-            f"the {rows} have no stated reading error: their scatter is taken, with {freedom}"
-            f" degree{_plural(freedom)} of freedom"
+            f"the {rows} have no stated reading error: it is estimated from their scatter, with"
+            f" {freedom} degree{_plural(freedom)} of freedom"
         ),
     ),
     "marks-scatter": (
         "note",
         lambda ratio, chi_square, freedom, chance, rows="rows": (
-            f"the {rows} scatter {ratio:.1f} times as much as the tape explains (chi-square"
-            f" {chi_square:.3g} of {freedom} degree{_plural(freedom)} of freedom, one in"
-            f" {f'{1 / chance:,.0f}' if chance > 1e-6 else 'a million or more'}); their uncertainty"
-            " is widened by as much"
+            f"the {rows} scatter {ratio:.1f} times as much as tape reading explains (chi-square"
+            f" {chi_square:.3g} with {freedom} degree{_plural(freedom)} of freedom, probability one"
+            f" in {f'{1 / chance:,.0f}' if chance > 1e-6 else 'a million or more'}); their"
+            " uncertainty is increased by this factor"
         ),
     ),
     "constant-fraction-off": (
         "warning",
         lambda low, high, effect: (
-            f"constant-fraction misses its own marks by {100 * low:+.1f} to {100 * high:+.1f}"
-            f" points of strain and reads moduli over them {_against(effect, 'high', 'low')}"
+            f"strain by constant-fraction misses its own marks by {100 * low:+.1f} to"
+            f" {100 * high:+.1f} percentage points; moduli over the marked range are"
+            f" {_against(effect, 'too high', 'too low')}"
         ),
     ),
     "marks-differ": (
         "warning",
         lambda method, rms, expected: (
-            f"strain by {method} differs from the marks by {100 * rms:.2f} points rms, tape reading"
-            f" alone explains {100 * expected:.2f}"
+            f"strain by {method} differs from the marks by {100 * rms:.2f} percentage points rms;"
+            f" tape reading explains only {100 * expected:.2f}. Check the marks"
         ),
     ),
     "marks-outlier": (
         "warning",
         lambda test, hold, residual: (
-            f"the mark of test {test}, hold {hold}, lies {100 * residual:+.1f} points off the fit;"
-            " its tape readings want a second look"
+            f"the mark of test {test}, hold {hold}, is an outlier: {100 * residual:+.1f} percentage"
+            " points off the fit. Check its tape readings"
         ),
     ),
     "slack-length-grows": (
         "warning",
         lambda growth, effect: (
             f"the slack length grows by {1e3 * growth:.0f} mm ({100 * effect:.1f} %) from the first"
-            " test to the last (permanent set, or a splice let out); strain counts from the mean"
-            " slack length"
+            " test to the last (permanent set, or a splice that slipped); strain refers to the"
+            " mean slack length"
         ),
     ),
     "marks-of-failed-tests": (
         "note",
-        "{n_marks} of {n_stretched} stretched marks are of tests that failed ({tests}), so that"
-        " their tension is not known; the law of tension is without them",
+        "{n_marks} of {n_stretched} stretched marks belong to tests that failed ({tests}), so"
+        " their tension is not known; the tension law is fitted without them",
     ),
     "marks-without-hold": (
         "note",
-        "{n_marks} of {n_stretched} stretched marks have no hold in the logs and are left out",
+        "{n_marks} of {n_stretched} stretched marks match no hold in the logs and are not used",
     ),
     "load-zero-wrong": (
         "warning",
         lambda load, n_rests, zero, effect: (
-            f"the load cell reads {load:.4g} N where the specimen is slack ({_rests(n_rests)}),"
-            f" {100 * abs(effect):.2g} % of the greatest load, and load rises with stretch: its"
-            f" zero is wrong{', not its sign' if load < 0 else ''}; "
+            f"the load cell reads {load:.4g} N at slack ({_rests(n_rests)}),"
+            f" {100 * abs(effect):.2g} % of the peak load, and load rises with stretch: its"
+            f" zero is wrong{', not its sign' if load < 0 else ''}. "
             + (
-                f'set zero = "{zero}" for this channel'
+                f'Set zero = "{zero}" for this channel'
                 if zero
-                else "set zero of this channel in each layout of the log"
+                else "Set zero for this channel in each layout of the log"
             )
         ),
     ),
     "load-zero-off": (
         "note",
         lambda load, n_rests, zero: (
-            f"the load cell reads {load:.4g} N where the specimen is slack ({_rests(n_rests)}),"
-            " beyond its noise"
-            + (f'; zero = "{zero}" for this channel takes it off' if zero else "")
+            f"the load cell reads {load:.4g} N at slack ({_rests(n_rests)}),"
+            " more than its noise"
+            + (f'. Set zero = "{zero}" for this channel' if zero else "")
         ),
     ),
     "load-negative": (
         "warning",
-        "load is negative ({load:.4g} N in the middle, {least:.4g} N at the least) and rises with"
-        " stretch: the zero of the load cell is wrong, not its sign; the log has no rest at slack,"
-        " so set zero of this channel to what the cell read without load",
+        "load is negative (median {load:.4g} N, minimum {least:.4g} N) and rises with stretch: the"
+        " zero of the load cell is wrong, not its sign. The log has no rest at slack, so set zero"
+        " for this channel to the unloaded reading",
     ),
     "load-falls-with-stretch": (
         "warning",
-        "load is negative ({load:.4g} N in the middle) and falls with stretch; does the log count"
-        " compression positive? Then set sign = -1 for this channel",
+        "load is negative (median {load:.4g} N) and falls with stretch. If the log counts"
+        " compression as positive, set sign = -1 for this channel",
     ),
     "strain-below-zero": (
         "warning",
         lambda least, tension, reference, rises: (
-            f"strain is down to {100 * least:.3g} % at tensions up to {tension:.3g} N, above the"
+            f"strain falls to {100 * least:.3g} % at tensions up to {tension:.3g} N, above the"
             f" {reference:.3g} N at which it should be zero: "
             + (
-                "the zero of crosshead_position is not where the specimen has that tension"
+                "crosshead_position is not zero where the specimen has that tension. Check its zero"
                 if rises
-                else "tension rises where crosshead_position falls; does it count the other way?"
-                " Then set sign = -1 for it"
+                else "tension rises as crosshead_position falls. If position counts the other way,"
+                " set sign = -1 for it"
             )
         ),
     ),
     "strain-from-tension": (
         "note",
-        "strain is zero at the reference tension of {tension:.4g} N, at which its gauge length was"
+        "strain is zero at the reference tension of {tension:.4g} N, for which the gauge length is"
         " stated",
     ),
     "reference-tension-elsewhere": (
         "warning",
-        "the layout has the reference tension of {tension:.4g} N at {stated:.4g} m, the log first"
-        " at {found:.4g} m; strain is zero at the latter",
+        "by the layout the reference tension of {tension:.4g} N is reached at {stated:.4g} m, in"
+        " the log first at {found:.4g} m; strain is zero at the latter",
     ),
     "gauge-length-from-reference": (
         "warning",
-        "no gauge_length is stated: strain refers to all of the reference_length, {length:.4g} m;"
-        " grips, eyes or splices in it make strain too small and moduli too large",
+        "no gauge_length is stated: strain refers to the whole reference_length, {length:.4g} m."
+        " If that includes grips, eyes or splices, strain is too low and moduli are too high",
     ),
     "tape-off-crosshead": (
         "warning",
-        "at the holds of {n_marks} marks the crosshead is {apart:+.4g} m off the tape, more than"
-        " the errors of both explain: is its zero right?",
+        "at the holds of {n_marks} marks crosshead and tape differ by {apart:+.4g} m, more than"
+        " their errors explain. Check the zero of the crosshead",
     ),
     "splice-laws": (
         "note",
         lambda law, weight, chance, second, effect: (
-            f"splices follow the law {law} (weight {weight:.2f}, chance of its misfit {chance:.2g})"
-            + (f"; {second} would move moduli by {100 * effect:+.1f} %" if second else
-               "; no other law passes")
+            f"the splices follow the law {law} (weight {weight:.2f}, p-value of its fit"
+            f" {chance:.2g})"
+            + (f"; {second} would change moduli by {100 * effect:+.1f} %" if second else
+               "; no other law fits")
         ),
     ),
     "mark-set-aside": (
         "warning",
-        "the mark of test {test} at {hold} lies more than four standard errors off every law of the"
-        " splices, and is set aside",
+        "the mark of test {test} at {hold} is an outlier, more than four standard errors off every"
+        " splice law, and is not used. Check its tape readings",
     ),
     "splices-slip": (
         "warning",
         lambda slip: (
             f"the splices slip between tests, by {1000 * slip:.1f} mm (standard deviation): each"
-            " test has the offset that its own marks say"
+            " test gets the offset of its own marks"
         ),
     ),
     "gauge-length-exact": (
         "note",
-        "the gauge length counts as exact: its standard uncertainty is not stated, and that of"
-        " strain leaves it out",
+        "the gauge length is treated as exact: its standard uncertainty is not stated, so the"
+        " uncertainty of strain does not include it",
     ),
-    "other-free-length": ("note", "of another free length: {length:.4g} m"),
+    "other-free-length": ("note", "measured on a different free length: {length:.4g} m"),
     "diameters-contradict": (
         "warning",
         lambda implied, stated, allowed, effect: (
-            f"the stretched diameters imply {1e3 * implied:.2f} mm before stretch at constant"
-            f" volume, {1e3 * stated:.2f} mm is stated, and reading scatter explains no more than"
-            f" {1e3 * allowed:.2f} mm; with the implied diameter every modulus and stress of this"
+            f"at constant volume the stretched diameters imply {1e3 * implied:.2f} mm before"
+            f" stretch, but {1e3 * stated:.2f} mm is stated; reading scatter explains only"
+            f" {1e3 * allowed:.2f} mm. With the implied diameter all moduli and stresses of this"
             f" specimen would be {_against(effect, 'higher', 'lower')}"
         ),
     ),
     "no-diameter": (
-        "refusal", "no diameter or area is stated: spring constants, but no stress and no modulus",
+        "refusal",
+        "no diameter or area is stated: spring constants are given, but no stress or modulus",
     ),
 }  # fmt: skip
 
 _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "jumps-no-reversals": (
         "note",
-        "{n_jumps} jumps of the control channel and back are no reversals, first at {time:g} s",
+        "{n_jumps} short spikes of the control channel are not counted as reversals, first at"
+        " {time:g} s",
     ),
     "gaps-end-runs": (
         "note",
-        "gaps of the record longer than 30 % of a half cycle, each the end of a run: {n_gaps},"
-        " first near {time:g} s",
+        "{n_gaps} gaps in the record longer than 30 % of a half cycle, each treated as the end of"
+        " a run, first near {time:g} s",
     ),
     "cycles-of-two-amplitudes": (
         "note",
-        "cycles between two amplitudes, one branch of each, not counted: {n_cycles}, first at"
-        " {time:g} s",
+        "{n_cycles} transition cycles between two amplitudes are not counted, first at {time:g} s",
     ),
     "cycles-of-starting-machine": (
         "note",
         lambda n_first, n_last: (
-            f"the machine had not reached its amplitude in the first {n_first} and had left it in"
-            f" the last {n_last} cycles, which are not counted"
+            f"the machine was not at full amplitude in the first {n_first} and the last {n_last}"
+            " cycles; these are not counted"
         ),
     ),
     "counter-constant": (
         "note", "the machine's cycle counter never changes: reversals are counted instead",
     ),
     "counted-without-stroke": (
-        "note", "counted cycles without a stroke: {n_cycles}, first machine cycle {first}",
+        "note", "{n_cycles} machine-counted cycles have no stroke, first machine cycle {first}",
     ),
     "counter-skips": (
         "note",
-        "the log holds {n_cycles} of the machine's cycles {first} to {last}: {after} follows"
+        "the log contains {n_cycles} of the machine cycles {first} to {last}: {after} follows"
         " {before}",
     ),
     "counter-differs": (
         "warning",
-        "the machine counted {n_counted} cycles with a stroke, the reversals give {n_reversals}"
-        " whole ones",
+        "the machine counted {n_counted} cycles with a stroke, but the reversals give"
+        " {n_reversals} complete cycles",
     ),
-    "one-cycle": ("note", "one cycle only: there is no scatter from cycle to cycle"),
+    "one-cycle": ("note", "one cycle only: no cycle-to-cycle scatter can be given"),
     "few-samples-a-cycle": (
         "warning",
-        "{n_samples:g} samples in a cycle, where {needed} are needed for sound peaks and loops: a"
-        " turn between two samples is missed, the spring constant is of what was logged, and"
-        " tangent moduli may have no window. Log every {step}, or take the log that was not"
-        " thinned",
+        "{n_samples:g} samples per cycle; {needed} are needed for reliable peaks and loops. Peaks"
+        " between samples are missed, which affects the spring constant, and tangent moduli may"
+        " not be available. Log every {step}, or use the log before thinning",
     ),
     "cycles-not-as-planned": (
-        "warning", "{n_found} whole cycles found, {n_planned} planned",
+        "warning", "{n_found} complete cycles found, {n_planned} planned",
     ),
     "no-plateau": (
         "note",
-        "a {waveform} waveform has no plateau of rate: the trimmed branches leave out 5 % of the"
+        "a {waveform} waveform has no part at constant rate: branches are trimmed by 5 % of the"
         " stroke at each end",
     ),
     "branches-without-constant-rate": (
@@ -388,18 +392,18 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "strain-impossible": (
         "warning",
-        "strain reaches {strain:.4g}, which no specimen does; is the unit of position, or the"
-        " length that strain refers to, right?",
+        "strain reaches {strain:.4g}, which is impossible. Check the unit of position and the"
+        " reference length of strain",
     ),
     "cycles-drift": (
         "warning",
-        "{n_far} of {n_cycles} cycles drift by more than {limit:.0%} of their range: their"
-        " amplitudes, slopes and energies rest on it",
+        "{n_far} of {n_cycles} cycles drift by more than {limit:.0%} of their range; the drift"
+        " affects their amplitudes, slopes and energies",
     ),
     "sign-of-tension": (
         "warning",
-        "tension falls with stretch (median tangent modulus {slope:.4g} Pa); does the log count"
-        " compression positive? Then set sign = -1 for this channel",
+        "tension falls with stretch (median tangent modulus {slope:.4g} Pa). If the log counts"
+        " compression as positive, set sign = -1 for this channel",
     ),
     "loops-run-backward": (
         "warning",
@@ -407,10 +411,10 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f"tension falls with stretch ({slope:.4g} N per unit strain, at a mean of {tension:.4g}"
             f" N and {100 * strain:.3g} %): "
             + (
-                f"the {channel} channel runs backward; set sign = -1 for it in the layout"
+                f"the sign of the {channel} channel is reversed; set sign = -1 for it in the layout"
                 if channel
-                else "one channel runs backward, or what is logged is the inertia of moving parts;"
-                " check sign and zero of both"
+                else "the sign of one channel is reversed, or the log shows the inertia of moving"
+                " parts; check sign and zero of both channels"
             )
             + ". Stiffness, loop energy and loss are not given"
         ),
@@ -418,20 +422,20 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "loops-give-work": (
         "warning",
         lambda energy, n_cycles, n_known, delay, stated, time_step, cause: (
-            f"{n_cycles} of {n_known} loops give out work ({energy:.4g} J/m on average): tension"
-            " rises with stretch, so no channel is reversed, and follows it by"
+            f"{n_cycles} of {n_known} loops run the wrong way and give out energy ({energy:.4g} J/m"
+            " on average). Tension rises with stretch, so no sign is reversed; it lags stretch by"
             f" {1e3 * delay:.3g} ms or more, "
             + {
-                "lag": f"within the stated lag of {1e3 * stated:.3g} ms (k=1): it was logged late,"
-                " and the loss is not known in sign",
-                "sampling": f"less than a sample of {1e3 * time_step:.3g} ms: the channels were"
-                " hardly read together; state a lag",
+                "lag": f"within the stated lag of {1e3 * stated:.3g} ms (k=1): tension was logged"
+                " late, and the sign of the loss is not known",
+                "sampling": f"less than the sampling interval of {1e3 * time_step:.3g} ms: the"
+                " channels were not sampled simultaneously. State a lag",
                 "driven": (
                     f"more than twice the stated lag of {1e3 * stated:.3g} ms: the specimen is"
-                    " driven, or tension was logged later than stated"
+                    " driven, or the lag is larger than stated"
                     if stated
-                    else "and no lag is stated: tension was logged late by that, or the specimen is"
-                    " driven"
+                    else "and no lag is stated: tension was logged late by this time, or the"
+                    " specimen is driven"
                 ),
             }[cause]
         ),
@@ -439,156 +443,155 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "drift-in-energy": (
         "warning",
         lambda energy, closed, effect: (
-            f"the loop area is {closed:.4g} J/m as logged, of which {closed - energy:+.3g} J/m"
-            f" ({effect:+.1%} of what is given) is the drift of the"
-            f" cycles: the hysteresis energy of {energy:.4g} J/m is without it"
+            f"the loop area as logged is {closed:.4g} J/m, of which {closed - energy:+.3g} J/m"
+            f" ({effect:+.1%} of the result) is due to drift of the"
+            f" cycles: the hysteresis energy of {energy:.4g} J/m excludes it"
         ),
     ),
     "slack-in-cycles": (
         "warning",
-        "slack within {n_slack} of {n_cycles} cycles (tension at or below {slack_tension:.4g} N):"
-        " amplitudes and energies of these include the slack part",
+        "the specimen goes slack in {n_slack} of {n_cycles} cycles (tension at or below"
+        " {slack_tension:.4g} N); their amplitudes and energies include the slack part",
     ),
     "no-snap-loads": (
         "note",
-        "{n_taut} of {n_cycles} cycles are no snap loads: tension stays above {slack_tension:.4g}"
-        " N, so the line does not go slack in them",
+        "{n_taut} of {n_cycles} cycles are not snap loads: tension stays above"
+        " {slack_tension:.4g} N, so the line does not go slack",
     ),
     "not-triangular": (
         "warning",
-        "declared triangular, but only {share:.0%} of the branches run at a constant rate; is"
-        ' waveform = "sinusoidal" right?',
+        "the waveform is declared triangular, but only {share:.0%} of the branches run at a"
+        ' constant rate. Check whether waveform = "sinusoidal" applies',
     ),
     "stated-lag-long": (
         "warning",
-        "the stated lag of {lag:.4g} s is more than a twentieth of {n_short} of {n_cycles} cycles,"
-        " the shortest of {shortest:.4g} s: what it does to stiffness and loss is of first order,"
-        " and their uncertainties are too small",
+        "the stated lag of {lag:.4g} s exceeds a twentieth of the period in {n_short} of"
+        " {n_cycles} cycles (shortest {shortest:.4g} s): its effect on stiffness and loss is"
+        " estimated to first order only, so their uncertainties are too small",
     ),
     "inertia-taken-off": (
         "note",
         lambda mass, force, width, n_lost, cell: (
-            f"tension is that of the specimen: the inertia of {mass:.4g} kg at its moving end, up"
-            f" to {force:.4g} N, is taken off what the load cell at the {cell} end felt;"
-            f" acceleration from the position, in windows of {width:.3g} s"
+            f"tension is corrected for inertia: {mass:.4g} kg at the moving end, up"
+            f" to {force:.4g} N at the load cell at the {cell} end;"
+            f" acceleration from position, in windows of {width:.3g} s"
             + (
-                f"; {n_lost} samples of the cycles have none, and no tension"
+                f"; {n_lost} samples in cycles have no acceleration and so no tension"
                 if n_lost else ""
             )
         ),
     ),
     "give-taken-off": (
         "note",
-        "position is that of the specimen: {compliance:.4g} m/N times the tension, up to"
-        " {length:.4g} m, is taken off what the crosshead's scale saw",
+        "position is corrected for machine compliance: {compliance:.4g} m/N times the tension, up"
+        " to {length:.4g} m",
     ),
     "attached-mass-unknown": ("note", _unknown_mass),
     "attached-mass-matters": ("warning", _unknown_mass),
     "own-mass-unknown": (
         "note",
-        "the inertia of the specimen itself is not corrected for (that takes load_cell_at and"
-        " linear_density): a mass of {at_moving:.3g} kg between its ends would move K_ap by its"
-        " standard uncertainty under a load cell at the moving end, {at_fixed:.3g} kg under one at"
-        " the fixed end",
+        "the inertia of the specimen itself is not corrected (this needs load_cell_at and"
+        " linear_density): a specimen mass of {at_moving:.3g} kg would change K_ap by its standard"
+        " uncertainty with the load cell at the moving end, {at_fixed:.3g} kg with the load cell"
+        " at the fixed end",
     ),
     "compliance-unknown": ("note", _unknown_compliance),
     "compliance-matters": ("warning", _unknown_compliance),
     "tension-late": (
         "warning",
         lambda lag, spread, stated: (
-            f"tension turns {1e3 * lag:.0f} +- {1e3 * spread:.0f} ms (k=1) later than position, and"
-            f" {f'a lag of 0 +- {1e3 * stated:g} ms is stated' if stated else 'no lag is stated'}:"
-            " it was logged late, by at least that, since damping makes it turn early; nothing is"
-            " corrected, and loops are too narrow by it"
+            f"tension reverses {1e3 * lag:.0f} +- {1e3 * spread:.0f} ms (k=1) after position, but"
+            f" {f'a lag of 0 +- {1e3 * stated:g} ms is stated' if stated else 'no lag is stated'}."
+            " Damping would make it reverse early, so it was logged late by at least this; no"
+            " correction is made, and the loops are too narrow"
         ),
     ),
 }  # fmt: skip
 
 _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
-    "break-in-left-out": ("note", "the first {n_cycles} cycles (break-in) are not in the mean"),
+    "break-in-left-out": ("note", "the first {n_cycles} cycles (break-in) are not averaged"),
     "no-tangent-modulus": (
         "refusal",
         "specimen {place} of the record has no tangent modulus: no window has enough samples",
     ),
     "cycles-aligned": (
         "note",
-        "the mean strain of the cycles drifts by {drift:+.3%} from the first to the last"
-        " ({effect:.0%} of the range of a cycle; {per_decade:+.3%} per decade of cycles): curves"
-        " are those of cycles shifted to a mean strain of {reference:.3%}, and tension at a strain"
-        " is that of such a cycle",
+        "the mean strain of the cycles drifts by {drift:+.3%} from first to last ({effect:.0%} of"
+        " the range of a cycle; {per_decade:+.3%} per decade of cycles): the cycles are shifted to"
+        " a mean strain of {reference:.3%} before their curves are averaged",
     ),
     "bins-of-some-cycles": (
         "refusal",
-        "specimen {place} of the record: curves are given at {n_given} of {n_bins} strains (of both"
-        " branches together); fewer than {least:.0%} of the cycles reach the others, and a mean"
-        " over some cycles is no curve of the test",
+        "specimen {place} of the record: curves are given at {n_given} of {n_bins} strains (both"
+        " branches together); fewer than {least:.0%} of the cycles reach the others, too few for a"
+        " mean curve",
     ),
     "samples-off-grid": (
         "warning",
-        "{n_samples} samples of branches lie off the strain grid and are in no curve: their strain"
-        " is outside the reversals of all cycles",
+        "{n_samples} samples lie outside the strain grid and are in no curve: their strain is"
+        " beyond the reversals of all cycles",
     ),
     "identity-open": (
         "warning",
         lambda effect, error, is_coarse: (
-            "the mean slopes of the two branches and the tension lost in a cycle do not agree:"
-            f" {effect:+.1%} of the modulus is left (standard error {error:.1%}). Possible causes:"
-            " a lag between the channels, a dwell at the turns, slip or slack"
+            "the mean slopes of the two branches do not agree with the tension lost in a cycle:"
+            f" residual {effect:+.1%} of the modulus (standard error {error:.1%}). Possible causes:"
+            " channel lag, a dwell at the reversals, slip or slack"
             f"{', or too few samples for the curvature' if is_coarse else ''}"
         ),
     ),
     "slip-cycles-missing": (
-        "note", "slip not looked for: {n_missing} of {n_cycles} cycles are missing",
+        "note", "no search for slip: {n_missing} of {n_cycles} cycles are missing",
     ),
     "tension-steps-up": (
         "warning",
-        "tension steps up at cycle {cycles}; a splice cannot take up length, look at the zero of"
-        " the load cell and the set point of the crosshead",
+        "tension steps up at cycle {cycles}. A splice cannot do this: check the zero of the load"
+        " cell and the set point of the crosshead",
     ),
     "specimens-step-together": (
         "warning",
-        "two specimens step at cycle {cycle}: look at the crosshead before the splices",
+        "two specimens step at cycle {cycle}: check the crosshead before the splices",
     ),
-    "no-common-strain": ("refusal", "{above} and {below} have no strain in common"),
-    "unequal-condition": ("note", "unequal before the campaign: condition {told}"),
+    "no-common-strain": ("refusal", "{above} and {below} have no common strain range"),
+    "unequal-condition": ("note", "different condition before the campaign: {told}"),
     "history-without-order": (
-        "note", "what earlier tests did to either is not known: no order is given",
+        "note", "the effect of earlier tests on either specimen is not known: no order is given",
     ),
     "history-with-failed-tests": (
-        "note", "what earlier tests did to them is not wholly known: one of those failed",
+        "note", "the effect of earlier tests is not fully known: one of them failed",
     ),
     "unequal-cycles": (
         "note",
-        "unequal histories in the campaign: {cycles:.0f} earlier cycles against {of_first:.0f}",
+        "different test histories: {cycles:.0f} earlier cycles against {of_first:.0f}",
     ),
     "unequal-flex-cycles": (
-        "note", "unequal histories in the campaign: {told} earlier flex cycles",
+        "note", "different test histories: {told} earlier flex cycles",
     ),
     "unequal-strain": (
-        "note", "unequal histories in the campaign: greatest earlier strain {told}{softer}",
+        "note", "different test histories: maximum earlier strain {told}{softer}",
     ),
     "law-not-fitted": ("refusal", "not fitted: {reason}"),
-    "law-not-told-from-zero": ("note", "not told from zero: {names}"),
+    "law-not-told-from-zero": ("note", "interval includes zero: {names}"),
     "law-not-stable": (
         "note",
         lambda strain: (
             f"the fitted law is not stable: below a strain of {100 * strain:.3g} % its stress falls"
-            " with strain in uniaxial, biaxial or shear deformation; do not use it in a model"
+            " with strain in uniaxial, biaxial or shear deformation. Do not use it in a model"
         ),
     ),
     "law-without-pull": (
         "refusal",
-        "no hyperelastic law: the first rise of the record is no pull from slack ({reached}); is"
-        " the kind of the test right, and where strain is zero?",
+        "no hyperelastic law: the first rise of the record is not a pull from slack ({reached})."
+        " Check the kind of the test, and the zero of strain",
     ),
     "no-law": ("refusal", "no hyperelastic law from the first loading: {reason}"),
     "law-of-softened-rubber": (
         "note",
         lambda strain: (
-            f"not a first loading of the specimen: earlier tests reached {100 * strain:.0f} %, and"
-            " below that the rubber is softened"
+            f"not a first loading: earlier tests reached {100 * strain:.0f} % strain, and the"
+            " rubber is softened below that (Mullins effect)"
             if strain == strain
-            else "not a first loading of the specimen: how far earlier tests reached is not known"
+            else "not a first loading: the strain reached in earlier tests is not known"
         ),
     ),
     "stress-at-strain-not-given": (
@@ -601,25 +604,25 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "gauge-length-contradicted": (
         "warning",
         lambda stated, low, high: (
-            f"the stated gauge length {1e3 * stated:.1f} mm is not used: it would give strains of"
-            f" {100 * low:.0f} to {100 * high:.0f} %, which the recorded elongations contradict"
+            f"the stated gauge length of {1e3 * stated:.1f} mm is not used: it would give strains"
+            f" of {100 * low:.0f} to {100 * high:.0f} %, which the recorded elongations contradict"
         ),
     ),
     "length-error-from-scatter": (
         "note",
         lambda scatter: (
-            "the uncertainty of a length is not stated; the scatter between length and recorded"
-            f" elongation, {1e3 * scatter:.2f} mm, is taken for it"
+            "the uncertainty of the lengths is not stated; it is taken from the scatter between"
+            f" length and recorded elongation, {1e3 * scatter:.2f} mm"
         ),
     ),
     "reading-inconsistent": (
         "warning",
         lambda length, strain, recorded, corrected, speaks_for, beside: (
-            f"length {1e3 * length:.1f} mm is {100 * strain:.0f} %, recorded is"
-            f" {100 * recorded:.0f} %; the row gives no modulus. A length of"
+            f"a length of {1e3 * length:.1f} mm gives {100 * strain:.0f} %, but"
+            f" {100 * recorded:.0f} % is recorded; the row gives no modulus. A length of"
             f" {1e3 * corrected:.1f} mm would agree"
-            f"{f' (the eye-to-eye length speaks for the {speaks_for})' if speaks_for else ''}, and"
-            f" the intervals beside it would be"
+            f"{f' (the eye-to-eye length supports the {speaks_for})' if speaks_for else ''}, and"
+            f" the moduli of the adjacent intervals would be"
             f" {' and '.join(f'{one / 1e6:.2f}' for one in beside)} MPa"
         ),
     ),
@@ -627,7 +630,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda elapsed, weight, growth: (
             f"in {elapsed / 60:.0f} min the weight changed by {weight:+.1f} N and the length by"
-            f" {1e3 * growth:+.1f} mm: creep, not elasticity"
+            f" {1e3 * growth:+.1f} mm: this is creep, not elastic strain"
         ),
     ),
 }  # fmt: skip
@@ -636,86 +639,87 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "no-hold": (
         "refusal",
         lambda slack_tension, channel, tolerance, unit, duration, key: (
-            "refused: everything about holds: none is found; above the slack tension of"
-            f" {slack_tension:.3g} N {channel} nowhere keeps within {tolerance:.3g} {unit} for"
-            f" {duration:g} s (kind and control right? else state phases.{key})"
+            "no hold found: above the slack tension of"
+            f" {slack_tension:.3g} N {channel} never stays within {tolerance:.3g} {unit} for"
+            f" {duration:g} s. Check kind and control, or state phases.{key}"
         ),
     ),
-    "hold-samples-left-out": ("note", "{n_left_out} of {n_samples} samples left out"),
-    "hold-empty": ("refusal", "refused: everything: {n_samples} samples in the hold"),
+    "hold-samples-left-out": ("note", "{n_left_out} of {n_samples} samples are not used"),
+    "hold-empty": ("refusal", "nothing given: {n_samples} usable samples in the hold"),
     "hold-too-short": (
         "refusal",
-        "refused: drop, rate per decade, Prony series: the hold is too short: {duration:.3g} s;"
-        " {needed:g} s or more are needed",
+        "drop, rate per decade and Prony series not given: the hold is too short, {duration:.3g}"
+        " s; it needs {needed:g} s or more",
     ),
     "hold-too-few-samples": (
         "refusal",
-        "refused: drop, rate per decade, Prony series: too few samples: {n_samples}; {needed} are"
-        " needed",
+        "drop, rate per decade and Prony series not given: too few samples, {n_samples}; {needed}"
+        " are needed",
     ),
     "hold-slack": (
         "refusal",
-        "refused: drop, rate per decade, Prony series: the specimen is slack: {tension:.3g} N; more"
-        " than {slack_tension:.3g} N is needed",
+        "drop, rate per decade and Prony series not given: the specimen is slack at {tension:.3g}"
+        " N; more than {slack_tension:.3g} N is needed",
     ),
     "hold-tension-rises": (
         "refusal",
-        "refused: drop, rate per decade, Prony series: tension rises by {rise:.2%} over the hold"
-        " (recovery after unloading, or drift)",
+        "drop, rate per decade and Prony series not given: tension rises by {rise:.2%} over the"
+        " hold (recovery after unloading, or drift)",
     ),
     "hold-crosshead-moves": (
         "refusal",
         lambda motion, worth: (
-            "refused: drop, rate per decade, Prony series: the crosshead moves by"
-            f" {motion:.2g} m in the hold{f', worth {worth:.3g} N' if worth == worth else ''}"
+            "drop, rate per decade and Prony series not given: the crosshead moves by"
+            f" {motion:.2g} m in the hold"
+            f"{f', equivalent to {worth:.3g} N' if worth == worth else ''}"
         ),
     ),
     "hold-settles": (
         "warning",
-        "the crosshead moves on by {motion:.2g} m after the ramp, worth {worth:.3g} N ({share:.1%}"
-        " of what is lost): drop, rate per decade and Prony series are those of the length at the"
-        " end of the ramp, and carry half of it",
+        "the crosshead moves by a further {motion:.2g} m after the ramp, equivalent to"
+        " {worth:.3g} N ({share:.1%} of the loss): drop, rate per decade and Prony series refer to"
+        " the length at the end of the ramp; their uncertainty allows for half of this change",
     ),
     "hold-start-contradicted": (
         "refusal",
-        "refused: drop, rate per decade, Prony series: the log peaks at {peak:.4g} N beside the"
-        " end of the ramp, where {initial:.4g} N are found: when the hold begins is not known",
+        "drop, rate per decade and Prony series not given: the log peaks at {peak:.4g} N near the"
+        " end of the ramp, where the tension is {initial:.4g} N; the start of the hold is unclear",
     ),
     "prony-misses-ramp-end": (
         "refusal",
-        "refused: Prony series: it gives {modelled:.4g} N at the end of the ramp, where the log"
+        "Prony series not given: it yields {modelled:.4g} N at the end of the ramp, where the log"
         " has {initial:.4g} N +- {spread:.2g} N (one standard uncertainty)",
     ),
     "hold-tension-steps": (
         "refusal",
-        "refused: drop, rate per decade, Prony series: tension steps by {step:.3g} N at"
-        " {time:.0f} s into the hold, which relaxation does not explain (a slip of the splice?)",
+        "drop, rate per decade and Prony series not given: tension steps by {step:.3g} N at"
+        " {time:.0f} s into the hold, which relaxation does not explain (possibly a splice slip)",
     ),
     "rate-without-ramp": (
         "refusal",
-        "refused: rate per decade: the record does not show the ramp, so the time since loading is"
-        " not known",
+        "rate per decade not given: the record does not show the ramp, so the time since loading"
+        " is not known",
     ),
-    "no-rate": ("refusal", "refused: rate per decade: {reason}"),
+    "no-rate": ("refusal", "rate per decade not given: {reason}"),
     "rate-not-told-from-zero": (
         "refusal",
-        "refused: rate per decade: a loss of {loss:.2%} +- {spread:.2%} (one standard uncertainty)"
-        " is not told from zero",
+        "rate per decade not given: the interval of the loss, {loss:.2%} +- {spread:.2%} (one"
+        " standard uncertainty), includes zero",
     ),
     "drop-not-told-from-zero": (
         "refusal",
-        "refused: Prony series: a drop of {drop:.2%} +- {spread:.2%} (one standard uncertainty) is"
-        " not told from zero",
+        "Prony series not given: the interval of the drop, {drop:.2%} +- {spread:.2%} (one"
+        " standard uncertainty), includes zero",
     ),
-    "no-prony-series": ("refusal", "refused: Prony series: {reason} ({found})"),
+    "no-prony-series": ("refusal", "Prony series not given: {reason} ({found})"),
 }  # fmt: skip
 
 _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "no-slow-pull": ("refusal", "specimen {place} has no {lacking}"),
     "mean-tension-outside-pull": (
         "warning",
-        "the mean tension of {mean:.4g} N lies outside the {low:.4g} to {high:.4g} N of the slow"
-        " pull of {pull}",
+        "the mean tension of {mean:.4g} N is outside the range of the slow pull {pull}, {low:.4g}"
+        " to {high:.4g} N",
     ),
     "mean-tension-drifts": (
         "warning",
@@ -724,235 +728,238 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "loops-no-ellipses": (
         "warning",
-        "the loops are no ellipses: E'' by area and amplitudes is {ratio:.2f} of E'' of the"
-        " fundamental, so K_1 and tau of the fundamental are the sounder ones",
+        "the loops are not elliptical: E'' from loop area is {ratio:.2f} times E'' of the"
+        " fundamental. K_1 and tau from the fundamental are more reliable",
     ),
     "line-uncertainty-skewed": (
         "warning",
-        "K_1 and tau: in {n_skewed} of {n_lines} the uncertainty of K_0 is more than {limit:.0%} of"
-        " K_1; their standard uncertainties say little",
+        "in {n_skewed} of {n_lines} cases the uncertainty of K_0 exceeds {limit:.0%} of K_1: the"
+        " standard uncertainties of K_1 and tau mean little",
     ),
     "line-slack-in-loops": (
         "warning",
-        "the line goes slack in {n_slack} of {n_loops} loops, and the model of springs and a"
-        " dashpot does not hold there",
+        "the line goes slack in {n_slack} of {n_loops} loops; the spring-dashpot model does not"
+        " apply there",
     ),
-    "no-line": ("refusal", "K_1 and tau: {n_lines} of {n_all} are refused: {reason}"),
+    "no-line": ("refusal", "K_1 and tau not given in {n_lines} of {n_all} cases: {reason}"),
     "line-by-monte-carlo": (
         "note",
-        "K_1 and tau: uncertainty and 95 % interval are by Monte Carlo, where linear propagation"
-        " does not hold: the linear one of {worst} is {ratio:.2f} of it",
+        "K_1 and tau: uncertainty and 95 % interval are by Monte Carlo, since linear propagation"
+        " fails: the linear uncertainty of {worst} is {ratio:.2f} times that of Monte Carlo",
     ),
     "line-draws-without-solution": (
         "note",
-        "K_1 and tau: uncertainty and 95 % interval are by Monte Carlo, where linear propagation"
-        " does not hold: {share:.2g} of the draws of loop and slow pull have no K_1 and tau, and"
-        " the interval is that of the others",
+        "K_1 and tau: uncertainty and 95 % interval are by Monte Carlo, since linear propagation"
+        " fails: a fraction of {share:.2g} of the draws of loop and slow pull has no K_1 and tau;"
+        " the interval is from the other draws",
     ),
-    "no-pull": ("refusal", "refused: quasi-static spring constant: {reason}"),
+    "no-pull": ("refusal", "quasi-static spring constant not given: {reason}"),
     "hose-pull-misfit": (
         "refusal",
-        "refused: quasi-static spring constant: a cubic of strain misses the curve of this hose by"
-        " {misfit:.1%} of its strain (rms), more than {limit:.0%}; the curve stands in the samples,"
-        " and a comparison with a predicted hose has its slope",
+        "quasi-static spring constant not given: a cubic in strain misses the curve of this hose"
+        " by {misfit:.1%} of its strain (rms), more than {limit:.0%}. The curve is in the samples;"
+        " its slope is in a comparison with a predicted hose",
     ),
     "pull-misfit": (
         "warning",
-        "a cubic misses the load-strain curve by {misfit:.1%} of its strain (rms): strain and K_0"
-        " by it are no values to design by",
+        "a cubic misses the load-strain curve by {misfit:.1%} of its strain (rms). Do not use its"
+        " strain and K_0 for design",
     ),
     "pull-falls": (
-        "note", "tension falls by {fall:.1%} of the rise on the way to the peak",
+        "note", "tension falls on the way to the peak, by {fall:.1%} of the rise",
     ),
     "pull-rate-uneven": (
         "note",
-        "the strain rate is uneven: from {low:.2g} to {high:.2g} 1/s over quarters of the range",
+        "the strain rate varies from {low:.2g} to {high:.2g} 1/s between quarters of the range",
     ),
     "pull-length-not-stated": ("note", "the length at which strain is zero is not stated"),
     "pull-off-zero": (
         "note",
-        "strain is {strain:+.2%} at the reference tension, so the reference length was read"
-        " elsewhere, or the line has lengthened since",
+        "strain is {strain:+.2%} at the reference tension: the reference length was read at"
+        " another tension, or the line has lengthened since",
     ),
     "pull-waiting-not-stated": (
-        "note", "the time since the last dynamic test is not stated, and K_0 depends on it",
+        "note", "the time since the last dynamic test is not stated, but K_0 depends on it",
     ),
     "pull-cut-at-turn": (
-        "note", "the range of use ends where the slope of the cubic turns",
+        "note", "the usable range ends where the slope of the cubic has its extremum",
     ),
     "level-with-few-cycles": (
-        "note", "level {level} has {n_cycles} of the {n_asked} cycles asked for",
+        "note", "level {level} has {n_cycles} of the {n_asked} requested cycles",
     ),
     "stiffness-of-few-cycles": (
         "note",
-        "dynamic stiffness from {n_cycles} cycles; rope.last_cycles asks for {n_asked}",
+        "dynamic stiffness is from {n_cycles} cycles; rope.last_cycles requests {n_asked}",
     ),
     "stiffness-not-settled": (
         "warning",
-        "the dynamic stiffness has not settled: it changes by {effect:+.1%} over its last"
-        " {n_cycles} cycles",
+        "the dynamic stiffness has not settled: it changes by {effect:+.1%} over the last"
+        " {n_cycles} cycles. Run more cycles",
     ),
     "cycles-of-another-level": (
         "note",
-        "{n_other} of {n_cycles} cycles are of another level than the last ones, of which the"
-        " dynamic stiffness is; give each level as a step",
+        "{n_other} of {n_cycles} cycles are at another level than the last ones, which give the"
+        " dynamic stiffness. Declare each level as a step",
     ),
-    "no-bedding-in": ("refusal", "refused: bedding-in: one cycle alone; two are needed"),
+    "no-bedding-in": ("refusal", "bedding-in not given: only one cycle; two are needed"),
     "first-cycle-begins-elsewhere": (
         "note",
-        "the first cycle begins at {first:.4g} N, others at {usual:.4g} N: its stiffness and the"
-        " permanent strain hold that part of the rise too",
+        "the first cycle starts at {first:.4g} N, the others at {usual:.4g} N: its stiffness and"
+        " the permanent strain include that part of the rise",
     ),
     "cycles-counted-until": ("note", "{how}"),
-    "no-static-stiffness": ("refusal", "refused: static stiffness: {reason}"),
+    "no-static-stiffness": ("refusal", "static stiffness not given: {reason}"),
     "stiffness-beyond-hold": (
         "warning",
-        "the stiffness at {reference:g} s is read off the line beyond the hold, which has readings"
-        " from {first:.3g} to {last:.3g} s",
+        "the stiffness at {reference:g} s is extrapolated; the hold has readings from {first:.3g}"
+        " to {last:.3g} s",
     ),
     "no-break": (
         "refusal",
-        "refused: tensile strength: {how}: the line holds {tension:.4g} N or more",
+        "tensile strength not given: {how}: the line carried {tension:.4g} N or more",
     ),
     "no-strain-at-failure": (
-        "refusal", "refused: strain at failure: no strain is known at the peak",
+        "refusal", "strain at failure not given: the strain at the peak is not known",
     ),
     "no-break-strength": (
-        "note", "no rated break strength is stated: nothing is divided by it",
+        "note", "no rated break strength is stated: results relative to it are not given",
     ),
     "no-order": (
         "note",
-        "no place in the order of tests is given for {specimens}: what earlier tests did to them is"
-        " not known here; set order",
+        "no test order is given for {specimens}: the effect of earlier tests is not known. Set"
+        " order",
     ),
     "cycles-in-no-log": (
         "note",
-        "{n_cycles} earlier cycles are in no log: earlier_maximum_strain and"
-        " earlier_maximum_tension are of the logged tests alone",
+        "{n_cycles} earlier cycles were not logged: earlier_maximum_strain and"
+        " earlier_maximum_tension include only the logged tests",
     ),
     "earlier-test-failed": (
         "note",
-        "earlier test {test} failed: what it did to {specimens} is not known, and earlier_cycles,"
-        " earlier_maximum_strain and earlier_maximum_tension have no number",
+        "earlier test {test} failed: its effect on {specimens} is not known, so earlier_cycles,"
+        " earlier_maximum_strain and earlier_maximum_tension are missing",
     ),
     "earlier-test-without-strain": (
         "note",
-        "earlier test {test} has no strain of {specimens}: earlier_maximum_strain has no number",
+        "earlier test {test} has no strain for {specimens}: earlier_maximum_strain is missing",
     ),
 }  # fmt: skip
 
 _OF_EXPERIMENTS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "run-test-failed": ("warning", "its test failed"),
-    "run-without-product": ("warning", "its test gave no product"),
-    "run-without-line": ("refusal", "K_1 and tau refused: {reason}"),
+    "run-without-product": ("warning", "its test gave no results"),
+    "run-without-line": ("refusal", "K_1 and tau not given: {reason}"),
     "run-slack": ("warning", "the line goes slack in {cycles}"),
     "same-log": (
         "warning",
-        "{tests} have the same log, byte for byte: one run that was copied under another name?",
+        "{tests} have the same log, byte for byte. Check whether one run was copied under another"
+        " name",
     ),
     "levels-off-plan": (
         "warning",
-        "levels reached disagree with the plan by more than {limit:g} coded: {where}; the surfaces"
-        " are of the levels reached",
+        "levels reached differ from the plan by more than {limit:g} coded: {where}; the surfaces"
+        " use the levels reached",
     ),
     "screening-levels-off-plan": (
         "warning",
-        "levels reached disagree with the plan by more than {limit:g} coded: {where}; they count as"
-        " those of the plan",
+        "levels reached differ from the plan by more than {limit:g} coded: {where}; the effects"
+        " use the planned levels",
     ),
-    "no-main-part": ("refusal", "refused: {part}: {reason}"),
+    "no-main-part": ("refusal", "{part} not given: {reason}"),
     "no-surface": (
         "refusal",
-        "refused: surface of {responses}: {reason} ({n_runs} runs of {n_all}, {n_terms}"
+        "surface of {responses} not given: {reason} ({n_runs} of {n_all} runs, {n_terms}"
         " terms){causes}",
     ),
     "no-effect": (
         "refusal",
         lambda responses, reason, without: (
-            f"refused: effects on {responses}: {reason}"
+            f"effects on {responses} not given: {reason}"
             f"{f'; no value of {without}' if without else ''}"
         ),
     ),
     "error-by-lenth": (
         "note",
-        "no columns dummy_1, ..: the error is Lenth's, from the smaller effects themselves",
+        "no columns dummy_1, ..: the error is Lenth's estimate from the smaller effects",
     ),
     "effects-over-blocks": (
-        "note", "the effects are over all blocks; differences of blocks are in their error",
+        "note", "the effects pool all blocks; differences between blocks are part of their error",
     ),
     "scale-by-runs": (
         "note",
-        "{response} is read from the surface of {scale}: about that of the usual scale the runs"
-        " scatter {ratio:.3g} times as much (p = {p:.2g})",
+        "{response} uses the surface fitted to {scale}: the runs scatter {ratio:.3g} times as much"
+        " about the untransformed surface (p = {p:.2g})",
     ),
     "slow-pull-error-shared": (
         "note",
-        "t and p of the surfaces of K_1 and tau are of the scatter of the runs; the error of K_0,"
-        " which all runs of one slow pull share, is in the uncertainty of the coefficients alone",
+        "t and p of the surfaces of K_1 and tau reflect only the scatter of the runs; the error of"
+        " K_0, common to all runs of one slow pull, is in the uncertainty of the coefficients",
     ),
-    "no-reduction-of-terms": ("refusal", "refused: reduction of terms: {reason}"),
+    "no-reduction-of-terms": ("refusal", "reduced model not given: {reason}"),
     "terms-chosen-by-runs": (
-        "note", "the runs that are tested chose the terms: p and intervals are too small",
+        "note",
+        "the terms were selected with the same runs: p-values are too low, intervals too narrow",
     ),
     "no-stiffness-forms": (
-        "refusal", "refused: stiffness forms of mooring codes: {reason}",
+        "refusal", "stiffness forms of mooring codes not given: {reason}",
     ),
     "stiffness-forms-pooled": (
         "note",
-        "stiffness forms of mooring codes pool the specimens: what sets one apart from another is"
-        " in their scatter",
+        "stiffness forms of mooring codes pool the specimens: differences between specimens are"
+        " part of their scatter",
     ),
     "no-derived-line": (
-        "refusal", "refused: K_1 and tau from surfaces of E' and E'': {reason}",
+        "refusal", "K_1 and tau from surfaces of E' and E'' not given: {reason}",
     ),
     "no-check-of-single-time": (
-        "refusal", "refused: check of a single relaxation time: {reason}",
+        "refusal", "check of a single relaxation time not given: {reason}",
     ),
     "single-time": ("note", "{verdict}"),
     "runs-without-value": ("note", "runs without any value: {runs}"),
-    "responses-miss-runs": ("note", "responses that miss further runs: {responses}"),
+    "responses-miss-runs": ("note", "responses missing in further runs: {responses}"),
     "surface-not-fitted": ("refusal", "{responses}: {reason}"),
     "surface-not-judged": ("note", "{responses}: {reason}"),
     "runs-alike": (
         "warning",
-        "runs {first} and {second} agree in every level and response ({n_pairs} such pairs):"
-        " repeats, or one run twice?",
+        "runs {first} and {second} agree in every level and response ({n_pairs} such pairs). Check"
+        " whether they are repeats or one run entered twice",
     ),
     "repeats-differ": (
         "warning",
-        "repeated runs differ by up to {spread:.2g} in coded levels (tolerance {tolerance:g}): pure"
-        " error is taken after the surface has moved them together",
+        "repeated runs differ by up to {spread:.2g} in coded levels (tolerance {tolerance:g}):"
+        " pure error is computed after correcting them to common levels with the surface",
     ),
     "levels-off-range": (
         "note", "levels of {factor} {how} the plan: {low:.2f} to {high:.2f} coded",
     ),
     "runs-fix-terms": (
-        "note", "runs that fix a term alone and have no residual to check: {runs}",
+        "note", "runs that alone determine a term (leverage 1), without a residual: {runs}",
     ),
     "terms-lean": (
         "note",
-        "terms lean on each other: condition number {condition:.0f}, that of fifteen Box-Behnken"
-        " runs met exactly is 4.24",
+        "terms are correlated: condition number {condition:.0f}; an exact Box-Behnken design of"
+        " fifteen runs has 4.24",
     ),
     "blocks-fixed": (
         "note",
-        "{n_specimens} specimens as fixed blocks: every term is judged by the residuals, which hold"
-        " each specimen's own answer to the factors; the mean is of these specimens",
+        "{n_specimens} specimens as fixed blocks: all terms are tested against the residuals, which"
+        " include differences between specimens in their response to the factors; the mean applies"
+        " to these specimens only",
     ),
     "blocks-random": (
         "note",
-        "{n_specimens} specimens as random draws (REML): the mean is judged by the scatter between"
-        " specimens ({freedom} degrees of freedom), the other terms by the residuals within; r2,"
-        " analysis of variance, lack of fit and residuals are those of fixed blocks",
+        "{n_specimens} specimens as random blocks (REML): the mean is tested against the scatter"
+        " between specimens ({freedom} degrees of freedom), the other terms against the residuals"
+        " within; r2, analysis of variance, lack of fit and residuals are for fixed blocks",
     ),
     "surface-below-zero": (
         "warning",
-        "the surface of {response} goes below zero among the levels, where no run does: transform ="
-        ' "log" keeps it above',
+        "the surface of {response} falls below zero within the levels, although no run does. Set"
+        ' transform = "log"',
     ),
     "response-drifts": (
         "warning",
-        "{response} drifts over the order of the runs beyond its surface: {slope:+.3g} a run (p"
+        "{response} drifts with run order: its residuals change by {slope:+.3g} per run (p"
         " {p:.2g})",
     ),
 }  # fmt: skip
@@ -962,41 +969,42 @@ _OF_HOSES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda layer, strain, limit, angle: (
             f"layer {layer} is stretched by {100 * strain:.1f} % at the working load, above its"
-            f" {100 * limit:g} %: it needs {degrees(angle):.1f} degrees or more"
+            f" limit of {100 * limit:g} %: use a wrap angle of {degrees(angle):.1f} degrees or more"
         ),
     ),
     "layer-compressed": (
         "warning",
         lambda layer, strain, limit, angle: (
-            f"layer {layer} is compressed by {-100 * strain:.1f} % on the way, above its"
-            f" {100 * limit:g} %: it needs {degrees(angle):.1f} degrees or less"
+            f"layer {layer} is compressed by {-100 * strain:.1f} % below the working load, above"
+            f" its limit of {100 * limit:g} %: use a wrap angle of {degrees(angle):.1f} degrees or"
+            " less"
         ),
     ),
     "layer-without-angle": (
         "warning",
-        "layer {layer}: no angle keeps it within both limits up to the working load",
+        "layer {layer}: no wrap angle keeps it within both limits up to the working load",
     ),
     "no-slack-zone": (
         "note",
         lambda angle: (
-            f"at {degrees(angle):.2f} degrees there is no slack zone: the cords carry from the"
-            " first"
+            f"at {degrees(angle):.2f} degrees there is no slack zone: the cords carry load from the"
+            " start"
         ),
     ),
     "cords-touch": (
         "warning",
-        "neighbouring cords touch {where} % strain: the prediction does not hold there",
+        "neighbouring cords touch {where} % strain: the prediction is not valid there",
     ),
     "bore-too-small": (
         "warning",
-        "the bore is below its limit {where} % strain: the prediction does not hold there",
+        "the bore is below its limit {where} % strain: the prediction is not valid there",
     ),
     "cords-broken": (
         "refusal",
-        lambda strain: f"the cords are broken from {100 * strain:.1f} % strain: no load is given",
+        lambda strain: f"the cords are broken from {100 * strain:.1f} % strain on: no load given",
     ),
     "hose-without-uncertainty": (
-        "note", "no number of the hose has a stated uncertainty: none is given",
+        "note", "no uncertainty is stated for the hose: the prediction has none",
     ),
     "working-load-uncertain": (
         "warning",
@@ -1005,98 +1013,97 @@ _OF_HOSES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "cycles-pooled": ("note", "each row pools {n_cycles} consecutive cycles"),
     "one-branch": (
         "note",
-        "one branch was measured: it is judged itself, and lies above a midline by half the loop",
+        "only one branch was measured and is compared itself; it lies above the midline by half the"
+        " loop",
     ),
     "numbers-not-told-apart": (
         "warning",
         lambda names, words, needed: (
-            f"this curve cannot tell {names} apart: {words}, less than the {100 * needed:.2g} %"
-            " that an error of the model may be; the values are one choice of many, and their"
-            " intervals are as wide as such an error makes them"
+            f"this curve cannot separate {names}: {words}, less than a model error of"
+            f" {100 * needed:.2g} %. The fitted values are one of many possible sets; their"
+            " intervals include such a model error"
         ),
     ),
     "number-not-shown": (
         "warning",
         lambda names, words, needed: (
-            f"this curve does not show {names}: {words}, less than the {100 * needed:.2g} % that an"
-            " error of the model may be"
+            f"this curve does not determine {names}: {words}, less than a model error of"
+            f" {100 * needed:.2g} %"
         ),
     ),
     "number-at-bound": (
-        "warning", "{name} was stopped at a bound: its interval does not hold",
+        "warning", "the fit of {name} stopped at a bound: its interval is not valid",
     ),
     "number-not-determined": (
         "warning",
-        "the interval of {name} is wider than half of what it was allowed: not determined",
+        "{name} is not determined: its interval is wider than half the range allowed in the fit",
     ),
     "residuals-are-model": (
         "note",
-        "residuals are worth {n_points:.1f} independent points for {n_numbers} numbers: what is"
-        " left is an error of the model, not noise",
+        "the residuals contain {n_points:.1f} independent points for {n_numbers} parameters: they"
+        " show a model error, not noise",
     ),
     "source-far-off": (
-        "note", "{name} would have to be {factor:+.1f} of its standard uncertainty off",
+        "note", "{name} would have to be off by {factor:+.1f} times its standard uncertainty",
     ),
     "fitted-cords-broken": (
         "warning",
-        "cords of the fitted hose are broken at {n_strains} of the measured strains: there it was"
-        " held against its tangent",
+        "cords of the fitted hose are broken at {n_strains} of the measured strains; its tangent"
+        " was compared there",
     ),
     "number-moved-far": (
-        "note", "{name} moved by {factor:+.1f} of its stated standard uncertainty",
+        "note", "{name} moved by {factor:+.1f} times its stated standard uncertainty",
     ),
     "pick-up-not-shown": (
-        "refusal", "where the cords of the test pick up is not shown: {reason}",
+        "refusal", "cord pick-up is not visible in the test: {reason}",
     ),
     "dynamic-test": (
         "note",
-        "the test is dynamic and the cord curve static: nylon is stiffer under quick load, so that"
-        " a prediction is expected to stretch more than this test; a difference is not of the model"
-        " alone",
+        "the test is dynamic, the cord curve static. Nylon is stiffer under fast loading, so the"
+        " prediction should stretch more than the test; not all of the difference is model error",
     ),
     "test-beyond-break": (
         "warning",
-        "the test went on to strain {strain:.4g}; cords are predicted broken at {n_broken} of its"
-        " {n_strains} strains, which are in no difference",
+        "the test reached strain {strain:.4g}, but cord break is predicted for {n_broken} of its"
+        " {n_strains} strains; these are not compared",
     ),
     "curve-ends-early": (
         "note",
-        "the judged curve ends at strain {strain:.4g}, before the predicted working load",
+        "the measured curve ends at strain {strain:.4g}, before the predicted working load",
     ),
     "stretch-beside-reported": ("note", "{side} {words}"),
     "prediction-counts-as-exact": (
         "note",
-        "no uncertainty of the prediction is stated: it counts as exact, and a difference that the"
-        " angle or the cord curve would explain counts against it",
+        "no uncertainty of the prediction is stated: it is treated as exact, and an error of the"
+        " angle or the cord curve counts as a model error",
     ),
     "test-counts-as-unbiased": (
-        "note", "no uncertainty of the calibration is stated: the test counts as unbiased",
+        "note", "no calibration uncertainty is stated: the test is treated as unbiased",
     ),
     "load-cell-counts-as-exact": (
-        "note", "nothing is stated of the load cell: its scale and its zero count as exact",
+        "note", "no load cell uncertainty is stated: its gain and zero are treated as exact",
     ),
     "shape-differs": (
         "warning",
-        "no strain differs by more than U, but the shape of the difference is one that the stated"
-        " errors make in {probability} of all cases alone",
+        "no single strain differs by more than U, but the shape of the difference has a probability"
+        " of only {probability} under the stated errors",
     ),
     "difference-without-error": (
         "warning",
         lambda effect: (
-            f"{100 * effect:.2g} % of the squared difference lies where no stated error can be"
+            f"{100 * effect:.2g} % of the squared difference cannot come from any stated error"
         ),
     ),
     "taken-as-dynamic": (
-        "note", 'taken as dynamic, as {kind} tests are; a slow one has loading = "static"',
+        "note", 'treated as dynamic, like all {kind} tests. For a slow test set loading = "static"',
     ),
     "from-stored-samples": (
-        "note", "from the samples that are stored of a long record: {samples}",
+        "note", "computed from the stored samples of a long record: {samples}",
     ),
     "no-curve-of-errors": (
         "note",
-        "the archive of the test holds no curve with what its instruments may be wrong by (a"
-        " specimen without a diameter has none): what is stated of load and crosshead is not in the"
-        " comparison",
+        "the archive of the test has no curve with instrument errors (none exists without a"
+        " diameter): stated errors of load and crosshead are not in the comparison",
     ),
 }  # fmt: skip
 

@@ -84,7 +84,7 @@ def note(code: str, subject: str = "", /, **numbers: Any) -> Note:
     --------
     >>> found = note("cycles-not-as-planned", n_found=9, n_planned=10)
     >>> print(found.severity, "-", found)
-    warning - 9 whole cycles found, 10 planned
+    warning - 9 complete cycles found, 10 planned
     """
     return Note(code, SENTENCES[code][0], subject=subject, numbers=numbers)
 
@@ -122,8 +122,8 @@ def full_note(stage: str, text: str) -> str:
 
     Examples
     --------
-    >>> full_note("hold 1 new", "refused: rate per decade: the hold is too short")
-    'hold 1 new: refused: rate per decade: the hold is too short'
+    >>> full_note("hold 1 new", "rate per decade not given: the hold is too short")
+    'hold 1 new: rate per decade not given: the hold is too short'
     >>> full_note("strain new", "new: marks differ from the splice law")
     'new: marks differ from the splice law'
     """

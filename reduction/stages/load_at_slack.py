@@ -126,7 +126,7 @@ def notes_on_zero(
     >>> place = np.linspace(0, 1, 50)
     >>> [found] = notes_on_zero(["new"], place, 400 * place[None] - 14.4, [rest], ["-14.4 N"])
     >>> print(found)  # doctest: +ELLIPSIS
-    new: the load cell reads -14.4 N where the specimen is slack (2 rests), 3.6 % of the ...
+    new: the load cell reads -14.4 N at slack (2 rests), 3.6 % of the peak load, ...
     """
     notes = []
     for name, loads, rest, zero in zip(names, tension, at_slack, zeros, strict=True):

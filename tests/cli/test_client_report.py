@@ -76,7 +76,7 @@ def test_printing_without_a_report_says_what_is_missing(campaign, tmp_path, comm
     command("run", campaign, "--quiet", cwd=tmp_path)
     done = command("report", "processed/buoy-technology-1997", "--pdf", cwd=tmp_path)
     assert done.returncode == 2
-    assert "there is no report to a client to print" in done.stderr
+    assert "there is no client report to print" in done.stderr
     assert "[report] in campaign.toml" in done.stderr
 
 
@@ -90,7 +90,7 @@ def test_without_a_browser_the_page_is_there_and_the_message_says_how_to_print_i
         BROWSER_PROGRAM="no-such-browser",
     )  # fmt: skip
     assert done.returncode == 2
-    assert "BROWSER_PROGRAM is no program; found 'no-such-browser'" in done.stderr
+    assert "BROWSER_PROGRAM is not a program; found 'no-such-browser'" in done.stderr
     assert "Open the page in any browser and print it to PDF" in done.stderr
     folder = tmp_path / "reports" / "buoy-technology-1997"
     assert (folder / "client-report.html").exists() and not (folder / "client-report.pdf").exists()
@@ -143,7 +143,7 @@ def test_what_is_no_pdf_does_not_become_one(tmp_path, program):
         "import sys; name = [a for a in sys.argv if a.startswith('--print-to-pdf=')][0]\n"
         "open(name.partition('=')[2], 'w').write('<html>')"
     )
-    with pytest.raises(ArchiveError, match="no word of why"):
+    with pytest.raises(ArchiveError, match="no reason given"):
         _print_page(tmp_path / "page.html", pdf, browser=browser)
     assert pdf.read_bytes() == b"%PDF- an earlier one"
 

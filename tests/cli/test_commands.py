@@ -109,8 +109,8 @@ def test_a_failed_test_keeps_its_older_product_and_lets_the_others_run(reduced, 
         notes = archive["note"].values.tolist()
     for name in ("new", "used"):
         assert (
-            f"{name}: 3 of 6 stretched marks are of tests that failed (A), so that their tension "
-            "is not known; the law of tension is without them"
+            f"{name}: 3 of 6 stretched marks belong to tests that failed (A), so their tension is "
+            "not known; the tension law is fitted without them"
         ) in notes
     assert not any("no hold in the logs" in note for note in notes)
 
@@ -210,7 +210,7 @@ def test_init_writes_a_starter_once_and_never_over_a_file(small, command):
     assert {"campaign.toml", "tests.csv"} <= {path.name for path in (small / "raw").iterdir()}
     assert f"then: reduction check {small / 'raw' / 'campaign.toml'}" in done.stdout
     again = command("init", small / "raw")
-    assert again.returncode == 2 and "a campaign is there already" in again.stderr
+    assert again.returncode == 2 and "the folder already contains a campaign" in again.stderr
     check = command("check", small / "raw" / "campaign.toml")
     assert check.returncode == 2 and "tests.csv:3 [specimens]" in check.stderr
 
@@ -407,17 +407,17 @@ def test_a_folder_that_cannot_be_made_is_told_by_its_path(small, command):
         (("chek", "c.toml"), "No such command 'chek'."),
         (
             ("sniff", "https://ann:secret@example.org/T.csv?sig=abc"),
-            "this command reads no address on the net; found 'https://example.org/T.csv'; needed "
+            "this command reads no URLs; found 'https://example.org/T.csv'; needed "
             "a file on this machine. Download it first.",
         ),
         (
             ("lookup", "published", "--out", "s3://ann:secret@bucket/a.csv"),
-            "this command writes to no address on the net; found 's3://bucket/a.csv'; needed a "
+            "this command writes to no URLs; found 's3://bucket/a.csv'; needed a "
             "path on this machine",
         ),
         (
             ("check", "https://ann:secret@example.org/c.toml?sig=abc"),
-            "this command reads no address on the net; found 'https://example.org/c.toml'; needed "
+            "this command reads no URLs; found 'https://example.org/c.toml'; needed "
             "a file on this machine. Download it first.",
         ),
     ],

@@ -154,7 +154,9 @@ def test_what_shared_errors_add_is_in_the_shape_of_each(right, test):
                                rtol=1e-3, atol=1e-7)  # fmt: skip
     np.testing.assert_allclose(errors["position_gain"], 0.001 * strain, rtol=1e-3, atol=1e-12)
     assert "position_offset" not in errors
-    assert not any("calibration is stated" in note for note in map(str, found.validation.notes))
+    assert not any(
+        "calibration uncertainty is stated" in note for note in map(str, found.validation.notes)
+    )
 
 
 GAIN = '[uncertainty.tension]\ngain = "5 %"\n'
@@ -198,9 +200,9 @@ def test_noise_of_one_reading_is_no_error_that_samples_share(tmp_path):
     for one in found:
         assert [each.source for each in one.measured.component] == ["strain_calibration"]
         assert any(
-            "nothing is stated of the load cell" in note for note in map(str, one.validation.notes)
+            "no load cell uncertainty is stated" in note for note in map(str, one.validation.notes)
         )
-        assert not any("holds no curve" in note for note in map(str, one.notes))
+        assert not any("has no curve" in note for note in map(str, one.notes))
 
 
 @pytest.mark.parametrize(
@@ -231,15 +233,14 @@ def test_strain_and_temperature_reach_a_comparison_as_they_reach_the_test(
         assert np.interp(at, curve.strain, here) == pytest.approx(expected, rel=0.05)
         if share is not None:
             assert expected == pytest.approx(share, rel=0.01)
-    assert not any("calibration is stated" in note for note in map(str, named.notes))
+    assert not any("calibration uncertainty is stated" in note for note in map(str, named.notes))
 
 
 def test_that_nothing_is_stated_is_said_where_nothing_is(tmp_path):
     found = compared(tmp_path, "", edit=without_length)
     assert found.measured.component == ()
     assert any(
-        "no uncertainty of the calibration is stated" in one
-        for one in map(str, found.validation.notes)
+        "no calibration uncertainty is stated" in one for one in map(str, found.validation.notes)
     )
 
 
@@ -250,7 +251,7 @@ def test_a_hose_without_a_diameter_says_that_its_instruments_are_left_out(tmp_pa
     )
     plan = campaign.comparisons["H64-static"]
     named = compare_archive(processed / "L-64.nc", campaign.hoses["H64"], plan)
-    assert any("holds no curve with what its instruments" in note for note in map(str, named.notes))
+    assert any("has no curve with instrument errors" in note for note in map(str, named.notes))
     # the length that strain is over is known all the same
     (gain,) = named.comparison.measured.strain_error
     np.testing.assert_allclose(gain, named.comparison.measured.strain * 0.05 / LENGTH, atol=1e-12)

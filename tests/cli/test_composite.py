@@ -168,7 +168,7 @@ def test_bad_archives_are_named(command, synthetic, static, tmp_path):
         ([folder / "T-1.nc", folder / "T-1.nc", "--specimen", "new"], 2, "stands there twice"),
         ([folder / "overnight-hold.nc", "--specimen", "new"], 4, "no test of 'new' gives a mean"),
         ([folder / "status.csv"], 6, "cannot be read as a netCDF file"),
-        ([tmp_path], 2, "holds no archive of a test"),
+        ([tmp_path], 2, "contains no archive of a test"),
         ([surfaces], 2, "surfaces.nc: no archive of a test; needed archives of reduced tests"),
         (
             [folder / "T-1.nc", static.processed / "static.nc", "--specimen", "new"],

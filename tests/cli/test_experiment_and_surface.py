@@ -198,7 +198,7 @@ def test_a_log_surface_and_one_that_goes_below_zero(fit):
         return 1e3 * np.exp(2.5 * np.sum(coded, axis=1))
 
     straight = answered(fit(table(UNITS, steep), SPEC, "--json"))
-    assert any("goes below zero among the levels" in note for note in straight["notes"])
+    assert any("falls below zero within the levels" in note for note in straight["notes"])
     bent = SPEC.replace('unit = "lbf"', 'unit = "lbf", transform = "log"')
     answer = answered(fit(table(UNITS, steep), bent, "--json"))
     found = answer["responses"]["apparent_spring_constant"]
@@ -232,7 +232,7 @@ def test_drift_over_the_order_is_told(fit):
         cells[3] = repr(float(cells[3]) * float(1 - 0.02 * order[place - 1]))
         rows[place] = ",".join(cells)
     answer = answered(fit("\n".join(rows), SPEC, "--json"))
-    assert any("drifts over the order of the runs" in note for note in answer["notes"])
+    assert any("drifts with run order" in note for note in answer["notes"])
     assert answer["responses"]["apparent_spring_constant"]["drift"]["per_run"] < 0
 
 
@@ -269,10 +269,10 @@ def test_what_cannot_be_fitted_is_told_with_file_row_and_column(fit):
 
 def test_a_run_that_stands_twice_is_refused_and_a_twin_is_a_note(fit):
     named = table(UNITS + ",run", extra=lambda number: f"R{min(number, 13):02d}")
-    told(fit(named, SPEC), 4, "runs.csv:16 [run]: a run stands twice", "'R13', also in row 15")
+    told(fit(named, SPEC), 4, "runs.csv:16 [run]: a run is listed twice", "'R13', also in row 15")
     rows = table(UNITS).splitlines()
     answer = answered(fit("\n".join([*rows, rows[-1]]), SPEC, "--json"))
-    assert any("repeats, or one run twice?" in note for note in answer["notes"])
+    assert any("repeats or one run entered twice" in note for note in answer["notes"])
 
 
 def test_levels_beside_the_plan_ask_for_the_unit(fit):
@@ -295,7 +295,7 @@ def test_levels_beside_the_plan_ask_for_the_unit(fit):
         (('["0.1 Hz", "0.5 Hz"]', '["1 lbf", "2 lbf"]'), "factors.frequency: unit 'lbf' is not"),
         (('unit = "lbf"', 'unit = "s"'), "responses.apparent_spring_constant: unit 's' is not"),
         (('unit = "lbf"', 'unti = "s"'), "responses.apparent_spring_constant.unti"),
-        (("sigma", "n_runs = 12\nsigma"), "n_runs is for plackett-burman"),
+        (("sigma", "n_runs = 12\nsigma"), "n_runs applies only to plackett-burman"),
         (('rated_break_strength = "6400 lbf"\n', ""), "rated break strength, which is not given"),
         (('kind = "box-behnken"', 'kind = "plackett-burman"'), "another than that of the command"),
         (("[responses]", "[responses]\nfrequency = {}"), "a factor is a response too"),
@@ -309,7 +309,7 @@ def test_a_spec_that_cannot_be_used_is_told_with_its_key(plan, change, message):
 def test_an_experiment_needs_factors_and_a_screening_no_centre(plan):
     told(plan(spec="[experiment]\n"), 2, "there are no factors")
     spec = SPEC.replace('kind = "box-behnken"', "n_centre = 3")
-    told(plan(kind="plackett-burman", spec=spec), 2, "n_centre is for box-behnken")
+    told(plan(kind="plackett-burman", spec=spec), 2, "n_centre applies only to box-behnken")
     told(plan(kind="latin-square"), 2, "latin-square")
     told(plan("--out", "no/such/folder/../.."), 6, "cannot be written")
 

@@ -73,16 +73,14 @@ def test_json_is_one_object_and_a_port_that_is_taken_is_refused(static, command)
 def test_a_campaign_that_is_not_found_is_said(static, command, tmp_path):
     done = command("explore", static.processed, "--no-browser", cwd=tmp_path)
     assert done.returncode == 2
-    assert (
-        "the campaign.toml of 'buoy-technology-1997' is not where it is looked for" in done.stderr
-    )
+    assert "the campaign.toml of 'buoy-technology-1997' was not found" in done.stderr
     assert "needed --campaign CAMPAIGN.toml" in done.stderr
 
 
 @pytest.mark.parametrize(
     ("options", "status", "said"),
     [
-        (("--quiet", "--no-browser"), 2, "nobody would know the address"),
+        (("--quiet", "--no-browser"), 2, "the address would be shown nowhere"),
         (("--port", "65536"), 2, "Invalid value for '--port'"),
         (("--units", "furlongs", "--no-browser"), 2, "--units is not known"),
         (("--campaign", "s3://bucket/campaign.toml"), 2, "reads no address on the net"),

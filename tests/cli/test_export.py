@@ -166,7 +166,7 @@ def test_a_wet_mass_above_the_dry_one_and_an_empty_path_are_refused(command, tmp
     for to in ("csv", "netcdf", "moordyn"):
         done = command("export", NYLON, "--to", to, "--out", "", "--linear-density", "0.1 kg/m")
         assert done.returncode == 2
-        assert "--out names no file" in done.stderr
+        assert "--out is not a file name" in done.stderr
 
 
 @pytest.mark.parametrize(

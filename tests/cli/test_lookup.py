@@ -210,7 +210,7 @@ def test_the_line_that_was_said_is_that_of_both_tests_and_another_has_to_be_name
     other = command("lookup", "rubber-tether-used-T-1", *ask[2:])
     assert other.returncode == 2
     words = " ".join(other.stderr.split())
-    assert "means several lines with branch_tension: which is not said" in words
+    assert "matches several lines with branch_tension" in words
     assert '--line "T-1 new" --against "T-2 used"' in words
 
 
@@ -283,10 +283,10 @@ def test_what_there_is(command):
         (
             (NYLON, "--quantity", "relaxation_time", *LEVELS[:1], "0.1 Hz,0.2 Hz", *LEVELS[2:]),
             2,
-            "several values of a level make a grid",
+            "several values of a level need a table",
         ),
         (("published", "--list", "--material", "steel"), 2, "no line is so; found material 'steel'"),
-        (("published", "--tolerance", "3 %"), 2, "a tolerance is that of a diameter"),
+        (("published", "--tolerance", "3 %"), 2, "a tolerance needs a diameter"),
         (("published", "--quantity", "relaxation_time", *LEVELS), 2, "a search that leaves one"),
         ((NYLON, "--quantity", "relaxation_time", *LEVELS, "--out", "a.xls"), 2, "says no format"),
         (
@@ -432,7 +432,7 @@ def test_one_line_of_a_campaign_is_named_by_its_test_and_specimen(command, two_t
     for several in ("T-1", "new"):
         done = command("lookup", two_tests, *ask, several)
         assert done.returncode == 2
-        assert 'Such as `--line "T-1 new"`.' in done.stderr
+        assert 'Example: `--line "T-1 new"`.' in done.stderr
     none = command("lookup", two_tests, *ask, "T-99")
     assert "there is no line 'T-99'" in none.stderr
     assert '--line "T-1 new"' in none.stderr

@@ -102,7 +102,7 @@ def test_without_a_stated_uncertainty_there_is_none_in_the_answer(predict):
     assert answer["fill_pressure_standard_uncertainty"] is None
     assert answer["uncertainty_sources"] == {}
     assert answer["events"]["working"]["tension_standard_uncertainty"] is None
-    assert any("no number of the hose has a stated uncertainty" in one for one in answer["notes"])
+    assert any("no uncertainty is stated for the hose" in one for one in answer["notes"])
 
 
 def test_beyond_the_break_the_answer_has_no_load(predict):

@@ -174,9 +174,9 @@ def test_an_armour_has_tables_and_a_page(predict, tmp_path):
     [
         ('"20 deg"', '"95 deg"', "needed between 0 and 90 deg"),
         ('"20 deg"', '"-1 deg"', "needed between 0 and 90 deg"),
-        ('"2.5 mm"', '"-2.5 mm"', "wire_radius of 1 of 2 designs is no armour"),
-        ('"5 mm"', '"-5 mm"', "wire_radius of 1 of 2 designs is no armour"),
-        ('"60 mm"', '"-60 mm"', "core_radius of 1 of 2 designs is no armour"),
+        ('"2.5 mm"', '"-2.5 mm"', "wire_radius of 1 of 2 designs is not an armour"),
+        ('"5 mm"', '"-5 mm"', "wire_radius of 1 of 2 designs is not an armour"),
+        ('"60 mm"', '"-60 mm"', "core_radius of 1 of 2 designs is not an armour"),
         ('"0.1 %"', '"-100 %"', "1 of 1 strains are none of a cable"),
     ],
 )

@@ -44,7 +44,9 @@ def test_check_prints_steps_that_are_toml_with_times(command, raw):
     assert [one["name"] for one in steps] == ["level 1", "level 2", "level 3"]
     assert all(one["from"].endswith(" s") and one["to"].endswith(" s") for one in steps)
     shown = command("check", raw / "campaign.toml")
-    assert "ready for a run; the log holds 3 levels and states no steps" in shown.stdout
+    assert (
+        "ready for a run; the log contains 3 load levels, but no steps are stated" in shown.stdout
+    )
 
 
 def test_steps_that_are_pasted_give_the_same_numbers(command, raw, tmp_path):
@@ -57,14 +59,14 @@ def test_steps_that_are_pasted_give_the_same_numbers(command, raw, tmp_path):
     (stated / "campaign.toml").write_text(with_steps(text, steps_of(done.stdout)))
     again = run(command, stated, stated)
     assert again.returncode == 0, again.stderr
-    assert "states no steps" not in again.stdout
+    assert "no steps are stated" not in again.stdout
     found, now = numbers(tmp_path), numbers(stated)
     assert found.keys() == now.keys()
     # notes and what the laboratory kept apart, every table is the same
     same = [name for name in found if found[name] == now[name]]
     assert {"moduli.csv", "cycles.csv", "amplitude.csv", "tangent_modulus.csv"} <= set(same)
     page = (tmp_path / "r" / f"{LAW}-3" / "index.html").read_text()
-    assert "states no steps" in page
+    assert "no steps are stated" in page
     assert "R-1.level-2" in page
     verified = command(
         "verify", tmp_path / "p" / f"{LAW}-3", "--campaign", raw / "campaign.toml"

@@ -237,7 +237,7 @@ def test_a_fault_in_a_remote_log_is_told_by_its_address_and_row(
     [
         (
             "id,file\nA,file:///etc/passwd\n",
-            "the log of test 'A' is no address that can be used; found 'file:///etc/passwd'",
+            "the log of test 'A' is not an address that can be used; found 'file:///etc/passwd'",
         ),
         (
             "id,file\nA,s3://k:pw@b/x?v=1\nB,s3://b/x?v=2\n",
@@ -354,7 +354,7 @@ def test_an_export_of_a_remote_archive_is_that_of_a_local_one(bucket, here, comm
 def test_an_address_without_an_archive_is_told(bucket, command, tmp_path):
     done = command("lookup", "s3://bucket/none", "--list", "--allow-remote", cwd=tmp_path)
     assert done.returncode == 2
-    assert "the source is an address, and not of an archive; found s3://bucket/none" in done.stderr
+    assert "the source is a URL, but not of an archive; found s3://bucket/none" in done.stderr
     done = command("budget", "s3://bucket/none/A.nc", "--allow-remote", cwd=tmp_path)
     assert done.returncode == 6
     assert "s3://bucket/none/A.nc: there is no such file" in done.stderr

@@ -76,7 +76,7 @@ def test_what_is_left_on_the_screen_fits_it_and_is_whole(narrow):
     end = next(place for place, line in enumerate(left) if line.startswith("products:"))
     assert max(map(len, left[start:end])) <= 80
     text = " ".join(" ".join(left[start:end]).split())
-    assert "the intervals beside it would be 0.62 and 0.33 MPa" in text
+    assert "the moduli of the adjacent intervals would be 0.62 and 0.33 MPa" in text
     assert "\N{HORIZONTAL ELLIPSIS}" not in text
 
 
@@ -127,7 +127,7 @@ def test_help_is_drawn_at_a_terminal_and_plain_and_whole_in_a_pipe(at_terminal):
     assert "\N{BOX DRAWINGS LIGHT HORIZONTAL}" in drawn
     plain = reduction("--help", FORCE_COLOR="1").stdout
     assert plain.isascii() and "\x1b" not in plain and "..." not in plain.partition("Options:")[2]
-    assert "Write a starter campaign into a folder of logs, for a person to complete." in " ".join(
+    assert "Write a draft campaign.toml for a folder of logs, for you to complete." in " ".join(
         plain.split()
     )
     assert max(map(len, plain.splitlines())) <= 80

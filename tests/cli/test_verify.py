@@ -63,7 +63,7 @@ def test_a_campaign_that_lies_elsewhere_is_named(place):
     (place / "raw").rename(place / "logs")
     done = reduction("verify", f"processed/{NAME}", cwd=place)
     assert done.returncode == 2
-    assert "the campaign.toml of 'two-tethers' is not where it is looked for" in done.stderr
+    assert "the campaign.toml of 'two-tethers' was not found" in done.stderr
     assert "--campaign CAMPAIGN.toml" in done.stderr
     stated = ("--campaign", f"logs/{NAME}/campaign.toml")
     done = reduction("verify", f"processed/{NAME}", *stated, "--quiet", cwd=place)
@@ -75,7 +75,7 @@ def test_one_campaign_is_not_that_of_several_folders(place):
     stated = ("--campaign", f"raw/{NAME}/campaign.toml")
     done = reduction("verify", "processed", *stated, cwd=place)
     assert done.returncode == 2
-    assert "--campaign is of one folder of products; found processed, which holds other" in (
+    assert "--campaign applies to one folder of products; found processed, which holds other" in (
         done.stderr
     )
 

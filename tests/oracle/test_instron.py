@@ -73,10 +73,10 @@ def test_the_notes_say_which_cycles_the_log_lacks_and_which_have_no_stroke(name)
     cycles = reduce(read(name, "steps.tracking"), counted=True)
     last = {"latex_glove": 26, "silicone_10a": 51}[name]
     n_cycles = TESTS[name][1]
-    assert f"counted cycles without a stroke: 1, first machine cycle {last}" in tuple(
+    assert f"1 machine-counted cycles have no stroke, first machine cycle {last}" in tuple(
         map(str, cycles.notes)
     )
-    logged = f"the log holds {n_cycles} of the machine's cycles 1 to {last}: 20 follows 10"
+    logged = f"the log holds {n_cycles} of the machine cycles 1 to {last}: 20 follows 10"
     assert logged in tuple(map(str, cycles.notes))
 
 

@@ -57,12 +57,14 @@ def test_a_drift_has_its_area_beside_it(tmp_path):
 
 def test_work_that_is_given_out_is_the_first_thing_to_check(tmp_path):
     _, _, said = run("work-out", tmp_path)
-    assert "\nCheck:\n  D-1: piece:" in said and "loops give out work" in said
+    assert (
+        "\nCheck:\n  D-1: piece:" in said and "loops run the wrong way and give out energy" in said
+    )
 
 
 def test_a_reversed_channel_is_named_on_the_first_line_and_gives_no_stiffness(tmp_path):
     _, found, said = run("reversed-channel", tmp_path)
-    assert "the crosshead_position channel runs backward; set sign = -1" in said
+    assert "the crosshead_position channel is reversed; set sign = -1" in said
     assert said.startswith("Check:\n  D-1: piece: tension falls with stretch")
     for name in ("apparent_spring_constant", "dynamic_modulus", "hysteresis_energy", "loss_factor"):
         assert np.isnan(found[f"test_{name}"]).all(), name

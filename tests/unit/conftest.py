@@ -215,7 +215,7 @@ def make_ratio(rng):
         ratio_low=array(rng, 2, 3),
         ratio_high=array(rng, 2, 3),
         is_different=np.array([[True, False, True], [False, False, True]]),
-        notes=(Note("fixture", "note", text="unequal histories"),),
+        notes=(Note("fixture", "note", text="different test histories"),),
     )
 
 

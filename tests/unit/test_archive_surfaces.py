@@ -143,7 +143,7 @@ def test_what_an_experiment_lacks_is_nan_empty_or_nil(dataset):
 
 def test_a_missing_run_keeps_its_place_its_plan_and_its_reason(dataset):
     assert dataset["run_name"].values[1, 3] == "R04"
-    assert dataset["run_remark"].values[1, 3] == "its test gave no product"
+    assert dataset["run_remark"].values[1, 3] == "its test gave no results"
     np.testing.assert_array_equal(dataset["run_plan"].values[1, 3, :3], [1, 1, 0])
     for name in ("run_level", "run_mean_tension", "apparent_spring_constant_measured"):
         assert np.isnan(dataset[name].values[1, 3]).all()
@@ -219,7 +219,7 @@ def test_an_experiment_that_gave_no_surface_keeps_its_runs():
 
 
 def test_two_experiments_of_one_name_are_refused():
-    with pytest.raises(ArchiveError, match="an experiment stands twice; found short"):
+    with pytest.raises(ArchiveError, match="an experiment appears twice; found short"):
         build(SHORT, SHORT)
 
 

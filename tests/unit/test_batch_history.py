@@ -99,7 +99,7 @@ def test_cycles_in_no_log_are_named_since_no_strain_of_them_is_known(before, bet
     surveys = [survey("A", 1, unlogged_cycles=between)]
     campaign = SimpleNamespace(specimens={"hose": Specimen("hose", earlier_cycles=before)})
     remarks = tuple(map(str, history_remarks(surveys[0], earlier_tests_of(surveys, {}), campaign)))
-    expected = f"hose: {count} earlier cycles are in no log: earlier_maximum_strain and "
+    expected = f"hose: {count} earlier cycles were not logged: earlier_maximum_strain and "
     assert [text.startswith(expected) for text in remarks] == ([] if count is None else [True])
 
 
@@ -114,4 +114,4 @@ def test_specimens_that_share_tests_without_an_order_are_asked_for_one():
     surveys = [survey("A", None), survey("B", None)]
     campaign = SimpleNamespace(specimens={"hose": Specimen("hose")})
     (remark,) = map(str, history_remarks(surveys[0], earlier_tests_of(surveys, {}), campaign))
-    assert remark.endswith("what earlier tests did to them is not known here; set order")
+    assert remark.endswith("the effect of earlier tests is not known. Set order")

@@ -158,14 +158,14 @@ def test_the_table_may_stand_in_place_of_the_sections(folder):
     ("rows", "message"),
     [
         ("id,order\nT,1\n", r"tests.csv:1: .*no usable header; found id, order"),
-        ("id,file\nT,T.csv\nT,T.csv\n", r"tests.csv:3 \[id\]: a test stands twice; found 'T'"),
+        ("id,file\nT,T.csv\nT,T.csv\n", r"tests.csv:3 \[id\]: a test appears twice; found 'T'"),
         ("id,file,order\nT,T.csv,first\n", r"tests.csv:2 \[order\]: .*found 'first'"),
         ("id,file,order\nT,T.csv,--5\n", r"tests.csv:2 \[order\]: .*found '--5'"),
         ("id,file,order\nT,T.csv,²\n", r"tests.csv:2 \[order\]: .*found '²'"),
         ("id,file\nT\n", r"tests.csv:2: .*another number of cells.*found 1; needed 2"),
         (
             "id,file,colour\nT,T.csv,red\n",
-            r"tests.csv:1 \[colour\]: a column is no key of a test; needed one of id, .*, method, "
+            r"tests.csv:1 \[colour\]: a column is not a key of a test; needed one of id, .*, method, "
             r"marks$",
         ),
         (
@@ -238,7 +238,7 @@ def test_two_kinds_of_tests_at_one_place_are_told_where_the_table_goes(folder):
         ),
         (
             'file = "T.csv"', 'file = ["T.csv", "U.csv"]',
-            r"\n  tests.T.file: the pieces of a record are not tables; found \['T.csv', 'U.csv'\]; "
+            r"\n  tests.T.file: the files of a record are not given as tables; found \['T.csv', 'U.csv'\]; "
             r"needed a file name, or a list such as \[\{ file = \"a.csv\" \}",
         ),
     ],
@@ -442,7 +442,7 @@ def test_the_suffix_of_a_marks_column_is_its_unit(tmp_path, suffix, metre):
             MARKS.replace("10", "ten"),
             r"marks.csv:2 \[far_toe_ft\]: a mark is not a number; found 'ten'",
         ),
-        (MARKS.replace("slack", "somewhere"), r"marks.csv:2 \[hold\]: a hold has no known name"),
+        (MARKS.replace("slack", "somewhere"), r"marks.csv:2 \[hold\]: unknown name of a hold"),
         (MARKS.replace(",12", ""), r"marks.csv:2: .*found 5; needed 6"),
         (MARKS.splitlines()[0] + "\n", "the marks file has no rows"),
         (MARKS.replace("near_toe_ft", "near_toe_yd"), "missing: near_toe"),

@@ -43,7 +43,7 @@ def test_a_reached_level_goes_before_a_coded_one(read):
         ("x,x\n1,2\n", "runs.csv:1", "the header of the runs cannot be used"),
         ("x,,y\n1,2,3\n", "runs.csv:1", "the header of the runs cannot be used"),
         ("1,2\n3,4\n", "runs.csv:1", "the table of runs has no header"),
-        ("x,y\n1\n", "runs.csv:2", "a row has another number of cells than the header"),
+        ("x,y\n1\n", "runs.csv:2", "the number of cells in a row differs from the header"),
         ("x,y\n", "runs.csv", "the table of runs has no rows"),
     ],
 )
@@ -74,7 +74,7 @@ def test_what_is_no_number_is_refused_with_row_and_column(read, cell):
 
 def test_a_column_that_is_missing_or_there_twice_is_refused(read):
     sheet = read("x [Hz],x [1/s],frequenzy\n1,2,3\n")
-    with pytest.raises(LogError, match="two columns hold x"):
+    with pytest.raises(LogError, match="two columns contain x"):
         sheet.one("x", "factor")
     with pytest.raises(LogError, match="factor 'frequency' has no column") as refused:
         sheet.one("frequency", "factor")

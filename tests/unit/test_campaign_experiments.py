@@ -100,24 +100,26 @@ def test_the_responses_are_those_of_the_report_where_none_is_said():
 def test_dummy_columns_are_for_screening_alone():
     runs = {"R1": (-1, 0, 1), "R2": (1, 1, -1)}
     assert plan(kind="plackett-burman", runs=runs).runs["R1"] == (-1.0, 0.0, 1.0)
-    with pytest.raises(SettingsError, match="run 'R1' has 3 coded levels; needed 2, one a factor"):
+    with pytest.raises(
+        SettingsError, match="run 'R1' has 3 coded levels; needed 2, one per factor"
+    ):
         plan(runs=runs)
 
 
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"runs": {"R9": (0, 0)}}, "a run is no test of the campaign; found R9; needed"),
-        ({"runs": {"P-7": (0, 0)}}, "a run is no test of the campaign; found P-7"),
-        ({"runs": {"P-7/x": (0, 0)}}, "a run is no test of the campaign; found P-7/x"),
+        ({"runs": {"R9": (0, 0)}}, "a run is not a test of the campaign; found R9; needed"),
+        ({"runs": {"P-7": (0, 0)}}, "a run is not a test of the campaign; found P-7"),
+        ({"runs": {"P-7/x": (0, 0)}}, "a run is not a test of the campaign; found P-7/x"),
         ({"runs": {"H": (0, 0)}}, "run 'H' has no cycles; found relaxation"),
         ({"runs": {"R1": (0,)}}, "run 'R1' has 1 coded levels; needed 2"),
         (
             {"kind": "plackett-burman", "runs": {"R1": (0, 0), "R2": (1, 1, 1)}},
             "the runs differ in the number",
         ),
-        ({"quasi_static": {"line": "Q9"}}, "slow pull of 'line' is no test of the campaign"),
-        ({"quasi_static": {"line": "R1"}}, "'R1' is no slow pull; found cyclic"),
+        ({"quasi_static": {"line": "Q9"}}, "slow pull of 'line' is not a test of the campaign"),
+        ({"quasi_static": {"line": "R1"}}, "'R1' is not a slow pull; found cyclic"),
         ({"quasi_static": {"other": "Q"}}, "the slow pull 'Q' does not pull 'other'"),
         (
             {"runs": {"R1": (0, -7)}},
@@ -125,11 +127,11 @@ def test_dummy_columns_are_for_screening_alone():
         ),
         (
             {"responses": ("hysteresis_energy", "loss_factor", "hysteresis_energy")},
-            "a response stands twice; found hysteresis_energy, loss_factor, hysteresis_energy",
+            "a response is listed twice; found hysteresis_energy, loss_factor, hysteresis_energy",
         ),
         (
             {"responses": ("loss_factor",), "transform": {"relaxation_time": "log"}},
-            "a transform is for a response that is not asked for; found relaxation_time; needed",
+            "a transform is stated for a response that is not requested; found relaxation_time; needed",
         ),
         ({"factors": {"frequency": ("1 Hz", "x")}}, "experiment 'nylon': a value is not a number"),
     ],

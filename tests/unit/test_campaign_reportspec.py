@@ -87,8 +87,8 @@ def test_a_step_of_a_test_goes_by_its_product():
     ("limit", "words"),
     [
         ({"quantity": "colour"}, r"limits\.0\.quantity is not known; found 'colour'"),
-        ({"test": "T-9"}, r"limits\.0\.test is no test of the campaign; found 'T-9'"),
-        ({"test": "P-1"}, "is no test of the campaign"),
+        ({"test": "T-9"}, r"limits\.0\.test is not a test of the campaign; found 'T-9'"),
+        ({"test": "P-1"}, "is not a test of the campaign"),
         ({"upper": None}, r"limits\.0 has no limit; needed lower, upper, or both"),
         ({"upper": "3 lbf"}, r"limits\.0: a value has the unit of something else"),
         ({"upper": "stiff"}, r"limits\.0: a value is not a number with a unit"),

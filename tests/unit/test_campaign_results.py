@@ -117,8 +117,8 @@ BAD = {
     "no such unit": ("B-1,tensile_strength,,,,1,lbz,,,,", r":2 \[value\]: unit 'lbz' is not known"),
     "share": ("B-1,tensile_strength,,,,98,%RBS,,,,", r":2 \[value\]: a strength is given as a share"),
     "exposure": ("B-1,tensile_strength,,,-1,98,lbf,,,,", r":2 \[exposure_years\]: exposure cannot be"),
-    "cells": ("B-1,tensile_strength", ":2: a row has another number of cells than the header; found 2"),
-    "twice": (f"{GOOD}\n{GOOD}", ":3: tensile_strength of a test stands twice; found 'B-1', also in "
+    "cells": ("B-1,tensile_strength", ":2: the number of cells in a row differs from the header; found 2"),
+    "twice": (f"{GOOD}\n{GOOD}", ":3: tensile_strength of a test is listed twice; found 'B-1', also in "
               "row 2"),
 }  # fmt: skip
 
@@ -135,9 +135,9 @@ HEADERS = {
     "no value": ("quantity,unit", "the table of results has no usable header"),
     "twice": ("quantity,value,line,line", "the table of results has no usable header"),
     "two names": ("id,test,quantity,value", "the table of results has no usable header"),
-    "misspelt": ("quantity,value_lbf,suspendd", r"\[suspendd\]: a column has no known name; needed "
+    "misspelt": ("quantity,value_lbf,suspendd", r"\[suspendd\]: unknown column name; needed "
                  r"suspended\?"),
-    "two loads": ("quantity,value,peak_load_N,peak_load_lbf", r"\[peak_load_lbf\]: two columns hold"),
+    "two loads": ("quantity,value,peak_load_N,peak_load_lbf", r"\[peak_load_lbf\]: two columns contain"),
     "no unit": ("quantity,value,peak_load", r"\[peak_load\]: peak_load has no unit; needed a header "
                 "such as peak_load_lbf"),
     "no length": ("quantity,value,diameter", "a header such as diameter_in"),

@@ -81,7 +81,7 @@ def test_a_temperature_moves_the_stiffness():
         ),
         (
             {"temperature": {"value": "90 K", "stiffness_per_kelvin": "300 %"}},
-            r"uncertainty\.temperature: value times stiffness_per_kelvin is no standard uncertainty; "
+            r"uncertainty\.temperature: value times stiffness_per_kelvin is not a standard uncertainty; "
             "found 27,000 % of the stiffness; needed at most 50 %",
         ),
     ],
@@ -97,7 +97,7 @@ def test_an_error_of_a_diameter_is_small_against_it():
     assert stated_errors(PATH, section, [half_an_inch]).diameter == pytest.approx(0.00254)
     section = UncertaintySection.model_validate({"diameter": "3 in"})
     words = (
-        r"campaign.toml: uncertainty\.diameter: this is no standard uncertainty of the diameter of "
+        r"campaign.toml: uncertainty\.diameter: this is not a standard uncertainty of the diameter of "
         r"'rope'; found 76.2 mm of 12.7 mm; needed at most 20 % of it"
     )
     with pytest.raises(SettingsError, match=words):

@@ -271,8 +271,8 @@ def test_numbers_in_several_places_are_asked_for_before_they_are_a_condition(ind
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("frequency", "--where is no condition"),
-        ("frequency >=", "--where is no condition"),
+        ("frequency", "--where is not a condition"),
+        ("frequency >=", "--where is not a condition"),
         ("frequncy > 1 Hz", "names no quantity: 'frequncy'"),
         ("medium > wet", "'medium' is a text"),
         ("frequency > 1 m", "unit 'm' is not a unit of frequency"),

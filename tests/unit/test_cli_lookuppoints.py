@@ -42,7 +42,7 @@ def test_what_is_given_is_no_grid_and_shares_are_of_each_line():
     wanted = LookupRequest("strain", {"tension": "10 %MBL"})
     points, _ = _points_of(wanted, ONE, OTHER)
     assert [one["tension"].tolist() for one in points] == [[100.0], [50.0]]
-    with pytest.raises(SettingsError, match="several values of a level make a grid"):
+    with pytest.raises(SettingsError, match="several values of a level need a table"):
         _points_of(LookupRequest("strain", {"tension": "10 N,20 N"}), ONE)
     unknown = tether("bare", strength=float("nan"))
     with pytest.raises(SettingsError, match="--tension: "):

@@ -97,8 +97,8 @@ def test_modulus_and_angle_are_told_apart_and_angle_scale_and_dead_length_are_no
     three = ["wrap_angle", "cord_load_scale", "dead_length_share"]
     found = _calibrate_hose(truth.design(), test, three)
     assert not found.identifiability.is_identified
-    told = next(text for text in map(str, found.notes) if "cannot tell" in text)
-    assert "wrap_angle and cord_load_scale and dead_length_share apart" in told
+    told = next(text for text in map(str, found.notes) if "cannot separate" in text)
+    assert "wrap_angle and cord_load_scale and dead_length_share: " in told
 
 
 def test_the_direction_that_is_not_seen_hardly_changes_the_curve():
@@ -126,7 +126,7 @@ def test_a_scale_of_cords_that_were_never_taut_is_not_shown():
     assert not found.identifiability.is_identified
     assert "cord_load_scale +10.0 %" in found.identifiability.words
     alone = _calibrate_hose(TRUTH.design(), test, ["cord_load_scale"])
-    assert any("does not show cord_load_scale" in text for text in map(str, alone.notes))
+    assert any("does not determine cord_load_scale" in text for text in map(str, alone.notes))
     assert any("not determined" in text for text in map(str, alone.notes))
 
 
@@ -293,7 +293,7 @@ def test_a_number_far_from_what_was_stated_is_noted():
         TRUTH.but(wrap_angle=np.radians(66)).design(), test, ["wrap_angle"],
         standard_uncertainty={"wrap_angle": np.radians(0.5)},
     )  # fmt: skip
-    assert "wrap_angle moved by -4.0 of its stated standard uncertainty" in tuple(
+    assert "wrap_angle moved by -4.0 times its stated standard uncertainty" in tuple(
         map(str, found.notes)
     )
 
@@ -312,7 +312,7 @@ def test_a_fit_that_is_stopped_at_a_bound_says_so():
         bounds={"rubber_modulus": (0.8e6, 1.2e6)},
     )  # fmt: skip
     assert found.is_at_bound[0] and found.value[0] == pytest.approx(1.2e6, rel=1e-3)
-    assert "rubber_modulus was stopped at a bound: its interval does not hold" in tuple(
+    assert "the fit of rubber_modulus stopped at a bound: its interval is not valid" in tuple(
         map(str, found.notes)
     )
 

@@ -61,7 +61,7 @@ def test_what_the_test_did_not_reach_and_what_the_prediction_does_not_is_noted()
     strain = np.linspace(0, 1.5, 800)
     test = measured_curve(strain, strong.tension(strain), loading="static")
     beyond = _compare_hose(TRUTH.design(), test)
-    assert any("predicted broken at" in text for text in map(str, beyond.notes))
+    assert any("cord break is predicted for" in text for text in map(str, beyond.notes))
     assert beyond.judged == "ascending"
 
 
@@ -101,7 +101,7 @@ def test_where_the_cords_of_a_test_pick_up_does_not_hang_on_the_prediction():
     short = _compare_hose(TRUTH.design(), cyclic(top=0.4))
     assert np.isnan(short.measured_pick_up_strain)
     assert any(
-        text.startswith("where the cords of the test pick up is") for text in map(str, short.notes)
+        text.startswith("cord pick-up is not visible in the test") for text in map(str, short.notes)
     )
 
 

@@ -46,7 +46,7 @@ def test_the_channel_that_runs_backward_is_named_and_nothing_of_the_specimen_is_
     (note,) = notes(loops)
     assert note.code == "loops-run-backward" and note.numbers["channel"] == channel
     assert note.severity == "warning"
-    assert f"the {channel} channel runs backward; set sign = -1" in str(note)
+    assert f"the {channel} channel is reversed; set sign = -1" in str(note)
     kept = without_backward_loops(loops)
     for name in ("apparent_spring_constant", "hysteresis_energy", "loss_factor"):
         assert np.isnan(getattr(kept, name)).all(), name
@@ -68,7 +68,7 @@ def test_work_that_is_given_out_is_held_against_the_stated_lag(lag, cause):
     assert note.code == "loops-give-work" and note.numbers["cause"] == cause
     assert note.numbers["delay"] == pytest.approx(0.2 / np.pi, rel=1e-3)
     assert note.numbers["n_cycles"] == N_CYCLES
-    assert "so no channel is reversed" in str(note)
+    assert "so no sign is reversed" in str(note)
 
 
 def test_less_than_a_sample_is_how_channels_are_read():

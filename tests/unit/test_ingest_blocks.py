@@ -43,7 +43,7 @@ def test_ragged_blocks_become_one_log(read):
     assert log.columns["cycle_counter"].tolist() == [1.0, 1.0, 2.0]
     assert log.row.tolist() == [6, 7, 12]
     assert (log.n_rows_read, log.first_row) == (3, 6)
-    assert tuple(map(str, log.notes)) == ("2 blocks of data",)
+    assert tuple(map(str, log.notes)) == ("2 blocks of data read",)
 
 
 def test_the_decimal_mark_is_the_one_of_the_first_line(read):
@@ -68,7 +68,7 @@ def test_lines_between_the_blocks_are_metadata(read):
 
 def test_more_than_two_hundred_loose_lines_are_counted_not_kept(read):
     log = read(US, *(f"line {i}" for i in range(250)), *block("0.1\t1\t2\t-3"))
-    assert "51 more lines between the blocks are not kept" in tuple(map(str, log.notes))
+    assert "51 further lines between the blocks are not stored" in tuple(map(str, log.notes))
 
 
 def test_blocks_of_another_kind_are_counted_in_a_note(read):
@@ -76,7 +76,7 @@ def test_blocks_of_another_kind_are_counted_in_a_note(read):
     log = read(US, *peaks, *block("0.1\t1\t2\t-3"), *peaks)
     assert log.n_rows_read == 1
     assert tuple(map(str, log.notes)) == (
-        "1 blocks of data",
+        "1 blocks of data read",
         "2 blocks of another kind with 4 rows are not read, the first at row 2",
     )
 

@@ -198,7 +198,9 @@ def test_the_machines_counter_is_kept_as_whole_numbers():
     count[3] = np.nan
     record = convert((log({"cycle_counter": count}), layout(declared)))
     assert record.cycle_counter[3] == -1
-    assert tuple(map(str, record.notes)) == ("the cycle counter is missing on 1 rows, -1 there",)
+    assert tuple(map(str, record.notes)) == (
+        "the cycle counter is missing in 1 rows; it is set to -1 there",
+    )
     count[3] = 0.5
     with pytest.raises(
         DataError, match="the cycle counter is not a whole number, first at sample 4"
@@ -234,7 +236,7 @@ def test_channels_with_their_own_time_come_to_the_slower_one():
     assert np.all(record.quality_flag[1] & Quality.RESAMPLED)
     assert not np.any(record.quality_flag[0] & Quality.RESAMPLED)
     assert str(record.notes[0]) == (
-        "crosshead_position, tension.2: 10 Hz resampled to the 2 Hz of tension.1 by linear "
+        "crosshead_position, tension.2: resampled from 10 Hz to the 2 Hz of tension.1 by linear "
         "interpolation"
     )
     assert (record.n_rows_read, record.n_samples) == (200, 40)
@@ -257,7 +259,7 @@ def test_pieces_are_joined_in_order_and_their_gap_is_flagged():
     gaps = record.crosshead_position_quality_flag & Quality.GAP
     assert np.flatnonzero(gaps).tolist() == [200]
     assert tuple(map(str, record.notes)) == (
-        "one record of 2 pieces: a.csv and b.csv",
+        "one record joined from 2 files: a.csv and b.csv",
         "a.csv: short",
         "400 rows read, 400 kept, flagged: crosshead_position gap 1",
     )

@@ -78,7 +78,7 @@ def test_an_uneven_rate_is_a_note():
     (note,) = map(str, flagged(record(time=time)).notes)
     assert note == (
         "the sampling rate is not constant: 500 of 1999 time steps differ by more than 20% from "
-        "their median 0.1 s (0.1 to 0.15 s, gaps apart)"
+        "their median 0.1 s (0.1 to 0.15 s, not counting gaps)"
     )
 
 
@@ -105,7 +105,7 @@ def test_missing_stamps_are_bridged_and_position_is_not_used_there():
     np.testing.assert_allclose(result.time, TIME, atol=1e-9)
     along = result.crosshead_position_quality_flag
     assert where(along, Quality.MISSING) == [0, 1, 500, 501, 502, TIME.size - 1]
-    assert str(result.notes[0]).startswith("6 rows have no time, first sample 1: ")
+    assert str(result.notes[0]).startswith("6 rows have no time, first at sample 1: ")
 
 
 def test_a_gap_among_missing_stamps_is_seen():

@@ -114,7 +114,7 @@ def test_a_file_that_is_nested_without_end_is_refused(read):
 
 
 def test_a_key_that_stands_twice_is_refused(read):
-    with pytest.raises(LogError, match="the key 'data' stands twice in an object"):
+    with pytest.raises(LogError, match="the key 'data' appears twice in an object"):
         read('{"data": [[0, 1, 2]], "displacement units": "in", "data": [[0, 1, 3]]}')
 
 

@@ -39,7 +39,7 @@ def test_the_faster_channel_comes_to_the_slower_one():
     np.testing.assert_allclose(result.values["tension.1"], SLOW)
     assert result.resampled == {"crosshead_position"}
     assert tuple(map(str, result.notes)) == (
-        "crosshead_position: 100 Hz resampled to the 10 Hz of tension.1 by linear interpolation",
+        "crosshead_position: resampled from 100 Hz to the 10 Hz of tension.1 by linear interpolation",
     )
 
 

@@ -117,7 +117,7 @@ def test_blank_cells_inside_are_missing_and_at_the_end_are_left_out_with_a_note(
     log = read(tmp_path, rows)
     assert log.n_rows_read == 3
     assert log.missing("tension.1").tolist() == [False, True, False]
-    assert tuple(map(str, log.notes)) == ("1 blank rows at the end of the sheet are left out",)
+    assert tuple(map(str, log.notes)) == ("1 blank rows at the end of the sheet are ignored",)
 
 
 def test_a_blank_cell_is_an_error_where_it_is_no_missing_mark(tmp_path):

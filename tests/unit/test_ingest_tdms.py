@@ -182,7 +182,7 @@ def test_a_file_that_is_cut_off_says_so(tmp_path, capfd):
     only = layout(channels={"time": {"column": "t", "unit": "s"}})
     log = read_tdms(path, only, name="log.tdms")
     assert tuple(map(str, log.notes)) == (
-        "the file ends inside a block of data: the logger was stopped or cut off",
+        "the file ends inside a block of data: the logger was stopped or the file cut off",
     )
     assert capfd.readouterr().err == ""
 

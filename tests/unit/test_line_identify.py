@@ -101,7 +101,9 @@ def test_a_line_that_cannot_be_has_no_number_and_a_reason(changed, reason):
     for name in NAMES[2:]:
         assert np.isnan(getattr(found, name)), name
         assert np.isnan(found.uncertainty[name]), name
-    assert tuple(map(str, found.notes)) == (f"K_1 and tau: 1 of 1 are refused: {REASONS[reason]}",)
+    assert tuple(map(str, found.notes)) == (
+        f"K_1 and tau not given in 1 of 1 cases: {REASONS[reason]}",
+    )
 
 
 @pytest.mark.parametrize("rest", [np.nan, 6.4e4])

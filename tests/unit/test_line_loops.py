@@ -73,7 +73,7 @@ def test_triangular_cycles_need_the_fundamental_and_the_note_says_so():
     # E'' by area and amplitudes is about (8/pi^2)^2 of the true one
     assert by_amplitude.relaxation_time[0] > 1.3 * TIME
     (note,) = map(str, by_amplitude.notes)
-    assert note.startswith("the loops are no ellipses: E'' by area and amplitudes is 0.6")
+    assert note.startswith("the loops are not elliptical: E'' from loop area is 0.6")
 
 
 def test_the_random_part_is_the_scatter_of_the_cycles():
@@ -164,7 +164,7 @@ def test_a_specimen_without_a_pull_has_no_parameters_and_the_other_has():
     }
     line = identify_cycles(loops, **rest)
     assert line.reason.tolist() == [[0] * 5, [1] * 5]
-    assert "5 of 10 are refused: the quasi-static spring constant" in str(line.notes[0])
+    assert "not given in 5 of 10 cases: the quasi-static spring constant" in str(line.notes[0])
     assert identify_run(loops, **rest).reason.tolist() == [0, 1]
 
 
@@ -194,9 +194,7 @@ def test_an_uncertain_rest_spring_is_noted():
         quasi_static_spring_constant=[rest],
         quasi_static_standard_uncertainty=[0.1 * rest],
     )
-    assert any(
-        "uncertainty of K_0 is more than 30% of K_1" in note for note in map(str, line.notes)
-    )
+    assert any("uncertainty of K_0 exceeds 30% of K_1" in note for note in map(str, line.notes))
 
 
 @pytest.mark.parametrize("function", [identify_cycles, identify_run])

@@ -243,7 +243,7 @@ def test_a_level_within_the_rounding_of_its_print_is_inside():
 @pytest.mark.parametrize(
     ("quantity", "levels", "message"),
     [
-        ("apparent_spring_constant", CENTRE | {"frequency": "0.3"}, "frequency is no real number"),
+        ("apparent_spring_constant", CENTRE | {"frequency": "0.3"}, "frequency is not a real number"),
         ("apparent_spring_constant", CENTRE | {"frequency": 0.3 + 1j}, "frequency is no real nu"),
         ("apparent_spring_constant", CENTRE | {"frequency": [[1.0], [1, 2]]}, "no real number"),
         ("apparent_spring_constant", CENTRE | {"frequency": -0.3}, "not positive; found -0.3 Hz"),

@@ -79,7 +79,7 @@ def test_a_first_rise_has_one_branch():
     ("strain", "tension", "spread", "message"),
     [
         ([0.1, 0.1], [1, 2], [0, 0], "not above the one before"),
-        ([0.1], [1], [0], "is no curve"),
+        ([0.1], [1], [0], "is not a curve"),
         ([0.0, 0.1], [1, 2], [0, 0], "points that are slack"),
         ([0.1, 0.2], [0, 2], [0, 0], "points that are slack"),
         ([0.1, 0.2], [1, np.nan], [0, 0], "not finite"),

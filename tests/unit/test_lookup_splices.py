@@ -27,7 +27,7 @@ def test_splices_strain_by_a_share_of_the_rubber_or_by_tension():
 @pytest.mark.parametrize(
     ("keys", "told"),
     [
-        ({"length": -1.0}, "length is no number of a splice; found -1"),
+        ({"length": -1.0}, "length is not a number of a splice; found -1"),
         ({"length": 1.0, "strain_ratio": -0.1}, "strain_ratio is no number"),
         ({"length": 1.0, "strain": 0.0, "at_tension": 9.0}, "strain is no number"),
         ({"length": 1.0, "strain": 0.1, "at_tension": 0.0}, "at_tension is no number"),

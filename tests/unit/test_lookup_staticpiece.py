@@ -60,7 +60,7 @@ def test_a_pull_ends_where_its_cubic_turns_back():
 
 
 def test_a_pull_of_one_point_is_no_curve():
-    with pytest.raises(DataError, match="Q is no curve; found 1 points"):
+    with pytest.raises(DataError, match="Q is not a curve; found 1 points"):
         piece_of_pull([0.01, np.nan], [100.0, 200.0], [1e-4, 1e-4], name="Q")
 
 

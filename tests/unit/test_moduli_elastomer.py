@@ -79,14 +79,14 @@ def test_an_unstable_fit_says_so():
     assert not fit.is_stable
     (note,) = [note for note in map(str, fit.notes) if "not stable" in note]
     assert note.startswith("the fitted law is not stable: below a strain of ")
-    assert note.endswith("; do not use it in a model")
+    assert note.endswith(". Do not use it in a model")
 
 
 def test_a_parameter_not_told_from_zero_is_named():
     rng = np.random.default_rng(2)
     stress = hyperelastic_stress(STRAIN, law="neo-hookean", parameters=EXAMPLE["neo-hookean"])
     fits = fit_elastomers(STRAIN, stress + 5e4 * rng.standard_normal(STRAIN.size), specimen="new")
-    assert any("not told from zero" in note for fit in fits for note in map(str, fit.notes))
+    assert any("interval includes zero" in note for fit in fits for note in map(str, fit.notes))
 
 
 def test_a_law_that_cannot_be_fitted_gives_nan_and_the_reason():

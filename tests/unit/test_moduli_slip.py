@@ -141,13 +141,13 @@ def test_without_a_slope_the_length_is_not_given():
 def test_a_step_up_is_named_for_what_it_cannot_be():
     slips = find_slips(loops_of([peaks([(201, 9.0)])]), specimens=("new",), settings=SlipSettings())
     assert slips.slip_tension_step[0] > 0
-    assert "a splice cannot take up length" in str(slips.notes[0])
+    assert "A splice cannot do this" in str(slips.notes[0])
 
 
 def test_two_specimens_stepping_together_point_to_the_machine():
     loops = loops_of([peaks([(201, -9.0)]), peaks([(201, -9.0)], seed=1)])
     slips = find_slips(loops, specimens=("new", "used"), settings=SlipSettings())
-    assert any("look at the crosshead before the splices" in note for note in map(str, slips.notes))
+    assert any("check the crosshead before the splices" in note for note in map(str, slips.notes))
 
 
 def test_too_few_cycles_are_a_line_of_the_history():
@@ -165,7 +165,7 @@ def test_missing_cycles_are_bridged_until_they_are_too_many():
     slips = find_slips(loops_of([some, most]), specimens=("new", "used"), settings=SlipSettings())
     assert slips.slip_cycle == pytest.approx(301, abs=2)
     assert tuple(map(str, slips.notes)) == (
-        "used: slip not looked for: 400 of 600 cycles are missing",
+        "used: no search for slip: 400 of 600 cycles are missing",
     )
 
 

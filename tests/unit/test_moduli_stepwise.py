@@ -66,9 +66,9 @@ def test_an_unstated_reading_uncertainty_is_the_scatter_and_a_note_says_so():
     )  # fmt: skip
     result = reduce_stepwise(scattered, area=AREA)
     assert any(
-        "the uncertainty of a length is not stated" in note for note in map(str, result.notes)
+        "the uncertainty of the lengths is not stated" in note for note in map(str, result.notes)
     )
-    assert any("0.60 mm, is taken for it" in note for note in map(str, result.notes))
+    assert any("recorded elongation, 0.60 mm" in note for note in map(str, result.notes))
 
 
 def test_creep_at_one_weight_is_flagged_and_gives_no_modulus():
@@ -109,7 +109,9 @@ def test_a_misread_length_is_kept_with_its_flag():
     assert np.isnan(result.interval_modulus[1:3]).all()
     assert np.isnan(result.secant_modulus[2])
     (note,) = [text for text in map(str, result.notes) if text.startswith("0920")]
-    assert "would agree, and the intervals beside it would be 0.80 and 0.80 MPa" in note
+    assert (
+        "would agree, and the moduli of the adjacent intervals would be 0.80 and 0.80 MPa" in note
+    )
 
 
 @pytest.mark.parametrize(("eye_follows", "word"), [("length", "length"), ("strain", "elongation")])
@@ -121,7 +123,7 @@ def test_the_eye_to_eye_length_says_which_of_two_readings_to_doubt(eye_follows, 
     result = reduce_stepwise(
         StepReadings(log.clock, log.time, log.tension, length, eye, log.printed_strain), area=AREA
     )
-    assert any(f"speaks for the {word})" in note for note in map(str, result.notes))
+    assert any(f"supports the {word})" in note for note in map(str, result.notes))
 
 
 def test_without_recorded_elongations_the_stated_gauge_length_is_used():

@@ -174,7 +174,7 @@ def test_samples_off_the_grid_are_counted_in_a_note(triangle):
     strain = strain.copy()
     strain[17] = 40.0
     curves = curves_of(strain, law(np.minimum(strain, 2)), cycles)
-    assert any(note.startswith("1 samples of branches lie off") for note in map(str, curves.notes))
+    assert any(note.startswith("1 samples lie outside") for note in map(str, curves.notes))
 
 
 def test_size_of_a_block_changes_nothing(triangle, monkeypatch):

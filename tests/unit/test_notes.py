@@ -19,8 +19,8 @@ SAID = replace(
 )
 # what a reader may be told, and whether it could move an answer
 FACTS = {
-    "refused: Prony series: a drop of 0.03% +- 0.11% (one standard uncertainty) is not told from "
-    "zero": (REFUSED, "refusal"),
+    "Prony series not given: the interval of the drop, 0.03% +- 0.11% (one standard uncertainty), "
+    "includes zero": (REFUSED, "refusal"),
     "the printed diameters contradict each other": (SAID, "note"),
     "400 rows read, 400 kept, flagged: tension of new spike 3": (
         note("rows-flagged", n_read=400, n_kept=400, flags="tension of new spike 3"), "warning",
@@ -29,16 +29,16 @@ FACTS = {
         note("rows-resampled", n_read=400, n_kept=400, flags="tension of new resampled 400"),
         "note",
     ),
-    "9 whole cycles found, 10 planned": (
+    "9 complete cycles found, 10 planned": (
         note("cycles-not-as-planned", n_found=9, n_planned=10), "warning",
     ),
-    "one cycle only: there is no scatter from cycle to cycle": (note("one-cycle"), "note"),
-    "new: tension falls with stretch (median tangent modulus -1e+06 Pa); does the log count "
-    "compression positive? Then set sign = -1 for this channel": (
+    "one cycle only: no cycle-to-cycle scatter can be given": (note("one-cycle"), "note"),
+    "new: tension falls with stretch (median tangent modulus -1e+06 Pa). If the log counts "
+    "compression as positive, set sign = -1 for this channel": (
         note("sign-of-tension", "new", slope=-1e6), "warning",
     ),
-    "1325: length 416.1 mm is 167 %, recorded is 151 %; the row gives no modulus. A length of "
-    "390.5 mm would agree, and the intervals beside it would be 0.62 and 0.33 MPa": (
+    "1325: a length of 416.1 mm gives 167 %, but 151 % is recorded; the row gives no modulus. "
+    "A length of 390.5 mm would agree, and the moduli of the adjacent intervals would be 0.62 and 0.33 MPa": (
         note(
             "reading-inconsistent", "1325", length=0.4161, strain=1.67, recorded=1.51,
             corrected=0.3905, speaks_for="", beside=[0.62e6, 0.33e6],
@@ -49,35 +49,35 @@ FACTS = {
         note("stress-at-strain-not-given", "new", level=0.5, reason="1 samples within 10 % before it"),
         "refusal",
     ),
-    "new: the slack rows scatter 1.6 times as much as the tape explains (chi-square 26.5 of 10 "
-    "degrees of freedom, one in 320); their uncertainty is widened by as much": (
+    "new: the slack rows scatter 1.6 times as much as tape reading explains (chi-square 26.5 with "
+    "10 degrees of freedom, probability one in 320); their uncertainty is increased by this factor": (
         note(
             "marks-scatter", "new", rows="slack rows", ratio=1.6, chi_square=26.5, freedom=10,
             chance=1 / 320,
         ),
         "note",
     ),
-    "new: 3 of 10 cycles drift by more than 20% of their range: their amplitudes, slopes and "
-    "energies rest on it": (
+    "new: 3 of 10 cycles drift by more than 20% of their range; the drift affects their "
+    "amplitudes, slopes and energies": (
         note("cycles-drift", "new", n_far=3, n_cycles=10, limit=0.2), "warning",
     ),
-    "K_1 and tau: 2 of 3 are refused: a measured quantity of the loop is missing": (
+    "K_1 and tau not given in 2 of 3 cases: a measured quantity of the loop is missing": (
         note("no-line", n_lines=2, n_all=3, reason="a measured quantity of the loop is missing"),
         "refusal",
     ),
     "R05: the line goes slack in every cycle": (
         note("run-slack", "R05", cycles="every cycle"), "warning",
     ),
-    "tau drifts over the order of the runs beyond its surface: +0.2 a run (p 0.01)": (
+    "tau drifts with run order: its residuals change by +0.2 per run (p 0.01)": (
         note("response-drifts", response="tau", slope=0.2, p=0.01), "warning",
     ),
-    "refused: stiffness forms of mooring codes: no strength": (
+    "stiffness forms of mooring codes not given: no strength": (
         note("no-stiffness-forms", reason="no strength"), "refusal",
     ),
-    "hose: refused: quasi-static spring constant: no cubic": (
+    "hose: quasi-static spring constant not given: no cubic": (
         note("no-pull", "hose", reason="no cubic"), "refusal",
     ),
-    "the cords are broken from 150.9 % strain: no load is given": (
+    "the cords are broken from 150.9 % strain on: no load given": (
         note("cords-broken", strain=1.509), "refusal",
     ),
 }  # fmt: skip

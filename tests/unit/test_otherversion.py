@@ -111,5 +111,5 @@ def test_a_revision_that_cannot_read_the_campaign_says_why(installed, checkout):
         "raise SystemExit('campaign.toml: no key x')"
     )
     git(checkout, "commit", "-qam", "refuses")
-    with pytest.raises(SettingsError, match="HEAD makes nothing of c.toml; found .*no key x"):
+    with pytest.raises(SettingsError, match="HEAD cannot run c.toml; found .*no key x"):
         otherversion._run_revision("HEAD", Path("c.toml"), installed, CommandOutput(quiet=True))

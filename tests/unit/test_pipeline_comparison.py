@@ -54,9 +54,8 @@ def test_unequal_flexing_is_named_and_softening_is_said_of_rubber_alone():
     hoses = (Specimen("a", kind="stretch hose"), Specimen("b", kind="stretch hose"))
     found = remarks(*hoses, past)
     assert found == [
-        "b over a: unequal histories in the campaign: not known against 1000000 earlier flex "
-        "cycles",
-        "b over a: unequal histories in the campaign: greatest earlier strain 130% against 100%",
+        "b over a: different test histories: not known against 1000000 earlier flex cycles",
+        "b over a: different test histories: maximum earlier strain 130% against 100%",
     ]
     assert remarks(Specimen("a"), Specimen("b"), past)[-1].endswith(
         "rubber is softer below what it has seen"
@@ -80,8 +79,8 @@ def test_equal_histories_leave_nothing_to_say():
     ("past", "told"),
     [
         (history([1.2, 1.2], [10.0, 30.0]), "30 earlier cycles against 10"),
-        (history([1.2, 1.8], [10.0, 10.0]), "greatest earlier strain 180% against 120%"),
-        (history([np.nan, 1.8], [0.0, 0.0]), "greatest earlier strain 180% against none known"),
+        (history([1.2, 1.8], [10.0, 10.0]), "maximum earlier strain 180% against 120%"),
+        (history([np.nan, 1.8], [0.0, 0.0]), "maximum earlier strain 180% against none known"),
         (None, "is not known: no order is given"),
     ],
 )
@@ -93,6 +92,6 @@ def test_unequal_or_unknown_histories_are_told(past, told):
 def test_another_condition_before_the_campaign_is_an_unequal_history():
     equal = history([1.2, 1.2], [10.0, 10.0])
     told = remarks(Specimen("a", condition="new"), Specimen("b", condition="used"), equal)
-    assert told[0] == "b over a: unequal before the campaign: condition 'used' against 'new'"
+    assert told[0] == "b over a: different condition before the campaign: 'used' against 'new'"
     told = remarks(Specimen("a"), Specimen("b", condition="used"), equal)
     assert "'used' against not stated" in told[0]

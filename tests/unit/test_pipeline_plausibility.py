@@ -56,7 +56,7 @@ def test_tension_that_falls_with_stretch_and_is_positive_blames_no_load_channel(
 
 def test_a_strain_no_specimen_reaches_asks_for_the_unit_of_position(notes_of):
     (note,) = map(str, notes_of(stretch=1000 * notes_of.strain))
-    assert note.startswith("new: strain reaches 1500, which no specimen does")
+    assert note.startswith("new: strain reaches 1500, which is impossible")
 
 
 def test_cycles_that_are_mostly_drift_are_counted(notes_of):
@@ -73,12 +73,14 @@ def test_cycles_that_are_mostly_drift_are_counted(notes_of):
 def test_snap_loads_go_slack_and_a_line_that_stays_taut_is_named(notes_of):
     assert tuple(map(str, notes_of(np.maximum(1000 * (notes_of.strain - 0.7), 0), snap=True))) == ()
     (note,) = map(str, notes_of(snap=True))
-    assert "are no snap loads: tension stays above 20 N" in note
+    assert "are not snap loads: tension stays above 20 N" in note
 
 
 def test_cycles_that_go_slack_are_counted(notes_of):
     (note,) = map(str, notes_of(np.maximum(1000 * (notes_of.strain - 0.7), 0)))
-    assert note.startswith("new: slack within 10 of 10 cycles (tension at or below 20 N)")
+    assert note.startswith(
+        "new: the specimen goes slack in 10 of 10 cycles (tension at or below 20 N)"
+    )
 
 
 @pytest.mark.parametrize(("share", "n_notes"), [(0.5, 1), (0.7, 0)])

@@ -63,7 +63,7 @@ def test_an_end_beyond_the_break_is_told_and_has_no_load():
     hose = predicted(greatest_strain=2.4, strain_step=0.1)
     (note,) = said(hose, "the cords are broken from")
     first = hose.prediction.strain[hose.prediction.strain > stretch_at(68, BREAK) - 1][0]
-    assert note == f"the cords are broken from {100 * first:.1f} % strain: no load is given"
+    assert note == f"the cords are broken from {100 * first:.1f} % strain on: no load given"
     assert np.isnan(hose.prediction.tension[-1])
 
 
@@ -108,8 +108,8 @@ def test_a_layer_stretched_too_far_is_told_the_angle_that_it_needs():
     assert layer_strain(stretch_at(68, AT_WORK), needed) == pytest.approx(0.02)
     strain = 100 * layer_strain(stretch_at(68, AT_WORK), 66)
     assert note == (
-        f"layer K is stretched by {strain:.1f} % at the working load, above its 2 %: it needs "
-        f"{needed:.1f} degrees or more"
+        f"layer K is stretched by {strain:.1f} % at the working load, above its limit of 2 %: "
+        f"use a wrap angle of {needed:.1f} degrees or more"
     )
 
 
@@ -120,19 +120,21 @@ def test_a_layer_compressed_too_far_is_told_the_angle_that_it_may_have():
     way = np.linspace(1, stretch_at(68, AT_WORK), 100_001)
     assert layer_strain(way, allowed).min() == pytest.approx(-0.05, abs=1e-9)
     assert note.startswith(f"layer K is compressed by {-100 * layer_strain(way, 78).min():.1f} %")
-    assert note.endswith(f"on the way, above its 5 %: it needs {allowed:.1f} degrees or less")
+    assert note.endswith(
+        f"above its limit of 5 %: use a wrap angle of {allowed:.1f} degrees or less"
+    )
 
 
 def test_limits_that_no_angle_meets_together_are_told():
     hose = predicted(layers=LAYERS)
-    assert said(hose, "layer Kevlar: no angle") == [
-        "layer Kevlar: no angle keeps it within both limits up to the working load"
+    assert said(hose, "layer Kevlar: no wrap angle") == [
+        "layer Kevlar: no wrap angle keeps it within both limits up to the working load"
     ]
 
 
 def test_a_hose_below_the_neutral_angle_has_no_slack_zone():
     (note,) = said(predicted(degrees=50.0, layers=()), "at 50.00 degrees")
-    assert note.endswith("there is no slack zone: the cords carry from the first")
+    assert note.endswith("there is no slack zone: the cords carry load from the start")
     assert not said(predicted(), "at ")
 
 
@@ -143,7 +145,7 @@ def test_cords_that_touch_and_a_narrow_bore_are_told_with_their_range():
     at = hose.prediction.strain[hose.prediction.cord_spacing < 0.00075]
     assert touch == (
         f"neighbouring cords touch from {100 * at[0]:.1f} to {100 * at[-1]:.1f} % strain: "
-        "the prediction does not hold there"
+        "the prediction is not valid there"
     )
     # constant volume: 63.5 mm over the root of the stretch is 50 mm at (63.5/50)**2
     first = hose.prediction.strain[hose.prediction.strain > (63.5 / 50) ** 2 - 1][0]
@@ -169,7 +171,7 @@ def test_cords_that_touch_at_rest_and_again_near_the_end_are_told_apart():
 def test_without_a_stated_uncertainty_none_is_given():
     hose = predicted(uncertain={}, layers=())
     assert tuple(map(str, hose.notes)) == (
-        "no number of the hose has a stated uncertainty: none is given",
+        "no uncertainty is stated for the hose: the prediction has none",
     )
     assert hose.uncertainty.source == ()
 

@@ -80,13 +80,13 @@ def test_cycles_of_a_tether_are_no_programme_but_its_life_is():
 def test_fewer_cycles_than_asked_for_are_named():
     assert tuple(map(str, step_of(record(cycles(12)), "cyclic").notes)) == ()
     (note,) = map(str, step_of(record(cycles(12)), "cyclic", last_cycles=50).notes)
-    assert note == "line: dynamic stiffness from 12 cycles; rope.last_cycles asks for 50"
+    assert note == "line: dynamic stiffness is from 12 cycles; rope.last_cycles requests 50"
 
 
 def test_a_step_of_two_levels_is_named():
     load = np.concatenate([cycles(12), cycles(12, start=200.0, low=200.0, high=600.0)])
     (note,) = map(str, step_of(record(load), "cyclic").notes)
-    assert note.startswith("line: 12 of 24 cycles are of another level than the last ones")
+    assert note.startswith("line: 12 of 24 cycles are at another level than the last ones")
 
 
 def test_a_first_cycle_that_begins_lower_is_named():
@@ -96,14 +96,14 @@ def test_a_first_cycle_that_begins_lower_is_named():
     assert tuple(map(str, step_of(record(load), "bedding-in").notes)) == ()
     counter = np.clip((np.arange(load.size) - 20) // 20 + 1, 0, 12)
     (note,) = map(str, step_of(record(load, counter=counter), "bedding-in").notes)
-    assert note.startswith("line: the first cycle begins at 60")
+    assert note.startswith("line: the first cycle starts at 60")
 
 
 def test_bedding_in_of_one_cycle_is_refused():
     load = np.concatenate([cycles(1), np.full(30, 100.0)])
     found = step_of(record(load), "bedding-in", last_cycles=1)
     assert found.bedding_in is None
-    assert "refused: bedding-in: one cycle alone; two are needed" in tuple(map(str, found.notes))
+    assert "bedding-in not given: only one cycle; two are needed" in tuple(map(str, found.notes))
 
 
 def test_cycles_are_those_of_the_machine_where_it_counts():
@@ -152,7 +152,7 @@ def test_without_a_strength_nothing_is_divided_and_a_note_says_so():
     bare = step_of(record(cycles(12)), "cyclic", specimen=Specimen("line", kind="rope"))
     assert np.isnan(bare.dynamic.dynamic_stiffness_over_strength).all()
     assert tuple(map(str, bare.notes)) == (
-        "line: no rated break strength is stated: nothing is divided by it",
+        "line: no rated break strength is stated: results relative to it are not given",
     )
 
 
@@ -167,5 +167,5 @@ def test_a_pull_without_strain_has_a_strength_alone():
     )  # fmt: skip
     assert found.tensile.is_break.tolist() == [True]
     assert tuple(map(str, found.notes)) == (
-        "line: refused: strain at failure: no strain is known at the peak",
+        "line: strain at failure not given: the strain at the peak is not known",
     )

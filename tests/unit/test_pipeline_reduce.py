@@ -81,8 +81,8 @@ def test_a_first_rise_that_stretches_nothing_gives_no_law_and_says_why():
     found = reduced(cord, zero=1.6)
     assert found.elastomers == ()
     (note,) = [text for text in map(str, found.notes) if "hyperelastic" in text]
-    assert note.startswith("cord: no hyperelastic law: the first rise of the record is no pull")
-    assert "(strain reaches -1" in note and "where strain is zero?" in note
+    assert note.startswith("cord: no hyperelastic law: the first rise of the record is not a pull")
+    assert "(strain reaches -1" in note and "the zero of strain" in note
 
 
 def test_the_gauge_length_is_the_relaxed_length_of_a_pull(pulled):

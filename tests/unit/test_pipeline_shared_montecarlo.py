@@ -54,7 +54,7 @@ def test_a_line_well_above_its_pull_is_linear_and_one_near_it_is_not():
     assert str(test.line_notes[0]).startswith(
         "two: K_1 and tau: uncertainty and 95 % interval are by"
     )
-    assert "of the draws of loop and slow pull have no K_1 and tau" in str(test.line_notes[0])
+    assert "of the draws of loop and slow pull has no K_1 and tau" in str(test.line_notes[0])
     for name in NAMES:
         value, u = getattr(line, name)[0], line.uncertainty[name][0]
         assert spread.standard_uncertainty[name][0] == pytest.approx(u)
@@ -70,7 +70,7 @@ def test_where_k_1_is_least_first_order_is_said_to_miss():
         reduced([STORED - LOST, 1.5e4], [600.0, 200.0], scatter=1e-4), CycleSettings()
     )
     assert test.line_spread.method.tolist() == [2, 1]
-    assert "linear one of K_1 is 0.0" in str(test.line_notes[0])
+    assert "linear uncertainty of K_1 is 0.0" in str(test.line_notes[0])
     assert test.line_spread.low[NAMES[0]][0] == pytest.approx(2 * LOST, rel=0.001)
 
 

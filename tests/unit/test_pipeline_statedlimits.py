@@ -34,7 +34,7 @@ def check(cycles=True, record=(), **stated):
     [
         (
             {"tension_offset": 3501.0},
-            r"campaign.toml: uncertainty.tension.offset: this is no standard uncertainty for test "
+            r"campaign.toml: uncertainty.tension.offset: this is not a standard uncertainty for test "
             r"'T-1'; found 3501 N; needed at most 3500 N, ten times the greatest tension of 'new'",
         ),
         ({"tension_offset": 1e9 * 4.448}, r"uncertainty.tension.offset: .*found 4.448e\+09 N"),
@@ -81,8 +81,8 @@ def test_a_reading_of_which_the_layout_says_something_is_not_looked_at():
     ("lag", "words"),
     [
         (0.79, None),
-        (0.81, "0.81 s is more than a twentieth of 1 of 2 cycles, the shortest of 16 s"),
-        (1.01, "1.01 s is more than a twentieth of 2 of 2 cycles, the shortest of 16 s"),
+        (0.81, "0.81 s exceeds a twentieth of the period in 1 of 2 cycles (shortest 16 s)"),
+        (1.01, "1.01 s exceeds a twentieth of the period in 2 of 2 cycles (shortest 16 s)"),
     ],
 )
 def test_a_lag_that_turns_a_loop_beyond_the_first_order_is_noted_as_a_warning(lag, words):

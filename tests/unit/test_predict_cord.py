@@ -114,7 +114,7 @@ def test_two_stretches_that_no_angle_joins_have_none():
 @pytest.mark.parametrize("angle", [0.0, 90.0, -10.0, np.nan])
 @pytest.mark.parametrize("function", [pick_up_stretch_ratio, slackest_stretch_ratio])
 def test_an_angle_that_is_none_of_a_helix_is_refused(function, angle):
-    with pytest.raises(SettingsError, match=r"wrap_angle is no angle of a helix; found .* deg"):
+    with pytest.raises(SettingsError, match=r"wrap_angle is not an angle of a helix; found .* deg"):
         function(np.radians([45.0, angle]))
 
 

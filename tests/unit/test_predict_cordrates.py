@@ -21,5 +21,5 @@ def test_sensitivities_are_the_differences_of_the_inverse():
 
 @pytest.mark.parametrize("function", [_stretch_ratio_per_angle, _stretch_ratio_per_cord_stretch])
 def test_an_angle_that_is_none_of_a_helix_is_refused(function):
-    with pytest.raises(SettingsError, match="wrap_angle is no angle of a helix; found 90 deg"):
+    with pytest.raises(SettingsError, match="wrap_angle is not an angle of a helix; found 90 deg"):
         function(1.1, np.radians(90.0))

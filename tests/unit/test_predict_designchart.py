@@ -33,7 +33,7 @@ def test_no_cord_is_slack_at_or_below_the_neutral_angle():
     [
         (lambda: cord_strain_chart(1.0, [0.1]), "wrap_angle is not a series; found shape ()"),
         (lambda: cord_strain_chart([1.0], [[0.1]]), "strain is not a series"),
-        (lambda: cord_strain_chart([1.0], [0.1], dead_length_share=1.0), "dead_length_share is no share; found 1"),
+        (lambda: cord_strain_chart([1.0], [0.1], dead_length_share=1.0), "dead_length_share is not a share; found 1"),
     ],
 )  # fmt: skip
 def test_what_is_no_chart_is_refused(call, message):

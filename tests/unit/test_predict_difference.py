@@ -55,5 +55,5 @@ def test_without_a_load_there_is_no_difference():
 
 @pytest.mark.parametrize("share", [0.0, -0.1, 1.5, float("nan")])
 def test_a_share_is_a_share(share):
-    with pytest.raises(SettingsError, match="minimum_share is no share"):
+    with pytest.raises(SettingsError, match="minimum_share is not a share"):
         _load_difference(LOAD, EXTREMES, minimum_share=share)

@@ -30,7 +30,7 @@ def test_a_ribbon_as_wide_as_the_circumference_lies_along_the_hose():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: ribbon_width(0.1, np.radians(90)), "wrap_angle is no angle of a ribbon; found 90"),
+        (lambda: ribbon_width(0.1, np.radians(90)), "wrap_angle is not an angle of a ribbon; found 90"),
         (lambda: ribbon_width(0.1, -0.1), "needed from 0 to below 90 deg"),
         (lambda: ribbon_width(0.0, 1.0), "1 of 1 values of wrap_diameter are not positive"),
         (lambda: number_of_cords(0.1, 1.0, 0.0), "values of cords_per_length are not positive"),

@@ -97,12 +97,12 @@ def test_there_is_no_angle_for_a_conductor_that_bears_little_either_way_in_a_hos
 @pytest.mark.parametrize(
     ("error", "call", "message"),
     [
-        (SettingsError, lambda: layer_range(np.pi / 2, 1.0), "wrap_angle is no angle of a helix; found 90 deg"),
+        (SettingsError, lambda: layer_range(np.pi / 2, 1.0), "wrap_angle is not an angle of a helix; found 90 deg"),
         (DataError, lambda: layer_range(1.0, -0.1), "hose_strain is negative; found -0.1"),
         (DataError, lambda: layer_range(1.0, np.nan), "values of hose_strain are not finite"),
         (DataError, lambda: layer_range(1.0, 1.0, strain_limit=-0.1), "strain_limit is negative or missing"),
         (DataError, lambda: layer_range(1.0, 1.0, strain_limit=np.nan), "strain_limit is negative or missing"),
-        (DataError, lambda: least_layer_angle(1.0, dead_length_share=1.0), "dead_length_share is no share"),
+        (DataError, lambda: least_layer_angle(1.0, dead_length_share=1.0), "dead_length_share is not a share"),
         (DataError, lambda: greatest_layer_angle(1.0, compression_limit=1.0), "compression_limit leaves no length; found 1; needed below 1"),
     ],
 )  # fmt: skip

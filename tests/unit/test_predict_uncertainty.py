@@ -157,8 +157,8 @@ def test_a_hose_whose_cords_bear_from_the_start_has_no_kink_at_rest():
 @pytest.mark.parametrize(
     ("error", "known", "message"),
     [
-        (SettingsError, {"cord_diameter": 1e-5}, "standard_uncertainty.cord_diameter is no number of a hose; found cord_diameter; needed one of wrap_angle, layer_diameter"),
-        (SettingsError, {"wrap_angle": -0.1}, "standard_uncertainty.wrap_angle is no uncertainty; found -0.1 in SI; needed zero or more"),
+        (SettingsError, {"cord_diameter": 1e-5}, "standard_uncertainty.cord_diameter is not a number of a hose; found cord_diameter; needed one of wrap_angle, layer_diameter"),
+        (SettingsError, {"wrap_angle": -0.1}, "standard_uncertainty.wrap_angle is not an uncertainty; found -0.1 in SI; needed zero or more"),
         (SettingsError, {"wrap_angle": np.nan}, "found nan in SI"),
     ],
 )  # fmt: skip

@@ -115,5 +115,5 @@ def test_a_test_without_segments_is_refused():
 
 
 def test_a_row_of_another_table_is_no_segment():
-    with pytest.raises(DataError, match="a row is no segment"):
+    with pytest.raises(DataError, match="a row is not a segment"):
         _name_of_segment("static test, 51 lb")

@@ -189,7 +189,7 @@ def test_fsspec_itself_is_named(monkeypatch, tmp_path):
     ],
 )  # fmt: skip
 def test_an_address_of_this_machine_a_chained_one_or_another_kind_is_refused(address):
-    with pytest.raises(SettingsError, match="the log is no address that can be used; found "):
+    with pytest.raises(SettingsError, match="the log is not an address that can be used; found "):
         allowed(address, True, what="the log")
 
 

@@ -298,7 +298,7 @@ def test_curves_are_rows_and_the_calibrated_one_stands_below():
     bias = [float(one) for one in values(table, "bias")]
     assert bias[0] - bias[1] == pytest.approx(-LOOP)
     assert abs(bias[3]) < 0.1 * abs(bias[2])
-    assert column(table, "greatest difference")[3] == NOT_GIVEN
+    assert column(table, "largest difference")[3] == NOT_GIVEN
     one_branch = compared_curve_table(view(differing()))
     assert column(one_branch, "curve") == ["ascending, judged"]
     assert "only its ascending branch" in one_branch.remarks[0]
@@ -309,8 +309,8 @@ def test_events_have_both_differences_and_dashes_beyond_the_test():
     assert column(table, "event") == ["cords pick up", "working load", "cords break"]
     assert float(values(table, "predicted strain")[0]) == pytest.approx(TRUTH.pick_up_strain())
     working = differing().comparison.events[1]
-    assert float(values(table, "difference of tension")[1]) == working.tension_difference
-    assert re.fullmatch(r"-4,\d+ ± \d+", column(table, "difference of tension")[1])
+    assert float(values(table, "tension difference")[1]) == working.tension_difference
+    assert re.fullmatch(r"-4,\d+ ± \d+", column(table, "tension difference")[1])
     assert column(table, "measured there")[2] == NOT_GIVEN
     assert any("not reached in the test" in remark for remark in table.remarks)
 
@@ -361,7 +361,7 @@ def test_a_number_that_was_stopped_says_so_and_one_without_an_interval_has_none(
     assert column(table, "at a bound") == ["yes", "no"]
     assert column(table, "95 % interval") == [NOT_GIVEN, "0.90 to 1.10"]
     warned = {one.text for one in _comparison_findings(one) if one.severity == "warning"}
-    assert "cord_load_scale was stopped at a bound: its interval does not hold" in warned
+    assert "the fit of cord_load_scale stopped at a bound: its interval is not valid" in warned
 
 
 def test_correlations_are_a_square_with_the_index_below():

@@ -51,7 +51,7 @@ def test_runs_stand_as_planned_and_as_reached_with_the_share_of_the_break_streng
 
 def test_a_run_that_was_not_made_says_why():
     table = run_table(view_of(surface_experiment(missing=(4,))))
-    assert column(table, "remark")[4].text == "its test gave no product"
+    assert column(table, "remark")[4].text == "its test gave no results"
     assert column(table, "apparent spring constant")[4].text == NOT_GIVEN
 
 

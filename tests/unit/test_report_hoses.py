@@ -384,7 +384,7 @@ def test_doubts_are_warnings_on_top_and_the_rest_notes():
     one = view(greatest_strain=2.4, cord_diameter=0.00075)
     found = {finding.text[:24]: finding.severity for finding in _hose_findings(one)}
     assert found["layer Kevlar is stretche"] == "warning"
-    assert found["layer Kevlar: no angle k"] == "warning"
+    assert found["layer Kevlar: no wrap an"] == "warning"
     assert found["neighbouring cords touch"] == "warning"
     assert found["the cords are broken fro"] == "refusal"
     (plain,) = views(bare())

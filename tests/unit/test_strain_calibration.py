@@ -118,7 +118,7 @@ def test_marks_that_contradict_the_tape_widen_line_and_ratio_and_say_so():
     )
     for before, after in zip(sound, wide, strict=True):
         assert before.note is None
-        assert "times as much as the tape explains" in str(after.note)
+        assert "times as much as tape reading explains" in str(after.note)
     # the variance is then that of the residuals: one degree of freedom of the line, two of the ratio
     at = free + splice
     assert wide[0].covariance[1, 1] == pytest.approx(
@@ -136,7 +136,7 @@ def test_a_ratio_without_a_stated_error_takes_its_scatter():
     x = free / 2.55 - 1
     expected = found.residual @ found.residual / 2 / (x @ x) * (4.302653 / 1.959964) ** 2
     assert found.covariance[0, 0] == pytest.approx(expected, rel=1e-5)
-    assert str(found.note).endswith("their scatter is taken, with 2 degrees of freedom")
+    assert str(found.note).endswith("it is estimated from their scatter, with 2 degrees of freedom")
 
 
 def test_line_slope_is_that_of_numpy():

@@ -259,7 +259,7 @@ def test_a_gauge_length_without_one_counts_as_exact_and_says_so():
     model = fit_strain_model(Specimen("a", gauge_length=2.0), test_id="a", zero=ZeroStrain(0.0))
     assert not model.covariance.any()
     (note,) = map(str, model.notes)
-    assert note.startswith("the gauge length counts as exact")
+    assert note.startswith("the gauge length is treated as exact")
 
 
 def test_the_relaxed_length_is_that_which_stretches():

@@ -62,7 +62,7 @@ def test_a_longer_tether_has_the_same_splices(index):
         MODELS[index], strain=1.0, tension=400.0
     )
     assert added == pytest.approx(2 * (10.0 - 2.55))
-    assert "of another free length: 10 m" in str(longer.notes[-1])
+    assert "measured on a different free length: 10 m" in str(longer.notes[-1])
 
 
 def test_a_gauge_length_scales_with_where_it_begins():

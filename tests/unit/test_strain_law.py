@@ -71,7 +71,7 @@ def test_marks_that_contradict_the_tape_widen_the_law():
     lengths = noisy(5)
     lengths[4] += 0.03
     found = law(lengths)
-    assert "times as much as the tape explains" in str(found.note)
+    assert "times as much as tape reading explains" in str(found.note)
     scatter = found.residual @ found.residual / (FORCE.size - 2)
     assert found.covariance[1, 1] / law(noisy(5)).covariance[1, 1] == pytest.approx(
         scatter / (3 * READING**2), rel=0.1

@@ -48,7 +48,7 @@ def test_relaxed_lengths_that_differ_are_widened_together():
     np.testing.assert_allclose(found.covariance, widened * np.array([[2, -2], [-2, 3]]) / 2)
     ratio = np.sqrt(chi_square / 2)
     assert str(found.note).startswith(
-        f"the rows scatter {ratio:.1f} times as much as the tape explains"
+        f"the rows scatter {ratio:.1f} times as much as tape reading explains"
     )
 
 
@@ -59,7 +59,7 @@ def test_rows_without_a_stated_error_take_their_scatter():
     # 0.01^2 (3/2 - 2 + 1) in readings; four degrees of freedom, Student's t 2.776 over 1.960
     reading = np.sqrt(2 * 0.01**2 * 0.5 / 4) * 2.776445 / 1.959964
     assert np.sqrt(found.covariance[0, 0]) == pytest.approx(reading * np.sqrt(2 / 3), rel=1e-5)
-    assert str(found.note).endswith("their scatter is taken, with 4 degrees of freedom")
+    assert str(found.note).endswith("it is estimated from their scatter, with 4 degrees of freedom")
 
 
 def test_no_slack_row_is_refused():

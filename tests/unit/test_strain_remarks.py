@@ -57,8 +57,8 @@ def test_constant_fraction_names_its_own_miss():
         coefficients={"free_fraction": 0.3 * L0},
     )
     (note,) = remarks(legacy, marks())
-    assert "misses its own marks by -3.5 to +3.5 points" in note
-    assert "moduli over them 16.7 % high" in note
+    assert "misses its own marks by -3.5 to +3.5 percentage points" in note
+    assert "moduli over the marked range are 16.7 % too high" in note
 
 
 def test_constant_fraction_that_meets_its_marks_or_has_one_says_nothing():
@@ -72,12 +72,17 @@ def test_constant_fraction_that_meets_its_marks_or_has_one_says_nothing():
 def test_scatter_beyond_the_tape_is_named():
     residual = 0.004 * np.array([1, -1, 1, -1, 1, -1])
     (note,) = remarks(model(residual), marks())
-    assert "differs from the marks by 0.40 points rms, tape reading alone explains 0.08" in note
+    assert (
+        "differs from the marks by 0.40 percentage points rms; tape reading explains only 0.08"
+        in note
+    )
 
 
 def test_a_misread_mark_is_named_by_test_and_hold():
     notes = tuple(map(str, remarks(model((0.0, 0.0005, -0.0005, 0.02, 0.0, 0.0005)), marks())))
-    assert any("the mark of test T-1, hold 3, lies +2.0 points off the fit" in n for n in notes)
+    assert any(
+        "the mark of test T-1, hold 3, is an outlier: +2.0 percentage points" in n for n in notes
+    )
 
 
 def test_a_growing_slack_length_is_named_and_a_scattering_one_is_not():
@@ -98,7 +103,7 @@ LAW = {"relaxed_splice_length": 1.18, "splice_compliance": 0.001, "splice_expone
 def test_marks_without_a_hold_are_counted():
     driven = model((0.0,) * 4, method="tension-driven", coefficients=LAW, tension_high=500.0)
     (note,) = remarks(driven, marks())
-    assert "2 of 6 stretched marks have no hold in the logs and are left out" in note
+    assert "2 of 6 stretched marks match no hold in the logs and are not used" in note
 
 
 def test_it_is_said_how_far_the_moment_of_reading_matters():

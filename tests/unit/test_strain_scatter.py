@@ -19,8 +19,8 @@ def test_a_stated_error_stands_up_to_the_quantile_and_widens_beyond():
     assert beyond.widening == pytest.approx(np.sqrt(7.89))
     assert beyond.variance == pytest.approx(4.0 * 7.89)
     assert str(beyond.note) == (
-        "the rows scatter 2.8 times as much as the tape explains (chi-square 7.89 of 1 degree of freedom, "
-        "one in 201); their uncertainty is widened by as much"
+        "the rows scatter 2.8 times as much as tape reading explains (chi-square 7.89 with 1 "
+        "degree of freedom, probability one in 201); their uncertainty is increased by this factor"
     )
 
 
@@ -55,7 +55,9 @@ def test_without_a_stated_error_an_interval_by_1_96_holds_95_per_cent():
     assert np.mean(held) == pytest.approx(0.95, abs=0.011)
 
 
-@pytest.mark.parametrize(("size", "note"), [(2, "they count as exact"), (3, "1 degree of freedom")])
+@pytest.mark.parametrize(
+    ("size", "note"), [(2, "they are treated as exact"), (3, "1 degree of freedom")]
+)
 def test_without_a_stated_error_the_note_says_what_is_taken(size, note):
     found = _row_scatter(0.0, np.zeros(size), LINE[:, :size])
     assert found.variance == 0.0

@@ -120,7 +120,7 @@ def test_factors_that_do_not_fit_are_refused():
     factors = (FactorLevels("frequency", 0.1, 0.5),) * 2
     with pytest.raises(SettingsError, match="do not fit the design; found 2 factors; needed 3"):
         engineering_levels(box_behnken(3).coded, factors)
-    with pytest.raises(SettingsError, match="a factor stands twice; found frequency"):
+    with pytest.raises(SettingsError, match="a factor appears twice; found frequency"):
         engineering_levels(CODED, factors)
 
 

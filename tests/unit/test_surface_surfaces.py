@@ -117,7 +117,7 @@ def test_a_run_not_done_is_named(noise):
     runs[7] = np.nan
     found = surfaces(noise, runs)
     assert "runs without any value: 8" in tuple(map(str, found.notes))
-    assert "runs that fix a term alone and have no residual to check: 5" in tuple(
+    assert "runs that alone determine a term (leverage 1), without a residual: 5" in tuple(
         map(str, found.notes)
     )
     assert found.degrees_of_freedom.tolist() == [4] * 4
@@ -126,13 +126,15 @@ def test_a_run_not_done_is_named(noise):
 
 def test_a_response_that_misses_a_run_is_named(noise):
     noise[1, 13] = np.nan
-    assert "responses that miss further runs: y1" in tuple(map(str, surfaces(noise).notes))
+    assert "responses missing in further runs: y1" in tuple(map(str, surfaces(noise).notes))
 
 
 def test_a_run_that_may_have_been_entered_twice_is_named(noise):
     runs = np.vstack([RUNS, RUNS[3]])
     doubled = np.hstack([noise, noise[:, 3:4]])
-    (note,) = [note for note in map(str, surfaces(doubled, runs).notes) if "one run twice" in note]
+    (note,) = [
+        note for note in map(str, surfaces(doubled, runs).notes) if "one run entered twice" in note
+    ]
     assert note.startswith("runs 4 and 16 agree in every level and response")
 
 
@@ -148,7 +150,7 @@ def test_levels_far_from_the_plan_are_named(noise, scale, text):
 def test_terms_that_lean_on_each_other_are_named(noise):
     runs = RUNS.copy()
     runs[:, 1] = 0.95 * runs[:, 0] + 0.05 * runs[:, 1]
-    assert any("terms lean on each other" in note for note in map(str, surfaces(noise, runs).notes))
+    assert any("terms are correlated" in note for note in map(str, surfaces(noise, runs).notes))
 
 
 def test_the_product_cannot_be_changed(noise):
@@ -280,7 +282,7 @@ def test_random_blocks_widen_the_mean_alone(lines):
     assert (ratio[:, 0] > 3).all()
     np.testing.assert_allclose(ratio[:, 1:], 1, rtol=0.05)
     assert (random.blocks.standard_deviation > 0.2).all()
-    assert any("4 specimens as random draws (REML)" in note for note in map(str, random.notes))
+    assert any("4 specimens as random blocks (REML)" in note for note in map(str, random.notes))
     assert any("4 specimens as fixed blocks" in note for note in map(str, fixed.notes))
 
 

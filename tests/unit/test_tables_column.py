@@ -84,6 +84,6 @@ def test_a_label_says_why_it_has_no_uncertainty():
     assert CsvColumn("segment_modulus", TEST_SCHEMA["segment_modulus"]).description == [
         "segment_modulus [Pa]",
         "Pa",
-        "slope of a piecewise-linear segment",
+        "modulus of the straight-line segment",
         "",
     ]

@@ -15,15 +15,19 @@ from reduction.quantities.names import (
 @pytest.mark.parametrize(
     ("name", "unit", "long_name"),
     [
-        ("relaxation_time_sigma", "s", "relaxation time: standard deviation of a run"),
+        ("relaxation_time_sigma", "s", "relaxation time: residual standard deviation of a run"),
         ("hysteresis_energy_coefficient", "J m-1", "hysteresis energy: coefficient, coded units"),
         ("hysteresis_energy_anova_mean_square", "J2 m-2", "hysteresis energy: mean square"),
         ("loss_factor_anova_mean_square", "1", "loss factor: mean square"),
         ("log_loss_spring_constant_fitted", "1", "logarithm of loss spring constant: value"),
         ("box_cox_relaxation_time_fitted", "1", "Box-Cox transform of relaxation time: value"),
         ("response_coefficient", "unit", "response: coefficient, coded units"),
-        ("dashpot_coefficient_refusal", "", "dashpot coefficient: what the surface does not give"),
-        ("dashpot_coefficient_p_value", "1", "dashpot coefficient: probability"),
+        (
+            "dashpot_coefficient_refusal",
+            "",
+            "dashpot coefficient: results of the surface that are not",
+        ),
+        ("dashpot_coefficient_p_value", "1", "dashpot coefficient: p-value"),
     ],
 )
 def test_unit_and_meaning_follow_the_response(name, unit, long_name):

@@ -269,7 +269,7 @@ class HoldResult:
     @property
     def refused(self) -> str:
         """Which numbers it does not give, and why; empty where it gives all."""
-        return "; ".join(str(one).removeprefix("refused: ") for one in self.refusals)
+        return "; ".join(str(one) for one in self.refusals)
 
 
 def hold_numbers(holds: Sequence[HoldResult]) -> Integers:

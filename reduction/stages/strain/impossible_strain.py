@@ -56,7 +56,7 @@ def note_on_strain_below_zero(
     ...     np.linspace(-0.24, 0.38, 100), np.linspace(50, 500, 100), specimen="cord",
     ...     reference_tension=5.0)
     >>> print(found)  # doctest: +ELLIPSIS
-    cord: strain is down to -24 % at tensions up to 218 N, above the 5 N at which it should be ...
+    cord: strain falls to -24 % at tensions up to 218 N, above the 5 N at which it should be ...
     """
     with np.errstate(invalid="ignore"):
         pulls = tension > _ABOVE * reference_tension

@@ -1271,8 +1271,10 @@ def _remarks_on(
     ...     mark_strain_residual=np.array([0.02]))
     >>> marks = SpliceMarks("new", ("T-1",), ("min",), np.array([0.7]), np.array([5.2]),
     ...                     np.array([5.9]), reading_uncertainty=0.01)
-    >>> print(_remarks_on(model, marks, np.array([True]))[0])
-    new: strain by marks differs from the marks by 2.00 points rms, tape reading alone explains 0.68
+    >>> [remark, *_] = _remarks_on(model, marks, np.array([True]))
+    >>> print(remark)  # doctest: +NORMALIZE_WHITESPACE, +ELLIPSIS
+    new: strain by marks differs from the marks by 2.00 percentage points rms; tape reading explains
+    only 0.68. ...
     """
     expected = sqrt(3) * marks.reading_uncertainty / model.coefficients["relaxed_free_length"]
     return (

@@ -144,8 +144,8 @@ def check_constant_volume(specimen: Specimen) -> tuple[Note, ...]:
     >>> at_10, at_100 = (0.997, 0.980, 0.995), (0.725, 0.739, 0.737)
     >>> readings = [(0.1, d * inch) for d in at_10] + [(1.0, d * inch) for d in at_100]
     >>> new = Specimen("new", diameter=(1.01 * inch,), stretched_diameters=tuple(readings))
-    >>> print(str(check_constant_volume(new)[0])[:53])
-    new: the stretched diameters imply 26.37 mm before st
+    >>> print(str(check_constant_volume(new)[0])[:77])
+    new: at constant volume the stretched diameters imply 26.37 mm before stretch
     """
     if len(specimen.stretched_diameters) < 2:
         return ()

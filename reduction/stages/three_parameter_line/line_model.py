@@ -440,7 +440,7 @@ def refused_lines(reason: ArrayLike) -> tuple[Note, ...]:
     Examples
     --------
     >>> print(refused_lines([0, 6, 6])[0])
-    K_1 and tau: 2 of 3 are refused: the storage spring constant does not exceed the
+    K_1 and tau not given in 2 of 3 cases: the storage spring constant does not exceed the
     quasi-static one
     """
     codes, counts = np.unique(np.asarray(reason), return_counts=True)
