@@ -364,8 +364,8 @@ def test_one_test_alone_leaves_the_rows_of_the_others_in_the_status(reduced, com
     assert command("run", campaign, "--quiet", "--test", "B", cwd=reduced).returncode == 0
     with (reduced / "processed" / "small" / "status.csv").open(newline="") as file:
         rows = {row["test"]: row for row in csv.DictReader(file)}
-    assert rows["A"]["status"] == "check" and "later than position" in rows["A"]["message"]
-    assert rows["B"]["status"] == "unchanged" and "later than position" in rows["B"]["message"]
+    assert rows["A"]["status"] == "check" and "after position" in rows["A"]["message"]
+    assert rows["B"]["status"] == "unchanged" and "after position" in rows["B"]["message"]
 
 
 def test_a_failure_is_one_object_too(tmp_path, command):

@@ -321,7 +321,7 @@ def test_what_there_is(command):
             (NYLON, "--quantity", "relaxation_time", "--table", "--tension-amplitude", "2000 lbf",
              "--mean-tension", "1344 lbf"),
             4,
-            "no combination of the grid",
+            "every combination has an amplitude above",
         ),
     ],
 )  # fmt: skip

@@ -253,7 +253,7 @@ def test_an_archive_of_some_cycles_is_compared_by_these_and_says_so(run, tmp_pat
     found = compare_archive(
         tmp_path / "D-64.nc", plan.hoses["H64"], plan.comparisons["H64-dynamic"]
     )
-    part_of = "from the samples that are stored of a long record: some of many"
+    part_of = "computed from the stored samples of a long record: some of many"
     assert part_of in map(str, found.comparison.notes)
     assert part_of not in map(str, whole.comparison.notes)
     cycles, of_whole = found.comparison.cycles, whole.comparison.cycles
@@ -362,4 +362,4 @@ def test_a_cyclic_test_is_said_to_be_taken_as_dynamic(run):
     with open_archive(run.processed / "comparisons.nc") as archive:
         of = archive["note_comparison"].to_numpy() == "H64-dynamic"
         notes = archive["note"].to_numpy()[of]
-    assert any("taken as dynamic, as cyclic tests are" in note for note in notes)
+    assert any("treated as dynamic, like all cyclic tests" in note for note in notes)

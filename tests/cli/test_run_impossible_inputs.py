@@ -118,7 +118,7 @@ def test_a_wrong_zero_of_the_load_cell_is_told_from_a_wrong_sign(tethers, comman
         assert status == 0
         # -14.4 N in the unit of the channel
         for message in tests.values():
-            assert 'its zero is wrong, not its sign; set zero = "-3.2' in message
+            assert 'its zero is wrong, not its sign. Set zero = "-3.2' in message
             assert "new: the load cell reads -14.4" in message
             assert "sign = -1" not in message
 
@@ -177,7 +177,7 @@ def test_a_position_zero_that_is_not_slack_is_said_first(tmp_path, command):
     write_cord(tmp_path, first=0.34)
     for status, tests in both(command, tmp_path).values():
         assert status == 0
-        assert "cord: strain is down to -24 % at tensions up to 6" in tests["A"]
+        assert "cord: strain falls to -24 % at tensions up to 6" in tests["A"]
         assert "crosshead_position is not zero where" in tests["A"]
 
 

@@ -76,7 +76,7 @@ def test_the_notes_say_which_cycles_the_log_lacks_and_which_have_no_stroke(name)
     assert f"1 machine-counted cycles have no stroke, first machine cycle {last}" in tuple(
         map(str, cycles.notes)
     )
-    logged = f"the log holds {n_cycles} of the machine cycles 1 to {last}: 20 follows 10"
+    logged = f"the log contains {n_cycles} of the machine cycles 1 to {last}: 20 follows 10"
     assert logged in tuple(map(str, cycles.notes))
 
 

@@ -162,7 +162,7 @@ def test_the_table_may_stand_in_place_of_the_sections(folder):
         ("id,file,order\nT,T.csv,first\n", r"tests.csv:2 \[order\]: .*found 'first'"),
         ("id,file,order\nT,T.csv,--5\n", r"tests.csv:2 \[order\]: .*found '--5'"),
         ("id,file,order\nT,T.csv,²\n", r"tests.csv:2 \[order\]: .*found '²'"),
-        ("id,file\nT\n", r"tests.csv:2: .*another number of cells.*found 1; needed 2"),
+        ("id,file\nT\n", r"tests.csv:2: .*the number of cells in a row differs.*found 1; needed 2"),
         (
             "id,file,colour\nT,T.csv,red\n",
             r"tests.csv:1 \[colour\]: a column is not a key of a test; needed one of id, .*, method, "

@@ -74,7 +74,7 @@ def test_levels_are_read_with_their_units(name, levels, low, high, basis):
     [
         ("frequency", ("0.1", "0.5"), "a value has no unit"),
         ("mean_tension", ("0.1 m", "0.5 m"), "'m' is not a unit of force"),
-        ("mean_tension", ("12 %RBS", "500 N"), "not given in one way; found 12 %RBS and 500 N"),
+        ("mean_tension", ("12 %RBS", "500 N"), "given in different forms; found 12 %RBS and 500 N"),
         ("mean_tension", ("30 %RBS", "12 %RBS"), "levels of mean_tension do not rise"),
     ],
 )
@@ -123,7 +123,7 @@ def test_dummy_columns_are_for_screening_alone():
         ({"quasi_static": {"other": "Q"}}, "the slow pull 'Q' does not pull 'other'"),
         (
             {"runs": {"R1": (0, -7)}},
-            "run 'R1' is planned beyond the levels.*; found coded -7; needed",
+            "run 'R1' is planned outside the levels.*; found coded -7; needed",
         ),
         (
             {"responses": ("hysteresis_energy", "loss_factor", "hysteresis_energy")},

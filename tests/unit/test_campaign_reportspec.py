@@ -103,7 +103,9 @@ def test_a_limit_that_cannot_be_used_is_named(limit, words):
 
 
 def test_an_item_that_is_no_specimen_is_refused():
-    with pytest.raises(SettingsError, match="no specimen of the campaign; found old; needed one"):
+    with pytest.raises(
+        SettingsError, match="not a specimen of the campaign; found old; needed one"
+    ):
         details(items={"old": {}})
 
 

@@ -110,7 +110,11 @@ def test_dummies_are_kept_apart(read):
         (rows("x,block,y", "1,a,2", "0,,2", "0,b,2"), LogError, "a run has no block"),
         (rows("x,run,y", "1,a,2", "0,,2"), LogError, "a run has no name"),
         (rows("x,run,y", "1,a,2", "0,a,2"), DataError, r":3 \[run\]: a run is listed twice"),
-        (rows("x,run_order,y", "1,4,2", "0,4,2"), DataError, r":3 \[run_order\]: a run stands"),
+        (
+            rows("x,run_order,y", "1,4,2", "0,4,2"),
+            DataError,
+            r":3 \[run_order\]: a run is listed twice",
+        ),
         (rows("x,y", "1,2", ",2"), DataError, r":3 \[x\]: a run has a value but no level"),
         (rows("x,y", "5,2", "6,2"), DataError, r"\[x\]: the levels of x lie beside the plan"),
     ],

@@ -72,7 +72,7 @@ def test_a_temperature_moves_the_stiffness():
         ({"tension": {"offset": "0.1 %"}}, r"uncertainty\.tension\.offset"),
         ({"lag": {"expanded": "2 m", "k": 2}}, r"uncertainty\.lag\.expanded: unit 'm'"),
         ({"lag": {"half_width": "2 m"}}, r"uncertainty\.lag\.half_width: unit 'm'"),
-        ({"tension": {"gain": "-0.1 %"}}, "no standard uncertainty.*zero or more"),
+        ({"tension": {"gain": "-0.1 %"}}, "not a standard uncertainty.*zero or more"),
         ({"tension": {"gain": 60}}, "at most 50 %"),
         ({"lag": {"expanded": "2 ms", "k": 0}}, r"uncertainty\.lag.*coverage_factor"),
         (

@@ -393,7 +393,7 @@ def test_a_campaign_is_found_where_it_lies_by_habit(place, monkeypatch):
     assert find_campaign(processed) == there
     other = place / "elsewhere" / "two-tethers"
     shutil.copytree(processed, other / "archives")
-    with pytest.raises(SettingsError, match=r"not where it is looked for.*needed --campaign"):
+    with pytest.raises(SettingsError, match=r"was not found.*needed --campaign"):
         find_campaign(other / "archives")
     monkeypatch.chdir(place)
     assert find_campaign(other / "archives") == there
@@ -415,7 +415,7 @@ def test_another_campaign_is_refused(campaign, tmp_path, text, match):
 
 
 def test_a_folder_of_several_campaigns_or_of_none_is_refused(campaign, tmp_path):
-    with pytest.raises(SettingsError, match="a folder for each campaign; found two-tethers"):
+    with pytest.raises(SettingsError, match="one folder per campaign; found two-tethers"):
         find_campaign(campaign.parent.parent / "processed")
     with pytest.raises(ArchiveError, match=r"there is no archive of a test in .* Run the campaign"):
         find_campaign(tmp_path)

@@ -244,8 +244,8 @@ def test_a_level_within_the_rounding_of_its_print_is_inside():
     ("quantity", "levels", "message"),
     [
         ("apparent_spring_constant", CENTRE | {"frequency": "0.3"}, "frequency is not a real number"),
-        ("apparent_spring_constant", CENTRE | {"frequency": 0.3 + 1j}, "frequency is no real nu"),
-        ("apparent_spring_constant", CENTRE | {"frequency": [[1.0], [1, 2]]}, "no real number"),
+        ("apparent_spring_constant", CENTRE | {"frequency": 0.3 + 1j}, "frequency is not a real nu"),
+        ("apparent_spring_constant", CENTRE | {"frequency": [[1.0], [1, 2]]}, "not a real number"),
         ("apparent_spring_constant", CENTRE | {"frequency": -0.3}, "not positive; found -0.3 Hz"),
         ("apparent_spring_constant", CENTRE | {"frequency": 0.0}, "a frequency is not positive"),
         (

@@ -28,10 +28,10 @@ def test_splices_strain_by_a_share_of_the_rubber_or_by_tension():
     ("keys", "told"),
     [
         ({"length": -1.0}, "length is not a number of a splice; found -1"),
-        ({"length": 1.0, "strain_ratio": -0.1}, "strain_ratio is no number"),
-        ({"length": 1.0, "strain": 0.0, "at_tension": 9.0}, "strain is no number"),
-        ({"length": 1.0, "strain": 0.1, "at_tension": 0.0}, "at_tension is no number"),
-        ({"length": 1.0, "exponent": 2.0}, "exponent is no number.*needed above 0, below 2"),
+        ({"length": 1.0, "strain_ratio": -0.1}, "strain_ratio is not a number"),
+        ({"length": 1.0, "strain": 0.0, "at_tension": 9.0}, "strain is not a number"),
+        ({"length": 1.0, "strain": 0.1, "at_tension": 0.0}, "at_tension is not a number"),
+        ({"length": 1.0, "exponent": 2.0}, "exponent is not a number.*needed above 0, below 2"),
     ],
 )
 def test_numbers_that_no_splice_has_are_refused(keys, told):

@@ -73,7 +73,7 @@ def test_what_pip_says_is_handed_on(tmp_path):
     (tmp_path / "source").mkdir()
     with pytest.raises(SettingsError, match="revision old cannot be installed; found ") as refused:
         otherversion._install(tmp_path / "source", tmp_path, "old")
-    assert "pyproject.toml' found. pip needs the net" in str(refused.value)
+    assert "pyproject.toml' found. pip needs network access" in str(refused.value)
     versions = (tmp_path / "versions.txt").read_text().splitlines()
     assert any(one.startswith("numpy==") for one in versions)
     assert not any(one.startswith("mooring-reduction") for one in versions)
