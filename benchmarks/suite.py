@@ -58,6 +58,8 @@ BENCHMARKS = (
     Benchmark(name="spreadsheet", quick=("50000", "1")),
     Benchmark(name="lazy_reading", quick=("200000",)),
     Benchmark(name="catalogue", quick=("20",)),
+    Benchmark(name="fixed_costs", quick=("--rounds", "1")),
+    Benchmark(name="batch", told=("20", "60", "240", "1000"), quick=("10",)),
     Benchmark(name="startup", quick=("3",), is_sized=False),
 )
 NOT_IN_SUITE = {
