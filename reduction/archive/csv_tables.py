@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,7 +15,6 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
-from reduction import __version__
 from reduction.archive.atomic_write import take_away
 from reduction.archive.csv_columns import (
     OUTCOME_TABLES,
@@ -28,6 +25,7 @@ from reduction.archive.csv_columns import (
     CsvTable,
     GroupColumn,
     TableFile,
+    column_blocks,
     column_descriptions,
     outcome_table_rows,
     table_blocks,
@@ -43,7 +41,6 @@ from reduction.archive.csv_definitions import (
 from reduction.archive.open import Opener, reading
 from reduction.archive.shared_errors import components_of, shared_contributions
 from reduction.archive.variables import stored
-from reduction.archive.write import write_text_atomically
 from reduction.quantities.flags import BRANCH_VALUES
 from reduction.quantities.names import QUANTITIES, RESPONSE_PATTERNS, SURFACE_NAMES
 from reduction.quantities.row import SUFFIXES
@@ -398,45 +395,6 @@ def write_tables(
     return [files[name].path for name in filled]
 
 
-_STAMP = "written-from.json"
-"""What the tables of a folder were written from, and what they were then."""
-
-
-def refresh_tables(
-    archives: Sequence[Path], folder: Path, *, opener: Opener = reading, **products: Path
-) -> list[Path]:
-    """Write the tables of a folder anew, unless archives and tables are those of the last time."""
-    stamp = folder / _STAMP
-    before = _stamp_in(stamp)
-    made_from = {
-        "version": __version__,
-        "archives": {path.name: _digest(path) for path in [*archives, *products.values()]},
-    }
-    if before is not None:
-        now = {path.name: _digest(path) for path in folder.glob("*.csv")}
-        if before == made_from | {"tables": now}:
-            return [folder / name for name in before["tables"]]
-    paths = write_tables(archives, folder, opener=opener, **products)
-    tables = {path.name: _digest(path) for path in paths}
-    write_text_atomically(stamp, json.dumps(made_from | {"tables": tables}, indent=1) + "\n")
-    return paths
-
-
-def _stamp_in(path: Path) -> dict[str, Any] | None:
-    """The stamp of a folder; None where there is none that can be read."""
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    is_stamp = isinstance(found, dict) and isinstance(found.get("tables"), dict)
-    return found if is_stamp else None
-
-
-def _digest(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-
-
 def table_of(archive: xr.Dataset, name: str) -> pd.DataFrame:
     """Return one table of an archive of a test as its CSV file has it.
 
@@ -485,8 +443,7 @@ def _add_tests(files: Mapping[str, TableFile], archives: Sequence[Path], opener:
     slopes: list[_Slope] = []
     for path in sorted(archives, key=places.__getitem__):
         with opener(path) as archive:
-            for table in TABLES:
-                _add(files[table.name], archive, table)
+            _add(files, archive, TABLES)
             curves += _curves_of(archive)
             slopes += _slopes_of(archive)
     files["envelope"].add_rows(_envelope_rows(curves))
@@ -497,9 +454,7 @@ def _add_experiments(files: Mapping[str, TableFile], surfaces: Path | None, open
     if surfaces is None:
         return
     with opener(surfaces) as archive:
-        dataset = _by_response(archive)
-        for table in EXPERIMENT_TABLES:
-            _add(files[table.name], dataset, table)
+        _add(files, _by_response(archive), EXPERIMENT_TABLES)
 
 
 def _add_as_it_is(
@@ -508,8 +463,7 @@ def _add_as_it_is(
     if path is None:
         return
     with opener(path) as archive:
-        for table in tables:
-            _add(files[table.name], archive, table)
+        _add(files, archive, tables)
 
 
 def _add_outcomes(files: Mapping[str, TableFile], outcomes: Path | None, opener: Opener) -> None:
@@ -520,6 +474,8 @@ def _add_outcomes(files: Mapping[str, TableFile], outcomes: Path | None, opener:
             files[name].add_rows(rows)
 
 
-def _add(file: TableFile, archive: xr.Dataset, table: CsvTable) -> None:
-    for block in table_blocks(archive, table):
-        file.add(block)
+def _add(files: Mapping[str, TableFile], archive: xr.Dataset, tables: Sequence[CsvTable]) -> None:
+    variables = dict(archive.variables)
+    for table in tables:
+        for _, columns in column_blocks(archive, variables, table):
+            files[table.name].add_columns(columns)

@@ -13,6 +13,12 @@ OF_CAMPAIGN = ("surfaces", "predictions", "comparisons", "outcomes", "change_in_
 SUPERSEDED = "superseded"
 """Folder, beside the archives of a campaign, of those that it no longer makes."""
 
+CLIENT_PAGE_NAME = "client-report.html"
+"""Report to a client, beside the page of a campaign."""
+
+DESIGN_PAGE_NAME = "design-values.html"
+"""Page of design values, beside the folders of the reports."""
+
 
 def archives_in(folder: Path) -> list[Path]:
     """All archives in a folder, by name; `OSError` where the system refuses it."""

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from reduction.archive.atomic_write import take_away
 from reduction.archive.open import Opener, reading
-from reduction.archive.product_files import archives_of_tests
+from reduction.archive.product_files import CLIENT_PAGE_NAME, archives_of_tests
 from reduction.archive.write import read_details, write_text_atomically
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
@@ -29,7 +29,7 @@ from reduction.report.campaign_summary import (
     test_table,
     tiles,
 )
-from reduction.report.client_report import CLIENT_PAGE_NAME, ClientContent, render_client_report
+from reduction.report.client_report import ClientContent, render_client_report
 from reduction.report.figure_data import Figure
 from reduction.report.figures.campaign_figures import (
     draw_all_moduli,
@@ -197,6 +197,25 @@ def write_report(
     opener: Opener = reading,
 ) -> Path:
     """Write the page of a campaign."""
+    page, _ = write_report_and_answers(
+        processed, out, units=units, values_page=values_page, stray=stray, unreadable=unreadable,
+        opener=opener,
+    )  # fmt: skip
+    return page
+
+
+def write_report_and_answers(
+    processed: Path,
+    out: Path,
+    *,
+    units: UnitSystem = "si",
+    values_page: str = "",
+    stray: Collection[str] = (),
+    unreadable: Callable[[str, str], None] | None = None,
+    opener: Opener = reading,
+    only: Collection[str] | None = None,
+) -> tuple[Path, CampaignAnswers]:
+    """Write the page of a campaign, and give its answers for the tests in ``only``."""
     details = read_details(processed)
     rendered: dict[str, RenderedSection] = {}
     sections: dict[str, TestSection] = {}
@@ -230,7 +249,7 @@ def write_report(
             content.faults, content.title, content.campaign, units,
         )  # fmt: skip
         write_text_atomically(beside, render_client_report(of_client))
-    return page
+    return page, _answers(tests, whole, statuses, not_shown, only)
 
 
 def _read_views(
@@ -286,37 +305,14 @@ class CampaignAnswers:
     answered: frozenset[str]
 
 
-def read_answers(
-    processed: Path,
-    *,
-    units: UnitSystem = "si",
-    only: Collection[str] | None = None,
-    opener: Opener = reading,
+def _answers(
+    tests: list[TestView],
+    whole: CampaignView,
+    statuses: list[Status],
+    not_shown: Mapping[str, str],
+    only: Collection[str] | None,
 ) -> CampaignAnswers:
-    """Read what stands first on the page of a campaign.
-
-    Parameters
-    ----------
-    processed : pathlib.Path
-        Folder of the campaign.
-    units : {"si", "us"}
-        What a reader is shown.
-    only : collection of str, optional
-        Tests that are asked for; all of the campaign where it is not given.
-    opener : callable, optional
-        What opens an archive.
-
-    Returns
-    -------
-    answers : CampaignAnswers
-        Tables and doubts.
-
-    Raises
-    ------
-    ArchiveError
-        If the folder holds no product.
-    """
-    tests, whole, statuses, not_shown = _read_views(processed, units, opener)
+    """Return what stands first on the page."""
     if only is not None:
         tests = [view for view in tests if view.id in only]
         statuses = [row for row in statuses if row.test in only]
