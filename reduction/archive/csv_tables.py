@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -38,7 +38,7 @@ from reduction.archive.csv_definitions import (
     PROPERTY_TABLES,
     TABLES,
 )
-from reduction.archive.open import Opener, reading
+from reduction.archive.open import Opener, place_of, reading
 from reduction.archive.shared_errors import components_of, shared_contributions
 from reduction.archive.variables import stored
 from reduction.quantities.flags import BRANCH_VALUES
@@ -363,8 +363,12 @@ def write_tables(
     comparisons: Path | None = None,
     change_in_length: Path | None = None,
     opener: Opener = reading,
+    each: Callable[[Path, xr.Dataset], None] = lambda path, archive: None,
 ) -> list[Path]:
-    """Write every table that the archives fill, and columns.csv, which explains them."""
+    """Write every table that the archives fill, and columns.csv, which explains them.
+
+    ``each`` is given every archive of a test while it is open.
+    """
     columns: dict[str, Sequence[CsvColumn | GroupColumn]] = {
         table.name: table.columns for table in _ALL
     }
@@ -375,7 +379,7 @@ def write_tables(
             name: TableFile(folder / f"{name}.csv", listed, whole)
             for name, listed in columns.items()
         }
-        _add_tests(files, archives, opener)
+        _add_tests(files, archives, opener, each)
         _add_experiments(files, surfaces, opener)
         _add_outcomes(files, outcomes, opener)
         _add_as_it_is(files, predictions, PREDICTION_TABLES, opener)
@@ -427,22 +431,24 @@ def table_of(archive: xr.Dataset, name: str) -> pd.DataFrame:
     return pd.concat(blocks, ignore_index=True) if blocks else empty
 
 
-def _place(attributes: dict[str, Any]) -> _Place:
+def _place(path: Path) -> _Place:
     """Place in the history, tests without one last; then the name, T-2 before T-10."""
-    name = re.split(r"(\d+)", attributes["test"])
-    digits = [(int(part), "") if part.isdigit() else (-1, part) for part in name]
-    return float(attributes.get("test_order", "inf")), digits
+    test, order = place_of(path)
+    name = re.split(r"(\d+)", test)
+    return order, [(int(part), "") if part.isdigit() else (-1, part) for part in name]
 
 
-def _add_tests(files: Mapping[str, TableFile], archives: Sequence[Path], opener: Opener) -> None:
-    places: dict[Path, _Place] = {}
-    for path in archives:
-        with opener(path) as archive:
-            places[path] = _place(archive.attrs)
+def _add_tests(
+    files: Mapping[str, TableFile],
+    archives: Sequence[Path],
+    opener: Opener,
+    each: Callable[[Path, xr.Dataset], None],
+) -> None:
     curves: list[_Curve] = []
     slopes: list[_Slope] = []
-    for path in sorted(archives, key=places.__getitem__):
+    for path in sorted(archives, key=_place):
         with opener(path) as archive:
+            each(path, archive)
             _add(files, archive, TABLES)
             curves += _curves_of(archive)
             slopes += _slopes_of(archive)

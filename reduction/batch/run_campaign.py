@@ -12,11 +12,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from reduction import __version__
 from reduction.archive.campaign_products import outcomes_to_dataset
 from reduction.archive.csv_tables import write_tables
-from reduction.archive.open import Opener, read_once, reading
+from reduction.archive.open import Opener, ReadOnce, reading
 from reduction.archive.product_files import OF_CAMPAIGN, SUPERSEDED, archives_of_tests
 from reduction.archive.rope_properties import CHANGES_LENGTH, properties_to_dataset, step_of_archive
 from reduction.archive.write import keep_details, write_archive, write_text_atomically
@@ -32,7 +33,7 @@ from reduction.batch.campaign_status import (
     status_csv,
 )
 from reduction.batch.catalogue import FILE_NAME
-from reduction.batch.catalogue_entries import write_catalogue
+from reduction.batch.catalogue_entries import CatalogueEntry, entry_of, write_catalogue
 from reduction.batch.experiment_product import write_experiments
 from reduction.batch.prediction_product import write_comparisons, write_predictions
 from reduction.batch.reduce_tests import reduce_campaign
@@ -53,7 +54,7 @@ from reduction.readers.raw_log import hash_source
 from reduction.record.contributions import Component, InstrumentErrors
 from reduction.record.errors import ArchiveError, SettingsError
 from reduction.record.measurement import Origin, Source, Specimen, Step
-from reduction.report.campaign_page import CampaignAnswers, write_report_and_answers
+from reduction.report.campaign_page import CampaignAnswers, CampaignPage
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.stages.three_parameter_line.change_in_length import (
     ChangeInLength,
@@ -339,7 +340,7 @@ def run_campaign(
             return _run(
                 campaign, processed / campaign.id, reports, lock, clock=clock, tests=tests,
                 force=force, command=command, units=units, values_page=values_page,
-                workers=workers, progress=progress, opener=opener or read_once(),
+                workers=workers, progress=progress, opener=opener or ReadOnce(),
             )  # fmt: skip
         except BaseException:
             if workers is not None:  # nobody writes once the lock is given back
@@ -385,6 +386,7 @@ def _run(
         campaign, first, chosen, errors=wanted.errors, basis=basis, folder=folder,
         workers=workers, lock=lock, progress=progress, clock=clock, force=force,
         command=command,
+        written=opener.keep if isinstance(opener, ReadOnce) else lambda path, archive: None,
     )  # fmt: skip
     lock.confirm()  # before what is made of all tests
     failed = {status.test for status in statuses if status.status == "failed"}
@@ -415,17 +417,25 @@ def _run(
     unknown = tuple(f"{survey.plan.id}." for survey in surveys if survey.error is not None)
     stray = [path.name for path in gone if path.stem.startswith(unknown)]
     superseded = _put_aside([path for path in gone if path.name not in stray], folder)
+    page = CampaignPage(folder, units=units, stray=stray, opener=opener)
     if archives or products:
-        tables = write_tables(archives, folder / "tables", opener=opener, **products)
-        write_catalogue([*archives, *products.values()], folder / FILE_NAME, opener=opener)
+        entries: dict[Path, CatalogueEntry] = {}
+
+        def each(path: Path, archive: xr.Dataset) -> None:
+            entries[path] = entry_of(path, archive)
+            page.add(path, archive)
+
+        # of a thousand archives each is opened once for all that is made of it
+        tables = write_tables(archives, folder / "tables", opener=opener, each=each, **products)
+        write_catalogue(
+            [*archives, *products.values()], folder / FILE_NAME, entries=entries, opener=opener
+        )
     if archives or products or statuses:  # where all tests failed the page says that and why
         progress.stage("report", 0)
         made = {one.test for one in statuses if one.status not in ("failed", "no_work")}
-        report, found = write_report_and_answers(
-            folder, reports / campaign.id, units=units, values_page=values_page,
-            stray=stray,
-            unreadable=partial(_keep_pages, [*ours, *products.values()]), opener=opener,
-            only=made,
+        report, found = page.write(
+            reports / campaign.id, values_page=values_page,
+            unreadable=partial(_keep_pages, [*ours, *products.values()]), only=made,
         )  # fmt: skip
         if made or not statuses:
             answers = _shown(found)

@@ -432,10 +432,10 @@ def run_campaign(
     output: CommandOutput,
 ) -> None:
     """Reduce a campaign and say what became of each test."""
-    from reduction.archive.open import read_once
+    from reduction.archive.open import ReadOnce
     from reduction.batch.run_campaign import run_campaign as run_tests
 
-    opener = read_once()
+    opener = ReadOnce()
     with (
         _chosen_workers(jobs, scheduler) as workers,
         campaign_progress(output) as progress,

@@ -47,7 +47,7 @@ def made(campaigns, tmp_path_factory):
     processed = folder / "processed"
     with pytest.MonkeyPatch.context() as patch:
         nothing = None, CampaignAnswers((), (), frozenset())
-        patch.setattr(batch_run, "write_report_and_answers", lambda *_, **__: nothing)
+        patch.setattr(batch_run.CampaignPage, "write", lambda *_, **__: nothing)
         batch_run.run_campaign(
             load_campaign(RAW / "tmt-synthetic" / "campaign.toml"), processed=processed,
             reports=folder, clock=lambda: 0.0, tests=("T-1",),

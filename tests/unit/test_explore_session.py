@@ -67,7 +67,7 @@ def test_an_archive_stands_while_nothing_is_changed(session):
 
 def test_numbers_that_are_shown_are_those_of_a_run_after_the_save(place, monkeypatch):
     # what is made of archives takes long
-    nothing = {"write_tables": [], "write_report_and_answers": (None, _NO_ANSWERS)}
+    nothing = {"write_tables": [], "CampaignPage.write": (None, _NO_ANSWERS)}
     for name, given in nothing.items():
         monkeypatch.setattr(
             f"reduction.batch.run_campaign.{name}", lambda *_, given=given, **__: given

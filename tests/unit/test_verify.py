@@ -36,9 +36,10 @@ def without_tables(monkeypatch):
     """Leave out what takes longest, where a test is not about tables and pages."""
     monkeypatch.setattr("reduction.batch.verification._of_tables", lambda *given: (0, []))
     monkeypatch.setattr(
-        "reduction.batch.run_campaign.write_report_and_answers",
+        "reduction.batch.run_campaign.CampaignPage.write",
         lambda *given, **more: (None, CampaignAnswers((), (), frozenset())),
     )
+    monkeypatch.setattr("reduction.batch.run_campaign.CampaignPage.add", lambda *given: None)
 
 
 def verified(place):
