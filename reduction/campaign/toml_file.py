@@ -18,8 +18,7 @@ from pydantic import BaseModel, ValidationError
 
 from reduction.campaign.unit_types import Number, value_in_si
 from reduction.quantities.units import Dimension
-from reduction.readers.layout import check_regular
-from reduction.readers.sniff import UNKNOWN
+from reduction.readers.layout import UNKNOWN, check_regular
 from reduction.record.errors import DataError, FitError, LogError, ReductionError, SettingsError
 from reduction.record.plain_text import bare_cell, cut
 

@@ -27,7 +27,7 @@ from reduction.readers.bounded_reader import bounded
 from reduction.readers.columns import ColumnTable, matrix_table, stated_scale
 from reduction.readers.hdf5 import data_set, group_table, open_hdf5, read_texts
 from reduction.readers.json_matrix import json_content
-from reduction.readers.layout import CLOCK, Format, Layout, Watch
+from reduction.readers.layout import CLOCK, UNKNOWN, Format, Layout, Watch
 from reduction.readers.matlab import (
     matlab_table,
     open_matlab,
@@ -43,8 +43,6 @@ from reduction.record.errors import LogError, SettingsError
 from reduction.record.measurement import Floats
 from reduction.record.plain_text import toml_comment, toml_text
 from reduction.record.settings import Limits
-
-UNKNOWN = "?"
 
 _NOT_MEASURED = (
     r"sollwert|set ?point|command|target|maximum|minimum|max|min|rate|speed|velocity|"
