@@ -25,8 +25,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import stdtrit
 
 from reduction.experiments.designs import box_behnken, coded_from_engineering, model_matrix
 from reduction.experiments.run_sheet import variance_factor
@@ -280,7 +280,7 @@ def critical_z(surface: LineSurface) -> float:
     4.77
     """
     share = _OF_ALL_COEFFICIENTS / (2 * surface.coefficient.size)
-    return float(stdtrit(surface.degrees_of_freedom, 1 - share))
+    return float(scipy.special.stdtrit(surface.degrees_of_freedom, 1 - share))
 
 
 def consistency_warnings(

@@ -12,9 +12,9 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from reduction.readers.layout import UNKNOWN
 from reduction.readers.raw_log import unreadable
 from reduction.readers.sniff import (
-    UNKNOWN,
     SniffedLayout,
     format_of,
     sheets_with_tables,
