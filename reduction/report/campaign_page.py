@@ -46,6 +46,7 @@ from reduction.report.page_template import (
     Link,
     Page,
     RenderedSection,
+    ScratchTexts,
     about_page,
     render_page,
     render_section,
@@ -103,7 +104,7 @@ def _over_pages(
     pages: list[list[RenderedSection]] = [[]]
     held = 0
     for section in sections:
-        size = len(section.html.encode("utf-8"))
+        size = section.n_bytes
         if pages[-1] and held + size > most:
             pages.append([])
             held = 0
@@ -227,6 +228,7 @@ class CampaignPage:
         self._tests: list[TestView] = []
         self._starts: dict[str, float] = {}
         self._rendered: dict[str, RenderedSection] = {}
+        self._scratch = ScratchTexts()
         self._sections: dict[str, TestSection] = {}
         self._not_shown: dict[str, str] = {}
 
@@ -239,11 +241,13 @@ class CampaignPage:
                 known = Status(name, OF_NO_TEST)
             view = TestView(self._keys[path], data, self._units, known)
             section = make_section(view)
-            self._rendered[view.key] = render_section(section, is_folded=len(self._keys) > 1)
+            rendered = render_section(section, is_folded=len(self._keys) > 1)
+            self._rendered[view.key] = self._scratch.stored(rendered)
             if self._details is not None:
                 self._sections[view.key] = section
             self._starts[view.key] = view.start_time
-            self._tests.append(view.without_samples())
+            view = view.without_samples()
+            self._tests.append(view.of_campaign() if self._details is None else view)
         except ArchiveError as error:
             # the page is the same wherever the archives lie
             self._not_shown[path.name] = str(error).replace(str(path), path.name)
