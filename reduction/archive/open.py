@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Container, Hashable, Iterator, Mapping
+from collections.abc import Callable, Collection, Container, Hashable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, suppress
 from importlib.util import find_spec
+from itertools import product
 from pathlib import Path
 from typing import Any, Literal
 
@@ -46,6 +47,9 @@ _MOST = 64  # archives that are kept in memory, each of which takes 1.5 MB besid
 LARGEST = 8_000_000  # bytes of values of one, unpacked
 
 _ROOM = 64_000_000  # and of all
+
+_BESIDE = "_nc4_non_coord_"
+"""Before the name of a variable that has the name of a dimension and is not its coordinate."""
 
 _NO_VARIABLE = np.dtype(">f4")
 """Type by which the netCDF library stores a dimension that has no variable."""
@@ -181,6 +185,33 @@ def place_of(path: Path) -> tuple[str, float]:
     except (OSError, RuntimeError, KeyError, ValueError):
         with reading(path) as archive:  # which says what is wrong with it
             return str(archive.attrs["test"]), float(archive.attrs.get("test_order", "inf"))
+
+
+def variables_if(
+    path: Path, attributes: Mapping[str, str], names: Collection[str]
+) -> xr.Dataset | None:
+    """Give a few variables of an archive of a test; None where an attribute has another text.
+
+    Raises
+    ------
+    OSError
+        If the file or one of its variables cannot be read.
+    """
+    schema = TEST_SCHEMA | STEPWISE_SCHEMA
+    found: dict[str, tuple[tuple[str, ...], NDArray[Any]]] = {}
+    try:
+        with h5py.File(path, "r", locking=False) as file:
+            if any(_as_text(file.attrs.get(key, "")) != text for key, text in attributes.items()):
+                return None
+            places = [file, *(file[group] for group in GROUPS if group in file)]
+            for place, name in product(places, names):
+                for stored in (name, f"{_BESIDE}{name}"):
+                    is_there = isinstance(place.get(stored, getlink=True), h5py.HardLink)
+                    if is_there and place[stored].dtype != _NO_VARIABLE:
+                        found[name] = schema[name].dims, _values_of(place[stored].id, schema[name])
+    except (RuntimeError, ValueError) as error:
+        raise OSError(str(error)) from error
+    return xr.Dataset(found)
 
 
 def _as_text(value: Any) -> str:
@@ -425,7 +456,7 @@ def _fault_in_group(
         if n_bytes > _MOST_PACKED * size:
             return f"a variable '{name}' of {n_bytes:,} bytes in a file of {size:,}"
         if held is not None:
-            own = raw.decode().removeprefix("_nc4_non_coord_")
+            own = raw.decode().removeprefix(_BESIDE)
             if own not in held or held[own].dtype == _NO_VARIABLE:
                 held[own] = one
     return None
