@@ -2,19 +2,36 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import subprocess
 import sys
+import tarfile
 import tempfile
+import time
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 from typing import Any
 
 from generate import write_campaign
 
-__all__ = ["PARSE", "REDUCE", "print_sides", "run", "seconds_of", "sizes", "synthetic_log"]
+__all__ = [
+    "PARSE",
+    "REDUCE",
+    "Usage",
+    "package_of",
+    "print_sides",
+    "run",
+    "seconds_of",
+    "sizes",
+    "synthetic_log",
+    "usage_of",
+]
+
+ROOT = Path(__file__).parents[1]
 
 _BEGIN = """
 import json, resource, sys, time
@@ -65,6 +82,60 @@ def run(code: str, *arguments: object) -> dict[str, Any]:
     if done.returncode:
         sys.exit(done.stderr)
     return dict(json.loads(done.stdout))
+
+
+@dataclass(frozen=True)
+class Usage:
+    """What a command took, with all processes that it started: seconds and megabytes."""
+
+    processor: float
+    wall: float
+    largest_mb: float
+    together_mb: float
+
+
+def usage_of(command: Sequence[str], *, cwd: Path, env: Mapping[str, str]) -> Usage:
+    """Run a command to its end; memory together is looked at ten times a second (Linux)."""
+    start, together = time.perf_counter(), 0.0
+    with tempfile.TemporaryFile() as said:
+        process = subprocess.Popen(
+            command, cwd=cwd, env=env, stdout=subprocess.DEVNULL, stderr=said
+        )
+        while True:
+            ended, status, used = os.wait4(process.pid, os.WNOHANG)
+            if ended:
+                break
+            together = max(together, _memory_of(process.pid))
+            time.sleep(0.1)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode not in (0, 4):
+            said.seek(0)
+            sys.exit(f"{' '.join(command)}: {process.returncode}\n{said.read().decode()[-3000:]}")
+    return Usage(
+        used.ru_utime + used.ru_stime, time.perf_counter() - start, used.ru_maxrss / 1024,
+        max(together, used.ru_maxrss / 1024),
+    )  # fmt: skip
+
+
+def _memory_of(process: int) -> float:
+    """Proportional memory of a process and those that it started. [MB]."""
+    try:
+        tasks = Path(f"/proc/{process}/task").glob("*/children")
+        children = [int(one) for task in tasks for one in task.read_text().split()]
+        rollup = Path(f"/proc/{process}/smaps_rollup").read_text().partition("\nPss:")[2]
+    except OSError:  # it has ended meanwhile
+        return 0.0
+    return int((rollup.split() or ["0"])[0]) / 1024 + sum(map(_memory_of, children))
+
+
+def package_of(revision: str, folder: Path) -> Path:
+    """Unpack the package of another revision of this repository; the folder that it lies in."""
+    packed = subprocess.run(
+        ["git", "-C", str(ROOT), "archive", revision, "reduction"], capture_output=True, check=True
+    )
+    with tarfile.open(fileobj=io.BytesIO(packed.stdout)) as archive:
+        archive.extractall(folder, filter="data")
+    return folder
 
 
 def synthetic_log(n_rows: int) -> tuple[Path, Path]:

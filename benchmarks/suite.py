@@ -50,7 +50,6 @@ BENCHMARKS = (
     Benchmark(name="report_page", quick=("200000", "1")),
     Benchmark(name="uncertainty_cost", quick=("200000", "2")),
     Benchmark(name="long_logs", quick=("100000", "1000000")),
-    Benchmark(name="workers", quick=("8", "6000", "1")),
     Benchmark(name="hysteresis_package", quick=("300", "400")),
     Benchmark(name="surfaces", quick=("1000",)),
     Benchmark(name="hose", quick=("1000", "200")),
@@ -58,7 +57,8 @@ BENCHMARKS = (
     Benchmark(name="spreadsheet", quick=("50000", "1")),
     Benchmark(name="lazy_reading", quick=("200000",)),
     Benchmark(name="catalogue", quick=("20",)),
-    Benchmark(name="startup", quick=("3",), is_sized=False),
+    Benchmark(name="fixed_costs", quick=("--rounds", "1"), is_sized=False),
+    Benchmark(name="batch", told=("20", "60", "240", "1000"), quick=("10",)),
 )
 NOT_IN_SUITE = {
     "suite": "this one",

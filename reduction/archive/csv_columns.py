@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import chain, pairwise
 from math import prod
 from pathlib import Path
 from typing import Any, Literal
@@ -42,7 +44,7 @@ from reduction.quantities.names import (
 )
 from reduction.quantities.row import TEXT, Quantity, schema_from
 from reduction.quantities.table_columns import OF_TABLES
-from reduction.record.measurement import Bools
+from reduction.record.measurement import Bools, Integers
 from reduction.record.plain_text import safe_cell
 
 Cell = str | int | float | None
@@ -75,7 +77,7 @@ def uncertainty_of(column: CsvColumn) -> CsvColumn:
     return CsvColumn(f"{column.name}{suffix}", column.variable.companion(suffix))
 
 
-def _shown_values(values: NDArray[Any], variable: Quantity) -> NDArray[Any]:
+def _shown_values(values: NDArray[Any], variable: Quantity) -> Sequence[Any] | NDArray[Any]:
     """Values of a column as a table has them: flags as their meanings, texts safe to open."""
     if variable.flags:
         return _each(values, lambda value: _flag_text(int(value), variable))
@@ -84,10 +86,11 @@ def _shown_values(values: NDArray[Any], variable: Quantity) -> NDArray[Any]:
     return values
 
 
-def _each(values: NDArray[Any], worded: Callable[[Any], str]) -> NDArray[Any]:
+def _each(values: NDArray[Any], worded: Callable[[Any], str]) -> list[str]:
     """Put labels, most of which repeat, in words."""
-    labels, place = np.unique(values.astype(object), return_inverse=True)
-    return np.array([worded(one) for one in labels], dtype=object)[place]
+    labels = values.tolist()
+    words = {label: worded(label) for label in set(labels)}
+    return [words[label] for label in labels]
 
 
 def _flag_text(value: int, variable: Quantity) -> str:
@@ -97,18 +100,30 @@ def _flag_text(value: int, variable: Quantity) -> str:
 
 
 def csv_text(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
-    """Return a table as text of a CSV file."""
-    return _text_of(_table_from_rows(header, rows))
+    """Return a table as text of a CSV file; texts are safe to open in a spreadsheet program."""
+    return _text_of([[safe_cell(one) for one in header], *map(_safe, rows)])
 
 
-def _table_from_rows(header: Sequence[str], rows: Iterable[Sequence[Cell]]) -> pd.DataFrame:
-    """Return rows of cells as a table; texts are safe to open in a spreadsheet program."""
-    cells = [[safe_cell(cell) if isinstance(cell, str) else cell for cell in row] for row in rows]
-    return pd.DataFrame(cells, columns=[safe_cell(one) for one in header], dtype=object)
+def _safe(row: Sequence[Cell]) -> list[Cell]:
+    """Return a row with its texts safe to open, and nothing for a number that is missing."""
+    # NaN alone is not itself
+    return [safe_cell(one) if isinstance(one, str) else None if one != one else one for one in row]
 
 
-def _text_of(table: pd.DataFrame, *, header: bool = True) -> str:
-    return table.to_csv(index=False, header=header, lineterminator="\r\n")
+def _text_of(rows: Iterable[Sequence[Cell]]) -> str:
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator="\r\n").writerows(rows)
+    return text.getvalue()
+
+
+def _cells(values: Sequence[Any] | NDArray[Any]) -> Sequence[Cell]:
+    """Return a column as cells, nothing for a number that is missing."""
+    if not isinstance(values, np.ndarray):
+        return values
+    cells: list[Cell] = values.tolist()
+    if values.dtype.kind == "f" and np.isnan(values).any():
+        return [None if one != one else one for one in cells]
+    return cells
 
 
 Product = Literal[
@@ -207,31 +222,51 @@ def table_blocks(
     archive: xr.Dataset, table: CsvTable, *, block_rows: int = BLOCK_ROWS
 ) -> Iterator[pd.DataFrame]:
     """Give the rows that an archive gives to a table; none where it lacks the subject."""
-    needed = [name for name in table.needs or table.own if name in archive]
-    if not needed or not set(table.dims) <= set(archive.sizes):
+    headers = [column.header for column in table.columns]
+    for place, columns in column_blocks(archive, archive.variables, table, block_rows=block_rows):
+        yield pd.DataFrame(dict(zip(headers, columns, strict=True)), index=place)
+
+
+def column_blocks(
+    archive: xr.Dataset,
+    variables: Mapping[Any, xr.Variable],
+    table: CsvTable,
+    *,
+    block_rows: int = BLOCK_ROWS,
+) -> Iterator[tuple[Integers, list[Sequence[Any] | NDArray[Any]]]]:
+    """Give the places of the rows of a table, and their values by column."""
+    needed = [name for name in table.needs or table.own if name in variables]
+    sizes = {dim: archive.sizes.get(dim, -1) for dim in table.dims}
+    if not needed or -1 in sizes.values():
         return
-    variables = {str(name): variable for name, variable in archive.variables.items()}
-    variables |= table.derive(archive)
-    sizes = {dim: archive.sizes[dim] for dim in table.dims}
+    derived = table.derive(archive)
     of_archive = {
         TEST.name: safe_cell(archive.attrs.get("test", "")),
         SYNTHETIC.name: archive.attrs.get("synthetic", "no"),
     }
+
+    def variable_of(name: str) -> xr.Variable | None:
+        return derived.get(name, variables.get(name))
+
     for block in _blocks(sizes, block_rows):
-        known = np.any([_is_known(_laid_out(variables[name], block)) for name in needed], axis=0)
-        if not known.any():
-            continue
-        yield pd.DataFrame(
-            {
-                column.header: of_archive.get(column.name, "")
-                if column.name in of_archive or column.variable.name not in variables
-                else _shown_values(
-                    _laid_out(variables[column.variable.name], block)[known], column.variable
-                )
-                for column in table.columns
-            },
-            index=np.flatnonzero(known),
+        known = np.any(
+            [_is_known(_laid_out(derived.get(name, variables[name]), block)) for name in needed],
+            axis=0,
         )
+        n_rows = int(np.count_nonzero(known))
+        if not n_rows:
+            continue
+        columns: list[Sequence[Any] | NDArray[Any]] = []
+        for column in table.columns:
+            own = None if column.name in of_archive else variable_of(column.variable.name)
+            if own is None:
+                columns.append([of_archive.get(column.name, "")] * n_rows)
+                continue
+            values = _laid_out(own, block)
+            columns.append(
+                _shown_values(values if n_rows == known.size else values[known], column.variable)
+            )
+        yield np.flatnonzero(known), columns
 
 
 def _blocks(sizes: Mapping[str, int], most: int) -> Iterator[dict[str, range]]:
@@ -345,21 +380,11 @@ _WHY = {
 _UNKNOWN = "nothing is known of its scatter"
 
 
-def _lonely_numbers(columns: Sequence[CsvColumn | GroupColumn], table: pd.DataFrame) -> set[int]:
-    """Find the uncertainties that are empty where a number stands beside."""
-    return {
-        place
-        for place, _ in _uncertainties(columns)
-        if (_is_empty(table, place) & ~_is_empty(table, place - 1)).any()
-    }
-
-
-def _is_empty(table: pd.DataFrame, place: int) -> Bools:
-    values = table.iloc[:, place].to_numpy()
-    return np.asarray(
-        np.isnan(values) if values.dtype.kind == "f" else pd.isna(values) | (values == ""),
-        dtype=bool,
-    )
+def _is_empty(values: Sequence[Any] | NDArray[Any]) -> Bools:
+    """Find the cells of a column that hold nothing."""
+    if isinstance(values, np.ndarray) and values.dtype.kind == "f":
+        return np.asarray(np.isnan(values), dtype=bool)
+    return np.array([one is None or one == "" or one != one for one in values], dtype=bool)
 
 
 def column_descriptions(
@@ -402,6 +427,7 @@ class TableFile:
         self.path = path
         self.columns = columns
         self.lonely: set[int] = set()
+        self._uncertainties = [place for place, _ in _uncertainties(columns)]
         self._whole = whole
         self._append: Callable[[str], None] | None = None
 
@@ -410,16 +436,23 @@ class TableFile:
         """Whether the table has a row."""
         return self._append is not None
 
-    def add(self, table: pd.DataFrame) -> None:
-        """Add the rows of a table."""
-        if table.empty:
+    def add_columns(self, columns: Sequence[Sequence[Any] | NDArray[Any]]) -> None:
+        """Add rows by their columns, texts safe to open already."""
+        if not len(columns[0]):
             return
-        is_new = self._append is None
+        rows: Iterable[Sequence[Cell]] = zip(*map(_cells, columns), strict=True)
         if self._append is None:
             self._append = self._whole.enter_context(append_atomically(self.path))
-        self._append(_text_of(table, header=is_new))
-        self.lonely |= _lonely_numbers(self.columns, table)
+            rows = chain([[safe_cell(column.header) for column in self.columns]], rows)
+        self._append(_text_of(rows))
+        self.lonely |= {
+            place
+            for place in self._uncertainties
+            if place not in self.lonely
+            and (_is_empty(columns[place]) & ~_is_empty(columns[place - 1])).any()
+        }
 
     def add_rows(self, rows: Sequence[Sequence[Cell]]) -> None:
         """Add rows of cells."""
-        self.add(_table_from_rows([column.header for column in self.columns], rows))
+        if rows:
+            self.add_columns(list(zip(*map(_safe, rows), strict=True)))

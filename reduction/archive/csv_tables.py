@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,7 +15,6 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
-from reduction import __version__
 from reduction.archive.atomic_write import take_away
 from reduction.archive.csv_columns import (
     OUTCOME_TABLES,
@@ -28,6 +25,7 @@ from reduction.archive.csv_columns import (
     CsvTable,
     GroupColumn,
     TableFile,
+    column_blocks,
     column_descriptions,
     outcome_table_rows,
     table_blocks,
@@ -40,10 +38,9 @@ from reduction.archive.csv_definitions import (
     PROPERTY_TABLES,
     TABLES,
 )
-from reduction.archive.open import Opener, reading
+from reduction.archive.open import Opener, place_of, reading
 from reduction.archive.shared_errors import components_of, shared_contributions
 from reduction.archive.variables import stored
-from reduction.archive.write import write_text_atomically
 from reduction.quantities.flags import BRANCH_VALUES
 from reduction.quantities.names import QUANTITIES, RESPONSE_PATTERNS, SURFACE_NAMES
 from reduction.quantities.row import SUFFIXES
@@ -366,8 +363,12 @@ def write_tables(
     comparisons: Path | None = None,
     change_in_length: Path | None = None,
     opener: Opener = reading,
+    each: Callable[[Path, xr.Dataset], None] = lambda path, archive: None,
 ) -> list[Path]:
-    """Write every table that the archives fill, and columns.csv, which explains them."""
+    """Write every table that the archives fill, and columns.csv, which explains them.
+
+    ``each`` is given every archive of a test while it is open.
+    """
     columns: dict[str, Sequence[CsvColumn | GroupColumn]] = {
         table.name: table.columns for table in _ALL
     }
@@ -378,7 +379,7 @@ def write_tables(
             name: TableFile(folder / f"{name}.csv", listed, whole)
             for name, listed in columns.items()
         }
-        _add_tests(files, archives, opener)
+        _add_tests(files, archives, opener, each)
         _add_experiments(files, surfaces, opener)
         _add_outcomes(files, outcomes, opener)
         _add_as_it_is(files, predictions, PREDICTION_TABLES, opener)
@@ -396,45 +397,6 @@ def write_tables(
         if name not in filled:
             take_away(files[name].path)
     return [files[name].path for name in filled]
-
-
-_STAMP = "written-from.json"
-"""What the tables of a folder were written from, and what they were then."""
-
-
-def refresh_tables(
-    archives: Sequence[Path], folder: Path, *, opener: Opener = reading, **products: Path
-) -> list[Path]:
-    """Write the tables of a folder anew, unless archives and tables are those of the last time."""
-    stamp = folder / _STAMP
-    before = _stamp_in(stamp)
-    made_from = {
-        "version": __version__,
-        "archives": {path.name: _digest(path) for path in [*archives, *products.values()]},
-    }
-    if before is not None:
-        now = {path.name: _digest(path) for path in folder.glob("*.csv")}
-        if before == made_from | {"tables": now}:
-            return [folder / name for name in before["tables"]]
-    paths = write_tables(archives, folder, opener=opener, **products)
-    tables = {path.name: _digest(path) for path in paths}
-    write_text_atomically(stamp, json.dumps(made_from | {"tables": tables}, indent=1) + "\n")
-    return paths
-
-
-def _stamp_in(path: Path) -> dict[str, Any] | None:
-    """The stamp of a folder; None where there is none that can be read."""
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    is_stamp = isinstance(found, dict) and isinstance(found.get("tables"), dict)
-    return found if is_stamp else None
-
-
-def _digest(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def table_of(archive: xr.Dataset, name: str) -> pd.DataFrame:
@@ -469,24 +431,25 @@ def table_of(archive: xr.Dataset, name: str) -> pd.DataFrame:
     return pd.concat(blocks, ignore_index=True) if blocks else empty
 
 
-def _place(attributes: dict[str, Any]) -> _Place:
+def _place(path: Path) -> _Place:
     """Place in the history, tests without one last; then the name, T-2 before T-10."""
-    name = re.split(r"(\d+)", attributes["test"])
-    digits = [(int(part), "") if part.isdigit() else (-1, part) for part in name]
-    return float(attributes.get("test_order", "inf")), digits
+    test, order = place_of(path)
+    name = re.split(r"(\d+)", test)
+    return order, [(int(part), "") if part.isdigit() else (-1, part) for part in name]
 
 
-def _add_tests(files: Mapping[str, TableFile], archives: Sequence[Path], opener: Opener) -> None:
-    places: dict[Path, _Place] = {}
-    for path in archives:
-        with opener(path) as archive:
-            places[path] = _place(archive.attrs)
+def _add_tests(
+    files: Mapping[str, TableFile],
+    archives: Sequence[Path],
+    opener: Opener,
+    each: Callable[[Path, xr.Dataset], None],
+) -> None:
     curves: list[_Curve] = []
     slopes: list[_Slope] = []
-    for path in sorted(archives, key=places.__getitem__):
+    for path in sorted(archives, key=_place):
         with opener(path) as archive:
-            for table in TABLES:
-                _add(files[table.name], archive, table)
+            each(path, archive)
+            _add(files, archive, TABLES)
             curves += _curves_of(archive)
             slopes += _slopes_of(archive)
     files["envelope"].add_rows(_envelope_rows(curves))
@@ -497,9 +460,7 @@ def _add_experiments(files: Mapping[str, TableFile], surfaces: Path | None, open
     if surfaces is None:
         return
     with opener(surfaces) as archive:
-        dataset = _by_response(archive)
-        for table in EXPERIMENT_TABLES:
-            _add(files[table.name], dataset, table)
+        _add(files, _by_response(archive), EXPERIMENT_TABLES)
 
 
 def _add_as_it_is(
@@ -508,8 +469,7 @@ def _add_as_it_is(
     if path is None:
         return
     with opener(path) as archive:
-        for table in tables:
-            _add(files[table.name], archive, table)
+        _add(files, archive, tables)
 
 
 def _add_outcomes(files: Mapping[str, TableFile], outcomes: Path | None, opener: Opener) -> None:
@@ -520,6 +480,8 @@ def _add_outcomes(files: Mapping[str, TableFile], outcomes: Path | None, opener:
             files[name].add_rows(rows)
 
 
-def _add(file: TableFile, archive: xr.Dataset, table: CsvTable) -> None:
-    for block in table_blocks(archive, table):
-        file.add(block)
+def _add(files: Mapping[str, TableFile], archive: xr.Dataset, tables: Sequence[CsvTable]) -> None:
+    variables = dict(archive.variables)
+    for table in tables:
+        for _, columns in column_blocks(archive, variables, table):
+            files[table.name].add_columns(columns)

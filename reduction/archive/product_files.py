@@ -15,6 +15,12 @@ OF_CAMPAIGN = ("surfaces", "predictions", "comparisons", "outcomes", "change_in_
 SUPERSEDED = "superseded"
 """Folder, beside the archives of a campaign, of those that it no longer makes."""
 
+CLIENT_PAGE_NAME = "client-report.html"
+"""Report to a client, beside the page of a campaign."""
+
+DESIGN_PAGE_NAME = "design-values.html"
+"""Page of design values, beside the folders of the reports."""
+
 
 CAMPAIGN_PLACE = ".campaign"
 """File, beside the archives of a campaign, that says where the campaign.toml of the last run is."""

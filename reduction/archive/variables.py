@@ -53,6 +53,11 @@ def stored(dataset: xr.Dataset, name: str) -> xr.Variable | None:
     return dataset.variables[name] if name in dataset else None
 
 
+_NOTE_TEXTS = ("note", "note_stage", "note_code", "note_severity")
+
+NOTE_VARIABLES = (*_NOTE_TEXTS, "note_effect")
+
+
 def note_values(notes: Sequence[Note]) -> Values:
     """Return notes as variables, in their order."""
     return {
@@ -68,10 +73,7 @@ def read_notes(archive: xr.Dataset, *, of: tuple[str, str] | None = None) -> tup
     """Return the notes of an archive, or those where a variable has one value; none twice."""
     if "note" not in archive:
         return ()
-    columns = [
-        archive.variables[name].values.astype(str).tolist()
-        for name in ("note", "note_stage", "note_code", "note_severity")
-    ]
+    columns = [archive.variables[name].values.astype(str).tolist() for name in _NOTE_TEXTS]
     rows = zip(*columns, archive.variables["note_effect"].values.tolist(), strict=True)
     owners = archive.variables[of[0]].values.astype(str) if of else columns[0]
     found = (

@@ -44,8 +44,8 @@ _BLOCK = 1 << 20  # values of the last dimension at a time: whole chunks
 _CACHE = 1 << 19  # bytes of the largest chunk: each is written once
 
 
-def _write_netcdf(dataset: xr.Dataset, path: Path) -> None:
-    """Write a dataset of `reduction.archive.dataset_builder.build_dataset`."""
+def _write_netcdf(dataset: xr.Dataset, path: Path) -> str:
+    """Write a dataset of `build_dataset`, and return the sum of its values."""
     with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
         file.setncatts(dataset.attrs)
         for name, size in dataset.sizes.items():
@@ -69,6 +69,7 @@ def _write_netcdf(dataset: xr.Dataset, path: Path) -> None:
                 written.update(letters[part].tobytes())
             release_pages(values)
         file.setncattr("values_sha256", written.hexdigest())
+    return written.hexdigest()
 
 
 def _placed(dataset: xr.Dataset) -> Iterator[tuple[str, str]]:
@@ -154,11 +155,15 @@ def _parts(shape: tuple[int, ...], *arrays: NDArray[Any]) -> Iterator[tuple[Any,
             yield (*row, part)
 
 
-def write_archive(dataset: xr.Dataset, path: Path) -> None:
-    """Write a dataset of `reduction.archive.test_dataset.to_dataset` as one netCDF file."""
+def write_archive(dataset: xr.Dataset, path: Path) -> xr.Dataset:
+    """Write a dataset of `reduction.archive.test_dataset.to_dataset` as one netCDF file.
+
+    Returns it with the attribute that writing adds: the sum of its values.
+    """
     try:
         with atomic_file(path) as part:
-            _write_netcdf(dataset, part)
+            written = _write_netcdf(dataset, part)
+        return dataset.assign_attrs(values_sha256=written)
     except ArchiveError:
         raise
     except (OSError, RuntimeError) as error:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
@@ -53,16 +54,22 @@ _TESTS = pyarrow.schema(
 
 
 @dataclass(frozen=True)
-class _CatalogueEntry:
+class CatalogueEntry:
     """What a catalogue keeps of one archive."""
 
     rows: list[dict[str, Any]]
     numbers: list[Any]
 
 
-def write_catalogue(archives: Sequence[Path], path: Path, *, opener: Opener = reading) -> None:
-    """Write the catalogue of a campaign, whole or not at all."""
-    _write([_entry_of(one, opener=opener) for one in sorted(archives)], path)
+def write_catalogue(
+    archives: Sequence[Path],
+    path: Path,
+    *,
+    entries: Mapping[Path, CatalogueEntry] = MappingProxyType({}),
+    opener: Opener = reading,
+) -> None:
+    """Write the catalogue of a campaign, whole or not at all; what has an entry is not opened."""
+    _write([entries.get(one) or _entry_of(one, opener=opener) for one in sorted(archives)], path)
 
 
 def rebuild(folder: Path) -> dict[str, str]:
@@ -86,7 +93,7 @@ def rebuild(folder: Path) -> dict[str, str]:
     return left_out
 
 
-def _write(entries: Sequence[_CatalogueEntry], path: Path) -> None:
+def _write(entries: Sequence[CatalogueEntry], path: Path) -> None:
     rows: list[dict[str, Any]] = []
     numbers = []
     for entry in entries:
@@ -127,34 +134,37 @@ def _kept_cycles(n_cycles: int) -> NDArray[np.intp]:
     return np.array(sorted({n for n in numbers if n < n_cycles} | {n_cycles}), dtype=np.intp) - 1
 
 
-def _entry_of(path: Path, *, opener: Opener = reading) -> _CatalogueEntry:
+def _entry_of(path: Path, *, opener: Opener = reading) -> CatalogueEntry:
     """Read what a catalogue keeps of an archive; `ArchiveError` where it cannot be read."""
     with opener(path) as archive:
-        attributes = archive.attrs
-        stem = path.stem
-        whole: dict[str, Any] = {"synthetic": "no", "campaign": path.parent.name, "test": stem}
-        whole |= {name: str(attributes[name]) for name in TEXTS if name in attributes}
-        whole |= {"archive": path.name, "is_whole": True}
-        part = stem if stem in OF_CAMPAIGN else ""
-        whole["test_kind"] = part or str(attributes.get("test_kind", ""))
-        if "cycle" in archive.sizes:
-            whole["n_cycles"] = float(archive.sizes["cycle"])
-        names = (
-            archive.variables["specimen"].to_numpy().tolist() if "specimen" in archive.sizes else []
-        )
-        ends = _strain_ends(archive) if names else []
-        of_specimens = [
-            whole
-            | {"specimen": str(name), "is_whole": False}
-            | _conditions(archive, place)
-            | ends[place]
-            for place, name in enumerate(names)
-        ]
-        rows = [
-            {name: _shown_path(one) if isinstance(one, str) else one for name, one in row.items()}
-            for row in (whole, *of_specimens)
-        ]
-        return _CatalogueEntry(rows, list(_blocks(archive, names)))
+        return entry_of(path, archive)
+
+
+def entry_of(path: Path, archive: xr.Dataset) -> CatalogueEntry:
+    """Return what a catalogue keeps of an archive."""
+    attributes = archive.attrs
+    stem = path.stem
+    whole: dict[str, Any] = {"synthetic": "no", "campaign": path.parent.name, "test": stem}
+    whole |= {name: str(attributes[name]) for name in TEXTS if name in attributes}
+    whole |= {"archive": path.name, "is_whole": True}
+    part = stem if stem in OF_CAMPAIGN else ""
+    whole["test_kind"] = part or str(attributes.get("test_kind", ""))
+    if "cycle" in archive.sizes:
+        whole["n_cycles"] = float(archive.sizes["cycle"])
+    names = archive.variables["specimen"].to_numpy().tolist() if "specimen" in archive.sizes else []
+    ends = _strain_ends(archive) if names else []
+    of_specimens = [
+        whole
+        | {"specimen": str(name), "is_whole": False}
+        | _conditions(archive, place)
+        | ends[place]
+        for place, name in enumerate(names)
+    ]
+    rows = [
+        {name: _shown_path(one) if isinstance(one, str) else one for name, one in row.items()}
+        for row in (whole, *of_specimens)
+    ]
+    return CatalogueEntry(rows, list(_blocks(archive, names)))
 
 
 def _conditions(archive: xr.Dataset, place: int) -> dict[str, str | float]:

@@ -10,6 +10,7 @@ from pathlib import Path
 import xarray as xr
 
 from reduction import __version__
+from reduction.archive.open import LARGEST
 from reduction.archive.test_dataset import kept_samples, to_dataset
 from reduction.archive.write import write_archive
 from reduction.batch.campaign_status import Progress, Status, TestStatus, note_message
@@ -107,18 +108,21 @@ def _bring_up_to_date(
     force: bool,
     command: str,
     before_writing: Callable[[], None],
-) -> tuple[Status, str]:
-    """Write the archive of one test, unless one stands that is of the same logs and settings."""
+) -> tuple[Status, str, xr.Dataset | None]:
+    """Write the archive of one test, unless one stands that is of the same logs and settings.
+
+    Returns status, message and what was written.
+    """
     if not force:
         notes = reusable_product(path, survey, basis.settings, remarks=basis.remarks)
         if notes is not None:
-            return "unchanged", note_message(notes)
+            return "unchanged", note_message(notes), None
     dataset, notes = dataset_of(campaign, survey, basis, command=command)
     _check_raw_files(campaign, survey)
     before_writing()
-    write_archive(dataset, path)
+    written = write_archive(dataset, path)
     may_move = any(one.severity == "warning" for one in notes)
-    return "check" if may_move else "reduced", note_message(notes)
+    return "check" if may_move else "reduced", note_message(notes), written
 
 
 def _check_raw_files(campaign: Campaign, survey: Survey) -> None:
@@ -144,6 +148,7 @@ class _Made:
     message: str
     error: ReductionError | None
     seconds: float
+    written: xr.Dataset | None = None
 
 
 def reduce_campaign(
@@ -160,8 +165,9 @@ def reduce_campaign(
     clock: Callable[[], float],
     force: bool,
     command: str,
+    written: Callable[[Path, xr.Dataset], None] = lambda path, archive: None,
 ) -> list[TestStatus]:
-    """Bring the archives of tests up to date."""
+    """Bring the archives of tests up to date; ``written`` is given those that are small."""
     progress.stage("reduce", len(chosen))
     known = {survey.plan.id: survey for survey in chosen}
     of_log = Counter(survey.plan.log for survey in chosen)
@@ -199,6 +205,8 @@ def reduce_campaign(
 
     for ended in work_on(_make, tasks(), workers=workers, begun=progress.begun):
         made = ended.value or _Made("failed", "", ended.error, 0.0)
+        if made.written is not None:
+            written(folder / f"{ended.test}.nc", made.written)
         end(ended.test, made, ended.worker)
     return [statuses[name] for name in known]
 
@@ -219,11 +227,12 @@ def _make(
     start = clock()
     status: Status
     try:
-        status, message = _bring_up_to_date(
+        status, message, written = _bring_up_to_date(
             campaign, with_record(survey, kept), basis, path, force=force, command=command,
             before_writing=lock.confirm,
         )  # fmt: skip
     except Exception as failure:
         # a campaign goes on after a failed test, even where the failure is a defect here
         return _Made("failed", "", as_reduction_error(failure), clock() - start)
-    return _Made(status, message, None, clock() - start)
+    is_small = written is not None and written.nbytes <= LARGEST
+    return _Made(status, message, None, clock() - start, written if is_small else None)

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from reduction import __version__
-from reduction.archive.dataset_builder import key_of
-from reduction.archive.open import reading
-from reduction.archive.variables import read_notes
+from reduction.archive.dataset_builder import SCHEMA_VERSION, key_of
+from reduction.archive.open import variables_if
+from reduction.archive.variables import NOTE_VARIABLES, read_notes
 from reduction.batch.slow_pulls import origins_of, pull_tests, pulls_of
 from reduction.batch.survey import Survey
 from reduction.batch.test_history import EarlierTests, history_of, history_remarks, instruments_of
@@ -196,16 +196,17 @@ def reusable_product(
     try:
         if not path.exists():
             return None
-        with reading(path) as archive:
-            wanted = {
-                "software_version": __version__,
-                "test": survey.plan.id,  # that of another test may have been put in its place
-                "raw_file_sha256": "\n".join(source.sha256 for source in survey.sources),
-                "key": key_of(settings),
-            }
-            if any(archive.attrs.get(name) != value for name, value in wanted.items()):
-                return None
-            notes = read_notes(archive)
+        wanted = {
+            "software_version": __version__,
+            "schema_version": SCHEMA_VERSION,
+            "test": survey.plan.id,  # that of another test may have been put in its place
+            "raw_file_sha256": "\n".join(source.sha256 for source in survey.sources),
+            "key": key_of(settings),
+        }
+        archive = variables_if(path, wanted, NOTE_VARIABLES)
+        if archive is None:
+            return None
+        notes = read_notes(archive)
     except OSError:
         return None  # an archive that cannot be read is made again
     # where it lacks a remark another test has failed than then

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import sys
 from collections import Counter
@@ -11,14 +9,15 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from reduction import __version__
 from reduction.archive.campaign_products import outcomes_to_dataset
-from reduction.archive.csv_tables import refresh_tables, write_tables
-from reduction.archive.open import Opener, read_once, reading
+from reduction.archive.csv_tables import write_tables
+from reduction.archive.open import Opener, ReadOnce, reading
 from reduction.archive.product_files import (
     OF_CAMPAIGN,
     SUPERSEDED,
@@ -27,9 +26,19 @@ from reduction.archive.product_files import (
 )
 from reduction.archive.rope_properties import CHANGES_LENGTH, properties_to_dataset, step_of_archive
 from reduction.archive.write import keep_details, write_archive, write_text_atomically
-from reduction.batch.campaign_status import PartStatus, Progress, Silent, Status, TestStatus
+from reduction.batch.campaign_status import (
+    CampaignResult,
+    PartStatus,
+    Progress,
+    ShownAnswers,
+    ShownTable,
+    Silent,
+    TestStatus,
+    read_status,
+    status_csv,
+)
 from reduction.batch.catalogue import FILE_NAME
-from reduction.batch.catalogue_entries import write_catalogue
+from reduction.batch.catalogue_entries import CatalogueEntry, entry_of, write_catalogue
 from reduction.batch.experiment_product import write_experiments
 from reduction.batch.prediction_product import write_comparisons, write_predictions
 from reduction.batch.reduce_tests import reduce_campaign
@@ -50,8 +59,7 @@ from reduction.readers.raw_log import hash_source
 from reduction.record.contributions import Component, InstrumentErrors
 from reduction.record.errors import ArchiveError, SettingsError
 from reduction.record.measurement import Origin, Source, Specimen, Step
-from reduction.record.plain_text import bare_cell, safe_cell
-from reduction.report.campaign_page import write_report
+from reduction.report.campaign_page import CampaignAnswers, CampaignPage
 from reduction.stages.strain.strain_model import StrainModel
 from reduction.stages.three_parameter_line.change_in_length import (
     ChangeInLength,
@@ -268,75 +276,6 @@ def _outcomes_in_one_line(campaign: Campaign) -> str:
     return f"read {listed}{sheets}"
 
 
-_COLUMNS = ("test", "status", "exit_status", "message", "raw_sha256", "seconds")
-
-
-def _status_csv(rows: Sequence[TestStatus]) -> str:
-    """Text of status.csv, one row a test."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\r\n")
-    writer.writerow(_COLUMNS)
-    for row in rows:
-        writer.writerow(
-            [
-                row.test,
-                row.status,
-                row.exit_status,
-                safe_cell(row.message),
-                row.raw_sha256,
-                f"{row.seconds:.3f}",
-            ]
-        )
-    return text.getvalue()
-
-
-def _read_status(path: Path) -> dict[str, TestStatus]:
-    """Rows of an earlier status.csv by test; empty where there is none that can be read."""
-    try:
-        with path.open(encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
-        return {
-            row["test"]: TestStatus(
-                test=row["test"],
-                status=cast("Status", row["status"]),
-                exit_status=int(row["exit_status"]),
-                message=bare_cell(row["message"]),
-                n_rows=0,
-                n_cycles=0,
-                raw_sha256=row["raw_sha256"],
-                seconds=float(row["seconds"]),
-            )
-            for row in rows
-        }
-    except (OSError, KeyError, ValueError, TypeError):
-        return {}  # it is made anew, from what this run did
-
-
-@dataclass(frozen=True)
-class _CampaignResult:
-    """What a run did: one status a test and a part, and what it wrote.
-
-    ``parts`` are those that are no tests: ``experiments``, ``hoses`` and ``comparisons``.
-    ``superseded`` are archives of earlier runs that nothing in the campaign makes now, where they
-    were put; ``stray`` those that stay, since a log could not be read.
-    """
-
-    tests: tuple[TestStatus, ...]
-    parts: dict[str, list[PartStatus]]
-    processed: Path
-    report: Path | None
-    stray: tuple[str, ...]
-    superseded: tuple[Path, ...] = ()
-    tables: tuple[Path, ...] = ()
-
-    @property
-    def exit_status(self) -> int:
-        """The highest seen."""
-        seen = [test.exit_status for test in self.tests]
-        seen += [one.exit_status for parts in self.parts.values() for one in parts]
-        return max(seen, default=0)
-
-
 def run_campaign(
     campaign: Campaign,
     *,
@@ -351,7 +290,7 @@ def run_campaign(
     workers: Workers | None = None,
     progress: Progress | None = None,
     opener: Opener | None = None,
-) -> _CampaignResult:
+) -> CampaignResult:
     """Reduce a campaign: archives, tables, catalogue, status, report.
 
     No other run may be at work on the same products.  Tests whose archives stand are left as
@@ -406,7 +345,7 @@ def run_campaign(
             return _run(
                 campaign, processed / campaign.id, reports, lock, clock=clock, tests=tests,
                 force=force, command=command, units=units, values_page=values_page,
-                workers=workers, progress=progress, opener=opener or read_once(),
+                workers=workers, progress=progress, opener=opener or ReadOnce(),
             )  # fmt: skip
         except BaseException:
             if workers is not None:  # nobody writes once the lock is given back
@@ -443,7 +382,7 @@ def _run(
     workers: Workers | None,
     progress: Progress,
     opener: Opener,
-) -> _CampaignResult:
+) -> CampaignResult:
     wanted = find_reduction_inputs(campaign, workers=workers, lock=lock, progress=progress)
     first, basis = wanted.first, wanted.basis
     surveys = first.surveys
@@ -452,6 +391,7 @@ def _run(
         campaign, first, chosen, errors=wanted.errors, basis=basis, folder=folder,
         workers=workers, lock=lock, progress=progress, clock=clock, force=force,
         command=command,
+        written=opener.keep if isinstance(opener, ReadOnce) else lambda path, archive: None,
     )  # fmt: skip
     lock.confirm()  # before what is made of all tests
     if archives_of_tests(folder):
@@ -472,10 +412,10 @@ def _run(
     progress.stage("tables", 0)
     ours = [folder / f"{survey.plan.id}.nc" for survey in surveys]
     archives = [path for path in ours if path.exists()]
-    report, tables = None, []
+    report, tables, answers = None, [], ShownAnswers((), (), ())
     rows = _all_rows(folder / "status.csv", surveys, statuses)
     if statuses:
-        write_text_atomically(folder / "status.csv", _status_csv(rows))
+        write_text_atomically(folder / "status.csv", status_csv(rows))
     keep_details(folder, campaign.report)
     products = requested_products(campaign, folder, has_lengths=has_lengths)
     gone = [path for path in archives_of_tests(folder) if path not in ours]
@@ -484,25 +424,58 @@ def _run(
     unknown = tuple(f"{survey.plan.id}." for survey in surveys if survey.error is not None)
     stray = [path.name for path in gone if path.stem.startswith(unknown)]
     superseded = _put_aside([path for path in gone if path.name not in stray], folder)
+    page = CampaignPage(folder, units=units, stray=stray, opener=opener)
     if archives or products:
-        write = write_tables if force else refresh_tables
-        tables = write(archives, folder / "tables", opener=opener, **products)
-        write_catalogue([*archives, *products.values()], folder / FILE_NAME, opener=opener)
+        entries: dict[Path, CatalogueEntry] = {}
+
+        def each(path: Path, archive: xr.Dataset) -> None:
+            entries[path] = entry_of(path, archive)
+            page.add(path, archive)
+
+        # of a thousand archives each is opened once for all that is made of it
+        tables = write_tables(archives, folder / "tables", opener=opener, each=each, **products)
+        write_catalogue(
+            [*archives, *products.values()], folder / FILE_NAME, entries=entries, opener=opener
+        )
     if archives or products or statuses:  # where all tests failed the page says that and why
         progress.stage("report", 0)
-        report = write_report(
-            folder, reports / campaign.id, units=units, values_page=values_page,
-            stray=stray,
-            unreadable=partial(_keep_pages, [*ours, *products.values()]), opener=opener,
+        made = {one.test for one in statuses if one.status not in ("failed", "no_work")}
+        report, found = page.write(
+            reports / campaign.id, values_page=values_page,
+            unreadable=partial(_keep_pages, [*ours, *products.values()]), only=made,
         )  # fmt: skip
-    return _CampaignResult(
+        if made or not statuses:
+            answers = _shown(found)
+    return CampaignResult(
         tests=tuple(statuses),
         parts=parts,
         processed=folder,
         report=report,
+        results=results_found(campaign),
         superseded=tuple(superseded),
         stray=tuple(stray),
         tables=tuple(tables),
+        read=campaign.small_files
+        | {source.name: source.sha256 for entry in surveys for source in entry.sources},
+        answers=answers,
+    )
+
+
+def _shown(found: CampaignAnswers) -> ShownAnswers:
+    """Answers and doubts as they are printed."""
+    return ShownAnswers(
+        [
+            ShownTable(
+                one.caption,
+                list(one.columns),
+                list(one.number_columns),
+                [[cell.text for cell in row] for row in one.rows],
+            )
+            for one in found.tables
+        ],
+        [(", ".join(one.tests), one.text) for one in found.doubts],
+        sorted(found.answered),
+        found.is_synthetic,
     )
 
 
@@ -579,6 +552,6 @@ def _all_rows(
 ) -> list[TestStatus]:
     """One row for each test of the campaign; a test that was not asked for keeps its own."""
     new = {status.test: status for status in statuses}
-    before = _read_status(path) if len(new) < len(surveys) else {}
+    before = read_status(path) if len(new) < len(surveys) else {}
     rows = [new.get(survey.plan.id) or before.get(survey.plan.id) for survey in surveys]
     return [row for row in rows if row is not None]

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from reduction import __version__
 from reduction.archive.csv_tables import write_tables
-from reduction.archive.open import read_once, reading
+from reduction.archive.open import ReadOnce, reading
 from reduction.archive.product_files import OF_CAMPAIGN, archives_in
 from reduction.archive.write import values_sha256
 from reduction.batch.campaign_status import Progress
@@ -256,11 +256,11 @@ def _differing(before: Any, now: Any, place: str = "") -> Iterator[str]:
 
 
 def _of_tables(
-    folder: Path, archives: list[Path], products: Mapping[str, Path]
+    folder: Path, archives: list[Path], products: Mapping[str, Any]
 ) -> tuple[int, list[_Finding]]:
     """Make the tables again in another place, and compare them byte for byte."""
     with TemporaryDirectory(prefix="reduction-verify-") as place:
-        made = write_tables(archives, Path(place), opener=read_once(), **products)
+        made = write_tables(archives, Path(place), opener=ReadOnce(), **products)
         names = [path.name for path in made]
         _, other, missing = filecmp.cmpfiles(place, folder / "tables", names, shallow=False)
     findings = [

@@ -36,6 +36,7 @@ from reduction.campaign.toml_file import (
     faults_of,
     in_toml,
     listed,
+    noting_small_files,
     quantity_of,
     read_csv_rows,
     read_small_text,
@@ -722,6 +723,14 @@ def load_campaign(path: Path, *, allow_remote: bool = False, text: str | None = 
     LogError
         If a file that it names is missing or cannot be read.
     """
+    with noting_small_files() as digests:
+        campaign = _load(path, allow_remote=allow_remote, text=text)
+    folder = path.parent.resolve()
+    named = {file.relative_to(folder).as_posix(): one for file, one in digests.items()}
+    return replace(campaign, small_files=named)
+
+
+def _load(path: Path, *, allow_remote: bool, text: str | None) -> Campaign:
     file = _parse(path, text)
     tests: dict[str, TestSection] = {}
     table = file.tests if isinstance(file.tests, str) else file.campaign.tests

@@ -117,6 +117,8 @@ class Campaign:
     specimens say; ``uncertainty`` is what is stated of the instruments, ``report`` what the
     laboratory states for its client, ``limits`` what a log may be.
 
+    ``small_files`` are digests of campaign.toml and the tables that it names, by their names.
+
     ``addresses`` are whole addresses of logs on the net by their names, until there are
     ``copies`` of them, or ``unread`` says why there is none; ``names`` are what may be shown
     of addresses, by the paths of the copies.
@@ -137,6 +139,7 @@ class Campaign:
     uncertainty: StatedErrors = field(default_factory=StatedErrors)
     report: ReportDetails | None = None
     limits: Limits = field(default_factory=Limits)
+    small_files: dict[str, str] = field(default_factory=dict, repr=False)
     addresses: dict[str, str] = field(default_factory=dict, repr=False)
     copies: dict[str, Path] = field(default_factory=dict)
     unread: dict[str, LogError] = field(default_factory=dict)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import re
 import reprlib
 import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
@@ -16,12 +18,25 @@ from pydantic import BaseModel, ValidationError
 
 from reduction.campaign.unit_types import Number, value_in_si
 from reduction.quantities.units import Dimension
-from reduction.readers.channel_names import UNKNOWN
-from reduction.readers.layout import check_regular
+from reduction.readers.layout import UNKNOWN, check_regular
 from reduction.record.errors import DataError, FitError, LogError, ReductionError, SettingsError
 from reduction.record.plain_text import bare_cell, cut
 
 _LARGEST = 16_000_000  # bytes; a campaign of 10^5 tests has a third of it
+
+
+_DIGESTS: ContextVar[dict[Path, str] | None] = ContextVar("digests of small files", default=None)
+
+
+@contextmanager
+def noting_small_files() -> Iterator[dict[Path, str]]:
+    """Give the SHA-256 of each small file that is read in the block, by its resolved path."""
+    digests: dict[Path, str] = {}
+    before = _DIGESTS.set(digests)
+    try:
+        yield digests
+    finally:
+        _DIGESTS.reset(before)
 
 
 def read_small_text(path: Path) -> str:
@@ -35,7 +50,11 @@ def read_small_text(path: Path) -> str:
             found=f"{status.st_size:,} bytes",
             needed=f"{_LARGEST:,} bytes at most",
         )
-    return path.read_bytes().decode("utf-8-sig")
+    content = path.read_bytes()
+    digests = _DIGESTS.get()
+    if digests is not None:
+        digests[path.resolve()] = hashlib.sha256(content).hexdigest()
+    return content.decode("utf-8-sig")
 
 
 def read_csv_rows(

@@ -15,36 +15,43 @@ from dataclasses import asdict, replace
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.markup import escape
 from rich.table import Table
 
 from reduction.archive.atomic_write import atomic_file
-from reduction.archive.open import Opener, read_once, reading
-from reduction.archive.product_files import processed_folders
-from reduction.batch.campaign_status import PartStatus, TestStatus
-from reduction.batch.experiment_product import experiments_found
-from reduction.batch.requested_products import check_campaign as check_tests
-from reduction.batch.run_campaign import results_found
-from reduction.batch.run_campaign import run_campaign as run_tests
+from reduction.archive.product_files import (
+    CLIENT_PAGE_NAME,
+    DESIGN_PAGE_NAME,
+    processed_folders,
+)
+from reduction.batch.campaign_status import (
+    CampaignResult,
+    PartStatus,
+    ShownAnswers,
+    TestStatus,
+    status_csv,
+)
+from reduction.batch.finished_run import finished_run, keep_finished
+from reduction.batch.run_lock import run_lock
 from reduction.batch.workers import Workers, local_workers
-from reduction.campaign.plan import Campaign
 from reduction.cli.output import CommandOutput
 from reduction.cli.progress import campaign_progress
-from reduction.pages.design_values import PAGE_NAME, write_design_page
-from reduction.quantities.units import UnitSystem, display_unit
-from reduction.readers.sniff import sniff_layout
-from reduction.readers.starter_campaign import starter_campaign
 from reduction.record.errors import ArchiveError, SettingsError
 from reduction.record.plain_text import toml_comment
-from reduction.report.campaign_page import read_answers, write_report
-from reduction.report.client_report import CLIENT_PAGE_NAME
-from reduction.stages.strain.strain_model import StrainModel
+
+if TYPE_CHECKING:  # a run that finds nothing changed loads none of them
+    from reduction.archive.open import Opener
+    from reduction.campaign.plan import Campaign
+    from reduction.quantities.units import UnitSystem
+    from reduction.stages.strain.strain_model import StrainModel
 
 
 def print_layout(file: Path, output: CommandOutput) -> None:
     """Print a proposed layout in TOML, and what in it is a guess."""
+    from reduction.readers.sniff import sniff_layout
+
     sniffed = sniff_layout(file)
     output.say(sniffed.toml, is_verbatim=True)
     for remark in sniffed.remarks:
@@ -55,6 +62,8 @@ def print_layout(file: Path, output: CommandOutput) -> None:
 
 def start_campaign(folder: Path, output: CommandOutput) -> None:
     """Write campaign.toml and tests.csv into a folder of logs; never over an existing file."""
+    from reduction.readers.starter_campaign import starter_campaign
+
     if not folder.is_dir():
         raise SettingsError(f"{folder}: is not a folder", needed="a folder of logs")
     texts = starter_campaign(folder)
@@ -170,7 +179,7 @@ def _run(command: list[str], browser: str) -> str:
 
 def _address_of_design_page(processed: Path, reports: Path, output: CommandOutput) -> str:
     """Address of the design-value page from the folder of a report; empty where none is written."""
-    return "" if _is_copy(processed, reports, output) else f"../{PAGE_NAME}"
+    return "" if _is_copy(processed, reports, output) else f"../{DESIGN_PAGE_NAME}"
 
 
 def _refresh_design_page(
@@ -179,9 +188,12 @@ def _refresh_design_page(
     output: CommandOutput,
     *,
     made: str = "",
-    opener: Opener = reading,
+    opener: Opener | None = None,
 ) -> str | None:
     """Write the design-value page of a folder of products again, and say where it is."""
+    from reduction.archive.open import reading
+    from reduction.pages.design_values import write_design_page
+
     if _is_copy(processed, reports, output):
         return None
     left_out: dict[Path, str] = {}
@@ -195,7 +207,9 @@ def _refresh_design_page(
             )
         left_out[archive] = why
 
-    path = str(write_design_page(processed, reports, unreadable=unreadable, opener=opener))
+    path = str(
+        write_design_page(processed, reports, unreadable=unreadable, opener=opener or reading)
+    )
     for archive, why in left_out.items():
         output.error(f"{archive} is not on the page of design values: {why}")
     output.say(f"design values: {path}")
@@ -269,6 +283,8 @@ def _part_table(kind: str, parts: Sequence[PartStatus]) -> Table:
 def _model_lines(
     models: dict[tuple[str, str], StrainModel], tests: Sequence[TestStatus], units: UnitSystem
 ) -> Table:
+    from reduction.quantities.units import display_unit
+
     table = Table(box=None, pad_edge=False)
     length, factor = display_unit("m", units)
     for heading in ("test", "specimen", "strain method", "marks", f"marked range [{length}]"):
@@ -358,6 +374,10 @@ def _chosen_workers(jobs: int | None, scheduler: str | None) -> Iterator[Workers
 
 def check_campaign(campaign: Campaign, *, tests: tuple[str, ...], output: CommandOutput) -> None:
     """Read and validate everything, print what was found, write nothing."""
+    from reduction.batch.experiment_product import experiments_found
+    from reduction.batch.requested_products import check_campaign as check_tests
+    from reduction.batch.run_campaign import results_found
+
     with campaign_progress(output) as progress:
         statuses, models = check_tests(campaign, tests=tests, progress=progress)
     if statuses or not (campaign.outcomes or campaign.hoses):
@@ -412,7 +432,10 @@ def run_campaign(
     output: CommandOutput,
 ) -> dict[str, Any]:
     """Reduce a campaign and say what became of each test; return the same for ``--json``."""
-    opener = read_once()
+    from reduction.archive.open import ReadOnce
+    from reduction.batch.run_campaign import run_campaign as run_tests
+
+    opener = ReadOnce()
     with (
         _chosen_workers(jobs, scheduler) as workers,
         campaign_progress(output) as progress,
@@ -436,20 +459,58 @@ def run_campaign(
             progress=progress,
             opener=opener,
         )
-    client = None if result.report is None else _client_report(result.report)
-    answered = _show_answers(output, result.processed, result.tests, opener)
+    _say_run(result, campaign.id, output)
+    page = _refresh_design_page(processed, reports, output, made=campaign.id, opener=opener)
+    if not tests and not output.names:
+        keep_finished(result, _choices(processed, reports, output))
+    return _document_of(result, campaign.id, page, output)
+
+
+def say_unchanged(path: Path, *, processed: Path, reports: Path, output: CommandOutput) -> bool:
+    """Say that nothing changed since the last run; False where that is not so."""
+    choices = _choices(processed, reports, output)
+    result = finished_run(path, processed, reports, choices)
+    page = reports / DESIGN_PAGE_NAME
+    if result is None or not page.is_file():
+        return False
+    with run_lock(result.processed), campaign_progress(output) as progress:
+        progress.stage("reduce", len(result.tests))
+        for one in result.tests:
+            progress.ended(one.test, one)
+        if result.tests:
+            with atomic_file(result.processed / "status.csv") as part:
+                part.write_text(status_csv(result.tests), encoding="utf-8", newline="")
+    name = result.processed.name
+    _say_run(result, name, output)
+    output.say(f"design values: {page}")
+    output.answer(_document_of(result, name, str(page), output))
+    return True
+
+
+def _choices(processed: Path, reports: Path, output: CommandOutput) -> dict[str, str]:
+    """What is asked of a run beside its campaign, as far as a product depends on it."""
+    return {
+        "units": output.units,
+        "values_page": _address_of_design_page(processed, reports, output),
+    }
+
+
+def _say_run(result: CampaignResult, name: str, output: CommandOutput) -> None:
+    """Say what became of each test and part, and where the products are."""
+    answered = _show_answers(output, result.answers)
     others = [one for one in result.tests if one.test not in answered]
-    if others or not (answered or campaign.outcomes or campaign.hoses):
+    has_other_answers = bool((result.results or {}).get("outcomes") or result.parts.get("hoses"))
+    if others or not (answered or has_other_answers):
         output.show(_status_table(others))
-    _say_results(output, results_found(campaign))
+    _say_results(output, result.results)
     for kind, parts in result.parts.items():
         # of what ended well the answer stands above
         told = [one for one in parts if one.exit_status or one.status in ("no_work", "failed")]
         if told:
             output.show(_part_table(kind.removesuffix("s"), told))
-    for name in result.stray:
+    for stray in result.stray:
         output.error(
-            f"{result.processed / name}: a step of a log that failed in this run; left where it is"
+            f"{result.processed / stray}: a step of a log that failed in this run; left where it is"
         )
     for path in result.superseded:
         output.error(
@@ -460,40 +521,40 @@ def run_campaign(
     if result.tables and not has_failed:
         number, folder = len(result.tables) - 1, result.tables[0].parent
         output.say(f"tables:   {folder}: {number} tables, and columns.csv, which explains them")
-    document: dict[str, Any] = {
-        "campaign": campaign.id,
+    if result.report is None:
+        output.say("report:   none; nothing was made that could be shown")
+    else:
+        output.say(f"report:   {result.report}{', which says why' if has_failed else ''}")
+        _say_client_report(_client_report(result.report), output)
+
+
+def _document_of(
+    result: CampaignResult, name: str, design_page: str | None, output: CommandOutput
+) -> dict[str, Any]:
+    """Return the JSON object of a run; its failures are reported."""
+    client = None if result.report is None else _client_report(result.report)
+    _report_failures(output, [*result.tests, *chain(*result.parts.values())])
+    return {
+        "campaign": name,
         "tests": [test.document() for test in result.tests],
         **{kind: [asdict(one) for one in parts] for kind, parts in result.parts.items()},
-        "results": results_found(campaign),
+        "results": result.results,
         "processed": str(result.processed),
         "superseded": [str(path) for path in result.superseded],
         "tables": [str(path) for path in result.tables],
         "report": None if result.report is None else str(result.report),
         "client_report": None if client is None else str(client),
+        "design_values": design_page,
     }
-    if result.report is None:
-        output.say("report:   none; nothing was made that could be shown")
-    else:
-        output.say(f"report:   {result.report}{', which says why' if has_failed else ''}")
-    _say_client_report(client, output)
-    document["design_values"] = _refresh_design_page(
-        processed, reports, output, made=campaign.id, opener=opener
-    )
-    _report_failures(output, [*result.tests, *chain(*result.parts.values())])
-    return document
 
 
 _MOST_DOUBTS = 5
 
 
-def _show_answers(
-    output: CommandOutput, processed: Path, tests: Sequence[TestStatus], opener: Opener
-) -> frozenset[str]:
+def _show_answers(output: CommandOutput, found: ShownAnswers) -> Sequence[str]:
     """Show the answers of a run, then what needs a person's eye; return which tests have one."""
-    made = {one.test for one in tests if one.status not in ("failed", "no_work")}
-    if not output.is_text or not (made or not tests):
-        return frozenset()
-    found = read_answers(processed, units=output.system, only=made, opener=opener)
+    if not output.is_text:
+        return ()
     if found.is_synthetic:
         output.say("SYNTHETIC DATA: no specimen was tested.")
     for answers in found.tables:
@@ -502,13 +563,13 @@ def _show_answers(
         for heading, is_number in zip(answers.columns, answers.number_columns, strict=True):
             table.add_column(escape(heading), justify="right" if is_number else "left")
         for row in answers.rows:
-            table.add_row(*(escape(cell.text) for cell in row))
+            table.add_row(*map(escape, row))
         output.show(table)
         output.say("")
     if found.doubts:
         output.say("Check:")
-    for one in found.doubts[:_MOST_DOUBTS]:
-        output.say(f"  {', '.join(one.tests)}: {one.text}")
+    for tests, text in found.doubts[:_MOST_DOUBTS]:
+        output.say(f"  {tests}: {text}")
     if len(found.doubts) > _MOST_DOUBTS:
         output.say("  The report has the others.")
     return found.answered
@@ -518,6 +579,8 @@ def report_again(
     processed: Path, *, reports: Path, is_printed: bool = False, output: CommandOutput
 ) -> None:
     """Make the reports of one campaign, or of all below a folder, from archives alone."""
+    from reduction.report.campaign_page import write_report
+
     folders = processed_folders(processed)
     written: dict[str, list[str]] = {"reports": [], "client_reports": [], "pdfs": []}
     for folder in folders:

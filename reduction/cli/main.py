@@ -129,9 +129,14 @@ def run(
 ) -> None:
     """Reduce a campaign: write archives, tables and report."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
-        from reduction.cli.campaigns import run_campaign
+        from reduction.cli.campaigns import run_campaign, say_unchanged
         from reduction.cli.remote_paths import campaign_at
 
+        is_whole = not (test or force or scheduler)
+        if is_whole and say_unchanged(
+            campaign, processed=processed, reports=reports, output=output
+        ):
+            return
         with campaign_at(campaign, allow_remote=allow_remote, output=output) as loaded:
             document = run_campaign(
                 loaded,

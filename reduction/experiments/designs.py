@@ -49,8 +49,8 @@ from itertools import combinations, product
 from typing import Literal
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import comb
 
 from reduction.record.arrays import as_finite, as_positive
 from reduction.record.errors import DataError, SettingsError
@@ -508,7 +508,7 @@ def engineering_matrix(exponents: Integers, *, low: ArrayLike, high: ArrayLike) 
     of_row, of_column = exponents[:, None, :], exponents[None, :, :]
     step = np.maximum(of_column - of_row, 0)
     # comb is 0 where the power of the row exceeds that of the column
-    factor = comb(of_column, of_row) * (-centre) ** step / half**of_column
+    factor = scipy.special.comb(of_column, of_row) * (-centre) ** step / half**of_column
     product: Floats = np.prod(factor, axis=-1)
     return product
 

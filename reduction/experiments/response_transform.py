@@ -32,8 +32,8 @@ from collections.abc import Callable, Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import boxcox, chdtri
 
 from reduction.experiments.designs import engineering_from_coded
 from reduction.experiments.response_matrix import highest_of_each, patterns_of, times
@@ -66,7 +66,9 @@ def transform(values: ArrayLike, exponent: ArrayLike) -> Floats:
             needed="values above zero",
             hint="Fit the response as it is, or leave the run out for a stated reason.",
         )
-    return np.asarray(boxcox(array, np.asarray(exponent, dtype=np.float64)), dtype=np.float64)
+    return np.asarray(
+        scipy.special.boxcox(array, np.asarray(exponent, dtype=np.float64)), dtype=np.float64
+    )
 
 
 def back_transform(values: ArrayLike, exponent: ArrayLike) -> Floats:
@@ -300,7 +302,7 @@ def box_cox_exponent(
             continue
         part = logarithm[rows][:, used]
         scaled = np.exp(part - part.mean(axis=1, keepdims=True))
-        drop = float(chdtri(1, 1 - confidence)) / 2
+        drop = float(scipy.special.chdtri(1, 1 - confidence)) / 2
         found[:, rows] = _profile(_likelihood(scaled, basis), rows.size, drop)
     return _BoxCoxExponent(*found)
 
@@ -309,7 +311,7 @@ def _likelihood(scaled: Floats, basis: Floats) -> Callable[[Floats], Floats]:
     """Log-likelihood of one exponent a response."""
 
     def at(exponent: Floats) -> Floats:
-        transformed = boxcox(scaled, exponent[:, None])
+        transformed = scipy.special.boxcox(scaled, exponent[:, None])
         residual = transformed - times(times(transformed, basis), basis.T)
         square = np.sum(residual**2, axis=1)
         return np.asarray(-scaled.shape[1] / 2 * np.log(np.maximum(square, np.finfo(float).tiny)))

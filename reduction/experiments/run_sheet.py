@@ -41,8 +41,8 @@ from itertools import product
 from typing import Literal
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import stdtrit
 
 from reduction.experiments.designs import (
     Design,
@@ -520,7 +520,7 @@ def smallest_effect(design: Design, *, sigma: ArrayLike, significance: float = 0
         )
     freedom = design.dummy.shape[1] or design.n_factors / 3
     error = as_positive("sigma", sigma) * 2 / np.sqrt(design.n_runs)
-    return np.asarray(stdtrit(freedom, 1 - significance / 2) * error)
+    return np.asarray(scipy.special.stdtrit(freedom, 1 - significance / 2) * error)
 
 
 _SINGULAR = 1e-9
@@ -793,7 +793,7 @@ def expected_precision(
     of_term = np.diagonal(factor)
     of_point = variance_factor(model_matrix(points, exponents), factor)
     of_run = variance_factor(matrix, factor)
-    reach = stdtrit(freedom, (1 + confidence) / 2) * scatter[..., None]
+    reach = scipy.special.stdtrit(freedom, (1 + confidence) / 2) * scatter[..., None]
     return ExpectedPrecision(
         terms=terms,
         term_variance_factor=of_term,

@@ -28,8 +28,8 @@ from itertools import product
 from typing import Literal
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import fdtri, stdtrit
 
 from reduction.experiments.designs import (
     coded_from_engineering,
@@ -352,9 +352,11 @@ def evaluate_surfaces(
         between = surfaces.blocks.standard_deviation[:, None]
     deviation = sigma * np.sqrt(factor)
     of_run = np.sqrt(sigma**2 + between**2 + deviation**2)
-    student = np.asarray(stdtrit(freedom, (1 + confidence) / 2))[:, None]
+    student = np.asarray(scipy.special.stdtrit(freedom, (1 + confidence) / 2))[:, None]
     n_terms = len(surfaces.term_names)
-    scheffe = np.sqrt(n_terms * np.asarray(fdtri(n_terms, freedom, confidence)))[:, None]
+    scheffe = np.sqrt(n_terms * np.asarray(scipy.special.fdtri(n_terms, freedom, confidence)))[
+        :, None
+    ]
 
     power = surfaces.transform_exponent[:, None]
     plain = np.array([kind == "none" for kind in surfaces.transform])[:, None]

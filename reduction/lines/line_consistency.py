@@ -31,8 +31,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import stdtrit
 
 from reduction.experiments.designs import box_behnken, model_matrix
 from reduction.lines.line_curve import evaluate_curve, half_width_of_parts
@@ -370,7 +370,7 @@ def critical_z(surface: LineSurface) -> float:
     4.77
     """
     share = _OF_ALL_COEFFICIENTS / (2 * surface.coefficient.size)
-    return float(stdtrit(surface.degrees_of_freedom, 1 - share))
+    return float(scipy.special.stdtrit(surface.degrees_of_freedom, 1 - share))
 
 
 def consistency_warnings(

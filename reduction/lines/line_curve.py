@@ -40,8 +40,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import stdtrit
 
 from reduction.lines.lookup_product import DesignValues, LineCurve
 from reduction.record.contributions import (
@@ -188,7 +188,9 @@ def interval_between_lines(
         nothing = np.full(np.shape(value), np.nan)
         return nothing, nothing
     share = float(is_another) + 1 / n_lines
-    own = stdtrit(degrees_of_freedom, _BOTH_SIDES) * np.sqrt(np.log1p(line_scatter**2) * share)
+    own = scipy.special.stdtrit(degrees_of_freedom, _BOTH_SIDES) * np.sqrt(
+        np.log1p(line_scatter**2) * share
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
         known = np.where(value > 0, value, np.nan)
         down, up = (np.sqrt(own**2 + ((end - value) / known) ** 2) for end in (low, high))

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 
 from reduction import __version__
 from reduction.archive.open import Opener, reading
+from reduction.archive.product_files import DESIGN_PAGE_NAME
 from reduction.archive.write import write_text_atomically
 from reduction.experiments.surface_points import ABOVE_LEVERAGE
 from reduction.lines.archive_source import archives_of_lines, lines_of_open_archive, unique_names
@@ -355,8 +356,6 @@ def _lines(path: Path, opener: Opener) -> list[dict[str, Any]]:
         return [_line_data(line) for line in lines_of_open_archive(archive, path, opener)]
 
 
-PAGE_NAME = "design-values.html"
-
 MOST_BYTES = 2_500_000
 """Of the lines of campaigns on one page; of the rest it says how many archives there are."""
 
@@ -405,7 +404,7 @@ def write_design_page(
     opener: Opener = reading,
 ) -> Path:
     """Write the page of a folder of products, or write it again."""
-    path = reports / PAGE_NAME
+    path = reports / DESIGN_PAGE_NAME
     known = _files_on(path)
     for _ in range(_TIMES):
         state = _state_of(processed)
@@ -432,7 +431,7 @@ def _render_design_page(
     environment = Environment(
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    page = environment.from_string((room / "templates" / PAGE_NAME).read_text("utf-8"))
+    page = environment.from_string((room / "templates" / DESIGN_PAGE_NAME).read_text("utf-8"))
     data = _constants() | {
         "format": _FORMAT,
         "campaigns": [

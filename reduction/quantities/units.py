@@ -12,12 +12,13 @@ from collections import Counter
 from collections.abc import Sequence
 from functools import lru_cache
 from tokenize import TokenError
-from typing import Literal
-
-import pint
+from typing import TYPE_CHECKING, Literal
 
 from reduction.record.errors import SettingsError
 from reduction.record.plain_text import cut
+
+if TYPE_CHECKING:  # it takes longer to load than a look-up takes without it
+    import pint
 
 Dimension = Literal[
     "time", "length", "force", "strain", "stress", "area", "frequency", "temperature", "angle",
@@ -65,10 +66,61 @@ _SPELLINGS = {
     "秒": "s", "毫米": "mm", "牛": "N", "千牛": "kN",
 }  # fmt: skip
 
-# what pint lets out when a text is no unit expression
+_PLAIN: tuple[Dimension, ...] = ("strain", "number", "angle")
+
+_USUAL: dict[tuple[str, Dimension], tuple[float, float]] = {
+    **{("", one): (1.0, 0.0) for one in _PLAIN},
+    **{("1", one): (1.0, 0.0) for one in _PLAIN},
+    **{("%", one): (0.01, 0.0) for one in _PLAIN},
+    **{("deg", one): (0.017453292519943295, 0.0) for one in _PLAIN},
+    **{("rad", one): (1.0, 0.0) for one in _PLAIN},
+    ("s", "time"): (1.0, 0.0),
+    ("ms", "time"): (0.001, 0.0),
+    ("min", "time"): (60.0, 0.0),
+    ("h", "time"): (3600.0, 0.0),
+    ("m", "length"): (1.0, 0.0),
+    ("cm", "length"): (0.01, 0.0),
+    ("mm", "length"): (0.001, 0.0),
+    ("ft", "length"): (0.30479999999999996, 0.0),
+    ("in", "length"): (0.0254, 0.0),
+    ("inch", "length"): (0.0254, 0.0),
+    ("N", "force"): (1.0, 0.0),
+    ("kN", "force"): (1000.0, 0.0),
+    ("MN", "force"): (1e6, 0.0),
+    ("lbf", "force"): (4.4482216152605005, 0.0),
+    ("lb", "force"): (4.4482216152605005, 0.0),
+    ("kip", "force"): (4448.221615260501, 0.0),
+    ("kgf", "force"): (9.80665, 0.0),
+    ("Pa", "stress"): (1.0, 0.0),
+    ("kPa", "stress"): (1000.0, 0.0),
+    ("MPa", "stress"): (1e6, 0.0),
+    ("GPa", "stress"): (1e9, 0.0),
+    ("psi", "stress"): (6894.7572931683635, 0.0),
+    ("ksi", "stress"): (6894757.293168363, 0.0),
+    ("Hz", "frequency"): (1.0, 0.0),
+    ("mHz", "frequency"): (0.001, 0.0),
+    ("K", "temperature"): (1.0, 0.0),
+    ("degC", "temperature"): (1.0, 273.15),
+    ("°C", "temperature"): (1.0, 273.15),
+    ("kg", "mass"): (1.0, 0.0),
+    ("g", "mass"): (0.001, 0.0),
+    ("lb", "mass"): (0.4535923700000001, 0.0),
+    ("m/s", "velocity"): (1.0, 0.0),
+    ("mm/s", "velocity"): (0.001, 0.0),
+    ("mm/min", "velocity"): (1.6666666666666667e-05, 0.0),
+    ("ft/s", "velocity"): (0.30479999999999996, 0.0),
+    ("in/s", "velocity"): (0.0254, 0.0),
+    ("kg/m", "linear_density"): (1.0, 0.0),
+    ("g/m", "linear_density"): (0.001, 0.0),
+    ("kg/m^3", "density"): (1.0, 0.0),
+    ("m/N", "compliance"): (1.0, 0.0),
+}
+"""Factor and offset of the units that logs and campaigns have most, as pint gives them; each unit
+with all its dimensions but that of information."""
+
+# what pint lets out when a text is no unit expression, beside errors of its own
 _NO_UNIT = (
-    pint.PintError, ValueError, TypeError, AttributeError, SyntaxError, AssertionError,
-    ArithmeticError, TokenError,
+    ValueError, TypeError, AttributeError, SyntaxError, AssertionError, ArithmeticError, TokenError,
 )  # fmt: skip
 
 # no unit of a test house is longer, and a tower of powers would never end
@@ -86,6 +138,8 @@ _AS_FORCE_FIRST: tuple[Dimension, ...] = (
 @lru_cache(maxsize=1)
 def _registry() -> pint.UnitRegistry[float]:
     """Units of pint, with those of test houses that it lacks."""
+    import pint
+
     known: pint.UnitRegistry[float] = pint.UnitRegistry(cache_folder=None)
     known.define("kip = 1000 * lbf")
     known.define("tonne_force = 1000 * kgf = tf")
@@ -142,6 +196,13 @@ def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
     >>> scale_to_si("%", "strain")
     (0.01, 0.0)
     """
+    usual = _USUAL.get((unit, dimension))
+    return _scale_by_pint(unit, dimension) if usual is None else usual
+
+
+def _scale_by_pint(unit: str, dimension: Dimension) -> tuple[float, float]:
+    import pint
+
     known = _registry()
     target = DIMENSIONS[dimension]
     powers = unit.count("^") + unit.count("**")
@@ -170,7 +231,7 @@ def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
             found=f"'{unit}', a unit of {error.dim1 or 'another dimension'}",
             needed=f"a unit of {dimension}, such as {target}",
         ) from error
-    except _NO_UNIT as error:
+    except (pint.PintError, *_NO_UNIT) as error:
         raise SettingsError(
             f"unit '{unit}' is not known",
             found=f"'{unit}'",
@@ -210,6 +271,9 @@ def scale_of_unit(unit: str) -> tuple[str, float, float]:
     # a power may stand behind its unit, as in products
     text = re.sub(r"(?<=[A-Za-z])(-?\d+)\b", r"**\1", unit.strip())
     for dimension in _AS_FORCE_FIRST:
+        if (text, dimension) in _USUAL:
+            return DIMENSIONS[dimension], *_USUAL[text, dimension]
+    for dimension in _AS_FORCE_FIRST:
         try:
             return DIMENSIONS[dimension], *scale_to_si(text, dimension)
         except SettingsError as error:
@@ -218,6 +282,8 @@ def scale_of_unit(unit: str) -> tuple[str, float, float]:
                 raise SettingsError(
                     error.problem, found=error.found, needed="a unit that is known", hint=hint
                 ) from error
+    import pint
+
     base = _registry().Quantity(1.0, _pint_text(text)).to_base_units()
     powers = pint.util.to_units_container(base.units).items()
     si_unit = " ".join(
@@ -239,7 +305,16 @@ _US = {
     "N s": "lbf s",
 }
 
-_US_PINT = {"in2": "in**2", "ft s-1": "ft/s", "ft lbf / ft": "lbf", "lbf s": "lbf*s"}
+_PER_SI = {
+    "ft": 3.2808398950131235,
+    "lbf": 0.22480894309971053,
+    "psi": 0.0001450377377302092,
+    "in2": 1550.0031000062002,
+    "ft lbf / ft": 0.22480894309971053,
+    "ft s-1": 3.2808398950131235,
+    "lbf s": 0.22480894309971053,
+}
+"""What a value in SI is multiplied with to be shown, as pint gives it."""
 
 _UNIT_AND_POWER = re.compile(r"([^\s\d/-]+)(-?\d+)?")
 
@@ -316,9 +391,7 @@ def display_unit(si_unit: str, system: UnitSystem) -> tuple[str, float]:
     shown = _US.get(si_unit)
     if shown is None:
         return si_unit, 1.0
-    source = {"J m-1": "N", "m2": "m**2", "m s-1": "m/s"}.get(si_unit, si_unit)
-    factor = _registry().Quantity(1.0, source).to(_US_PINT.get(shown, shown)).magnitude
-    return shown, float(factor)
+    return shown, _PER_SI[shown]
 
 
 _QUANTITY = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")

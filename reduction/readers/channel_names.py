@@ -16,12 +16,10 @@ import numpy as np
 
 from reduction.quantities.units import DIMENSIONS, Dimension
 from reduction.readers.columns import CLOCK_TEXT, UNIT_BEHIND_NAME, stated_scale
-from reduction.readers.layout import CLOCK
+from reduction.readers.layout import CLOCK, UNKNOWN
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats
 from reduction.record.plain_text import toml_comment, toml_text
-
-UNKNOWN = "?"
 
 _NOT_MEASURED = (
     r"sollwert|set ?point|command|cmd|target|maximum|minimum|max|min|rate|speed|velocity|"

@@ -18,6 +18,9 @@ from reduction.record.notes import Note, note
 from reduction.record.samples import scratch_folder
 from reduction.record.settings import Limits
 
+UNKNOWN = "?"
+"""What a person is to replace in a file that `reduction init` wrote."""
+
 CLOCK = "clock"
 
 Format = Literal["delimited", "blocks", "spreadsheet", "tdms", "matlab", "hdf5", "parquet", "json"]

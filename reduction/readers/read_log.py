@@ -15,28 +15,45 @@ from reduction.readers.delimited import read_delimited
 from reduction.readers.hdf5 import read_hdf5
 from reduction.readers.json_matrix import read_json
 from reduction.readers.layout import Channel, Format, Layout, LogParts, Watch
-from reduction.readers.matlab import read_matlab
 from reduction.readers.parquet import read_parquet
 from reduction.readers.raw_log import RawLog, unchanged
 from reduction.readers.record_in_si import to_record
-from reduction.readers.spreadsheet import read_spreadsheet
-from reduction.readers.tdms import read_tdms
 from reduction.record.errors import LogError, SettingsError
 from reduction.record.measurement import Floats, Record, Source, StepReadings
 from reduction.record.samples import trim_heap
 from reduction.record.settings import Limits, QualitySettings
 
+
+# each loads a package of its own, which most campaigns do without
+def _read_tdms(path: Path, layout: Layout, **given: Any) -> RawLog:
+    from reduction.readers.tdms import read_tdms
+
+    return read_tdms(path, layout, **given)
+
+
+def _read_matlab(path: Path, layout: Layout, **given: Any) -> RawLog:
+    from reduction.readers.matlab import read_matlab
+
+    return read_matlab(path, layout, **given)
+
+
+def _read_spreadsheet(path: Path, layout: Layout, **given: Any) -> RawLog:
+    from reduction.readers.spreadsheet import read_spreadsheet
+
+    return read_spreadsheet(path, layout, **given)
+
+
 _IN_PARTS: dict[Format, Callable[..., RawLog]] = {
     "delimited": read_delimited,
     "blocks": read_blocks,
-    "tdms": read_tdms,
+    "tdms": _read_tdms,
     "hdf5": read_hdf5,
     "parquet": read_parquet,
 }
 
 _WHOLE: dict[Format, Callable[..., RawLog]] = {
-    "spreadsheet": read_spreadsheet,
-    "matlab": read_matlab,
+    "spreadsheet": _read_spreadsheet,
+    "matlab": _read_matlab,
     "json": read_json,
 }
 

@@ -24,7 +24,6 @@ import numpy as np
 from reduction.readers.bounded_reader import bounded
 from reduction.readers.channel_names import (
     FOREIGN_WORDS,
-    UNKNOWN,
     SeenColumn,
     is_unit,
     propose_channels,
@@ -33,7 +32,7 @@ from reduction.readers.columns import CLOCK_TEXT, ColumnTable, matrix_table
 from reduction.readers.delimited import without_comment_name
 from reduction.readers.hdf5 import data_set, group_table, open_hdf5, read_texts
 from reduction.readers.json_matrix import json_content
-from reduction.readers.layout import Format, Layout, Watch
+from reduction.readers.layout import UNKNOWN, Format, Layout, Watch
 from reduction.readers.matlab import (
     matlab_table,
     open_matlab,

@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from reduction.readers.channel_names import UNKNOWN
+from reduction.readers.layout import UNKNOWN
 from reduction.readers.raw_log import unreadable
 from reduction.readers.sniff import (
     SniffedLayout,

@@ -19,8 +19,8 @@ from dataclasses import dataclass, field, fields
 from typing import Literal
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import stdtrit
 
 from reduction.record.arrays import as_positive
 from reduction.record.errors import SettingsError
@@ -326,7 +326,7 @@ def coverage_factor(degrees_of_freedom: ArrayLike, *, confidence: float = CONFID
     """
     freedom = np.asarray(degrees_of_freedom, dtype=np.float64)
     bounded = np.clip(freedom, _FEWEST, _MANY)
-    return np.asarray(stdtrit(bounded, (1 + confidence) / 2))
+    return np.asarray(scipy.special.stdtrit(bounded, (1 + confidence) / 2))
 
 
 def merged(parts: Sequence[Contributions]) -> Contributions:

@@ -8,9 +8,11 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import xarray as xr
+
 from reduction.archive.atomic_write import take_away
 from reduction.archive.open import Opener, reading
-from reduction.archive.product_files import archives_of_tests
+from reduction.archive.product_files import CLIENT_PAGE_NAME, archives_of_tests
 from reduction.archive.write import read_details, write_text_atomically
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
@@ -29,7 +31,7 @@ from reduction.report.campaign_summary import (
     test_table,
     tiles,
 )
-from reduction.report.client_report import CLIENT_PAGE_NAME, ClientContent, render_client_report
+from reduction.report.client_report import ClientContent, render_client_report
 from reduction.report.figure_data import Figure
 from reduction.report.figures.campaign_figures import (
     draw_all_moduli,
@@ -44,6 +46,7 @@ from reduction.report.page_template import (
     Link,
     Page,
     RenderedSection,
+    ScratchTexts,
     about_page,
     render_page,
     render_section,
@@ -101,7 +104,7 @@ def _over_pages(
     pages: list[list[RenderedSection]] = [[]]
     held = 0
     for section in sections:
-        size = len(section.html.encode("utf-8"))
+        size = section.n_bytes
         if pages[-1] and held + size > most:
             pages.append([])
             held = 0
@@ -197,81 +200,115 @@ def write_report(
     opener: Opener = reading,
 ) -> Path:
     """Write the page of a campaign."""
-    details = read_details(processed)
-    rendered: dict[str, RenderedSection] = {}
-    sections: dict[str, TestSection] = {}
-    n_archives = len(archives_of_tests(processed))
-
-    def make(view: TestView) -> None:
-        section = make_section(view)
-        rendered[view.key] = render_section(section, is_folded=n_archives > 1)
-        if details is not None:
-            sections[view.key] = section
-
-    tests, whole, statuses, not_shown = _read_views(processed, units, opener, stray, make)
-    if unreadable is not None:
-        for name, why in not_shown.items():
-            unreadable(name, why)
-    content = replace(
-        _page_of(tests, whole, statuses, not_shown, units, processed.name),
-        values_page=values_page,
-    )
-    outcomes = [
-        render_section(section, is_folded=n_archives + len(whole.outcomes) > 1)
-        for _, section in whole.outcomes
-    ]
-    page = _write_pages(content, [*outcomes, *(rendered[view.key] for view in tests)], out)
-    beside = out / CLIENT_PAGE_NAME
-    if details is None:
-        take_away(beside)  # of an earlier run: the campaign has no such report now
-    else:
-        of_client = ClientContent(
-            details, tests, whole, [sections[view.key] for view in tests], statuses,
-            content.faults, content.title, content.campaign, units,
-        )  # fmt: skip
-        write_text_atomically(beside, render_client_report(of_client))
-    return page
+    page = CampaignPage(processed, units=units, stray=stray, opener=opener)
+    return page.write(out, values_page=values_page, unreadable=unreadable)[0]
 
 
-def _read_views(
-    processed: Path,
-    units: UnitSystem,
-    opener: Opener,
-    stray: Collection[str] = (),
-    each: Callable[[TestView], None] | None = None,
-) -> tuple[list[TestView], CampaignView, list[Status], dict[str, str]]:
-    """Read tests, without their samples, the whole campaign, statuses, and what is unreadable."""
-    paths = sorted(archives_of_tests(processed), key=lambda path: natural_order(path.stem))
-    statuses = _read_statuses(processed / "status.csv")
-    if not (paths or statuses or is_there(processed)):
-        raise ArchiveError(
-            "there is nothing to report on",
-            found=f"no archive and no status.csv in {processed}",
-            needed="the folder of a campaign, such as processed/CAMPAIGN",
-            hint="Run the campaign first.",
-        )
-    by_test = {row.test: row for row in statuses}
-    has_statuses = (processed / "status.csv").is_file()
-    tests: list[TestView] = []
-    not_shown: dict[str, str] = {}
-    starts: dict[str, float] = {}
-    for index, path in enumerate(paths):
+class CampaignPage:
+    """The page of a campaign, to which archives are added one by one, in any order.
+
+    Those that nobody added are opened when it is written.
+    """
+
+    def __init__(
+        self,
+        processed: Path,
+        *,
+        units: UnitSystem = "si",
+        stray: Collection[str] = (),
+        opener: Opener = reading,
+    ) -> None:
+        self._processed, self._units, self._stray, self._opener = processed, units, stray, opener
+        self._details = read_details(processed)
+        self._statuses = _read_statuses(processed / "status.csv")
+        self._by_test = {row.test: row for row in self._statuses}
+        self._has_statuses = (processed / "status.csv").is_file()
+        paths = sorted(archives_of_tests(processed), key=lambda path: natural_order(path.stem))
+        self._keys = {path: f"test-{index}" for index, path in enumerate(paths)}
+        self._tests: list[TestView] = []
+        self._starts: dict[str, float] = {}
+        self._rendered: dict[str, RenderedSection] = {}
+        self._scratch = ScratchTexts()
+        self._sections: dict[str, TestSection] = {}
+        self._not_shown: dict[str, str] = {}
+
+    def add(self, path: Path, data: xr.Dataset) -> None:
+        """Add the section of a test; its samples are not kept."""
         try:
-            with opener(path) as data:
-                name = data.attrs["test"]
-                known = by_test.get(name) or (Status(name, OF_NO_TEST) if has_statuses else None)
-                view = TestView(f"test-{index}", data, units, known)
-                if each is not None:
-                    each(view)
-                starts[view.key] = view.start_time
-                tests.append(view.without_samples())
+            name = data.attrs["test"]
+            known = self._by_test.get(name)
+            if known is None and self._has_statuses:
+                known = Status(name, OF_NO_TEST)
+            view = TestView(self._keys[path], data, self._units, known)
+            section = make_section(view)
+            rendered = render_section(section, is_folded=len(self._keys) > 1)
+            self._rendered[view.key] = self._scratch.stored(rendered)
+            if self._details is not None:
+                self._sections[view.key] = section
+            self._starts[view.key] = view.start_time
+            view = view.without_samples()
+            self._tests.append(view.of_campaign() if self._details is None else view)
         except ArchiveError as error:
             # the page is the same wherever the archives lie
-            not_shown[path.name] = str(error).replace(str(path), path.name)
-    by_id = {view.id: view for view in tests}
-    tests.sort(key=lambda view: _place(view, by_id, starts))
-    whole = read_campaign(processed, by_id, units, not_shown, stray, opener)
-    return tests, whole, statuses, not_shown
+            self._not_shown[path.name] = str(error).replace(str(path), path.name)
+
+    def write(
+        self,
+        out: Path,
+        *,
+        values_page: str = "",
+        unreadable: Callable[[str, str], None] | None = None,
+        only: Collection[str] | None = None,
+    ) -> tuple[Path, CampaignAnswers]:
+        """Write the page, and give its answers for the tests in ``only``."""
+        tests, not_shown = self._tests, self._not_shown
+        self._add_others()
+        by_id = {view.id: view for view in tests}
+        tests.sort(key=lambda view: _place(view, by_id, self._starts))
+        whole = read_campaign(
+            self._processed, by_id, self._units, not_shown, self._stray, self._opener
+        )
+        if unreadable is not None:
+            for name, why in not_shown.items():
+                unreadable(name, why)
+        content = replace(
+            _page_of(tests, whole, self._statuses, not_shown, self._units, self._processed.name),
+            values_page=values_page,
+        )
+        outcomes = [
+            render_section(section, is_folded=len(self._keys) + len(whole.outcomes) > 1)
+            for _, section in whole.outcomes
+        ]
+        own = [self._rendered[view.key] for view in tests]
+        page = _write_pages(content, [*outcomes, *own], out)
+        beside = out / CLIENT_PAGE_NAME
+        if self._details is None:
+            take_away(beside)  # of an earlier run: the campaign has no such report now
+        else:
+            of_client = ClientContent(
+                self._details, tests, whole, [self._sections[view.key] for view in tests],
+                self._statuses, content.faults, content.title, content.campaign, self._units,
+            )  # fmt: skip
+            write_text_atomically(beside, render_client_report(of_client))
+        return page, _answers(tests, whole, self._statuses, not_shown, only)
+
+    def _add_others(self) -> None:
+        """Open the archives that nobody added."""
+        if not (self._keys or self._statuses or is_there(self._processed)):
+            raise ArchiveError(
+                "there is nothing to report on",
+                found=f"no archive and no status.csv in {self._processed}",
+                needed="the folder of a campaign, such as processed/CAMPAIGN",
+                hint="Run the campaign first.",
+            )
+        for path, key in self._keys.items():
+            if key in self._starts or path.name in self._not_shown:
+                continue
+            try:
+                with self._opener(path) as data:
+                    self.add(path, data)
+            except ArchiveError as error:
+                self._not_shown[path.name] = str(error).replace(str(path), path.name)
 
 
 @dataclass(frozen=True)
@@ -287,37 +324,14 @@ class CampaignAnswers:
     answered: frozenset[str]
 
 
-def read_answers(
-    processed: Path,
-    *,
-    units: UnitSystem = "si",
-    only: Collection[str] | None = None,
-    opener: Opener = reading,
+def _answers(
+    tests: list[TestView],
+    whole: CampaignView,
+    statuses: list[Status],
+    not_shown: Mapping[str, str],
+    only: Collection[str] | None,
 ) -> CampaignAnswers:
-    """Read what stands first on the page of a campaign.
-
-    Parameters
-    ----------
-    processed : pathlib.Path
-        Folder of the campaign.
-    units : {"si", "us"}
-        What a reader is shown.
-    only : collection of str, optional
-        Tests that are asked for; all of the campaign where it is not given.
-    opener : callable, optional
-        What opens an archive.
-
-    Returns
-    -------
-    answers : CampaignAnswers
-        Tables and doubts.
-
-    Raises
-    ------
-    ArchiveError
-        If the folder holds no product.
-    """
-    tests, whole, statuses, not_shown = _read_views(processed, units, opener)
+    """Return what stands first on the page."""
     if only is not None:
         tests = [view for view in tests if view.id in only]
         statuses = [row for row in statuses if row.test in only]

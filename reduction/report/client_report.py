@@ -290,8 +290,6 @@ def _chosen_parts(
                 yield section, part
 
 
-CLIENT_PAGE_NAME = "client-report.html"
-
 _MOST_COLUMNS = 5
 
 _TABLES = ("Stepwise readings", "Slow pull", "Holds")

@@ -11,9 +11,11 @@ from __future__ import annotations
 import zlib
 from base64 import b64encode
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
+from tempfile import TemporaryFile
+from typing import IO
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
@@ -42,7 +44,48 @@ class RenderedSection:
 
     key: str
     title: str
-    html: str
+    text: str | StoredText
+
+    @property
+    def html(self) -> str:
+        """The section, read again where it was put on disk."""
+        return self.text if isinstance(self.text, str) else self.text.read()
+
+    @property
+    def n_bytes(self) -> int:
+        """Of the section on a page."""
+        return len(self.text.encode()) if isinstance(self.text, str) else self.text.n_bytes
+
+
+@dataclass(frozen=True)
+class StoredText:
+    """A text in a scratch file that holds many."""
+
+    file: IO[bytes]
+    begin: int
+    n_bytes: int
+
+    def read(self) -> str:
+        """The text."""
+        self.file.seek(self.begin)
+        return self.file.read(self.n_bytes).decode()
+
+
+class ScratchTexts:
+    """Texts on disk until a page is written: memory has no room for a thousand sections."""
+
+    def __init__(self) -> None:
+        self._file = TemporaryFile()  # as long as one of its texts
+        self._end = 0
+
+    def stored(self, section: RenderedSection) -> RenderedSection:
+        """Put the text of a section on disk."""
+        content = section.html.encode()
+        self._file.seek(self._end)
+        self._file.write(content)
+        found = StoredText(self._file, self._end, len(content))
+        self._end += len(content)
+        return replace(section, text=found)
 
 
 @dataclass(frozen=True)

@@ -46,6 +46,9 @@ from reduction.report.text_style import (
 OF_NO_TEST = "of_no_test"
 """Status of an archive that status.csv has no row for: the campaign has no such test now."""
 
+_OF_SECTION = ("first_loading", "_by_cycle", "_at_time", "_untrimmed")
+"""In the names of numbers that figures and tables over several tests leave out."""
+
 _REACHED = (
     "apparent_spring_constant",  # whether it had settled
     "mean_tension", "tension_amplitude", "mean_strain", "strain_amplitude",
@@ -227,6 +230,11 @@ class TestView:
             if "cycle" in data.variables[name].dims and name not in _REACHED
         ]
         return replace(self, data=data.drop_vars(single).load())
+
+    def of_campaign(self) -> TestView:
+        """Return the same test without what its own section alone shows: most of its numbers."""
+        own = [name for name in self.data.data_vars if any(one in str(name) for one in _OF_SECTION)]
+        return replace(self, data=self.data.drop_vars(own))
 
     def at_cycles(self, places: Integers) -> TestView:
         """Return the same test with some of its cycles, counted from 0 and in order."""

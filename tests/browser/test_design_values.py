@@ -24,6 +24,7 @@ from reduction.pages.design_values import (
 )
 from reduction.quantities.digits import fixed_number, plain_number
 from reduction.record.contributions import coverage_factor
+from reduction.report.campaign_page import CampaignAnswers
 
 SEED = 20_261_122
 ASKED, BY_HAND, ODD = 500, 30, 300
@@ -45,7 +46,8 @@ def made(campaigns, tmp_path_factory):
     folder = tmp_path_factory.mktemp("design")
     processed = folder / "processed"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(batch_run, "write_report", lambda *_, **__: None)
+        nothing = None, CampaignAnswers((), (), frozenset())
+        patch.setattr(batch_run.CampaignPage, "write", lambda *_, **__: nothing)
         batch_run.run_campaign(
             load_campaign(RAW / "tmt-synthetic" / "campaign.toml"), processed=processed,
             reports=folder, clock=lambda: 0.0, tests=("T-1",),

@@ -97,7 +97,7 @@ def test_outcomes_alone_give_archive_tables_and_report(run, folder):
     products = folder / "p" / "lines"
     assert run["tests"] == []
     assert sorted(path.name for path in products.iterdir()) == [
-        "catalogue.parquet", "outcomes.nc", "run.lock", "tables",
+        "catalogue.parquet", "finished-run.json", "outcomes.nc", "run.lock", "tables",
     ]  # fmt: skip
     assert [Path(path).name for path in run["tables"]] == [
         "strength.csv", "exposure.csv", "fatigue.csv", "load_life.csv", "columns.csv",
@@ -144,7 +144,7 @@ def test_another_run_gives_the_same_bytes(command, run, folder, tmp_path):
     assert "tables:   p/lines/tables: 4 tables, and columns.csv, which" in done.stdout
     again, before = tmp_path / "p" / "lines", folder / "p" / "lines"
     files = [path for path in before.rglob("*") if path.is_file() and path.name != "run.lock"]
-    assert {path.name for path in files} >= {"outcomes.nc", "columns.csv", "written-from.json"}
+    assert {path.name for path in files} >= {"outcomes.nc", "columns.csv", "finished-run.json"}
     assert len(files) == 8
     for path in files:
         assert (again / path.relative_to(before)).read_bytes() == path.read_bytes(), path.name

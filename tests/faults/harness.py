@@ -131,8 +131,8 @@ def contents(folder):
                 data = path.read_bytes()
                 if path.name == "run.lock" and not data:
                     continue  # given back
-                if path.name == "written-from.json":
-                    continue  # digests of the tables: one that is behind has them written again
+                if path.name == "finished-run.json":
+                    continue  # digests of what a run left: where it is behind, all is looked at
                 if path.name == "status.csv":
                     data = _without_run(data)
                 if path.name == "design-values.html":

@@ -10,8 +10,7 @@ from typing import get_args
 
 import pytest
 
-from reduction.batch.campaign_status import Status
-from reduction.batch.run_campaign import _status_csv
+from reduction.batch.campaign_status import Status, status_csv
 from reduction.campaign import model
 from reduction.campaign import model as numbers
 from reduction.campaign.load import load_campaign
@@ -122,7 +121,7 @@ def test_every_number_is_listed_with_its_default():
 def test_columns_and_answers_of_the_status_table_are_explained():
     part = CAMPAIGN.partition("## status.csv")[2].partition("\n## ")[0]
     listed = dict(re.findall(r"^\| `(\w+)` \| ?\w* \| (.*) \|$", part, re.M))
-    assert list(listed) == _status_csv([]).strip().split(",")
+    assert list(listed) == status_csv([]).strip().split(",")
     assert all(f"`{one}`" in listed["status"] for one in get_args(Status))
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from reduction.archive import open as module
 from reduction.archive.dataset_builder import SCHEMA_VERSION
-from reduction.archive.open import failing_reads, open_archive, read_once, reading
+from reduction.archive.open import ReadOnce, failing_reads, open_archive, reading
 from reduction.record.errors import ArchiveError
 
 
@@ -181,7 +181,7 @@ def opened(monkeypatch):
 
 
 def test_an_archive_is_opened_once_and_given_as_it_is_on_the_disk(rich_test, write, opened):
-    path, opener = write(rich_test), read_once()
+    path, opener = write(rich_test), ReadOnce()
     with reading(path) as on_disk:
         for _ in range(3):
             with opener(path) as archive:
@@ -193,7 +193,7 @@ def test_an_archive_is_opened_once_and_given_as_it_is_on_the_disk(rich_test, wri
 
 
 def test_a_file_that_was_replaced_is_read_anew(rich_test, bare_test, write, opened):
-    path, opener = write(rich_test), read_once()
+    path, opener = write(rich_test), ReadOnce()
     with opener(path):
         pass
     write(bare_test).replace(path)
@@ -205,7 +205,7 @@ def test_a_file_that_was_replaced_is_read_anew(rich_test, bare_test, write, open
 def test_a_file_that_is_replaced_while_it_is_read_is_read_anew(
     rich_test, bare_test, write, monkeypatch, tmp_path
 ):
-    path, opener = write(rich_test), read_once()
+    path, opener = write(rich_test), ReadOnce()
     path = path.replace(tmp_path / "one.nc")
     other = write(bare_test)
     opened = module.reading
@@ -225,7 +225,7 @@ def test_a_file_that_is_replaced_while_it_is_read_is_read_anew(
 
 
 def test_a_file_that_is_gone_is_not_given_from_memory(rich_test, write):
-    path, opener = write(rich_test), read_once()
+    path, opener = write(rich_test), ReadOnce()
     with opener(path):
         path.unlink()
     with pytest.raises(ArchiveError, match="there is no archive"), opener(path):
@@ -233,7 +233,7 @@ def test_a_file_that_is_gone_is_not_given_from_memory(rich_test, write):
 
 
 def test_a_step_cannot_change_what_the_next_one_is_given(rich_test, write):
-    path, opener = write(rich_test), read_once()
+    path, opener = write(rich_test), ReadOnce()
     for _ in range(2):
         with opener(path) as archive:
             assert "added" not in archive
@@ -249,7 +249,7 @@ def test_as_many_are_kept_as_there_is_room_for(
     rich_test, bare_test, write, opened, tmp_path, monkeypatch
 ):
     monkeypatch.setattr(module, "_MOST", 1)
-    first, opener = write(rich_test), read_once()
+    first, opener = write(rich_test), ReadOnce()
     first = first.replace(tmp_path / "first.nc")
     second = write(bare_test)
     for _ in range(2):
@@ -259,10 +259,10 @@ def test_as_many_are_kept_as_there_is_room_for(
     assert opened == ["first.nc", second.name, second.name]
 
 
-@pytest.mark.parametrize("limit", ["_LARGEST", "_ROOM"])
+@pytest.mark.parametrize("limit", ["LARGEST", "_ROOM"])
 def test_what_is_large_is_not_read_whole(limit, rich_test, write, opened, monkeypatch):
     monkeypatch.setattr(module, limit, 100)
-    path, opener = write(rich_test), read_once()
+    path, opener = write(rich_test), ReadOnce()
     for _ in range(2):
         with opener(path) as archive:
             assert not archive.variables["tension"]._in_memory
@@ -270,7 +270,7 @@ def test_what_is_large_is_not_read_whole(limit, rich_test, write, opened, monkey
 
 
 def test_an_error_in_a_block_is_that_of_the_block(rich_test, write):
-    path, opener = write(rich_test), read_once()
+    path, opener = write(rich_test), ReadOnce()
     for _ in range(2):
         with pytest.raises(KeyError, match="none"), opener(path) as archive:
             archive.variables["none"]

@@ -108,7 +108,7 @@ def test_only_archives_that_changed_are_read_again(processed, tmp_path, opened, 
     ids=["empty", "no data", "other data", "other format"],
 )  # fmt: skip
 def test_a_page_that_is_not_ours_is_replaced(processed, tmp_path, opened, write, text):
-    (tmp_path / made.PAGE_NAME).write_text(text)
+    (tmp_path / made.DESIGN_PAGE_NAME).write_text(text)
     write(processed, tmp_path)
     assert len(opened) == 3
 
@@ -188,7 +188,9 @@ def test_no_page_is_made_of_copies(processed, tmp_path):
     output = CommandOutput(quiet=True, names={str(processed): "s3://bucket/processed"})
     assert _refresh_design_page(processed, tmp_path, output) is None
     output = CommandOutput(quiet=True)
-    assert _refresh_design_page(processed, tmp_path, output) == str(tmp_path / made.PAGE_NAME)
+    assert _refresh_design_page(processed, tmp_path, output) == str(
+        tmp_path / made.DESIGN_PAGE_NAME
+    )
 
 
 def test_a_disk_that_refuses_is_told(processed, tmp_path):

@@ -26,6 +26,7 @@ from reduction.pages.explorer_campaign import (
 from reduction.pages.explorer_server import _campaign_document, _change_document, _save_document
 from reduction.record.errors import ArchiveError, SettingsError
 from reduction.record.settings import ReductionSettings
+from reduction.report.campaign_page import CampaignAnswers
 
 
 @pytest.fixture(scope="module")
@@ -57,14 +58,21 @@ def session(campaign):
     return session_of(campaign.parent.parent)
 
 
+_NO_ANSWERS = CampaignAnswers((), (), frozenset())
+
+
 def test_an_archive_stands_while_nothing_is_changed(session):
     made = session.made("T-1", session.text)
     assert made.error == "" and made.is_standing and made.also == ()
 
 
 def test_numbers_that_are_shown_are_those_of_a_run_after_the_save(place, monkeypatch):
-    for name in ("refresh_tables", "write_report"):  # what is made of archives takes long
-        monkeypatch.setattr(f"reduction.batch.run_campaign.{name}", lambda *given, **more: [])
+    # what is made of archives takes long
+    nothing = {"write_tables": [], "CampaignPage.write": (None, _NO_ANSWERS)}
+    for name, given in nothing.items():
+        monkeypatch.setattr(
+            f"reduction.batch.run_campaign.{name}", lambda *_, given=given, **__: given
+        )
     session = session_of(place)
     changes = {"cycles.trim_threshold": "0.9", "modulus.window": "6 %"}
     text = session.changed("T-1", changes)

@@ -11,7 +11,6 @@ from reduction.archive.csv_definitions import EXPERIMENT_TABLES, TABLES
 from reduction.archive.csv_tables import (
     ENVELOPE_COLUMNS,
     STATIC_DYNAMIC_COLUMNS,
-    refresh_tables,
     write_tables,
 )
 from reduction.archive.shared_errors import SHARED_OF_CHANNELS
@@ -182,29 +181,3 @@ def test_synthetic_rows_say_so(tables):
         ("T-1", "yes"),
         ("static", "no"),
     }
-
-
-def test_tables_are_written_anew_only_where_an_archive_or_a_table_changed(
-    bare_test, write, tmp_path
-):
-    archive = write(bare_test)
-    folder = tmp_path / "tables"
-    paths = refresh_tables([archive], folder)
-    first = {path: path.read_bytes() for path in paths}
-    stood = {path: path.stat().st_ino for path in paths}
-    assert refresh_tables([archive], folder) == paths
-    assert {path: path.stat().st_ino for path in paths} == stood
-
-    paths[0].write_text("edited by hand", encoding="utf-8")
-    paths[1].unlink()
-    assert refresh_tables([archive], folder) == paths
-    assert {path: path.read_bytes() for path in paths} == first
-
-    about = replace(bare_test.description, test_id="T-77")
-    other = write(replace(bare_test, description=about))
-    refresh_tables([other], folder)
-    assert {row["test"] for row in read(folder / "trend.csv")} == {"T-77"}
-
-    (folder / "written-from.json").write_text("[", encoding="utf-8")
-    refresh_tables([archive], folder)
-    assert {path: path.read_bytes() for path in paths} == first

@@ -3,6 +3,12 @@
 import pytest
 
 from reduction.quantities.units import (
+    _PER_SI,
+    _US,
+    _USUAL,
+    DIMENSIONS,
+    _registry,
+    _scale_by_pint,
     combined_unit,
     display_unit,
     parse_quantity,
@@ -171,3 +177,23 @@ def test_units_of_a_coefficient_are_multiplied_out(unit, others, powers, combine
 )  # fmt: skip
 def test_a_turn_is_one_cycle_in_every_way_of_writing_a_frequency(unit, hertz):
     assert scale_to_si(unit, "frequency") == pytest.approx((hertz, 0.0))
+
+
+@pytest.mark.parametrize("unit", sorted({unit for unit, _ in _USUAL}))
+def test_a_usual_unit_is_what_pint_says_in_every_dimension(unit):
+    for dimension in DIMENSIONS:
+        if dimension == "information":
+            continue
+        try:
+            by_pint = _scale_by_pint(unit, dimension)
+        except SettingsError:
+            by_pint = None
+        assert _USUAL.get((unit, dimension)) == by_pint
+
+
+def test_units_that_are_shown_are_those_of_pint():
+    sources = {"J m-1": "N", "m2": "m**2", "m s-1": "m/s"}
+    targets = {"in2": "in**2", "ft s-1": "ft/s", "ft lbf / ft": "lbf", "lbf s": "lbf*s"}
+    for si_unit, shown in _US.items():
+        one = _registry().Quantity(1.0, sources.get(si_unit, si_unit))
+        assert _PER_SI[shown] == one.to(targets.get(shown, shown)).magnitude

@@ -12,6 +12,7 @@ from documentedcampaign import ROOT, copied, run
 from reduction.batch.campaign_status import Silent
 from reduction.batch.verification import Kind, _Finding, verify_campaign
 from reduction.campaign.load import load_campaign
+from reduction.report.campaign_page import CampaignAnswers
 
 NAME = "two-tethers"
 
@@ -34,7 +35,11 @@ def place(made, tmp_path):
 def without_tables(monkeypatch):
     """Leave out what takes longest, where a test is not about tables and pages."""
     monkeypatch.setattr("reduction.batch.verification._of_tables", lambda *given: (0, []))
-    monkeypatch.setattr("reduction.batch.run_campaign.write_report", lambda *given, **more: None)
+    monkeypatch.setattr(
+        "reduction.batch.run_campaign.CampaignPage.write",
+        lambda *given, **more: (None, CampaignAnswers((), (), frozenset())),
+    )
+    monkeypatch.setattr("reduction.batch.run_campaign.CampaignPage.add", lambda *given: None)
 
 
 def verified(place):

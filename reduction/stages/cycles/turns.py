@@ -22,8 +22,8 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import log_ndtr
 
 from reduction.record.measurement import Floats, Integers
 from reduction.record.samples import take_samples
@@ -81,7 +81,7 @@ def excess_of_greatest(below: ArrayLike) -> float:
     if distance.size == 0:
         return 0.0
     level = np.linspace(-_FARTHEST, _FARTHEST, 241)
-    each = log_ndtr(level[:, None] + distance)
+    each = scipy.special.log_ndtr(level[:, None] + distance)
     density = -0.5 * (level[:, None] + distance) ** 2 - 0.5 * np.log(2 * np.pi)
     chosen = np.exp(density - each + each.sum(axis=1, keepdims=True)).sum(axis=1)
     return float((level * chosen).sum() * (level[1] - level[0]))

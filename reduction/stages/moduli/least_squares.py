@@ -40,11 +40,17 @@ from reduction.record.measurement import Bools, Floats, read_only_arrays
 Basis = Callable[[Floats], tuple[Floats, Floats]]
 """From shapes to columns, and to what each of the last columns changes by with its own shape."""
 
-NEAR = 1e-10
+NEAR = 1e-7
 """Steps of the search, relative to the shapes, at which it ends."""
 
 ALIKE = 1e-9
 """Sums of squares that differ by less, relatively, count as one."""
+
+_ENOUGH = 1e-11
+"""Share of the sum of squares that a step without damping ought to gain, below which it ends."""
+
+_DEPENDENT = 1e-9
+"""Part of a column of length one that those before it leave, below which it may depend on them."""
 
 FIRST_DAMPING = 1e-3
 
@@ -194,25 +200,32 @@ class _Projected(NamedTuple):
 
 def _projected(columns: Floats, slopes: Floats, target: Floats) -> _Projected:
     """Amplitudes solved for by least squares, of least length where columns depend on others."""
-    finite: Bools = np.isfinite(np.concatenate([columns, slopes], axis=2)).all(axis=(1, 2))
-    columns = np.where(finite[:, None, None], columns, 0.0)
-    slopes = np.where(finite[:, None, None], slopes, 0.0)
-    scale = np.linalg.norm(columns, axis=1)
-    scale = np.where(scale > 0, scale, 1.0)
+    scale = np.sqrt((columns * columns).sum(axis=1))
+    finite: Bools = np.isfinite(scale.sum(axis=1) + slopes.sum(axis=(1, 2)))
+    if not finite.all():
+        columns = np.where(finite[:, None, None], columns, 0.0)
+        slopes = np.where(finite[:, None, None], slopes, 0.0)
+        scale = np.where(finite[:, None], scale, 0.0)
+    scale[scale == 0] = 1.0
     base, triangle = np.linalg.qr(columns / scale[:, None, :])
-    left, size, right = np.linalg.svd(triangle)
-    least = np.finfo(np.float64).eps * target.size * size[:, 0]
-    counts = np.greater(size, least[:, None])
-    base = base @ (left * counts[:, None, :])
-    share = target @ base
+    pivot = np.abs(np.diagonal(triangle, axis1=1, axis2=2))
+    if pivot.min() > _DEPENDENT:
+        share = target @ base
+        amplitude = np.linalg.solve(triangle, share[..., None])[..., 0] / scale
+    else:
+        left, size, right = np.linalg.svd(triangle)
+        least = np.finfo(np.float64).eps * target.size * size[:, 0]
+        counts = np.greater(size, least[:, None])
+        base = base @ (left * counts[:, None, :])
+        share = target @ base
+        part = np.where(counts, share / np.where(counts, size, 1.0), 0.0)
+        amplitude = (part[:, None, :] @ right)[:, 0] / scale
     residual = target - (base @ share[..., None])[..., 0]
-    part = np.where(counts, share / np.where(counts, size, 1.0), 0.0)
-    amplitude = (part[:, None, :] @ right)[:, 0] / scale
-    jacobian = -slopes * amplitude[:, None, -slopes.shape[2] :]
+    jacobian = slopes * -amplitude[:, None, -slopes.shape[2] :]
     jacobian -= base @ (base.swapaxes(1, 2) @ jacobian)
     across = jacobian.swapaxes(1, 2)
     return _Projected(
-        squares=np.where(finite, np.sum(residual * residual, axis=1), np.inf),
+        squares=np.where(finite, (residual * residual).sum(axis=1), np.inf),
         gradient=(across @ residual[..., None])[..., 0],
         normal=across @ jacobian,
     )
@@ -253,6 +266,8 @@ def _search(basis: Basis, target: Floats, starts: Floats) -> tuple[Floats, Float
         # shorter than its digits count, or a gain below those of the sum
         ends = length <= NEAR * (NEAR + np.linalg.norm(shapes[at], axis=1))
         ends |= expected <= np.finfo(np.float64).eps * here.squares
+        # the steps over all parameters that follow find the rest of what the sum can lose
+        ends |= (expected <= _ENOUGH * here.squares) & (damping[at] < 1.0)
         moved = at[better]
         shapes[moved] += step[better]
         for old, new in zip(found, there, strict=True):

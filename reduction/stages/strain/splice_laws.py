@@ -30,7 +30,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import scipy
-from scipy.special import chdtrc
 
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, read_only_arrays
@@ -154,7 +153,9 @@ class FittedLaw:
     @property
     def chance(self) -> float:
         """Probability of a misfit as large, were the law and the stated error right. [1]."""
-        return 1.0 if self.freedom <= 0 else float(chdtrc(self.freedom, self.chi_square))
+        return (
+            1.0 if self.freedom <= 0 else float(scipy.special.chdtrc(self.freedom, self.chi_square))
+        )
 
     @property
     def n_terms(self) -> int:

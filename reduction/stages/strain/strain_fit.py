@@ -45,7 +45,6 @@ from typing import Literal
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike
-from scipy.special import betainc, chdtrc, ndtri, stdtrit
 
 from reduction.record.arrays import as_finite, as_positive, as_same_shape
 from reduction.record.errors import DataError, FitError
@@ -144,7 +143,7 @@ def _row_scatter(
     away = free.T @ left
     covariance = stated * np.eye(spare) + common.T @ common
     chi_square = float(away @ np.linalg.solve(covariance, away))
-    chance = float(chdtrc(spare, chi_square))
+    chance = float(scipy.special.chdtrc(spare, chi_square))
     if chance >= LEVEL:
         return _RowScatter(stated)
     ratio = float(np.sqrt(chi_square / spare))
@@ -158,7 +157,7 @@ def _row_scatter(
 def _unstated(residual: Floats, spare: int) -> _RowScatter:
     if spare <= 0:
         return _RowScatter(0.0, note=note("marks-count-as-exact"))
-    factor = float(stdtrit(spare, _CONFIDENCE) / ndtri(_CONFIDENCE))
+    factor = float(scipy.special.stdtrit(spare, _CONFIDENCE) / scipy.special.ndtri(_CONFIDENCE))
     return _RowScatter(
         float(residual @ residual) / spare * factor**2,
         note=note("marks-error-from-scatter", freedom=spare),
@@ -1199,7 +1198,7 @@ def _on_slack(marks: SpliceMarks) -> tuple[Note, ...]:
     row = np.arange(length.size)
     slope, correlation = _line_slope(row, length), float(np.corrcoef(row, length)[0, 1])
     # of a correlation this far from zero among rows without a trend (Student's t, both sides)
-    chance = betainc(length.size / 2 - 1, 0.5, max(0.0, 1 - correlation**2))
+    chance = scipy.special.betainc(length.size / 2 - 1, 0.5, max(0.0, 1 - correlation**2))
     if slope <= 0 or chance > _TREND_CHANCE:
         return ()
     growth = slope * (length.size - 1)

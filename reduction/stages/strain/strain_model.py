@@ -35,7 +35,7 @@ References
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -600,11 +600,17 @@ def strain_by_model(
                 needed="a strain channel in the layout, or another strain method",
             )
         return np.asarray(measured_strain, dtype=np.float64)
-    if model.method == "tension-driven":
-        return _tension_driven_strain(position, tension, **model.coefficients)
-    if model.method == "mixed":
-        return _mixed_strain(position, tension, **model.coefficients)
-    return _OF_POSITION[model.method](position, **model.coefficients)
+    return _strain_of(model.method, model.coefficients, position, tension)
+
+
+def _strain_of(
+    method: StrainMethod, coefficients: Mapping[str, float], position: ArrayLike, tension: ArrayLike
+) -> Floats:
+    if method == "tension-driven":
+        return _tension_driven_strain(position, tension, **coefficients)
+    if method == "mixed":
+        return _mixed_strain(position, tension, **coefficients)
+    return _OF_POSITION[method](position, **coefficients)
 
 
 def extrapolated(model: StrainModel, position: ArrayLike, tension: ArrayLike) -> Bools:
@@ -668,8 +674,9 @@ def strain_sensitivity_of(
     Notes
     -----
     With the covariance this gives the part of the uncertainty of strain that all
-    samples share: it does not average out over cycles.  Central differences; the
-    coefficients enter smoothly.
+    samples share: it does not average out over cycles.  Of ``mixed`` the derivatives of the
+    implicit equation for strain; of the others central differences, since the coefficients enter
+    smoothly.
 
     Examples
     --------
@@ -683,21 +690,57 @@ def strain_sensitivity_of(
     [0.0001]
     """
     names = tuple(model.coefficients)
+    if model.method == "mixed":
+        slopes = _mixed_sensitivity(position, tension, model.coefficients)
+        return names, np.stack([slopes[name] for name in names])
     rows = []
     for name in names:
         value = model.coefficients[name]
         step = 1e-5 * (abs(value) or 1.0)
         high, low = (
-            strain_by_model(
-                replace(model, coefficients={**model.coefficients, name: value + sign * step}),
-                position=position,
-                tension=tension,
+            _strain_of(
+                model.method, {**model.coefficients, name: value + sign * step}, position, tension
             )
             for sign in (1, -1)
         )
         rows.append((high - low) / (2 * step))
     shape = (0, *np.shape(position))
     return names, np.stack(rows) if rows else np.empty(shape)
+
+
+def _mixed_sensitivity(
+    position: ArrayLike, tension: ArrayLike, coefficients: Mapping[str, float]
+) -> dict[str, Floats]:
+    r"""Change of `_mixed_strain` with its coefficients, by their names.
+
+    .. math:: \frac{\partial\varepsilon}{\partial\theta}
+       = -\frac{\partial g}{\partial\theta} \Big/ \frac{\partial g}{\partial\varepsilon}, \qquad
+       g = \ell_0 (1 + \varepsilon) + \ell_s
+       (1 + s_0 + \rho\varepsilon + \kappa\varepsilon^2 + \gamma\varepsilon^3 + c F^n) - p
+    """
+    strain = _mixed_strain(position, tension, **coefficients)
+    free, splice = coefficients["relaxed_free_length"], coefficients["relaxed_splice_length"]
+    ratio, curvature = coefficients["splice_strain_ratio"], coefficients["splice_strain_curvature"]
+    cubic, compliance = coefficients["splice_strain_cubic"], coefficients["splice_compliance"]
+    load = np.maximum(np.broadcast_to(np.asarray(tension, dtype=np.float64), strain.shape), 0.0)
+    power = load ** coefficients["splice_exponent"]
+    square = strain * strain
+    # NaN stays NaN, but of a law that knows no tension
+    by_tension = compliance * power if compliance else np.zeros(strain.shape)
+    of_splices = ratio * strain + curvature * square + cubic * square * strain
+    own = {
+        "relaxed_free_length": 1 + strain,
+        "relaxed_splice_length": 1 + coefficients["splice_offset"] + of_splices + by_tension,
+        "splice_offset": np.full(strain.shape, splice),
+        "splice_strain_ratio": splice * strain,
+        "splice_strain_curvature": splice * square,
+        "splice_strain_cubic": splice * square * strain,
+        "splice_compliance": splice * power,
+        "splice_exponent": splice * by_tension * np.log(np.where(load > 0, load, 1.0)),
+    }
+    slope = free + splice * (ratio + 2 * curvature * strain + 3 * cubic * square)
+    # where there is no strain nothing moves it
+    return {name: np.where(np.isnan(strain), np.nan, -one / slope) for name, one in own.items()}
 
 
 # lengths that grow with the free length; the others of a method do not, or say nothing of splices

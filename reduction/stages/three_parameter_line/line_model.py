@@ -90,8 +90,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import ndtr, ndtri, stdtr, stdtrit
 
 from reduction.record.arrays import as_positive, as_same_shape
 from reduction.record.errors import DataError, SettingsError
@@ -874,14 +874,14 @@ def _power_of_frequency(
 
 def _quantile(degrees_of_freedom: Integers, confidence: float) -> Floats:
     """Half width of an interval in standard uncertainties; normal where they were stated."""
-    t = stdtrit(np.maximum(degrees_of_freedom, 1), (1 + confidence) / 2)
-    return np.where(degrees_of_freedom > 0, t, ndtri((1 + confidence) / 2))
+    t = scipy.special.stdtrit(np.maximum(degrees_of_freedom, 1), (1 + confidence) / 2)
+    return np.where(degrees_of_freedom > 0, t, scipy.special.ndtri((1 + confidence) / 2))
 
 
 def _tail(distance: Floats, degrees_of_freedom: Integers) -> Floats:
     """Probability of a distance as large, in standard uncertainties, on both sides."""
-    t = 2 * stdtr(np.maximum(degrees_of_freedom, 1), -np.abs(distance))
-    return np.where(degrees_of_freedom > 0, t, 2 * ndtr(-np.abs(distance)))
+    t = 2 * scipy.special.stdtr(np.maximum(degrees_of_freedom, 1), -np.abs(distance))
+    return np.where(degrees_of_freedom > 0, t, 2 * scipy.special.ndtr(-np.abs(distance)))
 
 
 def check_single_time(
