@@ -233,7 +233,8 @@ def stated_errors(
     if stiffness > _HALF:
         raise in_toml(
             path,
-            "uncertainty.temperature: value times stiffness_per_kelvin is not a standard uncertainty",
+            "uncertainty.temperature: value times stiffness_per_kelvin is not a standard "
+            "uncertainty",
             found=f"{100 * stiffness:,.0f} % of the stiffness", needed="at most 50 %",
         )  # fmt: skip
     diameter = section.diameter or 0.0
