@@ -319,7 +319,7 @@ def _scatter_note(of: LineSurface | LineCurve, words: tuple[str, str]) -> str:
             "freedom of the surface: in the intervals of the kind and of another line alone"
         )
     told = words[0] or words[1]
-    return f"the interval is of {told}: how lines differ among each other is not in it"
+    return f"the interval applies to {told}; scatter between lines is not included"
 
 
 _BLOCK = 16_384
