@@ -219,7 +219,7 @@ class UncertaintySection(_UncertaintySection):
     attached_mass: Annotated[float, _Standard("mass")] | None = None
     """Of the mass between the specimen and a load cell at its moving end: ``"0.1 kg"``."""
     linear_density: Annotated[float, _Standard("linear_density")] | None = None
-    """Of the mass a length of the specimens."""
+    """Of the mass per length of the specimens."""
     machine_compliance: Annotated[float, _Standard("compliance")] | None = None
     """Of frame, load cell and grips: ``"2e-8 m/N"``."""
 

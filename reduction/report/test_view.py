@@ -324,7 +324,7 @@ def _rows(units: UnitSystem) -> tuple[tuple[str, str, Shown], ...]:
         ("rated_break_strength", "rated break strength", _PERCENT),
         ("stiffness", "stiffness, for the temperature of the test", _PERCENT),
         ("attached_mass", "mass beside a moving load cell", Shown("kg", 1.0)),
-        ("linear_density", "mass a length of the specimens", Shown("kg/m", 1.0)),
+        ("linear_density", "mass per length of the specimens", Shown("kg/m", 1.0)),
         ("machine_compliance", "compliance of frame, load cell and grips", Shown("m/N", 1.0)),
     )
 
