@@ -223,7 +223,7 @@ class UncertaintySection(_UncertaintySection):
     attached_mass: Annotated[float, _Standard("mass")] | None = None
     """Of the mass between the specimen and a load cell at its moving end: ``"0.1 kg"``."""
     linear_density: Annotated[float, _Standard("linear_density")] | None = None
-    """Of the mass a length of the specimens."""
+    """Of the mass per length of the specimens."""
     machine_compliance: Annotated[float, _Standard("compliance")] | None = None
     """Of frame, load cell and grips: ``"2e-8 m/N"``."""
 
@@ -237,7 +237,8 @@ def stated_errors(
     if stiffness > _HALF:
         raise in_toml(
             path,
-            "uncertainty.temperature: value times stiffness_per_kelvin is no standard uncertainty",
+            "uncertainty.temperature: value times stiffness_per_kelvin is not a standard "
+            "uncertainty",
             found=f"{100 * stiffness:,.0f} % of the stiffness", needed="at most 50 %",
         )  # fmt: skip
     diameter = section.diameter or 0.0

@@ -59,7 +59,7 @@ def show_budget(path: Path, quantity: str, places: Sequence[str], *, output: Com
         for dim, label in budget.place.items()
     )
     table = table_of(
-        "source", "of", f"contribution [{unit}]", "share of u2", texts=2,
+        "source", "item", f"contribution [{unit}]", "share of variance", texts=2,
         title=f"{budget.quantity}, {where}" + (" (synthetic data)" if synthetic else ""),
     )  # fmt: skip
     for row in budget.rows:

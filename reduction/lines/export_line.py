@@ -344,7 +344,7 @@ class ExportLine:
         if not math.isfinite(displaced):
             displaced = self.linear_density / density
             words = (
-                f"the mass a length and the density of {self.material} fibre, {density:g} kg/m3 "
+                f"the mass per length and the density of {self.material} fibre, {density:g} kg/m3 "
                 "(Bigon and Regazzoni, The Morrow Guide to Knots, p. 14), since no wet mass is "
                 "stated"
             )
@@ -874,11 +874,11 @@ def guards_of(line: ExportLine) -> tuple[str, ...]:
     elif volume > (1 + _SAME) * diameter:
         words.append(
             f"DOUBTFUL: the displaced volume has a diameter of {1000 * volume:.4g} mm, above the "
-            f"nominal one of {1000 * diameter:.4g} mm: mass a length and diameter do not fit"
+            f"nominal one of {1000 * diameter:.4g} mm: mass per length and diameter do not fit"
         )
     elif volume < _LEAST_FILL * diameter:
         words.append(
             f"DOUBTFUL: the displaced volume has a diameter of {1000 * volume:.4g} mm, far below "
-            f"the nominal one of {1000 * diameter:.4g} mm: mass a length and diameter do not fit"
+            f"the nominal one of {1000 * diameter:.4g} mm: mass per length and diameter do not fit"
         )
     return tuple(words)

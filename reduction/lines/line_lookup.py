@@ -308,7 +308,7 @@ def _scatter_note(of: LineSurface | LineCurve | LineLevels, words: tuple[str, st
             "freedom of the surface: in the intervals of the kind and of another line alone"
         )
     told = words[0] or words[1]
-    return f"the interval is of {told}: how lines differ among each other is not in it"
+    return f"the interval applies to {told}; scatter between lines is not included"
 
 
 def sigma_from_r2(coefficient: ArrayLike, r2: float, *, n_factors: int = 3) -> float:

@@ -38,7 +38,7 @@ def _one(of: str) -> str:
 
 def _would_fit(readings: str) -> str:
     """Readings by which a number would lie in its band, as a sentence of its own."""
-    return f" Inside it with: {readings}" if readings else ""
+    return f" It would fit with: {readings}" if readings else ""
 
 
 def _is_like(like: str) -> str:
@@ -1111,77 +1111,76 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "modulus-outside-band": (
         "warning",
         lambda modulus, low, high, of, readings: (
-            f"greatest stress over greatest strain is {_pascals(modulus)}, and that of {_one(of)}"
-            f" lies between {_pascals(low)} and {_pascals(high)}: is the unit of load, the"
-            f" diameter, the gauge length or the material right?{_would_fit(readings)}"
+            f"maximum stress over maximum strain is {_pascals(modulus)}; for {_one(of)} it is"
+            f" between {_pascals(low)} and {_pascals(high)}. Check the unit of load, the"
+            f" diameter, the gauge length and the material.{_would_fit(readings)}"
         ),
     ),
     "strength-outside-band": (
         "warning",
         lambda found, low, high, of, readings: (
-            f"rated_break_strength over the area of the diameter is {_pascals(found)}, and that of"
-            f" {_one(of)} lies between {_pascals(low)} and {_pascals(high)}: is the diameter, the"
-            f" strength, its unit or the material right?{_would_fit(readings)}"
+            f"rated_break_strength over the area of the diameter is {_pascals(found)}; for"
+            f" {_one(of)} it is between {_pascals(low)} and {_pascals(high)}. Check the diameter,"
+            f" the strength, its unit and the material.{_would_fit(readings)}"
         ),
     ),
     "density-outside-band": (
         "warning",
         lambda found, low, high, of, readings: (
-            f"linear_density over the area of the diameter is {found:.3g} kg/m3, and that of"
-            f" {_one(of)} lies between {low:.3g} and {high:.3g}: is the unit of linear_density, the"
-            " diameter or the material right?"
+            f"linear_density over the area of the diameter is {found:.3g} kg/m3; for {_one(of)} it"
+            f" is between {low:.3g} and {high:.3g}. Check the unit of linear_density, the diameter"
+            " and the material"
         ),
     ),
     "strain-above-band": (
         "warning",
         lambda strain, limit, of: (
-            f"strain reaches {100 * strain:.3g} %, and {_one(of)} breaks below {100 * limit:.3g} %:"
-            " is the gauge length, the unit of position or of the extensometer, or the material"
-            " right?"
+            f"strain reaches {100 * strain:.3g} %, but {_one(of)} breaks below {100 * limit:.3g} %."
+            " Check the gauge length, the unit of position or of the extensometer, and the material"
         ),
     ),
     "tension-above-strength": (
         "warning",
         lambda share: (
-            f"tension reaches {100 * share:.0f} % of the rated_break_strength and the test is not"
-            " said to have failed: is the unit or the gain of the load, or the"
-            " rated_break_strength right?"
+            f"tension reaches {100 * share:.0f} % of the rated_break_strength, but the test is not"
+            " marked as failed. Check the unit and the gain of the load, and the"
+            " rated_break_strength"
         ),
     ),
     "tension-far-below-strength": (
         "warning",
         lambda share: (
-            f"tension reaches {100 * share:.2g} % of the rated_break_strength alone: is the unit or"
-            " the factor of the load, or the unit of the rated_break_strength right?"
+            f"tension reaches only {100 * share:.2g} % of the rated_break_strength. Check the unit"
+            " and the factor of the load, and the unit of the rated_break_strength"
         ),
     ),
     "diameter-readings-apart": (
         "warning",
         lambda least, greatest: (
-            f"readings of the diameter are {1e3 * least:.4g} to {1e3 * greatest:.4g} mm: is one of"
-            " them a slip?"
+            f"readings of the diameter range from {1e3 * least:.4g} to {1e3 * greatest:.4g} mm."
+            " Check them for an error"
         ),
     ),
     "rate-not-as-stated": (
         "warning",
         lambda stated, found, unit, ratio, like: (
             f"the log shows a rate of {found:.3g} {unit}, {ratio:.3g} times the stated rate of"
-            f" {stated}{_is_like(like)}: is the unit of time, the sampling interval, the unit of"
-            " position or the rate right?"
+            f" {stated}{_is_like(like)}. Check the unit of time, the sampling interval, the unit of"
+            " position and the rate"
         ),
     ),
     "target-strain-missed": (
         "warning",
         lambda reached, target, ratio, like, method: (
             f"strain reaches {100 * reached:.3g} %, {ratio:.3g} times the target_strain of"
-            f" {100 * target:.3g} %{_is_like(like)}: is "
+            f" {100 * target:.3g} %{_is_like(like)}. Check "
             + (
-                "the gauge length the free length between the splices (not eye to eye), and its"
-                " unit right?"
+                "that the gauge length is the free length between the splices (not eye to eye), and"
+                " its unit"
                 if method == "gauge-length"
-                else "the unit of the extensometer right?"
+                else "the unit of the extensometer"
                 if method == "extensometer"
-                else "the unit of position and of the marks, or the target_strain right?"
+                else "the unit of position and of the marks, and the target_strain"
             )
         ),
     ),
@@ -1189,108 +1188,109 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         lambda level, stated, found, unit, ratio, like: (
             f"the log shows a {level} of {found:.4g} {unit}, {ratio:.3g} times the stated {level}"
-            f" of {stated}{_is_like(like)}: is its unit, or that of the log, right?"
+            f" of {stated}{_is_like(like)}. Check its unit and that of the log"
         ),
     ),
     "cycles-in-other-kind": (
         "warning",
-        "the log holds about {n_cycles} cycles and its kind is {kind}: is the kind right?",
+        "the log contains about {n_cycles} cycles, but its kind is {kind}. Check the kind",
     ),
     "break-in-is-all": (
         "warning",
-        "break_in_cycles is {break_in} and the log holds {n_cycles} cycles: none is left",
+        "break_in_cycles is {break_in}, but the log has only {n_cycles} cycles: none is left",
     ),
     "pull-below-runs": (
         "warning",
-        "the slow pull ends at {reached:.4g} N, below the mean tension of every run ({least:.4g} N"
-        " at the least): K_0 is not known where the runs are",
+        "the slow pull ends at {reached:.4g} N, below the mean tension of every run (lowest"
+        " {least:.4g} N): K_0 is not known at the runs",
     ),
     "hose-unlike-design": (
         "warning",
         lambda hose, ratio, strain, like: (
-            f"at {100 * strain:.3g} % it pulls {ratio:.3g} times what its design {hose} gives"
-            f"{_is_like(like)}: is the unit of load, the gauge length, the file and hose that are"
-            " named (not swapped), the inner diameter (bore), the length, or the number, angle and"
-            " load of its cords (both layers counted once) right?"
+            f"at {100 * strain:.3g} % strain its tension is {ratio:.3g} times that of its design"
+            f" {hose}{_is_like(like)}. Check the unit of load, the gauge length, the named file and"
+            " hose (swapped?), the inner diameter (bore), the length, and the number, angle and"
+            " load of its cords (both layers counted once)"
         ),
     ),
     "waveform-not-as-stated": (
         "warning",
-        "the waveform is stated as {stated}, and that of the log is {found}: is waveform right?",
+        "the stated waveform is {stated}, but that of the log is {found}. Check waveform",
     ),
     "gauge-against-length": (
         "warning",
         lambda gauge, length, like: (
-            f"the gauge length is {gauge:.4g} m, and the pins are {length:.4g} m apart at slack"
-            f"{_is_like(like)}: is the gauge length, its unit or the unit of position right?"
+            f"the gauge length is {gauge:.4g} m, but the pins are {length:.4g} m apart at slack"
+            f"{_is_like(like)}. Check the gauge length, its unit and the unit of position"
         ),
     ),
     "extensometer-against-stroke": (
         "warning",
         lambda ratio, like: (
-            "the measured strain falls where the crosshead position rises: does one of them count"
-            " the other way? Then set sign = -1 for it"
+            "the measured strain falls as the crosshead position rises. If one of them counts the"
+            " other way, set sign = -1 for it"
             if ratio < 0
             else f"the measured strain is {ratio:.3g} times the stroke over the length at slack"
-            f"{_is_like(like)}: is the unit or the range (gain) of the extensometer, or the unit of"
-            " position (stroke) right?"
+            f"{_is_like(like)}. Check the unit and the range (gain) of the extensometer, and the"
+            " unit of position (stroke)"
         ),
     ),
     "extensometer-off-at-slack": (
         "warning",
-        "the extensometer reads {strain:.3%} where the specimen is slack: was it set to zero"
-        " there?",
+        "the extensometer reads {strain:.3%} at slack. Check whether it was set to zero there",
     ),
     "channels-alike": (
         "warning",
-        "the tension is identical to that of {others}, reading by reading: do both channels name"
-        " one column, or were two cables joined to one load cell?",
+        "the tension is identical to that of {others}, reading by reading. Check whether both"
+        " channels name one column, or two cables were connected to one load cell",
     ),
     "column-of-another": (
         "warning",
-        "its tension is read from the column {column!r}, which has the name of {other}: are the"
-        " columns swapped?",
+        "its tension is read from the column {column!r}, which has the name of {other}. Check"
+        " whether the columns are swapped",
     ),
     "log-used-twice": (
-        "warning", "its log is that of test {other}, byte by byte: is the same file named twice?",
+        "warning",
+        "its log is identical to that of test {other}, byte for byte. Check whether the same file"
+        " is named twice",
     ),
     "stiffness-jumps": (
         "warning",
         lambda other, ratio, like: (
-            f"it is {ratio:.3g} times as stiff as in {other}{_is_like(like)}: is"
-            " the unit, gain or factor of the load that of the other test, and is it the file and"
-            " the specimen that are named (not swapped)?"
+            f"it is {ratio:.3g} times as stiff as in {other}{_is_like(like)}. Check that"
+            " the unit, gain and factor of the load are those of the other test, and that file and"
+            " specimen are not swapped"
         ),
     ),
     "tension-behind-position": (
         "warning",
-        "tension lags position by {delay:.2g} s, which no specimen does: was the load logged late,"
-        " or through a filter? Loops and moduli are wrong by it",
+        "tension lags position by {delay:.2g} s, which no specimen does: the load was logged late,"
+        " or through a filter. Loops and moduli are affected",
     ),
     "position-behind-tension": (
         "warning",
-        "tension leads position by {delay:.2g} s, more than the damping of a specimen explains: was"
-        " the position logged late, or does mass beside a moving load cell add its inertia?",
+        "tension leads position by {delay:.2g} s, more than the damping of a specimen explains: the"
+        " position was logged late, or mass attached to a moving load cell adds its inertia",
     ),
     "load-falls-for-good": (
         "warning",
-        "the load ends at {share:.0%} of its greatest while the crosshead stays out: did the"
-        " specimen break or slip? Then state failed = true",
+        "the load ends at {share:.0%} of its peak while the crosshead stays out. If the specimen"
+        " broke or slipped, state failed = true",
     ),
     "run-off-plan": (
         "warning",
         lambda experiment, levels, why, like: (
             f"not at the levels of {experiment}: {levels}"
             + (f"; {why}" if why else "")
-            + (f"; these are the levels of {like}: are files or rows swapped?" if like else "")
+            + (f". These are the levels of {like}: check for swapped files or rows" if like else "")
         ),
     ),
     "cord-stress-outside-band": (
         "warning",
         lambda stress, low, high: (
-            f"its cords break at {_pascals(stress)} of their section, and cords of textile at"
-            f" {_pascals(low)} to {_pascals(high)}: is the unit of the cord's load (of one cord,"
-            " not of the fabric), or the cord_diameter right?"
+            f"its cords break at {_pascals(stress)} on their section; textile cords break at"
+            f" {_pascals(low)} to {_pascals(high)}. Check the unit of the cord's load (of one cord,"
+            " not of the fabric) and the cord_diameter"
         ),
     ),
     "cords-do-not-fit": (
@@ -1298,35 +1298,36 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda share: (
             f"cords_per_length times cord_diameter is {share:.3g} of the width"
             + (
-                ", so that cords overlap: are both layers counted, or is a unit wrong?"
+                ", so cords overlap. Check whether both layers are counted, or a unit is wrong"
                 if share > 1
-                else ": is the unit of cords_per_length or of cord_diameter right?"
+                else ". Check the units of cords_per_length and cord_diameter"
             )
         ),
     ),
     "hose-rubber-outside-band": (
         "warning",
         lambda modulus, low, high: (
-            f"its rubber_modulus is {_pascals(modulus)}, and Young's modulus of hose rubber is"
-            f" {_pascals(low)} to {_pascals(high)}: is its unit right, or is it a shear modulus?"
+            f"its rubber_modulus is {_pascals(modulus)}, but Young's modulus of hose rubber is"
+            f" {_pascals(low)} to {_pascals(high)}. Check its unit, and that it is not a shear"
+            " modulus"
         ),
     ),
     "wrap-angle-outside-band": (
         "warning",
         lambda angle: (
-            f"its wrap_angle is {degrees(angle):.3g} degrees from the axis, and a hose stretches"
-            " where it is above 55: was it measured from the hoop, or is it in radians?"
+            f"its wrap_angle is {degrees(angle):.3g} degrees from the axis, but a hose only"
+            " stretches above 55. Check whether it was measured from the hoop, or is in radians"
         ),
     ),
     "dead-length-large": (
         "warning",
-        "{share:.0%} of its length is dead_length: is the unit of dead_length or of length right?",
+        "{share:.0%} of its length is dead_length. Check the units of dead_length and length",
     ),
     "hose-not-of-design": (
         "warning",
         lambda hose, ratio, like: (
-            f"its diameter is {ratio:.3g} times the outer_diameter of {hose}, which it is held"
-            f" against{_is_like(like)}: is the diameter (not the wall) in the right unit?"
+            f"its diameter is {ratio:.3g} times the outer_diameter of {hose}, with which it is"
+            f" compared{_is_like(like)}. Check the diameter (not the wall) and its unit"
         ),
     ),
 }  # fmt: skip

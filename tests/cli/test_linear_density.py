@@ -1,4 +1,4 @@
-"""A mass a length that a campaign states: in the archive, the tables, the look-up, the export."""
+"""A mass per length that a campaign states: in the archive, the tables, the look-up, the export."""
 
 import csv
 import json

@@ -81,7 +81,7 @@ def test_a_temperature_moves_the_stiffness():
         ),
         (
             {"temperature": {"value": "90 K", "stiffness_per_kelvin": "300 %"}},
-            r"uncertainty\.temperature: value times stiffness_per_kelvin is no standard uncertainty; "
+            r"uncertainty\.temperature: value times stiffness_per_kelvin is not a standard uncertainty; "
             "found 27,000 % of the stiffness; needed at most 50 %",
         ),
     ],

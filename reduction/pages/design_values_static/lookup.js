@@ -148,7 +148,7 @@ function told(line, of, points, { loads, words, more, is_untested, freedom }) {
       ? `lines of this kind differ among each other by about ${(100 * of.line_scatter).toFixed(0)} % `
         + `(CG-D-39-80, sec. 4.4.1), taken with ${of.n_lines.toFixed(0)} lines and the degrees of `
         + "freedom of the surface: in the intervals of the kind and of another line alone"
-      : `the interval is of ${words[0] || words[1]}: how lines differ among each other is not in it`);
+      : `the interval applies to ${words[0] || words[1]}; scatter between lines is not included`);
   } else if (isCurve) {
     notes.push("no interval is given: the source states no scatter of this curve");
   }
