@@ -65,10 +65,10 @@ def _unknown_mass(mass: float, usual: float, effect: float, cell: str) -> str:
     )
 
 
-def _unknown_friction(size: float, effect: float, effect_on_constant: float) -> str:
+def _unknown_friction(size: float, of_energy: float, of_constant: float) -> str:
     return (
         f"no mark was read on the way down: splices that are {size:.0%} longer there, by friction,"
-        f" would make H {effect:.0%} and K_ap {effect_on_constant:.1%} too large. Read marks on"
+        f" would make H {of_energy:.0%} and K_ap {of_constant:.1%} too large. Read marks on"
         ' the way down (hold "centre down"), or state splice_friction in [uncertainty]'
     )
 
@@ -306,10 +306,11 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "splice-law-unchecked": (
         "warning",
-        lambda n_marks, carried: (
+        lambda n_marks, carried, effect: (
             f"no law of the splices with a mark to spare agrees with the {n_marks} stretched"
             f" mark{_plural(n_marks)}: those that do would follow a misread mark too"
-            + (f"; the distance to {carried} is in the intervals" if carried else "")
+            + (f"; {carried} would move moduli by {100 * effect:+.1f} %, which is in the intervals"
+               if carried else "")
             + ". Read marks at one more stretch"
         ),
     ),

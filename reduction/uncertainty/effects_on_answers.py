@@ -116,8 +116,8 @@ def splice_friction_notes(
             else "splice-friction-unknown",
             errors.specimen,
             size=_POSSIBLE_FRICTION,
-            effect=_IN_LOOP * energy,
-            effect_on_constant=constant,
+            of_energy=_IN_LOOP * energy,
+            of_constant=constant,
         )
 
 

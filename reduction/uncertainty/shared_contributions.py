@@ -457,7 +457,8 @@ def _friction_on_branches(
             continue
         own = longer[branch, known]
         reversal = own[-branch]
-        share = np.exp(-np.abs(own / max(reversal, _TINY) - 1) / errors.splice_friction)
+        gone = np.abs(own / max(reversal, _TINY) - 1)
+        share = np.exp(-gone / (2 * errors.splice_friction))
         away[branch, known] = own * (share if branch == 0 else 1 - share)
         steeper[branch, known] = np.gradient(away[branch, known], strain[known])
     return away, steeper

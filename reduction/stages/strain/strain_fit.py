@@ -61,7 +61,6 @@ from reduction.record.notes import Note, note
 from reduction.record.settings import StrainMethod, StrainSettings
 from reduction.stages.standstills import Standstills
 from reduction.stages.strain.splice_laws import (
-    REJECTED,
     FittedLaw,
     SpliceAverage,
     SpliceReadings,
@@ -1029,14 +1028,16 @@ def _on_laws(fit: _MixedFit, readings: PooledMarks) -> tuple[Note, ...]:
         carried = [
             law
             for law, weight in zip(average.laws, average.weight, strict=True)
-            if weight > 0 and law.chance < REJECTED
+            if weight > 0 and law.freedom > 0 and law is not best
         ]
+        effects = [_effect_on_modulus(fit.model, law, average.reference) for law in carried]
         notes.append(
             note(
                 "splice-law-unchecked",
                 marks.specimen,
                 n_marks=int((~marks.is_slack[fit.rows]).sum()),
                 carried=", ".join(law.name for law in carried),
+                effect=max(effects, key=abs, default=float("nan")),
             )
         )
     if average.slip:
