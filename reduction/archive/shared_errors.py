@@ -189,6 +189,7 @@ _OF_STRAIN = frozenset(
         "strain_gain",
         "splice_method",
         "splice_law",
+        "splice_friction",
         "machine_compliance",
     }
 )

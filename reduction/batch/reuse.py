@@ -106,6 +106,7 @@ def _settings_json(
         "strain": {model.specimen: _strain_document(campaign, model) for model in models},
         "instruments": {
             errors.specimen: {
+                "splice_friction": errors.splice_friction,
                 "tension": errors.tension_instrument,
                 "crosshead_position": errors.position_instrument,
             }

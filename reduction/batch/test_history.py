@@ -16,7 +16,7 @@ from reduction.pipeline.reduce_test import (
     growth_of_slack_length,
     judge_strain,
 )
-from reduction.record.contributions import InstrumentErrors
+from reduction.record.contributions import InstrumentErrors, StatedErrors
 from reduction.record.errors import DataError, ReductionError
 from reduction.record.measurement import Floats, Specimen, SpliceMarks
 from reduction.record.notes import Note, note
@@ -352,7 +352,7 @@ def instruments_of(
     )
     return tuple(
         _with_readings(
-            stated.of_channel(
+            _with_friction(stated, model).of_channel(
                 model.specimen,
                 channel=number,
                 test=plan.log,
@@ -364,6 +364,12 @@ def instruments_of(
         )
         for number, model in enumerate(models, start=1)
     )
+
+
+def _with_friction(stated: StatedErrors, model: StrainModel) -> StatedErrors:
+    """With the friction that marks on the way down say, where there are such."""
+    found = (model.by_marks or model).splice_friction
+    return replace(stated, splice_friction=found) if np.isfinite(found) else stated
 
 
 def stepwise_instruments(campaign: Campaign, survey: Survey) -> tuple[InstrumentErrors, ...]:

@@ -224,6 +224,8 @@ _NUMBER = re.compile(r"[-+]?([0-9]{1,9}(\.[0-9]{0,9})?|\.[0-9]{1,9})")
 
 _HOLDS = ("slack", "min", "centre", "max")
 
+_FINEST_TAPE = 0.0005  # m: where nothing is stated a tape is not read better, whatever its digits
+
 
 @dataclass
 class _Rows:
@@ -267,12 +269,13 @@ def _reading(path: Path, row: int, name: str, text: str) -> float:
 
 
 def _check_hold(path: Path, row: int, hold: str) -> None:
-    if hold in _HOLDS:
+    level = hold.removesuffix(" down")
+    if hold == "slack" or level in _HOLDS[1:]:
         return
-    if _NUMBER.fullmatch(hold.rstrip("% ")) is None:
+    if _NUMBER.fullmatch(level.rstrip("% ")) is None:
         raise LogError(
             path, "unknown name of a hold", row=row, channel="hold", found=repr(cut(hold, 60)),
-            needed="slack, min, centre, max or a strain",
+            needed="slack, min, centre, max or a strain; on the way down, min down, 75 % down, ...",
         )  # fmt: skip
 
 
@@ -310,8 +313,11 @@ def _read_marks(path: Path, name: str = "") -> dict[str, SpliceMarks]:
             near_toe=table[:, 0],
             far_toe=table[:, 1],
             far_thimble=table[:, 2],
-            # trailing zeros are dropped by spreadsheets, so the finest digit counts
-            reading_uncertainty=min(entry.decimals) / math.sqrt(12) * math.sqrt(2),
+            # trailing zeros are dropped by spreadsheets, so the finest digit counts; of sixteenths
+            # of an inch in decimal feet it says more than a tape can
+            reading_uncertainty=max(
+                min(entry.decimals) / math.sqrt(12) * math.sqrt(2), _FINEST_TAPE
+            ),
             place=tuple(entry.place),
         )
     return marks

@@ -41,7 +41,13 @@ from reduction.campaign.unit_types import (
 from reduction.quantities.names import QUANTITIES, quantity
 from reduction.quantities.units import Dimension, parse_in_unit, parse_quantity
 from reduction.readers.layout import Layout
-from reduction.record.contributions import StatedErrors, of_expanded, of_half_width, of_resolution
+from reduction.record.contributions import (
+    USUAL_SPLICE_FRICTION,
+    StatedErrors,
+    of_expanded,
+    of_half_width,
+    of_resolution,
+)
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Specimen
 from reduction.record.settings import ReductionSettings, StoredSamples, StrainMethod
@@ -226,6 +232,8 @@ class UncertaintySection(_UncertaintySection):
     """Of the mass per length of the specimens."""
     machine_compliance: Annotated[float, _Standard("compliance")] | None = None
     """Of frame, load cell and grips: ``"2e-8 m/N"``."""
+    splice_friction: _Relative = USUAL_SPLICE_FRICTION
+    """Of splices on the way down against those on the way up, over their extension: ``"2 %"``."""
 
 
 def stated_errors(
@@ -268,6 +276,7 @@ def stated_errors(
         attached_mass=section.attached_mass or 0.0,
         linear_density=section.linear_density or 0.0,
         machine_compliance=section.machine_compliance or 0.0,
+        splice_friction=section.splice_friction,
         has_one_load_cell=tension.one_load_cell,
     )
 

@@ -72,7 +72,11 @@ from reduction.stages.strain.impossible_strain import (
 from reduction.stages.strain.strain_model import StrainModel, strain_by_model
 from reduction.stages.strain.stress import check_constant_volume
 from reduction.stages.three_parameter_line.line_product import SlowPull
-from reduction.uncertainty.effects_on_answers import load_train_notes, with_weighed_notes
+from reduction.uncertainty.effects_on_answers import (
+    load_train_notes,
+    splice_friction_notes,
+    with_weighed_notes,
+)
 from reduction.uncertainty.error_field import error_field
 from reduction.uncertainty.monte_carlo import with_line_spread
 from reduction.uncertainty.propagation import with_diameter
@@ -912,7 +916,8 @@ def reduce_test(
         ),
     )
     whole = with_weighed_notes(with_line_spread(with_shared_ratios(shared), settings.cycles))
-    return replace(whole, notes=(*whole.notes, *load_train_notes(whole)))
+    of_friction = splice_friction_notes(whole, instruments)
+    return replace(whole, notes=(*whole.notes, *load_train_notes(whole), *of_friction))
 
 
 def _with_shared_errors(

@@ -65,6 +65,9 @@ class InstrumentErrors:
         [kg m-1]
     machine_compliance : float
         Of the length that the machine gives by, over the tension of this specimen. [m N-1]
+    splice_friction : float
+        By how much longer the splices are on the way down than on the way up at one tension, over
+        their extension. [1]
     test : str
         Which test.
     tension_reading, position_reading : float
@@ -90,6 +93,7 @@ class InstrumentErrors:
     attached_mass: float = 0.0
     linear_density: float = 0.0
     machine_compliance: float = 0.0
+    splice_friction: float = 0.0
     tension_reading: float = 0.0
     position_reading: float = 0.0
     test: str = ""
@@ -605,6 +609,10 @@ def of_resolution(resolution: float) -> float:
     return resolution / float(np.sqrt(12))
 
 
+USUAL_SPLICE_FRICTION = 0.02
+"""Where neither the campaign nor a mark on the way down says more: a judgement, no measurement."""
+
+
 @dataclass(frozen=True)
 class StatedErrors:
     """Standard uncertainties that a campaign states; zero where it says nothing.
@@ -628,6 +636,9 @@ class StatedErrors:
         temperature of the test. [1]
     attached_mass, linear_density, machine_compliance : float
         Of the load train and of the specimen's own mass. [kg], [kg m-1], [m N-1]
+    splice_friction : float
+        Of splices on the way down against those on the way up, over their extension; where nothing
+        is stated it is not zero. [1]
     has_one_load_cell : bool
         All tension channels share the errors of one load cell.
     """
@@ -647,12 +658,17 @@ class StatedErrors:
     attached_mass: float = 0.0
     linear_density: float = 0.0
     machine_compliance: float = 0.0
+    splice_friction: float = USUAL_SPLICE_FRICTION
     has_one_load_cell: bool = False
 
     @property
     def has_any(self) -> bool:
         """True where an error is stated at all."""
-        return any(getattr(self, item.name) for item in fields(self) if item.type == "float")
+        return any(
+            getattr(self, item.name) != item.default
+            for item in fields(self)
+            if item.type == "float"
+        )
 
     def of_channel(
         self,
@@ -681,6 +697,7 @@ class StatedErrors:
             attached_mass=self.attached_mass,
             linear_density=self.linear_density,
             machine_compliance=self.machine_compliance,
+            splice_friction=self.splice_friction,
             tension_reading=self.tension_reading,
             position_reading=self.position_reading,
             tension_instrument=self.load_cell_name(load_cell, channel=channel),

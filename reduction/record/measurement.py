@@ -217,7 +217,8 @@ class SpliceMarks:
     test : tuple of str, length n_marks
         Test in which each row was read.
     hold : tuple of str, length n_marks
-        ``slack``, ``min``, ``centre``, ``max`` or a strain as text.
+        ``slack``, ``min``, ``centre``, ``max`` or a strain as text; with `` down`` behind it, of a
+        hold that was approached from above.
     near_toe, far_toe, far_thimble : ndarray, shape (n_marks,)
         Positions of the toes and of the far thimble. [m]
     reading_uncertainty : float
@@ -268,6 +269,11 @@ class SpliceMarks:
     def is_slack(self) -> Bools:
         """Rows read on the slack specimen, shape (n_marks,)."""
         return np.array([hold == "slack" for hold in self.hold], dtype=bool)
+
+    @property
+    def is_unloading(self) -> Bools:
+        """Rows read on the way down, shape (n_marks,)."""
+        return np.array([hold.endswith(" down") for hold in self.hold], dtype=bool)
 
 
 @dataclass(frozen=True)

@@ -65,6 +65,14 @@ def _unknown_mass(mass: float, usual: float, effect: float, cell: str) -> str:
     )
 
 
+def _unknown_friction(size: float, of_energy: float, of_constant: float) -> str:
+    return (
+        f"no mark was read on the way down: splices that are {size:.0%} longer there, by friction,"
+        f" would make H {of_energy:.0%} and K_ap {of_constant:.1%} too large. Read marks on"
+        ' the way down (hold "centre down"), or state splice_friction in [uncertainty]'
+    )
+
+
 def _unknown_compliance(compliance: float, usual: float, effect: float) -> str:
     """Effect of a machine compliance that nobody stated."""
     return (
@@ -300,6 +308,24 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
                "; no other law fits")
         ),
     ),
+    "splice-law-unchecked": (
+        "warning",
+        lambda n_marks, carried, effect: (
+            f"no law of the splices with a mark to spare agrees with the {n_marks} stretched"
+            f" mark{_plural(n_marks)}: those that do would follow a misread mark too"
+            + (f"; {carried} would move moduli by {100 * effect:+.1f} %, which is in the intervals"
+               if carried else "")
+            + ". Read marks at one more stretch"
+        ),
+    ),
+    "splice-friction": (
+        "note",
+        "by the marks on the way down the splices are longer there than their law says by"
+        " {share:+.1%} +- {spread:.1%} of their extension; no strain is corrected for it, and the"
+        " intervals hold it",
+    ),
+    "splice-friction-unknown": ("note", _unknown_friction),
+    "splice-friction-matters": ("warning", _unknown_friction),
     "mark-set-aside": (
         "warning",
         "the mark of test {test} at {hold} is an outlier, more than four standard errors off every"

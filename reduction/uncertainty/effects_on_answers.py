@@ -12,11 +12,12 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from reduction.record.contributions import USUAL_SPLICE_FRICTION, InstrumentErrors
 from reduction.record.notes import Note, note
 from reduction.stages.moduli.modulus_product import AmplitudeSummary
 from reduction.stages.reduced_test import ReducedTest
@@ -73,6 +74,51 @@ def load_train_notes(test: ReducedTest) -> Iterator[Note]:
                 usual=_USUAL_COMPLIANCE,
                 effect=_USUAL_COMPLIANCE * effect,
             )
+
+
+_POSSIBLE_FRICTION = 0.10  # of the extension of splices: a judgement, no measurement is known
+
+# of it that is in a loop: splices stand still after each reversal
+_IN_LOOP = 0.8
+
+
+def splice_friction_notes(
+    test: ReducedTest, instruments: Sequence[InstrumentErrors]
+) -> Iterator[Note]:
+    """Say what friction in the splices would do to H, where neither mark nor campaign says it.
+
+    A warning where that is beyond the interval of an H that is known at all.
+    """
+    summary, found = test.amplitude, test.contributions
+    if summary is None or found is None:
+        return
+    for index, errors in enumerate(instruments):
+        rows = [
+            number
+            for number, one in enumerate(found.component)
+            if one.source == "splice_friction" and one.of == errors.specimen
+        ]
+        if errors.splice_friction != USUAL_SPLICE_FRICTION or not rows:
+            continue
+        share = _POSSIBLE_FRICTION / errors.splice_friction
+        energy, constant = (
+            share
+            * float(found.values[f"test_{name}"][rows[0], index])
+            / float(getattr(summary, name)[index])
+            for name in ("hysteresis_energy", _NAME)
+        )
+        value = abs(float(summary.hysteresis_energy[index]))
+        spread = _standard_uncertainty(test, summary, "hysteresis_energy", index)
+        half = _EXPANDED * spread / value
+        yield note(
+            "splice-friction-matters"
+            if half < 1 and abs(_IN_LOOP * energy) > half
+            else "splice-friction-unknown",
+            errors.specimen,
+            size=_POSSIBLE_FRICTION,
+            of_energy=_IN_LOOP * energy,
+            of_constant=constant,
+        )
 
 
 _OF_ANSWER = {"identity-open": _NAME, "drift-in-energy": "hysteresis_energy"}

@@ -391,6 +391,41 @@ def _compliance_part(
     return [(Component("machine_compliance", errors.position_instrument), rows)]
 
 
+def splice_friction_error(
+    errors: InstrumentErrors, model: StrainModel, *, strain: ArrayLike, tension: ArrayLike
+) -> Floats:
+    r"""Error of strain on the way down, by splices that are longer there. [1].
+
+    .. math:: \phi\, \ell_s \varepsilon_s\, d\varepsilon/dp
+
+    Notes
+    -----
+    Friction in a splice holds it back: at one tension it is longer on the way down.  The law is
+    that of the marks, which are read on the way up.
+
+    Examples
+    --------
+    Splices that stretch 20 % at 450 N, known to 5 % of that:
+
+    >>> model = StrainModel("new", "tension-driven", {"relaxed_free_length": 2.5,
+    ...     "relaxed_splice_length": 1.25, "splice_compliance": 0.2 / 450, "splice_exponent": 1.0})
+    >>> errors = InstrumentErrors("new", splice_friction=0.05)
+    >>> print(splice_friction_error(errors, model, strain=[1.0], tension=[450.0]).round(4))
+    [0.005]
+    """
+    at, load = as_same_shape(strain=strain, tension=tension)
+    splices = model.by_marks or model
+    known = splices.coefficients
+    if not errors.splice_friction or "relaxed_splice_length" not in known:
+        return np.zeros(at.shape)
+    position, further = position_by_model(
+        splices, strain=np.stack([at, at + _REACH]), tension=np.stack([load, load])
+    )
+    rest = known["relaxed_free_length"] * (1 + at) + known["relaxed_splice_length"]
+    longer = np.maximum(position - rest, 0.0)
+    return np.asarray(errors.splice_friction * longer * _REACH / (further - position))
+
+
 @dataclass(frozen=True)
 @read_only_arrays
 class Inertia:

@@ -162,7 +162,12 @@ from reduction.stages.three_parameter_line.line_model import (
 )
 from reduction.stages.three_parameter_line.line_product import SlowPull
 from reduction.stages.three_parameter_line.slow_pull import quasi_static_spring_constant
-from reduction.uncertainty.error_field import ErrorField, Inertia, error_field
+from reduction.uncertainty.error_field import (
+    ErrorField,
+    Inertia,
+    error_field,
+    splice_friction_error,
+)
 
 Waveform = Literal["triangular", "sinusoidal", "other"]
 
@@ -824,7 +829,8 @@ def loop_contributions(
     complex modulus back by 2 pi f lag and narrows the loop; it has no first-order effect on
     extremes.  It is what the load cell felt that is late: the inertia that was taken off with it.
     Inertia goes with the position and does no work over a cycle, so that an error of its mass
-    leaves the energy alone.
+    leaves the energy alone.  Splices that are longer on the way down widen the loop by the
+    difference of strain, over the range of tension.
 
     Examples
     --------
@@ -933,6 +939,30 @@ def loop_contributions(
         component, values = _with(
             component, values, Component("lag", errors.tension_instrument), of_lag
         )
+    if errors.splice_friction:
+        # a valley ends a way down; a peak has no error
+        below, middle = splice_friction_error(
+            errors,
+            model,
+            strain=np.stack([mean_strain - strain_amplitude, mean_strain]),
+            tension=np.stack([mean_tension - tension_amplitude, mean_tension]),
+        )
+        shorter = -below / 2
+        wide = 2 * middle * tension_amplitude
+        stretch = shorter / strain_amplitude
+        component, values = _with(
+            component, values, Component("splice_friction", errors.specimen),
+            {
+                "mean_strain": below / 2,
+                "strain_amplitude": shorter,
+                "apparent_spring_constant": -stretch * apparent_spring_constant,
+                "hysteresis_energy": wide,
+                "closed_loop_energy": wide,
+                "storage_spring_constant": -stretch * storage_spring_constant,
+                "loss_spring_constant": wide / (np.pi * strain_amplitude**2)
+                - 2 * stretch * loss_spring_constant,
+            },
+        )  # fmt: skip
     loss_factor = loss_spring_constant / storage_spring_constant
     values["loss_factor"] = loss_factor * (
         values["loss_spring_constant"] / loss_spring_constant

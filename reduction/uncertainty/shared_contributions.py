@@ -91,6 +91,7 @@ from reduction.uncertainty.error_field import (
     Inertia,
     coefficient_errors,
     error_field,
+    splice_friction_error,
 )
 from reduction.uncertainty.propagation import (
     by_diameter,
@@ -413,15 +414,54 @@ def _of_curves(
     for name, modulus in zip(names, known, strict=False):
         whole = np.where(np.isfinite(modulus), modulus, slope)
         values[f"{name}{suffix}"] = at_slope(whole).values["tangent_modulus"]
+    component = of_tension.component
+    if errors.splice_friction and not suffix:  # a first rise is the way on which marks are read
+        away, steeper = _friction_on_branches(errors, model, curves.strain_bin, tension)
+        rise = area * slope
+        values["branch_tension"] = np.concatenate([values["branch_tension"], (-rise * away)[None]])
+        for name in names:
+            modulus = getattr(curves, name)[index]
+            modulus = np.where(np.isfinite(modulus), modulus, slope)
+            bend = np.stack([_smooth_slope(row, curves.strain_bin) for row in modulus])
+            own = -(modulus * steeper + bend * away)
+            values[name] = np.concatenate([values[name], own[None]])
+        component = (*component, Component("splice_friction", errors.specimen))
     if curves.tangent_modulus_window_uncertainty is None:
-        return Contributions(of_tension.component, values)
+        return Contributions(component, values)
     missed = np.nan_to_num(curves.tangent_modulus_window_uncertainty[index])[None]
     values = {
         name: np.concatenate([rows, np.zeros_like(missed) if name == "branch_tension" else missed])
         for name, rows in values.items()
     }
     window = Component("window", f"{errors.test} {errors.specimen}")
-    return Contributions((*of_tension.component, window), values)
+    return Contributions((*component, window), values)
+
+
+_TINY = 1e-12  # of the strain 1
+
+
+def _friction_on_branches(
+    errors: InstrumentErrors, model: StrainModel, strain: Floats, tension: Floats
+) -> tuple[Floats, Floats]:
+    """Error of strain by the friction of splices, and its slope over strain, of both branches.
+
+    A splice stands still after a reversal until its law has it longer or shorter by what friction
+    holds back.
+    """
+    at = np.broadcast_to(strain, tension.shape)
+    longer = splice_friction_error(errors, model, strain=at, tension=tension)
+    away, steeper = np.zeros(tension.shape), np.zeros(tension.shape)
+    for branch in range(2):
+        known = np.isfinite(longer[branch])
+        if known.sum() < 2:
+            continue
+        own = longer[branch, known]
+        reversal = own[-branch]
+        gone = np.abs(own / max(reversal, _TINY) - 1)
+        share = np.exp(-gone / (2 * errors.splice_friction))
+        away[branch, known] = own * (share if branch == 0 else 1 - share)
+        steeper[branch, known] = np.gradient(away[branch, known], strain[known])
+    return away, steeper
 
 
 def _completed(

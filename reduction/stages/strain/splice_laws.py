@@ -153,9 +153,15 @@ class FittedLaw:
     @property
     def chance(self) -> float:
         """Probability of a misfit as large, were the law and the stated error right. [1]."""
-        return (
-            1.0 if self.freedom <= 0 else float(scipy.special.chdtrc(self.freedom, self.chi_square))
-        )
+        # what splices settle by is known beforehand, and is missed as one more reading is
+        freedom = self.freedom + ("offset" in LAWS[self.name])
+        return 1.0 if freedom <= 0 else float(scipy.special.chdtrc(freedom, self.chi_square))
+
+    @property
+    def spread(self) -> Floats:
+        """Covariance; of a doubtful law by the errors that its misfit asks for, shape (8, 8)."""
+        is_doubtful = self.freedom > 0 and self.chance < _DOUBT
+        return self.covariance * (self.chi_square / self.freedom if is_doubtful else 1.0)
 
     @property
     def n_terms(self) -> int:
@@ -191,6 +197,10 @@ class SpliceAverage:
         Of these. [1]
     set_aside : int or None
         Row that lies far off every law.
+    is_checked : bool
+        False where every law with a mark to spare is doubtful, and others follow any marks: a
+        misread mark would not show.  Where none of the former passes at all, laws that the marks
+        reject have a weight.
     """
 
     values: Floats
@@ -203,6 +213,7 @@ class SpliceAverage:
     test_offset: Floats
     test_variance: Floats
     set_aside: int | None = None
+    is_checked: bool = True
 
 
 def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAverage:
@@ -272,11 +283,20 @@ def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAv
     if not passing.any():
         raise _refusal(readings, laws, specimen)
     n_loaded = int((~kept.is_slack).sum())
-    is_known = all(
+    has_spare = np.array([law.freedom > 0 for law in laws])
+    is_sure = np.array([law.chance >= _DOUBT for law in laws])
+    is_checked = bool((has_spare & is_sure).any() or not (passing & ~has_spare).any())
+    if not (passing & has_spare).any():
+        passing = _with_nearest(laws, passing)
+    is_known = is_checked and all(
         n_loaded >= law.n_terms + 2 for law, passes in zip(laws, passing, strict=True) if passes
     )
     criterion = np.array([law.criterion for law in laws])
-    weight = np.exp(-(criterion - criterion[passing].min()) / 2) if is_known else np.ones(len(laws))
+    if is_known:
+        weight = np.exp(-(criterion - criterion[passing].min()) / 2)
+    else:  # laws of one side say much the same: together they have as much as those of another
+        side = np.array([2, 1]) @ _sides(laws)
+        weight = 1.0 / np.array([np.count_nonzero(passing & (side == one)) or 1 for one in side])
     weight = _with_both_sides(laws, np.where(passing, weight, 0.0) / weight[passing].sum())
     values = np.array([law.values for law in laws])
     mean = weight @ values
@@ -288,7 +308,7 @@ def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAv
     offset, variance = _offsets(kept, laws[int(np.argmax(weight))], slip)
     return SpliceAverage(
         values=mean,
-        covariance=np.einsum("k,kij->ij", weight, np.array([law.covariance for law in laws])),
+        covariance=np.einsum("k,kij->ij", weight, np.array([law.spread for law in laws])),
         between=np.einsum("k,ki,kj->ij", weight, away, away),
         reference=kept.reference,
         laws=tuple(laws),
@@ -297,15 +317,38 @@ def fit_splice_laws(readings: SpliceReadings, *, specimen: str = "") -> SpliceAv
         test_offset=offset,
         test_variance=variance,
         set_aside=set_aside,
+        is_checked=is_checked,
     )
+
+
+def _sides(laws: Sequence[FittedLaw]) -> Bools:
+    """Which laws are of tension alone, and which of strain alone, shape (2, n_laws)."""
+    terms = [frozenset(LAWS[law.name]) - {"offset"} for law in laws]
+    return np.array(
+        [[only == {"tension"} for only in terms], ["tension" not in only for only in terms]]
+    )
+
+
+def _with_nearest(laws: Sequence[FittedLaw], passing: Bools) -> Bools:
+    """Laws that pass, and the nearest of a side that has none; of all, where a side has no law.
+
+    Those that pass follow any marks, so that their misfit says nothing of a misread one.
+    """
+    misfit = np.array([law.chi_square / law.freedom if law.freedom > 0 else np.inf for law in laws])
+    kept = passing.copy()
+    for side in _sides(laws):
+        if (side & passing).any():
+            continue
+        among = side if (side & np.isfinite(misfit)).any() else np.ones(side.size, dtype=bool)
+        nearest = np.where(among, misfit, np.inf)
+        if np.isfinite(nearest).any():
+            kept[int(np.argmin(nearest))] = True
+    return kept
 
 
 def _with_both_sides(laws: Sequence[FittedLaw], weight: Floats) -> Floats:
     """Weights with as much for laws of tension alone, and of strain alone, as an interval needs."""
-    terms = [frozenset(LAWS[law.name]) - {"offset"} for law in laws]
-    sides = np.array(
-        [[only == {"tension"} for only in terms], ["tension" not in only for only in terms]]
-    )
+    sides = _sides(laws)
     fits = np.array([law.chance >= _DOUBT for law in laws]) & (weight > 0)
     if not (sides & fits).any(axis=1).all():
         return weight
@@ -354,7 +397,10 @@ def _law(readings: SpliceReadings, name: str, slip: float) -> FittedLaw | None:
     """One law; of the tension with an exponent of its own, where the marks fix one."""
     at_one = _fit(readings, name, 1.0, slip)
     loaded = readings.tension[~readings.is_slack]
-    if at_one is None or "tension" not in LAWS[name] or loaded.size < len(LAWS[name]) + 3:
+    if at_one is None or "tension" not in LAWS[name]:
+        return at_one
+    # of two marks the tension alone may have one that leaves none to spare: no misfit judges it
+    if loaded.size < len(LAWS[name]) + (1 if LAWS[name] == ("tension",) else 3):
         return at_one
     if loaded.max() < _SPAN * loaded.min():
         return at_one

@@ -65,7 +65,12 @@ from reduction.stages.strain.splice_laws import (
     SpliceReadings,
     fit_splice_laws,
 )
-from reduction.stages.strain.strain_model import StrainModel, free_length_fraction, strain_by_model
+from reduction.stages.strain.strain_model import (
+    StrainModel,
+    free_length_fraction,
+    position_by_model,
+    strain_by_model,
+)
 from reduction.stages.strain.tape_and_crosshead import POSITION_TOLERANCE, TAPE_UNCERTAINTY
 from reduction.stages.strain.zero_strain import ZeroStrain
 
@@ -249,7 +254,8 @@ def _check_marks(marks: SpliceMarks, *, tests: Collection[str] | None = None) ->
     allowance = _CONTRADICTION * max(marks.reading_uncertainty, TAPE_UNCERTAINTY)
     test = np.array(marks.test)
     for name in dict.fromkeys(marks.test) if tests is None else tests:
-        rows = np.flatnonzero(test == name)
+        # friction makes splices longer on the way down
+        rows = np.flatnonzero((test == name) & ~marks.is_unloading)
         rows = rows[np.argsort(marks.far_thimble[rows], kind="stable")]
         growth = np.diff(marks.free_length[rows])
         stroke = np.diff(marks.far_thimble[rows])
@@ -283,6 +289,15 @@ def _windows(standstills: Standstills, reading: MarkReading) -> list[slice]:
 def _finite_mean(values: Floats) -> float:
     kept = values[np.isfinite(values)]
     return float(kept.mean()) if kept.size else float("nan")
+
+
+_APPROACH = 5  # samples
+
+
+def _falls_to(tension: Floats, first: int) -> bool:
+    """Whether a hold was approached from a higher tension."""
+    before = _finite_mean(tension[max(first - _APPROACH, 0) : first])
+    return before > _finite_mean(tension[first : first + _APPROACH])
 
 
 def measure_mark_tension(
@@ -323,7 +338,8 @@ def measure_mark_tension(
     -----
     A mark belongs to the earliest hold at its position, within 50 mm: the report
     marks while the machine is set up and cycles afterwards, and the crosshead may
-    stand there again, at another tension ([3]_, sec. 4.1).
+    stand there again, at another tension ([3]_, sec. 4.1).  Of a mark on the way down it is the
+    earliest whose tension was higher just before.
 
     The rubber relaxes while a hold lasts, by 12 % in the longest one of a test at
     275 %, so it matters when the tape was read; the report does not say.  The
@@ -352,11 +368,16 @@ def measure_mark_tension(
     rests = np.flatnonzero(standstills.is_rest)
     slack = during[rests[0]] if rests.size else 0.0
     measured = []
-    for test, is_slack, position in zip(marks.test, marks.is_slack, marks.far_thimble, strict=True):
+    from_above = np.array([_falls_to(log, first) for first in standstills.first], dtype=bool)
+    for test, is_slack, position, is_down in zip(
+        marks.test, marks.is_slack, marks.far_thimble, marks.is_unloading, strict=True
+    ):
         if test != test_id:
             continue
         distance = np.where(
-            standstills.is_rest, np.inf, np.abs(standstills.mean_position - position)
+            standstills.is_rest | (is_down & ~from_above),
+            np.inf,
+            np.abs(standstills.mean_position - position),
         )
         nearest = float(distance.min(initial=np.inf))
         if is_slack:
@@ -690,13 +711,13 @@ class PooledMarks:
     @property
     def has_own(self) -> bool:
         """Whether the test has stretched rows of its own."""
-        return bool(np.any(self.is_own & ~self.marks.is_slack))
+        return bool(np.any(self.is_own & ~self.marks.is_slack & ~self.marks.is_unloading))
 
     @property
     def knows_tension(self) -> bool:
         """Whether a law of tension can be asked for at two stretched rows or more."""
-        known = ~self.marks.is_slack & (np.nan_to_num(self.tension) > 0)
-        return bool(np.count_nonzero(known) > 1)
+        known = ~self.marks.is_slack & ~self.marks.is_unloading
+        return bool(np.count_nonzero(known & (np.nan_to_num(self.tension) > 0)) > 1)
 
     def stretched_rows(self, method: StrainMethod) -> Integers:
         """Rows that fix the coefficients of a method.
@@ -705,7 +726,7 @@ class PooledMarks:
         in every test; otherwise, and where ``mixed`` knows the tension of hardly one, those of the
         test, or all where it has none.
         """
-        stretched = ~self.marks.is_slack
+        stretched = ~self.marks.is_slack & ~self.marks.is_unloading
         if method == "tension-driven" or (method == "mixed" and self.knows_tension):
             return np.flatnonzero(stretched & (np.nan_to_num(self.tension) > 0))
         return np.flatnonzero(stretched & (self.is_own if self.has_own else np.True_))
@@ -1002,6 +1023,22 @@ def _on_laws(fit: _MixedFit, readings: PooledMarks) -> tuple[Note, ...]:
         row = int(_splice_readings(readings, readings.relaxed()).row[average.set_aside])
         notes.append(note("mark-set-aside", marks.specimen, test=marks.test[row],
                           hold=marks.hold[row]))  # fmt: skip
+    if not average.is_checked:
+        carried = [
+            law
+            for law, weight in zip(average.laws, average.weight, strict=True)
+            if weight > 0 and law.freedom > 0 and law is not best
+        ]
+        effects = [_effect_on_modulus(fit.model, law, average.reference) for law in carried]
+        notes.append(
+            note(
+                "splice-law-unchecked",
+                marks.specimen,
+                n_marks=int((~marks.is_slack[fit.rows]).sum()),
+                carried=", ".join(law.name for law in carried),
+                effect=max(effects, key=abs, default=float("nan")),
+            )
+        )
     if average.slip:
         length = average.slip * fit.model.coefficients["relaxed_splice_length"]
         notes.append(note("splices-slip", marks.specimen, slip=length))
@@ -1111,11 +1148,43 @@ def _average_at_marks(
     fit = _fit_mixed(readings, average)
     stretched = fit.rows[~readings.marks.is_slack[fit.rows]]
     model = _at_marks(fit.model, readings, stretched)
+    marks = readings.marks
     if fit.average.slip:
         # its own offset: what the tests share is in the covariance of each
         model = replace(model, marks_from="this test, over those of the campaign")
+    friction = _friction(model, readings)
+    if friction is not None:
+        share, spread = friction
+        model = replace(
+            model,
+            splice_friction=float(np.hypot(share, spread)),
+            notes=(*model.notes, note("splice-friction", marks.specimen, share=share,
+                                      spread=spread)),
+        )  # fmt: skip
     fit = replace(fit, model=model)
     return replace(model, notes=(*model.notes, *_on_laws(fit, readings))), fit
+
+
+def _friction(model: StrainModel, readings: PooledMarks) -> tuple[float, float] | None:
+    """Share by which splices are longer on the way down than the law says, and its uncertainty.
+
+    None without marks on the way down.
+    """
+    marks = readings.marks
+    rows = np.flatnonzero(marks.is_unloading & (np.nan_to_num(readings.tension) > 0))
+    if not rows.size:
+        return None
+    known = model.coefficients
+    strain = marks.free_length[rows] / known["relaxed_free_length"] - 1
+    length = position_by_model(model, strain=strain, tension=readings.tension[rows])
+    by_law = length - marks.free_length[rows]
+    extension = by_law - known["relaxed_splice_length"]
+    longer = marks.splice_length[rows] - by_law
+    size = float(extension @ extension)
+    if not size > 0:
+        return None
+    reading = sqrt(3) * _tape_error(marks)
+    return float(extension @ longer) / size, reading / sqrt(size)
 
 
 # a strain slope that differs by less than this is not worth a sentence
@@ -1232,7 +1301,7 @@ def _on_left_out(
     model: StrainModel, marks: SpliceMarks, n_used: int, failed_tests: Sequence[str]
 ) -> tuple[Note, ...]:
     """Stretched marks that the law of tension lacks: their log failed, or shows no hold."""
-    rows = np.flatnonzero(~marks.is_slack)
+    rows = np.flatnonzero(~marks.is_slack & ~marks.is_unloading)
     tests = [marks.test[row] for row in rows if marks.test[row] in failed_tests]
     notes = []
     if tests:
@@ -1275,7 +1344,9 @@ def _remarks_on(
     new: strain by marks differs from the marks by 2.00 percentage points rms; tape reading explains
     only 0.68. ...
     """
-    expected = sqrt(3) * marks.reading_uncertainty / model.coefficients["relaxed_free_length"]
+    # the laws are judged by the error that a tape usually has, where none is stated
+    reading = _tape_error(marks) if model.method == "mixed" else marks.reading_uncertainty
+    expected = sqrt(3) * reading / model.coefficients["relaxed_free_length"]
     return (
         *_on_left_out(model, marks, int(is_stretched.sum()), failed_tests),
         *_on_constant_fraction(model, is_stretched),

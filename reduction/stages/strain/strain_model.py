@@ -100,6 +100,9 @@ class StrainModel:
         Of the coefficients, by which law of the splices it is; empty where there is one law. [SI]
     reference_tension : float
         At which strain is zero, where that is not slack. [N]
+    splice_friction : float
+        Root mean square of the share by which splices are longer on the way down, by marks that
+        were read there; NaN without them. [1]
     """
 
     specimen: str
@@ -125,6 +128,7 @@ class StrainModel:
     by_marks: StrainModel | None = None
     law_covariance: Floats = field(default_factory=lambda: np.empty((0, 0)))
     reference_tension: float = 0.0
+    splice_friction: float = float("nan")
 
     @property
     def relaxed_length(self) -> float:
