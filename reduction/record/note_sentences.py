@@ -681,6 +681,20 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "refused: drop, rate per decade, Prony series: the log peaks at {peak:.4g} N beside the"
         " end of the ramp, where {initial:.4g} N are found: when the hold begins is not known",
     ),
+    "hold-load-late": (
+        "warning",
+        lambda rise, peak, delay, is_refused: (
+            ("refused: initial tension, drop, rate per decade, Prony series: " * is_refused)
+            + f"the load rises by {rise:.3g} N to {peak:.4g} N within {delay:.2g} s after the"
+            " crosshead has stopped, where a specimen relaxes: it comes late (a filter, a slow load"
+            " cell or another clock)"
+            + (
+                "; take the filter out, or pull more slowly"
+                if is_refused
+                else ". Initial tension and drop carry twice that rise"
+            )
+        ),
+    ),
     "prony-misses-ramp-end": (
         "refusal",
         "refused: Prony series: it gives {modelled:.4g} N at the end of the ramp, where the log"
@@ -1339,6 +1353,6 @@ CAUSES = (
     "run-off-plan", "cord-stress-outside-band", "cords-do-not-fit", "hose-rubber-outside-band",
     "wrap-angle-outside-band", "dead-length-large", "hose-not-of-design", "hose-unlike-design",
     "target-strain-missed", "density-outside-band", "strain-above-band",
-    "extensometer-off-at-slack", "reference-tension-elsewhere", "strain-below-zero",
+    "extensometer-off-at-slack", "reference-tension-elsewhere", "strain-below-zero", "hold-load-late",
 )  # fmt: skip
 """What is wrong with an input as it was stated, first what explains those behind it."""
