@@ -1353,6 +1353,7 @@ CAUSES = (
     "run-off-plan", "cord-stress-outside-band", "cords-do-not-fit", "hose-rubber-outside-band",
     "wrap-angle-outside-band", "dead-length-large", "hose-not-of-design", "hose-unlike-design",
     "target-strain-missed", "density-outside-band", "strain-above-band",
-    "extensometer-off-at-slack", "reference-tension-elsewhere", "strain-below-zero", "hold-load-late",
+    "extensometer-off-at-slack", "reference-tension-elsewhere", "strain-below-zero",
+    "hold-load-late",
 )  # fmt: skip
 """What is wrong with an input as it was stated, first what explains those behind it."""
