@@ -138,6 +138,21 @@ def test_trimmed_ends_are_in_the_untrimmed_curve_alone(triangle):
     assert np.isfinite(whole).sum() > np.isfinite(trimmed).sum()
 
 
+def test_where_nothing_is_trimmed_both_curves_are_as_uncertain(triangle):
+    strain, cycles = triangle(n_cycles=12, per_cycle=80, trimmed=4)
+    noise = np.random.default_rng(11).normal(0, 0.5, strain.size)
+    # beside the kink narrower windows are taken, which hold more noise
+    kinked = np.interp(strain, [1.0, 1.25, 1.5], [200.0, 220.0, 320.0])
+    curves = curves_of(strain, kinked + noise, cycles)
+    trimmed, whole = (
+        curves.tangent_modulus_standard_uncertainty[0],
+        curves.tangent_modulus_untrimmed_standard_uncertainty[0],
+    )
+    same = curves.tangent_modulus[0] == curves.tangent_modulus_untrimmed[0]
+    assert same.sum() > 10
+    np.testing.assert_array_equal(trimmed[same], whole[same])
+
+
 def test_test_without_a_constant_rate_still_has_an_untrimmed_curve(triangle):
     strain, cycles = triangle(per_cycle=200)
     never = dataclasses.replace(cycles, is_in_trimmed_branch=np.zeros(strain.size, dtype=bool))
