@@ -436,6 +436,15 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             }[cause]
         ),
     ),
+    "loops-not-of-a-sine": (
+        "warning",
+        lambda share, effect: (
+            "the waveform is stated as sinusoidal, and the fundamentals in time would lose"
+            f" {share:.3g} times the energy of the loops: the log is no sine (a rise and a fall of"
+            " unequal time?); stiffness, loss and amplitudes are those at equal phase of the"
+            " stroke, as of any other waveform"
+        ),
+    ),
     "drift-in-energy": (
         "warning",
         lambda energy, closed, effect: (
