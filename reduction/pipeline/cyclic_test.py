@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from reduction.record.samples import first_sample
 from reduction.record.settings import ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.cycle_search import control_channel
-from reduction.stages.cycles.loop_sense import without_backward_loops
+from reduction.stages.cycles.loop_sense import contradicts_sine, without_backward_loops
 from reduction.stages.cycles.loops import close_loops
 from reduction.stages.moduli.cycle_alignment import (
     aligned_strain,
@@ -173,11 +174,13 @@ def parts_of_cycles(
         return {}
     area = areas_of(specimens)
     break_in = settings.cycles.break_in_cycles
-    loops = close_loops(
-        record.time, tension, strain, cycles, waveform=settings.cycles.waveform,
-        control=settings.cycles.control,
+    close = partial(
+        close_loops, record.time, tension, strain, cycles, control=settings.cycles.control,
         driven=control_channel(located.position, tension, settings.cycles),
     )  # fmt: skip
+    loops = close(waveform=settings.cycles.waveform)
+    if settings.cycles.waveform == "sinusoidal" and contradicts_sine(loops).any():
+        loops = close(waveform="other")
     loops = without_backward_loops(loops)
     amplitude = summarise_amplitude(loops, area=area, break_in_cycles=break_in)
     loops.release_pages()

@@ -866,6 +866,7 @@ def reduce_test(
         notes_of_loops(
             cycle_parts["loops"], names=record.specimens, time_step=median_step(record.time),
             lag=[one.lag for one in instruments] or [0.0] * len(specimens),
+            is_sinusoidal=settings.cycles.waveform == "sinusoidal",
         )
         if "loops" in cycle_parts
         else ()

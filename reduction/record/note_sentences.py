@@ -466,6 +466,15 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             }[cause]
         ),
     ),
+    "loops-not-of-a-sine": (
+        "warning",
+        lambda share, effect: (
+            "the waveform is stated as sinusoidal, and the fundamentals in time would lose"
+            f" {share:.3g} times the energy of the loops: the log is no sine (a rise and a fall of"
+            " unequal time?); stiffness, loss and amplitudes are those at equal phase of the"
+            " stroke, as of any other waveform"
+        ),
+    ),
     "drift-in-energy": (
         "warning",
         lambda energy, closed, effect: (
@@ -710,6 +719,20 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "refusal",
         "drop, rate per decade and Prony series not given: the log peaks at {peak:.4g} N near the"
         " end of the ramp, where the tension is {initial:.4g} N; the start of the hold is unclear",
+    ),
+    "hold-load-late": (
+        "warning",
+        lambda rise, peak, delay, is_refused: (
+            ("refused: initial tension, drop, rate per decade, Prony series: " * is_refused)
+            + f"the load rises by {rise:.3g} N to {peak:.4g} N within {delay:.2g} s after the"
+            " crosshead has stopped, where a specimen relaxes: it comes late (a filter, a slow load"
+            " cell or another clock)"
+            + (
+                "; take the filter out, or pull more slowly"
+                if is_refused
+                else ". Initial tension and drop carry twice that rise"
+            )
+        ),
     ),
     "prony-misses-ramp-end": (
         "refusal",
@@ -1374,5 +1397,6 @@ CAUSES = (
     "wrap-angle-outside-band", "dead-length-large", "hose-not-of-design", "hose-unlike-design",
     "target-strain-missed", "density-outside-band", "strain-above-band",
     "extensometer-off-at-slack", "reference-tension-elsewhere", "strain-below-zero",
+    "hold-load-late",
 )  # fmt: skip
 """What is wrong with an input as it was stated, first what explains those behind it."""

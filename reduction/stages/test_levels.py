@@ -232,10 +232,21 @@ def _some(n_samples: int) -> slice:
     return slice(None, None, max(1, n_samples // _MOST_POINTS))
 
 
+_FEWEST_POINTS = 4  # on the way out; a log that begins at its greatest length has none
+
+
 def _speed(time: Floats, position: Floats) -> float:
-    """Median speed of the crosshead where it is on the way. [m s-1]."""
+    """Median speed of the crosshead where it is on the way out. [m s-1].
+
+    The way back is no part of a pull, and may be at any rate.
+    """
     some = _some(time.size)
     t, x = time[some], position[some]
+    known = np.isfinite(t) & np.isfinite(x)
+    t, x = t[known], x[known]
+    out = int(np.argmax(x)) + 1 if x.size else 0
+    if out > _FEWEST_POINTS:
+        t, x = t[:out], x[:out]
     with np.errstate(divide="ignore", invalid="ignore"):
         rate = np.abs(np.diff(x) / np.diff(t))
     rate = rate[np.isfinite(rate)]

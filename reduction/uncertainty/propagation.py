@@ -652,7 +652,8 @@ def hold_contributions(
     """
     initial, final = hold.hold_initial_tension, hold.hold_final_tension
     # the middle of the hold, both its ends, its long time, and the stated times
-    levels = [(initial + final) / 2, initial, final, hold.long_time_tension]
+    middle = (initial + final) / 2 if np.isfinite(initial) else final
+    levels = [middle, initial, final, hold.long_time_tension]
     n_levels = len(levels)
     field = field_at(
         np.concatenate([np.full(n_levels, hold.hold_strain), hold.strain_at_time]),

@@ -428,9 +428,13 @@ def _of_curves(
         component = (*component, Component("splice_friction", errors.specimen))
     if curves.tangent_modulus_window_uncertainty is None:
         return Contributions(component, values)
-    missed = np.nan_to_num(curves.tangent_modulus_window_uncertainty[index])[None]
+    missed = np.nan_to_num(curves.tangent_modulus_window_uncertainty[index])
+    by_window = {
+        "branch_tension": np.zeros_like(missed),
+        "tangent_modulus_untrimmed": np.hypot(missed, _smeared(curves, index)),
+    }
     values = {
-        name: np.concatenate([rows, np.zeros_like(missed) if name == "branch_tension" else missed])
+        name: np.concatenate([rows, by_window.get(name, missed)[None]])
         for name, rows in values.items()
     }
     window = Component("window", f"{errors.test} {errors.specimen}")
@@ -462,6 +466,33 @@ def _friction_on_branches(
         away[branch, known] = own * (share if branch == 0 else 1 - share)
         steeper[branch, known] = np.gradient(away[branch, known], strain[known])
     return away, steeper
+
+
+_MOVED = 1e-3
+
+
+def _smeared(curves: ModulusCurves, index: int) -> Floats:
+    """What a window over the end of a branch may miss of the untrimmed modulus there. [Pa].
+
+    The modulus changes at a reversal within less than a window: where the samples that are
+    trimmed move it, it is known to lie between there and half a window further in.
+    """
+    half = curves.window / 2
+    smeared = np.zeros_like(curves.tangent_modulus[index])
+    rows = zip(
+        curves.tangent_modulus[index], curves.tangent_modulus_untrimmed[index], smeared, strict=True
+    )
+    for trimmed, whole, row in rows:
+        known = np.isfinite(whole)
+        if not known.any():
+            continue
+        strain = curves.strain_bin[known]
+        inwards = np.where(strain < (strain[0] + strain[-1]) / 2, half, -half)
+        further = np.interp(strain + inwards, strain, whole[known])
+        # NaN, where nothing is left, is moved too
+        moved = ~np.isclose(trimmed[known], whole[known], rtol=_MOVED, atol=0.0)
+        row[known] = np.where(moved, np.abs(whole[known] - further) / np.sqrt(3), 0.0)
+    return smeared
 
 
 def _completed(

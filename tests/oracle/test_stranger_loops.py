@@ -15,8 +15,13 @@ LAWS = ("settling-angle", "unequal-elastic", "unequal-lossy", "noisy-turns", "re
 WITHIN = 3.5
 
 
-def run(law, folder, seed=3):
+def run(law, folder, seed=3, waveform=None):
     truth = make(f"loop-{law}", seed, folder)
+    if waveform:
+        campaign = folder / "campaign.toml"
+        text = campaign.read_text(encoding="utf-8")
+        assert 'waveform = "triangular"' in text
+        campaign.write_text(text.replace("triangular", waveform), encoding="utf-8")
     done = reduction("run", folder / "campaign.toml", cwd=folder)
     (archive,) = Path(folder, "processed").glob("*/D-1.nc")
     with xr.open_dataset(archive, group="cycles") as cycles:
@@ -40,6 +45,17 @@ def test_loops_of_a_law_are_within_their_uncertainty(law, tmp_path):
             else piece["apparent_spring_constant"] * piece["strain_amplitude"] ** 2
         )  # fmt: skip
         assert stated < 0.05 * abs(size), name
+
+
+@pytest.mark.parametrize("law", ["unequal-elastic", "unequal-lossy"])
+def test_a_sine_that_is_none_is_told_first_and_its_loss_is_that_of_the_energy(law, tmp_path):
+    # 40 s up and 10 s down, and stated as sinusoidal
+    truth, found, said = run(law, tmp_path, waveform="sinusoidal")
+    for name in ("loss_factor", "hysteresis_energy", "apparent_spring_constant"):
+        true = truth.tests["D-1"]["piece"][name]
+        stated = float(found[f"test_{name}_standard_uncertainty"][0])
+        assert abs(float(found[f"test_{name}"][0]) - true) <= WITHIN * stated, name
+    assert "\nCheck:\n  D-1: piece: the waveform is stated as sinusoidal" in said
 
 
 def test_a_settling_angle_leaves_the_frequency_to_a_millionth(tmp_path):

@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 
 from reduction.stages.cycles.cycle_product import Cycles
-from reduction.stages.cycles.loop_sense import notes_of_loops, without_backward_loops
+from reduction.stages.cycles.loop_sense import (
+    contradicts_sine,
+    notes_of_loops,
+    without_backward_loops,
+)
 from reduction.stages.cycles.loops import close_loops
 
 FREQUENCY, N_CYCLES, PER = 0.5, 12, 100
@@ -83,3 +87,8 @@ def test_the_work_of_a_drift_is_told():
     assert note.code == "drift-in-energy"
     assert note.numbers["energy"] == pytest.approx(energy, rel=2e-3)
     assert abs(note.numbers["closed"] - energy) == pytest.approx(1.0, rel=0.02)
+
+
+@pytest.mark.parametrize("loss_angle", [0.0, 0.02, 0.3])
+def test_loops_of_a_sine_are_those_of_a_sine(loss_angle):
+    assert not contradicts_sine(loops_of(loss_angle, drift=0.2)).any()

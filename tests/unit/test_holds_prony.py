@@ -105,3 +105,23 @@ def test_no_terms_are_refused():
 def test_series_that_do_not_pair_up_are_refused():
     with pytest.raises(DataError, match="series do not pair up"):
         fit_prony([1.0, 2.0], [1.0])
+
+
+@pytest.mark.parametrize("duration", [45.0, 120.0, 400.0])
+def test_the_long_time_tension_carries_what_a_hold_is_too_short_to_show(duration):
+    # two terms fit each hold; a third is still relaxing at the end of it
+    time = np.geomspace(0.1, duration, 200)
+    load = 325 + 40 * np.exp(-time / 2) + 35 * np.exp(-time / 25) + 60 * np.exp(-time / 300)
+    load += 0.05 * np.random.default_rng(3).standard_normal(time.size)
+    found = fit_prony(time, load, maximum_terms=2 if duration < 100 else 3)
+    spread = found.long_time_tension_standard_uncertainty
+    assert abs(found.long_time_tension - 325) < 2 * spread
+    falls = 60 * duration / 300 * np.exp(-duration / 300) * np.log(10)
+    assert spread > 0.3 * falls
+
+
+def test_the_long_time_tension_of_a_hold_that_has_come_to_rest_is_as_sure_as_its_noise():
+    time = np.geomspace(0.1, 600, 200)
+    load = 325 + 75 * np.exp(-time / 40)
+    load += 0.3 * np.random.default_rng(0).standard_normal(time.size)
+    assert fit_prony(time, load).long_time_tension_standard_uncertainty < 0.1

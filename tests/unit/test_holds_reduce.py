@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from reduction.record.errors import DataError
 from reduction.record.settings import HoldSettings
@@ -254,3 +255,42 @@ def test_a_long_hold_is_reduced_as_a_few_hundred_blocks():
     tension += 0.5 * np.random.default_rng(0).standard_normal(time.size)
     (hold,) = reduce(time, 4 + 2 * part, tension)
     np.testing.assert_allclose(hold.prony_time, [300, 9000], rtol=0.02)
+
+
+def late(tension, time_constant):
+    """What a first-order low-pass logs of it."""
+    share = -np.expm1(-STEP / time_constant)
+    return lfilter([share], [1, share - 1], tension)
+
+
+AT_RAMP_END = float(prony_tension([0.0], long_time_tension=325.0, ramp_duration=5.0, **TERMS)[0])
+
+
+def test_a_load_that_rises_after_the_crosshead_has_stopped_is_refused():
+    time, position, tension = record()
+    (hold,) = reduce(time, position, late(tension, 1.0))
+    assert [one.code for one in hold.refusals] == ["hold-load-late"]
+    assert np.isnan([hold.hold_initial_tension, hold.relaxation_drop, hold.rate_per_decade]).all()
+    assert hold.prony_tension.size == 0
+    # the log peaks later than beside the end of the ramp
+    assert hold.logged_peak_tension == pytest.approx(late(tension, 1.0).max(), abs=1.5)
+
+
+@pytest.mark.parametrize("time_constant", [0.05, 0.1, 0.15, 0.2])
+def test_a_load_that_is_a_little_late_is_covered_or_refused(time_constant):
+    time, position, tension = record()
+    (hold,) = reduce(time, position, late(tension, time_constant))
+    codes = [one.code for one in (*hold.refusals, *hold.notes)]
+    assert ("hold-load-late" in codes) == (time_constant > STEP / 2)
+    if np.isfinite(hold.hold_initial_tension):
+        spread = hold.hold_initial_tension_standard_uncertainty
+        assert abs(hold.hold_initial_tension - AT_RAMP_END) < 2 * spread
+
+
+def test_tension_at_stated_times_carries_the_delay_of_a_late_load():
+    (prompt,), (delayed,) = (
+        reduce(*record()[:2], one) for one in (record()[2], late(record()[2], 1.0))
+    )
+    apart = np.abs(delayed.tension_at_time - prompt.tension_at_time)
+    known = np.isfinite(apart)
+    assert np.all(apart[known] < 2.5 * delayed.tension_at_time_standard_uncertainty[known])

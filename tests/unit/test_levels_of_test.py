@@ -50,3 +50,15 @@ def test_a_cycle_that_a_machine_counts_without_a_stroke_has_no_speed():
     position[1100:] = position[1100]
     found = levels(position, 100 * position, counter=counter)
     assert np.isfinite(found.speed)
+
+
+@pytest.mark.parametrize("back", [6.0, 30.0, 3000.0])
+def test_the_speed_of_a_pull_is_that_of_the_way_out(back):
+    time = np.arange(0, 700 + back + 60, 0.5)
+    noise = np.random.default_rng(2).normal(0, 2e-5, time.size)
+    position = np.interp(time, [20, 620, 680, 680 + back], [0, 0.3, 0.3, 0]) + noise
+    stands = find_standstills(time, position, 1e3 * position[None], settings=PhaseSettings())
+    found = levels_of_test(
+        time, position, 1e3 * position[None], None, stands, None, control="position"
+    )
+    assert found.speed == pytest.approx(0.3 / 600, rel=0.1)

@@ -99,7 +99,23 @@ def test_the_distance_of_the_branch_from_the_line_stands_beside_the_uncertainty(
     rms = np.sqrt(np.mean((100 * np.exp(X) - line) ** 2))
     assert segments.segment_misfit[0, 0, 0] == pytest.approx(rms, rel=1e-9)
     # ten cycles that agree: the chord is known, the curve is no chord
-    assert segments.segment_modulus_standard_uncertainty[0, 0, 0] < 1e-6
+    assert segments.segment_modulus_standard_uncertainty[0, 0, 0] < 1e-3 * rms / AREA
+
+
+@pytest.mark.parametrize("tension", [100 * np.exp(X), 300 * X**3, 400 / (2 - X)])
+def test_segments_of_a_smooth_branch_end_on_it(tension):
+    segments = segments_of(curves_of(tension))
+    for end in ("low", "high"):
+        at = getattr(segments, f"segment_strain_{end}")[0, 0]
+        found = getattr(segments, f"segment_tension_{end}")[0, 0]
+        spread = getattr(segments, f"segment_tension_{end}_standard_uncertainty")[0, 0]
+        truth = np.interp(at, X, tension)
+        assert np.all(np.abs(found - truth) < 2 * spread)
+        assert np.abs(found - truth).max() < 5e-3 * np.ptp(tension)
+    low, high = segments.segment_strain_low[0, 0], segments.segment_strain_high[0, 0]
+    chord = (np.interp(high, X, tension) - np.interp(low, X, tension)) / AREA / (high - low)
+    error = segments.segment_modulus[0, 0] - chord
+    assert np.all(np.abs(error) < 2 * segments.segment_modulus_standard_uncertainty[0, 0])
 
 
 def test_number_of_segments_stays_within_the_setting():

@@ -11,6 +11,7 @@ from reduction.stages.moduli import local_regression as groups
 from reduction.stages.moduli import tangent_modulus as specimencurves
 from reduction.stages.moduli.tangent_modulus import tangent_curves
 from reduction.stages.moduli.tangent_window import choose_grid_and_window
+from reduction.uncertainty.shared_contributions import _smeared
 
 AREA = 5e-4
 SETTINGS = ModulusSettings()
@@ -136,6 +137,37 @@ def test_trimmed_ends_are_in_the_untrimmed_curve_alone(triangle):
     assert trimmed[np.isfinite(trimmed)] * AREA == pytest.approx(200, rel=1e-6)
     assert np.nanmax(whole) * AREA == pytest.approx(400, rel=0.1)
     assert np.isfinite(whole).sum() > np.isfinite(trimmed).sum()
+
+
+def test_what_a_window_over_the_end_of_a_branch_smears_is_carried(triangle):
+    strain, cycles = triangle(per_cycle=400, trimmed=20)
+    # six times as stiff within less than a window of either end
+    knots = [1.0, 1.02, 1.48, 1.5]
+    tension = np.interp(strain, knots, [200.0, 224.0, 316.0, 340.0])
+    curves = curves_of(strain, tension, cycles)
+    whole = curves.tangent_modulus_untrimmed[0] * AREA
+    carried = _smeared(curves, 0) * AREA
+    truth = np.where(np.abs(curves.strain_bin - 1.25) < 0.23, 200.0, 1200.0)
+    off = np.abs(whole - truth)
+    assert np.nanmax(off) > 100
+    known = np.isfinite(whole)
+    assert np.mean((off < 2 * carried + 1)[known]) > 0.95
+    assert (carried[:, np.abs(curves.strain_bin - 1.25) < 0.1] == 0).all()
+
+
+def test_where_nothing_is_trimmed_both_curves_are_as_uncertain(triangle):
+    strain, cycles = triangle(n_cycles=12, per_cycle=80, trimmed=4)
+    noise = np.random.default_rng(11).normal(0, 0.5, strain.size)
+    # beside the kink narrower windows are taken, which hold more noise
+    kinked = np.interp(strain, [1.0, 1.25, 1.5], [200.0, 220.0, 320.0])
+    curves = curves_of(strain, kinked + noise, cycles)
+    trimmed, whole = (
+        curves.tangent_modulus_standard_uncertainty[0],
+        curves.tangent_modulus_untrimmed_standard_uncertainty[0],
+    )
+    same = curves.tangent_modulus[0] == curves.tangent_modulus_untrimmed[0]
+    assert same.sum() > 10
+    np.testing.assert_array_equal(trimmed[same], whole[same])
 
 
 def test_test_without_a_constant_rate_still_has_an_untrimmed_curve(triangle):

@@ -79,8 +79,46 @@ def without_backward_loops(loops: Loops) -> Loops:
     )
 
 
+def contradicts_sine(loops: Loops) -> Bools:
+    """Specimens whose loops are not those of a sine, shape (n_specimens,).
+
+    Where the driven channel is a sine the energy of a loop is that of the fundamentals alone,
+    whatever the other channel does.  A rise that takes another time than the fall makes a loss of
+    the curvature of an elastic specimen, over time; in its energy there is none.
+
+    Examples
+    --------
+    >>> one = {name: np.ones((1, 9)) for name in Loops.__dataclass_fields__} | {"uncertainty": {}}
+    >>> fundamentals = {"fundamental_energy_share": np.full((1, 9), 2.5)}
+    >>> contradicts_sine(Loops(**one)), contradicts_sine(Loops(**one | fundamentals))
+    (array([False]), array([ True]))
+    """
+    over_time, share = loops.loss_over_time, loops.fundamental_energy_share
+    told = np.zeros(over_time.shape[0], dtype=bool)
+    for row, (lost, of_energy) in enumerate(zip(over_time, share, strict=True)):
+        known = np.isfinite(lost) & np.isfinite(of_energy) & (of_energy != 0)
+        if known.sum() < _FEWEST_CYCLES:
+            continue
+        by_energy = lost[known] / of_energy[known]
+        apart = lost[known] - by_energy
+        scatter = float(apart.std()) / np.sqrt(known.sum() - 1)
+        greater = max(abs(_median(lost[known])), abs(_median(by_energy)))
+        told[row] = abs(_median(apart)) > max(_SINE_TOLD * greater, _BEYOND_SCATTER * scatter)
+    return told
+
+
+_SINE_TOLD = 0.05  # of the loss: no machine draws a sine to a per cent
+
+_FEWEST_CYCLES = 3
+
+
 def notes_of_loops(
-    loops: Loops, *, names: Sequence[str], lag: Sequence[float], time_step: float
+    loops: Loops,
+    *,
+    names: Sequence[str],
+    lag: Sequence[float],
+    time_step: float,
+    is_sinusoidal: bool = False,
 ) -> tuple[Note, ...]:
     """What loops say of channels and specimens: which one runs backward, is late, or gives work.
 
@@ -94,6 +132,8 @@ def notes_of_loops(
         Standard uncertainty of the lag of tension, 0 where none is stated. [s]
     time_step : float
         Between two samples. [s]
+    is_sinusoidal : bool, optional
+        Whether the waveform is stated as a sine.
 
     Returns
     -------
@@ -123,6 +163,7 @@ def notes_of_loops(
     loops-give-work 0.0079 sampling
     """
     backward = _runs_backward(loops)
+    not_of_sine = contradicts_sine(loops) & is_sinusoidal
     told: list[Note] = []
     for row, (name, stated) in enumerate(zip(names, lag, strict=True)):
         tension, strain, storage = (
@@ -136,6 +177,9 @@ def notes_of_loops(
                      channel=channel)
             )  # fmt: skip
             continue
+        if not_of_sine[row]:
+            share = _median(loops.fundamental_energy_share[row])
+            told.append(note("loops-not-of-a-sine", name, share=share, effect=share - 1))
         energy = loops.hysteresis_energy[row]
         known = energy[np.isfinite(energy)]
         if not known.size:

@@ -103,6 +103,10 @@ BLOCK_ERROR = 2e-4
 
 LARGEST_LOG = 50.0
 
+STILL_RELAXES = 3**-0.5
+"""Standard uncertainty of a long-time tension, as a share of what a decade of time takes at the end
+of the hold: slower terms, which the hold does not show, take up to that. [1]"""
+
 
 @dataclass(frozen=True)
 @read_only_arrays
@@ -228,7 +232,9 @@ def fit_prony(
     correlation.
 
     The long-time tension is what the series tends to, not an equilibrium: a longer hold
-    would show slower terms.
+    would show slower terms.  Where tension still falls at the end of the hold they are there, and
+    of what no record can say less is known than the fit pretends: the uncertainty of the
+    long-time tension carries what a decade more would take at the last rate (`STILL_RELAXES`).
 
     Examples
     --------
@@ -297,10 +303,11 @@ def fit_prony(
     )
     if np.exp(fits[n_terms].shape.max()) > longest:
         criterion += "; the slowest time is longer than the hold, so its term is extrapolated"
-    return _reported(fits[n_terms], ramp_duration, "; ".join([criterion, *sorted(refused)]))
+    texts = [criterion, *sorted(refused)]
+    return _reported(fits[n_terms], longest, ramp_duration, "; ".join(texts))
 
 
-def _reported(fit: SeparableFit, ramp_duration: float, criterion: str) -> PronyFit:
+def _reported(fit: SeparableFit, longest: float, ramp_duration: float, criterion: str) -> PronyFit:
     """Amplitudes of a step, the ramp taken out, with uncertainties carried through."""
     order = np.argsort(fit.shape)
     n_terms = order.size
@@ -319,12 +326,14 @@ def _reported(fit: SeparableFit, ramp_duration: float, criterion: str) -> PronyF
     slopes[terms, 1 + n_terms + terms] = -size * growth
     slopes[n_terms + terms, 1 + n_terms + terms] = times
     variance = np.diag(slopes @ covariance @ slopes.T)
+    ending = fit.amplitude[1 + order] @ (longest / times * np.exp(-longest / times))
+    unseen = STILL_RELAXES * float(np.log(10) * ending)
     return PronyFit(
         tension=size,
         tension_standard_uncertainty=np.sqrt(variance[:n_terms]),
         time=times,
         time_standard_uncertainty=np.sqrt(variance[n_terms:]),
         long_time_tension=float(fit.amplitude[0]),
-        long_time_tension_standard_uncertainty=float(np.sqrt(covariance[0, 0])),
+        long_time_tension_standard_uncertainty=float(np.hypot(np.sqrt(covariance[0, 0]), unseen)),
         criterion=criterion,
     )

@@ -587,6 +587,8 @@ class Hold:
         that; NaN where the ramp does not add tension. [N]
     n_logged : int
         How many samples the log has of it, those that are left out included. [1]
+    on_tension : bool
+        Whether the machine keeps the tension, so that the length answers.
     refusals, notes : list of Note
         Filled as the hold is reduced; ``made``, how, too.
     """
@@ -602,6 +604,7 @@ class Hold:
     logged_peak: float = float("nan")
     earlier_peak: float = float("nan")
     n_logged: int = 0
+    on_tension: bool = False
     refusals: list[Note] = field(default_factory=list)
     notes: list[Note] = field(default_factory=list)
     made: list[str] = field(default_factory=list)
@@ -637,6 +640,18 @@ class Hold:
 
 
 @dataclass(frozen=True)
+class _LateLoad:
+    """Tension that goes on rising while the crosshead stands.
+
+    ``rise`` above the end of the ramp, ``peak`` that it comes to [N], ``delay`` until then [s].
+    """
+
+    rise: float
+    peak: float
+    delay: float
+
+
+@dataclass(frozen=True)
 class _Ends:
     """Tension at both ends of a hold, and the share lost."""
 
@@ -648,6 +663,7 @@ class _Ends:
     final_uncertainty: float
     n_initial: int = 0
     n_final: int = 0
+    late: _LateLoad | None = None
 
 
 def _hold_ends(hold: Hold) -> _Ends:
@@ -687,6 +703,9 @@ def _hold_ends(hold: Hold) -> _Ends:
             u_initial = float(
                 np.hypot(u_initial, hold.ramp.stiffness * reading_noise(hold.position))
             )
+    late = _late_load(hold, first.value)
+    if late is not None:
+        u_initial = float(np.hypot(u_initial, _LATE_MISSES * late.rise))
     above = hold.logged_peak - SIGNIFICANT * _noise_of(hold.tension) - first.value
     # it has not settled at once: the tension is somewhere between the two
     if SIGNIFICANT * u_initial < above < LARGEST_DISAGREEMENT * first.value:
@@ -694,7 +713,43 @@ def _hold_ends(hold: Hold) -> _Ends:
     drop = float(_relaxation_drop(first.value, final))
     uncertainty = float(np.hypot(u_final, (1 - drop) * u_initial) / first.value)
     known = uncertainty if drop == drop else np.nan
-    return _Ends(first.value, final, drop, known, u_initial, u_final, first.n_samples, n_final)
+    counts = first.n_samples, n_final
+    return _Ends(first.value, final, drop, known, u_initial, u_final, *counts, late)
+
+
+def _late_load(hold: Hold, initial: float) -> _LateLoad | None:
+    """What the load gains after the end of its ramp, within its time; None where it does not.
+
+    A specimen at one length relaxes.  Where its tension rises by more than the crosshead still
+    moves it by, and by more than a ramp adds in the time by which its end is uncertain, the load
+    comes late.  Means over a tenth of a decade, so that no noise is a rise.
+    """
+    if hold.ramp is None or hold.on_tension or not np.isfinite(hold.logged_peak):
+        return None
+    since = shifted(hold.time, hold.ramp_end_time)
+    begin, stop = np.searchsorted(since, [0.0, hold.ramp.length], side="right")
+    if stop - begin < _SAMPLES_BESIDE:
+        return None
+    blocks = logarithmic_blocks(since[begin:stop], hold.tension[begin:stop], per_decade=10)
+    motion = _motion_of(hold)
+    value = blocks.value
+    if motion.greatest and np.isfinite(hold.ramp.stiffness):
+        distance = np.interp(blocks.elapsed, motion.time - hold.ramp_end_time, motion.distance)
+        value = value - hold.ramp.stiffness * distance
+    at = int(np.argmax(value))
+    rise = float(value[at]) - initial
+    end_known_to = initial * hold.ramp.end_uncertainty / hold.ramp.length
+    told = SIGNIFICANT * float(np.hypot(_noise_of(hold.tension), end_known_to))
+    if not rise > max(told, _LATE_LEAST * initial):
+        return None
+    return _LateLoad(rise, float(blocks.value[at]), float(blocks.elapsed[at]))
+
+
+_LATE_LEAST = 0.003  # of the tension: a ramp rounds its corner
+
+_LATE_MOST = 0.02  # of the tension: beyond it the end of the ramp is not in the log
+
+_LATE_MISSES = 2.0  # times the rise that the log shows: while it rises, the specimen relaxes
 
 
 def _noise_of(series: Floats) -> float:
@@ -828,6 +883,20 @@ def _start_reason(hold: Hold, ends: _Ends) -> Note | None:
     return note("hold-start-contradicted", peak=max(above), initial=ends.initial)
 
 
+def _late_reason(ends: _Ends) -> Note | None:
+    """Name a load that rises too far after its ramp for the tension at the end of it."""
+    if ends.late is None or not ends.late.rise > _LATE_MOST * ends.initial:
+        return None
+    return _late_note(ends.late, is_refused=True)
+
+
+def _late_note(late: _LateLoad, *, is_refused: bool) -> Note:
+    return note(
+        "hold-load-late",
+        rise=late.rise, peak=late.peak, delay=late.delay, is_refused=is_refused,
+    )  # fmt: skip
+
+
 LARGEST_DISAGREEMENT = 0.1
 """Share by which a log may peak above the tension that its hold leads back to. [1]"""
 
@@ -841,11 +910,11 @@ def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[No
 
     Notes
     -----
-    Too short; too few samples; a slack specimen; tension that rises by more than three standard
-    uncertainties; a crosshead that moves by so much that what is not known of it is more than
-    a tenth of the drop (by the stiffness of the ramp); a log that peaks above the tension found
-    at the end of the ramp; a step of tension that relaxation does not explain (`find_steps`, false
-    alarm 0.1 %).
+    Too short; too few samples; a load that comes late; a slack specimen; tension that rises by
+    more than three standard uncertainties; a crosshead that moves by so much that what is not
+    known of it is more than a tenth of the drop (by the stiffness of the ramp); a log that peaks
+    above the tension found at the end of the ramp; a step of tension that relaxation does not
+    explain (`find_steps`, false alarm 0.1 %).
 
     Examples
     --------
@@ -863,6 +932,9 @@ def _reasons_against(hold: Hold, ends: _Ends, settings: HoldSettings) -> list[No
         reasons.append(
             note("hold-too-few-samples", n_samples=hold.time.size, needed=FEWEST_SAMPLES)
         )
+    late = _late_reason(ends)
+    if late is not None:  # the end of the ramp is not in the log: nothing else is told from it
+        return [*reasons, late]
     if not ends.final > hold.slack_tension or not ends.drop_uncertainty < 1 / SIGNIFICANT:
         reasons.append(note("hold-slack", tension=ends.final, slack_tension=hold.slack_tension))
     elif ends.drop < -SIGNIFICANT * ends.drop_uncertainty:
@@ -984,6 +1056,7 @@ def select_hold(
         logged_peak=peak,
         earlier_peak=earlier,
         n_logged=last + 1 - first,
+        on_tension=standstills.tension_tolerance is not None,
     )
 
 
@@ -1104,11 +1177,11 @@ def _creep(hold: Hold) -> _Rate | None:
         return None
 
 
-def _describe(hold: Hold, rate: _Rate | None, *, follows_hold: bool, on_tension: bool) -> None:
+def _describe(hold: Hold, rate: _Rate | None, *, follows_hold: bool) -> None:
     """Say how the ramp was treated and what was left out."""
     if hold.ramp is not None:
-        added = "length" if on_tension else "tension"
-        use = "counts" if on_tension else "enters the Prony terms"
+        added = "length" if hold.on_tension else "tension"
+        use = "counts" if hold.on_tension else "enters the Prony terms"
         hold.made.append(
             f"ramp of {hold.ramp.end_time - hold.ramp.start_time:.3g} s; it acts as a step "
             f"{hold.ramp.end_time - hold.ramp.centre_time:.3g} s before the hold (centre of the "
@@ -1126,6 +1199,19 @@ def _describe(hold: Hold, rate: _Rate | None, *, follows_hold: bool, on_tension:
         )
     if follows_hold:
         hold.made.append("what an earlier hold has left to relax goes on under this one")
+
+
+def _with_delay(
+    hold: Hold, found: tuple[Floats, Floats], times: Floats, delay: float
+) -> tuple[Floats, Floats]:
+    """Tension at stated times, with what it loses in the time by which the load may be late.
+
+    None before that: the load has not come yet.
+    """
+    value, spread = (np.where(times > delay, one, np.nan) for one in found)
+    later, _ = _value_at_times(shifted(hold.time, hold.start_time), hold.tension, times + delay)
+    lost = np.nan_to_num(value - later) / np.sqrt(3)
+    return value, np.hypot(spread, lost)
 
 
 def _with_motion(read: _Ends, kept: _Ends, unknown: float) -> _Ends:
@@ -1156,7 +1242,6 @@ def _result(
     kind: str,
     settings: HoldSettings,
     follows_hold: bool,
-    on_tension: bool,
 ) -> HoldResult:
     """Reduce one hold of one specimen."""
     times = np.array(settings.times, dtype=np.float64)
@@ -1184,6 +1269,13 @@ def _result(
             strain_at = _value_at_times(shifted(times_known, hold.start_time), known, times)
         reasons = _reasons_against(hold, ends, settings) if kind == "relaxation" else []
         hold.refusals.extend(reasons)
+        if kind == "relaxation" and ends.late is not None:
+            hold = replace(hold, logged_peak=max(hold.logged_peak, ends.late.peak))
+            tension_at = _with_delay(hold, tension_at, times, ends.late.delay)
+            if _late_reason(ends) is not None:
+                ends = replace(ends, initial=np.nan, initial_uncertainty=np.nan)
+            else:
+                hold.notes.append(_late_note(ends.late, is_refused=False))
         if kind == "creep":
             rate = _creep(hold)
         elif not reasons:
@@ -1196,7 +1288,7 @@ def _result(
             if prony is not None:
                 modelled = _at_ramp_end(kept, prony)
                 prony = _less_known(prony, unknown)
-    _describe(hold, rate, follows_hold=follows_hold, on_tension=on_tension)
+    _describe(hold, rate, follows_hold=follows_hold)
     shown = rate or _Rate(np.nan, np.nan, np.nan, np.nan)
     return HoldResult(
         specimen=name,
@@ -1330,7 +1422,6 @@ def reduce_holds(
                     kind=kind,
                     settings=settings,
                     follows_hold=earlier,
-                    on_tension=standstills.tension_tolerance is not None,
                 )
             )
     return tuple(results)

@@ -83,8 +83,8 @@ class Segments:
     """Piecewise-linear moduli, the form of Tables 5 and 6 of WHOI-2005-10.
 
     Every array has shape (n_specimens, 2, n_segments), NaN where a branch has
-    fewer segments.  Tensions at the two ends have the scatter of the mean branch there.
-    ``segment_misfit`` is the rms distance of the branch from the line [N],
+    fewer segments.  Tensions at both ends are those of the mean branch, the modulus is its chord.
+    ``segment_misfit`` is the rms distance of the branch from the chord [N],
     ``criterion`` says how the number of segments was chosen.
     """
 

@@ -238,8 +238,10 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
     Printed source: Tables 5 and 6 of [1]_, where neighbouring segments meet and
     E is the chord of each; how [1]_ chose their limits it does not say.
 
-    The line is the best continuous one (`_fit_piecewise_lines`), all bins alike, and E the
-    chord of the line. *Number of segments:* the fewest whose root-mean-square distance from
+    Breakpoints are those of the best continuous line (`_fit_piecewise_lines`), all bins alike.
+    Tension at them is the branch's own, so that E is the chord of the branch and no line beside
+    it: a line fitted to a bent branch is off it by most where two segments meet.
+    *Number of segments:* the fewest whose root-mean-square distance from
     the mean branch is within ``segment_tolerance`` of the branch's range of tension (1 %),
     and the branch's own roughness from bin to bin (root sum of squares). A smooth curve has no true
     breakpoints: they say where straight lines stand in for it best.
@@ -248,11 +250,13 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
     grid the mean of a few cycles stands beside the mean of all, and a line would follow
     the step between them.
 
-    The uncertainty is type A and of the chord of the line: the scatter from cycle to cycle of
+    The uncertainty is type A and of the chord: the scatter from cycle to cycle of
     the mean tangent modulus over the segment, over the root of the cycles.  Where fewer than
     four cycles have a curve of their own it is that of the tangent modulus, root mean square
-    over the segment, over the root of the windows that fit in it.
-    How far the branch is from the line stands beside it as ``segment_misfit`` (root mean
+    over the segment, over the root of the windows that fit in it.  Added are what one bin at
+    each end may be off by (roughness) and, where segments meet between two bins, what the branch
+    there may have of the corner.
+    How far the branch is from the chord stands beside it as ``segment_misfit`` (root mean
     square): who takes the segment for the curve adds what that means to him.
 
     NaN for a branch with fewer than six bins.
@@ -300,9 +304,9 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
         segment_tension_high=table[5],
         segment_tension_high_standard_uncertainty=table[8],
         segment_misfit=table[6],
-        criterion="fewest contiguous segments, best breakpoints, whose rms distance from the "
-        f"mean branch is within {100 * settings.segment_tolerance:g} % of its range of tension and "
-        f"its roughness, at most {settings.maximum_segments}",
+        criterion="chords of the mean branch between the best breakpoints of the fewest contiguous "
+        f"lines whose rms distance from it is within {100 * settings.segment_tolerance:g} % of its "
+        f"range of tension and its roughness, at most {settings.maximum_segments}",
     )
 
 
@@ -319,8 +323,9 @@ def _segment_columns(
     """Modulus, its uncertainty, strains, tensions, misfit, their uncertainty: (9, n_segments)."""
     used = _reached(curves, at)
     strain, tension = curves.strain_bin[used], curves.branch_tension[at][used]
-    # roughness from bin to bin: a drift of the whole branch from cycle to cycle bends no line
-    rough = float(np.sqrt(np.mean(np.diff(tension, n=2) ** 2) / 6))
+    # roughness from bin to bin: a drift of the whole branch from cycle to cycle bends no line,
+    # and third differences leave its curvature out
+    rough = float(np.sqrt(np.mean(np.diff(tension, n=3) ** 2) / 20))
     tolerance = settings.segment_tolerance * (float(np.ptp(tension)) or 1.0)
     lines = _fit_piecewise_lines(
         strain,
@@ -329,9 +334,18 @@ def _segment_columns(
         maximum_segments=settings.maximum_segments,
     )
     line = _choose(lines, strain.size)
-    low, high = line.knot[:-1], line.knot[1:]
-    modulus = np.diff(line.ordinate) / (area * (high - low))
-    distance = tension - np.interp(strain, line.knot, line.ordinate)
+    knot = line.knot
+    low, high = knot[:-1], knot[1:]
+    off = tension - np.interp(strain, knot, line.ordinate)
+    at_knot = line.ordinate + np.interp(knot, strain, off)
+    modulus = np.diff(at_knot) / (area * (high - low))
+    # half-way between two bins a corner is as far off their mean as a line with one is off a bend
+    corner = np.zeros(knot.size)
+    bin_width = float(np.median(np.diff(strain)))
+    corner[1:-1] = np.abs(np.diff(np.diff(line.ordinate) / (high - low))) * bin_width / 4
+    reading = np.hypot(rough, corner / np.sqrt(3))
+    at_ends = np.hypot(reading[:-1], reading[1:]) / (area * (high - low))
+    distance = tension - np.interp(strain, knot, at_knot)
     uncertainty, misfit = [], []
     for start, stop in zip(low, high, strict=True):
         inside = (strain >= start) & (strain <= stop)
@@ -339,14 +353,14 @@ def _segment_columns(
         uncertainty.append(
             _spread(curves, at, used, inside, windows=(stop - start) / curves.window)
         )
-    rows = [modulus, uncertainty, low, high, line.ordinate[:-1], line.ordinate[1:], misfit]
-    # from cycle to cycle the branch moves as a whole: the line there is no surer than the branch
+    rows = [modulus, np.hypot(uncertainty, at_ends), low, high, at_knot[:-1], at_knot[1:], misfit]
+    # from cycle to cycle the branch moves as a whole
     scatter = curves.branch_tension_standard_uncertainty[at][used]
     known = np.isfinite(scatter)
-    at_knot = np.full(line.knot.size, np.nan)
+    spread = np.full(knot.size, np.nan)
     if known.any():
-        at_knot = np.interp(line.knot, strain[known], scatter[known])
-    rows += [at_knot[:-1], at_knot[1:]]
+        spread = np.hypot(np.interp(knot, strain[known], scatter[known]), reading)
+    rows += [spread[:-1], spread[1:]]
     return np.array(rows, dtype=np.float64)
 
 

@@ -472,8 +472,10 @@ def tangent_curves(
         tangent_modulus_maximum=modulus(trimmed, (one.level.highest() for one in trimmed)),
         tangent_modulus_scatter=spread(trimmed, (one.level.scatter() for one in trimmed)),
         tangent_modulus_untrimmed=modulus(untrimmed, (one.value() for one in untrimmed)),
-        tangent_modulus_untrimmed_standard_uncertainty=gain
-        * spread(untrimmed, (one.level.standard_uncertainty() for one in untrimmed)),
+        tangent_modulus_untrimmed_standard_uncertainty=_not_below(
+            gain * spread(untrimmed, (one.level.standard_uncertainty() for one in untrimmed)),
+            noise * per_area,
+        ),
         branch_tension=np.stack([one.value() for one in tensions]),
         branch_tension_standard_uncertainty=np.stack(
             [one.given(one.level.standard_uncertainty()) for one in tensions]
