@@ -211,7 +211,7 @@ def variables_if(
                     is_there = isinstance(place.get(stored, getlink=True), h5py.HardLink)
                     if is_there and place[stored].dtype != _NO_VARIABLE:
                         found[name] = schema[name].dims, _values_of(place[stored].id, schema[name])
-    except (RuntimeError, ValueError) as error:
+    except (KeyError, RuntimeError, ValueError) as error:  # of the library, where the disk fails
         raise OSError(str(error)) from error
     return xr.Dataset(found)
 

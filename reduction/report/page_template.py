@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from tempfile import TemporaryFile
-from typing import IO
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
@@ -57,20 +56,6 @@ class RenderedSection:
         return len(self.text.encode()) if isinstance(self.text, str) else self.text.n_bytes
 
 
-@dataclass(frozen=True)
-class StoredText:
-    """A text in a scratch file that holds many."""
-
-    file: IO[bytes]
-    begin: int
-    n_bytes: int
-
-    def read(self) -> str:
-        """The text."""
-        self.file.seek(self.begin)
-        return self.file.read(self.n_bytes).decode()
-
-
 class ScratchTexts:
     """Texts on disk until a page is written: memory has no room for a thousand sections."""
 
@@ -78,14 +63,36 @@ class ScratchTexts:
         self._file = TemporaryFile()  # as long as one of its texts
         self._end = 0
 
+    def __del__(self) -> None:
+        """Give the disk back."""
+        self._file.close()
+
     def stored(self, section: RenderedSection) -> RenderedSection:
         """Put the text of a section on disk."""
         content = section.html.encode()
         self._file.seek(self._end)
         self._file.write(content)
-        found = StoredText(self._file, self._end, len(content))
+        found = StoredText(self, self._end, len(content))
         self._end += len(content)
         return replace(section, text=found)
+
+    def read(self, begin: int, n_bytes: int) -> str:
+        """A text."""
+        self._file.seek(begin)
+        return self._file.read(n_bytes).decode()
+
+
+@dataclass(frozen=True)
+class StoredText:
+    """One of the texts on disk."""
+
+    scratch: ScratchTexts
+    begin: int
+    n_bytes: int
+
+    def read(self) -> str:
+        """The text."""
+        return self.scratch.read(self.begin, self.n_bytes)
 
 
 @dataclass(frozen=True)

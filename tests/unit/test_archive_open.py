@@ -274,3 +274,13 @@ def test_an_error_in_a_block_is_that_of_the_block(rich_test, write):
     for _ in range(2):
         with pytest.raises(KeyError, match="none"), opener(path) as archive:
             archive.variables["none"]
+
+
+def test_what_is_read_by_the_schema_is_what_xarray_opens(rich_test, write, monkeypatch):
+    path = write(rich_test)
+    with reading(path) as on_disk:
+        monkeypatch.setattr(module, "__version__", on_disk.attrs["software_version"])
+        found = module._read_own(path)
+        assert found is not None
+        assert found.identical(on_disk)
+        assert list(found.variables) == list(on_disk.variables)
