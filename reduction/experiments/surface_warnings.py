@@ -154,7 +154,7 @@ def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
     ...     [[2.11, 2.09, 1.01, 0.99, 0.13, 0.11]], factor_names=["f"], response_names=["energy"],
     ...     low=[0.1], high=[0.5], units="coded")
     >>> [str(one)[:48] for one in negative_surfaces(found)]
-    ['the surface of energy goes below zero among the ']
+    ['the surface of energy falls below zero within th']
     """
     grid = np.array(list(product((-1.0, 0.0, 1.0), repeat=surfaces.coded.shape[1])))
     lowest = evaluate_surfaces(surfaces, grid, units="coded").value.min(axis=1)
@@ -203,7 +203,7 @@ def drifting_responses(surfaces: ResponseSurfaces, drift: Drift) -> tuple[Note, 
     >>> found = fit_surfaces(runs, [3 + runs[:, 0] + 0.2 * np.arange(15) + noise], units="coded",
     ...     factor_names=["f", "T", "a"], response_names=["y"], low=[0] * 3, high=[1] * 3)
     >>> [str(one)[:34] for one in drifting_responses(found, drift_over_order(found, range(15)))]
-    ['y drifts over the order of the run']
+    ['y drifts with run order: its resid']
     """
     if drift.p_value.shape != surfaces.reason.shape:
         raise DataError(

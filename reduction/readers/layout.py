@@ -476,7 +476,7 @@ def short_metadata(found: Mapping[str, str]) -> tuple[dict[str, str], tuple[Note
     --------
     >>> kept, notes = short_metadata({"operator": "KH", "picture": "x" * 200_000})
     >>> print(kept, *notes)
-    {'operator': 'KH'} 'picture' of the file is left out: it has 200,000 characters
+    {'operator': 'KH'} file attribute 'picture' is not stored: it has 200,000 characters
     """
     metadata, notes = {}, []
     for key, text in found.items():

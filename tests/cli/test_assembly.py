@@ -226,7 +226,10 @@ def test_an_assembly_is_exported_as_one_line(command, tmp_path):
     assert deck.returncode == 0, deck.stderr
     for arguments, told in (
         (["--to", "moordyn"], "the diameter of spec is not known"),
-        (["--to", "csv", "--curve", "ascending"], "specification of an assembly says of which"),
+        (
+            ["--to", "csv", "--curve", "ascending"],
+            "curve of an assembly is set in its specification",
+        ),
         (["--to", "csv", "--frequency", "0.1 Hz"], "choose nothing in an assembly"),
     ):
         done = command("export", path, *arguments, "--out", tmp_path / "x")
@@ -262,7 +265,7 @@ LEVEL = "[[assembly.working]]\n"
         (('"rubber-tether-used"', '"rubber-tether-old"'), "", 2, "assembly.curve: unknown source"),
         (('"rubber-tether-used"', '""'), "", 2, "assembly.curve.source is empty"),
         (('"rubber-tether-used"', '"rubber-tether-used"\nbranch = "mean"'), "", 2,
-         "assembly.curve: rubber-tether-used has its ascending branch alone"),
+         "assembly.curve: rubber-tether-used has only its ascending branch"),
         (('"rubber-tether-used"', '"rubber-tether-used"\nbranch = "loop"'), "", 2, "assembly.curve.branch"),
         (('"rubber-tether-used"', '"rubber-tether-used"\nprecedence = []'), "", 2,
          "assembly.curve.precedence: the precedence names no kind"),

@@ -408,17 +408,17 @@ def test_a_folder_that_cannot_be_made_is_told_by_its_path(small, command):
         (
             ("sniff", "https://ann:secret@example.org/T.csv?sig=abc"),
             "this command reads no URLs; found 'https://example.org/T.csv'; needed "
-            "a file on this machine. Download it first.",
+            "a local file. Download it first.",
         ),
         (
             ("lookup", "published", "--out", "s3://ann:secret@bucket/a.csv"),
             "this command writes to no URLs; found 's3://bucket/a.csv'; needed a "
-            "path on this machine",
+            "local path",
         ),
         (
             ("check", "https://ann:secret@example.org/c.toml?sig=abc"),
             "this command reads no URLs; found 'https://example.org/c.toml'; needed "
-            "a file on this machine. Download it first.",
+            "a local file. Download it first.",
         ),
     ],
 )

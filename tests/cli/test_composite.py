@@ -138,11 +138,11 @@ def test_every_node_is_written_by_the_name_of_the_file(command, tmp_path, suffix
 @pytest.mark.parametrize(
     ("arguments", "status", "told"),
     [
-        (["no-such-tether"], 2, "nothing called 'no-such-tether'"),
+        (["no-such-tether"], 2, "unknown source 'no-such-tether'"),
         (["rubber-tether-new-T-5"], 2, "needed rubber-tether-new"),
-        (["nylon-double-braid-0.5in-new"], 2, "is one published curve"),
-        (["rubber-tether-new", "rubber-tether-used"], 2, "stands alone"),
-        (["rubber-tether-new", "--branch", "mean"], 2, "ascending branch alone"),
+        (["nylon-double-braid-0.5in-new"], 2, "is a single published curve"),
+        (["rubber-tether-new", "rubber-tether-used"], 2, "cannot be combined"),
+        (["rubber-tether-new", "--branch", "mean"], 2, "only its ascending branch"),
         (["rubber-tether-new", "--specimen", "new"], 2, "is one tether"),
         (["rubber-tether-new", "--precedence", "cyclic,slow"], 2, "--precedence: the precedence names"),
         (["rubber-tether-new", "--precedence", "cyclic,cyclic"], 2, "names a kind twice"),
@@ -220,10 +220,10 @@ def test_export_of_several_archives_and_of_a_published_tether(command, synthetic
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["rubber-tether-new", "--frequency", "0.1 Hz"], "choose nothing in several tests"),
-        (["rubber-tether-new", "--curve", "mean"], "ascending branch alone"),
-        (["rubber-tether-new-T-5", "--precedence", "cyclic"], "no pieces that could go before"),
-        (["rubber-tether-new", "no-such"], "stands alone"),
+        (["rubber-tether-new", "--frequency", "0.1 Hz"], "have no effect for several tests"),
+        (["rubber-tether-new", "--curve", "mean"], "only its ascending branch"),
+        (["rubber-tether-new-T-5", "--precedence", "cyclic"], "precedence has no effect"),
+        (["rubber-tether-new", "no-such"], "cannot be combined"),
     ],
 )
 def test_what_a_composite_cannot_be_asked_at_the_export(command, tmp_path, arguments, told):

@@ -8,6 +8,7 @@ import netCDF4
 import numpy as np
 import pytest
 from documentedcampaign import copied, run
+from nopage import leave_out_page
 
 NAME = "two-tethers"
 
@@ -17,7 +18,7 @@ def made(tmp_path_factory):
     folder = tmp_path_factory.mktemp("compared")
     (folder / "raw" / NAME).mkdir(parents=True)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("reduction.batch.run_campaign.write_report", lambda *given, **more: None)
+        leave_out_page(patch)
         assert run(copied(folder / "raw" / NAME), folder).exit_status == 0
     return folder
 
@@ -126,7 +127,7 @@ def test_quiet_says_nothing_and_ends_alike(place, command):
 
 @pytest.mark.slow
 def test_two_campaigns_are_run_and_compared(made, tmp_path, command, monkeypatch):
-    monkeypatch.setattr("reduction.batch.run_campaign.write_report", lambda *given, **more: None)
+    leave_out_page(monkeypatch)
     shutil.copytree(made / "raw" / NAME, tmp_path / "wider")
     settings = tmp_path / "wider" / "campaign.toml"
     text = settings.read_text(encoding="utf-8").replace("1.04 in", "1.05 in")

@@ -255,7 +255,11 @@ def test_what_cannot_be_fitted_is_told_with_file_row_and_column(fit):
     told(fit("\n".join(rows[:9]), SPEC), 5, "runs.csv: ", "needed")
     told(fit(cell(rows, 4, 1, "heavy"), SPEC), 3, "runs.csv:4 [mean_tension [lbf]]: a value is not")
     told(fit(cell(rows, 4, 1, "1,2").replace("1,2", '"1,2"'), SPEC), 3, "decimal point")
-    told(fit(cell(rows, 4, 1, ""), SPEC), 4, "runs.csv:4 [mean_tension]: a run has a value and no")
+    told(
+        fit(cell(rows, 4, 1, ""), SPEC),
+        4,
+        "runs.csv:4 [mean_tension]: a run has a value but no level",
+    )
     told(fit(cell(rows, 4, 3, "?"), SPEC), 2, "1 value is still '?'", "runs.csv:4 [apparent")
     told(
         fit("\n".join(rows).replace("[lbf]", "[furlongs_x]"), SPEC), 2, "'furlongs_x' is not known"
@@ -263,7 +267,7 @@ def test_what_cannot_be_fitted_is_told_with_file_row_and_column(fit):
     told(fit("\n".join(rows).replace("[Hz]", "[lbf]"), SPEC), 2, "does not fit frequency")
     still = [rows[0], *(",".join(["0.3", *row.split(",")[1:]]) for row in rows[1:])]
     told(fit("\n".join(still), SPEC), 4, "runs.csv: frequency never moves")
-    told(fit("\n".join([*rows, rows[1] + ",1"]), SPEC), 3, "runs.csv:17: a row has another number")
+    told(fit("\n".join([*rows, rows[1] + ",1"]), SPEC), 3, "runs.csv:17: the number of cells")
     told(fit("\n".join(rows).replace("frequency", "freqency"), SPEC), 3, "is it freqency?")
 
 
@@ -297,7 +301,7 @@ def test_levels_beside_the_plan_ask_for_the_unit(fit):
         (('unit = "lbf"', 'unti = "s"'), "responses.apparent_spring_constant.unti"),
         (("sigma", "n_runs = 12\nsigma"), "n_runs applies only to plackett-burman"),
         (('rated_break_strength = "6400 lbf"\n', ""), "rated break strength, which is not given"),
-        (('kind = "box-behnken"', 'kind = "plackett-burman"'), "another than that of the command"),
+        (('kind = "box-behnken"', 'kind = "plackett-burman"'), "the design in the file differs"),
         (("[responses]", "[responses]\nfrequency = {}"), "a factor is a response too"),
         (("[experiment]", "[experiment"), "the experiment is not TOML"),
     ],

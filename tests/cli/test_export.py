@@ -88,7 +88,7 @@ def test_units_are_for_tables_and_never_for_a_code(command, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "status", "message"),
     [
-        (["no-such-line", "--to", "csv"], 2, "nothing of that name to export"),
+        (["no-such-line", "--to", "csv"], 2, "unknown source to export"),
         (["nylon-double", "--to", "csv"], 2, "nylon-double-braid-0.75in-new"),
         (["polyester-double-braid-0.5in-new", "--to", "moordyn"], 2, "--linear-density"),
         (["polyester-double-braid-0.5in-new", "--to", "ansys"], 2, "format is not known"),

@@ -82,7 +82,7 @@ def test_the_example_of_the_documentation_runs():
 def test_what_is_not_known_is_refused():
     with pytest.raises(DataError):
         reduction.look_up(LINE, "K_ap", **LEVELS | {"frequency": "5 Hz"})
-    with pytest.raises(SettingsError, match="temperature is no level"):
+    with pytest.raises(SettingsError, match="temperature is not a level"):
         reduction.look_up(LINE, "K_ap", **LEVELS, temperature=20.0)
     with pytest.raises(SettingsError, match="several dimensions"):
         reduction.look_up(LINE, "K_ap", **LEVELS | {"frequency": np.full((2, 2), 0.3)})

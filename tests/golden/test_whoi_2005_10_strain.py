@@ -31,7 +31,7 @@ EXPECTED_MISS = {
 }
 LINE = {"new": (-2.4395, 0.89054), "used": (-2.7399, 0.90527)}
 SLOPE_RATIO = {"new": 0.873, "used": 0.860}
-MODULUS_EXCESS = {"new": "14.5 % high", "used": "16.3 % high"}
+MODULUS_EXCESS = {"new": "14.5 % too high", "used": "16.3 % too high"}
 
 
 def rows(number, tether):

@@ -29,7 +29,9 @@ def test_a_header_can_be_refused_before_a_row_is(tmp_path):
     (tmp_path / "t.csv").write_text("a,b\n1\n")
     header, rows = read_csv_rows(tmp_path / "t.csv", "the table", fault=in_settings)
     assert header == ["a", "b"]
-    with pytest.raises(SettingsError, match=r"t.csv:2: a row has another .*found 1; needed 2"):
+    with pytest.raises(
+        SettingsError, match=r"t.csv:2: the number of cells in a row .*found 1; needed 2"
+    ):
         next(rows)
 
 

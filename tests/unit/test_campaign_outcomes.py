@@ -77,7 +77,7 @@ def test_a_specimen_without_a_sheet_is_refused_with_its_row(load):
     message = r"results.csv:2 \[specimen\]: .*unknown specimen; found 'N-1'; needed one of N-2"
     with pytest.raises(LogError, match=message):
         load(NAMED + SHEET.replace("N-1", "N-2"))
-    with pytest.raises(LogError, match=r"needed \[specimens.NAME\]. A name without a sheet"):
+    with pytest.raises(LogError, match=r"needed \[specimens.NAME\]. Put the name"):
         load(NAMED)
 
 

@@ -68,7 +68,7 @@ def test_units_of_quantities_are_spelt_as_in_products():
 @pytest.mark.parametrize(
     ("text", "place"),
     [
-        ('[factors]\nx = ["1 m", "2 ft"]', "factors.x: the two levels of x are not given in one"),
+        ('[factors]\nx = ["1 m", "2 ft"]', "factors.x: the two levels of x are given in different"),
         ('[factors]\nmean_tension = ["12 %RBS", "30 % of mean"]', "factors.mean_tension: the two"),
         ('[factors]\nx = ["one", "two"]', "factors.x: a value is not a number; found 'one'"),
         ('[factors]\n"x*y" = [1, 2]', "factors"),

@@ -31,9 +31,9 @@ def test_working_curves_are_stated_and_the_rest_is_of_the_three_parameters():
 @pytest.mark.parametrize(
     ("curve", "tension", "form", "message"),
     [
-        ("LINEAR, 0.2", None, "syrope", "half a Syrope"),
-        (None, "400 N", "syrope", "half a Syrope"),
-        ("LINEAR, 0.2", "400 N", None, "of a Syrope line alone"),
+        ("LINEAR, 0.2", None, "syrope", "only partly stated"),
+        (None, "400 N", "syrope", "only partly stated"),
+        ("LINEAR, 0.2", "400 N", None, "only to a Syrope line"),
         ("LINEAR", "400 N", "syrope", "--working-curve is not understood"),
         ("LINEAR, 1, 2, 3", "400 N", "syrope", "--working-curve is not understood"),
         ("LINEAR, much", "400 N", "syrope", "--working-curve: "),

@@ -71,7 +71,7 @@ def test_curves_without_a_common_strain_give_a_note_and_no_ratio():
     ratio = compare_curves(curves_of(FINE, 1e6), curves_of(FINE + 5, 1e6), **FIRST, **NAMES)
     assert np.isnan(ratio.ratio).all()
     assert not ratio.is_different.any()
-    assert "new and used have no strain in common" in tuple(map(str, ratio.notes))
+    assert "new and used have no common strain range" in tuple(map(str, ratio.notes))
 
 
 def test_ratio_of_curves_without_scatter_has_no_interval():

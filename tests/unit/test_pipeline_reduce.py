@@ -100,4 +100,4 @@ def test_the_cubic_of_a_hose_stands_where_it_fits():
 def test_a_hose_without_a_diameter_has_tensions_and_no_stress():
     hose = reduced(Specimen("cord", kind="stretch hose"))
     assert "nominal_stress" not in _sample_values(hose, hose.record) and hose.pulls[0] is not None
-    assert any("no diameter is stated" in note for note in map(str, hose.notes))
+    assert any("no diameter or area is stated" in note for note in map(str, hose.notes))

@@ -26,7 +26,7 @@ def test_a_surface_that_falls_below_zero_in_a_corner_is_named_and_its_logarithm_
     # a plane of 2.1 less the sum of the factors: 0.1 at the least run, -0.9 in the corner
     plane = 2.1 - CODED.sum(axis=1)
     (words,) = map(str, negative_surfaces(fitted(plane)))
-    assert words.startswith("the surface of energy goes below zero")
+    assert words.startswith("the surface of energy falls below zero")
     assert negative_surfaces(fitted(plane + 1)) == ()
     assert negative_surfaces(fitted(plane, transforms="log")) == ()
 
@@ -41,7 +41,7 @@ def test_a_drift_is_named_with_its_slope_and_its_absence_is_silent():
     noise = rng.normal(0, 0.01, 15)
     still, moving = fitted(3 + noise), fitted(3 + noise + 0.5 * order)
     (words,) = map(str, drifting_responses(moving, drift_over_order(moving, order)))
-    assert float(words.partition(": ")[2].split()[0]) == pytest.approx(0.5, abs=0.01)
+    assert float(words.partition("change by ")[2].split()[0]) == pytest.approx(0.5, abs=0.01)
     assert drifting_responses(still, drift_over_order(still, order)) == ()
 
 

@@ -67,7 +67,7 @@ def test_the_full_surface_stays_what_it_was():
     np.testing.assert_array_equal(full.coefficient, before)
     assert (reduced.criterion <= reduced.full_criterion).all()
     assert (reduced.n_within_two >= 1).all()
-    assert "too small" in str(reduced.notes[0])
+    assert "too low" in str(reduced.notes[0])
 
 
 def test_missing_runs_and_missing_surfaces_are_kept_apart():
