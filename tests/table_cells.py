@@ -3,13 +3,14 @@
 import csv
 import io
 
-from reduction.archive.csv_columns import _text_of, table_blocks
+from reduction.archive.csv_columns import _cells, _text_of, column_blocks
 from reduction.quantities.row import TEXT
 
 
 def table_rows(archive, table):
     """Numbers as numbers, None where there is none; text as it stands in the file."""
-    text = "".join(_text_of(one, header=False) for one in table_blocks(archive, table))
+    blocks = column_blocks(archive, archive.variables, table)
+    text = "".join(_text_of(zip(*map(_cells, own), strict=True)) for _, own in blocks)
     rows = csv.reader(io.StringIO(text, newline=""))
     variables = [column.variable for column in table.columns]
     return [

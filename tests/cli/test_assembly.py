@@ -230,7 +230,7 @@ def test_an_assembly_is_exported_as_one_line(command, tmp_path):
             ["--to", "csv", "--curve", "ascending"],
             "curve of an assembly is set in its specification",
         ),
-        (["--to", "csv", "--frequency", "0.1 Hz"], "choose nothing in an assembly"),
+        (["--to", "csv", "--frequency", "0.1 Hz"], "have no effect for an assembly"),
     ):
         done = command("export", path, *arguments, "--out", tmp_path / "x")
         assert done.returncode == 2

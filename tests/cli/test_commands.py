@@ -412,8 +412,7 @@ def test_a_folder_that_cannot_be_made_is_told_by_its_path(small, command):
         ),
         (
             ("lookup", "published", "--out", "s3://ann:secret@bucket/a.csv"),
-            "this command writes to no URLs; found 's3://bucket/a.csv'; needed a "
-            "local path",
+            "this command writes to no URLs; found 's3://bucket/a.csv'; needed a local path",
         ),
         (
             ("check", "https://ann:secret@example.org/c.toml?sig=abc"),

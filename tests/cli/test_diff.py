@@ -157,7 +157,7 @@ def test_two_campaigns_are_run_and_compared(made, tmp_path, command, monkeypatch
             4,
             "nothing in common",
         ),
-        (["s3://a/b", "processed"], 2, "this command reads no address on the net"),
+        (["s3://a/b", "processed"], 2, "this command reads no URLs"),
         (["none.toml", "raw/two-tethers/campaign.toml"], 2, "none.toml"),
     ],
 )

@@ -83,7 +83,7 @@ def test_a_campaign_that_is_not_found_is_said(static, command, tmp_path):
         (("--quiet", "--no-browser"), 2, "the address would be shown nowhere"),
         (("--port", "65536"), 2, "Invalid value for '--port'"),
         (("--units", "furlongs", "--no-browser"), 2, "--units is not known"),
-        (("--campaign", "s3://bucket/campaign.toml"), 2, "reads no address on the net"),
+        (("--campaign", "s3://bucket/campaign.toml"), 2, "reads no URLs"),
     ],
 )
 def test_options_that_cannot_be_used_are_refused(static, command, options, status, said):

@@ -17,7 +17,6 @@ from reduction.batch import reduce_tests as reduce_module
 from reduction.batch.run_lock import _run_named
 from reduction.batch.survey import as_reduction_error, survey_log
 from reduction.campaign.load import load_campaign
-from reduction.cli import campaigns as values_module
 from reduction.pages import design_values as campaigns_module
 from reduction.record.errors import ArchiveError
 from reduction.report.campaign_page import CampaignPage
@@ -136,7 +135,7 @@ def test_an_archive_that_was_just_made_and_cannot_be_read_leaves_the_design_valu
     older, command, monkeypatch
 ):
     monkeypatch.setattr(
-        values_module, "write_design_page", without_a(values_module.write_design_page)
+        campaigns_module, "write_design_page", without_a(campaigns_module.write_design_page)
     )
     page = older / "reports" / "design-values.html"
     before = page.read_bytes()

@@ -156,11 +156,11 @@ def test_without_the_option_nothing_is_fetched(
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("run", "s3://k:pw@bucket/campaign.toml"), "reads no address on the net"),
-        (("check", "s3://k:pw@bucket/campaign.toml"), "reads no address on the net"),
+        (("run", "s3://k:pw@bucket/campaign.toml"), "reads no URLs"),
+        (("check", "s3://k:pw@bucket/campaign.toml"), "reads no URLs"),
         (("run", "raw/campaign.toml", "--processed", "s3://k:pw@b/p"), "writes to no address"),
         (("run", "raw/campaign.toml", "--reports", "s3://k:pw@b/p"), "writes to no address"),
-        (("report", "s3://k:pw@bucket/processed/small"), "reads no address on the net"),
+        (("report", "s3://k:pw@bucket/processed/small"), "reads no URLs"),
         (("report", "processed", "--reports", "s3://k:pw@b/p"), "writes to no address"),
     ],
 )  # fmt: skip

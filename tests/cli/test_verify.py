@@ -76,8 +76,9 @@ def test_one_campaign_is_not_that_of_several_folders(place):
     stated = ("--campaign", f"raw/{NAME}/campaign.toml")
     done = reduction("verify", "processed", *stated, cwd=place)
     assert done.returncode == 2
-    assert "--campaign applies to one folder of products; found processed, which holds other" in (
-        done.stderr
+    assert (
+        "--campaign applies to one folder of products; found processed, which contains other"
+        in (done.stderr)
     )
 
 

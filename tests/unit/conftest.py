@@ -173,8 +173,8 @@ def make_hold(rng, specimen, start_time, kind="relaxation", n_terms=2):
         refusals=()
         if n_terms
         else (
-            Note("fixture", "refusal", text="refused: Prony series: the hold lasts 25 s"),
-            Note("fixture", "refusal", text="refused: rate: too short"),
+            Note("fixture", "refusal", text="Prony series not given: the hold lasts 25 s"),
+            Note("fixture", "refusal", text="rate not given: too short"),
         ),
         notes=(Note("fixture", "note", text="ramp of 4 s left out"),),
         **numbers,

@@ -309,7 +309,7 @@ def test_a_log_without_a_whole_cycle_still_makes_an_archive(rich_test, write):
 def test_every_note_of_every_stage_is_kept_with_its_stage(rich_test):
     dataset = build(rich_test)
     notes = list(zip(dataset["note_stage"].values, dataset["note"].values, strict=True))
-    assert ("hold 3 used", "refused: Prony series: the hold lasts 25 s") in notes
+    assert ("hold 3 used", "Prony series not given: the hold lasts 25 s") in notes
     assert ("ogden-2 new", "unstable in equibiaxial extension") in notes
     assert ("specimen new", "printed 1.01 in") in notes
     assert ("test", "=1+1 looks like a formula") in notes

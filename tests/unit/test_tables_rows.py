@@ -85,7 +85,10 @@ def test_an_interval_without_a_slope_has_no_row(stepwise_test):
 
 def test_a_hold_keeps_the_reason_of_its_refusal(rich_test):
     rows = rows_of(rich_test, "relaxation")
-    assert rows[1]["hold_refusal"] == "Prony series: the hold lasts 25 s; rate: too short"
+    assert (
+        rows[1]["hold_refusal"]
+        == "Prony series not given: the hold lasts 25 s; rate not given: too short"
+    )
     assert [row["specimen"] for row in rows] == ["new", "used", "new"]
     assert len(rows_of(rich_test, "prony")) == 4
 
