@@ -165,8 +165,10 @@ def stated_errors_of(archive: xr.Dataset) -> StatedErrors:
     if not isinstance(one_cell, bool):
         raise _fault(_ONE_CELL, one_cell, "true or false")
     known: dict[str, float] = {}
-    for name in (item.name for item in fields(StatedErrors) if item.name != _ONE_CELL):
-        value = kept.get(name, 0.0)
+    for item in fields(StatedErrors):
+        if (name := item.name) == _ONE_CELL:
+            continue
+        value = kept.get(name, item.default)
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise _fault(name, value, "a number in SI")
         known[name] = float(value)

@@ -27,6 +27,7 @@ SEED = 7
 LAWS = (
     "tether-tension-smooth", "tether-ratio-kinked", "tether-mixture-both",
     "tether-saturating-smooth", "tether-stiffening-kinked", "tether-slip-slow-kinked", "line-angle",
+    "tether-hyperbolic-few-marks", "tether-tension-friction",
 )  # fmt: skip
 OF_EACH, OF_ALL = 0.6, 0.9
 

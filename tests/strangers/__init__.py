@@ -58,6 +58,23 @@ for _splice in ("tension", "ratio"):
         drift=True,
         play=True,
     )
+_register(
+    "tether-hyperbolic-few-marks",
+    "Tethers: unlike splices that saturate with the tension; one test, three marks",
+    tethers.make,
+    splice="hyperbolic",
+    hysteresis="both",
+    max_tests=1,
+)
+_register(
+    "tether-tension-friction",
+    "Tethers: splices driven by the tension, with friction; one test, three marks on the way up",
+    tethers.make,
+    splice="tension",
+    hysteresis="both",
+    friction=0.015,
+    max_tests=1,
+)
 for _name, _steps in (("rope-creep-levels", False), ("rope-creep-levels-steps", True)):
     _register(
         _name,

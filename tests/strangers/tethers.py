@@ -19,7 +19,10 @@ from strangers.instruments import SI, Channel, ErrorBook, Statement, rounded
 from strangers.materials import Array, Rubber, draw_rubber
 
 FOOT = SI["ft"]
-SPLICES = ("tension", "ratio", "mixture", "saturating", "stiffening", "slip-sudden", "slip-slow")
+SPLICES = (
+    "tension", "ratio", "mixture", "saturating", "stiffening", "hyperbolic", "slip-sudden",
+    "slip-slow",
+)  # fmt: skip
 TARGETS = [
     (0.75, 0.25),
     (1.0, 0.25),
@@ -44,6 +47,7 @@ class Splice:
     bend: float = 1.0  # strain of saturation or stiffening
     reference_tension: float = 1.0  # [N]
     slow_slip: float = 0.0  # [m/s] at the reference tension
+    friction: float = 0.0  # of the tension, by which what the splice feels may lag either way
 
     def strain(self, free: Array, tension: Array) -> Array:
         """Strain of the splice without slip."""
@@ -51,12 +55,14 @@ class Splice:
         free = np.asarray(free, dtype=float)
         reduced = np.maximum(tension, 0.0) / self.reference_tension
         driven = (reduced + toe) ** self.exponent - toe**self.exponent
+        if self.law == "hyperbolic":
+            driven = reduced / (reduced + self.bend) * (1.0 + self.bend)
         follow = free
         if self.law == "saturating":
             follow = np.expm1(-free / self.bend) / np.expm1(-1.0 / self.bend)
         elif self.law == "stiffening":
             follow = free * (1.0 + (free / self.bend) ** 2) / (1.0 + self.bend**-2)
-        weight = {"tension": 1.0, "mixture": self.share}.get(self.law, 0.0)
+        weight = {"tension": 1.0, "hyperbolic": 1.0, "mixture": self.share}.get(self.law, 0.0)
         total: Array = self.at_one * (weight * driven + (1.0 - weight) * follow)
         return total
 
@@ -95,6 +101,18 @@ class State:
     far_slip: Array
 
 
+def _felt(tension: Array, friction: float) -> Array:
+    """Tension that a splice with friction feels: play, as wide as a share of the tension."""
+    if friction == 0.0:
+        return tension
+    felt, out = 0.0, []
+    low, high = (tension / (1.0 + friction)).tolist(), (tension / (1.0 - friction)).tolist()
+    for least, most in zip(low, high, strict=True):
+        felt = least if felt < least else min(felt, most)
+        out.append(felt)
+    return np.array(out)
+
+
 def _slow_slip(splice: Splice, tension: Array, time_step: float) -> Array:
     if splice.slow_slip == 0.0:
         return np.zeros_like(tension)
@@ -125,8 +143,9 @@ def solve(
             before + step + _slow_slip(splice, tension, time_step)
             for before, step, splice in zip(slip, steps, (near, far), strict=True)
         ]
+        felt = _felt(tension, near.friction)
         lengths = [
-            splice.length * (1.0 + splice.strain(strain, tension)) + moved
+            splice.length * (1.0 + splice.strain(strain, felt)) + moved
             for splice, moved in zip((near, far), slips, strict=True)
         ]
         residual = (length - lengths[0] - lengths[1]) / free - 1.0 - strain
@@ -150,7 +169,12 @@ def solve(
 
 
 def draw_specimen(
-    rng: np.random.Generator, name: str, splice: str, hysteresis: str, length: float
+    rng: np.random.Generator,
+    name: str,
+    splice: str,
+    hysteresis: str,
+    length: float,
+    friction: float = 0.0,
 ) -> Specimen:
     """Draw a tether of a given length between thimbles at rest."""
     diameter = rng.uniform(0.90, 1.08) * SI["in"]
@@ -169,11 +193,17 @@ def draw_specimen(
         bend=rng.uniform(1.2, 3.0) if law == "saturating" else rng.uniform(1.8, 3.5),
         reference_tension=float(reference),
         slow_slip=rng.uniform(0.8, 3.0) * 1e-5 * FOOT if splice == "slip-slow" else 0.0,
+        friction=friction,
     )
     near, far = (
         replace(base, length=float(part), at_one=at_one * rng.uniform(0.92, 1.08))
         for part in lengths
     )
+    if law == "hyperbolic":  # unlike ends
+        near, far = (
+            replace(near, bend=rng.uniform(0.15, 0.3)),
+            replace(far, bend=rng.uniform(0.4, 0.8)),
+        )
     free = length - near.length - far.length
     return Specimen(name, rubber, float(diameter), float(free), near, far)
 
@@ -416,6 +446,7 @@ def make(
     waveform: str = "drawn",
     drift: bool = False,
     play: bool = False,
+    friction: float = 0.0,
     max_tests: int = 6,
 ) -> Truth:
     """Write a campaign of two tethers and return its truth.
@@ -428,6 +459,10 @@ def make(
         triangular, sinusoidal, or drawn (two of three are triangular).
     drift, play
         slow drift of the load cells within their stated offset; backlash of the encoder.
+    friction
+        of the splices: play of what they feel, as a share of the tension, either way.
+    max_tests
+        with 3 or fewer, as many; one test has three marks.
     """
     rng = np.random.default_rng([seed, sum(law.encode())])
     book = ErrorBook(rng)
@@ -436,7 +471,9 @@ def make(
     if waveform == "drawn":
         shape = "triangular" if rng.random() < 2.0 / 3.0 else "sinusoidal"
     length = rng.uniform(11.8, 12.8) * FOOT
-    pair = [draw_specimen(rng, name, splice, hysteresis, length) for name in ("new", "used")]
+    pair = [
+        draw_specimen(rng, name, splice, hysteresis, length, friction) for name in ("new", "used")
+    ]
     diameter = Statement(0.005, "in", "half_width")
     stated_diameters = []
     for specimen in pair:

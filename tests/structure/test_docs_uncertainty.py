@@ -68,7 +68,7 @@ def test_the_budget_of_the_synthetic_test_is_that_of_the_command(tmp_path):
     names = {
         "diameter": "diameter", "gain of the load": "tension_gain",
         "gain of the crosshead": "position_gain", "scatter": "random", "lag": "lag",
-        "tape": "strain_calibration", "which law": "splice_law", "zeros": "zeros",
+        "tape": "strain_calibration", "which law": "splice_law", "friction": "splice_friction", "zeros": "zeros",
     }  # fmt: skip
     for label, psi_told, share in rows("| source | psi |"):
         one = found[next(name for start, name in names.items() if label.startswith(start))]

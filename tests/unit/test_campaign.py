@@ -434,6 +434,18 @@ def test_the_suffix_of_a_marks_column_is_its_unit(tmp_path, suffix, metre):
     assert _read_marks(path)["a"].near_toe == pytest.approx([2 * metre])
 
 
+def test_sixteenths_of_an_inch_in_decimal_feet_are_not_read_to_their_last_digit(tmp_path):
+    path = tmp_path / "marks.csv"
+    path.write_text(MARKS.replace("2,10,12", "2.0417,10.4375,12.1042"))
+    assert _read_marks(path)["a"].reading_uncertainty == 0.0005
+
+
+def test_a_mark_on_the_way_down_is_known_by_its_hold(tmp_path):
+    path = tmp_path / "marks.csv"
+    path.write_text(MARKS.replace("slack", "75 % down"))
+    assert _read_marks(path)["a"].is_unloading.tolist() == [True]
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

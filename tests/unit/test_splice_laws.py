@@ -60,3 +60,58 @@ def test_a_cubic_is_not_tried_with_fewer_than_five_loaded_marks():
         0.45, TAPE, np.zeros((2, 2)), tension_uncertainty=np.zeros(kept.size),
     )  # fmt: skip
     assert "strain-cubic" not in {law.name for law in fit_splice_laws(few).laws}
+
+
+def three_marks(splice, tension=(260.0, 470.0, 700.0), free=(0.48, 1.02, 1.57)):
+    """Marks of one test: slack, min, centre and max."""
+    return SpliceReadings(
+        np.array([0.0, *free]), np.array([0.0, *splice]), np.array([0.0, *tension]),
+        np.zeros(4, int), np.array([True, False, False, False]), 0.464, 0.0013, np.zeros((2, 2)),
+        tension_uncertainty=np.zeros(4),
+    )  # fmt: skip
+
+
+def hyperbola(tension):
+    """Two unlike ends, each a F / (F + F_c) with a line."""
+    ends = 0.15 * tension / (tension + 90.0) + 0.13 * tension / (tension + 200.0)
+    return ends + 1.5e-4 * tension
+
+
+def weight_of(found, term):
+    return sum(
+        weight for law, weight in zip(found.laws, found.weight, strict=True)
+        if (term in LAWS[law.name])
+    )  # fmt: skip
+
+
+def test_three_marks_of_splices_that_saturate_leave_a_law_of_the_tension():
+    found = fit_splice_laws(three_marks(hyperbola(np.array([260.0, 470.0, 700.0]))))
+    by_tension = next(law for law in found.laws if law.name == "tension-driven")
+    # d ln s / d ln F at the middle mark, by hand: 0.118 / 0.288
+    assert by_tension.values[5] == pytest.approx(0.41, abs=0.04)
+    assert by_tension.freedom == 1
+    assert weight_of(found, "tension") == pytest.approx(0.5)
+    assert found.is_checked
+
+
+def test_a_misread_mark_among_three_is_told_and_the_next_law_is_carried():
+    """Any three marks lie on a curve with an offset: that it fits says nothing of them."""
+    sound = 0.25 * (np.array([260.0, 470.0, 700.0]) / 470) ** 0.43
+    found = fit_splice_laws(three_marks(sound - [0.0, 0.0, 0.021]))
+    assert not found.is_checked
+    assert 0 < weight_of(found, "tension") < 1
+    # the laws' own misfit is in their spread: a misread inch is in it
+    law = next(one for one in found.laws if one.name == "tension-driven")
+    assert law.freedom == 1
+    assert law.spread[4, 4] == pytest.approx(law.covariance[4, 4] * law.chi_square)
+
+
+def test_two_marks_of_splices_that_saturate_keep_both_sides():
+    free = np.array([0.0, 0.49, 1.59])
+    two = SpliceReadings(
+        free, np.array([0.0, 0.17, 0.27]), np.array([0.0, 265.0, 703.0]), np.zeros(3, int),
+        free == 0, 0.464, 0.0013, np.zeros((2, 2)), tension_uncertainty=np.zeros(3),
+    )  # fmt: skip
+    found = fit_splice_laws(two)
+    assert weight_of(found, "tension") == pytest.approx(0.5)
+    assert not found.is_checked

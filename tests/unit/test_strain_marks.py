@@ -1,12 +1,18 @@
 """Unit tests of reduction.stages.strain.strain_fit."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
-from reduction.record.measurement import SpliceMarks
+from reduction.record.measurement import Specimen, SpliceMarks
 from reduction.stages.standstills import Standstills
-from reduction.stages.strain.strain_fit import _check_marks, measure_mark_tension
+from reduction.stages.strain.strain_fit import (
+    _check_marks,
+    fit_strain_model,
+    measure_mark_tension,
+)
 
 
 def marks(position, free, *, hold=None, test=None, reading_uncertainty=0.00124):
@@ -143,3 +149,28 @@ def test_only_the_tests_asked_for_are_looked_at():
     _check_marks(rows, tests=["T-2"])
     with pytest.raises(DataError, match="contradict"):
         measured(rows, HOLDS, RAMP)
+
+
+def test_a_mark_on_the_way_down_belongs_to_the_hold_that_was_reached_from_above():
+    holds = [*HOLDS, (300.0, 360.0, 5.90, False)]
+    falling = np.where(RAMP < 295.0, RAMP, 600.0 - RAMP)
+    rows = marks([3.74, 5.90, 5.90], [2.55, 4.51, 4.45], hold=("slack", "min", "min down"))
+    _, up, down = measured(rows, holds, falling)
+    assert up == pytest.approx(80.0 - 5.0, abs=0.06)
+    assert down == pytest.approx(600.0 - 355.0, abs=0.06)
+
+
+def test_marks_on_the_way_down_say_the_friction_of_the_splices():
+    """Splices that are 8 % of their extension longer there, by construction."""
+    force = np.array([0.0, 300.0, 450.0, 600.0, 400.0])
+    rest, by_law = 1.2, 1.2 * 0.2 * force / 450.0
+    splice = rest + by_law * np.array([1.0, 1.0, 1.0, 1.0, 1.08])
+    free = 2.5 * (1 + np.array([0.0, 0.6, 1.0, 1.4, 13 / 15]))
+    rows = marks(
+        free + splice, free, hold=("slack", "min", "centre", "max", "centre down"),
+        reading_uncertainty=1e-5,
+    )  # fmt: skip
+    rows = replace(rows, is_reading_stated=True)
+    model = fit_strain_model(Specimen("new"), test_id="T-1", marks=rows, mark_tension=force)
+    assert model.splice_friction == pytest.approx(0.08, abs=0.004)
+    assert "centre down" not in model.mark_hold

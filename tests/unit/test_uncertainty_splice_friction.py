@@ -1,0 +1,54 @@
+"""What friction in the splices does to a loop and its branches."""
+
+import numpy as np
+import pytest
+
+from reduction.record.contributions import InstrumentErrors
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.propagation import loop_contributions
+from reduction.uncertainty.shared_contributions import _friction_on_branches
+
+MODEL = StrainModel(
+    "new", "tension-driven",
+    {"relaxed_free_length": 2.5, "relaxed_splice_length": 1.25, "splice_compliance": 0.2 / 450,
+     "splice_exponent": 1.0},
+)  # fmt: skip
+ERRORS = InstrumentErrors("new", splice_friction=0.05)
+
+
+def test_a_loop_is_wider_by_the_difference_of_the_branches_over_the_range_of_tension():
+    """By hand: the splices' extension over the free length is 0.1 at 450 N, 0.05 at 225 N."""
+    found = loop_contributions(
+        ERRORS, MODEL, frequency=np.array([0.1]), mean_tension=np.array([450.0]),
+        tension_amplitude=np.array([225.0]), mean_strain=np.array([1.0]),
+        strain_amplitude=np.array([0.5]), apparent_spring_constant=np.array([450.0]),
+        hysteresis_energy=np.array([20.0]), storage_spring_constant=np.array([450.0]),
+        loss_spring_constant=np.array([25.0]), closed_loop_energy=np.array([20.0]),
+        waveform="triangular",
+    )  # fmt: skip
+    place = [one.source for one in found.component].index("splice_friction")
+    moved = {name: float(rows[place, 0]) for name, rows in found.values.items()}
+    assert moved["hysteresis_energy"] == pytest.approx(2 * 225.0 * 0.05 * 0.1, rel=1e-6)
+    assert moved["strain_amplitude"] == pytest.approx(-0.05 * 0.05 / 2, rel=1e-6)
+    assert moved["apparent_spring_constant"] == pytest.approx(450 * 0.00125 / 0.5, rel=1e-6)
+    assert moved["mean_tension"] == 0.0
+
+
+def test_strain_is_as_the_marks_say_on_the_way_up_and_too_large_on_the_way_down():
+    strain = np.linspace(0.5, 1.5, 101)
+    tension = np.stack([450.0 * strain, 450.0 * strain])
+    away, steeper = _friction_on_branches(ERRORS, MODEL, strain, tension)
+    # far from the reversal each branch begins with
+    assert away[0, -1] == pytest.approx(0.0, abs=1e-6)
+    assert away[1, 0] == pytest.approx(0.05 * 0.05, rel=2e-3)
+    # at the reversals both branches meet
+    assert away[0, 0] == pytest.approx(0.05 * 0.05)
+    assert away[1, -1] == pytest.approx(0.0)
+    assert (steeper[1, -5:] < 0).all()
+    assert (steeper[0, :5] < 0).all()
+
+
+def test_a_specimen_without_splices_has_no_such_error():
+    bare = StrainModel("new", "gauge-length", {"reference_position": 0.0, "gauge_length": 1.0})
+    away, _ = _friction_on_branches(ERRORS, bare, np.linspace(0, 1, 5), np.ones((2, 5)))
+    assert not away.any()
