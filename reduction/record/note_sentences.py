@@ -397,6 +397,11 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "the machine counted {n_counted} cycles with a stroke, but the reversals give"
         " {n_reversals} complete cycles",
     ),
+    "cycles-small": (
+        "note",
+        "the cycles have a range of {stroke:.4g} {unit} in a record of {of_record:.4g} {unit}; they"
+        " were found with a band of {band:.3g} {unit}. State cycles.band to use another",
+    ),
     "one-cycle": ("note", "one cycle only: no cycle-to-cycle scatter can be given"),
     "few-samples-a-cycle": (
         "warning",
@@ -1397,6 +1402,7 @@ CAUSES = (
     "wrap-angle-outside-band", "dead-length-large", "hose-not-of-design", "hose-unlike-design",
     "target-strain-missed", "density-outside-band", "strain-above-band",
     "extensometer-off-at-slack", "reference-tension-elsewhere", "strain-below-zero",
+    "tension-late", "tension-behind-position", "loops-give-work", "loops-not-of-a-sine",
     "hold-load-late",
 )  # fmt: skip
 """What is wrong with an input as it was stated, first what explains those behind it."""

@@ -508,9 +508,8 @@ def segment_contributions(
 
     Notes
     -----
-    The segments of [4]_ are a continuous line by least squares, linear in the tensions that it
-    is fitted to: the error of the curve goes through the same fit.  A modulus is the chord of the
-    line; the diameter enters it by the area.
+    The segments of [4]_ are chords of the curve: the errors of their ends are those of the curve
+    there.  The diameter enters a modulus by the area.
 
     Examples
     --------
@@ -527,9 +526,7 @@ def segment_contributions(
     """
     as_positive("area", area)
     at, ends = as_increasing("strain", strain), as_increasing("knot", knot)
-    hats = np.stack([np.interp(at, ends, unit) for unit in np.eye(ends.size)], axis=1)
-    rows = of_curve.values["branch_tension"]
-    ordinate = rows @ np.linalg.pinv(hats).T
+    ordinate = np.stack([np.interp(ends, at, row) for row in of_curve.values["branch_tension"]])
     low, high = ordinate[:, :-1], ordinate[:, 1:]
     moduli = (high - low) / (area * np.diff(ends))
     for row, one in enumerate(of_curve.component):

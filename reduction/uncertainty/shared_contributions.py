@@ -478,7 +478,7 @@ def _smeared(curves: ModulusCurves, index: int) -> Floats:
     trimmed move it, it is known to lie between there and half a window further in.
     """
     half = curves.window / 2
-    smeared = np.zeros_like(curves.tangent_modulus[index])
+    smeared: Floats = np.zeros_like(curves.tangent_modulus[index])
     rows = zip(
         curves.tangent_modulus[index], curves.tangent_modulus_untrimmed[index], smeared, strict=True
     )

@@ -141,7 +141,10 @@ def test_an_archive_that_was_just_made_and_cannot_be_read_leaves_the_design_valu
     before = page.read_bytes()
     done = run(command, older)
     assert done.returncode == 6
-    assert "processed/short/A.nc cannot be read, so the design-value page was not updated" in done.stderr
+    assert (
+        "processed/short/A.nc cannot be read, so the design-value page was not updated"
+        in done.stderr
+    )
     assert page.read_bytes() == before
 
 

@@ -497,3 +497,24 @@ def test_dwells_are_cycling_in_the_phases():
     cycles = find_cycles(time, position, tension, stand, settings=CycleSettings())
     phase = label_phases(time, standstills=stand, cycles=cycles)
     assert (phase[cycles.first[0] : cycles.last[-1]] == PHASE_VALUES["cycling"]).all()
+
+
+@pytest.mark.parametrize("n_cycles", [6, 12, 40])
+def test_regular_cycles_that_are_small_beside_the_pull_are_found(n_cycles):
+    # a pull of 2 m, and cycles of 40 mm at its end
+    pull = [(0, 3), (20, 3), (30, 5.02), (40, 5.02), (43, 4.98)]
+    time, position = path(back([*pull, *strokes(43, n_cycles, 4.98, 5.02)[1:]]), noise=2e-4)
+    cycles = find(time, position)
+    assert cycles.n_cycles == n_cycles
+    assert cycles.band == pytest.approx(0.004, rel=0.1)
+    assert time[cycles.first] == pytest.approx(43 + 10 * np.arange(n_cycles), abs=0.3)
+    (told,) = (one for one in cycles.notes if one.code == "cycles-small")
+    assert told.numbers["stroke"] == pytest.approx(0.04, rel=0.05)
+
+
+def test_irregular_movements_that_are_small_beside_the_pull_are_no_cycles():
+    swings = np.random.default_rng(5).uniform(0.002, 0.04, 24) * np.tile([1, -1], 12)
+    ripple = [(45.0 + 5 * place, 4.9 + swing) for place, swing in enumerate(swings)]
+    time, position = path(back([(0, 3), (20, 3), (30, 5), (40, 5), *ripple]), noise=2e-4)
+    with pytest.raises(DataError, match="no whole cycle|no cycle"):
+        find(time, position)

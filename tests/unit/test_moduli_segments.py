@@ -99,7 +99,7 @@ def test_the_distance_of_the_branch_from_the_line_stands_beside_the_uncertainty(
     rms = np.sqrt(np.mean((100 * np.exp(X) - line) ** 2))
     assert segments.segment_misfit[0, 0, 0] == pytest.approx(rms, rel=1e-9)
     # ten cycles that agree: the chord is known, the curve is no chord
-    assert segments.segment_modulus_standard_uncertainty[0, 0, 0] < 1e-3 * rms / AREA
+    assert segments.segment_modulus_standard_uncertainty[0, 0, 0] < 1e-2 * rms / AREA
 
 
 @pytest.mark.parametrize("tension", [100 * np.exp(X), 300 * X**3, 400 / (2 - X)])

@@ -122,3 +122,11 @@ def test_a_note_that_names_its_specimen_is_not_given_it_again():
     assert full_note("hold 1 new", "new, used: marks differ") == "new, used: marks differ"
     assert full_note("hold 1 new", "newer marks differ") == "hold 1 new: newer marks differ"
     assert full_note("", "of the campaign") == "of the campaign"
+
+
+def test_a_late_load_comes_before_what_follows_from_it():
+    identity = note("identity-open", "cord", effect=-0.02, error=0.001, is_coarse=False)
+    late = note("tension-late", "cord", lag=0.08, spread=0.002, stated=0.005)
+    work = note("loops-give-work", "cord", energy=-1.0, n_cycles=9, n_known=9, delay=0.02,
+                stated=0.005, time_step=0.05, cause="driven")  # fmt: skip
+    assert by_severity([identity, work, late]) == (late, work, identity)

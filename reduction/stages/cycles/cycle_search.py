@@ -28,6 +28,7 @@ References
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from math import ceil, hypot, sqrt
 from typing import Any
@@ -243,6 +244,48 @@ def _first_pass(values: ArrayLike) -> tuple[NDArray[np.intp], float]:
         # dropping with the smaller band first changes nothing
         reversals, band = reversals[find_reversals(levels, band=wider)], wider
     return reversals, band
+
+
+def _small_pass(values: Floats) -> tuple[Indices, float]:
+    """Reversals of small cycles in a record whose pulls have most of its travel, and the band.
+
+    The band is a tenth of the range of the movements that are most in number.
+
+    Examples
+    --------
+    A move of 12 in and out, and ten cycles of 0.5.
+
+    >>> wave = np.interp(np.arange(0, 24, 0.01), np.arange(24), [0, 12, *[11.5, 12] * 10, 6, 0])
+    >>> _first_pass(wave)[0].size, _small_pass(wave)[0].size
+    (3, 23)
+    """
+    band = noise_range(values)
+    reversals = find_reversals(values, band=band)
+    if reversals.size < 2 * _FEWEST_SMALL:
+        return reversals, band
+    levels = take_samples(values, reversals)
+    wider = _BAND_SHARE * float(np.median(np.abs(np.diff(levels))))
+    return (reversals[find_reversals(levels, band=wider)], wider) if wider > band else (
+        reversals, band
+    )  # fmt: skip
+
+
+_FEWEST_SMALL = 5  # small cycles that are no accident
+
+_ALIKE = 0.3  # of stroke and duration, nine tenths of them
+
+
+def _are_alike(time: Floats, values: Floats, branch_first: Indices, branch_last: Indices) -> bool:
+    """Whether whole cycles are so many, and so like each other, that a machine made them."""
+    if branch_first.shape[0] < _FEWEST_SMALL:
+        return False
+    stroke = np.abs(take_samples(values, branch_last) - take_samples(values, branch_first))
+    period = take_samples(time, branch_last[:, 1]) - take_samples(time, branch_first[:, 0])
+    for of in (stroke, period):
+        low, middle, high = np.quantile(of, [0.05, 0.5, 0.95])
+        if not (1 - _ALIKE) * middle <= low <= high <= (1 + _ALIKE) * middle:
+            return False
+    return True
 
 
 _JUMP_SHARE = 0.8  # of the range of a half cycle, in one step
@@ -686,23 +729,84 @@ def control_channel(position: Floats, tension: Floats, settings: CycleSettings) 
     return mean_of_rows(tension)
 
 
-def _reversals(time: Floats, values: Floats, settings: CycleSettings) -> tuple[Indices, float]:
-    """Reversals and the band that they were found with."""
-    load = settings.control == "load"
-    channel, unit = ("tension", "N") if load else ("crosshead position", "m")
+@dataclass(frozen=True)
+class _Paired:
+    """Reversals found with a band, less those of jumps, and the whole cycles between them."""
+
+    reversals: Indices
+    band: float
+    jumps: Indices
+    branch_first: Indices
+    branch_last: Indices
+    left_out: Indices
+    notes: tuple[Note, ...] = ()
+    made: tuple[str, ...] = ()
+
+
+def _paired(
+    time: Floats,
+    values: Floats,
+    standstills: Standstills,
+    found: tuple[Indices, float],
+    *,
+    is_sinusoidal: bool,
+) -> _Paired:
+    """Whole cycles between reversals."""
+    none = np.empty((0, 2), dtype=np.intp)
+    if found[0].size < 3:
+        return _Paired(*found, none[:, 0], none, none, none[:, 0])
+    reversals, jumps = _drop_jumps(values, found[0])
+    halves = find_half_cycles(
+        time, values, reversals, standstills, band=found[1], is_sinusoidal=is_sinusoidal
+    )
+    return _Paired(
+        reversals, found[1], jumps, *whole_cycles(values, halves),
+        notes=tuple(halves.notes), made=tuple(halves.made),
+    )  # fmt: skip
+
+
+def _paired_cycles(
+    time: Floats,
+    values: Floats,
+    standstills: Standstills,
+    settings: CycleSettings,
+    *,
+    is_counted: bool,
+) -> tuple[_Paired, list[Note]]:
+    """Cycles by the band that is stated, or by one that is found; small ones where no others are.
+
+    A tenth of most of the travel hides cycles that are small beside the pull to them.
+    """
+    pair = partial(
+        _paired, time, values, standstills, is_sinusoidal=settings.waveform == "sinusoidal"
+    )
     if settings.band is not None:
-        reversals, band = find_reversals(values, band=settings.band), settings.band
+        found = pair((find_reversals(values, band=settings.band), settings.band))
     else:
-        reversals, band = _first_pass(values)
-    if reversals.size < 3:
+        found = pair(_first_pass(values))
+    if settings.band is None and not is_counted and not found.branch_first.size:
+        small = pair(_small_pass(values))
+        if _are_alike(time, values, small.branch_first, small.branch_last):
+            ends = take_samples(values, small.branch_last) - take_samples(
+                values, small.branch_first
+            )
+            stroke = float(np.median(np.abs(ends)))
+            of_record = _range(values)
+            return small, [
+                note("cycles-small", stroke=stroke, of_record=of_record, band=small.band,
+                     unit="N" if settings.control == "load" else "m")
+            ]  # fmt: skip
+    if found.reversals.size < 3:
+        load = settings.control == "load"
+        channel, unit = ("tension", "N") if load else ("crosshead position", "m")
         raise DataError(
             f"no cycle: {channel} does not reverse",
             found=f"a range of {_range(values):.4g} {unit}, "
-            f"{max(reversals.size - 1, 0)} movements of {band:.4g} {unit} or more",
+            f"{max(found.reversals.size - 1, 0)} movements of {found.band:.4g} {unit} or more",
             needed="two half cycles or more",
             hint=_hint(time),
         )
-    return reversals, band
+    return found, []
 
 
 def _range(values: Floats) -> float:
@@ -831,8 +935,9 @@ def find_cycles(
 
     Notes
     -----
-    Reversals by a hysteresis band (`_first_pass` where none is stated), half cycles by the
-    rules of `find_half_cycles`. An ascending half cycle with the descending one after it is a
+    Reversals by a hysteresis band (`_first_pass` where none is stated, and `_small_pass` where
+    that leaves no cycle and this one five that are alike), half cycles by the rules of
+    `find_half_cycles`. An ascending half cycle with the descending one after it is a
     cycle; a run that begins at a peak loses its first half cycle. A pair of which one branch
     is of one amplitude and the other of the next is left out (`whole_cycles`). At a dwell the
     branches end where the crosshead arrives and begin where it leaves. A sample that two
@@ -856,17 +961,17 @@ def find_cycles(
     tension = np.atleast_2d(np.asarray(tension, dtype=np.float64))
     time, position, _ = as_same_shape(time=time, position=position, tension=tension[0])
     values = control_channel(position, tension, settings)
-    notes: list[Note] = []
     made: tuple[str, ...] = ()
-    reversals, band = _reversals(time, values, settings)
-    reversals, jumps = _drop_jumps(values, reversals)
+    counter = cycle_counter
+    if counter is not None and not _changes_of_count(counter).size:
+        counter = None
+    found, notes = _paired_cycles(
+        time, values, standstills, settings, is_counted=counter is not None
+    )
+    reversals, band, jumps = found.reversals, found.band, found.jumps
+    branch_first, branch_last, left_out = found.branch_first, found.branch_last, found.left_out
     if jumps.size:
         notes.append(note("jumps-no-reversals", n_jumps=jumps.size, time=float(time[jumps[0]])))
-    halves = find_half_cycles(
-        time, values, reversals, standstills, band=band,
-        is_sinusoidal=settings.waveform == "sinusoidal",
-    )  # fmt: skip
-    branch_first, branch_last, left_out = whole_cycles(values, halves)
     # a stroke of constant speed has its amplitude from the first, a sine grows into it
     steady = slice(0, branch_first.shape[0])
     if settings.waveform == "sinusoidal":
@@ -874,14 +979,14 @@ def find_cycles(
     n_unsteady = branch_first.shape[0] - (steady.stop - steady.start)
     first, last = branch_first[:, 0], branch_last[:, 1]
     counted_by = "reversals"
-    if cycle_counter is not None and _changes_of_count(cycle_counter).size:
+    if counter is not None:
         n_reversals = first.size
-        first, last, branch_first, branch_last, number = _counted_cycles(cycle_counter, values)
+        first, last, branch_first, branch_last, number = _counted_cycles(counter, values)
         counted_by = "machine counter"
         notes += _counter_notes(number, values, first, branch_first, branch_last, n_reversals, band)
     else:
-        made = halves.made
-        notes += halves.notes
+        made = found.made
+        notes += found.notes
         if n_unsteady:
             notes.append(
                 note("cycles-of-starting-machine", n_first=steady.start,

@@ -1269,13 +1269,14 @@ def _result(
             strain_at = _value_at_times(shifted(times_known, hold.start_time), known, times)
         reasons = _reasons_against(hold, ends, settings) if kind == "relaxation" else []
         hold.refusals.extend(reasons)
-        if kind == "relaxation" and ends.late is not None:
-            hold = replace(hold, logged_peak=max(hold.logged_peak, ends.late.peak))
-            tension_at = _with_delay(hold, tension_at, times, ends.late.delay)
+        late = ends.late
+        if kind == "relaxation" and late is not None:
+            hold = replace(hold, logged_peak=max(hold.logged_peak, late.peak))
+            tension_at = _with_delay(hold, tension_at, times, late.delay)
             if _late_reason(ends) is not None:
                 ends = replace(ends, initial=np.nan, initial_uncertainty=np.nan)
             else:
-                hold.notes.append(_late_note(ends.late, is_refused=False))
+                hold.notes.append(_late_note(late, is_refused=False))
         if kind == "creep":
             rate = _creep(hold)
         elif not reasons:

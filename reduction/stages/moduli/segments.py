@@ -255,7 +255,7 @@ def find_segments(curves: ModulusCurves, *, area: ArrayLike, settings: ModulusSe
     four cycles have a curve of their own it is that of the tangent modulus, root mean square
     over the segment, over the root of the windows that fit in it.  Added are what one bin at
     each end may be off by (roughness) and, where segments meet between two bins, what the branch
-    there may have of the corner.
+    there may have of the corner; at a reversal, what it bends by within the last bin.
     How far the branch is from the chord stands beside it as ``segment_misfit`` (root mean
     square): who takes the segment for the curve adds what that means to him.
 
@@ -343,6 +343,8 @@ def _segment_columns(
     corner = np.zeros(knot.size)
     bin_width = float(np.median(np.diff(strain)))
     corner[1:-1] = np.abs(np.diff(np.diff(line.ordinate) / (high - low))) * bin_width / 4
+    # a bin at a reversal has the mean of a branch that bends within it
+    corner[[0, -1]] = np.abs([np.diff(tension[:3], n=2)[0], np.diff(tension[-3:], n=2)[0]]) / 2
     reading = np.hypot(rough, corner / np.sqrt(3))
     at_ends = np.hypot(reading[:-1], reading[1:]) / (area * (high - low))
     distance = tension - np.interp(strain, knot, at_knot)
