@@ -118,7 +118,7 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         lambda channel, low, high, unit, sample, time, n_more, beside: (
             f"{channel} steps from {low:.4g} to {high:.4g} {unit} between sample {sample}"
             f" ({time:.6g} s) and the next{f', and at {n_more} more' if n_more else ''}, and stays"
-            f" there, while {beside} does not step. Possible causes: a slip, a break, a re-zeroed"
+            f" there, while {beside} not. Possible causes: a slip, a break, a re-zeroed"
             " channel, or a change of unit; results across the step mix both states"
         ),
     ),

@@ -95,7 +95,7 @@ def test_the_note_says_channel_values_sample_and_time():
     low, high = tension[911], tension[912]
     assert note.startswith(
         f"tension of 'b' steps from {low:.4g} to {high:.4g} N between sample 912 (91.1 s) and the "
-        "next, and stays there, while the position does not step. Possible causes: a slip, a break, "
+        "next, and stays there, while the position does not. Possible causes: a slip, a break, "
     )
     position = POSITION.copy()
     position[912:] *= 0.3048
