@@ -3,6 +3,7 @@
 import http.client
 import json
 import os
+import shutil
 import signal
 import socket
 import subprocess
@@ -71,7 +72,10 @@ def test_json_is_one_object_and_a_port_that_is_taken_is_refused(static, command)
 
 
 def test_a_campaign_that_is_not_found_is_said(static, command, tmp_path):
-    done = command("explore", static.processed, "--no-browser", cwd=tmp_path)
+    processed = tmp_path / static.processed.name
+    shutil.copytree(static.processed, processed)
+    (processed / ".campaign").unlink()
+    done = command("explore", processed, "--no-browser", cwd=tmp_path)
     assert done.returncode == 2
     assert "the campaign.toml of 'buoy-technology-1997' was not found" in done.stderr
     assert "needed --campaign CAMPAIGN.toml" in done.stderr
