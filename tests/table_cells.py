@@ -7,10 +7,15 @@ from reduction.archive.csv_columns import _cells, _text_of, column_blocks
 from reduction.quantities.row import TEXT
 
 
+def text_of_columns(*columns):
+    """Columns as the text of a table without its header."""
+    return _text_of(zip(*map(_cells, columns), strict=True))
+
+
 def table_rows(archive, table):
     """Numbers as numbers, None where there is none; text as it stands in the file."""
     blocks = column_blocks(archive, archive.variables, table)
-    text = "".join(_text_of(zip(*map(_cells, own), strict=True)) for _, own in blocks)
+    text = "".join(text_of_columns(*own) for _, own in blocks)
     rows = csv.reader(io.StringIO(text, newline=""))
     variables = [column.variable for column in table.columns]
     return [

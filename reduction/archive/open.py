@@ -217,6 +217,9 @@ def variables_if(
 
 
 def _as_text(value: Any) -> str:
+    # a text beyond ASCII is kept as an array of one string
+    if isinstance(value, np.ndarray) and value.size == 1:
+        value = value.item()
     return value.decode() if isinstance(value, bytes) else str(value)
 
 

@@ -15,7 +15,7 @@ from reduction import __version__
 from reduction.archive.open import Opener, reading
 from reduction.archive.shared_errors import shared_contributions
 from reduction.archive.surfaces_dataset import surfaces_to_dataset
-from reduction.archive.variables import stored
+from reduction.archive.variables import read_notes, stored
 from reduction.archive.write import write_archive
 from reduction.batch.campaign_status import PartStatus, TestStatus
 from reduction.batch.reuse import NOT_REDUCED
@@ -205,12 +205,17 @@ def _refusal(plan: ExperimentPlan, archive: xr.Dataset, place: int, specimen: st
     if code == 0:
         return []
     reason, pull = REASONS[code], plan.quasi_static.get(specimen)
-    notes = archive.variables["note"].values.tolist() if "note" in archive else []
+    notes = read_notes(archive)
     if code == _NO_REST and pull is None:
         reason = "no slow pull is named for the specimen"
-    elif code == _NO_REST and any(f"specimen {place + 1} has no slow pull" in one for one in notes):
+    elif code == _NO_REST and any(
+        one.code == "no-slow-pull" and f"specimen {place + 1} " in str(one) for one in notes
+    ):
         reason = f"the slow pull {pull} gave no load-strain curve"
-    elif code == _NO_REST and any(f"of the slow pull of {specimen}" in one for one in notes):
+    elif code == _NO_REST and any(
+        one.code == "mean-tension-outside-pull" and f"slow pull {specimen}," in str(one)
+        for one in notes
+    ):
         reason = f"the mean tension lies outside the slow pull {pull}"
     return [note("run-without-line", reason=reason)]
 

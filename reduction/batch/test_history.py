@@ -367,8 +367,11 @@ def instruments_of(
 
 
 def _with_friction(stated: StatedErrors, model: StrainModel) -> StatedErrors:
-    """With the friction that marks on the way down say, where there are such."""
-    found = (model.by_marks or model).splice_friction
+    """With the friction that marks on the way down say, where there are such; without splices 0."""
+    fitted = model.by_marks or model
+    if "relaxed_splice_length" not in fitted.coefficients:
+        return replace(stated, splice_friction=0.0)
+    found = fitted.splice_friction
     return replace(stated, splice_friction=found) if np.isfinite(found) else stated
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from commandruns import reduction
 from design_queries import page_lines, questions, same_answer, same_text, shown_by_command
+from nopage import NO_ANSWERS
 from odd_lines import odd_lines
 from scipy import stats
 
@@ -24,7 +25,6 @@ from reduction.pages.design_values import (
 )
 from reduction.quantities.digits import fixed_number, plain_number
 from reduction.record.contributions import coverage_factor
-from reduction.report.campaign_page import CampaignAnswers
 
 SEED = 20_261_122
 ASKED, BY_HAND, ODD = 500, 30, 300
@@ -46,7 +46,7 @@ def made(campaigns, tmp_path_factory):
     folder = tmp_path_factory.mktemp("design")
     processed = folder / "processed"
     with pytest.MonkeyPatch.context() as patch:
-        nothing = None, CampaignAnswers((), (), frozenset())
+        nothing = None, NO_ANSWERS
         patch.setattr(batch_run.CampaignPage, "write", lambda *_, **__: nothing)
         batch_run.run_campaign(
             load_campaign(RAW / "tmt-synthetic" / "campaign.toml"), processed=processed,

@@ -100,7 +100,7 @@ def test_a_machine_without_any_browser_is_told_which_would_do(monkeypatch):
     monkeypatch.delenv("BROWSER_PROGRAM", raising=False)
     monkeypatch.setattr(printing.shutil, "which", lambda name: None)
     with pytest.raises(
-        SettingsError, match="no browser that could print.*Chromium nor Chrome nor Edge"
+        SettingsError, match="no browser found to print.*Chromium nor Chrome nor Edge"
     ):
         _find_browser()
 

@@ -118,7 +118,7 @@ def test_levels_choose_nothing_in_an_archive(command, synthetic, tmp_path):
         "--frequency", "0.1 Hz",
     )  # fmt: skip
     assert done.returncode == 2
-    assert "choose nothing in an archive" in done.stderr
+    assert "have no effect for an archive" in done.stderr
 
 
 NYLON = "nylon-double-braid-0.5in-new"

@@ -183,14 +183,14 @@ def test_a_run_whose_archive_cannot_be_read_is_not_one_that_is_missing(folder, m
     """Surfaces over the other runs would be other surfaces."""
     (surfaces,) = folder.glob("p/*/surfaces.nc")
     before = surfaces.read_bytes()
-    opened = opening.reading
+    opened = opening.ReadOnce.__call__
 
-    def refused(path):
+    def refused(self, path):
         if path.name == "R02.nc":
             raise ArchiveError(f"{path} cannot be read", found="Input/output error")
-        return opened(path)
+        return opened(self, path)
 
-    monkeypatch.setattr(opening, "reading", refused)
+    monkeypatch.setattr(opening.ReadOnce, "__call__", refused)
     with pytest.raises(ArchiveError, match=r"R02\.nc cannot be read; found Input/output error"):
         run(folder)
     assert surfaces.read_bytes() == before

@@ -149,8 +149,8 @@ def test_what_a_failed_test_did_is_not_known_and_is_said(row, command):
         assert names.startswith("A")
         assert np.isnan(numbers).all()
         assert (
-            "earlier test A failed: what it did to cord is not known, and earlier_cycles, "
-            "earlier_maximum_strain and earlier_maximum_tension have no number"
+            "earlier test A failed: its effect on cord is not known, so earlier_cycles, "
+            "earlier_maximum_strain and earlier_maximum_tension are missing"
         ) in notes
 
 

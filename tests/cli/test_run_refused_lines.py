@@ -70,4 +70,4 @@ def test_each_run_has_its_own_reason(tmp_path, pull, cut, reasons):
         assert reasons.get(name, "") in text and ("refused" in text) == (name in reasons), said
     # its valleys are at zero in the law that made it
     assert "goes slack" in said["R05"] and "goes slack" not in said["R01"]
-    assert "refused: response surfaces" in message and "R05: the line goes slack" in message
+    assert "response surfaces not given" in message and "R05: the line goes slack" in message

@@ -158,10 +158,10 @@ def test_without_the_option_nothing_is_fetched(
     [
         (("run", "s3://k:pw@bucket/campaign.toml"), "reads no URLs"),
         (("check", "s3://k:pw@bucket/campaign.toml"), "reads no URLs"),
-        (("run", "raw/campaign.toml", "--processed", "s3://k:pw@b/p"), "writes to no address"),
-        (("run", "raw/campaign.toml", "--reports", "s3://k:pw@b/p"), "writes to no address"),
+        (("run", "raw/campaign.toml", "--processed", "s3://k:pw@b/p"), "writes to no URLs"),
+        (("run", "raw/campaign.toml", "--reports", "s3://k:pw@b/p"), "writes to no URLs"),
         (("report", "s3://k:pw@bucket/processed/small"), "reads no URLs"),
-        (("report", "processed", "--reports", "s3://k:pw@b/p"), "writes to no address"),
+        (("report", "processed", "--reports", "s3://k:pw@b/p"), "writes to no URLs"),
     ],
 )  # fmt: skip
 def test_campaigns_and_products_have_no_addresses(campaign, bucket, command, tmp_path, words, said):

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import netCDF4
 import numpy as np
-import pandas as pd
 import xarray as xr
 from examples import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from table_cells import text_of_columns
 
-from reduction.archive.csv_columns import _text_of, csv_text
+from reduction.archive.csv_columns import csv_text
 from reduction.archive.csv_tables import _Curve, _envelope_rows
 from reduction.archive.test_dataset import _row_account
 from reduction.archive.variables import pad
@@ -24,14 +24,14 @@ TEXT = st.text(st.characters(codec="utf-8", exclude_characters="\x00"), max_size
 
 @given(st.lists(st.floats(allow_nan=False), min_size=1))
 def test_every_float_comes_back_from_a_table(numbers):
-    table = pd.DataFrame({"x": np.array(numbers), "y": np.array(numbers)})
-    rows = csv.reader(io.StringIO(_text_of(table, header=False), newline=""))
+    text = text_of_columns(np.array(numbers), np.array(numbers))
+    rows = csv.reader(io.StringIO(text, newline=""))
     assert [float(row[0]) for row in rows] == numbers
 
 
 @given(st.lists(st.floats(allow_nan=False), min_size=1))
 def test_a_number_is_written_as_python_writes_it(numbers):
-    text = _text_of(pd.DataFrame({"x": np.array(numbers)}), header=False)
+    text = text_of_columns(np.array(numbers))
     assert text.split("\r\n")[:-1] == [repr(number) for number in numbers]
 
 

@@ -72,7 +72,11 @@ def test_settings_have_every_reading_as_it_was_made_and_no_digit_that_was_comput
     assert strain["marks"] == [["P", "slack", 3.7, None, "A"], ["P", "min", 5.9, 380.0, "A"]]
     assert found["quasi_static"]["new"]["strain"] == strain
     assert found["instruments"] == {
-        "new": {"tension": "A, channel 1", "crosshead_position": "crosshead"}
+        "new": {
+            "splice_friction": 0.02,
+            "tension": "A, channel 1",
+            "crosshead_position": "crosshead",
+        }
     }
 
 

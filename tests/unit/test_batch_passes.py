@@ -124,7 +124,7 @@ def reduced(campaign, folder, *, lock, progress=None, basis=None, errors=None):
 
 
 def test_a_test_that_is_lost_in_the_second_pass_is_a_failed_row(campaign, tmp_path, monkeypatch):
-    monkeypatch.setattr(secondpass, "_bring_up_to_date", lambda *a, **b: ("reduced", "well"))
+    monkeypatch.setattr(secondpass, "_bring_up_to_date", lambda *a, **b: ("reduced", "well", None))
     monkeypatch.setattr(secondpass, "work_on", lossy("T02.b"))
     progress = Told()
     with run_lock(tmp_path) as lock:
@@ -142,7 +142,7 @@ def test_a_test_that_is_lost_in_the_second_pass_is_a_failed_row(campaign, tmp_pa
 
 
 def test_a_defect_in_what_one_test_rests_on_fails_that_test_alone(campaign, tmp_path, monkeypatch):
-    monkeypatch.setattr(secondpass, "_bring_up_to_date", lambda *a, **b: ("reduced", "well"))
+    monkeypatch.setattr(secondpass, "_bring_up_to_date", lambda *a, **b: ("reduced", "well", None))
 
     def basis(survey):
         if survey.plan.id == "T04":

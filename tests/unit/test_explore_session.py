@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from documentedcampaign import copied, run
+from nopage import NO_ANSWERS
 
 from reduction.archive.open import open_archive
 from reduction.archive.product_files import CAMPAIGN_PLACE
@@ -26,7 +27,6 @@ from reduction.pages.explorer_campaign import (
 from reduction.pages.explorer_server import _campaign_document, _change_document, _save_document
 from reduction.record.errors import ArchiveError, SettingsError
 from reduction.record.settings import ReductionSettings
-from reduction.report.campaign_page import CampaignAnswers
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +58,7 @@ def session(campaign):
     return session_of(campaign.parent.parent)
 
 
-_NO_ANSWERS = CampaignAnswers((), (), frozenset())
+_NO_ANSWERS = NO_ANSWERS
 
 
 def test_an_archive_stands_while_nothing_is_changed(session):

@@ -7,8 +7,9 @@ import pandas as pd
 import pytest
 import xarray as xr
 from experiments import ABOUT, screening_experiment, surface_experiment
+from table_cells import text_of_columns
 
-from reduction.archive.csv_columns import _text_of, table_blocks
+from reduction.archive.csv_columns import column_blocks, table_blocks
 from reduction.archive.csv_definitions import EXPERIMENT_TABLES, TABLES
 from reduction.archive.csv_tables import _by_response, table_of, write_tables
 from reduction.archive.dataset_builder import SCHEMA_VERSION
@@ -21,9 +22,9 @@ PER_CYCLE = ("mean_tension", "tension_amplitude", "loss_factor", "hysteresis_ene
 
 
 def text_of(archive, table, block_rows):
-    blocks = list(table_blocks(archive, table, block_rows=block_rows))
-    assert all(0 < len(block) <= block_rows for block in blocks)
-    return "".join(_text_of(block, header=False) for block in blocks)
+    blocks = list(column_blocks(archive, archive.variables, table, block_rows=block_rows))
+    assert all(0 < len(place) <= block_rows for place, _ in blocks)
+    return "".join(text_of_columns(*columns) for _, columns in blocks)
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,8 @@
 """Numbers are written as Python writes them, whatever their size."""
 
 import numpy as np
-import pandas as pd
 import pytest
-
-from reduction.archive.csv_columns import _text_of
+from table_cells import text_of_columns
 
 RNG = np.random.default_rng(20)
 SIZES = 10.0 ** np.arange(-8, 20)
@@ -23,5 +21,5 @@ NUMBERS = {
 @pytest.mark.parametrize("name", NUMBERS)
 def test_a_number_is_written_as_python_writes_it(name):
     numbers = NUMBERS[name][~np.isnan(NUMBERS[name])]
-    lines = _text_of(pd.DataFrame({"x": numbers}), header=False).split("\r\n")[:-1]
+    lines = text_of_columns(numbers).split("\r\n")[:-1]
     assert lines == [repr(number) for number in numbers.tolist()]

@@ -8,11 +8,11 @@ import h5py
 import netCDF4
 import pytest
 from documentedcampaign import ROOT, copied, run
+from nopage import NO_ANSWERS
 
 from reduction.batch.campaign_status import Silent
 from reduction.batch.verification import Kind, _Finding, verify_campaign
 from reduction.campaign.load import load_campaign
-from reduction.report.campaign_page import CampaignAnswers
 
 NAME = "two-tethers"
 
@@ -37,7 +37,7 @@ def without_tables(monkeypatch):
     monkeypatch.setattr("reduction.batch.verification._of_tables", lambda *given: (0, []))
     monkeypatch.setattr(
         "reduction.batch.run_campaign.CampaignPage.write",
-        lambda *given, **more: (None, CampaignAnswers((), (), frozenset())),
+        lambda *given, **more: (None, NO_ANSWERS),
     )
     monkeypatch.setattr("reduction.batch.run_campaign.CampaignPage.add", lambda *given: None)
 
