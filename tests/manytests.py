@@ -133,7 +133,8 @@ def products(folder):
     found = {}
     for path in sorted((folder / "processed" / "many").rglob("*")):
         name = path.relative_to(folder / "processed" / "many").as_posix()
-        if path.is_dir() or name == "status.csv":
+        # how the last run went, and from which campaign.toml, is no product
+        if path.is_dir() or name in ("status.csv", "finished-run.json", ".campaign"):
             continue
         if name == "run.lock":
             assert path.read_text() == "", "it was not given back"

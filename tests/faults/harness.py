@@ -152,7 +152,7 @@ def _without_run(data):
 def is_left_over(name):
     """Whether a file is one that only a run at work has."""
     base = name.rpartition("/")[2]
-    return base == "run.lock" or base.startswith(".")
+    return base == "run.lock" or (base.startswith(".") and base != ".campaign")
 
 
 def faults(state, now, *, made_of=None, may_be_left=False):
