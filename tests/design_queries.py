@@ -140,7 +140,13 @@ def questions(sources, count, seed):
     """Random questions about lines: `sources` are (key, line) of the page, each is asked."""
     chance = np.random.default_rng(seed)
     found = []
-    pairs = [(key, line, quantity) for key, line in sources for quantity in line.quantities]
+    pairs = [
+        (key, line, quantity)
+        for key, line in sources
+        for quantity in line.quantities
+        # the page has no levels of single tests
+        if not any(one.quantity == quantity for one in line.levels)
+    ]
     order = chance.permutation(len(pairs))
     for number in range(count):
         key, line, quantity = pairs[order[number % len(pairs)]]

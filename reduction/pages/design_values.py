@@ -84,6 +84,7 @@ def _line_data(line: LineSource) -> dict[str, Any]:
             "curves": [_curve(one) for one in line.curves],
             "absent": dict(line.absent),
             "notes": list(line.notes),
+            "conditions": ", ".join(f"{name} {text}" for name, text in line.conditions.items()),
             "rule": line.rule,
             "slow_pulls": {of: _curve(one) for of, one in line.slow_pulls.items()},
             "is_printed": line.is_printed,

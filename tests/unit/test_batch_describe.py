@@ -73,7 +73,7 @@ def test_settings_have_every_reading_as_it_was_made_and_no_digit_that_was_comput
     assert found["quasi_static"]["new"]["strain"] == strain
     assert found["instruments"] == {
         "new": {
-            "splice_friction": 0.02,
+            "splice_friction": 0.0,
             "tension": "A, channel 1",
             "crosshead_position": "crosshead",
         }

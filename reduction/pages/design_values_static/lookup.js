@@ -141,7 +141,8 @@ function jointsOf(curve, x) {
 
 // Numbers with what has to be told of them.
 function told(line, of, points, { loads, words, more, is_untested, freedom }) {
-  const notes = [...line.notes, ...of.notes, ...more];
+  const conditions = line.conditions ? [`tested in: ${line.conditions}`] : [];
+  const notes = [...conditions, ...line.notes, ...of.notes, ...more];
   const isCurve = "variable" in of;
   if (words[0] || words[1]) {
     notes.push(!isCurve && Number.isFinite(of.line_scatter)
