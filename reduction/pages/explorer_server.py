@@ -360,17 +360,21 @@ class ExploreServer(ThreadingHTTPServer):
 
     def process_request(self, request: Any, client_address: Any) -> None:
         """Give a request a thread; of too many the one that dawdles longest makes room."""
-        if not self._places.acquire(blocking=False):
-            with self._waiting_lock:
-                oldest = next(iter(self._waiting), None)
-                if oldest is not None:
-                    del self._waiting[oldest]
-                    _cut_off(oldest)
+        # a request holds a place and is counted as waiting in one step, or in neither
+        with self._waiting_lock:
+            taken = self._places.acquire(blocking=False)
+            oldest = None if taken else next(iter(self._waiting), None)
+            if oldest is not None:
+                del self._waiting[oldest]
+                _cut_off(oldest)
+            if taken:
+                self._waiting[request] = None
+        if not taken:
             if oldest is None or not self._places.acquire(timeout=_TO_LEAVE):
                 self.shutdown_request(request)
                 return
-        with self._waiting_lock:
-            self._waiting[request] = None
+            with self._waiting_lock:
+                self._waiting[request] = None
         super().process_request(request, client_address)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:

@@ -367,13 +367,10 @@ def test_more_at_work_than_there_are_places_are_turned_away(server, session):
             pool.submit(ask, server, "POST", "/api/reload", {})
             for _ in range(server_module.MOST_AT_ONCE)
         ]
-        seen = 0
-        for _ in range(400):
-            # a place is taken just before its request is counted as waiting: look again
-            seen = seen + 1 if server._places._value == 0 and not server._waiting else 0
-            if seen == 5:
-                break
-            threading.Event().wait(0.02)
+        end = time.monotonic() + 20
+        while server._places._value or server._waiting:  # until every place is at work
+            assert time.monotonic() < end
+            threading.Event().wait(0.01)
         with pytest.raises((ConnectionError, http.client.HTTPException)):
             ask(server, "GET", "/explore.css")
         session.wait.set()
