@@ -1,12 +1,12 @@
 """All benchmarks, one after another, as one Markdown table of what was measured in this run.
 
-    python benchmarks/suite.py [--quick] [--only NAME ...] [--keep]
+    python benchmarks/suite.py [--quick] [--only NAME ...]
 
 Each benchmark is a program of its own; what it prints goes to standard error, and the table to
 standard output.  A ratio is of two sides that ran in turn.  ``--quick`` takes small sizes, for
-which nothing is wanted but of what does not depend on them; ``--only`` takes those that are named;
-``--keep`` writes the table to the end of docs/benchmarks-history.md too.  Generated logs lie in the
-folder BENCHMARK_DATA, or a temporary one.  What is not installed is said and left out.
+which nothing is wanted but of what does not depend on them; ``--only`` takes those that are named.
+Generated logs lie in the folder BENCHMARK_DATA, or a temporary one.  What is not installed is said
+and left out.
 """
 
 from __future__ import annotations
@@ -27,7 +27,6 @@ from figures import TARGET, Figure, figures_in
 from machine import described, load, processors
 
 HERE = Path(__file__).parent
-HISTORY = HERE.parent / "docs" / "benchmarks-history.md"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -167,14 +166,10 @@ def main() -> int:
     names = [one.name for one in BENCHMARKS]
     parser.add_argument("--quick", action="store_true", help="small sizes")
     parser.add_argument("--only", nargs="+", choices=names, metavar="NAME", help=", ".join(names))
-    parser.add_argument("--keep", action="store_true", help=f"add the table to {HISTORY.name}")
     given = parser.parse_args()
     chosen = tuple(one for one in BENCHMARKS if given.only is None or one.name in given.only)
     text, is_whole = measured(chosen, is_quick=given.quick)
     print(text)
-    if given.keep:
-        with HISTORY.open("a", encoding="utf-8") as history:
-            history.write(f"\n{text}\n")
     return 0 if is_whole else 1
 
 

@@ -131,24 +131,11 @@ def test_a_benchmark_that_fails_is_a_line_and_the_others_run(
     assert "| good | a |" in text
 
 
-def test_what_is_kept_is_the_printed_section_at_the_end(tmp_path, monkeypatch, capfd):
-    history = tmp_path / "history.md"
-    history.write_text("# Before\n", encoding="utf-8")
-    monkeypatch.setattr(suite, "HISTORY", history)
+def test_the_table_is_printed_and_a_failure_is_the_exit_status(monkeypatch, capfd):
     monkeypatch.setattr(suite, "measured", lambda chosen, *, is_quick: (f"## {len(chosen)}", True))
-    monkeypatch.setattr(sys, "argv", ["suite.py", "--keep", "--only", "hose", "lookup"])
+    monkeypatch.setattr(sys, "argv", ["suite.py", "--only", "hose", "lookup"])
     assert suite.main() == 0
     assert capfd.readouterr().out == "## 2\n"
-    assert history.read_text(encoding="utf-8") == "# Before\n\n## 2\n"
     monkeypatch.setattr(suite, "measured", lambda chosen, *, is_quick: ("## bad", False))
     monkeypatch.setattr(sys, "argv", ["suite.py"])
     assert suite.main() == 1
-    assert "bad" not in history.read_text(encoding="utf-8")
-
-
-def test_the_history_is_of_runs_in_the_order_of_time():
-    text = (ROOT / "docs" / "benchmarks-history.md").read_text(encoding="utf-8")
-    dates = re.findall(r"^## (\d{4}-\d\d-\d\d \d\d:\d\d) UTC", text, re.M)
-    assert dates
-    assert dates == sorted(dates)
-    assert text.count(suite.HEAD) == len(dates)
