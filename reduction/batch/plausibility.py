@@ -54,7 +54,9 @@ _MOST_COMPARED = 40  # tests of one specimen
 
 _FALLEN = 0.5  # of the greatest tension, at the end
 
-_EARLY = 0.09  # of a cycle, by which no specimen lets tension lead
+_EARLY = 0.09  # of a cycle, by which no line lets tension lead
+
+_EARLY_ELASTOMER = 0.125  # the same of a damping polymer: a loss factor of 1
 
 _LATE = 0.01
 
@@ -206,7 +208,9 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
         lead = float(levels.lead[index]) * levels.frequency
         # by more than that a channel runs backward, which its sign says
         # a damper leads by up to a quarter of a cycle, as no line does
-        early = _BACKWARD if campaign.specimens[name].can_push else _EARLY
+        specimen = campaign.specimens[name]
+        early = _EARLY_ELASTOMER if specimen.kind == "elastomer" else _EARLY
+        early = _BACKWARD if specimen.can_push else early
         if -_BACKWARD < lead < -_LATE or early < lead < _BACKWARD:
             yield note(
                 "tension-behind-position" if lead < 0 else "position-behind-tension", name,
