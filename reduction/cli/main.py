@@ -663,6 +663,38 @@ def reproduce(
         reproduce_reports(report, out=out, output=output)
 
 
+def figures(
+    report: Annotated[
+        str | None, typer.Argument(metavar="[REPORT]", help="Default: all.", show_default=False)
+    ] = None,
+    figure: Annotated[
+        str | None,
+        typer.Option(metavar="N", help="Only this figure, without a page: 4, A-1, 9(a)."),
+    ] = None,
+    campaign: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="PROCESSED_DIR",
+            help="Draw own lines of this processed campaign on the same axes.",
+            callback=_here_if_given,
+        ),
+    ] = None,
+    out: Annotated[
+        Path, typer.Option(help="Folder for pages and files.", callback=written_here)
+    ] = Path("reports/figures"),
+    json: Json = False,
+    quiet: Quiet = False,
+    units: Annotated[
+        str | None, typer.Option("--units", help="si or us (psi, lbf); default: as the report.")
+    ] = None,
+) -> None:
+    """Draw the figures of the source reports from corrected numbers, with own data beside."""
+    with guarded(CommandOutput(json=json, quiet=quiet, units=units or "si")) as output:
+        from reduction.cli.figures import draw_figures
+
+        draw_figures(report, figure, campaign=campaign, out=out, units=units, output=output)
+
+
 def budget(
     product: Annotated[
         str,
@@ -917,6 +949,6 @@ def main(
 
 for command in (
     demo, init, sniff, check, run, experiment, surface, predict, compare, composite, assembly,
-    export, lookup, budget, catalogue, report, explore, verify, diff, reproduce, schema,
+    export, lookup, budget, catalogue, report, explore, verify, diff, reproduce, figures, schema,
 ):  # fmt: skip
     app.command()(command)

@@ -371,23 +371,27 @@ def _half(cell: Cell, pages: Pages) -> ReproducedItem:
     return judge_round(cell, farthest, "the line of Table 10 that is farthest from it")
 
 
+def strength_over_years(pages: Pages) -> tuple[list[float], ...]:
+    """Braided polyester: years in the sea, mean strength, deviation (NaN of one) and samples."""
+    mean, deviation = f"{STRENGTH} mean", f"{STRENGTH} standard deviation"
+    new, later = (f"{POLYESTER_BRAID} | {age}" for age in ("new", "3 years"))
+    strengths = [
+        pages.value("10", new, mean),
+        pages.value("sec 6.3.2", f"{POLYESTER_BRAID} | 2 years", STRENGTH),
+        pages.value("21", later, mean),
+        pages.value("10", f"{POLYESTER_BRAID} | 5 years", mean),
+    ]
+    scatter = [
+        pages.value("10", new, deviation),
+        np.nan,
+        pages.value("21", later, deviation),
+        np.nan,
+    ]
+    return [0.0, 2.0, 3.0, 5.0], strengths, scatter, [16.0, 1.0, 4.0, 2.0]
+
+
 def _linear(cell: Cell, pages: Pages) -> ReproducedItem:
-    line = fit_exposure_trend(
-        [0, 2, 3, 5],
-        [
-            pages.value("10", f"{POLYESTER_BRAID} | new", f"{STRENGTH} mean"),
-            pages.value("sec 6.3.2", f"{POLYESTER_BRAID} | 2 years", STRENGTH),
-            pages.value("21", f"{POLYESTER_BRAID} | 3 years", f"{STRENGTH} mean"),
-            pages.value("10", f"{POLYESTER_BRAID} | 5 years", f"{STRENGTH} mean"),
-        ],
-        [
-            pages.value("10", f"{POLYESTER_BRAID} | new", f"{STRENGTH} standard deviation"),
-            np.nan,
-            pages.value("21", f"{POLYESTER_BRAID} | 3 years", f"{STRENGTH} standard deviation"),
-            np.nan,
-        ],
-        [16, 1, 4, 2],
-    )
+    line = fit_exposure_trend(*strength_over_years(pages))
     return agree(
         cell, line.lack_of_fit_p_value > 0.05,
         f"{line.slope:.0f} lb a year from {line.intercept:.0f} lb; lack of fit p = "

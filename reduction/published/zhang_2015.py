@@ -178,7 +178,7 @@ def _wave(theory: str) -> WaveHarmonics:
     )
 
 
-def _loads(theory: str, time: Floats) -> dict[str, Floats]:
+def loads_of_table_7(theory: str, time: Floats) -> dict[str, Floats]:
     """Columns of Table 7 at these times, by their names."""
     load = wave_load(
         _wave(theory),
@@ -207,14 +207,14 @@ def _load(cell: Cell) -> Answer:
     how = _SETTINGS
     if theory.startswith("Airy") and cell.column.startswith("vertical"):
         how = f"{_SETTINGS}, {_WITH_15}; {_AS_PRINTED}"
-    return Answer(float(_loads(theory, time)[cell.column][0]), how)
+    return Answer(float(loads_of_table_7(theory, time)[cell.column][0]), how)
 
 
 def _extreme(cell: Cell, last: float) -> Answer:
     theory = "Airy theory" if cell.table == "5" else "Stokes theory"
     direction, _, end = cell.column.partition(" load, ")
     time = np.arange(round(10 * last) + 1) / 10
-    series = _loads(theory, time)[f"{direction} load {_METHODS[cell.row]}"]
+    series = loads_of_table_7(theory, time)[f"{direction} load {_METHODS[cell.row]}"]
     how = f"{end} on a grid of 0.1 s up to {last:g} s; {_SETTINGS}"
     if cell.table == "5" and direction == "vertical":
         how += f", {_WITH_15}; {_AS_PRINTED}"

@@ -1,0 +1,277 @@
+"""Files of the figures of the reports: SVG, PNG and CSV of each, and a page of a report."""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.resources import files
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment, StrictUndefined
+
+from reduction import __version__
+from reduction.archive.atomic_write import atomic_file
+from reduction.archive.csv_columns import Cell, csv_text
+from reduction.lines.report_figures import Axis, FigureRow, ReportFigure, Series
+from reduction.published.reproduce_page import TITLES
+from reduction.quantities.units import UnitSystem
+from reduction.record.errors import SettingsError
+from reduction.record.measurement import Floats
+from reduction.report.text_style import (
+    COLOURS,
+    PERCENT,
+    Shown,
+    shown_unit,
+    superscript,
+    with_prefix,
+)
+
+_IN_SI = ("Zhang-2015", "Wang-2022")
+
+_DASHES = ("-", "--", ":", "-.")
+
+_STYLE = {
+    "axes.grid": True, "axes.spines.right": False, "axes.spines.top": False,
+    "axes.titlesize": "medium", "grid.color": "#dddddd", "font.size": 9.0,
+    "svg.fonttype": "none", "svg.hashsalt": "figure",
+}  # fmt: skip
+
+_FEW = 6
+"""Lines of a legend that find room within the axes."""
+
+
+@dataclass(frozen=True)
+class FigureFiles:
+    """What was written of one figure, and how it is spoken of on a page."""
+
+    row: FigureRow
+    slug: str
+    image: str
+    spoken: str
+    paths: tuple[Path, ...]
+
+
+def units_of_report(report: str, asked: str | None) -> UnitSystem:
+    """Units that are asked for, else those of the report."""
+    if asked is None:
+        return "si" if report in _IN_SI else "us"
+    return "us" if asked == "us" else "si"
+
+
+def write_figure(figure: ReportFigure, folder: Path, units: UnitSystem) -> FigureFiles:
+    """Write SVG, PNG and CSV of one figure.
+
+    Raises
+    ------
+    SettingsError
+        If matplotlib is not installed.
+    """
+    try:
+        library = import_module("matplotlib")
+        canvas = import_module("matplotlib.figure")
+    except ImportError:
+        raise SettingsError(
+            "figures are drawn by matplotlib, which is not installed",
+            found="no module matplotlib", needed='pip install "mooring-reduction[figures]"',
+        ) from None  # fmt: skip
+    slug = figure.row.figure.replace("(", "").replace(")", "")
+    scales = [_scale(figure, place, units) for place in range(len(figure.axes))]
+    contents = {"csv": _table(figure, scales).encode()}
+    with library.rc_context(_STYLE):
+        drawn = canvas.Figure(layout="constrained", figsize=(7.4, 5.0))
+        _draw(drawn, figure, scales)
+        for ending, more in (("svg", {"metadata": {"Date": None}}), ("png", {"dpi": 110})):
+            buffer = io.BytesIO()
+            drawn.savefig(buffer, format=ending, **more)
+            contents[ending] = buffer.getvalue()
+    paths = tuple(folder / f"figure-{slug}.{ending}" for ending in ("svg", "png", "csv"))
+    for path in paths:
+        with atomic_file(path) as part:
+            part.write_bytes(contents[path.suffix[1:]])
+    labels = "; ".join(filter(None, (scale.label for scale in scales)))
+    names = ", ".join(one.name for one in figure.series)
+    return FigureFiles(
+        figure.row, slug, base64.b64encode(contents["svg"]).decode(),
+        f"{figure.row.shows}. Axes: {labels}. Drawn: {names}.", paths,
+    )  # fmt: skip
+
+
+def write_page(
+    report: str,
+    drawn: Sequence[FigureFiles],
+    rows: Sequence[FigureRow],
+    folder: Path,
+    campaign: str,
+) -> Path:
+    """Write the page of a report; it opens from disk and fetches nothing."""
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    source = files("reduction.pages") / "templates" / "report-figures.html"
+    style = files("reduction.report") / "static" / "page.css"
+    text = environment.from_string(source.read_text("utf-8")).render(
+        report=report, title=next(title for one, title in TITLES.items() if one == report),
+        drawn=drawn, others=[row for row in rows if not row.is_drawn], campaign=campaign,
+        version=__version__, style=style.read_text("utf-8"),
+    )  # fmt: skip
+    path = folder / "index.html"
+    with atomic_file(path) as part:
+        part.write_bytes(text.encode())
+    return path
+
+
+@dataclass(frozen=True)
+class _Scale:
+    """An axis as it is drawn."""
+
+    label: str
+    factor: float
+    axis: Axis
+
+
+def _scale(figure: ReportFigure, place: int, units: UnitSystem) -> _Scale:
+    axis = figure.axes[place]
+    if not axis.unit:
+        return _Scale(axis.words, 1.0, axis)
+    values = np.concatenate([getattr(one, "xyzw"[place]).ravel() for one in figure.series])
+    shown = PERCENT if axis.unit == "1" else shown_unit(axis.unit, units)
+    shown = with_prefix(shown, float(np.nanmax(np.abs(values))))
+    label = Shown(superscript(shown.unit), shown.factor).label(axis.words)
+    return _Scale(label, shown.factor, axis)
+
+
+def _table(figure: ReportFigure, scales: Sequence[_Scale]) -> str:
+    """Every drawn number, in the units of the axes."""
+    labels = [scale.label or "place" for scale in scales]
+    head = ["series", "own", *labels]
+    if has_points := any(one.form == "points" for one in figure.series):
+        value = labels[-1]
+        head += [f"curve there: {value}", f"error of reading: {value}", "erratum"]
+    rows: list[list[Cell]] = []
+    for one in figure.series:
+        columns = [
+            scale.factor * getattr(one, name).ravel()
+            for name, scale in zip("xyzw", scales, strict=False)
+        ]
+        for place, numbers in enumerate(zip(*columns, strict=True)):
+            row: list[Cell] = [one.name, "yes" if one.is_own else "no", *map(float, numbers)]
+            if has_points:
+                of_point = one.form == "points"
+                for extra in (one.computed, one.half):
+                    row.append(float(scales[-1].factor * extra[place]) if of_point else None)
+                row.append(one.errata[place] if of_point else "")
+            rows.append(row)
+    return csv_text(head, rows)
+
+
+def _draw(drawn: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> None:
+    forms = {one.form for one in figure.series}
+    drawn.suptitle(
+        f"{figure.row.report}, Figure {figure.row.figure}: {figure.row.shows}", wrap=True,
+        fontsize="medium",
+    )  # fmt: skip
+    if "edges" in forms:
+        _draw_cube(drawn, figure, scales)
+    elif "surface" in forms:
+        _draw_surfaces(drawn, figure, scales)
+    else:
+        _draw_lines(drawn.subplots(), figure, scales)
+
+
+def _colour(one: Series) -> str:
+    return "#000000" if one.colour < 0 else COLOURS[one.colour % len(COLOURS)]
+
+
+def _name(one: Series) -> str:
+    errata = dict.fromkeys(erratum for erratum in one.errata if erratum)
+    told = f"{one.name} (open marker: {', '.join(errata)})" if errata else one.name
+    return f"own: {told}" if one.is_own else told
+
+
+def _draw_lines(axes: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> None:
+    first, second = scales[::-1] if figure.is_flipped else scales
+    for one in figure.series:
+        x, y = scales[0].factor * one.x, scales[1].factor * one.y
+        look = {"color": _colour(one), "label": _name(one)}
+        if one.form == "curve":
+            at = (y, x) if figure.is_flipped else (x, y)
+            axes.plot(
+                *at, linestyle=_DASHES[one.dash % len(_DASHES)],
+                linewidth=2.6 if one.is_own else 1.5, **look,
+            )  # fmt: skip
+            continue
+        half = scales[1].factor * np.nan_to_num(one.half)
+        has_erratum = np.array([bool(erratum) for erratum in one.errata], dtype=bool)
+        for chosen, fill in ((~has_erratum, look["color"]), (has_erratum, "none")):
+            at = (y[chosen], x[chosen]) if figure.is_flipped else (x[chosen], y[chosen])
+            axes.errorbar(
+                *at, **{"xerr" if figure.is_flipped else "yerr": half[chosen]}, linestyle="none",
+                marker="s" if one.dash else "o", markersize=5.0, markerfacecolor=fill, capsize=2.0,
+                **look,
+            )  # fmt: skip
+            look["label"] = "_nolegend_"
+    axes.set(xlabel=first.label, ylabel=second.label)
+    if first.axis.is_log:
+        axes.set_xscale("log")
+    if first.axis.names:
+        axes.set_xticks(range(len(first.axis.names)), first.axis.names, fontsize="x-small")
+        axes.set_ylim(bottom=0.0)
+    _legend(axes, len(figure.series))
+
+
+def _legend(axes: Any, size: int) -> None:
+    if size <= _FEW:
+        axes.legend(fontsize="x-small")
+        return
+    axes.figure.legend(loc="outside lower center", fontsize="xx-small", ncols=3 if size > 12 else 2)
+
+
+def _draw_surfaces(drawn: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> None:
+    """Surfaces in space, and their contours."""
+    drawn.set_size_inches(10.0, 5.0)
+    space = drawn.add_subplot(1, 2, 1, projection="3d")
+    flat = drawn.add_subplot(1, 2, 2)
+    for one in figure.series:
+        x, y, z = _scaled(one, scales)
+        space.plot_wireframe(x, y, z, color=_colour(one), linewidth=0.7, label=_name(one))
+        if np.ptp(z[:, 0]) or np.ptp(z[0]):
+            lines = flat.contour(x, y, z, 8, colors=_colour(one), linewidths=1.0)
+            flat.clabel(lines, fontsize=7.0, fmt=lambda value: f"{value:,.5g}")
+    _in_space(space, scales[:3])
+    flat.set(xlabel=scales[0].label, ylabel=scales[1].label, title=f"contours of {scales[2].label}")
+    _legend(space, _FEW + 1)
+
+
+def _draw_cube(drawn: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> None:
+    """Twelve edges, and the value at each corner."""
+    space = drawn.add_subplot(projection="3d")
+    for one in figure.series:
+        x, y, value, w = _scaled(one, scales)
+        for first, last in _edges():
+            ends = [first, last]
+            space.plot(x[ends], y[ends], w[ends], color=_colour(one), linewidth=1.2)
+        for at in range(value.size):
+            space.text(x[at], y[at], w[at], f" {value[at]:,.4g}", fontsize="small")
+        space.plot([], [], [], color=_colour(one), label=f"{_name(one)}: {scales[2].label}")
+    _in_space(space, (scales[0], scales[1], scales[3]))
+    _legend(space, _FEW + 1)
+
+
+def _edges() -> Iterator[tuple[int, int]]:
+    """Corners of a cube, numbered by bits, that differ in one of them."""
+    return (pair for pair in combinations(range(8), 2) if (pair[0] ^ pair[1]).bit_count() == 1)
+
+
+def _scaled(one: Series, scales: Sequence[_Scale]) -> list[Floats]:
+    return [scale.factor * getattr(one, name) for name, scale in zip("xyzw", scales, strict=False)]
+
+
+def _in_space(space: Any, scales: Sequence[_Scale]) -> None:
+    space.set(xlabel=scales[0].label, ylabel=scales[1].label, zlabel=scales[2].label)
+    space.set_box_aspect(None, zoom=0.85)
