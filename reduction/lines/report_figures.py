@@ -24,7 +24,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from importlib.resources import files
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -38,7 +38,7 @@ from reduction.prediction.hose_geometry import NEUTRAL_ANGLE, cord_strain_chart
 from reduction.published import whoi_2005_10
 from reduction.published.cg_cells import Pages
 from reduction.published.cg_claims import strength_over_years
-from reduction.published.printed_cells import ReportId, cells_of, number_of, printed_step
+from reduction.published.printed_cells import Cell, ReportId, cells_of, number_of, printed_step
 from reduction.published.published_lines import POUND, published_static_test
 from reduction.published.reproduced_item import ReproducedItem
 from reduction.published.zhang_2015 import loads_of_table_7
@@ -125,12 +125,16 @@ class Series:
 
 @dataclass(frozen=True)
 class ReportFigure:
-    """One figure in numbers; ``is_flipped`` where the value is drawn across."""
+    """One figure in numbers.
+
+    ``is_flipped`` where the value is drawn across, ``is_synthetic`` where own lines are.
+    """
 
     row: FigureRow
     axes: tuple[Axis, ...]
     series: tuple[Series, ...]
     is_flipped: bool = False
+    is_synthetic: bool = False
 
 
 def figure_rows() -> list[FigureRow]:
@@ -170,7 +174,16 @@ def figure_in_numbers(row: FigureRow, own: Sequence[LineSource] = ()) -> ReportF
             f"Figure {row.figure} of {row.report} is not drawn", found=row.from_or_why_not,
             needed="a figure whose numbers are printed", hint="`reduction figures` lists them.",
         )  # fmt: skip
-    return made(row, own)
+    found = made(row, own)
+    has_own = any(one.is_own for one in found.series)
+    return replace(
+        found, is_synthetic=has_own and any("synthetic data" in line.notes for line in own)
+    )
+
+
+def _range(line: LineSource, quantity: str, name: str, size: int) -> Floats:
+    """Levels of a factor from the lowest that was tested to the highest."""
+    return np.linspace(_level(line, quantity, name, -1.0), _level(line, quantity, name, 1.0), size)
 
 
 def _level(line: LineSource, quantity: str, name: str, at: float) -> float:
@@ -211,11 +224,11 @@ class _Curves:
         series = [one for place, line in enumerate(lines) for one in self._of(line, place)]
         if self.claim:
             series.append(self._printed(lines))
+        # where an experiment has a surface its single tests are in that
+        has_surface = any(quantity in line.surfaces for line in own for quantity in self.quantities)
         for place, line in enumerate(own, start=len(lines)):
-            series += [
-                replace(one, is_own=True)
-                for one in (*self._of(line, place), *self._levels(line, place))
-            ]
+            tests = () if has_surface else self._levels(line, place)
+            series += [replace(one, is_own=True) for one in (*self._of(line, place), *tests)]
         of_share = Axis("mean tension over rated break strength", "1")
         axes = (
             of_share if self.is_share else Axis(self.across.replace("_", " "), "N"),
@@ -230,9 +243,7 @@ class _Curves:
             if set(line.factor_names) == {"frequency", self.across, "tension_amplitude"} and (
                 quantity in line.surfaces
             ):
-                tension = np.linspace(
-                    *(_level(line, quantity, self.across, end) for end in (-1.0, 1.0)), _POINTS
-                )
+                tension = _range(line, quantity, self.across, _POINTS)
                 for dash, coded in enumerate(self.amplitudes):
                     amplitude = _level(line, quantity, "tension_amplitude", coded)
                     if _is_near(line, quantity, amplitude):
@@ -247,7 +258,8 @@ class _Curves:
             for curve in line.curves:
                 if (curve.quantity, curve.variable) == (quantity, self.across):
                     at = np.linspace(curve.low, curve.high, _POINTS)
-                    found = look_up(line, quantity, extrapolate="flag", **{self.across: at})
+                    across: dict[str, Any] = {self.across: at}
+                    found = look_up(line, quantity, extrapolate="flag", **across)
                     dash = self.quantities.index(quantity)
                     yield Series(told, "curve", at * scale, found.value, colour=colour, dash=dash)
 
@@ -272,7 +284,7 @@ class _Curves:
                 if cell.column != self.claim or _row_of(line) != cell.row:
                     continue
                 tension = self.at * (line.rated_break_strength if self.at < 1 else 1.0)
-                levels = {self.across: tension}
+                levels: dict[str, Any] = {self.across: tension}
                 if quantity in line.surfaces:
                     levels |= {
                         "frequency": self.frequency,
@@ -282,7 +294,7 @@ class _Curves:
                 place = tension / (line.rated_break_strength if self.is_share else 1.0)
                 half = scale * printed_step(cell.printed) / 2
                 printed = scale * (number_of(cell.printed) or np.nan)
-                found.append((place, printed, float(value), half, cell.erratum))
+                found.append((place, printed, float(value), half, _fault(cell)))
         return _points("printed", found)
 
 
@@ -291,6 +303,11 @@ def _points(name: str, rows: Sequence[tuple[float, float, float, float, str]]) -
     numbers = np.array([row[:4] for row in rows]).reshape(-1, 4).T
     return Series(name, "points", numbers[0], numbers[1], computed=numbers[2], half=numbers[3],
                   errata=tuple(row[4] for row in rows), colour=-1)  # fmt: skip
+
+
+def _fault(cell: Cell) -> str:
+    """Erratum that puts another number in place of the printed one, or leaves it open."""
+    return cell.erratum if cell.confidence else ""
 
 
 def _words(quantity: str) -> str:
@@ -323,7 +340,7 @@ class _Surfaces:
         for place, line in enumerate((*published, *having)):
             tension, amplitude = np.meshgrid(
                 *(
-                    np.linspace(*(_level(line, self.quantity, name, end) for end in (-1, 1)), _SIDE)
+                    _range(line, self.quantity, name, _SIDE)
                     for name in ("mean_tension", "tension_amplitude")
                 )
             )
@@ -348,7 +365,7 @@ def _cube(row: FigureRow, own: Sequence[LineSource]) -> ReportFigure:
     for place, line in enumerate((published_sources()[_PLAITED.format("new")], *having)):
         names = ("frequency", "mean_tension", "tension_amplitude")
         corners = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
-        at = {
+        at: dict[str, Any] = {
             name: np.array([_level(line, _K_AP, name, end) for end in column])
             for name, column in zip(names, corners.T, strict=True)
         }
@@ -409,10 +426,13 @@ class _Segments:
             modulus = ends["modulus"]
             loads = [ends[f"tension_{end}"] for end in ("low", "high")]
             # where nothing says what is right there is no curve
-            is_open = any(np.isnan(one.recomputed) for one in (modulus, *loads))
-            values = [np.nan] * 2 if is_open else [modulus.recomputed] * 2
-            if self.is_load and not is_open:
-                values = [_used(one) for one in loads]
+            is_open = any(
+                one.verdict == "open" or np.isnan(one.recomputed)
+                for one in (loads if self.is_load else [modulus])
+            )
+            values = [_used(one) for one in loads] if self.is_load else [modulus.recomputed] * 2
+            if is_open:
+                values = [np.nan, np.nan]
             steps += [(low, values[0]), (high, values[1]), (np.nan, np.nan)]
             if self.is_load:
                 points += [
@@ -423,7 +443,7 @@ class _Segments:
                 printed = number_of(modulus.cell.printed) or np.nan
                 points.append((
                     (low + high) / 2, printed, modulus.recomputed, modulus.tolerance,
-                        modulus.cell.erratum
+                        _fault(modulus.cell)
                 ))  # fmt: skip
         scale = POUND if self.is_load else _PSI
         x, y = np.array(steps).T
@@ -450,8 +470,10 @@ def _printed_load(
     strain: ReproducedItem, load: ReproducedItem
 ) -> tuple[float, float, float, float, str]:
     """A point as the page has it: both of its numbers may be wrong."""
-    errata = [one.cell.erratum for one in (strain, load) if one.cell.confidence]
+    errata = filter(None, (_fault(one.cell) for one in (strain, load)))
     x, y = (float(number_of(one.cell.printed) or np.nan) for one in (strain, load))
+    if x > 10 * _used(strain):  # a decimal comma
+        x = _used(strain)
     return x, y, load.recomputed, load.tolerance, " ".join(dict.fromkeys(errata))
 
 
@@ -510,7 +532,7 @@ def _dissipation(row: FigureRow, own: Sequence[LineSource]) -> ReportFigure:
     x = np.geomspace(0.01, 100.0, 401)
     series = []
     for place, ratio in enumerate((2.0, 3.0)):
-        line = {
+        line: dict[str, Any] = {
             "quasi_static_spring_constant": 1.0, "dissipation_spring_constant": ratio,
             "relaxation_time": 1.0, "frequency": x / (2 * np.pi),
         }  # fmt: skip
@@ -528,7 +550,7 @@ def _dissipation(row: FigureRow, own: Sequence[LineSource]) -> ReportFigure:
             Series(f"H = 0.1 H_max, {told}", "curve", np.full(2, tenth), np.array([0.0, 1.0]),
                    colour=place, dash=2),
         ]  # fmt: skip
-    axes = Axis("ωτ", "1", is_log=True), Axis("share of the greatest value", "")
+    axes = Axis("ωτ", "", is_log=True), Axis("share of the greatest value", "")
     return ReportFigure(row, axes, tuple(series))
 
 
@@ -554,7 +576,7 @@ def _waves(
 ) -> ReportFigure:
     """Figures 4 to 9 of [4]_."""
     del own
-    time = np.linspace(0.0, 5.0, 251)
+    time = np.linspace(0.0, 5.0 if theory == "Airy" else 10.0, 501)
     found = loads_of_table_7(theory, time)
     series = []
     for place, column in enumerate(columns):
@@ -564,7 +586,7 @@ def _waves(
                 at = float(cell.row.partition(" t = ")[2].removesuffix(" s"))
                 value = float(loads_of_table_7(theory, np.array([at]))[column][0])
                 half = 0.51 * printed_step(cell.printed)
-                points.append((at, number_of(cell.printed) or 0.0, value, half, cell.erratum))
+                points.append((at, number_of(cell.printed) or 0.0, value, half, _fault(cell)))
         series += [
             Series(column, "curve", time, found[column], colour=place),
             replace(_points(f"{column}, Table 7", points), colour=place),

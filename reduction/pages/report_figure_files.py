@@ -23,6 +23,7 @@ from reduction.published.reproduce_page import TITLES
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Floats
+from reduction.report.figure_data import plain_numbers
 from reduction.report.text_style import (
     COLOURS,
     PERCENT,
@@ -42,8 +43,13 @@ _STYLE = {
     "svg.fonttype": "none", "svg.hashsalt": "figure",
 }  # fmt: skip
 
-_FEW = 6
-"""Lines of a legend that find room within the axes."""
+_DIGITS = 9
+
+_MOST_OWN = 6
+"""Own series that are told apart; of more the table has the names."""
+
+_MANY = 12
+"""Lines of a legend that take three columns."""
 
 
 @dataclass(frozen=True)
@@ -153,27 +159,30 @@ def _table(figure: ReportFigure, scales: Sequence[_Scale]) -> str:
     if has_points := any(one.form == "points" for one in figure.series):
         value = labels[-1]
         head += [f"curve there: {value}", f"error of reading: {value}", "erratum"]
+    whose = "yes, synthetic" if figure.is_synthetic else "yes"
     rows: list[list[Cell]] = []
     for one in figure.series:
-        columns = [
-            scale.factor * getattr(one, name).ravel()
-            for name, scale in zip("xyzw", scales, strict=False)
+        columns: list[Sequence[Cell]] = [
+            plain_numbers(values.ravel(), _DIGITS) for values in _scaled(one, scales)
         ]
-        for place, numbers in enumerate(zip(*columns, strict=True)):
-            row: list[Cell] = [one.name, "yes" if one.is_own else "no", *map(float, numbers)]
-            if has_points:
-                of_point = one.form == "points"
-                for extra in (one.computed, one.half):
-                    row.append(float(scales[-1].factor * extra[place]) if of_point else None)
-                row.append(one.errata[place] if of_point else "")
-            rows.append(row)
+        if names := scales[0].axis.names:
+            columns[0] = [names[int(place)].replace("\n", " ") for place in one.x]
+        if has_points:
+            extra = [np.full(one.x.shape, np.nan)] * 2
+            if one.form == "points":
+                extra = [scales[-1].factor * values for values in (one.computed, one.half)]
+            columns += [plain_numbers(values, _DIGITS) for values in extra]
+            columns.append(one.errata or ("",) * one.x.size)
+        own = whose if one.is_own else "no"
+        rows += [[one.name, own, *row] for row in zip(*columns, strict=True)]
     return csv_text(head, rows)
 
 
 def _draw(drawn: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> None:
     forms = {one.form for one in figure.series}
+    told = "\nown lines: SYNTHETIC DATA" if figure.is_synthetic else ""
     drawn.suptitle(
-        f"{figure.row.report}, Figure {figure.row.figure}: {figure.row.shows}", wrap=True,
+        f"{figure.row.report}, Figure {figure.row.figure}: {figure.row.shows}{told}", wrap=True,
         fontsize="medium",
     )  # fmt: skip
     if "edges" in forms:
@@ -189,47 +198,59 @@ def _colour(one: Series) -> str:
 
 
 def _name(one: Series) -> str:
-    errata = dict.fromkeys(erratum for erratum in one.errata if erratum)
-    told = f"{one.name} (open marker: {', '.join(errata)})" if errata else one.name
-    return f"own: {told}" if one.is_own else told
+    return f"own: {one.name}" if one.is_own else one.name
 
 
 def _draw_lines(axes: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> None:
-    first, second = scales[::-1] if figure.is_flipped else scales
+    turn = -1 if figure.is_flipped else 1
+    first, second = scales[::turn]
+    bars = "xerr" if figure.is_flipped else "yerr"
+    named: set[str] = set()
+    own = sum(one.is_own for one in figure.series)
     for one in figure.series:
-        x, y = scales[0].factor * one.x, scales[1].factor * one.y
-        look = {"color": _colour(one), "label": _name(one)}
+        at = [scale.factor * values for scale, values in zip(scales, (one.x, one.y), strict=True)]
+        name, colour = _name(one), _colour(one)
+        if one.is_own and own > _MOST_OWN:
+            name, colour = f"own: {own} series, see the table", "#00000080"
+        look: dict[str, Any] = {"color": colour, "label": None if name in named else name}
         if one.form == "curve":
-            at = (y, x) if figure.is_flipped else (x, y)
-            axes.plot(
-                *at, linestyle=_DASHES[one.dash % len(_DASHES)],
-                linewidth=2.6 if one.is_own else 1.5, **look,
-            )  # fmt: skip
+            dash = _DASHES[one.dash % len(_DASHES)]
+            axes.plot(*at[::turn], linestyle=dash, linewidth=2.2 if one.is_own else 1.5, **look)
+            named.add(name)
             continue
-        half = scales[1].factor * np.nan_to_num(one.half)
         has_erratum = np.array([bool(erratum) for erratum in one.errata], dtype=bool)
-        for chosen, fill in ((~has_erratum, look["color"]), (has_erratum, "none")):
-            at = (y[chosen], x[chosen]) if figure.is_flipped else (x[chosen], y[chosen])
-            axes.errorbar(
-                *at, **{"xerr" if figure.is_flipped else "yerr": half[chosen]}, linestyle="none",
-                marker="s" if one.dash else "o", markersize=5.0, markerfacecolor=fill, capsize=2.0,
-                **look,
-            )  # fmt: skip
-            look["label"] = "_nolegend_"
+        errata = ", ".join(dict.fromkeys(filter(None, one.errata)))
+        # printed points lie on their curves: the legend tells once what they are
+        usual = name if one.is_own or one.colour < 0 else "printed"
+        for chosen, fill, name in (
+            (~has_erratum, colour, usual), (has_erratum, "none", f"printed, {errata}"),
+        ):  # fmt: skip
+            if chosen.any():
+                bar = {bars: scales[1].factor * np.nan_to_num(one.half[chosen])}
+                look |= {"label": None if name in named else name, "markerfacecolor": fill}
+                axes.errorbar(
+                    *(values[chosen] for values in at[::turn]), **bar, **look, linestyle="none",
+                    marker="s" if one.dash else "o", markersize=5.0, capsize=2.0,
+                )  # fmt: skip
+                named.add(name)
     axes.set(xlabel=first.label, ylabel=second.label)
     if first.axis.is_log:
         axes.set_xscale("log")
+    else:
+        axes.xaxis.set_major_formatter("{x:,.6g}")
+    axes.yaxis.set_major_formatter("{x:,.6g}")
     if first.axis.names:
         axes.set_xticks(range(len(first.axis.names)), first.axis.names, fontsize="x-small")
         axes.set_ylim(bottom=0.0)
-    _legend(axes, len(figure.series))
+    _legend(axes)
 
 
-def _legend(axes: Any, size: int) -> None:
-    if size <= _FEW:
-        axes.legend(fontsize="x-small")
-        return
-    axes.figure.legend(loc="outside lower center", fontsize="xx-small", ncols=3 if size > 12 else 2)
+def _legend(axes: Any) -> None:
+    """Name what is drawn, below it."""
+    size = len(axes.get_legend_handles_labels()[1])
+    axes.figure.legend(
+        loc="outside lower center", fontsize="x-small", ncols=3 if size > _MANY else 2
+    )
 
 
 def _draw_surfaces(drawn: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> None:
@@ -240,12 +261,12 @@ def _draw_surfaces(drawn: Any, figure: ReportFigure, scales: Sequence[_Scale]) -
     for one in figure.series:
         x, y, z = _scaled(one, scales)
         space.plot_wireframe(x, y, z, color=_colour(one), linewidth=0.7, label=_name(one))
-        if np.ptp(z[:, 0]) or np.ptp(z[0]):
+        if np.ptp(z[:, 0]):  # K_0 does not change with the amplitude
             lines = flat.contour(x, y, z, 8, colors=_colour(one), linewidths=1.0)
-            flat.clabel(lines, fontsize=7.0, fmt=lambda value: f"{value:,.5g}")
+            flat.clabel(lines, fontsize=7.0, fmt=lambda value: f"{value:,.6g}")
     _in_space(space, scales[:3])
     flat.set(xlabel=scales[0].label, ylabel=scales[1].label, title=f"contours of {scales[2].label}")
-    _legend(space, _FEW + 1)
+    _legend(space)
 
 
 def _draw_cube(drawn: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> None:
@@ -257,10 +278,10 @@ def _draw_cube(drawn: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> No
             ends = [first, last]
             space.plot(x[ends], y[ends], w[ends], color=_colour(one), linewidth=1.2)
         for at in range(value.size):
-            space.text(x[at], y[at], w[at], f" {value[at]:,.4g}", fontsize="small")
+            space.text(x[at], y[at], w[at], f" {value[at]:,.5g}", fontsize="small", weight="bold")
         space.plot([], [], [], color=_colour(one), label=f"{_name(one)}: {scales[2].label}")
     _in_space(space, (scales[0], scales[1], scales[3]))
-    _legend(space, _FEW + 1)
+    _legend(space)
 
 
 def _edges() -> Iterator[tuple[int, int]]:
@@ -274,4 +295,8 @@ def _scaled(one: Series, scales: Sequence[_Scale]) -> list[Floats]:
 
 def _in_space(space: Any, scales: Sequence[_Scale]) -> None:
     space.set(xlabel=scales[0].label, ylabel=scales[1].label, zlabel=scales[2].label)
-    space.set_box_aspect(None, zoom=0.85)
+    space.set_box_aspect(None, zoom=0.8)
+    space.view_init(elev=25.0, azim=-125.0)
+    space.tick_params(labelsize="x-small")
+    space.locator_params(nbins=5)
+    space.zaxis.set_major_formatter("{x:,.6g}")
