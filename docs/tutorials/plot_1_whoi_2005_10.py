@@ -10,6 +10,7 @@ what those numbers are: the diameter, the strain of the rubber between its splic
 import matplotlib.pyplot as plt
 import numpy as np
 
+from reduction.lines.report_figures import figure_in_numbers, figure_rows
 from reduction.published.published_lines import published_tethers
 from reduction.published.reproduce_page import counts_of, reproduce, touched_errata
 
@@ -85,21 +86,17 @@ axes.legend()
 # Printed against computed
 # ------------------------
 
+(row,) = (one for one in figure_rows() if (one.report, one.figure) == ("WHOI-2005-10", "31"))
 figure, axes = plt.subplots()
-for tether in (new, used):
-    for one in tether.segments:
-        if one.name.data == "raw":
-            axes.plot(
-                [100 * one.strain_low, 100 * one.strain_high],
-                [one.modulus / PSI] * 2,
-                color="#0072B2" if tether is new else "#D55E00",
-            )
+for one in figure_in_numbers(row).series:
+    colour = "#0072B2" if " new" in one.name else "#D55E00"
+    axes.plot(100 * one.x, one.y / PSI, "o" if one.form == "points" else "-", color=colour)
 axes.plot([], [], color="#0072B2", label="new")
 axes.plot([], [], color="#D55E00", label="used")
 axes.set(
-    xlabel="strain, as printed [%]",
+    xlabel="strain [%]",
     ylabel="tangent modulus, ascending [psi]",
-    title="Table 5: published, WHOI-2005-10 (misprints put right)",
+    title="Table 5: points as printed, lines as corrected, WHOI-2005-10",
 )
 axes.legend()
 
@@ -112,6 +109,7 @@ for one in touched_errata("WHOI-2005-10", items)[:6]:
 # The same with commands::
 #
 #    reduction reproduce WHOI-2005-10
+#    reduction figures WHOI-2005-10
 #    reduction lookup rubber-tether-new-T-1 --quantity tangent_modulus --strain "100 %" --units us
 #    reduction assembly docs/assemblies/new-hampshire.toml --units us
 #

@@ -91,6 +91,7 @@ axes.legend()
 # changes (:doc:`/method`). The same with commands::
 #
 #    reduction reproduce CG-D-39-80
+#    reduction figures CG-D-39-80
 #    reduction lookup published --list --material polyester
 #    reduction lookup polyester-8-strand-plaited-0.5in-new --against polyester-8-strand-plaited-0.5in-4-years \\
 #        --quantity apparent_spring_constant --table

@@ -84,5 +84,6 @@ left.legend()
 # a test is in the example :doc:`/gallery/plot_03_hose_against_its_test`; with commands::
 #
 #    reduction reproduce WHOI-2004-06
+#    reduction figures WHOI-2004-06
 #    reduction predict hose SPEC.toml
 #    reduction compare MEASURED.nc SPEC.toml

@@ -10,10 +10,9 @@ nothing is measured.
 import matplotlib.pyplot as plt
 import numpy as np
 
+from reduction.lines.report_figures import figure_in_numbers, figure_rows
 from reduction.prediction.wave_load import immerse_hose, wave_load
 from reduction.prediction.wave_theory import airy_wave
-from reduction.prediction.zhang_example import WATER_DENSITY, printed_airy_wave, printed_section
-from reduction.published.printed_cells import cells_of
 from reduction.published.reproduce_page import counts_of, reproduce
 
 for verdict, number in counts_of(reproduce("Zhang-2015")["Zhang-2015"]).items():
@@ -34,31 +33,8 @@ for verdict, number in counts_of(reproduce("Zhang-2015")["Zhang-2015"]).items():
 # .. _ZH-3: ../errata.html#zh-3
 # .. _ZH-4: ../errata.html#zh-4
 
-cells = [one for one in cells_of("Zhang-2015") if one.table == "7" and one.row.startswith("Airy")]
-printed = {}
-for column in ("horizontal load F0", "horizontal load F1"):
-    own = [one for one in cells if one.column == column]
-    printed[column] = np.array(
-        [[float(one.row.split("=")[1].split()[0]), float(one.printed)] for one in own]
-    ).T
-
-time = np.linspace(0, 5.2, 300)
-computed = {
-    "horizontal load F0": wave_load(
-        printed_airy_wave("classic"),
-        printed_section(),
-        time,
-        drag_coefficient=1.2,
-        water_density=WATER_DENSITY,
-    ).horizontal_classic,
-    "horizontal load F1": wave_load(
-        printed_airy_wave("improved"),
-        printed_section(),
-        time,
-        drag_coefficient=1.2,
-        water_density=WATER_DENSITY,
-    ).horizontal,
-}
+(row,) = (one for one in figure_rows() if (one.report, one.figure) == ("Zhang-2015", "4"))
+classic, table_classic, improved, table_improved = figure_in_numbers(row).series
 
 # %%
 # A wave that can be
@@ -76,29 +52,27 @@ hose = immerse_hose(
 wave = airy_wave(
     wave_height=1.25, wave_period=3.57, water_depth=6.0, elevation=float(hose.centre_elevation)
 )
-load = wave_load(wave, hose, time, drag_coefficient=1.2)
+load = wave_load(wave, hose, improved.x, drag_coefficient=1.2)
 
 figure, axes = plt.subplots()
-for (column, label), colour in zip(
-    {"horizontal load F0": "classic", "horizontal load F1": "improved"}.items(),
-    ("#0072B2", "#D55E00"),
-    strict=True,
+for curve, points, label, colour in (
+    (classic, table_classic, "classic", "#0072B2"),
+    (improved, table_improved, "improved", "#D55E00"),
 ):
-    axes.plot(time, computed[column], color=colour, label=f"{label}, as printed")
-    axes.plot(*printed[column], "o", color=colour)
-axes.plot(time, load.horizontal, "k:", label="improved, a consistent wave")
+    axes.plot(curve.x, curve.y, color=colour, label=f"{label}, as printed")
+    axes.plot(points.x, points.y, "o", color=colour)
+    print(
+        f"{label}: largest difference to the table {np.abs(points.computed - points.y).max():.3f} N/m"
+    )
+axes.plot(improved.x, load.horizontal, "k:", label="improved, a consistent wave")
 axes.set(
     xlabel="time [s]",
     ylabel="horizontal load [N/m]",
     title="points: published, Zhang 2015, Table 7; lines: computed",
 )
 axes.legend(loc="lower center")
-
-for column, values in printed.items():
-    there = np.interp(values[0], time, computed[column])
-    print(f"{column}: largest difference to the table {np.abs(there - values[1]).max():.2f} N/m")
 print(
-    f"greatest: as printed {computed['horizontal load F1'].max():.1f}, consistent wave {load.horizontal.max():.1f} N/m"
+    f"greatest: as printed {improved.y.max():.1f}, consistent wave {load.horizontal.max():.1f} N/m"
 )
 
 # %%
@@ -111,4 +85,5 @@ print(
 # With commands::
 #
 #    reduction reproduce Zhang-2015
+#    reduction figures Zhang-2015
 #    reduction predict wave-load SPEC.toml

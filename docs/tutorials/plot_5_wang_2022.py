@@ -68,4 +68,5 @@ for one in touched_errata("Wang-2022", items)[:8]:
 # there, and agrees with three-dimensional elasticity. With commands::
 #
 #    reduction reproduce Wang-2022
+#    reduction figures Wang-2022
 #    reduction predict armour SPEC.toml

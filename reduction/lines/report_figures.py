@@ -27,7 +27,9 @@ from importlib.resources import files
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from reduction.experiments.designs import engineering_from_coded
 from reduction.experiments.strength_statistics import fit_exposure_trend
 from reduction.lines.line_lookup import look_up
 from reduction.lines.line_rank import JUST_OUTSIDE
@@ -68,9 +70,7 @@ _BRAIDED = tuple(f"nylon-double-braid-{size}in-new" for size in ("0.5", "0.75", 
 
 _POINTS, _SIDE = 121, 15
 
-
-def _no_numbers() -> Floats:
-    return np.empty(0)
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -113,10 +113,10 @@ class Series:
     form: Form
     x: Floats
     y: Floats
-    z: Floats = field(default_factory=_no_numbers)
-    w: Floats = field(default_factory=_no_numbers)
-    computed: Floats = field(default_factory=_no_numbers)
-    half: Floats = field(default_factory=_no_numbers)
+    z: Floats = field(default_factory=lambda: np.empty(0))
+    w: Floats = field(default_factory=lambda: np.empty(0))
+    computed: Floats = field(default_factory=lambda: np.empty(0))
+    half: Floats = field(default_factory=lambda: np.empty(0))
     errata: tuple[str, ...] = ()
     colour: int = 0
     dash: int = 0
@@ -142,8 +142,8 @@ def figure_rows() -> list[FigureRow]:
 
     Examples
     --------
-    >>> [row.from_or_why_not for row in figure_rows() if row.figure == "19"]
-    ['cycles to failure are not printed', 'measured curves are not printed']
+    >>> [row.from_or_why_not for row in figure_rows() if row.figure == "24"]
+    ['photograph or drawing, no curve', 'record not printed']
     """
     text = (files("reduction.published") / "data" / "figures.csv").read_text("utf-8")
     return [FigureRow(**row) for row in csv.DictReader(text.splitlines())]
@@ -181,23 +181,16 @@ def figure_in_numbers(row: FigureRow, own: Sequence[LineSource] = ()) -> ReportF
     )
 
 
-def _range(line: LineSource, quantity: str, name: str, size: int) -> Floats:
-    """Levels of a factor from the lowest that was tested to the highest."""
-    return np.linspace(_level(line, quantity, name, -1.0), _level(line, quantity, name, 1.0), size)
-
-
-def _level(line: LineSource, quantity: str, name: str, at: float) -> float:
-    """A level in SI from one that is coded, -1 to 1, or is above that in SI already."""
+def _level(line: LineSource, quantity: str, name: str, coded: ArrayLike) -> Floats:
+    """Levels of a factor in SI from coded ones."""
     surface, place = line.surfaces[quantity], line.factor_names.index(name)
-    low, high = float(surface.low[place]), float(surface.high[place])
-    return at if abs(at) > 1 else (low + high) / 2 + at * (high - low) / 2
+    return engineering_from_coded(coded, low=surface.low[place], high=surface.high[place])
 
 
 def _is_near(line: LineSource, quantity: str, amplitude: float) -> bool:
     """Whether an amplitude was tested, or so nearly that a ranking takes it."""
-    low, high = (_level(line, quantity, "tension_amplitude", end) for end in (-1.0, 1.0))
-    beyond = max(low - amplitude, amplitude - high)
-    return beyond <= JUST_OUTSIDE * (high - low) / 2
+    low, high = _level(line, quantity, "tension_amplitude", [-1.0, 1.0])
+    return bool(max(low - amplitude, amplitude - high) <= JUST_OUTSIDE * (high - low) / 2)
 
 
 @dataclass(frozen=True)
@@ -243,17 +236,20 @@ class _Curves:
             if set(line.factor_names) == {"frequency", self.across, "tension_amplitude"} and (
                 quantity in line.surfaces
             ):
-                tension = _range(line, quantity, self.across, _POINTS)
+                tension = _level(line, quantity, self.across, np.linspace(-1.0, 1.0, _POINTS))
                 for dash, coded in enumerate(self.amplitudes):
-                    amplitude = _level(line, quantity, "tension_amplitude", coded)
+                    amplitude = coded
+                    if abs(coded) <= 1:
+                        amplitude = float(_level(line, quantity, "tension_amplitude", coded))
+                    at = tension[tension >= amplitude * (1 - _ROUNDING)]  # a line that stays taut
                     if _is_near(line, quantity, amplitude):
                         found = look_up(
                             line, quantity, extrapolate="flag", frequency=self.frequency,
-                            mean_tension=tension, tension_amplitude=np.minimum(amplitude, tension),
+                            mean_tension=at, tension_amplitude=amplitude,
                         )  # fmt: skip
                         name = f"{told}, ±{amplitude / POUND:,.0f} lbf ({amplitude / 1e3:.3g} kN)"
                         yield Series(
-                            name, "curve", tension * scale, found.value, colour=colour, dash=dash
+                            name, "curve", at * scale, found.value, colour=colour, dash=dash
                         )
             for curve in line.curves:
                 if (curve.quantity, curve.variable) == (quantity, self.across):
@@ -340,7 +336,7 @@ class _Surfaces:
         for place, line in enumerate((*published, *having)):
             tension, amplitude = np.meshgrid(
                 *(
-                    _range(line, self.quantity, name, _SIDE)
+                    _level(line, self.quantity, name, np.linspace(-1.0, 1.0, _SIDE))
                     for name in ("mean_tension", "tension_amplitude")
                 )
             )
@@ -366,7 +362,7 @@ def _cube(row: FigureRow, own: Sequence[LineSource]) -> ReportFigure:
         names = ("frequency", "mean_tension", "tension_amplitude")
         corners = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
         at: dict[str, Any] = {
-            name: np.array([_level(line, _K_AP, name, end) for end in column])
+            name: _level(line, _K_AP, name, column)
             for name, column in zip(names, corners.T, strict=True)
         }
         value = look_up(line, _K_AP, extrapolate="flag", **at).value

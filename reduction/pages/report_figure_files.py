@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.resources import files
@@ -274,19 +274,16 @@ def _draw_cube(drawn: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> No
     space = drawn.add_subplot(projection="3d")
     for one in figure.series:
         x, y, value, w = _scaled(one, scales)
-        for first, last in _edges():
+        for first, last in combinations(range(8), 2):
             ends = [first, last]
-            space.plot(x[ends], y[ends], w[ends], color=_colour(one), linewidth=1.2)
+            # corners are numbered by bits: an edge is between two that differ in one
+            if (first ^ last).bit_count() == 1:
+                space.plot(x[ends], y[ends], w[ends], color=_colour(one), linewidth=1.2)
         for at in range(value.size):
             space.text(x[at], y[at], w[at], f" {value[at]:,.5g}", fontsize="small", weight="bold")
         space.plot([], [], [], color=_colour(one), label=f"{_name(one)}: {scales[2].label}")
     _in_space(space, (scales[0], scales[1], scales[3]))
     _legend(space)
-
-
-def _edges() -> Iterator[tuple[int, int]]:
-    """Corners of a cube, numbered by bits, that differ in one of them."""
-    return (pair for pair in combinations(range(8), 2) if (pair[0] ^ pair[1]).bit_count() == 1)
 
 
 def _scaled(one: Series, scales: Sequence[_Scale]) -> list[Floats]:
