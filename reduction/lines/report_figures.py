@@ -29,7 +29,6 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reduction.experiments.designs import engineering_from_coded
 from reduction.experiments.strength_statistics import fit_exposure_trend
 from reduction.lines.line_lookup import look_up
 from reduction.lines.line_rank import JUST_OUTSIDE
@@ -184,7 +183,8 @@ def figure_in_numbers(row: FigureRow, own: Sequence[LineSource] = ()) -> ReportF
 def _level(line: LineSource, quantity: str, name: str, coded: ArrayLike) -> Floats:
     """Levels of a factor in SI from coded ones."""
     surface, place = line.surfaces[quantity], line.factor_names.index(name)
-    return engineering_from_coded(coded, low=surface.low[place], high=surface.high[place])
+    low, high = float(surface.low[place]), float(surface.high[place])
+    return np.asarray((low + high) / 2 + np.asarray(coded) * (high - low) / 2)
 
 
 def _is_near(line: LineSource, quantity: str, amplitude: float) -> bool:
