@@ -48,8 +48,8 @@ _DIGITS = 9
 _MOST_OWN = 6
 """Own series that are told apart; of more the table has the names."""
 
-_MANY = 12
-"""Lines of a legend that take three columns."""
+_MANY, _LONG = 12, 40
+"""Lines of a legend that take three columns, and letters of a name that allow but two."""
 
 
 @dataclass(frozen=True)
@@ -247,10 +247,12 @@ def _draw_lines(axes: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> No
 
 def _legend(axes: Any) -> None:
     """Name what is drawn, below it."""
-    size = len(axes.get_legend_handles_labels()[1])
+    names = axes.get_legend_handles_labels()[1]
+    are_short = max(map(len, names)) < _LONG
     axes.figure.legend(
-        loc="outside lower center", fontsize="x-small", ncols=3 if size > _MANY else 2
-    )
+        loc="outside lower center", fontsize="x-small",
+        ncols=3 if are_short and len(names) > _MANY else 2,
+    )  # fmt: skip
 
 
 def _draw_surfaces(drawn: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> None:
