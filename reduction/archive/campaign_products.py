@@ -284,7 +284,8 @@ def _design_values(hoses: Sequence[PredictedHose]) -> Values:
     }
     values["layer_diameter"] = np.array([design.layer_diameter for design in designs], dtype=float)
     values["ribbon_width"] = np.array([hose.ribbon_width for hose in hoses])
-    values["number_of_cords"] = np.array([hose.number_of_cords for hose in hoses])
+    for name in ("number_of_cords", "working_torque", "balanced_wrap_angle"):
+        values[name] = np.array([getattr(hose, name) for hose in hoses])
     values["cord_curve_strain"] = pad([design.cord.strain for design in designs])
     values["cord_curve_load"] = pad([design.cord.load for design in designs])
     for name in HOSE_PARAMETERS:

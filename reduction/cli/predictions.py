@@ -185,6 +185,10 @@ def _show_hose(hose: PredictedHose, output: CommandOutput) -> None:
             short(100 * float(event.cord_strain), 4),
         )
     output.show(table)
+    output.say(
+        f"torque at the working load, held from turning: {hose.working_torque:.3g} N m; none with "
+        f"the outer layer at {np.degrees(hose.balanced_wrap_angle):.2f} degrees"
+    )
     prediction = hose.prediction
     table = table_of(
         "strain [%]", f"tension [{force}]", f"fill pressure [{pressure}]", f"cord [{force}]",
@@ -259,6 +263,8 @@ def _hose_document(hose: PredictedHose) -> dict[str, Any]:
         },
         "ribbon_width": list(hose.ribbon_width),
         "number_of_cords": hose.number_of_cords,
+        "working_torque": hose.working_torque,
+        "balanced_wrap_angle": hose.balanced_wrap_angle,
         "layers": [
             {
                 "name": one.layer.name,

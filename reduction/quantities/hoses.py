@@ -209,6 +209,21 @@ OF_PREDICTIONS: tuple[Quantity, ...] = (
             tables=("hoses",),
             source="000 N, eq 11",
         ),
+        stated(
+            "working_torque",
+            "N m",
+            "torque that holds the hose from turning at the working load, positive as the inner "
+            "cord layer would turn it",
+            "follows from strain and wrap angle",
+            tables=("hoses",),
+        ),
+        stated(
+            "balanced_wrap_angle",
+            "rad",
+            "wrap angle of an outer cord layer that leaves no torque at the working load",
+            "follows from strain and wrap angle",
+            tables=("hoses",),
+        ),
         group="design",
     ),
     *along(
