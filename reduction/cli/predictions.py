@@ -22,7 +22,7 @@ from reduction.campaign.wave_spec import load_wave_case
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.prediction.armour import PredictedArmour, predict_armour_case
-from reduction.prediction.comparison_error import HoseCalibration, verdict_words
+from reduction.prediction.comparison_error import HoseCalibration, PressureComparison, verdict_words
 from reduction.prediction.hose_design import DesignedHose, design_hoses
 from reduction.prediction.hose_prediction import HoseTarget, PredictedHose, predict_from_plan
 from reduction.prediction.hose_product import HoseEvent
@@ -638,6 +638,16 @@ def _show_comparison(named: NamedComparison, output: CommandOutput) -> None:
         )
     if found.calibration is not None:
         _show_calibration(found.calibration, output)
+    if found.pressure is not None:
+        unit, per_pascal = output.unit("Pa")
+        output.say(
+            "fill pressure: "
+            + verdict_words(
+                found.pressure.validation, unit=unit, factor=per_pascal, of="fill pressure"
+            )
+        )
+        if found.pressure.calibration is not None:
+            _show_calibration(found.pressure.calibration, output)
     output.say_each("note", named.notes)
 
 
@@ -730,9 +740,24 @@ def _comparison_document(named: NamedComparison) -> dict[str, Any]:
             "rms": plain(found.cycles.cycle_rms),
         },
         "calibrated": None if found.calibration is None else _calibrated(found.calibration),
+        "fill_pressure": None if found.pressure is None else _pressure_document(found.pressure),
         "units": {"strain": "1", "tension": "N", "difference": "N", "energy": "J m-1"},
         "notes": list(map(str, named.notes)),
     }  # fmt: skip
+
+
+def _pressure_document(found: PressureComparison) -> dict[str, Any]:
+    return {
+        "strain": plain(found.measured.strain),
+        "predicted": plain(found.predicted),
+        "measured": plain(found.measured.tension_of(found.measured.judged)),
+        "validation_uncertainty": plain(found.validation.validation_uncertainty),
+        "bias": plain(found.difference.bias),
+        "rms": plain(found.difference.rms),
+        "agrees": plain(found.validation.agrees),
+        "verdict": found.validation.verdict,
+        "calibrated": None if found.calibration is None else _calibrated(found.calibration),
+    }
 
 
 def _calibrated(fit: HoseCalibration) -> dict[str, Any]:

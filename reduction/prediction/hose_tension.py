@@ -430,12 +430,12 @@ def predict_two_layers(
 
 
 def torque_balanced_angle(design: HoseDesign, strain: float) -> float:
-    """Wrap angle of the outer layer at which one hose has no torque at a strain; NaN if slack.
+    """Wrap angle of the outer layer that leaves one hose no torque at a strain.
 
     Notes
     -----
     Between the angle of the inner layer, where the wider outer one has the upper hand, and that
-    at which the outer layer would be slack.
+    at which the outer layer would be slack.  NaN where the cords are slack or broken.
 
     Examples
     --------
@@ -454,14 +454,14 @@ def torque_balanced_angle(design: HoseDesign, strain: float) -> float:
 
     stretch = 1 + strain / (1 - float(design.dead_length_share))
     inner, slack = float(design.wrap_angle), float(wrap_angle_for(stretch, 1.0))
-    if not inner < slack:
+
+    def torque(outer: float) -> float:
+        return float(predict_two_layers(design, outer, [strain]).torque[0])
+
+    if not inner < slack or np.isnan(torque(inner)):
         return float("nan")
-    return float(
-        brentq(
-            lambda outer: float(predict_two_layers(design, outer, [strain]).torque[0]),
-            inner, slack, xtol=1e-14,
-        )
-    )  # fmt: skip
+    # of layers of one diameter rounding alone is left
+    return inner if torque(inner) >= 0 else float(brentq(torque, inner, slack, xtol=1e-14))
 
 
 def hose_energy(design: HoseDesign, stretch_ratio: ArrayLike) -> Floats:

@@ -103,13 +103,7 @@ OF_PREDICTIONS: tuple[Quantity, ...] = (
             source="000 eps_h",
         ),
         again(_RECORD["tension"], tables=("predictions",)),
-        measured(
-            "fill_pressure",
-            "Pa",
-            "gauge pressure in the bore",
-            tables=("predictions",),
-            source="000 p_h, eq 24",
-        ),
+        again(_RECORD["fill_pressure"], tables=("predictions",)),
         mask(
             "hose_state",
             "state of the hose at this strain",
@@ -473,6 +467,62 @@ OF_COMPARISONS: tuple[Quantity, ...] = (
             "combined standard uncertainty of the difference (test and prediction)",
             "is an uncertainty",
         ),
+    ),
+    *along(
+        _POINT,
+        measured(
+            "measured_fill_pressure",
+            "Pa",
+            "measured fill pressure of the judged curve, mean over the cycles",
+            tables=("comparison_pressures",),
+        ),
+        measured(
+            "predicted_fill_pressure",
+            "Pa",
+            "predicted fill pressure at the same strain",
+            tables=("comparison_pressures",),
+        ),
+        stated(
+            "fill_pressure_validation_uncertainty",
+            "Pa",
+            "combined standard uncertainty of the difference in fill pressure",
+            "is an uncertainty",
+            tables=("comparison_pressures",),
+        ),
+        group="fill_pressure",
+    ),
+    *along(
+        _COMPARISON,
+        label(
+            "fill_pressure_verdict",
+            "verdict of the comparison of fill pressures",
+            tables=("comparisons",),
+        ),
+        stated(
+            "fill_pressure_bias",
+            "Pa",
+            "mean over strain of predicted minus measured fill pressure",
+            "see fill_pressure_validation_uncertainty",
+            tables=("comparisons",),
+        ),
+        stated(
+            "fill_pressure_rms",
+            "Pa",
+            "root mean square of predicted minus measured fill pressure",
+            SPREAD,
+            tables=("comparisons",),
+        ),
+        group="fill_pressure",
+    ),
+    *along(
+        _FITTED,
+        measured(
+            "fill_pressure_parameter_value",
+            "1",
+            "value fitted to the fill pressure instead, in the parameter's unit",
+            tables=("calibrations",),
+        ),
+        group="fill_pressure",
     ),
     *along(
         _POINT_OF_CURVE,

@@ -176,7 +176,11 @@ def test_an_outer_layer_of_the_balanced_angle_leaves_no_torque():
     alike = replace(design, layer_diameter=(0.0889, 0.0889))
     assert torque_balanced_angle(alike, 1.4) == pytest.approx(alike.wrap_angle, rel=1e-12)
     assert predict_two_layers(alike, alike.wrap_angle, [1.4]).torque == pytest.approx(0, abs=1e-10)
+    for strain in (0.4, 0.6, 0.97, 1.3):  # whatever rounding leaves at one angle
+        other = replace(alike, wrap_angle=np.radians(55.0))
+        assert torque_balanced_angle(other, strain) == pytest.approx(np.radians(55.0), rel=1e-12)
     assert np.isnan(torque_balanced_angle(design, 0.5))  # all cords are slack
+    assert np.isnan(torque_balanced_angle(design, 3.5))  # broken
 
 
 def test_dead_ends_stretch_the_axis_and_nothing_else():
