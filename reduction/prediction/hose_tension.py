@@ -51,6 +51,7 @@ from math import pi, prod
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
 from reduction.prediction.cord_curve import (
@@ -450,8 +451,6 @@ def torque_balanced_angle(design: HoseDesign, strain: float) -> float:
     >>> print(bool(abs(predict_two_layers(design, outer, [1.3]).torque[0]) < 1e-9))
     True
     """
-    from scipy.optimize import brentq
-
     stretch = 1 + strain / (1 - float(design.dead_length_share))
     inner, slack = float(design.wrap_angle), float(wrap_angle_for(stretch, 1.0))
 
@@ -461,7 +460,11 @@ def torque_balanced_angle(design: HoseDesign, strain: float) -> float:
     if not inner < slack or np.isnan(torque(inner)):
         return float("nan")
     # of layers of one diameter rounding alone is left
-    return inner if torque(inner) >= 0 else float(brentq(torque, inner, slack, xtol=1e-14))
+    return (
+        inner
+        if torque(inner) >= 0
+        else float(scipy.optimize.brentq(torque, inner, slack, xtol=1e-14))
+    )
 
 
 def hose_energy(design: HoseDesign, stretch_ratio: ArrayLike) -> Floats:

@@ -109,12 +109,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from importlib import import_module
 from math import cosh, exp, expm1, log, pi, sinh, sqrt, tanh
 from typing import Any, Literal
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
+from scipy.special import ellipe, ellipkm1, expit
 
 from reduction.record.arrays import as_finite, as_positive
 from reduction.record.errors import DataError, FitError, SettingsError
@@ -711,7 +712,7 @@ def high_stokes_wave(
     17.42
     """
     try:
-        of_length = partial(import_module("raschii").StokesWave, wave_height, N=order, g=gravity)
+        from raschii import StokesWave  # type: ignore[import-untyped]
     except ImportError:
         raise SettingsError(
             "Stokes waves above second order are computed by raschii, which is not installed",
@@ -721,7 +722,8 @@ def high_stokes_wave(
 
     def raschii_wave(number: float) -> Any:
         # deeper than three lengths nothing changes, but cosh overflows
-        return of_length(min(water_depth, 6 * pi / number), 2 * pi / number)
+        depth = min(water_depth, 6 * pi / number)
+        return StokesWave(wave_height, depth, 2 * pi / number, N=order, g=gravity)
 
     if wave_number is None:
         wave_number = _long_number(
@@ -799,8 +801,6 @@ def cnoidal_wave(
     >>> print(wave.elevation.sum().round(3))
     0.368
     """
-    from scipy.optimize import brentq
-    from scipy.special import ellipe, ellipkm1, expit
 
     def parameter_of(number: float) -> float:
         """Logit of m: neither m nor 1 - m loses digits."""
@@ -809,10 +809,11 @@ def cnoidal_wave(
         def miss(logit: float) -> float:
             return log(expit(logit) * ellipkm1(expit(-logit)) ** 2) - log(3 * ursell / 16)
 
-        return float(brentq(miss, -60.0, 600.0, xtol=1e-13))
+        return float(scipy.optimize.brentq(miss, -60.0, 600.0, xtol=1e-13))
 
     def speed_of(number: float) -> float:
-        m, integral = expit(parameter_of(number)), ellipkm1(expit(-parameter_of(number)))
+        logit = parameter_of(number)
+        m, integral = expit(logit), ellipkm1(expit(-logit))
         square = 1 + wave_height / (m * water_depth) * (2 - m - 3 * ellipe(m) / integral)
         if square <= 0:
             raise DataError(
@@ -831,7 +832,8 @@ def cnoidal_wave(
     integral = ellipkm1(expit(-logit))
     order = np.arange(1, _MOST_HARMONICS + 1)
     fall = np.exp(-pi * order * ellipkm1(expit(logit)) / integral)
-    surface = wave_height * 2 * pi**2 / (expit(logit) * integral**2) * order * fall / (1 - fall**2)
+    share = 2 * pi**2 / (expit(logit) * integral**2) * order * fall / (1 - fall**2)
+    surface = wave_height * share
     if surface[-1] > _LEAST_HARMONIC * surface.max():
         raise DataError(
             "the crests are so far apart that the wave has too many harmonics",
@@ -857,12 +859,10 @@ def _long_number(
     speed_of: Callable[[float], float], period: float, depth: float, current: float, gravity: float
 ) -> float:
     """Wave number of a theory whose speed depends on the height, from the linear one on."""
-    from scipy.optimize import newton
-
     linear = float(_wave_number(period, depth, current_velocity=current, gravity=gravity))
     try:
         return float(
-            newton(
+            scipy.optimize.newton(
                 lambda number: number * (speed_of(number) + current) * period / (2 * pi) - 1,
                 linear, x1=0.97 * linear, tol=1e-13 * linear, maxiter=_MOST_STEPS,
             )
