@@ -970,6 +970,8 @@ def _larger_sum(steady: Floats, maximum: Floats, minimum: Floats) -> Floats:
     )
 
 
+_SAME_LENGTH = 0.005  # between theories
+
 _LINEAR = 0.6
 
 """Share of the breaking height above which the neglected terms are no small ones."""
@@ -1032,16 +1034,17 @@ def predict_wave_load(
         content_density=content_density,
         water_density=water_density,
     )
+    asked: WaveTheoryName | None = None if wave_theory == "auto" else wave_theory
     described = describe_wave(
         wave_height=wave_height,
         wave_period=wave_period,
         water_depth=water_depth,
         wave_length=wave_length,
         current_velocity=current_velocity,
+        asked=asked,
     )
     centre = outer_diameter / 2 - float(section.immersion_depth)
     at = centre if elevation is None else elevation
-    asked: WaveTheoryName | None = None if wave_theory == "auto" else wave_theory
     wave = regular_wave(
         described,
         wave_height=wave_height,
@@ -1081,6 +1084,9 @@ def predict_wave_load(
             f"at {100 * described.breaking_ratio:.0f} % of the height at which it breaks a wave is "
             "far from linear: Airy's theory does not hold"
         )
+    length = 2 * pi / wave.wave_number
+    if abs(length / described.wave_length - 1) > _SAME_LENGTH:
+        notes.append(f"the wave of {used} is {length:.4g} m long, for it is high")
     if used != described.theory:
         notes.append(f"computed by {used}, as asked for; by depth {described.theory} applies")
     return PredictedWaveLoad(

@@ -1082,8 +1082,9 @@ def describe_wave(
     wave_length: float | None = None,
     current_velocity: float = 0.0,
     gravity: float = STANDARD_GRAVITY,
+    asked: WaveTheoryName | None = None,
 ) -> WaveTheory:
-    """Theory, limits and doubts of one wave.
+    """Theory, limits and doubts of one wave, and of the theory asked for.
 
     Notes
     -----
@@ -1135,7 +1136,9 @@ def describe_wave(
         ),
         f"Stokes' second order is at its end: Ursell number {ursell:.1f} (at most "
         f"{GREATEST_URSELL_NUMBER:.1f}), second harmonic of the surface {100 * surface:.0f} % "
-        f"(at most {100 * _SECONDARY_CREST:.0f} %)": is_beyond and theory in ("airy", "stokes"),
+        f"(at most {100 * _SECONDARY_CREST:.0f} %)": (
+            is_beyond and (asked or theory) in ("airy", "stokes")
+        ),
         f"the given length is {100 * mismatch:+.1f} % off that of the period": (
             abs(mismatch) > _LENGTH_TOLERANCE
         ),

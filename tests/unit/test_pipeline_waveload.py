@@ -127,7 +127,9 @@ def test_the_theory_is_that_of_the_depth_unless_another_is_asked_for(predict):
 def test_shallow_water_and_steep_waves_have_their_theories(predict):
     shallow = {"water_depth": 1.0, "wave_height": 0.2, "wave_period": 6.0, "wave_length": None}
     found = predict(LEAST_WAVE, **shallow)
-    assert found.used == found.theory.theory == "cnoidal" and found.notes == ()
+    assert found.used == found.theory.theory == "cnoidal"
+    length = 2 * np.pi / found.wave.wave_number
+    assert found.notes == (f"the wave of cnoidal is {length:.4g} m long, for it is high",)
     # c^2 < g (d + H), the solitary wave; longer than the linear wave
     assert (
         found.theory.wave_length < 2 * np.pi / found.wave.wave_number < 6 * np.sqrt(9.80665 * 1.2)
@@ -136,6 +138,11 @@ def test_shallow_water_and_steep_waves_have_their_theories(predict):
     assert float(found.extremes.horizontal.maximum) == pytest.approx(load.max(), rel=1e-3)
     found = predict(LEAST_WAVE, wave_theory="stokes 5")
     assert (found.used, found.wave.elevation.size) == ("stokes 5", 5)
+    steep = {"water_depth": 3.0, "wave_length": None, "wave_theory": "stokes 5"}
+    assert predict(LEAST_WAVE, **steep).notes == (
+        "the wave of stokes 5 is 17.42 m long, for it is high",
+        "computed by stokes 5, as asked for; by depth stokes applies",
+    )
 
 
 def test_extremes_of_a_wave_of_many_harmonics_are_those_of_a_fine_search(predict):
