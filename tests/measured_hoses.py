@@ -60,6 +60,23 @@ class Truth:
         rubber = area * self.rubber_modulus / 3 * (stretch - stretch**-2)
         return n_cords / np.cos(self.wrap_angle) * load * cord_rate + rubber
 
+    def pressure(self, strain):
+        """Fill pressure [Pa]: hoop force of the cords of each layer over its radius."""
+        stretch = 1 + np.asarray(strain) / (1 - self.dead_length_share)
+        cord = self.cord_stretch(stretch)
+        curve = PchipInterpolator(CORD_STRAIN, CORD_LOAD, extrapolate=False)
+        load = self.cord_load_scale * curve(np.maximum(cord - 1, 0) / self.cord_strain_scale)
+        # sine of the angle of the stretched hose: radius and cord length change it
+        sine = np.sin(self.wrap_angle) / (cord * np.sqrt(stretch))
+        pressure = 0.0
+        for diameter in self.layer_diameter:
+            radius = diameter / 2 / np.sqrt(stretch)
+            n_cords = pi * diameter * np.cos(self.wrap_angle) * self.cords_per_length
+            # a cord crosses the cut along the axis once per pitch
+            pitch = 2 * pi * radius * np.sqrt(1 - sine**2) / sine
+            pressure = pressure + n_cords / pitch * load * sine / radius
+        return pressure
+
     def pick_up_strain(self):
         stretch = (-1 + np.sqrt(1 + 4 * np.tan(self.wrap_angle) ** 2)) / 2
         return (stretch - 1) * (1 - self.dead_length_share)

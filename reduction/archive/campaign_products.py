@@ -9,7 +9,7 @@ was stopped are lower bounds.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, get_args
 
@@ -28,7 +28,7 @@ from reduction.archive.variables import (
     texts,
 )
 from reduction.experiments.outcomes import Outcome, OutcomeQuantity, Place
-from reduction.prediction.comparison_error import Comparison
+from reduction.prediction.comparison_error import Comparison, PressureComparison
 from reduction.prediction.hose_prediction import PredictedHose
 from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseEvents
 from reduction.prediction.hose_tension import predict_hose
@@ -94,7 +94,7 @@ def comparisons_to_dataset(named: Sequence[NamedComparison], *, origin: Origin) 
         "note_comparison": texts([one.name for one in named for _ in one.notes]),
         **note_values([replace(said, stage="comparison") for one in named for said in one.notes]),
     }
-    values |= _compared_curves(found)
+    values |= _compared_curves(found) | _compared_pressures(found)
     for dims in ((), ("curve",), ("hose_event",), ("comparison_cycle",), ("parameter",)):
         values |= _of_rows(found, *dims)
     values |= _calibration_values(found)
@@ -134,7 +134,7 @@ def _numbers_of(one: Comparison, name: str, *dims: str) -> ArrayLike | None:
     if dims == ("hose_event",):
         return [_number_of(event, name) for event in one.events]
     fit = one.calibration
-    parts = (one, one.validation, one.energy, one.cycles)
+    parts = (one, one.pressure, one.validation, one.energy, one.cycles)
     fitted = () if fit is None else (fit, fit.identifiability, fit.after)
     given = (_number_of(part, name, None) for part in (*parts, *fitted))
     return next((each for each in given if each is not None), None)
@@ -172,6 +172,42 @@ def _compared_curves(found: Sequence[Comparison]) -> Values:
             "validation_uncertainty": pad([one.validation.validation_uncertainty for one in found]),
         }
     )
+
+
+def _compared_pressures(found: Sequence[Comparison]) -> Values:
+    """What was compared in fill pressure, on the strains of the tension; nothing of no test."""
+    pressures = [one.pressure for one in found]
+    if not any(pressures):
+        return {}
+
+    def on_axis(read: Callable[[PressureComparison], Floats]) -> Floats:
+        return pad(
+            [
+                np.full(one.measured.strain.size, np.nan)
+                if own is None
+                else np.interp(
+                    one.measured.strain, own.measured.strain, read(own), left=np.nan, right=np.nan
+                )
+                for one, own in zip(found, pressures, strict=True)
+            ]
+        )
+
+    return {
+        "measured_fill_pressure": on_axis(lambda own: own.measured.tension_of(own.measured.judged)),
+        "measured_fill_pressure_standard_uncertainty": on_axis(
+            lambda own: own.validation.measurement_standard_uncertainty
+        ),
+        "predicted_fill_pressure": on_axis(lambda own: own.predicted),
+        "predicted_fill_pressure_standard_uncertainty": on_axis(
+            lambda own: own.validation.input_standard_uncertainty
+        ),
+        "fill_pressure_validation_uncertainty": on_axis(
+            lambda own: own.validation.validation_uncertainty
+        ),
+        "fill_pressure_verdict": texts(
+            ["" if own is None else own.validation.verdict for own in pressures]
+        ),
+    }
 
 
 def _shared_values(found: Sequence[Comparison], values: Values) -> Values:
@@ -284,7 +320,8 @@ def _design_values(hoses: Sequence[PredictedHose]) -> Values:
     }
     values["layer_diameter"] = np.array([design.layer_diameter for design in designs], dtype=float)
     values["ribbon_width"] = np.array([hose.ribbon_width for hose in hoses])
-    values["number_of_cords"] = np.array([hose.number_of_cords for hose in hoses])
+    for name in ("number_of_cords", "working_torque", "balanced_wrap_angle"):
+        values[name] = np.array([getattr(hose, name) for hose in hoses])
     values["cord_curve_strain"] = pad([design.cord.strain for design in designs])
     values["cord_curve_load"] = pad([design.cord.load for design in designs])
     for name in HOSE_PARAMETERS:

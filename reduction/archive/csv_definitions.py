@@ -532,6 +532,13 @@ COMPARISON_TABLES = (
         product="comparisons",
     ),
     CsvTable(
+        "comparison_pressures",
+        ("comparison", "comparison_point"),
+        ("measured_fill_pressure",),
+        first=("strain",),
+        product="comparisons",
+    ),
+    CsvTable(
         "comparison_events", ("comparison", "hose_event"), ("event_strain",), product="comparisons"
     ),
     CsvTable(

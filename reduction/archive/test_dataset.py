@@ -325,6 +325,11 @@ def _sample_values(test: ReducedTest, record: Record, kept: _KeptSamples | None 
         values["tension_standard_uncertainty"] = np.array(record.tension_standard_uncertainty)
     if record.measured_strain is not None:
         values["measured_strain"] = stored(record.measured_strain)
+    if record.fill_pressure is not None:
+        values["fill_pressure"] = stored(record.fill_pressure)
+        values["fill_pressure_standard_uncertainty"] = np.array(
+            record.fill_pressure_standard_uncertainty
+        )
     if record.cycle_counter is not None:
         values["machine_cycle_number"] = _narrowed(stored(record.cycle_counter))
     if test.strain is not None:

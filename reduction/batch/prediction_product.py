@@ -194,6 +194,9 @@ def compare_archive(
         _require_hose(path, archive, index)
         kind = archive.attrs["test_kind"]
         shared, notes = curve_errors_of(archive, index)
+        gauge = _pressure(archive, index)
+        if gauge.get("fill_pressure_standard_uncertainty") == 0:
+            notes += (note("pressure-gauge-counts-as-exact"),)
         comparison = compare_record(
             hose,
             archive.variables["strain"].values[index],
@@ -205,12 +208,24 @@ def compare_archive(
             break_in_cycles=_break_in(archive) if "cycle_number" in archive else 0,
             shared=shared,
             calibrate=plan.calibrate,
+            **gauge,
         )
         comparison = replace(comparison, notes=(*notes, *_of_part(archive), *comparison.notes))
         if plan.loading is None and comparison.measured.loading == "dynamic":
             assumed = note("taken-as-dynamic", kind=kind)
             comparison = replace(comparison, notes=(assumed, *comparison.notes))
         return NamedComparison(plan.name, archive.attrs["test"], specimen, hose.name, comparison)
+
+
+def _pressure(archive: xr.Dataset, index: int) -> dict[str, Any]:
+    """Fill pressure of a test that logged it, and the zero error of its gauge."""
+    if "fill_pressure" not in archive:
+        return {}
+    spread = float(archive.variables["fill_pressure_standard_uncertainty"].values[index])
+    return {
+        "fill_pressure": archive.variables["fill_pressure"].values[index],
+        "fill_pressure_standard_uncertainty": spread if np.isfinite(spread) else 0.0,
+    }
 
 
 def _numbers(archive: xr.Dataset) -> Integers:

@@ -72,6 +72,7 @@ def _slice(record: Record, first: int, stop: int) -> Record:
         quality_flag=record.quality_flag[:, part],
         crosshead_position_quality_flag=record.crosshead_position_quality_flag[part],
         measured_strain=None if record.measured_strain is None else record.measured_strain[:, part],
+        fill_pressure=None if record.fill_pressure is None else record.fill_pressure[:, part],
         cycle_counter=None if record.cycle_counter is None else record.cycle_counter[part],
         n_rows_read=stop - first,
     )

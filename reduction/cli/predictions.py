@@ -22,7 +22,7 @@ from reduction.campaign.wave_spec import load_wave_case
 from reduction.cli.output import CommandOutput
 from reduction.cli.printed_numbers import plain, short, table_of
 from reduction.prediction.armour import PredictedArmour, predict_armour_case
-from reduction.prediction.comparison_error import HoseCalibration, verdict_words
+from reduction.prediction.comparison_error import HoseCalibration, PressureComparison, verdict_words
 from reduction.prediction.hose_design import DesignedHose, design_hoses
 from reduction.prediction.hose_prediction import HoseTarget, PredictedHose, predict_from_plan
 from reduction.prediction.hose_product import HoseEvent
@@ -185,6 +185,10 @@ def _show_hose(hose: PredictedHose, output: CommandOutput) -> None:
             short(100 * float(event.cord_strain), 4),
         )
     output.show(table)
+    output.say(
+        f"torque at the working load, held from turning: {hose.working_torque:.3g} N m; none with "
+        f"the outer layer at {np.degrees(hose.balanced_wrap_angle):.2f} degrees"
+    )
     prediction = hose.prediction
     table = table_of(
         "strain [%]", f"tension [{force}]", f"fill pressure [{pressure}]", f"cord [{force}]",
@@ -259,6 +263,8 @@ def _hose_document(hose: PredictedHose) -> dict[str, Any]:
         },
         "ribbon_width": list(hose.ribbon_width),
         "number_of_cords": hose.number_of_cords,
+        "working_torque": hose.working_torque,
+        "balanced_wrap_angle": hose.balanced_wrap_angle,
         "layers": [
             {
                 "name": one.layer.name,
@@ -632,6 +638,16 @@ def _show_comparison(named: NamedComparison, output: CommandOutput) -> None:
         )
     if found.calibration is not None:
         _show_calibration(found.calibration, output)
+    if found.pressure is not None:
+        unit, per_pascal = output.unit("Pa")
+        output.say(
+            "fill pressure: "
+            + verdict_words(
+                found.pressure.validation, unit=unit, factor=per_pascal, of="fill pressure"
+            )
+        )
+        if found.pressure.calibration is not None:
+            _show_calibration(found.pressure.calibration, output)
     output.say_each("note", named.notes)
 
 
@@ -724,9 +740,24 @@ def _comparison_document(named: NamedComparison) -> dict[str, Any]:
             "rms": plain(found.cycles.cycle_rms),
         },
         "calibrated": None if found.calibration is None else _calibrated(found.calibration),
+        "fill_pressure": None if found.pressure is None else _pressure_document(found.pressure),
         "units": {"strain": "1", "tension": "N", "difference": "N", "energy": "J m-1"},
         "notes": list(map(str, named.notes)),
     }  # fmt: skip
+
+
+def _pressure_document(found: PressureComparison) -> dict[str, Any]:
+    return {
+        "strain": plain(found.measured.strain),
+        "predicted": plain(found.predicted),
+        "measured": plain(found.measured.tension_of(found.measured.judged)),
+        "validation_uncertainty": plain(found.validation.validation_uncertainty),
+        "bias": plain(found.difference.bias),
+        "rms": plain(found.difference.rms),
+        "agrees": plain(found.validation.agrees),
+        "verdict": found.validation.verdict,
+        "calibrated": None if found.calibration is None else _calibrated(found.calibration),
+    }
 
 
 def _calibrated(fit: HoseCalibration) -> dict[str, Any]:

@@ -31,7 +31,12 @@ from math import exp, isfinite, isnan, nan
 
 import numpy as np
 
-from reduction.experiments.life_statistics import fit_life, fit_load_life, load_levels
+from reduction.experiments.life_statistics import (
+    fit_life,
+    fit_load_life,
+    load_levels,
+    ratio_of_lives,
+)
 from reduction.experiments.outcomes import (
     REASONS,
     ExposureTrend,
@@ -464,6 +469,13 @@ FATIGUE_COLUMNS: tuple[OutcomeColumn, ...] = (
     *_measured("log_life_scale", "1", "scatter of ln cycles; one over the shape of a Weibull law"),
     OutcomeColumn("life_distribution", "", "law of the lives", "is a label"),
     OutcomeColumn("life_reason", "", "why there is no median life", "is a word"),
+    OutcomeColumn(
+        "relative_abrasion_resistance", "1",
+        "median life in abrasion over that of new polypropylene of this construction and diameter",
+        "has an interval",
+    ),
+    OutcomeColumn("relative_abrasion_resistance_low", "1", "lower end, 95 %", "is a bound"),
+    OutcomeColumn("relative_abrasion_resistance_high", "1", "upper end, 95 %", "is a bound"),
 )  # fmt: skip
 """Columns of ``tables/fatigue.csv``, one row a group and level of peak load."""
 
@@ -731,8 +743,40 @@ def fatigue_rows(
                 row = _empty_row(FATIGUE_COLUMNS) | _labels_of(group)
                 row |= _fatigue_of(grouped, part, distribution)
                 row["quantity"] = quantity
+                if quantity == "abrasion_cycles":
+                    row |= _relative_resistance(grouped, place, part, distribution)
                 table.append(row)
     return table
+
+
+_REFERENCE_MATERIAL = "polypropylene"
+
+
+def _relative_resistance(
+    grouped: _Grouped, place: int, part: Integers, distribution: LifeDistribution
+) -> Row:
+    """Ratio of lives to new polypropylene, as CG-D-39-80, sec. 6.2, gives it; none of itself."""
+
+    def is_reference(group: Group) -> bool:
+        own = grouped.groups[place]
+        return (
+            group.material.casefold() == _REFERENCE_MATERIAL
+            and group.condition in ("new", "")
+            and (group.construction, group.diameter) == (own.construction, own.diameter)
+        )
+
+    beside = [k for k, group in enumerate(grouped.groups) if is_reference(group)]
+    rows = np.concatenate([part, np.flatnonzero(np.isin(grouped.group, beside))])
+    of_reference = np.arange(rows.size) >= part.size
+    use = grouped.use[rows]
+    kept, failed = use != EXCLUDED, use == VALUE
+    if place in beside or not all((failed & side).any() for side in (of_reference, ~of_reference)):
+        return {}
+    ratio, low, high = ratio_of_lives(
+        grouped.value[rows][kept], ~failed[kept], of_reference[kept], distribution=distribution
+    )
+    name = "relative_abrasion_resistance"
+    return {name: ratio, f"{name}_low": low, f"{name}_high": high if isfinite(high) else nan}
 
 
 def _fatigue_of(grouped: _Grouped, part: Integers, distribution: LifeDistribution) -> Row:

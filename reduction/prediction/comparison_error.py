@@ -260,6 +260,47 @@ class HoseCalibration:
 
 
 @dataclass(frozen=True)
+class PressureComparison:
+    """Measured fill pressure beside its prediction; `MeasuredCurve` holds pascals for newtons.
+
+    ``calibration`` is of the numbers that move the pressure, fitted to it alone; ``parameter``
+    are those that the comparison calibrates.
+    """
+
+    measured: MeasuredCurve
+    predicted: Floats
+    difference: _Difference
+    validation: _Validation
+    calibration: HoseCalibration | None
+    parameter: tuple[str, ...]
+
+    @property
+    def fill_pressure_bias(self) -> float:
+        """Mean of predicted less measured. [Pa]."""
+        return self.difference.bias
+
+    @property
+    def fill_pressure_rms(self) -> float:
+        """Of predicted less measured. [Pa]."""
+        return self.difference.rms
+
+    @property
+    def fill_pressure_parameter_value(self) -> list[float]:
+        """Of each number that is calibrated; NaN of one that the pressure does not show."""
+        return self._of_parameters("value")
+
+    @property
+    def fill_pressure_parameter_value_standard_uncertainty(self) -> list[float]:
+        """Of each of these."""
+        return self._of_parameters("value_standard_uncertainty")
+
+    def _of_parameters(self, what: str) -> list[float]:
+        fit = self.calibration
+        known = {} if fit is None else dict(zip(fit.parameter, getattr(fit, what), strict=True))
+        return [float(known.get(name, np.nan)) for name in self.parameter]
+
+
+@dataclass(frozen=True)
 class Comparison:
     """A measured curve beside its prediction on the same axis of strain.
 
@@ -281,6 +322,7 @@ class Comparison:
     notes: tuple[Note, ...]
     measured_pick_up_strain: float = float("nan")
     measured_pick_up_strain_standard_uncertainty: float = float("nan")
+    pressure: PressureComparison | None = None
 
 
 def autocorrelation_length(residual: ArrayLike) -> float:
@@ -858,8 +900,10 @@ def _probability_words(probability: float) -> str:
     return "below 0.1 %" if probability < _SMALLEST else f"{100 * probability:.2g} %"
 
 
-def verdict_words(validation: _Validation, *, unit: str = "N", factor: float = 1.0) -> str:
-    """What a comparison says, with forces in the unit of the reader.
+def verdict_words(
+    validation: _Validation, *, unit: str = "N", factor: float = 1.0, of: str = "tension"
+) -> str:
+    """What a comparison says, with forces or pressures in the unit of the reader.
 
     Notes
     -----
@@ -898,7 +942,7 @@ def verdict_words(validation: _Validation, *, unit: str = "N", factor: float = 1
     limit = factor * validation.coverage_factor * validation.validation_uncertainty
     size = (
         f"{np.nanmedian(limit):.3g} {unit} or {100 * validation.uncertainty_share:.2g} % of the "
-        "tension at the median"
+        f"{of} at the median"
     )
     words = f"agrees within U, {size}"
     if validation.chi_square_probability < LEAST_PROBABILITY:

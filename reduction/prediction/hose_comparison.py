@@ -39,7 +39,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from math import degrees, pi
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import scipy
@@ -53,6 +53,7 @@ from reduction.prediction.comparison_error import (
     HoseCalibration,
     Identifiability,
     PickUp,
+    PressureComparison,
     autocorrelation_length,
     cycle_differences,
     difference_of,
@@ -61,6 +62,7 @@ from reduction.prediction.comparison_error import (
     measured_pick_up,
     plausibility_of_working_strain,
     validate_curve,
+    verdict_words,
 )
 from reduction.prediction.cord_curve import CordCurve, cord_load
 from reduction.prediction.hose_prediction import HosePlan
@@ -73,6 +75,7 @@ from reduction.prediction.measured_curve import (
     SharedErrors,
     error_words,
     measured_curve,
+    pressure_errors,
     read_along,
 )
 from reduction.record.arrays import as_spread
@@ -292,16 +295,23 @@ def _design_with(design: HoseDesign, numbers: Mapping[str, Any]) -> HoseDesign:
     return replace(design, **changes)
 
 
-def _trial_tension(
-    design: HoseDesign, names: Sequence[str], values: Floats, strain: Floats
+_Load = Literal["tension", "fill_pressure"]
+
+
+def _trial_load(
+    design: HoseDesign,
+    names: Sequence[str],
+    values: Floats,
+    strain: Floats,
+    load: _Load = "tension",
 ) -> Floats:
-    """Tension at trial values of some numbers.
+    """Tension or fill pressure at trial values of some numbers.
 
     Notes
     -----
     A trial hose whose cords would break below a strain that was measured has no tension there,
     and a fit would fall into the gap.  Its curve goes on along its tangent at the break, which
-    joins it without a step at any value of the numbers.
+    joins it without a step at any value of the numbers; its pressure goes on in proportion.
 
     Examples
     --------
@@ -309,18 +319,20 @@ def _trial_tension(
     >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
     ...     CordCurve(np.array([0.0, 0.2]), np.array([0.0, 130.0])))
     >>> steps = np.array([0.0, 1.0, 5.0])
-    >>> print(np.isfinite(_trial_tension(design, ["wrap_angle"], np.array([[1.1]]), steps)).all())
+    >>> print(np.isfinite(_trial_load(design, ["wrap_angle"], np.array([[1.1]]), steps)).all())
     True
     """
     trials = _design_with(design, {name: values[:, k] for k, name in enumerate(names)})
-    tension = np.array(predict_hose(trials, strain).tension)
-    gap = ~np.isfinite(tension)
+    found = np.array(getattr(predict_hose(trials, strain), load))
+    gap = ~np.isfinite(found)
     if gap.any():
         last = find_events(trials).cord_break
+        at_break = getattr(last, load)
         slope = hose_sensitivity(trials, strain[:1]).cord_break.stiffness
-        onward = last.tension[:, None] + slope[:, None] * (strain - last.strain[:, None])
-        tension[gap] = onward[gap]
-    return tension
+        slope = slope * (at_break / last.tension)
+        onward = at_break[:, None] + slope[:, None] * (strain - last.strain[:, None])
+        found[gap] = onward[gap]
+    return found
 
 
 def _range_of(name: str) -> tuple[float, float]:
@@ -351,8 +363,9 @@ def _input_draws(
     strain: Floats,
     *,
     n_draws: int,
+    load: _Load = "tension",
 ) -> Floats:
-    """What the tension of a hose may be off by, in draws of its uncertain numbers.
+    """What the load of a hose may be off by, in draws of its uncertain numbers.
 
     Notes
     -----
@@ -386,12 +399,12 @@ def _input_draws(
         axis=1,
     )
     centre = np.array([[_number_of(design, name) for name in known]])
-    tension = _trial_tension(design, tuple(known), np.vstack([centre, values]), strain)
-    return np.asarray(tension[1:] - tension[0])
+    found = _trial_load(design, tuple(known), np.vstack([centre, values]), strain, load)
+    return np.asarray(found[1:] - found[0])
 
 
-def _cord_curve_error(design: HoseDesign, strain: Floats) -> Floats:
-    """What the tension may be off by since the cord curve is known at its points alone.
+def _cord_curve_error(design: HoseDesign, strain: Floats, load: _Load = "tension") -> Floats:
+    """What the load may be off by since the cord curve is known at its points alone.
 
     Notes
     -----
@@ -419,12 +432,12 @@ def _cord_curve_error(design: HoseDesign, strain: Floats) -> Floats:
     whole = np.hstack([other, points.load[1:, None]])
     other = np.where(np.all(np.diff(whole, axis=1) > 0, axis=1)[:, None], other, plain)
     curves = (
-        CordCurve(np.append(dense, points.strain[-1]), np.append(load, points.load[-1]))
-        for load in (other, plain)
+        CordCurve(np.append(dense, points.strain[-1]), np.append(loads, points.load[-1]))
+        for loads in (other, plain)
     )
     scale = np.array([[_number_of(design, "cord_load_scale")]])
     spline, monotone = (
-        _trial_tension(replace(design, cord=curve), ("cord_load_scale",), scale, strain)[0]
+        _trial_load(replace(design, cord=curve), ("cord_load_scale",), scale, strain, load)[0]
         for curve in curves
     )
     return np.asarray(spline - monotone)
@@ -508,6 +521,7 @@ class _FitProblem:
     measured: MeasuredCurve
     noise: Floats
     shared: Floats
+    load: _Load
 
     @property
     def used(self) -> Bools:
@@ -544,7 +558,7 @@ class _FitProblem:
             trials = which.ravel() == k
             strain = node - size @ self.moved
             # a record that is read low has strains just below zero: the curve goes on there
-            curve = _trial_tension(self.design, names, numbers[trials], np.abs(strain))
+            curve = _trial_load(self.design, names, numbers[trials], np.abs(strain), self.load)
             tension[trials] = self.measured.reading.of(np.sign(strain) * curve)[:, used]
         return tension
 
@@ -586,8 +600,8 @@ class _FitProblem:
         p = first.size
         offsets = np.array(list(product(_START_STEPS, repeat=p)))
         tried = np.clip(first + offsets, self.low, self.high)
-        curve = _trial_tension(
-            self.design, self.names, tried * self.unit, self.measured.strain[self.used]
+        curve = _trial_load(
+            self.design, self.names, tried * self.unit, self.measured.strain[self.used], self.load
         )
         error = (curve - self.tension_of_test()[self.used]) / self.noise
         # a number that the curve does not show stays where the design has it
@@ -718,6 +732,7 @@ def _calibrate_hose(
     *,
     standard_uncertainty: Mapping[str, float] | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
+    load: _Load = "tension",
 ) -> HoseCalibration:
     r"""Fit numbers of a hose to the judged curve of a test, with intervals that can be trusted.
 
@@ -775,11 +790,11 @@ def _calibrate_hose(
     judged = measured.tension_of(measured.judged)
     used = np.isfinite(judged)
     start = np.array([_number_of(design, name) for name in names])
-    problem, sources = _pose(design, measured, names, bounds or {}, held)
+    problem, sources = _pose(design, measured, names, bounds or {}, held, load)
     p = len(names)
     first = problem.solve(problem.start(start / problem.unit), problem.noise)
     near = _design_with(design, dict(zip(names, (first[:p] * problem.unit).tolist(), strict=True)))
-    between = _cord_curve_error(near, measured.strain)[used]
+    between = _cord_curve_error(near, measured.strain, load)[used]
     if np.any(np.abs(between) > problem.noise * _NOTHING):
         problem = replace(problem, shared=np.vstack([problem.shared, between]))
         sources = (*sources, "cord curve between its points")
@@ -811,7 +826,7 @@ def _calibrate_hose(
     half, stated_deviation = (np.where(is_known, one, np.nan) for one in (half, deviation))
     margin = _AT_BOUND * (problem.high - problem.low)
     at_bound = (best[:p] - problem.low < margin) | (problem.high - best[:p] < margin)
-    predicted = [predict_hose(one, measured.strain).tension for one in (design, fitted)]
+    predicted = [getattr(predict_hose(one, measured.strain), load) for one in (design, fitted)]
     before, after = (
         difference_of(measured.strain, one, judged, curve=measured.judged) for one in predicted
     )
@@ -848,6 +863,7 @@ def _pose(
     names: tuple[str, ...],
     bounds: Mapping[str, tuple[float, float]],
     held: Mapping[str, float],
+    load: _Load,
 ) -> tuple[_FitProblem, tuple[str, ...]]:
     """The problem, and the names of the errors that are fitted beside the numbers."""
     if not names or len(set(names)) < len(names):
@@ -896,6 +912,7 @@ def _pose(
         measured=measured,
         noise=np.maximum(measured.independent_uncertainty()[used], floor),
         shared=np.vstack([in_proportion, scatter])[:, used],
+        load=load,
     )
     common = tuple(f"scatter of the cycles {k + 1}" for k in range(scatter.shape[0]))
     names_of = np.array([error_words(one) for one in measured.component], dtype=object)
@@ -959,8 +976,9 @@ def _compare_hose(
     *,
     standard_uncertainty: Mapping[str, float] | None = None,
     calibrate: Sequence[str] = (),
+    pressure: MeasuredCurve | None = None,
 ) -> Comparison:
-    """Hold a prediction against a test.
+    """Hold a prediction against a test, and its fill pressure where it was measured.
 
     Notes
     -----
@@ -1013,22 +1031,63 @@ def _compare_hose(
         energy=energy_difference(prediction.tension, measured),
         cycles=cycle_differences(prediction.tension, measured),
         validation=validate_curve(
-            _as_read(design, measured, prediction), measured, input_error=inputs
+            _as_read(design, measured, prediction.tension), measured, input_error=inputs
         ),
         calibration=calibration,
         notes=(*_notes(design, measured, prediction, events[1]), *_of_pick_up(pick_up)),
         measured_pick_up_strain=pick_up.strain,
         measured_pick_up_strain_standard_uncertainty=pick_up.standard_uncertainty,
+        pressure=(
+            None if pressure is None else _compare_pressure(design, pressure, known, calibrate)
+        ),
     )
 
 
-def _as_read(design: HoseDesign, measured: MeasuredCurve, prediction: HosePrediction) -> Floats:
+_WITHOUT_PRESSURE = "rubber_modulus"
+
+
+def _compare_pressure(
+    design: HoseDesign,
+    measured: MeasuredCurve,
+    known: Mapping[str, float],
+    calibrate: Sequence[str],
+) -> PressureComparison:
+    """Hold the predicted fill pressure against a measured one, as the tension is."""
+    predicted = predict_hose(design, measured.strain).fill_pressure
+    inputs = _input_draws(design, known, measured.strain, n_draws=N_DRAWS, load="fill_pressure")
+    names = [name for name in calibrate if name != _WITHOUT_PRESSURE]
+    validation = validate_curve(
+        _as_read(design, measured, predicted, "fill_pressure"), measured, input_error=inputs
+    )
+    words = verdict_words(validation, unit="kPa", factor=1e-3, of="fill pressure")
+    return PressureComparison(
+        measured=measured,
+        predicted=predicted,
+        difference=difference_of(
+            measured.strain, predicted, measured.tension_of(measured.judged), curve=measured.judged
+        ),
+        validation=replace(validation, verdict=words),
+        calibration=(
+            _calibrate_hose(
+                design, measured, names, standard_uncertainty=known, load="fill_pressure"
+            )
+            if names
+            else None
+        ),
+        parameter=tuple(calibrate),
+    )
+
+
+def _as_read(
+    design: HoseDesign, measured: MeasuredCurve, prediction: Floats, load: _Load = "tension"
+) -> Floats:
     """Prediction as the test would show it; plain where it is broken beside a strain."""
     node = measured.reading.node
     there = np.isfinite(measured.tension_of(measured.judged))
     # the curve goes on just below zero, where a record that is read low has strains
-    read = measured.reading.of(np.sign(node) * predict_hose(design, np.abs(node)).tension)
-    return np.where(there & np.isfinite(read), read, prediction.tension)
+    curve = getattr(predict_hose(design, np.abs(node)), load)
+    read = measured.reading.of(np.sign(node) * curve)
+    return np.where(there & np.isfinite(read), read, prediction)
 
 
 def _of_pick_up(found: PickUp) -> tuple[Note, ...]:
@@ -1099,6 +1158,8 @@ def compare_record(
     break_in_cycles: int = 0,
     shared: SharedErrors | None = None,
     calibrate: Sequence[str] = (),
+    fill_pressure: Floats | None = None,
+    fill_pressure_standard_uncertainty: float = 0.0,
 ) -> Comparison:
     """Hold the prediction of a hose against one test."""
     usable = np.isfinite(strain) & np.isfinite(tension)
@@ -1109,17 +1170,26 @@ def compare_record(
         )  # fmt: skip
     if cycle_number is None or branch is None:
         cycle_number, branch = _out_and_back(np.where(usable, strain, np.nan))
-    curve = measured_curve(
-        strain,
-        tension,
-        loading=loading,
-        cycle_number=cycle_number,
-        branch=branch,
-        break_in_cycles=break_in_cycles,
-        shared=shared,
-    )
+
+    def curve_of(series: Floats, errors: SharedErrors | None) -> MeasuredCurve:
+        return measured_curve(
+            strain,
+            np.where(usable, series, np.nan),
+            loading=loading,
+            cycle_number=cycle_number,
+            branch=branch,
+            break_in_cycles=break_in_cycles,
+            shared=errors,
+        )
+
     return _compare_hose(
-        plan.design, curve, standard_uncertainty=plan.standard_uncertainty, calibrate=calibrate
+        plan.design,
+        curve_of(tension, shared),
+        standard_uncertainty=plan.standard_uncertainty,
+        calibrate=calibrate,
+        pressure=None
+        if fill_pressure is None
+        else curve_of(fill_pressure, pressure_errors(shared, fill_pressure_standard_uncertainty)),
     )
 
 

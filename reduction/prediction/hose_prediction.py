@@ -23,7 +23,12 @@ from reduction.prediction.hose_geometry import (
     ribbon_width,
 )
 from reduction.prediction.hose_product import HoseDesign, HoseEvents, HosePrediction
-from reduction.prediction.hose_tension import find_events, predict_hose
+from reduction.prediction.hose_tension import (
+    find_events,
+    predict_hose,
+    predict_two_layers,
+    torque_balanced_angle,
+)
 from reduction.prediction.hose_uncertainty import HoseUncertainty, propagate_hose
 from reduction.record.errors import SettingsError
 from reduction.record.measurement import Bools, Floats
@@ -96,7 +101,9 @@ class _LayerResponse:
 class PredictedHose:
     """A plan with its response, its events, their uncertainty and its other layers.
 
-    ``ribbon_width`` is of each of the two cord layers [m], ``number_of_cords`` of both [1].
+    ``ribbon_width`` is of each of the two cord layers [m], ``number_of_cords`` of both [1];
+    ``working_torque`` holds the hose from turning at the working load [N m], and
+    ``balanced_wrap_angle`` is that of an outer layer that leaves none [rad].
     """
 
     plan: HosePlan
@@ -105,6 +112,8 @@ class PredictedHose:
     uncertainty: HoseUncertainty
     ribbon_width: tuple[float, float]
     number_of_cords: float
+    working_torque: float
+    balanced_wrap_angle: float
     layers: tuple[_LayerResponse, ...]
     notes: tuple[Note, ...]
 
@@ -158,6 +167,10 @@ def predict_from_plan(plan: HosePlan) -> PredictedHose:
         number_of_cords=float(
             number_of_cords(design.wrap_diameter, design.wrap_angle, design.cords_per_length)
         ),
+        working_torque=float(
+            predict_two_layers(design, float(design.wrap_angle), [working]).torque[0]
+        ),
+        balanced_wrap_angle=torque_balanced_angle(design, working),
         layers=layers,
         notes=tuple(notes),
     )

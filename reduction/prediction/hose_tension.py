@@ -20,8 +20,8 @@ second is what the pressures of the layers, :math:`p_i = 2 P n \sin^2 a_0/(\lamb
 d_i)`, put on the end cap: each on the *current* area :math:`\pi d_i^2/(4\lambda_h)` inside its
 cords, for the rubber inside the cords is under the pressure too.
 
-The hose is long, straight and does not turn; both layers have one angle (with two angles it would
-turn under load); wall and filling keep their volume, so that none of the water may leave; cords
+The hose is long, straight and does not turn; both layers have one angle, but for
+`predict_two_layers`; wall and filling keep their volume, so that none of the water may leave; cords
 are elastic.  Where cords are slack the rubber alone carries and there is no pressure.  In
 compression a hose buckles, and there is no prediction.
 
@@ -46,11 +46,12 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from math import pi, prod
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
 from reduction.prediction.cord_curve import (
@@ -66,12 +67,13 @@ from reduction.prediction.hose_geometry import (
     hose_stretch_ratio,
     pick_up_stretch_ratio,
     slackest_stretch_ratio,
+    wrap_angle_for,
 )
 from reduction.prediction.hose_product import HoseDesign, HoseEvent, HoseEvents, HosePrediction
 from reduction.prediction.rubber_wall import rubber_energy, rubber_tension, tension_into
 from reduction.record.arrays import as_finite, run_blocks
 from reduction.record.errors import DataError
-from reduction.record.measurement import Floats
+from reduction.record.measurement import Floats, read_only_arrays
 
 
 @dataclass(frozen=True)
@@ -371,6 +373,98 @@ def _respond(
     stretch /= cord_stretch
     spacing = np.multiply(stretch, numbers.cord_spacing, out=out["cord_spacing"])
     np.less(spacing, numbers.cord_diameter, out=out["is_jammed"])
+
+
+@dataclass(frozen=True)
+@read_only_arrays
+class _TwoLayers:
+    """A hose whose layers have angles of their own.  Arrays have the shape (n_strain,)."""
+
+    tension: Floats
+    fill_pressure: Floats
+    torque: Floats
+
+
+def predict_two_layers(
+    design: HoseDesign, outer_wrap_angle: float, strain: ArrayLike
+) -> _TwoLayers:
+    r"""Tension, fill pressure and torque of one hose, its outer layer at an angle of its own.
+
+    .. math:: M = \sum_i \pm \frac{\pi d_i^2 n P_i \sin a_i \cos a_i}{2 \lambda_h \lambda_{c,i}}
+
+    Notes
+    -----
+    Layers add their energy.  A twist psi a length of the relaxed hose makes the squared stretch of
+    a cord (lambda_h cos a)^2 + (sin a +- psi d cos a / 2)^2 / lambda_h; the torque that holds the
+    hose from turning is dW/dpsi at psi = 0, positive as the inner layer would turn it.  NaN where
+    a layer is broken.
+
+    Examples
+    --------
+    Layers of one angle do not balance, since the outer one is wider: d^2 goes into the torque.
+
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> design = HoseDesign(
+    ...     wrap_angle=np.radians(45.0), layer_diameter=(0.1, 0.11), inner_diameter=0.06,
+    ...     outer_diameter=0.12, cords_per_length=1000.0, cord_diameter=0.0005, rubber_modulus=1e6,
+    ...     cord=CordCurve(strain=np.array([0.0, 0.2]), load=np.array([0.0, 130.0])),
+    ... )
+    >>> hose = predict_two_layers(design, design.wrap_angle, [0.2])
+    >>> along = 1000 * (np.sqrt(0.72 + 0.5 / 1.2) - 1) * 650 / np.sqrt(0.72 + 0.5 / 1.2)
+    >>> print((hose.torque / (np.pi / 4 * (0.1**2 - 0.11**2) * along / 1.2)).round(9))
+    [1.]
+    """
+    angle = np.array([float(design.wrap_angle), outer_wrap_angle])
+    diameter = np.array([float(one) for one in design.layer_diameter])
+    # each of the two is a hose with twice one of the layers: their mean is the hose
+    twice = predict_hose(
+        replace(design, wrap_angle=angle, layer_diameter=(diameter, diameter)), strain
+    )
+    width = np.array([1.0, -1.0]) * diameter**2 * np.sin(2 * angle)
+    fabric = pi / 4 * float(design.cords_per_length)
+    cord = twice.cord_tension / ((1 + twice.free_strain) * (1 + twice.cord_strain))
+    return _TwoLayers(
+        tension=twice.tension.mean(axis=0),
+        fill_pressure=twice.fill_pressure.mean(axis=0),
+        torque=fabric * width @ cord,
+    )
+
+
+def torque_balanced_angle(design: HoseDesign, strain: float) -> float:
+    """Wrap angle of the outer layer that leaves one hose no torque at a strain.
+
+    Notes
+    -----
+    Between the angle of the inner layer, where the wider outer one has the upper hand, and that
+    at which the outer layer would be slack.  NaN where the cords are slack or broken.
+
+    Examples
+    --------
+    >>> from reduction.prediction.cord_curve import CordCurve
+    >>> design = HoseDesign(
+    ...     wrap_angle=np.radians(68.0), layer_diameter=(0.086, 0.091), inner_diameter=0.0635,
+    ...     outer_diameter=0.127, cords_per_length=34 / 0.0254, cord_diameter=0.00056,
+    ...     rubber_modulus=1.4e6,
+    ...     cord=CordCurve(strain=np.array([0.0, 0.2]), load=np.array([0.0, 130.0])),
+    ... )
+    >>> outer = torque_balanced_angle(design, 1.3)
+    >>> print(bool(abs(predict_two_layers(design, outer, [1.3]).torque[0]) < 1e-9))
+    True
+    """
+    stretch = 1 + strain / (1 - float(design.dead_length_share))
+    inner, slack = float(design.wrap_angle), float(wrap_angle_for(stretch, 1.0))
+
+    def torque(outer: float) -> float:
+        return float(predict_two_layers(design, outer, [strain]).torque[0])
+
+    if not inner < slack or np.isnan(torque(inner)):
+        return float("nan")
+    # of layers of one diameter rounding alone is left
+    return (
+        inner
+        if torque(inner) >= 0
+        else float(scipy.optimize.brentq(torque, inner, slack, xtol=1e-14))
+    )
 
 
 def hose_energy(design: HoseDesign, stretch_ratio: ArrayLike) -> Floats:

@@ -732,6 +732,27 @@ def constant_errors(
     )
 
 
+def pressure_errors(shared: SharedErrors | None, gauge: float) -> SharedErrors:
+    """Shared errors of a curve of fill pressure: those of strain, and the zero of the gauge.
+
+    Examples
+    --------
+    >>> errors = pressure_errors(constant_errors(strain_gain=0.01, tension_offset=5.0), 2e3)
+    >>> found = errors.at(np.array([0.5]), np.array([[1e5], [1e5]]))
+    >>> print(found.strain[:, 0, 0].round(6), found.tension[:, 0, 0])
+    [0.    0.005 0.   ] [   0.    0. 2000.]
+    """
+    known = shared or constant_errors()
+    row = np.zeros((1, *known.tension.shape))
+    return SharedErrors(
+        (*known.component, Component("fill_pressure_offset", "")),
+        strain=known.strain,
+        tension=np.broadcast_to(np.arange(known.strain.size, dtype=float), row.shape[1:]).copy(),
+        tension_error=np.concatenate([0 * known.tension_error, row + gauge]),
+        strain_error=np.concatenate([known.strain_error, row]),
+    )
+
+
 def error_words(component: Component) -> str:
     """What an error is called in a note.
 

@@ -107,6 +107,8 @@ _STEP = 1e-14  # last Newton step over the root, at most
 
 _MOST_STEPS = 50
 
+_MOST_ROOTED = 20  # harmonics
+
 _SERIES_TERMS = 10  # of beta - sin beta up to beta = 1: the last is below 1e-21 of the first
 
 
@@ -705,6 +707,9 @@ def _load_range(
     The load is tried at the phases of *all* roots of both branches with its true sign.  The
     extremes are among them, and no other phase can give more; so no root has to be judged.
 
+    A wave of more than 20 harmonics is tried at 256 phases per harmonic, since the time of the
+    roots goes with the cube of their number.
+
     Examples
     --------
     2 cos|cos| + sin: the greatest value is at sin = 1/4.
@@ -722,14 +727,20 @@ def _load_range(
     slope = phase_derivative(acceleration)
     beside = (squared.size - slope.size) // 2
     slope = np.pad(slope, beside)
-    candidates = [
-        root_phases(
-            sign * np.multiply.outer(drag_factor, squared)
-            + np.multiply.outer(inertia_factor, slope)
+    n_harmonics = velocity.size // 2
+    if n_harmonics > _MOST_ROOTED:
+        phase = np.broadcast_to(
+            np.linspace(0.0, 2 * pi, 256 * n_harmonics), (*drag_factor.shape, 256 * n_harmonics)
         )
-        for sign in (1.0, -1.0)
-    ]
-    phase = np.concatenate(candidates, axis=-1)
+    else:
+        candidates = [
+            root_phases(
+                sign * np.multiply.outer(drag_factor, squared)
+                + np.multiply.outer(inertia_factor, slope)
+            )
+            for sign in (1.0, -1.0)
+        ]
+        phase = np.concatenate(candidates, axis=-1)
     speed = sum_at(velocity, phase)
     load = drag_factor[..., None] * speed * np.abs(speed)
     load += inertia_factor[..., None] * sum_at(acceleration, phase)
@@ -959,6 +970,8 @@ def _larger_sum(steady: Floats, maximum: Floats, minimum: Floats) -> Floats:
     )
 
 
+_SAME_LENGTH = 0.005  # between theories
+
 _LINEAR = 0.6
 
 """Share of the breaking height above which the neglected terms are no small ones."""
@@ -1001,7 +1014,7 @@ def predict_wave_load(
     wave_height: float,
     wave_period: float,
     wave_length: float | None,
-    wave_theory: Literal["auto", "airy", "stokes"],
+    wave_theory: Literal["auto", "airy", "stokes", "stokes 3", "stokes 5", "cnoidal"],
     elevation: float | None,
     drag_coefficient: float,
     inertia_coefficient: float,
@@ -1021,22 +1034,24 @@ def predict_wave_load(
         content_density=content_density,
         water_density=water_density,
     )
+    asked: WaveTheoryName | None = None if wave_theory == "auto" else wave_theory
     described = describe_wave(
         wave_height=wave_height,
         wave_period=wave_period,
         water_depth=water_depth,
         wave_length=wave_length,
         current_velocity=current_velocity,
+        asked=asked,
     )
     centre = outer_diameter / 2 - float(section.immersion_depth)
     at = centre if elevation is None else elevation
-    asked: WaveTheoryName | None = None if wave_theory == "auto" else wave_theory
     wave = regular_wave(
         described,
         wave_height=wave_height,
         wave_period=wave_period,
         water_depth=water_depth,
         elevation=at,
+        wave_length=wave_length,
         theory=asked,
         current_velocity=current_velocity,
     )
@@ -1069,6 +1084,9 @@ def predict_wave_load(
             f"at {100 * described.breaking_ratio:.0f} % of the height at which it breaks a wave is "
             "far from linear: Airy's theory does not hold"
         )
+    length = 2 * pi / wave.wave_number
+    if abs(length / described.wave_length - 1) > _SAME_LENGTH:
+        notes.append(f"the wave of {used} is {length:.4g} m long, for it is high")
     if used != described.theory:
         notes.append(f"computed by {used}, as asked for; by depth {described.theory} applies")
     return PredictedWaveLoad(

@@ -91,6 +91,7 @@ GROUPS = {
     "layers": "non-load-bearing helical layers of the hose",
     "events": "slack, pick-up, working load and break",
     "energy": "energies of the measured and the predicted curve",
+    "fill_pressure": "measured and predicted fill pressure",
     "statistics": "statistics behind the verdict",
     "fit": "parameters fitted to the measured curve",
     "uncertainty": "random parts of uncertainties, and contributions of shared errors",

@@ -140,6 +140,13 @@ OF_RECORD: tuple[Quantity, ...] = (
         ),
         stated("measured_strain", "1", "nominal strain by an extensometer", READING),
         measured(
+            "fill_pressure",
+            "Pa",
+            "gauge pressure in the bore",
+            uncertainty_dims=_SPECIMEN,
+            source="000 p_h, eq 24",
+        ),
+        measured(
             "nominal_stress",
             "Pa",
             "tension over the area at zero tension",

@@ -95,6 +95,7 @@ _USUAL: dict[tuple[str, Dimension], tuple[float, float]] = {
     ("kPa", "stress"): (1000.0, 0.0),
     ("MPa", "stress"): (1e6, 0.0),
     ("GPa", "stress"): (1e9, 0.0),
+    ("bar", "stress"): (1e5, 0.0),
     ("psi", "stress"): (6894.7572931683635, 0.0),
     ("ksi", "stress"): (6894757.293168363, 0.0),
     ("Hz", "frequency"): (1.0, 0.0),

@@ -30,6 +30,7 @@ _CHANNEL_DIMENSION: dict[str, Dimension] = {
     "crosshead_position": "length",
     "tension": "force",
     "strain": "strain",
+    "fill_pressure": "stress",
     "cycle_counter": "number",
     "gauge_length": "length",
     "eye_to_eye_length": "length",

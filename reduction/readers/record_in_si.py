@@ -190,7 +190,9 @@ def _interpolate(
     return np.where(in_gap | outside, np.nan, result)
 
 
-_USED = ("crosshead_position", "tension", "strain", "cycle_counter")
+_OF_SPECIMENS = ("tension", "strain", "fill_pressure")
+
+_USED = ("crosshead_position", "cycle_counter", *_OF_SPECIMENS)
 
 _RESTART_SAMPLES = 3
 
@@ -230,7 +232,7 @@ def _to_piece(log: RawLog, layout: Layout, *, gap_factor: float) -> _Piece:
     values, scale, unused = {}, {}, []
     for name, channel in layout.channels.items():
         kind = name.split(".")[0]
-        key = f"{kind}.1" if name in ("tension", "strain") else name
+        key = f"{kind}.1" if name in _OF_SPECIMENS else name
         if kind in _USED:
             values[key] = log.columns[name]
             scale[key] = _scale(channel, layout.dimension(name))
@@ -346,7 +348,7 @@ def to_record(
     """Convert the log or logs of a test; several are a record in pieces, in order."""
     if not logs:
         raise SettingsError(f"test '{test_id}' has no file", needed="one or more logs")
-    n_strain = [_check_channels(layout, test_id, len(specimens)) for _, layout in logs]
+    counts = [_check_channels(layout, test_id, len(specimens)) for _, layout in logs]
     position_is_length = _check_datum([layout for _, layout in logs], test_id, length_needed)
     pieces = [_to_piece(log, layout, gap_factor=quality.gap_factor) for log, layout in logs]
     _check_order(pieces)
@@ -354,11 +356,14 @@ def to_record(
     beside, rows = pieces[0].time, (len(specimens), n_samples)
     position = empty_like(beside, shape=n_samples)
     tension = empty_like(beside, shape=rows)
-    strain = empty_like(beside, shape=rows) if any(n_strain) else None
+    strain, pressure = (
+        empty_like(beside, shape=rows) if any(one[kind] for one in counts) else None
+        for kind in ("strain", "fill_pressure")
+    )
     targets = [("crosshead_position", position)]
-    targets += [(f"tension.{number}", row) for number, row in enumerate(tension, 1)]
-    if strain is not None:
-        targets += [(f"strain.{number}", row) for number, row in enumerate(strain, 1)]
+    for kind, series in zip(_OF_SPECIMENS, (tension, strain, pressure), strict=True):
+        if series is not None:
+            targets += [(f"{kind}.{number}", row) for number, row in enumerate(series, 1)]
     with ThreadPoolExecutor(_WORKERS) as workers:  # fresh memory is slow to touch
         list(workers.map(lambda target: _fill(target[1], pieces, target[0]), targets))
     counter, counter_notes = _counter(pieces, n_samples)
@@ -374,6 +379,7 @@ def to_record(
         quality_flag=zeros_like(tension, dtype=np.uint16),
         crosshead_position_quality_flag=zeros_like(position, dtype=np.uint16),
         measured_strain=strain,
+        fill_pressure=pressure,
         cycle_counter=counter,
         position_is_length=position_is_length,
         n_rows_read=sum(log.n_rows_read for log, _ in logs),
@@ -382,6 +388,11 @@ def to_record(
             for number in range(1, len(specimens) + 1)
         ),
         position_standard_uncertainty=_uncertainty(pieces, "crosshead_position", "length"),
+        fill_pressure_standard_uncertainty=tuple(
+            _uncertainty(pieces, f"fill_pressure.{number}", "stress")
+            for number in range(1, len(specimens) + 1)
+            if pressure is not None
+        ),
         metadata=_metadata(pieces),
         notes=(*_piece_notes(pieces), *counter_notes),
         load_train=_load_train([layout for _, layout in logs], test_id),
@@ -395,8 +406,8 @@ def to_record(
     )
 
 
-def _check_channels(layout: Layout, test_id: str, n_specimens: int) -> int:
-    """Channels for every specimen; returns how many strain channels there are."""
+def _check_channels(layout: Layout, test_id: str, n_specimens: int) -> dict[str, int]:
+    """Channels for every specimen; returns how many there are of each kind."""
     if "crosshead_position" not in layout.channels:
         raise SettingsError(
             f"test '{test_id}': its layout has no crosshead_position channel",
@@ -404,7 +415,7 @@ def _check_channels(layout: Layout, test_id: str, n_specimens: int) -> int:
             needed="crosshead_position",
         )
     counts = {}
-    for kind in ("tension", "strain"):
+    for kind in _OF_SPECIMENS:
         there = [name for name in layout.channels if name.split(".")[0] == kind]
         wanted = [[f"{kind}.{number}" for number in range(1, len(there) + 1)], [kind]]
         if there and sorted(there) not in [sorted(names) for names in wanted]:
@@ -414,15 +425,20 @@ def _check_channels(layout: Layout, test_id: str, n_specimens: int) -> int:
                 needed=", ".join(wanted[0]),
             )
         counts[kind] = len(there)
-    if counts["tension"] != n_specimens or counts["strain"] not in (0, n_specimens):
-        kind = "tension" if counts["tension"] != n_specimens else "strain"
+    wrong = [
+        kind
+        for kind, count in counts.items()
+        if count != n_specimens and (count or kind == "tension")
+    ]
+    if wrong:
+        kind = wrong[0]
         raise SettingsError(
             f"test '{test_id}': its layout has {counts[kind]} {kind} channels "
             f"for {n_specimens} specimens",
             found=", ".join(name for name in layout.channels if name.startswith(kind)) or "none",
             needed=", ".join(f"{kind}.{number}" for number in range(1, n_specimens + 1)),
         )
-    return counts["strain"]
+    return counts
 
 
 def _check_datum(layouts: Sequence[Layout], test_id: str, length_needed: bool) -> bool:

@@ -330,6 +330,8 @@ class Record:
         Masks of `Quality` for time and position.
     measured_strain : ndarray, shape (n_specimens, n_samples), optional
         From an extensometer, where there is one. [1]
+    fill_pressure : ndarray, shape (n_specimens, n_samples), optional
+        In the bore of a hose, above the pressure outside, where it was logged. [Pa]
     cycle_counter : ndarray of int, shape (n_samples,), optional
         The machine's own count.
     n_rows_read : int
@@ -338,6 +340,8 @@ class Record:
         As declared in the layout; NaN where not declared. [N]
     position_standard_uncertainty : float
         As declared in the layout; NaN where not declared. [m]
+    fill_pressure_standard_uncertainty : tuple of float, length n_specimens or 0
+        As declared in the layout; NaN where not declared. [Pa]
     metadata : dict of str to str
         Preamble rows of the file, as printed there.
     notes : tuple of Note
@@ -354,11 +358,13 @@ class Record:
     quality_flag: NDArray[np.uint16]
     crosshead_position_quality_flag: NDArray[np.uint16]
     measured_strain: Floats | None = None
+    fill_pressure: Floats | None = None
     cycle_counter: Integers | None = None
     position_is_length: bool = True
     n_rows_read: int = 0
     tension_standard_uncertainty: tuple[float, ...] = ()
     position_standard_uncertainty: float = float("nan")
+    fill_pressure_standard_uncertainty: tuple[float, ...] = ()
     metadata: dict[str, str] = field(default_factory=dict)
     notes: tuple[Note, ...] = ()
     load_train: LoadTrain = LoadTrain()

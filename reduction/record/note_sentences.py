@@ -1137,6 +1137,10 @@ _OF_HOSES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "load-cell-counts-as-exact": (
         "note", "no load cell uncertainty is stated: its gain and zero are treated as exact",
     ),
+    "pressure-gauge-counts-as-exact": (
+        "note", "no standard_uncertainty is stated for the fill_pressure channel: its zero is "
+        "treated as exact",
+    ),
     "shape-differs": (
         "warning",
         "no single strain differs by more than U, but the shape of the difference has a probability"

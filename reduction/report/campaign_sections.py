@@ -56,6 +56,7 @@ from reduction.report.figures.hose_figures import (
     draw_all_hoses,
     draw_budget,
     draw_chart,
+    draw_compared_pressure,
     draw_comparison,
     draw_cycle_bias,
     draw_error,
@@ -322,6 +323,11 @@ def _make_comparison_section(view: ComparisonView) -> TestSection:
             warnings=[str(one) for one in _other_notes(view) if one.severity == "warning"],
         ),
         make_part("Comparison error", draw_error(view), (), [_shape(view)]),
+        make_part(
+            "Fill pressure", draw_compared_pressure(view), (),
+            [f"Verdict: {view.text('fill_pressure_verdict')}."]
+            if "fill_pressure_verdict" in view.data else [],
+        ),
         make_part("Cycle by cycle", draw_cycle_bias(view)),
         make_part("Energy", (), [energy_table(view)]),
         make_part(

@@ -313,8 +313,14 @@ def fatigue_table(view: OutcomeView, quantity: str) -> PageTable | None:
         .intervals("shortest to longest", "least_cycles", "most_cycles", "number", 4)
         .numbers("median life", "median_life", "number", 3)
         .intervals("its interval", "median_life_low", "median_life_high", "number")
-        .some("not used", "excluded_count")
     )
+    if any(np.isfinite(row["relative_abrasion_resistance"]) for row in rows):
+        name = "relative_abrasion_resistance"
+        (
+            sheet.numbers("over polypropylene", name, "number", 3)
+            .intervals("its interval", f"{name}_low", f"{name}_high", "number")
+        )  # fmt: skip
+    sheet.some("not used", "excluded_count")
     what = "Cycles to failure" if quantity == "cycles_to_failure" else "Cycles of abrasion"
     return sheet.grouped(
         f"{what} by group and peak load. The mean is of the failed alone; the median life (Weibull)"

@@ -142,6 +142,8 @@ def hose_design_table(view: HoseView) -> PageTable:
     spacing = np.nanmin(view.array("cord_spacing") / view.scalar("cord_diameter"))
     (
         found.numbers("cords in the section, both layers", "number_of_cords")
+        .numbers("torque at the working load, held from turning", "working_torque")
+        .numbers("wrap angle of an outer layer without that torque", "balanced_wrap_angle")
         .numbers("least spacing of cords over their diameter", [spacing], "number")
         .numbers(
             "bore at the greatest strain", [np.nanmin(view.array("current_inner_diameter"))],

@@ -143,3 +143,46 @@ order = 1
         "c over a: different condition before the campaign: 'two years at sea' against 'new'"
         in notes
     )
+
+
+def test_a_logged_fill_pressure_is_compared_beside_the_tension(command, tmp_path):
+    """S-64 with the pressure of its truth: the hose of the campaign is one degree too steep."""
+    text = (RAW / "hose-synthetic" / "campaign.toml").read_text("utf-8")
+    head, hose = (
+        text[text.index(start) : text.index(end)]
+        for start, end in (("[campaign]", "[tests.L-64]"), ("[hoses.H64]", "[hoses.H68]"))
+    )
+    column = 'fill_pressure = { column = "psi", unit = "psi", standard_uncertainty = "1 psi" }'
+    head = head.replace("[defaults]", f"{column}\n\n[defaults]", 1)
+    plan = text[text.index("[comparisons.H64-pull]") : text.index("[comparisons.H68-pull]")]
+    (tmp_path / "campaign.toml").write_text("\n".join([head, hose, plan]), encoding="utf-8")
+    rows = (RAW / "hose-synthetic" / "S-64.csv").read_text("utf-8").splitlines()[2:]
+    log = np.array([row.split(",") for row in rows], dtype=float)
+    strain, pressure = known_pressure("curve_64.csv")
+    psi = np.interp(log[:, 1] / 96 - 1, strain, pressure)
+    psi += np.random.default_rng(1).normal(0, 0.5, psi.size)
+    np.savetxt(tmp_path / "S-64.csv", np.column_stack([log, psi]), delimiter=",", comments="",
+               header="time_s,flange_to_flange_in,load_lbf,psi", fmt="%.3f")  # fmt: skip
+    tables = run(command, tmp_path)
+    (verdict,) = table(tables, "comparisons")
+    assert verdict["fill_pressure_verdict"].startswith("agrees within U")
+    points = table(tables, "comparison_pressures")
+    at, measured, spread = (
+        np.array([float(row[name] or "nan") for row in points])
+        for name in ("strain [1]", "measured_fill_pressure [Pa]",
+                     "measured_fill_pressure_standard_uncertainty [Pa]")
+    )  # fmt: skip
+    truth = 6894.757 * np.interp(at, strain, pressure)
+    there = np.isfinite(measured) & np.isfinite(spread)
+    assert there.sum() > 50
+    assert np.mean(np.abs(measured - truth)[there] <= 2 * spread[there]) > 0.9
+    (rubber,) = (
+        row for row in table(tables, "calibrations") if row["parameter_name"] != "wrap_angle"
+    )
+    assert rubber["fill_pressure_parameter_value [1]"] == ""
+
+
+def known_pressure(name):
+    with (RAW / "hose-synthetic" / "truth" / name).open(encoding="utf-8") as lines:
+        rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    return np.array([[float(row[key]) for row in rows] for key in ("strain", "fill_pressure_psi")])

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from commandruns import run_campaign as run_by_command
+from measured_hoses import Truth
 
 from reduction.archive.open import open_archive
 from reduction.batch.prediction_product import compare_archive
@@ -363,3 +364,41 @@ def test_a_cyclic_test_is_said_to_be_taken_as_dynamic(run):
         of = archive["note_comparison"].to_numpy() == "H64-dynamic"
         notes = archive["note"].to_numpy()[of]
     assert any("treated as dynamic, like all cyclic tests" in note for note in notes)
+
+
+@pytest.mark.nightly
+def test_the_stretch_of_a_hose_that_grows_with_its_cycles_is_a_rate_per_decade(command, tmp_path):
+    """WHOI-2004-06, sec. 3.0, gives the greatest stretch at the 115,000th cycle to one load."""
+    text = (RAW / "campaign.toml").read_text("utf-8")
+    head = text[text.index("[campaign]") : text.index("[tests.S-64]")]
+    (tmp_path / "campaign.toml").write_text(
+        head + '[tests.G-64]\nfile = "G-64.csv"\nspecimens = ["hose-64"]\norder = 1\n'
+        'n_cycles = 60\ncontrol = "load"\nwaveform = "sinusoidal"\nrate = "0.1 Hz"\n',
+        encoding="utf-8",
+    )
+    rng, growth = np.random.default_rng(3), 0.01
+    time = np.arange(0, 660, 0.1)
+    phase = np.clip((time - 50) / 10, 0, 60)
+    load = 1000 * (1 - np.cos(2 * np.pi * phase))  # from 1,100 to 3,100 lbf
+    load += np.interp(time, [40, 50], [0, 1100])
+    grid = np.linspace(0, 1.2, 2000)
+    strain = np.interp(load, Truth().tension(grid) / LBF, grid)
+    strain += growth * np.log10(np.maximum(phase, 1))
+    rows = [
+        time,
+        96 * (1 + strain) + rng.normal(0, 0.01, time.size),
+        load + rng.normal(0, 2, time.size),
+    ]
+    np.savetxt(tmp_path / "G-64.csv", np.column_stack(rows), delimiter=",", comments="",
+               header="time_s,flange_to_flange_in,load_lbf", fmt="%.3f")  # fmt: skip
+    done = command(
+        "run", tmp_path / "campaign.toml", "--processed", tmp_path / "processed",
+        "--reports", tmp_path / "reports", "--quiet",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    (path,) = (tmp_path / "processed").glob("*/tables/trend.csv")
+    (row,) = pd.read_csv(path, comment="#").to_dict("records")
+    found, spread = (
+        row[f"mean_strain_per_decade{what} [1]"] for what in ("", "_standard_uncertainty")
+    )
+    assert abs(found - growth) < max(2 * spread, 0.03 * growth)

@@ -15,6 +15,8 @@ from reduction.prediction.wave_theory import (
     _wave_number,
     airy_wave,
     breaking_height,
+    cnoidal_wave,
+    high_stokes_wave,
     particle_motion,
     stokes_wave,
     wave_period_of,
@@ -102,6 +104,42 @@ def test_error_against_the_stream_function_falls_with_the_order_of_the_theory(
     falls = np.log2(np.array(errors[:-1]) / errors[1:])
     # what is left of the next order halves with the height
     assert falls[-1] == pytest.approx(order, abs=0.1)
+
+
+@pytest.mark.parametrize("order", [3, 5])
+def test_error_of_high_orders_falls_with_the_order_of_the_theory(order):
+    errors, depth, length = [], 6.0, 20.0
+    for height in (1.0, 0.5):
+        exact = FentonWave(height, depth, length, N=15, g=GRAVITY)
+        mine = high_stokes_wave(
+            order=order, wave_height=height, wave_period=exact.period, water_depth=depth,
+            elevation=-1.0, gravity=GRAVITY,
+        )  # fmt: skip
+        crest = float(np.ravel(exact.velocity(0.0, depth - 1.0, 0.0, all_points_wet=True))[0])
+        errors.append(
+            [
+                abs(mine.horizontal_velocity.sum() / crest - 1),
+                abs(2 * np.pi / mine.wave_number / length - 1),
+            ]
+        )
+    falls = np.log2(np.divide(*errors))
+    # over the velocity, which goes with the height; lengths are right to even orders
+    assert falls == pytest.approx([order, order + 1], abs=0.7)
+
+
+def test_error_of_a_cnoidal_wave_falls_with_the_height_at_one_ursell_number():
+    errors, depth = [], 10.0
+    for share in (0.1, 0.05):
+        length = depth * np.sqrt(40 / share)
+        exact = FentonWave(share * depth, depth, length, N=15, g=GRAVITY)
+        mine = cnoidal_wave(
+            wave_height=share * depth, wave_period=exact.period, water_depth=depth, elevation=0.0,
+            gravity=GRAVITY,
+        )  # fmt: skip
+        crest = float(np.ravel(exact.surface_elevation(0.0, 0.0, False))[0])
+        errors.append(abs(mine.elevation.sum() / crest - 1))
+    assert errors[0] < 0.02
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(1, abs=0.3)
 
 
 @pytest.mark.parametrize("depth", [6.0, 3.0])

@@ -33,7 +33,7 @@ STANDARD = {
 STATISTICS = "experiments/surface_statistics.py"
 # packages that take as long to load as a look-up does, and that most runs do without: pint knows
 # units that are not usual, and readers of MATLAB, TDMS and workbooks have one each
-LATE = (STATISTICS, "quantities/units.py", "readers/read_log.py")
+LATE = (STATISTICS, "quantities/units.py", "readers/read_log.py", "prediction/wave_theory.py")
 # threads start in one place, what steers a terminal is known in one, scratch files are made in one
 ALSO_OF = {
     "record/arrays.py": {"os", "concurrent"}, "record/plain_text.py": {"unicodedata", "urllib"},
@@ -41,6 +41,8 @@ ALSO_OF = {
     # the sum of the settings
     "record/measurement.py": {"hashlib"},
     STATISTICS: {"warnings", "statsmodels"},
+    # an extra
+    "prediction/wave_theory.py": {"raschii"},
 }  # fmt: skip
 MODULES = sorted(p for p in PACKAGE.rglob("*.py") if p != PACKAGE / "__init__.py")
 PLAIN = {"open", "read_text", "write_text", "read_csv", "open_dataset", "to_netcdf", "print"}

@@ -29,7 +29,8 @@ def test_the_rich_test_fills_every_variable_that_a_log_can_have(rich_test, bare_
     steps = {name for name, row in TEST_SCHEMA.items() if {"step", "interval"} & set(row.dims)}
     # another datum, control, strain method or length than that of the examples
     alternatives = {
-        "tension_band", "tension_rate", "measured_strain", "free_fraction", "reference_position",
+        "tension_band", "tension_rate", "measured_strain", "fill_pressure", "free_fraction",
+        "reference_position",
         "free_length_intercept", "free_length_slope", "splice_strain_ratio", "strain_gauge_length",
         "splice_offset", "splice_strain_cubic", "splice_strain_curvature", "strain_reference_tension",
         "relaxed_gauge_length", "uncertainty_source_degrees_of_freedom", "sample_index",

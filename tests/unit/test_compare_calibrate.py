@@ -15,7 +15,7 @@ from reduction.prediction.hose_comparison import (
     _identify_directions,
     _parameter_bounds,
     _plausible_error,
-    _trial_tension,
+    _trial_load,
 )
 from reduction.prediction.measured_curve import constant_errors, measured_curve
 from reduction.record.errors import DataError, FitError, SettingsError
@@ -345,7 +345,7 @@ def test_strains_beyond_the_break_of_the_fitted_hose_are_noted():
 def test_a_curve_goes_on_along_its_tangent_where_cords_are_broken():
     names, value = ["wrap_angle"], np.array([[TRUTH.wrap_angle]])
     strain = np.arange(1.0, 1.8, 0.001)
-    tension = _trial_tension(TRUTH.design(), names, value, strain)[0]
+    tension = _trial_load(TRUTH.design(), names, value, strain)[0]
     assert np.isfinite(tension).all()
     broken = np.isnan(TRUTH.tension(strain))
     assert broken.any() and not broken.all()

@@ -169,6 +169,21 @@ def test_a_layout_without_position_is_refused():
         convert((log(), layout(declared)))
 
 
+def test_a_pressure_gauge_gives_fill_pressure_in_pascals():
+    for unit, size in (("bar", 1e5), ("psi", 6894.757293168361), ("kPa", 1e3)):
+        gauge = {"column": "p", "unit": unit}
+        stated = {"zero": f"1 {unit}", "standard_uncertainty": "2 kPa"}
+        declared = CHANNELS | {"fill_pressure.1": gauge | stated, "fill_pressure.2": gauge}
+        values = {"fill_pressure.1": 1 + TIME, "fill_pressure.2": 3 * TIME}
+        record = convert((log(values), layout(declared)))
+        np.testing.assert_allclose(record.fill_pressure, [size * TIME, 3 * size * TIME])
+        assert record.fill_pressure_standard_uncertainty[0] == 2e3
+        assert np.isnan(record.fill_pressure_standard_uncertainty[1])
+    assert convert((log({}), layout(channels()))).fill_pressure is None
+    with pytest.raises(SettingsError, match="its layout has 1 fill_pressure channels for 2"):
+        convert((log(values), layout(CHANNELS | {"fill_pressure.1": gauge})))
+
+
 def test_an_extensometer_gives_measured_strain_for_every_specimen():
     declared = channels(strain_1={"unit": "%"}, strain_2={"unit": "%"})
     strain = {"strain.1": 100 * TIME, "strain.2": 50 * TIME}

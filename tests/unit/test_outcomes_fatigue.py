@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from reduction.experiments.life_statistics import fit_load_life, life_at_load, load_levels
+from reduction.experiments.outcome_groups import fatigue_rows
+from reduction.experiments.outcomes import Outcome
 from reduction.record.errors import DataError, FitError
 
 LOAD = np.repeat([0.3, 0.4, 0.5, 0.7], 3)
@@ -84,3 +86,34 @@ def test_loads_that_do_not_pair_up_are_refused():
 def test_a_load_of_nothing_is_refused():
     with pytest.raises(DataError, match="values of peak_load_ratio are not positive"):
         load_levels([0.0])
+
+
+def test_abrasion_is_compared_with_new_polypropylene_of_the_same_make():
+    """CG-D-39-80, sec. 6.2: nylon three times, polyester twice, jacketed five to six times."""
+    lives = np.array([2.6e3, 3.1e3, 3.4e3, 4.0e3])
+
+    def abraded(material, times, *, construction="8-strand plaited", condition="new"):
+        return [
+            Outcome(
+                "abrasion_cycles", times * life, material=material, construction=construction,
+                diameter=0.0127, condition=condition,
+            )
+            for life in lives
+        ]  # fmt: skip
+
+    outcomes = [
+        *abraded("polypropylene", 1.0), *abraded("nylon", 3.0), *abraded("polyester", 2.0),
+        *abraded("polyester", 11.0, condition="jacketed"),
+        *abraded("polyester", 2.0, construction="3-strand twisted"),
+        *abraded("polypropylene", 0.5, condition="worn"),
+    ]  # fmt: skip
+    rows = [
+        {key: row[f"relative_abrasion_resistance{key}"] for key in ("", "_low", "_high")}
+        for row in fatigue_rows(outcomes)
+    ]
+    found = [row[""] for row in rows]
+    expected = [np.nan, 3.0, 2.0, 11.0, np.nan, 0.5]
+    np.testing.assert_allclose(found, expected, rtol=1e-6)
+    assert all(row["_low"] < row[""] < row["_high"] for row in rows if row[""] > 0)
+    of_fatigue = [Outcome("cycles_to_failure", life, material="nylon") for life in lives]
+    assert np.isnan(fatigue_rows(of_fatigue)[0]["relative_abrasion_resistance"])

@@ -124,6 +124,37 @@ def test_the_theory_is_that_of_the_depth_unless_another_is_asked_for(predict):
     assert found.notes[-1] == "computed by stokes, as asked for; by depth airy applies"
 
 
+def test_shallow_water_and_steep_waves_have_their_theories(predict):
+    shallow = {"water_depth": 1.0, "wave_height": 0.2, "wave_period": 6.0, "wave_length": None}
+    found = predict(LEAST_WAVE, **shallow)
+    assert found.used == found.theory.theory == "cnoidal"
+    length = 2 * np.pi / found.wave.wave_number
+    assert found.notes == (f"the wave of cnoidal is {length:.4g} m long, for it is high",)
+    # c^2 < g (d + H), the solitary wave; longer than the linear wave
+    assert (
+        found.theory.wave_length < 2 * np.pi / found.wave.wave_number < 6 * np.sqrt(9.80665 * 1.2)
+    )
+    load = found.load.horizontal
+    assert float(found.extremes.horizontal.maximum) == pytest.approx(load.max(), rel=1e-3)
+    found = predict(LEAST_WAVE, wave_theory="stokes 5")
+    assert (found.used, found.wave.elevation.size) == ("stokes 5", 5)
+    steep = {"water_depth": 3.0, "wave_length": None, "wave_theory": "stokes 5"}
+    assert predict(LEAST_WAVE, **steep).notes == (
+        "the wave of stokes 5 is 17.42 m long, for it is high",
+        "computed by stokes 5, as asked for; by depth stokes applies",
+    )
+
+
+def test_extremes_of_a_wave_of_many_harmonics_are_those_of_a_fine_search(predict):
+    sea = {"water_depth": 1.5, "wave_height": 0.4, "wave_period": 10.0, "wave_theory": "cnoidal"}
+    found = predict(LEAST_WAVE, **sea, time=np.linspace(0.0, 10.0, 20_001))
+    assert found.wave.elevation.size > 20
+    for name in ("horizontal", "vertical"):
+        own, load = getattr(found.extremes, name), getattr(found.load, name)
+        assert float(own.maximum) == pytest.approx(load.max(), rel=1e-5)
+        assert float(own.minimum) == pytest.approx(load.min(), rel=1e-5)
+
+
 def test_a_length_that_is_not_that_of_the_period_is_told(predict):
     assert any("given length" in note for note in predict().notes)
     assert not any("given length" in note for note in predict(wave_length=None).notes)
@@ -138,8 +169,8 @@ def test_a_length_that_is_not_that_of_the_period_is_told(predict):
         ({"current_velocity": -20.0}, "the opposing current stops 1 of 1 waves"),
         ({"elevation": -7.0}, "the place is not in the water"),
         (
-            {"water_depth": 1.0, "wave_height": 0.1, "wave_theory": "auto"},
-            "the theory of this wave is not computed: cnoidal or solitary",
+            {"water_depth": 0.5, "wave_height": 0.1, "wave_theory": "auto"},
+            "the theory of this wave is not computed: beyond the table",
         ),
     ],
 )

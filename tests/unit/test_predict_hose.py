@@ -6,7 +6,13 @@ import pytest
 from reduction.prediction import hose_tension as hose
 from reduction.prediction.cord_curve import CordCurve
 from reduction.prediction.hose_product import HoseDesign, HosePrediction
-from reduction.prediction.hose_tension import find_events, hose_energy, predict_hose
+from reduction.prediction.hose_tension import (
+    find_events,
+    hose_energy,
+    predict_hose,
+    predict_two_layers,
+    torque_balanced_angle,
+)
 from reduction.prediction.rubber_wall import rubber_tension
 from reduction.record import arrays as workers
 from reduction.record.errors import DataError
@@ -105,6 +111,76 @@ def test_a_predicted_hose_is_what_virtual_work_written_by_hand_gives():
     np.testing.assert_allclose(found.end_cap_load, end_cap, rtol=1e-6)
     np.testing.assert_allclose(found.tension, cords - end_cap + rubber, rtol=1e-6)
     np.testing.assert_allclose(found.cord_share, 1 - rubber / found.tension, rtol=1e-6)
+
+
+STIFFNESS = 600.0  # of a straight cord curve: N per strain
+
+
+def two_layers(inner=68.0, outer=66.0):
+    design = replace(
+        GUMBY, wrap_angle=np.radians(inner), layer_diameter=(0.084, 0.093), dead_length_share=0.05,
+        cord=CordCurve(strain=np.array([0.0, 0.5]), load=np.array([0.0, 0.5 * STIFFNESS])),
+    )  # fmt: skip
+    return design, np.radians(outer)
+
+
+def energy_of_layers(design, outer, stretch, twist, widening=(0.0, 0.0)):
+    """Of tense cords per relaxed length: a helix of this pitch on a cylinder of this radius.
+
+    ``twist`` is the turn per relaxed length, ``widening`` what each radius is beyond that of
+    constant volume; complex numbers give derivatives to the last digit.
+    """
+    energy = []
+    for hand, at, diameter, wider in zip(
+        (1, -1), (design.wrap_angle, outer), design.layer_diameter, widening, strict=True
+    ):
+        radius = diameter / 2 / np.sqrt(stretch) + wider
+        turn = np.tan(at) / (diameter / 2) + hand * twist
+        length = np.sqrt(stretch**2 + (radius * turn) ** 2)  # relaxed: 1 / cos
+        number = np.pi * diameter * np.cos(at) * design.cords_per_length
+        strain = length * np.cos(at) - 1
+        energy.append(number / np.cos(at) * STIFFNESS / 2 * strain**2)
+    return energy
+
+
+@pytest.mark.parametrize(("inner", "outer"), [(68.0, 68.0), (68.0, 66.0), (60.0, 63.0), (40.0, 44)])
+def test_two_layers_are_the_derivatives_of_their_energy(inner, outer):
+    design, other = two_layers(inner, outer)
+    step = 1e-30
+    strain = np.array({68.0: [1.25, 1.4], 60.0: [0.7, 0.9], 40.0: [0.05, 0.15]}[inner])
+    stretch = 1 + strain / 0.95
+    found = predict_two_layers(design, other, strain)
+
+    def rate(**changed):
+        at = {"stretch": stretch, "twist": 0.0} | changed
+        return [one.imag / step for one in energy_of_layers(design, other, **at)]
+
+    np.testing.assert_allclose(found.torque, sum(rate(twist=1j * step)), rtol=1e-10)
+    rubber = rubber_tension(stretch, area=AREA, modulus=1.379e6, law="neo-hookean")
+    pull = sum(rate(stretch=stretch + 1j * step)) + rubber
+    np.testing.assert_allclose(found.tension, pull, rtol=1e-10)
+    # a layer that gets wider pushes water over its wall, 2 pi r per length of the hose
+    wall = [np.pi * one * np.sqrt(stretch) for one in design.layer_diameter]
+    squeeze = rate(widening=(1j * step, 1j * step))
+    pressure = sum(one / area for one, area in zip(squeeze, wall, strict=True))
+    np.testing.assert_allclose(found.fill_pressure, pressure, rtol=1e-10)
+
+
+def test_an_outer_layer_of_the_balanced_angle_leaves_no_torque():
+    design, _ = two_layers()
+    balanced = torque_balanced_angle(design, 1.4)
+    assert balanced > design.wrap_angle  # the wider layer is wound more steeply
+    stretch = 1 + 1.4 / 0.95
+    twist = [one.imag / 1e-30 for one in energy_of_layers(design, balanced, stretch, 1e-30j)]
+    assert sum(twist) == pytest.approx(0.0, abs=1e-8 * twist[0])
+    alike = replace(design, layer_diameter=(0.0889, 0.0889))
+    assert torque_balanced_angle(alike, 1.4) == pytest.approx(alike.wrap_angle, rel=1e-12)
+    assert predict_two_layers(alike, alike.wrap_angle, [1.4]).torque == pytest.approx(0, abs=1e-10)
+    for strain in (0.4, 0.6, 0.97, 1.3):  # whatever rounding leaves at one angle
+        other = replace(alike, wrap_angle=np.radians(55.0))
+        assert torque_balanced_angle(other, strain) == pytest.approx(np.radians(55.0), rel=1e-12)
+    assert np.isnan(torque_balanced_angle(design, 0.5))  # all cords are slack
+    assert np.isnan(torque_balanced_angle(design, 3.5))  # broken
 
 
 def test_dead_ends_stretch_the_axis_and_nothing_else():

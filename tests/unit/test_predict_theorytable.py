@@ -10,7 +10,7 @@ from reduction.record.errors import DataError
     ("relative_depth", "theory"),
     [
         (0.5, "airy"), (0.2, "airy"), (0.199, "stokes"), (0.1, "stokes"),
-        (0.099, "cnoidal or solitary"), (0.041, "cnoidal or solitary"),
+        (0.099, "cnoidal"), (0.041, "cnoidal"),
         (0.04, "beyond the table"), (0.01, "beyond the table"),
     ],
 )  # fmt: skip

@@ -1,17 +1,23 @@
 """Airy and Stokes waves against the potential and the conditions that define them."""
 
+import sys
+
 import numpy as np
 import pytest
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipj, ellipk
 
 from reduction.prediction.wave_theory import (
     STANDARD_GRAVITY,
     _wave_number,
     airy_wave,
+    cnoidal_wave,
+    high_stokes_wave,
     particle_motion,
     stokes_wave,
     wave_period_of,
 )
-from reduction.record.errors import DataError
+from reduction.record.errors import DataError, FitError, SettingsError
 
 SEA = {"wave_height": 1.25, "wave_period": 3.57, "water_depth": 3.0}
 MAKERS = [airy_wave, stokes_wave]
@@ -185,3 +191,120 @@ def test_a_time_that_is_no_number_is_refused():
 def test_period_of_the_wave_is_that_of_its_number():
     wave = airy_wave(**SEA, elevation=0.0)
     assert float(wave_period_of(wave.wave_number, 3.0)) == pytest.approx(3.57, rel=1e-13)
+
+
+LONG = {"wave_height": 0.4, "water_depth": 1.5}
+
+
+def surface(wave, phase):
+    orders = np.arange(1, wave.elevation.size + 1)
+    return np.cos(np.outer(phase, orders)) @ wave.elevation
+
+
+@pytest.mark.parametrize("period", [3.0, 6.0, 12.0])
+def test_a_cnoidal_surface_is_that_of_jacobi(period):
+    wave = cnoidal_wave(**LONG, wave_period=period, elevation=0.0)
+    length = 2 * np.pi / wave.wave_number
+    ursell = 0.4 * length**2 / 1.5**3
+    m = brentq(lambda m: m * ellipk(m) ** 2 - 3 * ursell / 16, 1e-9, 1 - 1e-15, xtol=1e-16)
+    phase = np.linspace(0, np.pi, 40)
+    cn = ellipj(phase * ellipk(m) / np.pi, m)[1]
+    mean = (ellipe(m) / ellipk(m) - (1 - m)) / m
+    assert surface(wave, phase) == pytest.approx(0.4 * (cn**2 - mean), abs=1e-7)
+
+
+@pytest.mark.parametrize("period", [3.0, 6.0, 20.0])
+def test_a_cnoidal_wave_solves_the_equation_of_boussinesq(period):
+    """(c^2 - g d) eta = 3 g eta^2 / 2 + g d^3 eta'' / 3 + a constant, in the frame of the wave."""
+    wave = cnoidal_wave(**LONG, wave_period=period, elevation=0.0)
+    g, d, phase = STANDARD_GRAVITY, 1.5, np.linspace(0, np.pi, 40)
+    orders = np.arange(1, wave.elevation.size + 1)
+    eta = surface(wave, phase)
+    curvature = np.cos(np.outer(phase, orders)) @ (
+        -((orders * wave.wave_number) ** 2) * wave.elevation
+    )
+    speed = wave.angular_frequency / wave.wave_number
+    left_over = (speed**2 - g * d) * eta - 1.5 * g * eta**2 - g * d**3 / 3 * curvature
+    assert left_over == pytest.approx(left_over[0], abs=1e-5 * g * 0.4**2)
+    assert wave.horizontal_velocity == pytest.approx(speed / d * wave.elevation, rel=1e-12)
+
+
+def test_the_solitary_wave_is_the_limit_of_a_long_period():
+    wave = cnoidal_wave(**LONG, wave_period=30.0, elevation=0.0)
+    speed = wave.angular_frequency / wave.wave_number
+    decay = np.sqrt(3 * 0.4 / (4 * 1.5**3))
+    # over the level of the trough, where the water lies still
+    still = 2 * 0.4 / (decay * 2 * np.pi / wave.wave_number)
+    x = np.linspace(0, 15, 40)
+    closed = 0.4 / np.cosh(decay * x) ** 2
+    assert surface(wave, wave.wave_number * x) + still == pytest.approx(closed, abs=2e-7)
+    # in water as deep as that the mean level is above it
+    assert speed**2 == pytest.approx(STANDARD_GRAVITY * (1.5 + 0.4 - 3 * still), rel=1e-6)
+
+
+def test_a_low_cnoidal_wave_is_the_linear_long_wave():
+    low = {"wave_height": 1e-6, "wave_period": 12.0, "water_depth": 1.5}
+    wave, airy = cnoidal_wave(**low, elevation=-0.5), airy_wave(**low, elevation=-0.5)
+    square = (wave.angular_frequency / wave.wave_number) ** 2 / (STANDARD_GRAVITY * 1.5)
+    kd = wave.wave_number * 1.5
+    # tanh(kd) / kd = 1 - (kd)^2 / 3 + ...
+    assert square == pytest.approx(1 - kd**2 / 3, abs=1e-6)
+    assert wave.elevation[0] == pytest.approx(0.5e-6, rel=1e-6)
+    for name in ("horizontal_velocity", "vertical_velocity", "horizontal_acceleration"):
+        assert getattr(wave, name)[0] == pytest.approx(getattr(airy, name)[0], rel=kd**2)
+
+
+def test_a_cnoidal_wave_keeps_its_water():
+    def motion(x, z):
+        return particle_motion(
+            cnoidal_wave(**LONG, wave_period=6.0, elevation=z), np.linspace(0, 6, 15), x
+        )
+
+    stretch = slope(lambda s: motion(2.3 + s, -0.8).horizontal_velocity)
+    rise = slope(lambda s: motion(2.3, -0.8 + s).vertical_velocity)
+    assert stretch + rise == pytest.approx(0.0, abs=1e-8)
+    # the surface of a long wave rises with the water below it; 0 at the bed
+    assert motion(2.3, -1.5).vertical_velocity == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_coefficients_of_stokes_are_those_that_fenton_prints():
+    """Fenton (1985), Table 2, at kd = 0.753982."""
+    number, height, depth, gravity = 0.753982 / 3.0, 0.3, 3.0, 9.81
+    wave = high_stokes_wave(
+        order=5, wave_height=height, wave_period=3.57, water_depth=depth, elevation=0.0,
+        wave_number=number, gravity=gravity,
+    )  # fmt: skip
+    eps = number * height / 2
+    b = {22: 2.502414, 31: -5.731666, 42: -32.407508, 44: 14.033758, 53: -103.445042, 55: 37.200027}
+    assert number * wave.elevation == pytest.approx(
+        [
+            eps + eps**3 * b[31] - eps**5 * (b[53] + b[55]), eps**2 * b[22] + eps**4 * b[42],
+            -(eps**3) * b[31] + eps**5 * b[53], eps**4 * b[44], eps**5 * b[55],
+        ], rel=1e-5,
+    )  # fmt: skip
+    a11, a22, a31, a33, a42 = 1.208490, 0.799840, -9.105340, 0.368275, -12.196150
+    a44, a51, a53, a55 = 0.058723, 108.467921, -6.941756, -0.074979
+    potential = [
+        eps * a11 + eps**3 * a31 + eps**5 * a51, eps**2 * a22 + eps**4 * a42,
+        eps**3 * a33 + eps**5 * a53, eps**4 * a44, eps**5 * a55,
+    ]  # fmt: skip
+    orders = np.arange(1, 6)
+    speed = 0.798448 + eps**2 * 1.940215 - eps**4 * 12.970403  # of the wave, over sqrt(g/k)
+    scale = 0.798448 / speed * 2 * np.pi / 3.57 / number
+    along = scale * orders * potential * np.cosh(orders * number * depth)
+    upwards = scale * orders * potential * np.sinh(orders * number * depth)
+    assert wave.horizontal_velocity == pytest.approx(along, rel=2e-5)
+    assert wave.vertical_velocity == pytest.approx(upwards, rel=2e-5)
+
+
+def test_waves_that_a_theory_of_height_does_not_have(monkeypatch):
+    sea = {"wave_height": 0.4, "water_depth": 1.5, "elevation": 0.0}
+    with pytest.raises(DataError, match="too long for Stokes"):
+        high_stokes_wave(order=5, wave_period=10.0, **sea)
+    with pytest.raises((DataError, FitError), match=r"too short|no length of this theory"):
+        cnoidal_wave(wave_period=1.0, **sea | {"wave_height": 0.1})
+    with pytest.raises(DataError, match="crests are so far apart"):
+        cnoidal_wave(wave_period=400.0, **sea)
+    monkeypatch.setitem(sys.modules, "raschii", None)
+    with pytest.raises(SettingsError, match=r"mooring-reduction\[waves\]"):
+        high_stokes_wave(order=5, wave_period=4.0, **sea)

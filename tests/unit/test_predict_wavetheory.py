@@ -79,14 +79,15 @@ def test_a_breaking_wave_is_flagged():
     assert any(one.startswith("the wave breaks: 1.") for one in wave.reasons)
 
 
-def test_a_cnoidal_wave_is_named_and_not_computed():
-    sea = {"wave_height": 0.2, "wave_period": 8.0, "water_depth": 1.5}
+def test_a_wave_beyond_the_table_is_computed_by_name_alone():
+    sea = {"wave_height": 0.2, "wave_period": 12.0, "water_depth": 1.5}
     wave = describe_wave(**sea)
-    assert wave.theory == "cnoidal or solitary" and not wave.is_computed
-    assert any("cnoidal and solitary waves are not computed" in one for one in wave.reasons)
-    with pytest.raises(DataError, match="the theory of this wave is not computed: cnoidal"):
+    assert wave.theory == "beyond the table" and not wave.is_computed
+    assert any("Table 1 names no theory" in one for one in wave.reasons)
+    with pytest.raises(DataError, match="the theory of this wave is not computed: beyond"):
         regular_wave(wave, **sea, elevation=0.0)
     assert regular_wave(wave, **sea, elevation=0.0, theory="airy").elevation.size == 1
+    assert regular_wave(wave, **sea, elevation=0.0, theory="cnoidal").elevation.size > 5
 
 
 def test_the_theory_of_the_description_is_the_one_computed():

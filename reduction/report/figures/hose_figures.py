@@ -470,6 +470,30 @@ def draw_comparison(view: ComparisonView) -> list[Figure]:
     )  # fmt: skip
 
 
+def draw_compared_pressure(view: ComparisonView) -> list[Figure]:
+    """Draw measured and predicted fill pressure, each with its band."""
+    unit, strain = shown("stress", view.units), _percent(view)
+    data: list[Trace] = []
+    for whose, tint in (("predicted", _PREDICTED), ("measured", _MEASURED)):
+        curve = unit.factor * view.array_like(f"{whose}_fill_pressure", strain)
+        spread = view.array_like(f"{whose}_fill_pressure_standard_uncertainty", strain)
+        half = NORMAL * unit.factor * spread
+        if np.any(half > 0):
+            data.append(
+                band(strain, curve - half, curve + half, name=f"95 % band of the {whose}",
+                     colour=tint, alpha=_ALPHA)
+            )  # fmt: skip
+        data.append(line(strain, curve, name=whose, colour=tint, width=2.4))
+    return _kept(
+        make_figure(
+            f"{view.key}-fill-pressure", f"Measured and predicted fill pressure, {view.name}",
+            f"In the bore, above the pressure outside. Shaded: 95 % ({factor_words([NORMAL])}).",
+            data, synthetic=view.is_synthetic, height=400,
+            xaxis=_strain_axis(), yaxis=axis(unit.label("fill pressure"), rangemode="tozero"),
+        )
+    )  # fmt: skip
+
+
 def _shaded(view: ComparisonView) -> str:
     """Say what the bands hold."""
     shared = ", ".join(source_words(one) for one in view.shared_sources)

@@ -205,7 +205,12 @@ def _decades(data: list[Trace]) -> dict[str, Any]:
 
 _IMPROVED, _CLASSIC, _DRAG, _WATER, _GREY = (COLOURS[k] for k in (0, 1, 2, 5, 6))
 
-THEORY_NAMES = {"airy": "Airy", "stokes": "Stokes, second order"}
+THEORY_NAMES = {
+    "airy": "Airy",
+    "stokes": "Stokes, second order",
+    "stokes 3": "Stokes, third order",
+    "stokes 5": "Stokes, fifth order",
+}
 
 _UP = {"horizontal": "along the wave", "vertical": "upwards"}
 
