@@ -232,7 +232,7 @@ def _raft_text(line: ExportLine) -> str:
 
 _DEGREE = 2
 
-_FIRST, _MOST = 4, 24
+_FIRST, _MOST = 4, 48
 
 _SHORTEST = 1e-3
 

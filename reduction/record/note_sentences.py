@@ -247,6 +247,23 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             )
         ),
     ),
+    "load-zero-drifts": (
+        "warning",
+        lambda earlier, later, effect: (
+            f"the load cell reads {earlier:.3g} N at slack and later {later:.3g} N at no greater"
+            f" length, {100 * abs(effect):.2g} % of the peak load: "
+            + (
+                "its zero drifts; only a specimen that became shorter could pull there"
+                if later > earlier
+                else "its zero drifts, or the specimen still pulled at the first of these rests and"
+                " has become longer"
+                if later > -0.1 * earlier
+                else "its zero drifts, as no line pushes"
+            )
+            + ". No single zero is right: subtract the drift from the log by its readings at"
+            " slack, or repeat the test. Until then every tension may be wrong by as much"
+        ),
+    ),
     "load-zero-off": (
         "note",
         lambda load, n_rests, zero: (
@@ -1170,6 +1187,19 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f" diameter, the gauge length and the material.{_would_fit(readings)}"
         ),
     ),
+    "zero-or-relaxation": (
+        "note",
+        lambda earlier, later: (
+            f"mean tension of like cycles goes from {earlier:.3g} to {later:.3g} N, "
+            + (
+                "as fast at the end as before: the specimen relaxes slowly"
+                if later < earlier
+                else "while relaxation lowers it: the specimen recovers, warms up or seats,"
+            )
+            + " or the zero of the load cell drifts. The log has no slack rest after the cycles"
+            " that would tell"
+        ),
+    ),
     "strength-outside-band": (
         "warning",
         lambda found, low, high, of, readings: (
@@ -1395,8 +1425,9 @@ SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
 CAUSES = (
     "log-used-twice", "channels-alike", "column-of-another", "diameter-readings-apart",
     "cycles-in-other-kind", "rate-not-as-stated", "level-not-as-stated",
-    "load-zero-wrong", "load-negative", "load-falls-with-stretch", "tape-off-crosshead",
-    "loops-run-backward", "extensometer-against-stroke", "gauge-against-length",
+    "load-zero-drifts", "load-zero-wrong", "load-negative", "load-falls-with-stretch",
+    "tape-off-crosshead", "loops-run-backward",
+    "extensometer-against-stroke", "gauge-against-length",
     "modulus-outside-band", "strength-outside-band", "tension-above-strength", "stiffness-jumps",
     "run-off-plan", "cord-stress-outside-band", "cords-do-not-fit", "hose-rubber-outside-band",
     "wrap-angle-outside-band", "dead-length-large", "hose-not-of-design", "hose-unlike-design",
