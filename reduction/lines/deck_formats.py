@@ -29,6 +29,7 @@ from reduction.lines.export_line import (
     ExportLine,
     curve_from_zero,
     damping_words,
+    end_slope,
     local_share,
     local_words,
     straight_cycle,
@@ -363,7 +364,8 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
         )
     smooth = _fit_smooth_curve(line.strain, line.tension)
     curve = thin_curve(line.strain, line.tension, most=CABLE_POINTS)
-    start, powers = _with_straight_ends(smooth)
+    at, load, _ = curve_from_zero(line.strain, line.tension)
+    start, powers = _with_straight_ends(smooth, end_slope(at, load))
     tension = _expression(start, powers)
     remarks = [
         f"expressions: {smooth.start.size} cubic pieces, greatest error "
@@ -416,20 +418,15 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
     return "\n".join([*text, "", "End", ""])
 
 
-def _with_straight_ends(curve: _SmoothCurve) -> tuple[Floats, Floats]:
-    """Pieces with a straight one before the first and after the last, at the slopes of the ends.
+def _with_straight_ends(curve: _SmoothCurve, beyond: float) -> tuple[Floats, Floats]:
+    """Pieces with a straight one before the first, at its slope, and one after the last.
 
-    A cubic that goes on beyond its last point may fall, and Cable finds an equilibrium there.
+    A cubic that goes on beyond its last point may fall, and Cable finds an equilibrium there;
+    ``beyond`` [N] is the slope of the line that is promised there, which the last cubic has not.
     """
-    ends = np.array([0.0, curve.end])
-    slope = [
-        float(np.polyval([3 * cubic, 2 * square, linear], at - first))
-        for at, first, (_, linear, square, cubic) in zip(
-            ends, curve.start[[0, -1]], curve.coefficient[[0, -1]], strict=True
-        )
-    ]
+    linear = float(curve.coefficient[0, 1])
     top = float(np.polyval(curve.coefficient[-1, ::-1], curve.end - curve.start[-1]))
-    below, above = [0.0, slope[0], 0.0, 0.0], [top, slope[1], 0.0, 0.0]
+    below, above = [0.0, linear, 0.0, 0.0], [top, beyond, 0.0, 0.0]
     powers = np.vstack([below, curve.coefficient, above])
     # what is before the first piece hangs on its start, strain zero
     return np.concatenate([[0.0], curve.start, [curve.end]]), powers
