@@ -60,6 +60,8 @@ _LATE = 0.01
 
 _BACKWARD = 0.25
 
+_COARSE = 0.015  # step of a load, of its greatest value
+
 _DRIFT = 0.05  # of the mean tension
 
 _STEADY = 0.7  # of the fall over the first half of the cycles, by which the second half falls
@@ -216,6 +218,10 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
                 "tension-behind-position" if lead < 0 else "position-behind-tension", name,
                 delay=abs(float(levels.lead[index])),
             )  # fmt: skip
+        step = float(levels.load_step[index])
+        greatest = survey.extremes.greatest_tension.get(name, np.nan)
+        if step > _COARSE * greatest:
+            yield note("load-in-steps", name, step=step, share=step / greatest)
         yield from _of_mean(name, levels.like_means[index])
         if levels.is_copy[index]:
             yield note("channels-alike", name, others=", ".join(plan.specimens[:index]))

@@ -25,8 +25,10 @@ from reduction.lines.deck_moordyn import (
 )
 from reduction.lines.deck_text import header_lines, one_line, real_number
 from reduction.lines.export_line import (
+    CONTINUED,
     SEA_WATER,
     ExportLine,
+    continued_tension,
     curve_from_zero,
     damping_words,
     end_slope,
@@ -374,7 +376,10 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
         f"{smooth.end:.6g} and below zero a straight line goes on and nothing is known"
     ]
     if form == "table":
-        pairs = zip(curve.strain, curve.tension, strict=True)
+        # Cable goes on with the last step of a table, which may be a bend
+        further = (1 + CONTINUED) * float(at[-1])
+        beyond = float(continued_tension(line, further))
+        pairs = [*zip(curve.strain, curve.tension, strict=True), (further, beyond)]
         tension = " ".join(f"({real_number(e)}, {real_number(t)})" for e, t in pairs)
         remarks[0] = f"Te and Tee from a spline; {remarks[0]}"
     volume, words = line.volume_diameter

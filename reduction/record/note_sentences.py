@@ -311,6 +311,11 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "no gauge_length is stated: strain refers to the whole reference_length, {length:.4g} m."
         " If that includes grips, eyes or splices, strain is too low and moduli are too high",
     ),
+    "marks-alike": (
+        "warning",
+        "the marks of holds '{first}' and '{second}' have the same three lengths: one row was"
+        " copied. Correct it, or take it out of the marks",
+    ),
     "tape-off-crosshead": (
         "warning",
         "at the holds of {n_marks} marks crosshead and tape differ by {apart:+.4g} m, more than"
@@ -1187,6 +1192,22 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f" diameter, the gauge length and the material.{_would_fit(readings)}"
         ),
     ),
+    "load-never-falls": (
+        "warning",
+        "tension stays at its greatest value while the crosshead comes back: the amplifier or the"
+        " display holds the peak. Log the load itself",
+    ),
+    "load-in-steps": (
+        "warning",
+        "tension was logged in steps of {step:.3g} N, {share:.1%} of its greatest value: the"
+        " resolution or the range of the amplifier is too coarse, or the log was rounded. Moduli"
+        " and energies are no finer",
+    ),
+    "extensometer-ends": (
+        "warning",
+        "the measured strain stands at its greatest value for {n_samples} samples while the"
+        " crosshead moves: its range ends there, and strain amplitudes are too small",
+    ),
     "zero-or-relaxation": (
         "note",
         lambda earlier, later: (
@@ -1425,8 +1446,9 @@ SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
 CAUSES = (
     "log-used-twice", "channels-alike", "column-of-another", "diameter-readings-apart",
     "cycles-in-other-kind", "rate-not-as-stated", "level-not-as-stated",
-    "load-zero-drifts", "load-zero-wrong", "load-negative", "load-falls-with-stretch",
-    "tape-off-crosshead", "loops-run-backward",
+    "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",
+    "load-falls-with-stretch", "extensometer-ends", "load-in-steps",
+    "tape-off-crosshead", "marks-alike", "loops-run-backward",
     "extensometer-against-stroke", "gauge-against-length",
     "modulus-outside-band", "strength-outside-band", "tension-above-strength", "stiffness-jumps",
     "run-off-plan", "cord-stress-outside-band", "cords-do-not-fit", "hose-rubber-outside-band",

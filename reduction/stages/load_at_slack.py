@@ -33,8 +33,8 @@ class LoadAtSlack:
     """Mean load of one specimen over its slack rests.
 
     ``load`` [N] and ``standard_uncertainty`` [N] by noise and resolution; ``n_rests`` how many
-    there are, ``earlier`` and ``later`` [N] the two means that differ most of those at the begin
-    and at the end of each, in order of time.
+    there are, ``earlier`` and ``later`` [N] the two means over the last quarter of one that differ
+    most, in order of time: a load that was logged late or filtered has come to rest by then.
     """
 
     load: float
@@ -100,8 +100,7 @@ def load_at_slack(tension: Floats, standstills: Standstills, is_slack: Bools) ->
         loads = loads[np.isfinite(loads)]
         if loads.size:
             sums.append((float(loads.mean()), int(loads.size)))
-            part = max(loads.size // 4, 1)
-            ends += [float(loads[:part].mean()), float(loads[-part:].mean())]
+            ends.append(float(loads[-max(loads.size // 4, 1) :].mean()))
     if not sums or np.count_nonzero(np.isfinite(tension[: 2 * _MOST])) < 8:
         return None
     means, counts = np.array([one for one, _ in sums]), np.array([n for _, n in sums])

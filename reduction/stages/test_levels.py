@@ -60,6 +60,8 @@ class TestLevels:
         Rises and falls of position by more than a quarter of its range, one after another.
     is_copy : ndarray of bool, shape (n_specimens,)
         Specimens whose tension is that of one before them, reading by reading.
+    load_step : ndarray, shape (n_specimens,)
+        Step in which tension was logged, where its range has few of them. [N]
     like_means : ndarray, shape (n_specimens, 3)
         Mean tension of the first, middle and last of the cycles between equal positions; NaN where
         they are few, or where a slack rest after them shows the zero of the load. [N]
@@ -79,6 +81,7 @@ class TestLevels:
     final_share: Floats
     n_strokes: int
     is_copy: Bools
+    load_step: Floats
     like_means: Floats
 
 
@@ -198,6 +201,7 @@ def levels_of_test(
                 for before in range(index))
             for index in range(n_specimens)
         ], dtype=np.bool_),
+        load_step=np.array([_load_step(load) for load in tension]),
         like_means=like_means,
     )  # fmt: skip
 
@@ -293,6 +297,27 @@ def _speed(time: Floats, position: Floats) -> float:
     rate = rate[np.isfinite(rate)]
     moving = rate[rate > 0.2 * np.quantile(rate, 0.98)] if rate.size else rate
     return float(np.median(moving)) if moving.size else np.nan
+
+
+_FEWEST_STEPS, _MOST_STEPS = 5, 50  # over the range of tension
+
+_WHOLE = 0.05  # of a step, by which a level may lie beside a multiple of it
+
+
+def _load_step(load: Floats) -> float:
+    """Step of a tension that has few levels, all of them multiples of it; else NaN. [N]."""
+    levels = np.unique(load[_some(load.size)])
+    levels = levels[np.isfinite(levels)]
+    if not _FEWEST_STEPS <= levels.size <= _MOST_STEPS + 1 or load.size < 4 * levels.size:
+        return np.nan
+    steps = np.diff(levels)
+    multiple = steps / steps.min()
+    is_whole = (np.abs(multiple - np.round(multiple)) < _WHOLE).all()
+    return (
+        float(steps.min())
+        if is_whole and np.ptp(levels) < 1.5 * _MOST_STEPS * steps.min()
+        else np.nan
+    )
 
 
 def _strain_per_length(position: Floats, strain: Floats | None, n_specimens: int) -> Floats:

@@ -100,10 +100,17 @@ def test_a_zero_that_drifts_between_the_rests_is_said_with_its_size(earlier, lat
 
 
 def test_the_drift_is_that_of_the_readings_at_the_ends_of_the_rests():
-    """A line of 30 N over the log: the quarters at its ends are 1/80 and 79/80 of it."""
+    """A line of 30 N over the log: the last 25 of each 100 samples are 87/2000 and 1987/2000."""
     load = 30 * np.linspace(0, 1, 2000)
     found = load_at_slack(load, rests((0, 99), (1900, 1999)), np.array([True, True]))
-    assert (found.earlier, found.later) == pytest.approx((30 / 160, 30 * (1 - 1 / 160)), abs=0.02)
+    assert (found.earlier, found.later) == pytest.approx((30 * 0.0435, 30 * 0.9935), abs=0.02)
+
+
+def test_a_load_that_comes_late_to_a_rest_is_no_drift():
+    load = np.zeros(2000)
+    load[1900:1960] = 300
+    found = load_at_slack(load, rests((0, 99), (1900, 1999)), np.array([True, True]))
+    assert (found.earlier, found.later) == (0, 0)
 
 
 def test_what_was_slack_at_a_length_is_slack_there_whatever_is_read():
