@@ -239,7 +239,9 @@ _FIRST, _MOST = 4, 48
 
 _SHORTEST = 1e-3
 
-_ENOUGH = 1e-3
+_ENOUGH = 1e-3  # of the greatest tension
+
+_ENOUGH_THERE, _FROM = 5e-3, 0.05  # of the tension, from a share of the greatest on
 
 _LEAST_SLOPE = 1e-6
 
@@ -266,8 +268,10 @@ def _fit_smooth_curve(strain: Floats, tension: Floats) -> _SmoothCurve:
     Notes
     -----
     The first pieces begin where a curve thinned to five points has them; then the piece with the
-    greatest error is halved, again and again, but never below a thousandth of the strain. Least
-    squares on an even grid and on the points; the error is the greatest one anywhere.
+    worst error is halved, again and again, but never below a thousandth of the strain. Worst is
+    what is most beyond a thousandth of the greatest tension, or 0.5 % of the tension there: strain
+    under a tension is to be kept to 1 %. Least squares on an even grid and on the points; the error
+    is the greatest one anywhere.
 
     Examples
     --------
@@ -283,17 +287,16 @@ def _fit_smooth_curve(strain: Floats, tension: Floats) -> _SmoothCurve:
     knots = knots[np.append(True, np.diff(knots) > _SHORTEST * end)]
     knots = knots[end - knots > _SHORTEST * end]
     best = _fitted(grid, wanted, knots, end, top)
-    error, worst = _greatest_error(best, at, load)
-    while error > _ENOUGH * top and knots.size < _MOST:
+    error, worst, place = _greatest_error(best, at, load)
+    while worst > 1 and knots.size < _MOST:
         bounds = np.append(knots, end)
-        piece = min(int(np.searchsorted(knots, worst, side="right")), knots.size) - 1
+        piece = min(int(np.searchsorted(knots, place, side="right")), knots.size) - 1
         if bounds[piece + 1] - bounds[piece] <= 2 * _SHORTEST * end:
             piece = int(np.diff(bounds).argmax())
         knots = np.insert(knots, piece + 1, (bounds[piece] + bounds[piece + 1]) / 2)
-        fitted = _fitted(grid, wanted, knots, end, top)
-        off, worst = _greatest_error(fitted, at, load)
-        if off < error:
-            best, error = fitted, off
+        # more knots among the same never fit worse, though one bend may stay the worst
+        best = _fitted(grid, wanted, knots, end, top)
+        error, worst, place = _greatest_error(best, at, load)
     local = local_share(best(grid) - wanted, wanted, top)
     return _SmoothCurve(
         best.x[:-1].copy(), end, best.c[::-1].T.copy(), error, error / top, local, words
@@ -302,8 +305,11 @@ def _fit_smooth_curve(strain: Floats, tension: Floats) -> _SmoothCurve:
 
 def _greatest_error(
     fitted: scipy.interpolate.PPoly, at: Floats, load: Floats
-) -> tuple[float, float]:
-    """Greatest difference from the straight lines between the points, and its strain."""
+) -> tuple[float, float, float]:
+    """Greatest difference from the straight lines between the points; the worst, and its strain.
+
+    The worst is over what is enough where it is.
+    """
     breaks = np.union1d(at, fitted.x)
     step = np.clip(np.searchsorted(at, breaks[:-1], "right") - 1, 0, at.size - 2)
     slope = (np.diff(load) / np.diff(at))[step]
@@ -317,8 +323,11 @@ def _greatest_error(
     places = fitted.x[piece] + np.concatenate([both, flat[np.newaxis]])
     inside = (places > breaks[:-1]) & (places < breaks[1:])
     places = np.concatenate([breaks, places[inside]])
-    off = np.abs(fitted(places) - np.interp(places, at, load))
-    return float(off.max()), float(places[off.argmax()])
+    there = np.interp(places, at, load)
+    off = np.abs(fitted(places) - there)
+    enough = _ENOUGH_THERE * np.maximum(there, _FROM * load[-1])
+    over = off / np.minimum(enough, _ENOUGH * load[-1])
+    return float(off.max()), float(over.max()), float(places[over.argmax()])
 
 
 def _fitted(
