@@ -19,7 +19,7 @@ make -C cable OS=nox
 
 # RAFT brings MoorPy 1.2.1, which has no tables: an environment of its own
 [ -d raft ] || python -m venv raft
-raft/bin/pip install -q openraft==2.0.4 pytest hypothesis "$project"
+raft/bin/pip install -q openraft==2.0.4 pytest pytest-xdist hypothesis "$project"
 raft=$PWD/raft/bin/python
 
 export PATH="$PWD/openfast-build/modules/moordyn:$PWD/cable/cli:$PATH"

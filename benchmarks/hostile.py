@@ -2,7 +2,7 @@
 
     python benchmarks/hostile.py [--all]
 
-Prints the table of docs/hostile-input.md: exit status, seconds and memory of each case beyond those
+Prints the table of docs/robustness.md: exit status, seconds and memory of each case beyond those
 of the start of the command on a good small campaign. Without --all a choice of the cases. All of
 them are synthetic; tests/cli/test_hostile_text.py runs them in one process.
 """

@@ -73,7 +73,7 @@ NOT_IN_SUITE = {
     "same_bytes": "products in other surroundings, not cost; docs/reproducing.md",
     "between_versions": "products by other releases, not cost; docs/reproducing.md",
     "monte_carlo": "uncertainty against draws, not cost; docs/benchmarks.md",
-    "hostile": "files that are refused; docs/hostile-input.md",
+    "hostile": "files that are refused; docs/robustness.md",
 }
 HEAD = "| benchmark | what | median (least to most) | ratio | wanted | |\n|---|---|---|---|---|---|"
 

@@ -1419,4 +1419,114 @@ add("hose-unlogged-cycles", H, "no", "The cycles of which there is no log are 11
 add("hose-order-reversed", H, "no", "L-64 was run before S-64; the campaign says the reverse.", say("order"),
     lambda folder: (setkey(folder, "tests.S-64", "order", "2"), setkey(folder, "tests.L-64", "order", "1")))
 
+# ================================================================== a second list, by another hand
+
+
+def over_time(columns: tuple[str, ...], f: Callable[[float, int, int], float], fmt: str = "{:.3f}", only: tuple[str, ...] = ()) -> Callable[[Path], None]:
+    """Readings of some columns, each changed by its row and the number of rows."""
+    def change(folder: Path) -> None:
+        def of_log(log: Log) -> None:
+            for name in columns:
+                values = log.column(name)
+                log.put(name, [f(v, i, len(values)) for i, v in enumerate(values)], fmt)
+
+        each(folder, of_log, only)
+
+    return change
+
+
+add("tether-zero-drifts-down", T, "data", "The zero of the load cell drifts by -30 lbf during a test: slack reads less after the cycles than before.", say("zero", "drift"),
+    over_time(TL, lambda v, i, n: v - 30 * i / n))
+add("tether-zero-steps", T, "data", "Somebody pulled at the cable of the load cell: from the middle of the test on it reads 15 lbf more.", say("zero", ("drift", "steps")),
+    over_time(TL, lambda v, i, n: v + 15 * (2 * i > n)))
+
+
+@mistake("tether-tared-in-hold", T, "data", "The load cells were set to zero in the first hold, under load.", say("zero", ("drift", "steps")))
+def _(folder: Path) -> None:
+    def f(log: Log) -> None:
+        for name in TL:
+            values = log.column(name)
+            log.put(name, [v - values[306] * (i >= 306) for i, v in enumerate(values)], "{:.3f}")
+
+    each(folder, f)
+
+
+@mistake("tether-peak-hold", T, "data", "The display of the load stood at peak hold: the load never falls.", say(("peak hold", "holds the peak")))
+def _(folder: Path) -> None:
+    def f(log: Log) -> None:
+        for name in TL:
+            log.put(name, list(itertools.accumulate(log.column(name), max)), "{:.3f}")
+
+    each(folder, f)
+
+
+add("tether-load-in-steps", T, "data", "The load was logged in steps of 10 lbf: the amplifier stood at its widest range.", say(("steps of", "resolution")),
+    over_time(TL, lambda v, i, n: 10 * round(v / 10), "{:.1f}"))
+add("tether-load-spikes", T, "data", "A radio put 500 lbf onto single readings of the load.", say("spike"),
+    over_time(TL, lambda v, i, n: v + 500 * (i % 331 == 17)))
+add("tether-time-whole-seconds", T, "data", "The time was exported in whole seconds: ten rows have the same.", say("time", ("repeated", "same", "whole")),
+    over_time(("time_s",), lambda v, i, n: int(v), "{:.0f}"))
+
+
+@mistake("tether-series-twice", T, "statement", "The series was run twice into one file: 20 cycles, and 10 are stated.", say("20", "10", "cycles"))
+def _(folder: Path) -> None:
+    def f(log: Log) -> None:
+        end = log.column("time_s")[-1] + 0.1
+        at = log.names.index("time_s")
+        again = [list(row) for row in log.rows]
+        for row in again:
+            row[at] = f"{float(row[at]) + end:.1f}"
+        log.rows += again
+
+    each(folder, f)
+
+
+@mistake("tether-mark-row-copied", T, "data", "The row `min` of the marks was copied and named `centre`.", say("marks", ("same", "copied")))
+def _(folder: Path) -> None:
+    before: dict[tuple[str, str], list[str]] = {}
+
+    def f(row: list[str], at: dict[str, int]) -> list[str]:
+        key = row[at["test"]], row[at["specimen"]]
+        if row[at["hold"]] == "min":
+            before[key] = row
+        if row[at["hold"]] == "centre" and key in before:
+            for name in TAPE:
+                row[at[name]] = before[key][at[name]]
+        return row
+
+    marks(folder, f)
+
+
+@mistake("rope-extensometer-ends", R, "data", "The extensometer ends at nine tenths of the greatest strain.", say(("strain", "extensometer"), ("range", "ends", "saturat")))
+def _(folder: Path) -> None:
+    def f(log: Log) -> None:
+        values = log.column("extensometer_pct")
+        log.put("extensometer_pct", [min(v, 0.9 * max(values)) for v in values])
+
+    each(folder, f)
+
+
+add("rope-dan-as-n", R, "band", "The load is in decanewtons, which the header does not say, and was declared N.", say("load in dan, not n"),
+    do(rename, {"load_lbf": "load"}), do(scale, ("load",), 0.444822), do(declare, "tension.1", "lbf", "N"))
+# the mean of R02 falls by 15 % of the one that is planned, within what runs miss a plan by
+add("rope-accumulator-leaks", R, "data", "The accumulator leaks: the mean tension falls by a third during a run.", say("mean", ("fall", "drift")),
+    over_time(("load_lbf", "extensometer_pct", "stroke_in"), lambda v, i, n: v * (1 - 0.3 * i / n), "{:.4f}", ("R02", "R04", "R13")))
+add("hose-gain-2-in-one-test", H, "statement", "The load amplifier stood at double gain in S-68: twice the load that the design predicts.", say("s-68", "design", ("gain of 2", "2 times", "twice")),
+    do(scale, ("load_lbf",), 2.0, only=("S-68",)))
+add("hose-zero-drifts", H, "data", "The zero of the load cell drifts by 300 lbf during a pull and its way back.", say("zero", "drift"),
+    over_time(("load_lbf",), lambda v, i, n: v + 300 * i / n, "{:.1f}"))
+add("hose-newest-first", H, "data", "The log was exported with the newest row first.", say("time", ("newest first", "falls")),
+    lambda folder: each(folder, lambda log: log.rows.reverse()))
+
+
+@mistake("hose-load-late", H, "data", "The load of L-64 was logged 3 s after the position.", say(("lags", "late")))
+def _(folder: Path) -> None:
+    def f(log: Log) -> None:
+        values = log.column("load_lbf")
+        late = round(3 / log.column("time_s")[1])
+        log.put("load_lbf", values[:1] * late + values[:-late], "{:.1f}")
+
+    each(folder, f, ("L-64",))
+
+
 MISTAKES: tuple[Mistake, ...] = tuple(MISTAKES_)

@@ -62,6 +62,12 @@ _LATE = 0.01
 
 _BACKWARD = 0.25
 
+_COARSE = 0.015  # step of a load, of its greatest value
+
+_DRIFT = 0.05  # of the mean tension
+
+_STEADY = 0.7  # of the fall over the first half of the cycles, by which the second half falls
+
 _MOST_STROKES = 5  # of a pull or a hold, and what sets it up
 
 _AS_PREDICTED = 1.45  # tension of a hose over what its design gives
@@ -216,8 +222,24 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
                 "tension-behind-position" if lead < 0 else "position-behind-tension", name,
                 delay=abs(float(levels.lead[index])),
             )  # fmt: skip
+        step = float(levels.load_step[index])
+        greatest = survey.extremes.greatest_tension.get(name, np.nan)
+        if step > _COARSE * greatest:
+            yield note("load-in-steps", name, step=step, share=step / greatest)
+        yield from _of_mean(name, levels.like_means[index])
         if levels.is_copy[index]:
             yield note("channels-alike", name, others=", ".join(plan.specimens[:index]))
+
+
+def _of_mean(name: str, means: Floats) -> Iterator[Note]:
+    """A mean tension that goes as a drifting zero would take it, and a specimen might.
+
+    Relaxation slows down: what falls as fast at the end is slower than the test, or none.
+    """
+    first, middle, last = means
+    steady = last > first or last - middle < _STEADY * (middle - first)
+    if steady and abs(last - first) > _DRIFT * abs(first):
+        yield note("zero-or-relaxation", name, earlier=first, later=last)
 
 
 _STATED: tuple[tuple[str, Dimension], ...] = (

@@ -31,7 +31,12 @@ from reduction.record.errors import (
 from reduction.record.measurement import Floats, Record, Source, Specimen, StepReadings
 from reduction.record.notes import Note
 from reduction.record.samples import finite_extremes
-from reduction.stages.load_at_slack import load_at_slack, notes_on_zero
+from reduction.stages.load_at_slack import (
+    load_at_slack,
+    notes_on_zero,
+    rises_with_stretch,
+    stands_at_slack_length,
+)
 from reduction.stages.standstills import median_step
 from reduction.stages.strain.tape_and_crosshead import (
     TAPE_UNCERTAINTY,
@@ -277,6 +282,9 @@ def _with_load_at_slack(
         for length in lengths:
             near = np.abs(stands.mean_position - length) <= _AT_SLACK_LENGTH
             is_slack |= near & (stands.mean_tension[number - 1] < little)
+        can_push = campaign.specimens[name].can_push
+        if not can_push and rises_with_stretch(whole.position, tension):
+            is_slack = stands_at_slack_length(stands, is_slack)
         one = load_at_slack(tension, stands, is_slack)
         found.append(one)
         zeros.append("" if one is None else zero_to_set(layouts, number, one.load))

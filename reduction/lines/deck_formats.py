@@ -25,10 +25,13 @@ from reduction.lines.deck_moordyn import (
 )
 from reduction.lines.deck_text import header_lines, one_line, real_number
 from reduction.lines.export_line import (
+    CONTINUED,
     SEA_WATER,
     ExportLine,
+    continued_tension,
     curve_from_zero,
     damping_words,
+    end_slope,
     local_share,
     local_words,
     straight_cycle,
@@ -232,11 +235,13 @@ def _raft_text(line: ExportLine) -> str:
 
 _DEGREE = 2
 
-_FIRST, _MOST = 4, 24
+_FIRST, _MOST = 4, 48
 
 _SHORTEST = 1e-3
 
-_ENOUGH = 1e-3
+_ENOUGH = 1e-3  # of the greatest tension
+
+_ENOUGH_THERE, _FROM = 5e-3, 0.05  # of the tension, from a share of the greatest on
 
 _LEAST_SLOPE = 1e-6
 
@@ -263,8 +268,10 @@ def _fit_smooth_curve(strain: Floats, tension: Floats) -> _SmoothCurve:
     Notes
     -----
     The first pieces begin where a curve thinned to five points has them; then the piece with the
-    greatest error is halved, again and again, but never below a thousandth of the strain. Least
-    squares on an even grid and on the points; the error is the greatest one anywhere.
+    worst error is halved, again and again, but never below a thousandth of the strain. Worst is
+    what is most beyond a thousandth of the greatest tension, or 0.5 % of the tension there: strain
+    under a tension is to be kept to 1 %. Least squares on an even grid and on the points; the error
+    is the greatest one anywhere.
 
     Examples
     --------
@@ -280,17 +287,16 @@ def _fit_smooth_curve(strain: Floats, tension: Floats) -> _SmoothCurve:
     knots = knots[np.append(True, np.diff(knots) > _SHORTEST * end)]
     knots = knots[end - knots > _SHORTEST * end]
     best = _fitted(grid, wanted, knots, end, top)
-    error, worst = _greatest_error(best, at, load)
-    while error > _ENOUGH * top and knots.size < _MOST:
+    error, worst, place = _greatest_error(best, at, load)
+    while worst > 1 and knots.size < _MOST:
         bounds = np.append(knots, end)
-        piece = min(int(np.searchsorted(knots, worst, side="right")), knots.size) - 1
+        piece = min(int(np.searchsorted(knots, place, side="right")), knots.size) - 1
         if bounds[piece + 1] - bounds[piece] <= 2 * _SHORTEST * end:
             piece = int(np.diff(bounds).argmax())
         knots = np.insert(knots, piece + 1, (bounds[piece] + bounds[piece + 1]) / 2)
-        fitted = _fitted(grid, wanted, knots, end, top)
-        off, worst = _greatest_error(fitted, at, load)
-        if off < error:
-            best, error = fitted, off
+        # more knots among the same never fit worse, though one bend may stay the worst
+        best = _fitted(grid, wanted, knots, end, top)
+        error, worst, place = _greatest_error(best, at, load)
     local = local_share(best(grid) - wanted, wanted, top)
     return _SmoothCurve(
         best.x[:-1].copy(), end, best.c[::-1].T.copy(), error, error / top, local, words
@@ -299,8 +305,11 @@ def _fit_smooth_curve(strain: Floats, tension: Floats) -> _SmoothCurve:
 
 def _greatest_error(
     fitted: scipy.interpolate.PPoly, at: Floats, load: Floats
-) -> tuple[float, float]:
-    """Greatest difference from the straight lines between the points, and its strain."""
+) -> tuple[float, float, float]:
+    """Greatest difference from the straight lines between the points; the worst, and its strain.
+
+    The worst is over what is enough where it is.
+    """
     breaks = np.union1d(at, fitted.x)
     step = np.clip(np.searchsorted(at, breaks[:-1], "right") - 1, 0, at.size - 2)
     slope = (np.diff(load) / np.diff(at))[step]
@@ -314,8 +323,11 @@ def _greatest_error(
     places = fitted.x[piece] + np.concatenate([both, flat[np.newaxis]])
     inside = (places > breaks[:-1]) & (places < breaks[1:])
     places = np.concatenate([breaks, places[inside]])
-    off = np.abs(fitted(places) - np.interp(places, at, load))
-    return float(off.max()), float(places[off.argmax()])
+    there = np.interp(places, at, load)
+    off = np.abs(fitted(places) - there)
+    enough = _ENOUGH_THERE * np.maximum(there, _FROM * load[-1])
+    over = off / np.minimum(enough, _ENOUGH * load[-1])
+    return float(off.max()), float(over.max()), float(places[over.argmax()])
 
 
 def _fitted(
@@ -363,7 +375,8 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
         )
     smooth = _fit_smooth_curve(line.strain, line.tension)
     curve = thin_curve(line.strain, line.tension, most=CABLE_POINTS)
-    start, powers = _with_straight_ends(smooth)
+    at, load, _ = curve_from_zero(line.strain, line.tension)
+    start, powers = _with_straight_ends(smooth, end_slope(at, load))
     tension = _expression(start, powers)
     remarks = [
         f"expressions: {smooth.start.size} cubic pieces, greatest error "
@@ -372,7 +385,10 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
         f"{smooth.end:.6g} and below zero a straight line goes on and nothing is known"
     ]
     if form == "table":
-        pairs = zip(curve.strain, curve.tension, strict=True)
+        # Cable goes on with the last step of a table, which may be a bend
+        further = (1 + CONTINUED) * float(at[-1])
+        beyond = float(continued_tension(line, further))
+        pairs = [*zip(curve.strain, curve.tension, strict=True), (further, beyond)]
         tension = " ".join(f"({real_number(e)}, {real_number(t)})" for e, t in pairs)
         remarks[0] = f"Te and Tee from a spline; {remarks[0]}"
     volume, words = line.volume_diameter
@@ -416,20 +432,15 @@ def _whoicable_text(line: ExportLine, *, form: WhoiCableForm = "expression") -> 
     return "\n".join([*text, "", "End", ""])
 
 
-def _with_straight_ends(curve: _SmoothCurve) -> tuple[Floats, Floats]:
-    """Pieces with a straight one before the first and after the last, at the slopes of the ends.
+def _with_straight_ends(curve: _SmoothCurve, beyond: float) -> tuple[Floats, Floats]:
+    """Pieces with a straight one before the first, at its slope, and one after the last.
 
-    A cubic that goes on beyond its last point may fall, and Cable finds an equilibrium there.
+    A cubic that goes on beyond its last point may fall, and Cable finds an equilibrium there;
+    ``beyond`` [N] is the slope of the line that is promised there, which the last cubic has not.
     """
-    ends = np.array([0.0, curve.end])
-    slope = [
-        float(np.polyval([3 * cubic, 2 * square, linear], at - first))
-        for at, first, (_, linear, square, cubic) in zip(
-            ends, curve.start[[0, -1]], curve.coefficient[[0, -1]], strict=True
-        )
-    ]
+    linear = float(curve.coefficient[0, 1])
     top = float(np.polyval(curve.coefficient[-1, ::-1], curve.end - curve.start[-1]))
-    below, above = [0.0, slope[0], 0.0, 0.0], [top, slope[1], 0.0, 0.0]
+    below, above = [0.0, linear, 0.0, 0.0], [top, beyond, 0.0, 0.0]
     powers = np.vstack([below, curve.coefficient, above])
     # what is before the first piece hangs on its start, strain zero
     return np.concatenate([[0.0], curve.start, [curve.end]]), powers

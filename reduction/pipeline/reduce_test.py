@@ -524,7 +524,13 @@ def extremes_of_test(located: Located) -> Extremes:
         at_greatest_position=_at_greatest_position(located),
         first_rise=_first_rise(located),
         all_over=_all_over(located),
-        slack_tension=located.standstills.slack_tension,
+        # what a drifting zero makes of slack is no pull
+        slack_tension=max(
+            (
+                located.standstills.slack_tension,
+                *(one.later for one in located.load_at_slack if one is not None),
+            )
+        ),
         position_is_length=record.position_is_length,
         has_extensometer=measured is not None,
     )

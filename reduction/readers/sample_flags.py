@@ -645,6 +645,15 @@ def flag_record(
                 longest=timing.longest,
             )
         )
+    found += [
+        note("load-never-falls", name)
+        for name, load in zip(record.specimens, record.tension, strict=True)
+        if _never_falls(position, load)
+    ]
+    strains = () if record.measured_strain is None else record.measured_strain
+    for name, strain in zip(record.specimens, strains, strict=False):
+        if n_samples := count_samples(_find_saturated(strain, position)):
+            found.append(note("extensometer-ends", name, n_samples=n_samples))
     found += _lone_steps(flagged, settings)
     account = account_rows(flagged)
     if any(account.n_flagged.values()):
@@ -661,6 +670,23 @@ def flag_record(
         )  # fmt: skip
         found.append(note(code, n_read=account.n_read, n_kept=account.n_kept, flags=listed))
     return replace(flagged, notes=tuple(found))
+
+
+_COMES_BACK, _FALLS = 0.5, 0.1  # of the ranges of position and tension
+
+_POINTS = 4000
+
+
+def _never_falls(position: Floats, load: Floats) -> bool:
+    """Whether tension stays at the greatest it had while position falls by half of its range."""
+    some = slice(None, None, max(1, position.size // _POINTS))
+    x, y = position[some], load[some]
+    known = np.isfinite(x) & np.isfinite(y)
+    x, y = x[known], y[known]
+    if not x.size or not (np.ptp(x) > 0 and np.ptp(y) > 0):
+        return False
+    back, falls = (float((np.maximum.accumulate(one) - one).max() / np.ptp(one)) for one in (x, y))
+    return back > _COMES_BACK and falls < _FALLS
 
 
 def _set(flags: _Flags, where: Bools, mask: Quality, *, instead_of: int = 0) -> None:

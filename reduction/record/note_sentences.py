@@ -247,6 +247,23 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             )
         ),
     ),
+    "load-zero-drifts": (
+        "warning",
+        lambda earlier, later, effect: (
+            f"the load cell reads {earlier:.3g} N at slack and later {later:.3g} N at no greater"
+            f" length, {100 * abs(effect):.2g} % of the peak load: "
+            + (
+                "its zero drifts; only a specimen that became shorter could pull there"
+                if later > earlier
+                else "its zero drifts, or the specimen still pulled at the first of these rests and"
+                " has become longer"
+                if later > -0.1 * earlier
+                else "its zero drifts, as no line pushes"
+            )
+            + ". No single zero is right: subtract the drift from the log by its readings at"
+            " slack, or repeat the test. Until then every tension may be wrong by as much"
+        ),
+    ),
     "load-zero-off": (
         "note",
         lambda load, n_rests, zero: (
@@ -293,6 +310,11 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "warning",
         "no gauge_length is stated: strain refers to the whole reference_length, {length:.4g} m."
         " If that includes grips, eyes or splices, strain is too low and moduli are too high",
+    ),
+    "marks-alike": (
+        "warning",
+        "the marks of holds '{first}' and '{second}' have the same three lengths: one row was"
+        " copied. Correct it, or take it out of the marks",
     ),
     "tape-off-crosshead": (
         "warning",
@@ -1174,6 +1196,35 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f" diameter, the gauge length and the material.{_would_fit(readings)}"
         ),
     ),
+    "load-never-falls": (
+        "warning",
+        "tension stays at its greatest value while the crosshead comes back: the amplifier or the"
+        " display holds the peak. Log the load itself",
+    ),
+    "load-in-steps": (
+        "warning",
+        "tension was logged in steps of {step:.3g} N, {share:.1%} of its greatest value: the"
+        " resolution or the range of the amplifier is too coarse, or the log was rounded. Moduli"
+        " and energies are no finer",
+    ),
+    "extensometer-ends": (
+        "warning",
+        "the measured strain stands at its greatest value for {n_samples} samples while the"
+        " crosshead moves: its range ends there, and strain amplitudes are too small",
+    ),
+    "zero-or-relaxation": (
+        "note",
+        lambda earlier, later: (
+            f"mean tension of like cycles goes from {earlier:.3g} to {later:.3g} N, "
+            + (
+                "as fast at the end as before: the specimen relaxes slowly"
+                if later < earlier
+                else "while relaxation lowers it: the specimen recovers, warms up or seats,"
+            )
+            + " or the zero of the load cell drifts. The log has no slack rest after the cycles"
+            " that would tell"
+        ),
+    ),
     "strength-outside-band": (
         "warning",
         lambda found, low, high, of, readings: (
@@ -1399,8 +1450,10 @@ SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
 CAUSES = (
     "log-used-twice", "channels-alike", "column-of-another", "diameter-readings-apart",
     "cycles-in-other-kind", "rate-not-as-stated", "level-not-as-stated",
-    "load-zero-wrong", "load-negative", "load-falls-with-stretch", "tape-off-crosshead",
-    "loops-run-backward", "extensometer-against-stroke", "gauge-against-length",
+    "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",
+    "load-falls-with-stretch", "extensometer-ends", "load-in-steps",
+    "tape-off-crosshead", "marks-alike", "loops-run-backward",
+    "extensometer-against-stroke", "gauge-against-length",
     "modulus-outside-band", "strength-outside-band", "tension-above-strength", "stiffness-jumps",
     "run-off-plan", "cord-stress-outside-band", "cords-do-not-fit", "hose-rubber-outside-band",
     "wrap-angle-outside-band", "dead-length-large", "hose-not-of-design", "hose-unlike-design",

@@ -1,7 +1,9 @@
 """What a load cell reads while nothing pulls at it, and whether its zero is right.
 
 The zero of a load cell is what it reads without load; a log that rests at slack holds it.  A wrong
-zero is in every tension, and where a specimen is soft it turns tension into compression.
+zero is in every tension, and where a specimen is soft it turns tension into compression.  A zero
+that drifts is told from a specimen that relaxes or creeps by the rests: what was slack at a length
+pulls at none that is less, whatever it went through, as long as it does not become shorter.
 """
 
 from __future__ import annotations
@@ -31,19 +33,40 @@ class LoadAtSlack:
     """Mean load of one specimen over its slack rests.
 
     ``load`` [N] and ``standard_uncertainty`` [N] by noise and resolution; ``n_rests`` how many
-    there are, ``low`` and ``high`` [N] the least and the greatest mean of one.
+    there are, ``earlier`` and ``later`` [N] the two means over the last quarter of one that differ
+    most, in order of time: a load that was logged late or filtered has come to rest by then.
     """
 
     load: float
     standard_uncertainty: float
     n_rests: int
-    low: float
-    high: float
+    earlier: float
+    later: float
 
     @property
     def is_beyond_noise(self) -> bool:
         """Whether it is no zero."""
         return abs(self.load) > _BEYOND * self.standard_uncertainty
+
+
+def stands_at_slack_length(standstills: Standstills, is_slack: Bools) -> Bools:
+    """Standstills in which a specimen is slack or no longer than in such a one before.
+
+    Examples
+    --------
+    A rest, a hold under tension, and the length of the rest again, at 30 N.
+
+    >>> stands = Standstills(
+    ...     first=np.array([0, 20, 40]), last=np.array([9, 29, 49]), start_time=np.zeros(3),
+    ...     end_time=np.ones(3), mean_position=np.array([1.0, 2.0, 1.0]),
+    ...     mean_tension=np.array([[0.0, 200.0, 30.0]]), is_rest=np.array([True, False, False]),
+    ...     position_tolerance=0.01, slack_tension=5.0)
+    >>> print(stands_at_slack_length(stands, stands.is_rest))
+    [ True False  True]
+    """
+    place = standstills.mean_position
+    reached = np.fmax.accumulate(np.where(is_slack, place, -np.inf))
+    return np.asarray(is_slack | (place <= reached + standstills.position_tolerance))
 
 
 def load_at_slack(tension: Floats, standstills: Standstills, is_slack: Bools) -> LoadAtSlack | None:
@@ -71,11 +94,13 @@ def load_at_slack(tension: Floats, standstills: Standstills, is_slack: Bools) ->
     -14.4 True
     """
     sums: list[tuple[float, int]] = []
+    ends: list[float] = []
     for first, last in zip(standstills.first[is_slack], standstills.last[is_slack], strict=True):
         loads = tension[first : last + 1]
         loads = loads[np.isfinite(loads)]
         if loads.size:
             sums.append((float(loads.mean()), int(loads.size)))
+            ends.append(float(loads[-max(loads.size // 4, 1) :].mean()))
     if not sums or np.count_nonzero(np.isfinite(tension[: 2 * _MOST])) < 8:
         return None
     means, counts = np.array([one for one, _ in sums]), np.array([n for _, n in sums])
@@ -83,9 +108,10 @@ def load_at_slack(tension: Floats, standstills: Standstills, is_slack: Bools) ->
     own = noise / np.sqrt(counts.sum())
     # noise of a step or more blurs the steps, and the mean is finer than one of them
     step = quantum / 12**0.5 if noise < quantum else 0.0
+    earlier, later = sorted((int(np.argmin(ends)), int(np.argmax(ends))))
     return LoadAtSlack(
         float(np.average(means, weights=counts)), float(np.hypot(own, step)), len(sums),
-        float(means.min()), float(means.max()),
+        ends[earlier], ends[later],
     )  # fmt: skip
 
 
@@ -118,7 +144,8 @@ def notes_on_zero(
     ``zeros`` holds the ``zero`` of each channel that would make its load at slack nothing, as it
     stands in a layout.  A load that is negative has a wrong sign where it falls with stretch and a
     wrong zero where it rises.  A zero is serious where it is off by more than a hundredth of the
-    greatest load and by more than what is stated of it, which is in every interval.
+    greatest load and by more than what is stated of it, which is in every interval; one that
+    drifts by so much between the rests has no right value.
 
     Examples
     --------
@@ -144,7 +171,12 @@ def notes_on_zero(
         elif rest.is_beyond_noise:
             reach = max(high - rest.load, rest.load - low)
             said = {"load": rest.load, "n_rests": rest.n_rests, "zero": zero}
-            if abs(rest.load) > max(_SERIOUS * reach, _COVERED * offset_uncertainty):
+            serious = max(_SERIOUS * reach, _COVERED * offset_uncertainty)
+            drift = rest.later - rest.earlier
+            if abs(drift) > serious:
+                notes.append(note("load-zero-drifts", name, earlier=rest.earlier,
+                                  later=rest.later, effect=drift / reach))  # fmt: skip
+            elif abs(rest.load) > serious:
                 notes.append(note("load-zero-wrong", name, effect=rest.load / reach, **said))
             else:
                 notes.append(note("load-zero-off", name, **said))

@@ -94,7 +94,7 @@ def bands_of(kind: str, material: str) -> Bands | None:
 
 
 _LOAD: Mapping[str, float] = {
-    "N": 1.0, "kN": 1000.0, "lbf": 4.4482216152605, "kgf": 9.80665,
+    "N": 1.0, "daN": 10.0, "kN": 1000.0, "lbf": 4.4482216152605, "kgf": 9.80665,
 }  # fmt: skip
 
 _LENGTH: Mapping[str, float] = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254, "ft": 0.3048}

@@ -360,10 +360,17 @@ def median_step(time: Floats) -> float:
     """
     first = np.arange(0, time.size - 1, max(1, time.size // _STEPS_READ))
     steps = take_samples(time, first + 1) - take_samples(time, first)
-    steps = steps[steps > 0]
-    if steps.size == 0:
+    later = steps[steps > 0]
+    if later.size == 0:
+        if (steps < 0).any():
+            raise DataError(
+                "time falls from row to row",
+                found=f"{time[0]:.6g} s in the first row, {time[-1]:.6g} s in the last",
+                needed="the earliest row first",
+                hint="The log was written newest first: reverse its rows",
+            )
         raise DataError("time does not advance", needed="at least one later sample")
-    return float(np.median(steps))
+    return float(np.median(later))
 
 
 def _reach(values: Floats, edge: Integers, centre: Floats, half: float, step: int) -> Integers:

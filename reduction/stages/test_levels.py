@@ -12,10 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reduction.record.measurement import Bools, Floats, read_only_arrays
+from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
 from reduction.record.samples import finite_extremes, take_samples
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import find_reversals
+from reduction.stages.load_at_slack import stands_at_slack_length
 from reduction.stages.standstills import Standstills
 
 _MOST_CYCLES = 40  # that are looked at, spread over the test
@@ -59,6 +60,11 @@ class TestLevels:
         Rises and falls of position by more than a quarter of its range, one after another.
     is_copy : ndarray of bool, shape (n_specimens,)
         Specimens whose tension is that of one before them, reading by reading.
+    load_step : ndarray, shape (n_specimens,)
+        Step in which tension was logged, where its range has few of them. [N]
+    like_means : ndarray, shape (n_specimens, 3)
+        Mean tension of the first, middle and last of the cycles between equal positions; NaN where
+        they are few, or where a slack rest after them shows the zero of the load. [N]
     """
 
     __test__ = False  # a test of a tether, not of this software
@@ -75,6 +81,8 @@ class TestLevels:
     final_share: Floats
     n_strokes: int
     is_copy: Bools
+    load_step: Floats
+    like_means: Floats
 
 
 def levels_of_test(
@@ -137,6 +145,7 @@ def levels_of_test(
     mean, amplitude, lead = nothing.copy(), nothing.copy(), nothing.copy()
     frequency = speed = np.nan
     waveform = ""
+    like_means = np.full((n_specimens, 3), np.nan)
     if cycles is not None and cycles.n_cycles:
         some = np.unique(
             np.linspace(0, cycles.n_cycles - 1, min(cycles.n_cycles, _MOST_CYCLES)).astype(int)
@@ -158,6 +167,9 @@ def levels_of_test(
             if known.size:
                 mean[index], amplitude[index], lead[index] = np.median(known, axis=0)
             shapes += [row[4 if control == "load" else 3] for row in rows]
+        if control == "position" and not _rests_after(standstills, int(cycles.last[-1])):
+            like = _alike((take_samples(position, valley) + take_samples(position, peak)) / 2, rise)
+            like_means = np.array([_three_means(load, cycles, some[like]) for load in tension])
         shapes = [one for one in shapes if np.isfinite(one)]
         shape = float(np.median(shapes)) if shapes else np.nan
         far = {name: abs(shape - known) for name, known in _SHAPES.items()}
@@ -189,7 +201,40 @@ def levels_of_test(
                 for before in range(index))
             for index in range(n_specimens)
         ], dtype=np.bool_),
+        load_step=np.array([_load_step(load) for load in tension]),
+        like_means=like_means,
     )  # fmt: skip
+
+
+_LIKE_POSITION = 0.02  # of the stroke
+
+_FEWEST_LIKE = 8  # cycles, of which the first does not count
+
+
+def _rests_after(standstills: Standstills, last: int) -> bool:
+    """Whether the record is slack, or no longer than slack, after its cycles."""
+    slack = stands_at_slack_length(standstills, standstills.is_rest)
+    return bool((slack & (standstills.first >= last)).any())
+
+
+def _alike(middle: Floats, stroke: Floats) -> Bools:
+    """Cycles between the positions of most."""
+    usual = np.nanmedian(stroke)
+    near = np.maximum(np.abs(middle - np.nanmedian(middle)), np.abs(stroke - usual))
+    return np.asarray(near <= _LIKE_POSITION * abs(usual))
+
+
+def _three_means(load: Floats, cycles: Cycles, some: Integers) -> Floats:
+    """Mean tension of the first, middle and last quarter of some cycles but the first."""
+    some = some[1:]
+    if some.size < _FEWEST_LIKE - 1:
+        return np.full(3, np.nan)
+    means = np.array([_middle(load[cycles.first[one] : cycles.last[one] + 1]) for one in some])
+    n, part = means.size, max(means.size // 4, 1)
+    middle = (n - part) // 2
+    return np.array([
+        means[:part].mean(), means[middle : middle + part].mean(), means[-part:].mean()
+    ])  # fmt: skip
 
 
 def _middle(values: Floats) -> float:
@@ -252,6 +297,27 @@ def _speed(time: Floats, position: Floats) -> float:
     rate = rate[np.isfinite(rate)]
     moving = rate[rate > 0.2 * np.quantile(rate, 0.98)] if rate.size else rate
     return float(np.median(moving)) if moving.size else np.nan
+
+
+_FEWEST_STEPS, _MOST_STEPS = 5, 50  # over the range of tension
+
+_WHOLE = 0.05  # of a step, by which a level may lie beside a multiple of it
+
+
+def _load_step(load: Floats) -> float:
+    """Step of a tension that has few levels, all of them multiples of it; else NaN. [N]."""
+    levels = np.unique(load[_some(load.size)])
+    levels = levels[np.isfinite(levels)]
+    if not _FEWEST_STEPS <= levels.size <= _MOST_STEPS + 1 or load.size < 4 * levels.size:
+        return np.nan
+    steps = np.diff(levels)
+    multiple = steps / steps.min()
+    is_whole = (np.abs(multiple - np.round(multiple)) < _WHOLE).all()
+    return (
+        float(steps.min())
+        if is_whole and np.ptp(levels) < 1.5 * _MOST_STEPS * steps.min()
+        else np.nan
+    )
 
 
 def _strain_per_length(position: Floats, strain: Floats | None, n_specimens: int) -> Floats:

@@ -281,8 +281,8 @@ def panel(tree):
 
 
 BANDS = ("modulus-outside-band", "strain-above-band", "strength-outside-band", "density-outside-band",
-         "position-behind-tension", "load-zero-wrong", "load-negative", "load-falls-with-stretch", "channel-steps",
-         "strain-below-zero")  # fmt: skip
+         "position-behind-tension", "load-zero-drifts", "load-zero-wrong", "load-negative",
+         "load-falls-with-stretch", "channel-steps", "strain-below-zero")  # fmt: skip
 
 
 QUICK = ("Zwick, German", "MTS 793, German", "Instron 5569, stress and strain")

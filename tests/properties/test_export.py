@@ -127,7 +127,9 @@ def test_cable_has_a_table_and_a_rising_function_with_two_derivatives(curve):
         folder = Path(name)
         (text,) = written(strain, tension, "whoi-cable", folder, form="table")
         _, material = cable_material(text)
-        check(strain, tension, *cable_pairs(material["T"]), stated(text)[0], most=100)
+        # the last pair is beyond the curve, straight on
+        inside = (one[:-1] for one in cable_pairs(material["T"]))
+        check(strain, tension, *inside, stated(text)[0], most=100)
         (text,) = written(strain, tension, "whoi-cable", folder)
     _, material = cable_material(text)
     for derivative in ("T", "Te", "Tee"):

@@ -47,14 +47,36 @@ def test_a_curve_rises_everywhere_and_goes_on_straight_beyond_both_ends(name):
     inside = (grid >= 0) & (grid <= end)
     wanted = np.interp(grid[inside], [0, *one.strain], [0, *one.tension])
     np.testing.assert_allclose(tension[inside], wanted, atol=0.02 * wanted[-1])
-    for beyond, edge in ((grid > end * (1 + 1e-9), end), (grid < 0, 0.0)):
+    # what is promised beyond: on with the slope of the last fiftieth
+    near = np.interp(0.98 * end, [0, *one.strain], [0, *one.tension])
+    last = (one.tension[-1] - near) / (0.02 * end)
+    for beyond, at_edge in (
+        (grid > end * (1 + 1e-9), last),
+        (grid < 0, CableExpression(material["Te"])(0.0)[0]),
+    ):
         slope = np.diff(tension[beyond]) / np.diff(grid[beyond])
-        at_edge = CableExpression(material["Te"])(edge)[0]
         np.testing.assert_allclose(slope, at_edge, rtol=1e-6)
         np.testing.assert_allclose(
             CableExpression(material["Te"])(grid[beyond]), at_edge, rtol=1e-6
         )
         assert not CableExpression(material["Tee"])(grid[beyond]).any()
+
+
+def test_strain_under_a_tension_is_kept_by_a_curve_of_many_bends():
+    """Windows that join in bends, as those of a composite, and a last bend within a fiftieth."""
+    slopes = np.array([500, 260, 520, 300, 700, 350, 900, 420, 1100, 500, 1500, 2600.0])
+    nodes = np.concatenate([np.linspace(0, 2.6, slopes.size), [2.63]])
+    load = np.concatenate([[0], np.cumsum(slopes * np.diff(nodes))])
+    strain = np.union1d(np.linspace(0, nodes[-1], 400), nodes)
+    one = line(strain=strain, tension=np.interp(strain, nodes, load))
+    _, material = cable_material(_whoicable_text(one))
+    end = nodes[-1]
+    last = (load[-1] - np.interp(0.98 * end, nodes, load)) / (0.02 * end)
+    fine = np.linspace(0, 1.6 * end, 20001)
+    written = CableExpression(material["T"])(fine)
+    wanted = np.array([0.05, 0.2, 0.5, 0.8, 1.0, 1.2]) * load[-1]
+    known = np.interp(wanted, load, nodes) + np.maximum(wanted - load[-1], 0) / last
+    np.testing.assert_allclose(np.interp(wanted, written, fine), known, rtol=0.01)
 
 
 def test_a_straight_line_has_no_constant_derivative():
@@ -79,8 +101,11 @@ def test_every_number_has_a_point_since_others_are_integers_of_32_bits():
 def test_a_table_stands_beside_the_slopes():
     _, material = cable_material(_whoicable_text(line(), form="table"))
     strain, tension = cable_pairs(material["T"])
-    np.testing.assert_allclose(tension, rubber(strain), atol=1e-6 * rubber(1.5))
-    assert strain.size == 100
+    np.testing.assert_allclose(tension[:-1], rubber(strain[:-1]), atol=1e-6 * rubber(1.5))
+    assert strain.size == 101
+    # Cable goes on with the last step of a table: it is that of the last fiftieth of the curve
+    slope = (rubber(1.5) - rubber(0.98 * 1.5)) / (0.02 * 1.5)
+    assert tension[-1] == pytest.approx(rubber(1.5) + slope * (strain[-1] - 1.5), rel=1e-4)
     assert {"Te", "Tee", "EA"} <= set(material)
 
 

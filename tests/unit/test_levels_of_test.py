@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from reduction.batch.plausibility import _of_mean
 from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.standstills import find_standstills
@@ -62,3 +63,46 @@ def test_the_speed_of_a_pull_is_that_of_the_way_out(back):
         time, position, 1e3 * position[None], None, stands, None, control="position"
     )
     assert found.speed == pytest.approx(0.3 / 600, rel=0.1)
+
+
+def cycled(drift, *, rest_after):
+    """Two rests about thirty triangles of 10 s; what is added to the tension of the cycles [N]."""
+    time = np.arange(0, 420.0, 0.1)
+    inside = (time > 60) & (time < 360)
+    phase = (time - 60) / 10 % 1
+    position = np.where(inside, 1.2 + 0.8 * (1 - np.abs(2 * phase - 1)), 1.0)
+    load = 500 * (position - 1) + drift(np.clip(time - 60, 0, 300)) * inside
+    if not rest_after:
+        time, position, load = (
+            one[: np.flatnonzero(inside)[-1] - 30] for one in (time, position, load)
+        )
+    return levels(position, load, waveform="triangular", step=0.1).like_means[0]
+
+
+@pytest.mark.parametrize(
+    ("drift", "codes"),
+    [
+        (lambda t: 60 * t / 300, ["zero-or-relaxation"]),
+        (lambda t: -60 * t / 300, ["zero-or-relaxation"]),
+        (lambda t: -15 * np.log(1 + t), []),  # relaxation slows down
+        (lambda t: 3 * t / 300, []),
+    ],
+)
+def test_a_mean_that_a_drifting_zero_would_move_alike_is_said_where_no_rest_can_tell(drift, codes):
+    means = cycled(drift, rest_after=False)
+    # cycles of 300 N: first, middle and last quarter of those after the first
+    assert means == pytest.approx(
+        [300 + drift(np.linspace(*at, 500)).mean() for at in ((10, 80), (115, 190), (220, 290))],
+        abs=4.0,  # where a cycle begins
+    )
+    assert [one.code for one in _of_mean("new", means)] == codes
+    assert np.isnan(cycled(drift, rest_after=True)).all()
+
+
+def test_the_step_of_a_coarse_load_is_found_and_that_of_a_fine_one_is_none():
+    time = 0.05 * np.arange(1200)
+    position = 2 - 0.5 * np.cos(0.4 * np.pi * time)
+    fine = 300 - 200 * np.cos(0.4 * np.pi * time)
+    found = levels(position, np.stack([20 * np.round(fine / 20), fine, np.round(fine)]))
+    assert found.load_step[0] == pytest.approx(20)
+    assert np.isnan(found.load_step[1:]).all()

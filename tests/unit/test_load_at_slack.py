@@ -1,9 +1,16 @@
 """What a load cell reads at slack, and whether its zero or its sign is wrong."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from reduction.stages.load_at_slack import LoadAtSlack, load_at_slack, notes_on_zero
+from reduction.stages.load_at_slack import (
+    LoadAtSlack,
+    load_at_slack,
+    notes_on_zero,
+    stands_at_slack_length,
+)
 from reduction.stages.standstills import Standstills
 
 PLACE = np.linspace(0, 1, 500)
@@ -69,3 +76,53 @@ def test_what_is_stated_of_the_zero_is_no_warning():
 def test_without_a_rest_the_zero_is_not_known():
     assert notes(400 * PLACE - 300, None, "") == ["load-negative"]
     assert notes(400 * PLACE + 300, None, "") == []
+
+
+@pytest.mark.parametrize(
+    ("earlier", "later", "words"),
+    [
+        (0.5, 30.0, "its zero drifts; only a specimen that became shorter"),
+        (0.5, -30.0, "its zero drifts, as no line pushes"),
+        (6.0, 0.2, "or the specimen still pulled at the first"),
+        (0.0, 3.9, None),  # below a hundredth of 400 N
+    ],
+)
+def test_a_zero_that_drifts_between_the_rests_is_said_with_its_size(earlier, later, words):
+    rest = LoadAtSlack((earlier + later) / 2, 0.035, 2, earlier, later)
+    found = notes_on_zero(["new"], PLACE, np.array([400 * PLACE]), [rest], ["0 N"])
+    drifts = [one for one in found if one.code == "load-zero-drifts"]
+    assert len(drifts) == (words is not None)
+    if words:
+        assert words in str(drifts[0])
+        assert f"reads {earlier:.3g} N at slack and later {later:.3g} N" in str(drifts[0])
+        # the one value of zero that would be told is wrong at both
+        assert not any(one.code.startswith("load-zero-wrong") for one in found)
+
+
+def test_the_drift_is_that_of_the_readings_at_the_ends_of_the_rests():
+    """A line of 30 N over the log: the last 25 of each 100 samples are 87/2000 and 1987/2000."""
+    load = 30 * np.linspace(0, 1, 2000)
+    found = load_at_slack(load, rests((0, 99), (1900, 1999)), np.array([True, True]))
+    assert (found.earlier, found.later) == pytest.approx((30 * 0.0435, 30 * 0.9935), abs=0.02)
+
+
+def test_a_load_that_comes_late_to_a_rest_is_no_drift():
+    load = np.zeros(2000)
+    load[1900:1960] = 300
+    found = load_at_slack(load, rests((0, 99), (1900, 1999)), np.array([True, True]))
+    assert (found.earlier, found.later) == (0, 0)
+
+
+def test_what_was_slack_at_a_length_is_slack_there_whatever_is_read():
+    """Not at a length at which it was not slack before: there it may pull."""
+    place = np.array([1.0, 2.0, 1.0, 0.9, 1.2])
+    stands = replace(
+        rests(*((100 * k, 100 * k + 9) for k in range(5))),
+        mean_position=place,
+        is_rest=place == 5,
+    )
+    slack = np.array([True, False, False, False, False])
+    assert stands_at_slack_length(stands, slack).tolist() == [True, False, True, True, False]
+    assert not stands_at_slack_length(stands, np.zeros(5, dtype=bool)).any()
+    later = np.array([False, False, True, False, False])
+    assert stands_at_slack_length(stands, later).tolist() == [False, False, True, True, False]

@@ -126,14 +126,30 @@ def check_tape_against_crosshead(
     if rests.size:
         stood = float(standstills.mean_position[rests[0]])
         _check_slack(marks, np.flatnonzero(own & marks.is_slack), stood, allowance)
+    alike = _alike(marks, stretched)
     if not meets.any():
-        return ()
+        return alike
     nearest = holds[np.abs(holds - tape[meets][:, None]).argmin(axis=1)]
     apart = float(np.mean(nearest - tape[meets]))
     reading = max(marks.reading_uncertainty, TAPE_UNCERTAINTY)
     if abs(apart) <= _FAR * np.hypot(reading, position_uncertainty):
-        return ()
-    return (note("tape-off-crosshead", marks.specimen, n_marks=int(meets.sum()), apart=apart),)
+        return alike
+    apart_note = note("tape-off-crosshead", marks.specimen, n_marks=int(meets.sum()), apart=apart)
+    return (apart_note, *alike)
+
+
+def _alike(marks: SpliceMarks, rows: Integers) -> tuple[Note, ...]:
+    """Rows of two holds of one test that have the same three lengths, to the digit."""
+    seen: dict[tuple[float, ...], int] = {}
+    for row in map(int, rows):
+        lengths = tuple(
+            float(one[row]) for one in (marks.near_toe, marks.far_toe, marks.far_thimble)
+        )
+        first = seen.setdefault(lengths, row)
+        holds = [marks.hold[one].removesuffix(" down") for one in (first, row)]
+        if holds[0] != holds[1]:
+            return (note("marks-alike", marks.specimen, first=holds[0], second=holds[1]),)
+    return ()
 
 
 def _meets(tape: Floats, holds: Floats, allowance: float) -> Bools:
