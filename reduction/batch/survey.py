@@ -277,6 +277,8 @@ def _with_load_at_slack(
             near = np.abs(stands.mean_position - length) <= _AT_SLACK_LENGTH
             is_slack |= near & (stands.mean_tension[number - 1] < little)
         one = load_at_slack(tension, stands, is_slack)
+        if one is not None and campaign.specimens[name].can_push:
+            one = replace(one, drift=0.0)
         found.append(one)
         zeros.append("" if one is None else zero_to_set(layouts, number, one.load))
     notes = [

@@ -255,6 +255,17 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             + (f'. Set zero = "{zero}" for this channel' if zero else "")
         ),
     ),
+    "load-zero-drifts": (
+        "warning",
+        "the zero of the load cell moves by {drift:.4g} N during the log, {effect:.2%} of the peak"
+        " load: at the length where the specimen was slack at first, that is what the load changes"
+        " by. The interval of tension carries it. Zero the load cell again, or let it warm up",
+    ),
+    "load-zero-drifted": (
+        "note",
+        "the zero of the load cell moves by {drift:.4g} N during the log, more than is stated of it;"
+        " the interval of tension carries it",
+    ),
     "load-negative": (
         "warning",
         "load is negative (median {load:.4g} N, minimum {least:.4g} N) and rises with stretch: the"
@@ -826,6 +837,11 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note",
         "the strain rate varies from {low:.2g} to {high:.2g} 1/s between quarters of the range",
     ),
+    "pull-not-slow": (
+        "warning",
+        "the slow pull is not slow beside the relaxation that the loops show: K_0 is wrong by up to"
+        " {effect:.1%}, and K_1 and tau with it. Their intervals carry it. Pull more slowly",
+    ),
     "pull-length-not-stated": ("note", "the length at which strain is zero is not stated"),
     "pull-off-zero": (
         "note",
@@ -1395,7 +1411,7 @@ SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
 CAUSES = (
     "log-used-twice", "channels-alike", "column-of-another", "diameter-readings-apart",
     "cycles-in-other-kind", "rate-not-as-stated", "level-not-as-stated",
-    "load-zero-wrong", "load-negative", "load-falls-with-stretch", "tape-off-crosshead",
+    "load-zero-wrong", "load-zero-drifts", "load-negative", "load-falls-with-stretch", "tape-off-crosshead",
     "loops-run-backward", "extensometer-against-stroke", "gauge-against-length",
     "modulus-outside-band", "strength-outside-band", "tension-above-strength", "stiffness-jumps",
     "run-off-plan", "cord-stress-outside-band", "cords-do-not-fit", "hose-rubber-outside-band",

@@ -23,6 +23,8 @@ _SERIOUS = 0.01
 
 _COVERED = 2.0  # stated standard uncertainties
 
+_STIFFER = 3.0  # near slack than over the whole stretch: a rubber, whose stiffness falls at first
+
 _MOST = 4096  # samples that say whether load rises with stretch
 
 
@@ -31,7 +33,8 @@ class LoadAtSlack:
     """Mean load of one specimen over its slack rests.
 
     ``load`` [N] and ``standard_uncertainty`` [N] by noise and resolution; ``n_rests`` how many
-    there are, ``low`` and ``high`` [N] the least and the greatest mean of one.
+    there are, ``low`` and ``high`` [N] the least and the greatest mean of one.  ``drift`` [N] is
+    by how much the zero has moved since the log began, zero where the log does not show it.
     """
 
     load: float
@@ -39,11 +42,25 @@ class LoadAtSlack:
     n_rests: int
     low: float
     high: float
+    drift: float = 0.0
 
     @property
     def is_beyond_noise(self) -> bool:
         """Whether it is no zero."""
         return abs(self.load) > _BEYOND * self.standard_uncertainty
+
+    def drift_uncertainty(self, offset_uncertainty: float) -> float:
+        """What a drift adds to the uncertainty of the zero; nothing where that holds it. [N].
+
+        While it was loaded the zero was anywhere between its two readings: an error of none to all
+        of the drift, all equally likely, has the mean square of a third of its square.
+
+        Examples
+        --------
+        >>> print(LoadAtSlack(0.0, 0.01, 1, 0.0, 0.0, drift=3.0).drift_uncertainty(1.0).__round__(3))
+        1.732
+        """
+        return abs(self.drift) / 3**0.5 if abs(self.drift) > _COVERED * offset_uncertainty else 0.0
 
 
 def load_at_slack(tension: Floats, standstills: Standstills, is_slack: Bools) -> LoadAtSlack | None:
@@ -86,7 +103,41 @@ def load_at_slack(tension: Floats, standstills: Standstills, is_slack: Bools) ->
     return LoadAtSlack(
         float(np.average(means, weights=counts)), float(np.hypot(own, step)), len(sums),
         float(means.min()), float(means.max()),
+        drift=_drift(tension, standstills, is_slack, noise, step),
     )  # fmt: skip
+
+
+def _drift(
+    tension: Floats, standstills: Standstills, is_slack: Bools, noise: float, step: float
+) -> float:
+    """By how much the zero has moved since a rest at slack before the first stretch. [N].
+
+    Back at the length at which it was slack, a specimen that has been stretched since pulls at
+    nothing: it is longer than before, not shorter.  A load below zero is none that it can have.
+    A stretch of the rest itself counts as that much load, at three times the mean stiffness.
+    """
+    if is_slack.size < 2 or not is_slack[0]:
+        return 0.0
+    place, number = standstills.mean_position, slice(1, None)
+    counts = standstills.last - standstills.first + 1
+    loads = np.array(
+        [
+            np.nanmean(tension[a : b + 1]) if np.isfinite(tension[a : b + 1]).any() else np.nan
+            for a, b in zip(standstills.first, standstills.last, strict=True)
+        ]
+    )
+    reach = np.nanmax(np.abs(place - place[0]))
+    if not reach > 0:
+        return 0.0
+    further = place[number] - place[0]
+    pulled = _STIFFER * np.nanmax(loads) / reach * np.clip(further, 0.0, None)
+    rise = loads[number] - loads[0] - pulled
+    fall = loads[number] - max(float(loads[0]), 0.0)
+    near = further <= standstills.position_tolerance
+    change = np.where(rise > 0, rise, np.where(loads[number] < 0, np.minimum(fall, 0.0), 0.0))
+    own = np.sqrt(noise**2 * (1 / counts[0] + 1 / counts[number]) + 2 * step**2)
+    moved = np.where(near & (np.abs(change) > _BEYOND * own), change, 0.0)
+    return float(moved[np.argmax(np.abs(moved))])
 
 
 def rises_with_stretch(position: Floats, tension: Floats) -> bool:
@@ -148,4 +199,9 @@ def notes_on_zero(
                 notes.append(note("load-zero-wrong", name, effect=rest.load / reach, **said))
             else:
                 notes.append(note("load-zero-off", name, **said))
+        if rest is not None and rest.drift_uncertainty(offset_uncertainty):
+            peak = max(high - rest.load, rest.load - low)
+            code = "load-zero-drifts" if abs(rest.drift) > _SERIOUS * peak else "load-zero-drifted"
+            drifted = {} if code == "load-zero-drifted" else {"effect": rest.drift / peak}
+            notes.append(note(code, name, drift=rest.drift, **drifted))
     return tuple(notes)
