@@ -274,8 +274,8 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "load-zero-drifted": (
         "note",
-        "the zero of the load cell moves by {drift:.4g} N during the log, more than is stated of it;"
-        " the interval of tension carries it",
+        "the zero of the load cell moves by {drift:.4g} N during the log, more than is stated of"
+        " it; the interval of tension carries it",
     ),
     "load-negative": (
         "warning",
@@ -581,6 +581,20 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "the mean strain of the cycles drifts by {drift:+.3%} from first to last ({effect:.0%} of"
         " the range of a cycle; {per_decade:+.3%} per decade of cycles): the cycles are shifted to"
         " a mean strain of {reference:.3%} before their curves are averaged",
+    ),
+    "strain-jumps": (
+        "warning",
+        "the mean strain jumps by {size:+.3%} after cycle {number} ({effect:.0%} of the amplitude),"
+        " and the tension does not follow: an extensometer, a grip or a splice has slipped. Mean"
+        " strain and the place of every curve along the axis of strain are wrong by up to as much;"
+        " amplitudes and EA are not",
+    ),
+    "tension-jumps": (
+        "warning",
+        "the mean tension jumps by {size:+.4g} N after cycle {number} ({effect:.0%} of the"
+        " amplitude), and the strain does not follow: a grip or a splice has slipped, a part of the"
+        " specimen has failed, or the load cell was knocked. Mean tension and curves mix what lies"
+        " before it with what lies after it; reduce the two parts by themselves (steps)",
     ),
     "bins-of-some-cycles": (
         "refusal",
@@ -1422,7 +1436,8 @@ SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
 CAUSES = (
     "log-used-twice", "channels-alike", "column-of-another", "diameter-readings-apart",
     "cycles-in-other-kind", "rate-not-as-stated", "level-not-as-stated",
-    "load-zero-wrong", "load-zero-drifts", "load-negative", "load-falls-with-stretch", "tape-off-crosshead",
+    "load-zero-wrong", "load-zero-drifts", "load-negative", "load-falls-with-stretch",
+    "tape-off-crosshead",
     "loops-run-backward", "extensometer-against-stroke", "gauge-against-length",
     "modulus-outside-band", "strength-outside-band", "tension-above-strength", "stiffness-jumps",
     "run-off-plan", "cord-stress-outside-band", "cords-do-not-fit", "hose-rubber-outside-band",

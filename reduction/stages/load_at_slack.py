@@ -57,8 +57,9 @@ class LoadAtSlack:
 
         Examples
         --------
-        >>> print(LoadAtSlack(0.0, 0.01, 1, 0.0, 0.0, drift=3.0).drift_uncertainty(1.0).__round__(3))
-        1.732
+        >>> rest = LoadAtSlack(0.0, 0.01, 1, 0.0, 0.0, drift=3.0)
+        >>> print(round(rest.drift_uncertainty(1.0), 3), rest.drift_uncertainty(2.0))
+        1.732 0.0
         """
         return abs(self.drift) / 3**0.5 if abs(self.drift) > _COVERED * offset_uncertainty else 0.0
 
