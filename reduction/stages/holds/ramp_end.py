@@ -142,8 +142,8 @@ def level_at_end(
     uncertainties together.  That of a third as many samples as the last before it is taken, and
     what the two differ by is carried: where a series bends evenly its bias is an eighth of that
     of the longer, where it bends most at its beginning, as a relaxation over decades of time does,
-    a half or more.  A machine that rings scatters its first samples more than their noise: the scatter
-    about a line counts where it is greater.
+    a half or more.  A machine that rings scatters its first samples more than their noise: the
+    scatter about a line counts where it is greater.
 
     Examples
     --------
