@@ -265,6 +265,7 @@ def _with_load_at_slack(
     layouts, stands = _layouts(campaign, plan), whole.standstills
     slack_length = length_at_slack(layouts)
     found, zeros = [], []
+    stroke = float(np.subtract(*finite_extremes(whole.position)[::-1]))
     for number, (name, tension) in enumerate(zip(plan.specimens, whole.tension, strict=True), 1):
         lengths = [] if slack_length is None else [slack_length]
         if name in campaign.marks and whole.record.position_is_length:
@@ -276,7 +277,7 @@ def _with_load_at_slack(
         for length in lengths:
             near = np.abs(stands.mean_position - length) <= _AT_SLACK_LENGTH
             is_slack |= near & (stands.mean_tension[number - 1] < little)
-        one = load_at_slack(tension, stands, is_slack)
+        one = load_at_slack(tension, stands, is_slack, stroke=stroke)
         if one is not None and campaign.specimens[name].can_push:
             one = replace(one, drift=0.0)
         found.append(one)

@@ -64,12 +64,15 @@ class LoadAtSlack:
         return abs(self.drift) / 3**0.5 if abs(self.drift) > _COVERED * offset_uncertainty else 0.0
 
 
-def load_at_slack(tension: Floats, standstills: Standstills, is_slack: Bools) -> LoadAtSlack | None:
+def load_at_slack(
+    tension: Floats, standstills: Standstills, is_slack: Bools, *, stroke: float = np.nan
+) -> LoadAtSlack | None:
     r"""Mean load of one specimen over the standstills in which it is slack.
 
     .. math:: u^2 = \frac{\sigma^2}{n} + \frac{q^2}{12}
 
-    None where it is slack in none of them, or nothing can be read there.
+    None where it is slack in none of them, or nothing can be read there.  ``stroke`` [m] is that of
+    the log; without it a drift is sought where the crosshead is not further out at all.
 
     Notes
     -----
@@ -104,12 +107,17 @@ def load_at_slack(tension: Floats, standstills: Standstills, is_slack: Bools) ->
     return LoadAtSlack(
         float(np.average(means, weights=counts)), float(np.hypot(own, step)), len(sums),
         float(means.min()), float(means.max()),
-        drift=_drift(tension, standstills, is_slack, noise, step),
+        drift=_drift(tension, standstills, is_slack, stroke, noise, step),
     )  # fmt: skip
 
 
 def _drift(
-    tension: Floats, standstills: Standstills, is_slack: Bools, noise: float, step: float
+    tension: Floats,
+    standstills: Standstills,
+    is_slack: Bools,
+    stroke: float,
+    noise: float,
+    step: float,
 ) -> float:
     """By how much the zero has moved since a rest at slack before the first stretch. [N].
 
@@ -119,7 +127,7 @@ def _drift(
     """
     if is_slack.size < 2 or not is_slack[0]:
         return 0.0
-    place, number = standstills.mean_position, slice(1, None)
+    number = slice(1, None)
     counts = standstills.last - standstills.first + 1
     loads = np.array(
         [
@@ -127,11 +135,10 @@ def _drift(
             for a, b in zip(standstills.first, standstills.last, strict=True)
         ]
     )
-    reach = np.nanmax(np.abs(place - place[0]))
-    if not reach > 0:
-        return 0.0
-    further = place[number] - place[0]
-    pulled = _STIFFER * np.nanmax(loads) / reach * np.clip(further, 0.0, None)
+    further = standstills.mean_position[number] - standstills.mean_position[0]
+    stiffness = finite_extremes(tension)[1] / stroke if stroke > 0 else np.inf
+    pulled = np.zeros(further.size)
+    pulled[further > 0] = _STIFFER * stiffness * further[further > 0]
     rise = loads[number] - loads[0] - pulled
     fall = loads[number] - max(float(loads[0]), 0.0)
     near = further <= standstills.position_tolerance

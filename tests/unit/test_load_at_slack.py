@@ -69,3 +69,39 @@ def test_what_is_stated_of_the_zero_is_no_warning():
 def test_without_a_rest_the_zero_is_not_known():
     assert notes(400 * PLACE - 300, None, "") == ["load-negative"]
     assert notes(400 * PLACE + 300, None, "") == []
+
+
+def log_with_drift(drift, *, last_place=0.0, gain=400.0):
+    """A rest, a stretch and a rest; the zero moves evenly by the drift over the log."""
+    place = np.interp(np.arange(900), [0, 300, 450, 600, 899], [0, 0, 1, last_place, last_place])
+    share = np.arange(900) / 899
+    noise = np.random.default_rng(5).normal(0, 0.5, 900)
+    load = np.maximum(gain * (place - 0.05), 0.0) + drift * share + noise
+    stands = rests((0, 299), (600, 899))
+    return load, Standstills(**vars(stands) | {"mean_position": np.array([0.0, last_place])})
+
+
+@pytest.mark.parametrize("drift", [9.0, -9.0])
+def test_a_zero_that_moves_is_told_by_the_rests_at_one_length(drift):
+    load, stands = log_with_drift(drift)
+    found = load_at_slack(load, stands, np.array([True, False]), stroke=1.0)
+    # from the middle of the first third to the middle of the last: two thirds of it
+    assert found.drift == pytest.approx(drift * 2 / 3, abs=abs(drift) / 6 + 0.2)
+    peak = notes(load, found, offset=1.0)
+    assert "load-zero-drifts" in peak
+    # what is stated of the zero holds it
+    assert not any("drift" in one for one in notes(load, found, offset=20.0))
+    # an error of none to all of it, evenly spread
+    assert found.drift_uncertainty(1.0) == pytest.approx(abs(found.drift) / 3**0.5)
+
+
+def test_a_rest_that_is_stretched_or_noisy_is_no_drift():
+    # at 0.009 of the stroke further out a specimen that bears there reads 3.6 N
+    load, stands = log_with_drift(0.0, last_place=0.009)
+    load[600:] += 3.6
+    assert load_at_slack(load, stands, np.array([True, False]), stroke=1.0).drift == 0.0
+    load, stands = log_with_drift(0.0)
+    assert load_at_slack(load, stands, np.array([True, True]), stroke=1.0).drift == 0.0
+    # without a rest before the first stretch nothing is known
+    load, stands = log_with_drift(9.0)
+    assert load_at_slack(load, stands, np.array([False, True])).drift == 0.0
