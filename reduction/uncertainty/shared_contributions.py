@@ -1432,15 +1432,15 @@ def _contributions_to_cycles(
     parts = [of_loop]
     if part.end_moduli is not None:
         parts += _of_ends(part, index, errors, float(areas_of(test.specimens)[index]))
-    has_line = part.line is not None and test.line_of_test is not None
-    if has_line and test.amplitude is not None and pull is not None:
+    line, amplitude = test.line_of_test, test.amplitude
+    if part.line is not None and line is not None and amplitude is not None and pull is not None:
         rest = _quasi_static_contributions(
             pull, origin or PullOrigin(errors, model),
-            np.asarray(test.amplitude.mean_tension[index]),
+            np.asarray(amplitude.mean_tension[index]),
             _of_loops(
-                test.amplitude, index, errors, model, test.cycles, cycles, _train_of(test)
+                amplitude, index, errors, model, test.cycles, cycles, _train_of(test)
             ),
-            test.line_of_test, index,
+            line, index,
         )  # fmt: skip
         of_both = _of_loops(
             part.loops, index, errors, model, part.cycles, cycles, _train_of(test), line=part.line

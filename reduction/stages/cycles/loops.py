@@ -903,8 +903,9 @@ def _quantities_of_cycles(
         else:
             u_half = u_extreme / np.sqrt(2)
             u_strain = np.hypot(strain_noise, missed * strain_amplitude) / np.sqrt(2)
-            u_half = np.hypot(u_half, row["force_missed"] / np.sqrt(12))
-            u_strain = np.hypot(u_strain, row["strain_missed"] / np.sqrt(12))
+            if turn != "rounded":  # of one cycle the turn lies anywhere between two samples
+                u_half = np.hypot(u_half, row["force_missed"] / np.sqrt(12))
+                u_strain = np.hypot(u_strain, row["strain_missed"] / np.sqrt(12))
             # a missed turn takes the same share off both amplitudes; only noise is left
             u_apparent = apparent * np.hypot(noise / amplitude, strain_noise / strain_amplitude)
             u_apparent /= np.sqrt(2)

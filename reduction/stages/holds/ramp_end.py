@@ -140,9 +140,9 @@ def level_at_end(
     Method of [1]_: lines through 3, 5, 7, 10, ... samples, each 1.4 times as long, until the
     value at zero of one differs from that of any before by more than twice their standard
     uncertainties together.  That of a third as many samples as the last before it is taken, and
-    what the two differ by is carried: where a series bends evenly its bias is an eighth of that
-    of the longer, where it bends most at its beginning, as a relaxation over decades of time does,
-    a half or more.  A machine that rings scatters its first samples more than their noise: the
+    what the two differ by is carried: several times its bias where a series bends evenly, and half
+    as much again as it where the series bends most at its beginning, as a relaxation over decades
+    of time does.  A machine that rings scatters its first samples more than their noise: the
     scatter about a line counts where it is greater.
 
     Examples
