@@ -271,6 +271,7 @@ def _with_load_at_slack(
     layouts, stands = _layouts(campaign, plan), whole.standstills
     slack_length = length_at_slack(layouts)
     found, zeros = [], []
+    stroke = float(np.subtract(*finite_extremes(whole.position)[::-1]))
     for number, (name, tension) in enumerate(zip(plan.specimens, whole.tension, strict=True), 1):
         lengths = [] if slack_length is None else [slack_length]
         if name in campaign.marks and whole.record.position_is_length:
@@ -285,7 +286,9 @@ def _with_load_at_slack(
         can_push = campaign.specimens[name].can_push
         if not can_push and rises_with_stretch(whole.position, tension):
             is_slack = stands_at_slack_length(stands, is_slack)
-        one = load_at_slack(tension, stands, is_slack)
+        one = load_at_slack(tension, stands, is_slack, stroke=stroke)
+        if one is not None and can_push:
+            one = replace(one, drift=0.0)
         found.append(one)
         zeros.append("" if one is None else zero_to_set(layouts, number, one.load))
     notes = [

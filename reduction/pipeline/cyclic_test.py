@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import fields, replace
 from functools import partial
 from typing import Any
@@ -23,6 +24,7 @@ from reduction.stages.moduli.cycle_alignment import (
     aligned_strain,
     alignment_moves,
     is_shift_of_curve,
+    jump_of_mean,
     strain_shifts,
 )
 from reduction.stages.moduli.elastomer_laws import fit_elastomers
@@ -131,8 +133,9 @@ def _curves_of_cycles(
         loops.apparent_spring_constant[:, break_in:],
     )  # fmt: skip
     laid_on = np.where(moves, reference, np.nan)
+    jumps = _notes_on_jumps(loops, names, break_in=break_in)
     if not moves.any():
-        return replace(curves, alignment_strain=laid_on)
+        return replace(curves, alignment_strain=laid_on, notes=(*curves.notes, *jumps))
     shift[~moves] = 0.0
     curves = curves_of(aligned_strain(strain, shift, cycles.cycle_number))
     far = np.abs(trend.mean_strain_drift) / (2 * np.nanmedian(loops.strain_amplitude, axis=1))
@@ -150,9 +153,31 @@ def _curves_of_cycles(
     return replace(
         curves,
         alignment_strain=laid_on,
-        notes=(*curves.notes, *notes),
+        notes=(*curves.notes, *jumps, *notes),
         made=(*curves.made, f"cycles laid on each other, shifted to a mean strain of: {laid}"),
     )
+
+
+def _notes_on_jumps(loops: Loops, names: Sequence[str], *, break_in: int) -> list[Note]:
+    """Say where something has slipped, or a load cell has been knocked, between two cycles."""
+    found = []
+    for index, name in enumerate(names):
+        strain, tension, slope, of_strain, of_tension = (
+            one[index, break_in:]
+            for one in (
+                loops.mean_strain, loops.mean_tension, loops.apparent_spring_constant,
+                loops.strain_amplitude, loops.tension_amplitude,
+            )
+        )  # fmt: skip
+        for code, jump, amplitude in (
+            ("strain-jumps", jump_of_mean(strain, tension, slope, of_strain), of_strain),
+            ("tension-jumps", jump_of_mean(tension, strain, 1 / slope, of_tension), of_tension),
+        ):
+            if jump is not None:
+                number, size = jump
+                share = abs(size) / float(np.median(amplitude))
+                found.append(note(code, name, size=size, number=number + break_in, effect=share))
+    return found
 
 
 # cycles at each end of a long test of which the kept curves are compared

@@ -322,6 +322,21 @@ def _readings_of(
     )
 
 
+def _with_drift_of_zero(
+    located: Located, instruments: Sequence[InstrumentErrors]
+) -> tuple[InstrumentErrors, ...]:
+    """Errors with the zero of a load cell known no better than it moved during the log."""
+    rests = located.load_at_slack or (None,) * len(instruments)
+    moved = [
+        0.0 if rest is None else rest.drift_uncertainty(errors.tension_offset)
+        for errors, rest in zip(instruments, rests, strict=False)
+    ]
+    return tuple(
+        replace(errors, tension_offset=float(np.hypot(errors.tension_offset, one)))
+        for errors, one in zip(instruments, moved, strict=True)
+    )
+
+
 def _with_readings(record: Record, readings: Sequence[InstrumentErrors]) -> Record:
     """Record with the standard uncertainty of one reading; NaN where nothing says it."""
     tension = tuple(one.tension_reading or np.nan for one in readings)
@@ -830,6 +845,7 @@ def reduce_test(
     position, tension = located.position, located.tension
     phase = label_phases(record.time, standstills=standstills, cycles=cycles)
     strain = strain_of_record(record, position, tension, models)
+    instruments = _with_drift_of_zero(located, instruments)
     readings = _readings_of(record, instruments)
     stated = replace(located, record=_with_readings(record, readings))
     cycle_parts = parts_of_cycles(

@@ -25,7 +25,7 @@ from reduction.stages.three_parameter_line.hold_pairs import (
 )
 from reduction.stages.three_parameter_line.line_model import refused_lines
 from reduction.stages.three_parameter_line.line_of_loops import identify_cycles, identify_run
-from reduction.stages.three_parameter_line.line_product import SlowPull
+from reduction.stages.three_parameter_line.line_product import SlowPull, mean_of_rows
 from reduction.stages.three_parameter_line.rope_programme import (
     BeddingIn,
     CyclesToFailure,
@@ -40,6 +40,7 @@ from reduction.stages.three_parameter_line.rope_programme import (
 )
 from reduction.stages.three_parameter_line.slow_pull import (
     MISFIT_NOTED,
+    error_of_pull_rate,
     fit_pull,
     quasi_static_of_run,
 )
@@ -102,6 +103,9 @@ def pull_specimens(
     return tuple(pulls), notes
 
 
+_BEYOND = 2.0  # of what is stated of K_0 without it
+
+
 def parts_of_line(
     loops: Loops, pulls: Sequence[SlowPull | None], settings: CycleSettings
 ) -> dict[str, Any]:
@@ -119,12 +123,31 @@ def parts_of_line(
         "reading": reading,
     }
     of_test = identify_run(loops, break_in_cycles=settings.break_in_cycles, **given)
+    mean = mean_of_rows(loops.mean_tension[:, settings.break_in_cycles :])
+    by_rate = np.array(
+        [
+            0.0
+            if pull is None
+            else error_of_pull_rate(pull, at, spring_constant=spring, relaxation_time=tau)
+            for pull, at, spring, tau in zip(
+                pulls, mean.tolist(), of_test.dissipation_spring_constant.tolist(),
+                of_test.relaxation_time.tolist(), strict=True,
+            )
+        ]
+    )  # fmt: skip
+    of_rate = tuple(
+        note("pull-not-slow", pull.specimen, effect=abs(float(wrong / at)))
+        for pull, wrong, at, own in zip(pulls, by_rate, constant, spread, strict=True)
+        if pull is not None and abs(wrong) > _BEYOND * own
+    )
+    spread = given["quasi_static_standard_uncertainty"] = np.hypot(spread, by_rate)
+    of_test = identify_run(loops, break_in_cycles=settings.break_in_cycles, **given)
     line_of_cycles = identify_cycles(loops, **given)
     return {
         "line": line_of_cycles,
         "line_of_test": of_test,
         "quasi_static_standard_uncertainty": spread,
-        "line_notes": (*notes, *of_test.notes, *refused_lines(line_of_cycles.reason)),
+        "line_notes": (*notes, *of_rate, *of_test.notes, *refused_lines(line_of_cycles.reason)),
     }
 
 

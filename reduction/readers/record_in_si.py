@@ -243,8 +243,9 @@ def _to_piece(log: RawLog, layout: Layout, *, gap_factor: float) -> _Piece:
         for key, name in ((key, _declared(layout, key)) for key in values)
         if f"{name}.time" in log.columns
     }
-    common = _on_common_time(_shared_time(log, layout), values, own, gap_factor=gap_factor)
-    notes = [*log.notes, *common.notes]
+    shared, of_clock = _between_ticks(_shared_time(log, layout), values)
+    common = _on_common_time(shared, values, own, gap_factor=gap_factor)
+    notes = [*log.notes, *of_clock, *common.notes]
     if unused:
         notes.append(note("channels-not-used", channels=", ".join(unused)))
     piece = _Piece(log, layout, common.time, common.values, scale, common.resampled, tuple(notes))
@@ -274,6 +275,56 @@ def _seconds(values: Floats, unit: str, ticks: float = 1.0) -> Floats:
     for part in sample_blocks(values.size, values, seconds):
         np.multiply(values[part], factor, out=seconds[part])
     return seconds
+
+
+_ROWS_OF_A_TICK = 1.5  # from so many on, on average, a clock is coarser than the log
+
+_LOOKED_AT = 4096  # rows that say whether it may be
+
+_FEWEST_TICKS = 8
+
+
+def _between_ticks(
+    time: Floats | None, values: Mapping[str, Floats]
+) -> tuple[Floats | None, tuple[Note, ...]]:
+    """Time of each row where the clock shows several rows one time, spread evenly.
+
+    Rows that keep within a tick of an even rate have that rate; others are spread over their own
+    tick.  A row that is written twice is none of its own.
+
+    Examples
+    --------
+    >>> clock = np.floor(np.arange(0.0, 20.0, 0.25))
+    >>> spread, told = _between_ticks(clock, {"tension.1": np.sin(np.arange(80.0))})
+    >>> print(np.diff(spread).round(6).max(), [one.code for one in told])
+    0.25 ['clock-coarse']
+    """
+    if time is None or time.size < 2:
+        return time, ()
+    look = np.diff(time[:_LOOKED_AT])
+    if not np.isfinite(look).all() or np.count_nonzero(look > 0) * _ROWS_OF_A_TICK > look.size:
+        return time, ()
+    steps = np.diff(time)
+    ahead = np.flatnonzero(steps > 0)
+    if not (steps >= 0).all() or ahead.size < _FEWEST_TICKS:
+        return time, ()
+    again = np.flatnonzero(steps == 0)
+    twice = np.ones(again.size, dtype=bool)
+    for one in values.values():
+        twice &= one[again] == one[again + 1]
+    if 2 * np.count_nonzero(twice) > again.size:
+        return time, ()
+    tick = float(np.median(steps[ahead]))
+    place = np.arange(time.size)
+    rate, begin = np.polyfit(place - place.mean(), time, 1)
+    even = begin + rate * (place - place.mean())
+    said = {"tick": tick, "rows": time.size / (ahead.size + 1)}
+    if np.ptp(time - even) < 1.5 * tick:
+        return even, (note("clock-coarse", **said),)
+    first = np.concatenate([[0], ahead + 1])
+    count = np.diff(first, append=time.size)
+    share = (place - np.repeat(first, count) + 0.5) / np.repeat(count, count)
+    return time + tick * share, (note("clock-coarse-uneven", **said),)
 
 
 def _shared_time(log: RawLog, layout: Layout) -> Floats | None:

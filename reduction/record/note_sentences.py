@@ -96,6 +96,17 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " interpolation",
     ),
     "channels-not-used": ("note", "read, but not part of a record: {channels}"),
+    "clock-coarse": (
+        "note",
+        "the clock advances by {tick:.3g} s, with {rows:.3g} rows at each reading: the rows are"
+        " spread evenly, which agrees with it throughout",
+    ),
+    "clock-coarse-uneven": (
+        "warning",
+        "the clock advances by {tick:.3g} s, with {rows:.3g} rows at each reading on average, but"
+        " not evenly: the rows are spread within each reading, so that rates and frequency are"
+        " known no better than that. Export a finer time",
+    ),
     "record-of-pieces": ("note", "one record joined from {n_pieces} files: {files}"),
     "reference-length-elsewhere": (
         "warning",
@@ -249,7 +260,7 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "load-zero-drifts": (
         "warning",
-        lambda earlier, later, effect: (
+        lambda earlier, later, effect, carried: (
             f"the load cell reads {earlier:.3g} N at slack and later {later:.3g} N at no greater"
             f" length, {100 * abs(effect):.2g} % of the peak load: "
             + (
@@ -257,11 +268,16 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
                 if later > earlier
                 else "its zero drifts, or the specimen still pulled at the first of these rests and"
                 " has become longer"
-                if later > -0.1 * earlier
+                if not carried
                 else "its zero drifts, as no line pushes"
             )
             + ". No single zero is right: subtract the drift from the log by its readings at"
-            " slack, or repeat the test. Until then every tension may be wrong by as much"
+            " slack, or repeat the test. "
+            + (
+                "The interval of every tension carries it"
+                if carried
+                else "Until then every tension may be wrong by as much"
+            )
         ),
     ),
     "load-zero-off": (
@@ -271,6 +287,11 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " more than its noise"
             + (f'. Set zero = "{zero}" for this channel' if zero else "")
         ),
+    ),
+    "load-zero-drifted": (
+        "note",
+        "the zero of the load cell moves by {drift:.4g} N during the log, more than is stated of"
+        " it; the interval of tension carries it",
     ),
     "load-negative": (
         "warning",
@@ -582,6 +603,20 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " the range of a cycle; {per_decade:+.3%} per decade of cycles): the cycles are shifted to"
         " a mean strain of {reference:.3%} before their curves are averaged",
     ),
+    "strain-jumps": (
+        "warning",
+        "the mean strain jumps by {size:+.3%} after cycle {number} ({effect:.0%} of the amplitude),"
+        " and the tension does not follow: an extensometer, a grip or a splice has slipped. Mean"
+        " strain and the place of every curve along the axis of strain are wrong by up to as much;"
+        " amplitudes and EA are not",
+    ),
+    "tension-jumps": (
+        "warning",
+        "the mean tension jumps by {size:+.4g} N after cycle {number} ({effect:.0%} of the"
+        " amplitude), and the strain does not follow: a grip or a splice has slipped, a part of the"
+        " specimen has failed, or the load cell was knocked. Mean tension and curves mix what lies"
+        " before it with what lies after it; reduce the two parts by themselves (steps)",
+    ),
     "bins-of-some-cycles": (
         "refusal",
         "specimen {place} of the record: curves are given at {n_given} of {n_bins} strains (both"
@@ -847,6 +882,11 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "pull-rate-uneven": (
         "note",
         "the strain rate varies from {low:.2g} to {high:.2g} 1/s between quarters of the range",
+    ),
+    "pull-not-slow": (
+        "warning",
+        "the slow pull is not slow beside the relaxation that the loops show: K_0 is wrong by up to"
+        " {effect:.1%}, and K_1 and tau with it. Their intervals carry it. Pull more slowly",
     ),
     "pull-length-not-stated": ("note", "the length at which strain is zero is not stated"),
     "pull-off-zero": (

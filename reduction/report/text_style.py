@@ -495,6 +495,7 @@ _LOOKS: dict[str, tuple[str, str]] = {
     "gauge_length": (_GREEN, "."),
     "diameter": (_VERMILION, ""),
     "quasi_static_fit": (_SKY, ""),
+    "pull_rate": (_SKY, "/"),
     "temperature": (_VERMILION, "/"),
     "attached_mass": (_PURPLE, "/"),
     "linear_density": (_PURPLE, "x"),
@@ -511,6 +512,7 @@ FROM_READINGS = frozenset(
         "splice_friction",
         "window",
         "quasi_static_fit",
+        "pull_rate",
         "gauge_length",
     }
 )
@@ -529,6 +531,7 @@ _MEANINGS = {
     "gauge_length": "length that strain is a share of",
     "strain_gain": "what the strain method itself may miss",
     "quasi_static_fit": "fit of the slow pull that gives K_0",
+    "pull_rate": "a slow pull that is not slow beside the relaxation of the loops",
     "temperature": "stiffness at the temperature of the test",
     "attached_mass": "inertia of what moves with a moving load cell",
     "linear_density": "inertia of the specimen itself",

@@ -208,12 +208,12 @@ def _at_corner(
     seconds, place = time[low:high] - time[end], values[low:high]
     known = np.isfinite(place)
     rising = known & (seconds <= 0)
-    if np.count_nonzero(rising) < _FEWEST_ON_LINE:
+    if np.count_nonzero(rising) < _FEWEST_ON_LINE or not np.ptp(seconds[rising]) > 0:
         return end
     slope, level = np.polyfit(seconds[rising], place[rising], 1)
     early = chord * min(2 * SLOW_SHARE * rate / max(abs(slope), SLOW_SHARE * rate), 1.0)
     standing = known & (seconds >= early)
-    if np.count_nonzero(standing) < _FEWEST_ON_LINE:
+    if np.count_nonzero(standing) < _FEWEST_ON_LINE or not np.ptp(seconds[standing]) > 0:
         return end
     later_slope, later_level = np.polyfit(seconds[standing], place[standing], 1)
     if slope == later_slope:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,6 +26,10 @@ _SERIOUS = 0.01
 
 _COVERED = 2.0  # stated standard uncertainties
 
+_NO_PUSH = 0.1  # of the first reading at slack, below zero
+
+_STIFFER = 3.0  # near slack than over the whole stretch: a rubber, whose stiffness falls at first
+
 _MOST = 4096  # samples that say whether load rises with stretch
 
 
@@ -35,6 +40,7 @@ class LoadAtSlack:
     ``load`` [N] and ``standard_uncertainty`` [N] by noise and resolution; ``n_rests`` how many
     there are, ``earlier`` and ``later`` [N] the two means over the last quarter of one that differ
     most, in order of time: a load that was logged late or filtered has come to rest by then.
+    ``drift`` [N] is what of their difference nothing but a moving zero explains.
     """
 
     load: float
@@ -42,11 +48,26 @@ class LoadAtSlack:
     n_rests: int
     earlier: float
     later: float
+    drift: float = 0.0
 
     @property
     def is_beyond_noise(self) -> bool:
         """Whether it is no zero."""
         return abs(self.load) > _BEYOND * self.standard_uncertainty
+
+    def drift_uncertainty(self, offset_uncertainty: float) -> float:
+        """What a drift adds to the uncertainty of the zero; nothing where that holds it. [N].
+
+        While it was loaded the zero was anywhere between its two readings: an error of none to all
+        of the drift, all equally likely, has the mean square of a third of its square.
+
+        Examples
+        --------
+        >>> rest = LoadAtSlack(0.0, 0.01, 1, 0.0, 0.0, drift=3.0)
+        >>> print(round(rest.drift_uncertainty(1.0), 3), rest.drift_uncertainty(2.0))
+        1.732 0.0
+        """
+        return abs(self.drift) / 3**0.5 if abs(self.drift) > _COVERED * offset_uncertainty else 0.0
 
 
 def stands_at_slack_length(standstills: Standstills, is_slack: Bools) -> Bools:
@@ -69,12 +90,15 @@ def stands_at_slack_length(standstills: Standstills, is_slack: Bools) -> Bools:
     return np.asarray(is_slack | (place <= reached + standstills.position_tolerance))
 
 
-def load_at_slack(tension: Floats, standstills: Standstills, is_slack: Bools) -> LoadAtSlack | None:
+def load_at_slack(
+    tension: Floats, standstills: Standstills, is_slack: Bools, *, stroke: float = np.nan
+) -> LoadAtSlack | None:
     r"""Mean load of one specimen over the standstills in which it is slack.
 
     .. math:: u^2 = \frac{\sigma^2}{n} + \frac{q^2}{12}
 
-    None where it is slack in none of them, or nothing can be read there.
+    None where it is slack in none of them, or nothing can be read there.  ``stroke`` [m] is that of
+    the log; without it a load that rises where the crosshead is further out is no drift.
 
     Notes
     -----
@@ -94,13 +118,17 @@ def load_at_slack(tension: Floats, standstills: Standstills, is_slack: Bools) ->
     -14.4 True
     """
     sums: list[tuple[float, int]] = []
-    ends: list[float] = []
-    for first, last in zip(standstills.first[is_slack], standstills.last[is_slack], strict=True):
+    ends: list[_End] = []
+    for first, last, place in zip(
+        standstills.first[is_slack], standstills.last[is_slack],
+        standstills.mean_position[is_slack].tolist(), strict=True,
+    ):  # fmt: skip
         loads = tension[first : last + 1]
         loads = loads[np.isfinite(loads)]
         if loads.size:
             sums.append((float(loads.mean()), int(loads.size)))
-            ends.append(float(loads[-max(loads.size // 4, 1) :].mean()))
+            quarter = max(loads.size // 4, 1)
+            ends.append(_End(place, float(loads[-quarter:].mean()), quarter))
     if not sums or np.count_nonzero(np.isfinite(tension[: 2 * _MOST])) < 8:
         return None
     means, counts = np.array([one for one, _ in sums]), np.array([n for _, n in sums])
@@ -108,11 +136,41 @@ def load_at_slack(tension: Floats, standstills: Standstills, is_slack: Bools) ->
     own = noise / np.sqrt(counts.sum())
     # noise of a step or more blurs the steps, and the mean is finer than one of them
     step = quantum / 12**0.5 if noise < quantum else 0.0
-    earlier, later = sorted((int(np.argmin(ends)), int(np.argmax(ends))))
+    readings = [one.load for one in ends]
+    earlier, later = sorted((int(np.argmin(readings)), int(np.argmax(readings))))
+    stiffness = finite_extremes(tension)[1] / stroke if stroke > 0 else np.inf
     return LoadAtSlack(
         float(np.average(means, weights=counts)), float(np.hypot(own, step)), len(sums),
-        ends[earlier], ends[later],
+        ends[earlier].load, ends[later].load,
+        drift=_moved(ends[earlier], ends[later], _STIFFER * stiffness, noise, step),
     )  # fmt: skip
+
+
+class _End(NamedTuple):
+    """The end of a slack rest: its place [m], the mean load there [N], and of how many samples."""
+
+    place: float
+    load: float
+    n_samples: int
+
+
+def _moved(earlier: _End, later: _End, stiffness: float, noise: float, step: float) -> float:
+    """By how much the zero has moved between two slack rests, where nothing else explains it. [N].
+
+    A specimen that has been stretched since pulls at no more than before, and none pushes: a load
+    that rises, or falls below zero, is of the load cell.  A rest further out may pull by that much
+    stretch.  A load that falls towards zero may be of a specimen that became longer.
+    """
+    if later.load > earlier.load:
+        further = later.place - earlier.place
+        pulled = stiffness * further if further > 0 else 0.0
+        moved = max(later.load - earlier.load - pulled, 0.0)
+    elif later.load < -_NO_PUSH * earlier.load:
+        moved = later.load - earlier.load
+    else:
+        moved = 0.0
+    own = np.sqrt(noise**2 * (1 / earlier.n_samples + 1 / later.n_samples) + 2 * step**2)
+    return moved if abs(moved) > _BEYOND * own else 0.0
 
 
 def rises_with_stretch(position: Floats, tension: Floats) -> bool:
@@ -168,16 +226,18 @@ def notes_on_zero(
             # which zero is right the log does not say
             if middle < -_SERIOUS * (high - low):
                 notes.append(note("load-negative", name, load=middle, least=low))
-        elif rest.is_beyond_noise:
+        else:
             reach = max(high - rest.load, rest.load - low)
             said = {"load": rest.load, "n_rests": rest.n_rests, "zero": zero}
             serious = max(_SERIOUS * reach, _COVERED * offset_uncertainty)
-            drift = rest.later - rest.earlier
-            if abs(drift) > serious:
-                notes.append(note("load-zero-drifts", name, earlier=rest.earlier,
-                                  later=rest.later, effect=drift / reach))  # fmt: skip
-            elif abs(rest.load) > serious:
+            change = rest.later - rest.earlier
+            if abs(change) > serious:
+                notes.append(note("load-zero-drifts", name, earlier=rest.earlier, later=rest.later,
+                                  effect=change / reach, carried=rest.drift))  # fmt: skip
+            elif abs(rest.load) > serious and rest.is_beyond_noise:
                 notes.append(note("load-zero-wrong", name, effect=rest.load / reach, **said))
-            else:
+            elif rest.is_beyond_noise:
                 notes.append(note("load-zero-off", name, **said))
+            if abs(change) <= serious and rest.drift_uncertainty(offset_uncertainty):
+                notes.append(note("load-zero-drifted", name, drift=rest.drift))
     return tuple(notes)

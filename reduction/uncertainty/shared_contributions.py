@@ -82,6 +82,7 @@ from reduction.stages.three_parameter_line.rope_programme import (
 )
 from reduction.stages.three_parameter_line.slow_pull import (
     BREAK_SHARES,
+    error_of_pull_rate,
     quasi_static_spring_constant,
     strain_at_tension,
     tension_grid,
@@ -1149,7 +1150,12 @@ def _compliance_slope(pull: SlowPull, tension: Floats) -> Floats:
 
 
 def _quasi_static_contributions(
-    pull: SlowPull, origin: PullOrigin, tension: Floats, of_mean_tension: Contributions
+    pull: SlowPull,
+    origin: PullOrigin,
+    tension: Floats,
+    of_mean_tension: Contributions,
+    line: LineParameters,
+    index: int,
 ) -> Contributions:
     """K_0 at the mean tension of a run, which has its own errors, on a pull that has others."""
     field, constant = _at(pull, origin.errors, origin.model, tension)
@@ -1164,7 +1170,13 @@ def _quasi_static_contributions(
     )
     errors = origin.errors
     name = f"{errors.specimen}, {errors.test}" if errors.test else errors.specimen
-    return added([at_tension, along, fit_contributions(pull, tension, of=name)])
+    by_rate = error_of_pull_rate(
+        pull, float(tension),
+        spring_constant=float(line.dissipation_spring_constant[index]),
+        relaxation_time=float(line.relaxation_time[index]),
+    )  # fmt: skip
+    of_rate = Contributions((Component("pull_rate", name),), {_K_0: np.array([by_rate])})
+    return added([at_tension, along, fit_contributions(pull, tension, of=name), of_rate])
 
 
 def _of_pull(
@@ -1393,7 +1405,7 @@ def _of_specimen(
         if test.line_of_test is not None and pull is not None:
             rest = _quasi_static_contributions(
                 pull, origin or PullOrigin(errors, model),
-                np.asarray(summary.mean_tension[index]), of_loop,
+                np.asarray(summary.mean_tension[index]), of_loop, test.line_of_test, index,
             )  # fmt: skip
             yield _named(rest, "test_")
             line = test.line_of_test
@@ -1420,13 +1432,15 @@ def _contributions_to_cycles(
     parts = [of_loop]
     if part.end_moduli is not None:
         parts += _of_ends(part, index, errors, float(areas_of(test.specimens)[index]))
-    if part.line is not None and test.amplitude is not None and pull is not None:
+    line, amplitude = test.line_of_test, test.amplitude
+    if part.line is not None and line is not None and amplitude is not None and pull is not None:
         rest = _quasi_static_contributions(
             pull, origin or PullOrigin(errors, model),
-            np.asarray(test.amplitude.mean_tension[index]),
+            np.asarray(amplitude.mean_tension[index]),
             _of_loops(
-                test.amplitude, index, errors, model, test.cycles, cycles, _train_of(test)
+                amplitude, index, errors, model, test.cycles, cycles, _train_of(test)
             ),
+            line, index,
         )  # fmt: skip
         of_both = _of_loops(
             part.loops, index, errors, model, part.cycles, cycles, _train_of(test), line=part.line

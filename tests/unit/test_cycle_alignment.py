@@ -9,6 +9,7 @@ from reduction.stages.moduli.cycle_alignment import (
     aligned_strain,
     alignment_moves,
     is_shift_of_curve,
+    jump_of_mean,
     strain_shifts,
 )
 from reduction.stages.moduli.segments import find_segments
@@ -129,3 +130,27 @@ def test_shifts_of_cycles_without_a_mean_strain_are_those_beside():
     np.testing.assert_allclose(shift, [[-0.1, -0.1, 0.0, 0.1], [0, 0, 0, 0]], atol=1e-15)
     assert reference[0] == pytest.approx(0.2)
     assert np.isnan(reference[1])
+
+
+def of_creeping_cycles(seed, jump=0.0, n=20, inside=False):
+    """Mean strain by creep in the logarithm of the cycles, with noise; others as they are."""
+    rng = np.random.default_rng(seed)
+    strain = 0.03 + 1e-4 * np.log(np.arange(1.0, n + 1)) + rng.normal(0, 2e-6, n)
+    strain += jump * (np.arange(n) >= n // 2) + inside * jump / 2 * (np.arange(n) == n // 2 - 1)
+    tension = 1000 + rng.normal(0, 0.3, n)
+    return strain, tension, np.full(n, 6e4), np.full(n, 5e-3)
+
+
+def test_a_slip_between_two_cycles_is_found_and_creep_is_none():
+    alarms = sum(jump_of_mean(*of_creeping_cycles(seed)) is not None for seed in range(300))
+    assert alarms == 0
+    for inside in (False, True):
+        for seed in range(20):
+            number, size = jump_of_mean(*of_creeping_cycles(seed, -1e-3, inside=inside))
+            assert number in (9, 10)
+            assert size == pytest.approx(-1e-3, rel=0.05)
+
+
+def test_a_level_that_was_asked_for_is_no_slip():
+    strain, tension, slope, amplitude = of_creeping_cycles(3, 1e-3)
+    assert jump_of_mean(strain, tension + 60 * (np.arange(20) >= 10), slope, amplitude) is None

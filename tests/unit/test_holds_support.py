@@ -141,7 +141,8 @@ def test_the_initial_tension_is_that_of_the_end_of_the_ramp(relaxation_time):
     series = 300 + 100 * np.exp(-TIME / relaxation_time)
     ends = _hold_ends(hold(series, noise=0.3))
     assert abs(ends.initial - 400) < 3 * ends.initial_uncertainty
-    assert ends.initial_uncertainty < 2
+    # what the term loses in half a step of the log, 0.1 s, and a newton
+    assert ends.initial_uncertainty < 100 * 0.05 / relaxation_time + 1
 
 
 def test_the_end_of_a_slow_ramp_is_known_to_where_it_slowed_down():

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from reduction.readers.columns import clock_to_seconds
+from reduction.readers.record_in_si import _between_ticks
 from reduction.record.errors import LogError
 
 LOG = Path("log.csv")
@@ -64,3 +65,29 @@ def test_a_date_in_some_rows_is_refused():
 def test_a_date_with_slashes_or_of_no_day_is_refused(text):
     with pytest.raises(LogError, match=f"a reading is not a clock time; found '{text}'"):
         seconds(text)
+
+
+def test_rows_of_one_second_are_spread_evenly_where_the_clock_agrees():
+    true = 12.3 + 0.1 * np.arange(900)
+    load = {"tension.1": np.sin(true)}
+    spread, [told] = _between_ticks(np.floor(true), load)
+    assert told.code == "clock-coarse"
+    # a clock that cuts off is half a second early, in all rows alike
+    assert np.ptp(spread - true) < 0.01
+    # a pause breaks the even rate: rows are known to the second that they stand in
+    paused = true + 7.0 * (np.arange(900) > 450)
+    spread, [told] = _between_ticks(np.floor(paused), load)
+    assert told.code == "clock-coarse-uneven"
+    assert told.severity == "warning"
+    assert np.abs(spread - paused).max() < 1.0
+    assert (np.diff(spread) > 0).all()
+
+
+def test_rows_that_are_written_twice_and_fine_clocks_are_left_alone():
+    twice = np.repeat(np.arange(400.0), 2)
+    load = np.repeat(np.sin(np.arange(400.0)), 2)
+    kept, told = _between_ticks(twice, {"tension.1": load})
+    assert kept is twice
+    assert told == ()
+    fine = 0.1 * np.arange(900)
+    assert _between_ticks(fine, {"tension.1": np.sin(fine)})[1] == ()

@@ -10,6 +10,7 @@ from reduction.stages.three_parameter_line.slow_pull import (
     _greatest_fall,
     _positive_range,
     _printed_form,
+    error_of_pull_rate,
     fit_pull,
     quasi_static_of_run,
     quasi_static_spring_constant,
@@ -370,3 +371,46 @@ def test_a_curve_that_is_no_cubic_is_named_as_none_to_design_by():
     time, strain, load = rising(seed=3, noise=5.0)
     smooth = fit_pull(time, strain, load, waiting="a day", reference_length=1.0)
     assert smooth.misfit_share < 0.001 and tuple(map(str, smooth.notes)) == ()
+
+
+def pulled(duration, *, spring=6e4, tau=5.0, top=12000.0):
+    """A pull at constant rate of tension: nonlinear spring beside a spring and a dashpot."""
+    time = np.linspace(0.0, duration, 20_001)
+    step, load = time[1], top * time / duration
+    strain, held, at = np.zeros(time.size), 0.0, 0.0
+    for row in range(1, time.size):
+        kept = np.exp(-step / tau)
+        gained = spring * tau / step * (1 - kept)
+        # T = A e + B e^2 + q, with q of the step before
+        a, b = 3.4e4, 1.7e5
+        linear = a + 2 * b * at + gained
+        constant = a * at + b * at**2 + kept * held - load[row]
+        change = (-linear + np.sqrt(linear**2 - 4 * b * constant)) / (2 * b)
+        held, at = kept * held + gained * change, at + change
+        strain[row] = at
+    return time, strain, load
+
+
+def test_the_error_of_a_pull_that_is_not_slow_is_of_the_size_that_is_carried():
+    at = np.array([3500.0, 6000.0, 8500.0])
+    # K_0 of the spring alone: T = A e + B e^2 has the slope sqrt(A^2 + 4 B T)
+    true = np.sqrt(3.4e4**2 + 4 * 1.7e5 * at)
+    size = []
+    for duration in (20.0, 600.0):
+        pull = fit_pull(*pulled(duration))
+        found, of_fit = quasi_static_spring_constant(pull, at)
+        told = np.array(
+            [error_of_pull_rate(pull, one, spring_constant=6e4, relaxation_time=5.0) for one in at]
+        )
+        assert (np.abs(found - true) < 1.96 * np.hypot(told, of_fit)).all()
+        share = told / found
+        size.append(share.max())
+    # a thirtieth of the rate has a fraction of the error
+    assert size[0] > 0.1
+    assert size[1] < size[0] / 5
+
+
+def test_without_a_relaxation_a_pull_is_slow():
+    pull = fit_pull(*pulled(20.0))
+    assert error_of_pull_rate(pull, 6e3, spring_constant=np.nan, relaxation_time=np.nan) == 0
+    assert error_of_pull_rate(pull, 6e9, spring_constant=6e4, relaxation_time=5.0) == 0

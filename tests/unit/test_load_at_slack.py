@@ -88,7 +88,8 @@ def test_without_a_rest_the_zero_is_not_known():
     ],
 )
 def test_a_zero_that_drifts_between_the_rests_is_said_with_its_size(earlier, later, words):
-    rest = LoadAtSlack((earlier + later) / 2, 0.035, 2, earlier, later)
+    drift = 0.0 if 0 < later < earlier else later - earlier
+    rest = LoadAtSlack((earlier + later) / 2, 0.035, 2, earlier, later, drift)
     found = notes_on_zero(["new"], PLACE, np.array([400 * PLACE]), [rest], ["0 N"])
     drifts = [one for one in found if one.code == "load-zero-drifts"]
     assert len(drifts) == (words is not None)
@@ -97,6 +98,13 @@ def test_a_zero_that_drifts_between_the_rests_is_said_with_its_size(earlier, lat
         assert f"reads {earlier:.3g} N at slack and later {later:.3g} N" in str(drifts[0])
         # the one value of zero that would be told is wrong at both
         assert not any(one.code.startswith("load-zero-wrong") for one in found)
+
+
+def test_a_load_that_falls_towards_zero_is_told_and_not_carried():
+    load = np.concatenate([np.full(300, 6.0), np.full(300, 400.0), np.full(300, 0.2)])
+    found = load_at_slack(load, rests((0, 299), (600, 899)), np.array([True, True]), stroke=1.0)
+    assert (found.earlier, found.later) == pytest.approx((6.0, 0.2))
+    assert found.drift == 0.0
 
 
 def test_the_drift_is_that_of_the_readings_at_the_ends_of_the_rests():
@@ -126,3 +134,39 @@ def test_what_was_slack_at_a_length_is_slack_there_whatever_is_read():
     assert not stands_at_slack_length(stands, np.zeros(5, dtype=bool)).any()
     later = np.array([False, False, True, False, False])
     assert stands_at_slack_length(stands, later).tolist() == [False, False, True, True, False]
+
+
+def log_with_drift(drift, *, last_place=0.0, gain=400.0):
+    """A rest, a stretch and a rest; the zero moves evenly by the drift over the log."""
+    place = np.interp(np.arange(900), [0, 300, 450, 600, 899], [0, 0, 1, last_place, last_place])
+    share = np.arange(900) / 899
+    noise = np.random.default_rng(5).normal(0, 0.5, 900)
+    load = np.maximum(gain * (place - 0.05), 0.0) + drift * share + noise
+    stands = rests((0, 299), (600, 899))
+    return load, Standstills(**vars(stands) | {"mean_position": np.array([0.0, last_place])})
+
+
+@pytest.mark.parametrize("drift", [9.0, -9.0])
+def test_a_zero_that_moves_is_told_by_the_rests_at_one_length(drift):
+    load, stands = log_with_drift(drift)
+    found = load_at_slack(load, stands, np.array([True, True]), stroke=1.0)
+    # from the last quarter of the first third to that of the last: two thirds of it
+    assert found.drift == pytest.approx(drift * 2 / 3, abs=abs(drift) / 6 + 0.2)
+    peak = notes(load, found, offset=1.0)
+    assert "load-zero-drifts" in peak
+    # what is stated of the zero holds it
+    assert not any("drift" in one for one in notes(load, found, offset=20.0))
+    # an error of none to all of it, evenly spread
+    assert found.drift_uncertainty(1.0) == pytest.approx(abs(found.drift) / 3**0.5)
+
+
+def test_a_rest_that_is_stretched_or_noisy_is_no_drift():
+    # at 0.009 of the stroke further out a specimen that bears there reads 3.6 N
+    load, stands = log_with_drift(0.0, last_place=0.009)
+    load[600:] += 3.6
+    assert load_at_slack(load, stands, np.array([True, True]), stroke=1.0).drift == 0.0
+    load, stands = log_with_drift(0.0)
+    assert load_at_slack(load, stands, np.array([True, True]), stroke=1.0).drift == 0.0
+    # without a rest before the first stretch nothing is known
+    load, stands = log_with_drift(9.0)
+    assert load_at_slack(load, stands, np.array([False, True])).drift == 0.0

@@ -86,7 +86,13 @@ from reduction.stages.cycles.periods import (
     time_of_sample,
     touching,
 )
-from reduction.stages.cycles.turns import Turn, kind_of_turns, level_of_turn, noise_in_extreme
+from reduction.stages.cycles.turns import (
+    Turn,
+    kind_of_turns,
+    level_of_turn,
+    missed_by_extreme,
+    noise_in_extreme,
+)
 
 _EIGHTH_ORDER = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
 
@@ -897,7 +903,7 @@ def _quantities_of_cycles(
         else:
             u_half = u_extreme / np.sqrt(2)
             u_strain = np.hypot(strain_noise, missed * strain_amplitude) / np.sqrt(2)
-            if turn != "rounded":
+            if turn != "rounded":  # of one cycle the turn lies anywhere between two samples
                 u_half = np.hypot(u_half, row["force_missed"] / np.sqrt(12))
                 u_strain = np.hypot(u_strain, row["strain_missed"] / np.sqrt(12))
             # a missed turn takes the same share off both amplitudes; only noise is left
@@ -907,7 +913,8 @@ def _quantities_of_cycles(
                 (strain_drift, amplitude) if control == "load" else (force_drift, strain_amplitude)
             )
             # tips that lie between samples are in neither
-            logged = own - row["force_missed" if control == "load" else "strain_missed"] / 2
+            tips = 0.0 if turn == "rounded" else 0.5
+            logged = own - tips * row["force_missed" if control == "load" else "strain_missed"]
             in_phase = (row["phase_work"] + drift * row["phase_sine"]) / (np.pi * logged)
             quadrature = energy / (np.pi * own**2)
             if control == "load":
@@ -1110,8 +1117,9 @@ def _readings_at_turns(
     """Greatest reading near each peak, least ones near both valleys, and what they miss.
 
     A turn between two samples lies above the readings, and below where the lines beside it cross,
-    since no machine turns at once: half way, and half the range is missed by as much again.  A
-    series of way -1 falls where the driven channel rises.
+    since no machine turns at once: half way, and half the range is missed by as much again.  Of a
+    turn that is rounded over samples the readings miss less.  A series of way -1 falls where the
+    driven channel rises.
     """
     values = way * series
     begin, peak, end = branch_first[:, 0], branch_last[:, 0], branch_last[:, 1]
@@ -1130,6 +1138,11 @@ def _readings_at_turns(
         above = level_of_turn(values, peak, top, sign=1) - top
         below = last - level_of_turn(values, end, last, sign=-1)
         top, last, missed = top + above / 2, last - below / 2, (above + below) / 2
+    elif turn == "rounded":
+        above = missed_by_extreme(values, peak, top, sign=1)
+        below = missed_by_extreme(values, end, last, sign=-1)
+        # the readings are the lower end of it, and not its middle
+        missed = np.full(top.size, np.nanmedian(above + below))
     elif turn == "hidden":  # at most what lines of these ramps add where they cross half way
         missed = (top - (first + last) / 2) / (end - begin)
     return way * top, way * first, way * last, missed

@@ -181,7 +181,8 @@ def kind_of_turns(driven: Floats, peak: Integers, *, noise: float) -> Turn:
     Returns
     -------
     kind : {"sharp", "hidden", "rounded"}
-        Hidden where the steps beside the turn are within three times the noise. [-]
+        Hidden where the steps beside the turn are within three times the noise, and where noise
+        may be what rounds them or does not. [-]
 
     Raises
     ------
@@ -206,7 +207,9 @@ def kind_of_turns(driven: Floats, peak: Integers, *, noise: float) -> Turn:
     rise, fall = level[:, 1] - level[:, 0], level[:, 3] - level[:, 4]
     step = np.median(np.minimum(rise, fall))
     rounded = np.median(np.minimum(level[:, 1] + rise, level[:, 3] + fall) - level[:, 2])
-    if not step > _CLEAR * noise:
+    # of a median over turns, of two readings before less one before and one at the turn
+    unknown = 1.25 * 6**0.5 * noise / some.size**0.5
+    if not step > _CLEAR * noise or abs(rounded - _ROUNDED * step) < unknown:
         return "hidden"
     return "sharp" if rounded < _ROUNDED * step else "rounded"
 
@@ -244,6 +247,65 @@ def level_of_turn(values: Floats, turn: Integers, extreme: Floats, *, sign: int)
     >>> print(level_of_turn(wave, np.array([5]), wave[[5]], sign=1))
     [100.]
     """
+    crossing, offset, *_ = _crossing(values, turn, sign=sign)
+    known = np.isfinite(offset)
+    return np.asarray(sign * np.where(known, np.maximum(crossing, sign * extreme), sign * extreme))
+
+
+def missed_by_extreme(values: Floats, turn: Integers, extreme: Floats, *, sign: int) -> Floats:
+    """By how much the extreme reading may miss a turn that is rounded over a sample or two.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        A series. [any]
+    turn : ndarray of int, shape (n_turns,)
+        Samples next to which it turns. [1]
+    extreme : ndarray, shape (n_turns,)
+        Readings. [any]
+    sign : {1, -1}
+        1 of peaks, -1 of valleys. [1]
+
+    Returns
+    -------
+    missed : ndarray, shape (n_turns,)
+        The greater of what a parabola through three readings has above them and of what the
+        steeper way to the crossing of the lines beside adds; at most the crossing, 0 where no
+        lines cross. [any]
+
+    Raises
+    ------
+    ValueError
+        If the arrays differ in length.
+
+    Notes
+    -----
+    Where a rise is faster than the fall after it, a rounded turn lies after the corner of the two
+    lines, and a reading at the corner misses it: the parabola shows that.
+
+    Examples
+    --------
+    A parabola whose top is logged, and one that is logged a quarter of a sample beside it:
+
+    >>> place = np.arange(-5, 6)
+    >>> for beside in (0.0, 0.25):
+    ...     wave = -((place - beside) ** 2)
+    ...     print(missed_by_extreme(wave, np.array([5]), wave[[5]], sign=1))
+    [0.]
+    [0.0625]
+    """
+    crossing, offset, step, bow = _crossing(values, turn, sign=sign)
+    above = np.maximum(crossing - sign * extreme, 0.0)
+    most = np.maximum(step * np.abs(offset), bow)
+    return np.asarray(np.where(np.isfinite(offset), np.minimum(above, most), 0.0))
+
+
+def _crossing(values: Floats, turn: Integers, *, sign: int) -> tuple[Floats, ...]:
+    """Level at which the lines beside a turn cross, samples after the extreme, step on that side.
+
+    The last one is by how much the parabola through the extreme and its neighbours is above it.
+    NaN where no lines cross.
+    """
     window = turn[:, None] + np.arange(-_BESIDE, _BESIDE + 1)
     usable = (window[:, 0] >= 0) & (window[:, -1] < values.size)
     level = sign * values[np.clip(window, 0, values.size - 1)]
@@ -257,5 +319,9 @@ def level_of_turn(values: Floats, turn: Integers, extreme: Floats, *, sign: int)
         offset = (after + fall - before - rise) / (rise + fall)
         crossing = before + rise * (1 + offset)
     usable &= (rise > 0) & (fall > 0) & (np.abs(offset) <= 1)
-    found = np.where(usable, np.maximum(crossing, sign * extreme), sign * extreme)
-    return np.asarray(sign * found)
+    # a reading after the turn is on the way down
+    step = np.where(offset < 0, fall, rise)
+    bend = 2 * level[row, top] - before - after
+    with np.errstate(divide="ignore", invalid="ignore"):
+        bow = np.where(bend > 0, (after - before) ** 2 / (8 * bend), 0.0)
+    return crossing, np.where(usable, offset, np.nan), step, bow

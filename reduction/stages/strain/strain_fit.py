@@ -1370,8 +1370,9 @@ def _without_marks(
             + ("a gauge length" if gauge is None else "a position of zero strain"),
             needed="specimens.NAME.gauge_length or a displacement with reference_length"
             if gauge is None
-            else "a rest at slack, a displacement from slack (its reference_length read without "
-            "tension), or a reference_tension through which the log rises",
+            else "a rest at slack (no shorter than phases.minimum_duration), a displacement from "
+            "slack (its reference_length read without tension), or a reference_tension through "
+            "which the log rises",
         )
     spread = specimen.gauge_length_standard_uncertainty
     notes = [note("gauge-length-exact")] if spread is None else []

@@ -819,6 +819,63 @@ def spring_constant_ratio(
     return ratio, ratio * np.hypot(u_one / one, u_two / two)
 
 
+_EVEN = 1.5  # fastest over slowest rate of strain of a pull at constant rate of strain
+
+_STEPS_OF_PULL = 400
+
+
+def error_of_pull_rate(
+    pull: SlowPull, tension: float, *, spring_constant: float, relaxation_time: float
+) -> float:
+    r"""What a pull that is not slow beside the relaxation of the line makes K_0 wrong by. [N].
+
+    The spring and the dashpot that the loops show pull along: their tension q obeys
+    :math:`\dot q + q / \tau = K_1 \dot\varepsilon`.  K_0 is the slope of what is left of the pull.
+    Its share by which the two slopes differ, as a root mean square along the pull, is the error at
+    any tension: its sign changes on the way.  Zero where the loops have no K_1 and tau.
+
+    Notes
+    -----
+    An uncertainty and no correction: the tau of real lines grows with the period ([6]_), and loops
+    do not show it at the rate of a pull.  K_1 and tau hold the error that they are to tell.
+
+    Examples
+    --------
+    At constant strain rate v a backbone T = 2e4 e + 1e5 e^2 is read K_1 tau v too high:
+
+    >>> time = np.linspace(0, 400.0, 801)
+    >>> strain = 2.5e-4 * time
+    >>> load = 2e4 * strain + 1e5 * strain**2 + 4e4 * 5 * 2.5e-4 * (1 - np.exp(-time / 5))
+    >>> pull = fit_pull(time, strain, load)
+    >>> wrong = error_of_pull_rate(pull, 1000.0, spring_constant=4e4, relaxation_time=5.0)
+    >>> constant = (2e4**2 + 4e5 * 950) ** 0.5  # at 1000 N, of which 50 N are the dashpot's
+    >>> shift = (2e4**2 + 4e5 * 1000) ** 0.5 - constant
+    >>> print(bool(0.5 * shift < wrong < 4 * shift), round(wrong / constant, 2))
+    True 0.02
+    """
+    if not spring_constant > 0 or not relaxation_time > 0:
+        return 0.0
+    load = np.linspace(pull.tension_low, pull.tension_high, _STEPS_OF_PULL)
+    strain = strain_at_tension(pull, load)[0]
+    constant = float(quasi_static_spring_constant(pull, tension)[0])
+    if not np.isfinite(constant) or not np.isfinite(strain).all():
+        return 0.0
+    is_even = pull.strain_rate_fastest <= _EVEN * pull.strain_rate_slowest
+    step = np.diff(strain) / pull.strain_rate if is_even else np.diff(load) / pull.tension_rate
+    left = np.exp(-step / relaxation_time)
+    gained = spring_constant * relaxation_time * np.diff(strain) / step * (1 - left)
+    pulled = np.zeros(load.size)
+    for row in range(1, load.size):
+        pulled[row] = left[row - 1] * pulled[row - 1] + gained[row - 1]
+    alone = np.maximum.accumulate(load - pulled)
+    # at the ends of the range of use a slope has one neighbour, and what is left is not read there
+    rows = slice(load.size // 10, -load.size // 10)
+    at = load[rows][load[rows] < alone[-1]]
+    of_pull = quasi_static_spring_constant(pull, at)[0]
+    of_rest = np.interp(at, alone, np.gradient(alone, strain))
+    return constant * float(np.sqrt(np.mean((of_rest / of_pull - 1) ** 2))) if at.size else constant
+
+
 def quasi_static_of_run(
     loops: Loops, pulls: Sequence[SlowPull | None], *, break_in_cycles: int = 0
 ) -> tuple[Floats, Floats, tuple[Note, ...]]:
