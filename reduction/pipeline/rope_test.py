@@ -42,6 +42,7 @@ from reduction.stages.three_parameter_line.slow_pull import (
     MISFIT_NOTED,
     error_of_pull_rate,
     fit_pull,
+    is_short_pull,
     quasi_static_of_run,
 )
 
@@ -135,11 +136,23 @@ def parts_of_line(
             )
         ]
     )  # fmt: skip
-    of_rate = tuple(
-        note("pull-not-slow", pull.specimen, effect=abs(float(wrong / at)))
-        for pull, wrong, at, own in zip(pulls, by_rate, constant, spread, strict=True)
-        if pull is not None and abs(wrong) > _BEYOND * own
+    is_short = np.array(
+        [
+            pull is not None and is_short_pull(pull, tau)
+            for pull, tau in zip(pulls, of_test.relaxation_time.tolist(), strict=True)
+        ]
     )
+    of_rate = tuple(
+        note(
+            "pull-not-slow" if short else "pull-rate-matters", pull.specimen,
+            effect=abs(float(wrong / at)),
+        )
+        for pull, wrong, at, own, short in zip(
+            pulls, by_rate, constant, spread, is_short, strict=True
+        )
+        if pull is not None and abs(wrong) > _BEYOND * own
+    )  # fmt: skip
+    by_rate = np.where(is_short, by_rate, 0.0)
     spread = given["quasi_static_standard_uncertainty"] = np.hypot(spread, by_rate)
     of_test = identify_run(loops, break_in_cycles=settings.break_in_cycles, **given)
     line_of_cycles = identify_cycles(loops, **given)

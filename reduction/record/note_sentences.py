@@ -888,6 +888,11 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "the slow pull is not slow beside the relaxation that the loops show: K_0 is wrong by up to"
         " {effect:.1%}, and K_1 and tau with it. Their intervals carry it. Pull more slowly",
     ),
+    "pull-rate-matters": (
+        "note",
+        "K_0 is that of the rate of the slow pull: if K_1 and tau of the loops held at that rate,"
+        " it would be {effect:.1%} off what an endless pull gives",
+    ),
     "pull-length-not-stated": ("note", "the length at which strain is zero is not stated"),
     "pull-off-zero": (
         "note",

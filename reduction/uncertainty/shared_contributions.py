@@ -83,6 +83,7 @@ from reduction.stages.three_parameter_line.rope_programme import (
 from reduction.stages.three_parameter_line.slow_pull import (
     BREAK_SHARES,
     error_of_pull_rate,
+    is_short_pull,
     quasi_static_spring_constant,
     strain_at_tension,
     tension_grid,
@@ -1170,13 +1171,16 @@ def _quasi_static_contributions(
     )
     errors = origin.errors
     name = f"{errors.specimen}, {errors.test}" if errors.test else errors.specimen
+    found = added([at_tension, along, fit_contributions(pull, tension, of=name)])
+    tau = float(line.relaxation_time[index])
+    if not is_short_pull(pull, tau):
+        return found
     by_rate = error_of_pull_rate(
-        pull, float(tension),
+        pull, float(tension), relaxation_time=tau,
         spring_constant=float(line.dissipation_spring_constant[index]),
-        relaxation_time=float(line.relaxation_time[index]),
     )  # fmt: skip
     of_rate = Contributions((Component("pull_rate", name),), {_K_0: np.array([by_rate])})
-    return added([at_tension, along, fit_contributions(pull, tension, of=name), of_rate])
+    return added([found, of_rate])
 
 
 def _of_pull(

@@ -104,8 +104,8 @@ def jump_of_mean(
     Returns
     -------
     jump : tuple of int and float, or None
-        Number of the last cycle before it, from 1, and its size.  None where creep or relaxation
-        may be all there is.
+        Number of the last cycle before it, from 1, and its size; None where creep or relaxation
+        may be all there is. [1]
 
     Raises
     ------

@@ -824,6 +824,23 @@ _EVEN = 1.5  # fastest over slowest rate of strain of a pull at constant rate of
 _STEPS_OF_PULL = 400
 
 
+_SHORT = 10.0  # relaxation times of the loops, below which a pull is slow by no reading of them
+
+
+def is_short_pull(pull: SlowPull, relaxation_time: float) -> bool:
+    """Whether a pull takes less than ten relaxation times of the loops.
+
+    Examples
+    --------
+    >>> load = np.linspace(0, 2000.0, 400)
+    >>> pull = fit_pull(np.arange(400.0), load / 4e4, load)
+    >>> is_short_pull(pull, 5.0), is_short_pull(pull, 50.0)
+    (False, True)
+    """
+    duration = (pull.tension_high - pull.tension_low) / pull.tension_rate
+    return bool(duration < _SHORT * relaxation_time)
+
+
 def error_of_pull_rate(
     pull: SlowPull, tension: float, *, spring_constant: float, relaxation_time: float
 ) -> float:
@@ -836,8 +853,10 @@ def error_of_pull_rate(
 
     Notes
     -----
-    An uncertainty and no correction: the tau of real lines grows with the period ([6]_), and loops
-    do not show it at the rate of a pull.  K_1 and tau hold the error that they are to tell.
+    No correction: the tau of real lines grows with the period ([6]_), and loops do not show it at
+    the rate of a pull.  An uncertainty of a pull that is short beside it (`is_short_pull`); K_0 of
+    longer ones is that of their stated rate, and this is told.  K_1 and tau hold the error that
+    they are to tell.
 
     Examples
     --------
