@@ -457,10 +457,7 @@ def _described(line: LineSource) -> dict[str, Any]:
 def look_up_values(source: str, wanted: LookupRequest, *, output: CommandOutput) -> None:
     """Print design values; several values of a level, parted by commas, make a grid."""
     form = _form_of(wanted.out)
-    line = one_line_of(
-        find_lines(lines_of_source(source), **wanted.search), wanted.quantity, wanted.name
-    )
-    line = _in_conditions(line, wanted)
+    line = line_of_request(source, wanted)
     (points,), left_out = _points_of(wanted, line)
     if left_out:
         output.say("combinations whose amplitude is above the mean tension are left out")
@@ -484,9 +481,7 @@ def look_up_population(
     from reduction.lines.population import population_values, specimens_of_kind
 
     form = _form_of(wanted.out)
-    lines = find_lines(lines_of_source(source), **wanted.search)
-    having = [_in_conditions(line, wanted) for line in lines if wanted.quantity in line.quantities]
-    chosen = specimens_of_kind(having, wanted.quantity, wanted.name)
+    chosen = specimens_of_kind(lines_with(source, wanted), wanted.quantity, wanted.name)
     points, _ = _points_of(wanted, chosen[0], *chosen[1:])
     every = [
         look_up(line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **at)
@@ -568,13 +563,7 @@ def look_up_ranked(source: str, wanted: LookupRequest, *, output: CommandOutput)
     """Print lines in the order of a quantity at one load, ties marked."""
     from reduction.lines.line_rank import outside_words, rank_lines
 
-    lines = [
-        _in_conditions(line, wanted)
-        for line in find_lines(lines_of_source(source), **wanted.search)
-        if wanted.quantity in line.quantities and wanted.name in (None, line.name)
-    ]
-    if not lines:
-        raise SettingsError(f"no line has {wanted.quantity}", found=source, needed="two or more")
+    lines = lines_to_rank(source, wanted)
     points = [
         {name: float(_numbers(name, text, line)[0]) for name, text in wanted.levels.items()}
         for line in lines
@@ -651,6 +640,26 @@ def look_up_ranked(source: str, wanted: LookupRequest, *, output: CommandOutput)
             "errata": [one.id for one in found.errata],
         }
     )  # fmt: skip
+
+
+def line_of_request(source: str, wanted: LookupRequest) -> LineSource:
+    """The one line that is asked for, as it was tested in the conditions that are."""
+    lines = find_lines(lines_of_source(source), **wanted.search)
+    return _in_conditions(one_line_of(lines, wanted.quantity, wanted.name), wanted)
+
+
+def lines_with(source: str, wanted: LookupRequest) -> list[LineSource]:
+    """Lines that have the quantity, as they were tested in the conditions that are asked for."""
+    lines = find_lines(lines_of_source(source), **wanted.search)
+    return [_in_conditions(line, wanted) for line in lines if wanted.quantity in line.quantities]
+
+
+def lines_to_rank(source: str, wanted: LookupRequest) -> list[LineSource]:
+    """Those of `lines_with` that are meant; refused where there is none."""
+    lines = [one for one in lines_with(source, wanted) if wanted.name in (None, one.name)]
+    if not lines:
+        raise SettingsError(f"no line has {wanted.quantity}", found=source, needed="two or more")
+    return lines
 
 
 def _in_conditions(line: LineSource, wanted: LookupRequest) -> LineSource:

@@ -121,3 +121,25 @@ function answer({ line, quantity, levels, branch = null, flag = false, system = 
     return { refused: error.message, refusal: error, at };
   }
 }
+
+// Levels at which the tests of a rope were made, as the list of the command has them; null where
+// it is one test, or an experiment has fitted them.
+function tableOfLevels(line, system) {
+  const own = LINES.filter((one) => one.campaign && one.campaign === line.campaign
+    && one.specimens.some((name) => line.specimens.includes(name)));
+  const rows = own.flatMap((one) => one.levels.slice(0, 1).flatMap((levels) => levels.tests.map((test, place) => (
+    { levels, test, at: levels.at[place], value: levels.value[place], conditions: levels.conditions[place] ?? {} }))));
+  if (rows.length < 2 || own.some((one) => Object.keys(one.surfaces).length)) return null;
+  const { quantity, variables } = rows[0].levels;
+  const keys = distinct(rows.flatMap((one) => Object.keys(one.conditions)));
+  const [unit, factor] = displayUnit(unitOf(quantity), system), strength = line.rated_break_strength;
+  const cells = rows.map(({ test, at, value, conditions }) => {
+    const levels = levelCells(line, Object.fromEntries(variables.map((name, place) => [name, at[place]])), system);
+    return [["test", test], ...levels, [`${quantity.replaceAll("_", " ")}\n[${unit}]`, short(factor * value)],
+      ["\n[MBL]", short(value / strength, 3)], ...keys.map((key) => [key, conditions[key] ?? "-"])];
+  });
+  return {
+    intro: `Levels of ${line.specimens[0]}, each known where it was tested and between two of them`,
+    heads: cells[0].map(([head]) => head), rows: cells.map((row) => row.map(([, text]) => text)),
+  };
+}
