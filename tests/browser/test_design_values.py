@@ -387,7 +387,7 @@ def test_levels_of_an_own_rope_are_the_table_of_the_command(campaigns, tmp_path,
     shown = visit(write_design_page(tmp_path / "processed", tmp_path / "reports"))
     page = shown.page
     page.locator("input[name=units][value=us]").check()
-    page.locator("#line").select_option("rope/R05")
+    page.locator("#line").select_option("rope/R05 line-1")
     rows = page.get_by_role("region", name=heading).locator("tbody tr, table > tr")
     cells = rows.evaluate_all("all => all.map(one => [...one.cells].map(cell => cell.textContent))")
     found = [[cell.replace("\u202f", "") for cell in row] for row in cells[1:]]

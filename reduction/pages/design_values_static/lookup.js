@@ -38,11 +38,6 @@ function lookUp(line, quantity, levels, { branch = null, flag = false } = {}) {
     return valuesOfSurface(line, surface, levels, flag);
   }
   const known = line.curves.filter((one) => one.quantity === quantity);
-  if (!known.length && !surface && line.levels.some((one) => one.quantity === quantity)) {
-    throw new Refusal(`${quantity} of ${line.name} is known at the levels of its tests alone`, {
-      needed: "a level of the table below; the command interpolates between two of them",
-    });
-  }
   if (!known.length && !surface) {
     const why = line.absent[quantity];
     throw new Refusal(`${line.name} has no ${quantity}${why ? `: ${why}` : ""}`,
