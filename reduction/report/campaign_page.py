@@ -302,7 +302,7 @@ class CampaignPage:
         if not (self._keys or self._statuses or is_there(self._processed)):
             raise ArchiveError(
                 "there is nothing to report on",
-                found=f"no archive and no status.csv in {self._processed}",
+                found=f"neither an archive nor status.csv in {self._processed}",
                 needed="the folder of a campaign, such as processed/CAMPAIGN",
                 hint="Run the campaign first.",
             )

@@ -179,7 +179,7 @@ def test_lines_with_everything_at_once_have_the_answers_of_the_command(
     remarks = {
         part for one in wanted if "row" in one for part in dict(one["row"])["remark"].split("; ")
     }
-    assert {"OUTSIDE what was tested", "untested corner", "peak above the rule"} < remarks
+    assert {"OUTSIDE the tested range", "untested corner", "peak above the rule"} < remarks
 
 
 @pytest.fixture(scope="module")
@@ -317,7 +317,7 @@ def test_outside_what_was_tested_is_refused_with_what_was_tested(small, visit):
     assert "frequency 0.7 Hz, tested 0.1 to 0.5 Hz" in told
     assert shown.page.locator("[data-head]").count() == 0
     shown.page.locator("#flag").check()
-    assert "OUTSIDE what was tested" in shown.page.locator(".flags").inner_text()
+    assert "OUTSIDE the tested range" in shown.page.locator(".flags").inner_text()
     shown.page.locator("#level-frequency").fill("fast")
     assert "frequency is not a number" in shown.page.locator("#said").inner_text()
 
@@ -380,7 +380,7 @@ def test_levels_of_an_own_rope_are_the_table_of_the_command(campaigns, tmp_path,
     for name in ("R01.nc", "R02.nc", "R05.nc", "R11.nc", "status.csv"):
         shutil.copy(made / name, rope)
     said = reduction("lookup", rope, "--list", "--units", "us").stdout
-    heading = "Levels of line-1, each known where it was tested and between two of them"
+    heading = "Levels of line-1, known at tested levels and between two of them"
     _, _, table = said.partition(heading)
     wanted = [row.split() for row in table.splitlines() if row.startswith("R")]
     assert len(wanted) == 4

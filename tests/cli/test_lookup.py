@@ -287,7 +287,7 @@ def test_what_there_is(command):
         ),
         (("published", "--list", "--material", "steel"), 2, "no line is so; found material 'steel'"),
         (("published", "--tolerance", "3 %"), 2, "a tolerance needs a diameter"),
-        (("published", "--quantity", "relaxation_time", *LEVELS), 2, "a search that leaves one"),
+        (("published", "--quantity", "relaxation_time", *LEVELS), 2, "a search that matches one"),
         ((NYLON, "--quantity", "relaxation_time", *LEVELS, "--out", "a.xls"), 2, "says no format"),
         (
             (NYLON, "--quantity", "relaxation_time", "--against", "nylon-braid", *LEVELS), 2,
@@ -420,7 +420,7 @@ def test_kinds_are_told_apart_with_the_scatter_between_lines_alone(command):
     assert answer["kind_interval"][0] < 0 < answer["kind_interval"][1]
     text = command(*pair).stdout
     assert "not told apart" in text
-    assert "lines of this kind differ among each other by about 50 %" in text
+    assert "lines of this kind differ by about 50 %" in text
 
 
 def test_one_line_of_a_campaign_is_named_by_its_test_and_specimen(command, two_tests):

@@ -48,7 +48,7 @@ def test_a_stiffness_and_a_strain_have_names_of_their_own(tmp_path):
 
 
 def test_nothing_is_no_archive():
-    with pytest.raises(ArchiveError, match="there are no properties to keep"):
+    with pytest.raises(ArchiveError, match="there are no properties to store"):
         properties_to_dataset({}, {}, origin=ORIGIN)
 
 

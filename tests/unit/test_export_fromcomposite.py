@@ -33,7 +33,7 @@ def test_the_line_says_what_the_curve_is_made_of():
     assert line.sources == ("archive a", "linear density: stated at the export")
     told = " ".join(line.notes)
     assert "no piece between strain 1.2 and 1.4" in told
-    assert "more than one piece has a say at strain 0.8" in told
+    assert "several pieces contribute at strain 0.8" in told
     assert line.notes[-1] == "held is left out"
 
 

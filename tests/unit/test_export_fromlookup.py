@@ -18,7 +18,7 @@ def test_strain_over_tension_becomes_tension_over_strain():
     assert found.tested == pytest.approx((0.0, 0.24))
     assert found.viscoelasticity is None
     assert found.linear_density == 0.1
-    assert "errata that touch the curve: CG-8" in found.sources
+    assert "errata that apply to the curve: CG-8" in found.sources
     assert found.notes == ("wet",)
 
 
@@ -65,7 +65,7 @@ def test_outside_the_box_is_refused_or_flagged():
     with pytest.raises(DataError, match="outside what was tested"):
         line_from_lookup(source(), levels=levels)
     found = line_from_lookup(source(), levels=levels, extrapolate="flag")
-    assert any("OUTSIDE what was tested" in text for text in found.sources)
+    assert any("OUTSIDE the tested range" in text for text in found.sources)
 
 
 @pytest.mark.parametrize(

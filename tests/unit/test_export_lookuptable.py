@@ -71,7 +71,7 @@ def test_value_intervals_flags_and_errata_are_those_of_the_look_up(table, found)
         np.testing.assert_array_equal(column(table, name).values, expected)
     assert column(table, "interval_low").meaning.endswith("one more run of the same lines")
     # Table 11 prints the column of another quantity: CG-5
-    assert "errata that touch it: CG-5" in table.sources[0]
+    assert "errata that apply: CG-5" in table.sources[0]
     assert any(note.startswith("rule: peak at most 60 %") for note in table.notes)
     assert not table.is_synthetic
 

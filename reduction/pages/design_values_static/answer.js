@@ -26,7 +26,7 @@ function showRow(row) {
       last.append(", ", cell, " %RBS");
     } else if (head !== "remark") {
       last = element("dd");
-      last.append(cell, ` ${unit === "% of what it still has" ? "% of the strength it still has" : unit}`);
+      last.append(cell, ` ${unit === "% of residual strength" ? "% of the residual strength" : unit}`);
       at.append(element("dt", name), last);
     }
   }
@@ -57,7 +57,7 @@ function showRefusal(said, asked) {
   const texts = [refusal.found && `found ${refusal.found}`, refusal.needed && `needed ${refusal.needed}`, hint].filter(Boolean);
   box.append(element("p", "Refused", { class: "refused-title" }), element("p", refusal.problem), listOf(texts));
   if ((refusal.hint ?? "").includes(FLAG_HINT)) {
-    box.append(element("p", "“Outside what was tested too, flagged” gives the number and flags it.", { class: "small" }));
+    box.append(element("p", "“Allow values outside the tested range, flagged” gives the number and flags it.", { class: "small" }));
   }
   said.append(box);
 }
@@ -161,7 +161,7 @@ function showNotes(line, asked, found) {
   if (Number.isFinite(line.rated_break_strength)) {
     fact("%RBS is of", `${grouped(short(scale * line.rated_break_strength))} ${force}${line.strength_of ? ` (${line.strength_of})` : ""}`);
   }
-  if (Number.isFinite(line.tensile_strength)) fact("strength it still has", `${grouped(short(scale * line.tensile_strength))} ${force}`);
+  if (Number.isFinite(line.tensile_strength)) fact("residual strength", `${grouped(short(scale * line.tensile_strength))} ${force}`);
   notes.append(element("h3", "Source"), facts);
   if (found.found) {
     notes.append(element("h3", "Notes"), listOf(found.said.map((one) => one.replace(/^note: /, ""))));

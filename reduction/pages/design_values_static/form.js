@@ -118,7 +118,7 @@ function inUnit(line, name, value, unit) {
   return value / levelInSi(name, 1, unit, line.rated_break_strength);
 }
 
-// Fields of the levels; what was typed stays where the line has it inside what was tested.
+// Fields of the levels; what was typed stays where the line has it within the tested range.
 function makeLevels() {
   const line = chosenLine(), box = byId("levels");
   box.replaceChildren();
