@@ -333,7 +333,7 @@ def test_the_search_leaves_the_lines_that_are_so(small, visit):
     shown.page.locator("#filter-diameter").select_option("25.4 mm")
     assert shown.page.locator("#line option").all_inner_texts() == ["nylon-double-braid-1in-new"]
     shown.page.locator("#find").fill("rubber")
-    assert "No line has all of these" in shown.page.locator("#said").inner_text()
+    assert "No line matches all filters" in shown.page.locator("#said").inner_text()
 
 
 def test_the_form_is_reached_and_used_by_keys(small, visit):

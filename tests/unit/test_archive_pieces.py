@@ -233,7 +233,7 @@ def test_strain_models_that_differ_are_told():
     tests = [cyclic(), cyclic("T-2", 2, coefficients={"splice_exponent": 0.9})]
     found = source_of_tests(tests, "new", branch="mean")
     assert found.model.coefficients["splice_exponent"] == 0.8
-    assert "strain models of their own; lengths are by that of c/T-1" in found.notes[-1]
+    assert "different strain models; lengths follow that of c/T-1" in found.notes[-1]
 
 
 def test_tests_of_two_campaigns_keep_their_campaigns_names():

@@ -59,7 +59,9 @@ def test_the_header_has_the_stiffness_of_the_tests_beside_that_of_the_table():
         (said,) = (note for note in notes if note.startswith("EA of the tests"))
         assert ("table 400 N" in said) == (not is_doubtful)
         assert ("T-1 cycles 400 N (400 to 400), table 400 N, 160 to 600 N" in said) != is_doubtful
-        warned = [note for note in notes if note.startswith("DOUBTFUL: the table joins tests")]
+        warned = [
+            note for note in notes if note.startswith("DOUBTFUL: the table joins unlike tests")
+        ]
         assert bool(warned) == is_doubtful
 
 

@@ -73,7 +73,7 @@ def test_where_no_line_gives_back_the_loop_the_printed_one_stands_if_k_ap_is_in_
 @pytest.mark.parametrize(
     ("rest", "apparent", "energy", "message"),
     [
-        (2e4, 6e4, -1.0, "printed ones give another K_ap"),
+        (2e4, 6e4, -1.0, "printed ones give a K_ap different"),
         (6e4, 5e4, 5.0, "the storage spring constant does not exceed"),
         (2e4, 4.92e4, -1.0, "not above zero"),
     ],
@@ -115,7 +115,7 @@ def test_damping_whose_interval_holds_zero_is_doubtful():
     one.surfaces["apparent_spring_constant"] = surface(
         "apparent_spring_constant", apparent, sigma=0.1 * apparent
     )
-    assert any("the dashpot is hardly known" in text for text in line_dynamics(one, LEVELS).notes)
+    assert any("the dashpot is poorly known" in text for text in line_dynamics(one, LEVELS).notes)
     # K_1 and tau alone: sigma 10 s of 3 s, and none
     assert any("the dashpot may be none" in text for text in line_dynamics(source(), LEVELS).notes)
     alone = source()

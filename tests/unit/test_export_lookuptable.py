@@ -196,7 +196,7 @@ def test_a_table_says_of_which_branch_it_is():
 
 
 def test_faults_are_named(line, found):
-    with pytest.raises(SettingsError, match=r"says no format; found values.xls; needed .csv, "):
+    with pytest.raises(SettingsError, match=r"names no format; found values.xls; needed .csv, "):
         format_of_file(Path("values.xls"))
     with pytest.raises(SettingsError, match="levels of frequency are not those of the values"):
         table_of_values(line, found, {"frequency": np.zeros(2)})

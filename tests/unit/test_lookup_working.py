@@ -108,7 +108,7 @@ def test_sharing_that_makes_no_sense_is_refused():
         _worst_sharing(spring(), 1, 100.0, **given)
     with pytest.raises(SettingsError, match="tolerance is a share of the length"):
         _worst_sharing(spring(), 2, 100.0, free_length=1.0, tolerance=1.0)
-    with pytest.raises(DataError, match="without tension shares nothing"):
+    with pytest.raises(DataError, match="without tension shares no load"):
         _worst_sharing(spring(), 2, [100.0, 0.0], **given)
     with pytest.raises(DataError, match="beyond the curves of the assembly"):
         _worst_sharing(spring(), 2, 1000.0, **given)

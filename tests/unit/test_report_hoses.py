@@ -331,7 +331,7 @@ def test_construction_is_complete_with_ribbons_and_cords():
     same = hose_design_table(view(layer_diameter=(3.5 * INCH,) * 2, dead_length_share=0.04))
     names = [row[0].text for row in same.rows]
     assert "diameter of both cord layers [mm]" in names and len(same.remarks) == 1
-    assert not any("least bore that" in name for name in names)
+    assert not any("minimum bore" in name for name in names)
 
 
 def test_layers_that_carry_no_load_have_their_limits_angles_and_verdict():

@@ -265,7 +265,7 @@ def test_errors_are_drawn_on_decades_and_heavy_where_a_theory_holds(armour):
     share = (2.5 / 27.5) ** 2 / (4 * 1.3 * np.sin(angle))
     miss = numbers(lines["large angles, a spring"]["y"])
     np.testing.assert_allclose(miss, 100 * (1 - share), atol=2e-3)
-    assert "Over the torsion moment of the whole change" in torsion.caption
+    assert "Relative to the torsion moment of the whole change" in torsion.caption
 
 
 def test_a_cable_at_rest_has_a_page_all_the_same(armour, tmp_path):
