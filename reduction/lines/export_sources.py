@@ -755,8 +755,7 @@ def _strength(source: LineSource) -> tuple[float, str]:
     if left < source.rated_break_strength:
         return left, (
             f"break strength {plain_number(left)} N: residual strength in this condition; rated"
-            " when new "
-            f"{plain_number(source.rated_break_strength)} N"
+            f" when new {plain_number(source.rated_break_strength)} N"
         )
     return source.rated_break_strength, ""
 

@@ -540,8 +540,8 @@ def _differences(first: _Level, second: _Level) -> Iterator[str]:
     reached = second.of("earlier_maximum_strain")
     if reached > _LIKE_CONDITIONS * highest:
         yield (
-            f"stretched to {100 * reached:.0f} % in between, where {100 * highest:.0f} % was the"
-            " most before: softening by a greater stretch"
+            f"stretched to {100 * reached:.0f} % in between, at most {100 * highest:.0f} % before:"
+            " softening by the larger stretch"
         )
     cycles = second.of("earlier_cycles") - first.of("earlier_cycles")
     if cycles > 0:

@@ -171,7 +171,7 @@ def test_tests_of_one_specimen_that_differ_over_the_same_strains_stand_side_by_s
     assert [first[0], second[0]] == ["new", "used"]
     assert first[1:3] == ["early, late", "100 to 200"]
     assert first[5] == "0.500"
-    assert "stretched to 280 % in between, where 200 % was the most before" in first[6]
+    assert "stretched to 280 % in between, at most 200 % before" in first[6]
     assert "30 cycles" in first[6] and "strain amplitude and frequency alike" in first[6]
 
 
