@@ -256,9 +256,8 @@ def pull_table(tests: Sequence[TestView]) -> PageTable | None:
         " was reached.",
         columns, found, is_compact=True, is_tall=len(found) > _MOST_ROWS,
         remarks=[
-            plus_minus_of_tests(
-                factors_of(found), own,
-                [_FIRST_RISE, _PULLED, "pull_peak_tension", "interval_modulus"],
+            *_about_spread(
+                found, own, [_FIRST_RISE, _PULLED, "pull_peak_tension", "interval_modulus"]
             ),
             *(["EA of a slow pull of a rope: K_0, by its cubic."] if has_cubic else []),
         ],
@@ -380,8 +379,16 @@ def hold_table(tests: Sequence[TestView]) -> PageTable | None:
     return make_table(
         "Relaxation and creep: the longest hold of each test.",
         columns, found, is_compact=True, is_tall=len(found) > _MOST_ROWS,
-        remarks=[plus_minus_of_tests(factors_of(found), own, list(_OF_HOLD))],
+        remarks=_about_spread(found, own, _OF_HOLD),
     )  # fmt: skip
+
+
+def _about_spread(
+    rows: Sequence[Sequence[TableCell]], tests: Sequence[TestView], names: Sequence[str]
+) -> list[str]:
+    """Say what ± holds, where a number has one."""
+    factors = factors_of(rows)
+    return [plus_minus_of_tests(factors, tests, names)] if factors else []
 
 
 _OF_HOLD = (
