@@ -129,7 +129,7 @@ def test_the_constant_of_a_regression_is_no_slack(constant, join, doubt):
     assert found.tension[0] == pytest.approx(join)
     assert found.strain[0] == pytest.approx(constant + 1e-4 * join)
     assert found.tested == pytest.approx((constant + 1e-4 * join, constant + 0.4))
-    (said,) = (note for note in found.notes if "constant of its fit" in note)
+    (said,) = (note for note in found.notes if "constant of the fit" in note)
     assert said.startswith("DOUBTFUL") == doubt
     assert f"{100 * constant:.2g} m in 100 m" in said
     at, load, _ = curve_from_zero(found.strain, found.tension)
