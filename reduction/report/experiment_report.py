@@ -642,7 +642,7 @@ def draw_pareto(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
         }
         for own, tint, words in (
             (counts, COLOURS[0], "differs from zero"),
-            (~counts, _CHECK_GREY, "not told from zero"),
+            (~counts, _CHECK_GREY, "not significant"),
         )
         if own.any()
     ]  # fmt: skip

@@ -232,7 +232,9 @@ def test_a_first_loading_has_no_say_where_loops_reach_and_carries_what_it_differ
     assert curve.tension_at([1.0, 1.02, 1.5]) == pytest.approx([100.0, 102.0, 150.0])
     spread = np.interp(0.75, curve.strain, curve.standard_uncertainty)
     assert spread == pytest.approx(60 * 20 / 90, rel=1e-3)
-    assert any("first loadings differ by up to 22.2% from the pieces" in note for note in curve.notes)
+    assert any(
+        "first loadings differ by up to 22.2% from the pieces" in note for note in curve.notes
+    )
     words = [curve.piece_words[place] for place in curve.piece[curve.piece >= 0]]
     assert (words[0], words[-1]) == ("T-2 first loading", "T-1 cycles")
     at = curve.strain[curve.piece >= 0]
