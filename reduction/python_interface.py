@@ -8,9 +8,9 @@ from __future__ import annotations
 import tempfile
 import time
 import warnings as python_warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -30,13 +30,18 @@ from reduction.cli.experiments import fit_series, notes_of_fit
 from reduction.cli.export import ExportedFiles, ExportRequest, write_export
 from reduction.cli.lookup import (
     LEVEL_DIMENSIONS,
-    lines_of_source,
+    LookupRequest,
+    line_of_request,
+    lines_to_rank,
+    lines_with,
     name_of_quantity,
-    one_line_of,
+    parsed_search,
 )
 from reduction.lines import line_lookup
 from reduction.lines.line_lookup import Branch
+from reduction.lines.line_rank import rank_lines
 from reduction.lines.lookup_product import DesignValues, LineSource
+from reduction.lines.population import PopulationValues, population_values, specimens_of_kind
 from reduction.prediction.hose_prediction import predict_from_plan
 from reduction.quantities.units import UnitSystem, parse_quantity
 from reduction.readers.raw_log import hash_source
@@ -66,6 +71,15 @@ def look_up(
     line: str | None = None,
     branch: Branch | None = None,
     extrapolate: Literal["refuse", "flag"] = "refuse",
+    population: str | float | None = None,
+    rank: bool = False,
+    material: str | None = None,
+    construction: str | None = None,
+    condition: str | None = None,
+    diameter: Any = None,
+    tolerance: str | float | None = None,
+    medium: str | None = None,
+    temperature: str | None = None,
     **levels: Any,
 ) -> xr.Dataset:
     """Look up design values of a published line or of a campaign of one's own.
@@ -73,7 +87,8 @@ def look_up(
     Parameters
     ----------
     source : str or pathlib.Path
-        A published line by its name, an archive, or ``processed/<campaign>``.
+        A published line by its name, ``"published"`` for all, an archive, or
+        ``processed/<campaign>``.
     quantity : str
         Its name, or its symbol such as ``"K_ap"``.
     line : str, optional
@@ -82,6 +97,19 @@ def look_up(
         Of a quantity that differs by it.
     extrapolate : {"refuse", "flag"}
         What to do outside the tested range.
+    population : str or float, optional
+        All specimens of one kind as one line, with tolerance limits of this share of the kind, such
+        as ``"95 %"``.
+    rank : bool
+        All lines in the order of the quantity at one load.
+    material, construction, condition : str, optional
+        Only lines of it, such as ``"nylon"``, ``"double braid"``, ``"new"``.
+    diameter : str, float or pint.Quantity, optional
+        Only lines of it. [m]
+    tolerance : str or float, optional
+        Of the diameter. [1]
+    medium, temperature : str, optional
+        Only from tests in it, such as ``"wet"``, ``"5 degC"``.
     **levels : str, float, array_like or xarray.DataArray
         ``frequency``, ``mean_tension``, ``tension_amplitude``, ``tension`` or ``strain``: a text
         with a unit (``"20 %RBS"``), numbers in SI, or anything with ``to_base_units`` such as a
@@ -92,7 +120,9 @@ def look_up(
     -------
     values : xarray.Dataset
         The quantity with its 95 % intervals (``_low`` and ``_high``), flags, and in its attributes
-        source, rule, warnings and errata.
+        source, rule, warnings and errata. Of a population also each specimen, their standard
+        deviation and the limits; of a ranking a row per line, from the least to the greatest, with
+        the lines that it ties with.
 
     Raises
     ------
@@ -109,13 +139,94 @@ def look_up(
     ...     < found.apparent_spring_constant < found.apparent_spring_constant_high)
     (True, True)
     """
-    name = name_of_quantity(quantity)
-    chosen = one_line_of(lines_of_source(str(source)), name, line)
-    axes = xr.broadcast(*(_level(key, value, chosen) for key, value in levels.items()))
-    given = {key: axis.values for key, axis in zip(levels, axes, strict=True)}
-    found = line_lookup.look_up(chosen, name, branch=branch, extrapolate=extrapolate, **given)
+    words = {"material": material, "construction": construction, "condition": condition}
+    size = f"{diameter!r} m" if isinstance(diameter, float | int) else _plain(diameter)
+    conditions = {"medium": medium, "temperature": temperature}
+    wanted = LookupRequest(
+        quantity=name_of_quantity(quantity), levels={}, name=line, branch=branch,
+        extrapolate=extrapolate,
+        search=parsed_search(words, size, None if tolerance is None else str(tolerance)),
+        conditions={key: text for key, text in conditions.items() if text is not None},
+    )  # fmt: skip
+    if rank and population is not None:
+        raise SettingsError(
+            "a look-up has one way to put lines together", found="population and rank",
+            needed="one of them",
+        )  # fmt: skip
+    if rank:
+        return _ranking(lines_to_rank(str(source), wanted), wanted, levels)
+    if population is not None:
+        lines = specimens_of_kind(lines_with(str(source), wanted), wanted.quantity, line)
+    else:
+        lines = [line_of_request(str(source), wanted)]
+    every, at = [], []
+    for one in lines:
+        axes = xr.broadcast(*(_level(key, value, one) for key, value in levels.items()))
+        at.append({key: axis.values for key, axis in zip(levels, axes, strict=True)})
+        every.append(
+            line_lookup.look_up(
+                one, wanted.quantity, branch=branch, extrapolate=extrapolate, **at[-1]
+            )
+        )
     like = axes[0] if axes else xr.DataArray(0.0)
-    return _dataset(found, chosen, given, like)
+    if population is None:
+        return _dataset(every[0], lines[0], at[0], like)
+    found = population_values(lines, every, parse_quantity(str(population), "number"))
+    kind = replace(lines[0], name=f"{len(lines)} specimens")
+    return _with_limits(_dataset(found.values, kind, at[0], like), found, like.dims)
+
+
+def _with_limits(
+    mean: xr.Dataset, found: PopulationValues, dims: tuple[Hashable, ...]
+) -> xr.Dataset:
+    """The mean of the specimens of a kind, with their scatter and the limits of the kind."""
+    name, unit = found.values.quantity, {"units": found.values.unit}
+    share = f"with 95 % confidence {100 * found.share:g} % of the kind"
+    kept = {
+        f"{name}_kind_low": (found.values.kind_low, "95 % interval of the mean of the kind"),
+        f"{name}_kind_high": (found.values.kind_high, "95 % interval of the mean of the kind"),
+        "standard_deviation": (found.standard_deviation, "between the specimens"),
+        "lower_limit": (found.lower, f"{share} are above"),
+        "upper_limit": (found.upper, f"{share} are below"),
+        "two_sided_low": (found.both_low, f"{share} are between"),
+        "two_sided_high": (found.both_high, f"{share} are between"),
+    }
+    limits: dict[str, Any] = {
+        key: (dims, values, unit | {"long_name": words}) for key, (values, words) in kept.items()
+    }
+    limits["of_specimens"] = (("specimen", *dims), found.of_specimens, unit)
+    about = {
+        "share": found.share, "confidence": found.confidence,
+        "one_sided_factor": found.one_sided_factor, "two_sided_factor": found.two_sided_factor,
+    }  # fmt: skip
+    return mean.assign(limits).assign_coords(specimen=list(found.specimens)).assign_attrs(about)
+
+
+def _ranking(
+    lines: Sequence[LineSource], wanted: LookupRequest, levels: Mapping[str, Any]
+) -> xr.Dataset:
+    """Lines from the least value of a quantity to the greatest, at one load."""
+    points = [
+        {key: _level(key, value, one).values for key, value in levels.items()} for one in lines
+    ]
+    found = rank_lines(
+        lines, wanted.quantity, points, branch=wanted.branch, extrapolate=wanted.extrapolate
+    )
+    at = [points[lines.index(one.line)] for one in found.ranked]
+    every = [
+        _dataset(one.values, one.line, given, xr.DataArray(0.0)).assign(
+            diameter=one.line.diameter,
+            ties=", ".join(one.ties),
+            line_ties="not known" if one.kind_ties is None else ", ".join(one.kind_ties),
+        )
+        for one, given in zip(found.ranked, at, strict=True)
+    ]
+    names = xr.DataArray([one.line.name for one in found.ranked], dims="line", name="line")
+    ranked = xr.concat([one.reset_coords() for one in every], names, combine_attrs="drop")
+    return ranked.assign_attrs(
+        left_out="\n".join(f"{name}: {why}" for name, why in found.left_out),
+        errata="\n".join(f"{one.id}: {one.corrected}" for one in found.errata),
+    )
 
 
 def _level(name: str, value: Any, line: LineSource) -> xr.DataArray:

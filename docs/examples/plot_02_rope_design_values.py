@@ -29,7 +29,7 @@ for kind in ("", "line_"):
     print(f"{low.attrs['long_name']}: {float(low):,.0f} to {float(high):,.0f} N")
 print("within the tested range:", bool(found["is_inside"]))
 print("source:", found.attrs["source"])
-print("errata that touch it:", found.attrs["errata"] or "none")
+print("errata that apply:", found.attrs["errata"] or "none")
 
 # %%
 # Arrays with named dimensions make a grid. A point outside of the tested range is refused,

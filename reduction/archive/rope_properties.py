@@ -60,7 +60,7 @@ def properties_to_dataset(
     """Bring properties into the form of the archive; no file is touched."""
     listed = [(specimen, one) for specimen, own in found.items() for one in own]
     if not listed:
-        raise ArchiveError("there are no properties to keep", needed="one or more")
+        raise ArchiveError("there are no properties to store", needed="one or more")
     rows = [one for _, one in listed]
     is_stiffness = np.array([one.is_stiffness for one in rows])
     values: Values = {
@@ -316,7 +316,7 @@ def _pair(read: _Reader, row: int) -> PairOfHolds:
     elapsed = _known(read.dataset, "static_elapsed_time", row)
     if elapsed.size and not elapsed[0] <= at <= elapsed[-1]:
         reason = (
-            f"read off the line beyond the hold, of which there are points from {elapsed[0]:.3g} "
+            f"extrapolated beyond the hold, which has points from {elapsed[0]:.3g} "
             f"to {elapsed[-1]:.3g} s"
         )
     return PairOfHolds(

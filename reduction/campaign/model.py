@@ -222,7 +222,7 @@ class UncertaintySection(_UncertaintySection):
     tape: _OfLength | None = None
     """Of one reading of the tape at the marks: ``"0.005 ft"``."""
     strain: _Relative | None = None
-    """Relative: what the strain method itself may miss."""
+    """Relative: error of the strain method itself."""
     rated_break_strength: _Relative | None = None
     """Relative."""
     temperature: _TemperatureSection | None = None

@@ -159,7 +159,7 @@ def one_line_of(lines: Sequence[LineSource], quantity: str, name: str | None) ->
         raise SettingsError(
             f"several lines have {quantity}",
             found=", ".join(dict.fromkeys(f"{line.name} ({line.source})" for line in having)),
-            needed="one archive, --line NAME, or a search that leaves one",
+            needed="one archive, --line NAME, or a search that matches one",
             hint=f'Example: `--line "{having[0].name}"`.',
         )
     return having[0] if having else named[0]
@@ -284,7 +284,7 @@ def _levels_of(line: LineSource, quantity: str) -> LineLevels | None:
 
 
 def _filled(wanted: LookupRequest, lines: Sequence[LineSource]) -> dict[str, Floats]:
-    """Low, centre and high of what was tested of all lines, by level; those that are given too."""
+    """Low, centre and high of the tested ranges of all lines, by level, also of given levels."""
     ends = [_ends(wanted, line) for line in lines]
     filled = {}
     for name in ends[0]:
@@ -292,7 +292,7 @@ def _filled(wanted: LookupRequest, lines: Sequence[LineSource]) -> dict[str, Flo
         high = min(one[name][1] for one in ends if name in one)
         if low > high and name not in wanted.levels:
             raise DataError(
-                f"what was tested of {wanted.quantity} of "
+                f"the tested ranges of {wanted.quantity} of "
                 f"{' and '.join(line.name for line in lines)} has no {name.replace('_', ' ')} in "
                 "common",
                 found=f"one from {low:.5g}, one to {high:.5g} (SI)",
@@ -377,7 +377,7 @@ def _show_levels(line: LineSource, output: CommandOutput) -> None:
     keys = list(dict.fromkeys(key for one in levels.conditions for key in one))
     table = table_of(
         "test", *heads, f"{levels.quantity.replace('_', ' ')}\n[{of}]", "\n[MBL]", *keys,
-        title=f"Levels of {line.name}, each known where it was tested and between two of them",
+        title=f"Levels of {line.name}, known at tested levels and between two of them",
     )  # fmt: skip
     for place, test in enumerate(levels.tests):
         value = float(levels.value[place])
@@ -457,13 +457,10 @@ def _described(line: LineSource) -> dict[str, Any]:
 def look_up_values(source: str, wanted: LookupRequest, *, output: CommandOutput) -> None:
     """Print design values; several values of a level, parted by commas, make a grid."""
     form = _form_of(wanted.out)
-    line = one_line_of(
-        find_lines(lines_of_source(source), **wanted.search), wanted.quantity, wanted.name
-    )
-    line = _in_conditions(line, wanted)
+    line = line_of_request(source, wanted)
     (points,), left_out = _points_of(wanted, line)
     if left_out:
-        output.say("combinations whose amplitude is above the mean tension are left out")
+        output.say("combinations with an amplitude above the mean tension are left out")
     found = look_up(
         line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **points
     )
@@ -484,9 +481,7 @@ def look_up_population(
     from reduction.lines.population import population_values, specimens_of_kind
 
     form = _form_of(wanted.out)
-    lines = find_lines(lines_of_source(source), **wanted.search)
-    having = [_in_conditions(line, wanted) for line in lines if wanted.quantity in line.quantities]
-    chosen = specimens_of_kind(having, wanted.quantity, wanted.name)
+    chosen = specimens_of_kind(lines_with(source, wanted), wanted.quantity, wanted.name)
     points, _ = _points_of(wanted, chosen[0], *chosen[1:])
     every = [
         look_up(line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **at)
@@ -568,13 +563,7 @@ def look_up_ranked(source: str, wanted: LookupRequest, *, output: CommandOutput)
     """Print lines in the order of a quantity at one load, ties marked."""
     from reduction.lines.line_rank import outside_words, rank_lines
 
-    lines = [
-        _in_conditions(line, wanted)
-        for line in find_lines(lines_of_source(source), **wanted.search)
-        if wanted.quantity in line.quantities and wanted.name in (None, line.name)
-    ]
-    if not lines:
-        raise SettingsError(f"no line has {wanted.quantity}", found=source, needed="two or more")
+    lines = lines_to_rank(source, wanted)
     points = [
         {name: float(_numbers(name, text, line)[0]) for name, text in wanted.levels.items()}
         for line in lines
@@ -617,10 +606,10 @@ def look_up_ranked(source: str, wanted: LookupRequest, *, output: CommandOutput)
         output.say(f"not ranked: {name}: {why}")
     for erratum in found.errata:
         output.say(
-            f"erratum {erratum.id}: {erratum.place} prints the other way ({erratum.printed}); it "
+            f"erratum {erratum.id}: {erratum.place} prints the opposite ({erratum.printed}); it "
             f"is {erratum.corrected}"
         )
-    output.say("a tie: the 95 % intervals overlap, and the order may be the other one")
+    output.say("a tie: the 95 % intervals overlap, so the order may be reversed")
     output.answer(
         {
             "quantity": wanted.quantity,
@@ -651,6 +640,26 @@ def look_up_ranked(source: str, wanted: LookupRequest, *, output: CommandOutput)
             "errata": [one.id for one in found.errata],
         }
     )  # fmt: skip
+
+
+def line_of_request(source: str, wanted: LookupRequest) -> LineSource:
+    """The one line that is asked for, as it was tested in the conditions that are."""
+    lines = find_lines(lines_of_source(source), **wanted.search)
+    return _in_conditions(one_line_of(lines, wanted.quantity, wanted.name), wanted)
+
+
+def lines_with(source: str, wanted: LookupRequest) -> list[LineSource]:
+    """Lines that have the quantity, as they were tested in the conditions that are asked for."""
+    lines = find_lines(lines_of_source(source), **wanted.search)
+    return [_in_conditions(line, wanted) for line in lines if wanted.quantity in line.quantities]
+
+
+def lines_to_rank(source: str, wanted: LookupRequest) -> list[LineSource]:
+    """Those of `lines_with` that are meant; refused where there is none."""
+    lines = [one for one in lines_with(source, wanted) if wanted.name in (None, one.name)]
+    if not lines:
+        raise SettingsError(f"no line has {wanted.quantity}", found=source, needed="two or more")
+    return lines
 
 
 def _in_conditions(line: LineSource, wanted: LookupRequest) -> LineSource:
@@ -721,7 +730,7 @@ def _table(
         *heads, f"value\n[{unit}]", *(("value\n[MBL]",) if is_share else ()),
         *(head for head, _, _ in intervals),
         "peak\n[%RBS]", "minimum\n[%RBS]",
-        *(("peak [% of what\nit still has]",) if is_weaker else ()), "remark", texts=0,
+        *(("peak [% of\nresidual strength]",) if is_weaker else ()), "remark", texts=0,
     )  # fmt: skip
     _fold_last(table)
     shares = [found.peak_share, found.minimum_share, *([found.own_peak_share] if is_weaker else [])]
@@ -778,9 +787,9 @@ def _show_consistent(
     )
     stated = "printed" if line.is_printed else "of surface"
     output.say(
-        f"as {stated}, and with the K_1 and tau that K_ap, H and K_0 give by the line model:"
+        f"as {stated}, and K_1 and tau from K_ap, H and K_0 by the line model:"
         if line.is_printed
-        else "by the surfaces, and the K_1 and tau that K_ap, H and K_0 give by the line model:"
+        else "by the surfaces, and K_1 and tau from K_ap, H and K_0 by the line model:"
     )
     table = table_of(
         *heads, "K_0 by", *(f"{name}\n[{force}]" for name in ("K_ap", "K_0")),
@@ -822,14 +831,14 @@ def _remarks(found: DesignValues, place: int) -> list[str]:
     return [
         word
         for word, is_so in (
-            ("OUTSIDE what was tested", not at(found.is_inside)),
+            ("OUTSIDE the tested range", not at(found.is_inside)),
             ("untested corner", at(found.is_untested)),
-            ("peak above the strength it has", at(found.own_peak_share) >= 1),
+            ("peak above the residual strength", at(found.own_peak_share) >= 1),
             ("peak above the rule", at(found.is_above_rule)),
             ("snap load: goes slack", at(found.is_slack) and at(found.peak_tension) > 0),
             ("below zero: no value", at(found.is_below_zero)),
             (
-                "lower end below zero: not told from zero",
+                "interval includes zero",
                 not at(found.is_below_zero) and (at(found.low) < 0 or at(found.surface_low) < 0),
             ),
         )
@@ -851,7 +860,7 @@ def _said_of_lines(output: CommandOutput, *pairs: tuple[LineSource, DesignValues
             told.append(f"tested in{of}: {words}")
         told.append(f"rule: {found.rule}")
         if found.errata:
-            told.append(f"errata that touch it{of}: {', '.join(found.errata)}")
+            told.append(f"errata that apply{of}: {', '.join(found.errata)}")
         told += [f"note{of}: {note}" for note in found.notes]
     for text in dict.fromkeys(told):
         output.say(text)
@@ -993,7 +1002,7 @@ def look_up_against(
         first, second = pair.first, pair.second
     (points, others), left_out = _points_of(wanted, first, second)
     if left_out:
-        output.say("combinations whose amplitude is above the mean tension are left out")
+        output.say("combinations with an amplitude above the mean tension are left out")
     values = [
         look_up(line, wanted.quantity, branch=wanted.branch, extrapolate=wanted.extrapolate, **at)
         for line, at in ((first, points), (second, others))
@@ -1062,13 +1071,14 @@ def _show_difference(
         )
     if output.is_text:
         output.show(_difference_table(first, found, points, unit, factor, output.system))
-    output.say("differ: zero is not in the 95 % interval that follows from those of both lines")
+    output.say("differ: the 95 % interval of the difference excludes zero")
     output.say(
-        "95 % of the difference is of these lines: the surfaces, or the curves, that were tested"
+        "the 95 % interval of the difference is for these lines: the surfaces or curves that were"
+        " tested"
     )
     output.say(
-        "these lines: the two surfaces, of the lines that were tested; the kinds, another line of "
-        "each: with how lines differ among each other, where a source says it"
+        "these lines: the two surfaces of the tested lines; the kinds, another line of each:"
+        " including the scatter between lines, where a source states it"
     )
     for note in found.notes:
         output.say(note)
@@ -1130,7 +1140,7 @@ def _remark(found: LineDifference, place: int) -> str:
         if one.is_untested.ravel()[place]:
             words.append(f"{which}: untested corner")
         if one.own_peak_share.ravel()[place] >= 1:
-            words.append(f"{which}: peak above the strength it has")
+            words.append(f"{which}: peak above the residual strength")
         elif one.is_above_rule.ravel()[place]:
             words.append(f"{which}: peak above the rule")
         if one.is_below_zero.ravel()[place]:

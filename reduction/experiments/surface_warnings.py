@@ -132,7 +132,7 @@ def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
     Returns
     -------
     notes : tuple of Note
-        One a response.
+        One per response that has no transformed surface beside it.
 
     Raises
     ------
@@ -161,10 +161,12 @@ def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
     measured = np.where(surfaces.transform_exponent == 1, 1.0, np.nan)[:, None] * (
         surfaces.fitted + surfaces.residual
     )
+    names = surfaces.response_names
+    bent = [name for name in names if any(other.endswith(f"_{name}") for other in names)]
     return tuple(
         note("surface-below-zero", response=name)
         for name, low, values in zip(surfaces.response_names, lowest, measured, strict=True)
-        if low < 0 and np.isfinite(values).any() and np.nanmin(values) > 0
+        if low < 0 and np.isfinite(values).any() and np.nanmin(values) > 0 and name not in bent
     )
 
 

@@ -38,9 +38,9 @@ def alignment_words(dataset: xr.Dataset, place: int) -> tuple[str, ...]:
     drift = float(dataset.variables["mean_strain_drift"].values[place])
     at = float(laid_on.values[place])
     return (
-        f"the cycles are laid on a mean strain of {100 * at:.3f} %, and theirs drifts by"
-        f" {100 * drift:+.3f} % from the first to the last: at one strain the tension of a cycle"
-        " differs from this curve by that much strain",
+        f"the cycles are shifted to a mean strain of {100 * at:.3f} %, and theirs drifts by"
+        f" {100 * drift:+.3f} % from the first to the last: a cycle differs from this curve by"
+        " that much strain",
     )
 
 
@@ -175,7 +175,7 @@ def source_of_tests(
     ids = [_id(one) for one in own]
     twice = next((one for one in ids if ids.count(one) > 1), None)
     if twice is not None:
-        raise SettingsError(f"test {twice} stands there twice", needed="each archive once")
+        raise SettingsError(f"test {twice} is listed twice", needed="each archive once")
     wholes = {str(one.attrs.get("test", "")) for one in own}
     one_campaign = len({str(one.attrs.get("campaign", "")) for one in own}) == 1
     pieces: list[CurvePiece] = []
@@ -196,7 +196,9 @@ def source_of_tests(
         place = specimens_of(one).index(specimen)
         slips = int(one["n_slips"].values[place]) if "n_slips" in one else 0
         if slips > 0:
-            notes.append(f"{test}: a splice slipped {slips} times, and its strains hold the slip")
+            notes.append(
+                f"{test}: the splices slipped {slips} times, and the strain includes the slip"
+            )
     if not pieces:
         raise DataError(
             f"no test of '{specimen}' gives a {branch} curve of tension over strain",
@@ -207,7 +209,7 @@ def source_of_tests(
     known = [model for model in models if model is not None]
     if any(_differ(known[0], other) for other in known[1:]):
         notes.append(
-            f"tests have strain models of their own; lengths are by that of "
+            f"the tests have different strain models; lengths follow that of "
             f"{next(_id(one) for one, model in zip(own, models, strict=True) if model is known[0])}"
         )
     return PieceSource(

@@ -285,12 +285,13 @@ def _surface(
     if np.isfinite(fitted.coefficient[index]).all() and np.isnan(rows).any():
         component, rows, sigma = (), rows[:0], float("nan")
         notes.append(
-            "no interval is given: of some runs it is not kept what they share with the others"
+            "no interval is given: some runs do not store the errors that they share with the"
+            " others"
         )
     elif not rows.size:
         notes.append(
-            "the intervals are of the scatter of the runs: of what all runs share, as the load "
-            "cell, nothing is stated"
+            "the intervals contain the scatter of the runs alone: errors common to all runs, such"
+            " as the load cell, are not stated"
         )
     if not np.isfinite(fitted.coefficient[index]).all():
         notes.append("the surface was refused")
@@ -568,7 +569,7 @@ def ropes_with_pulls(folder: Path) -> list[LineSource]:
     if not found:
         why = (text for line in lines for text in line.absent.values())
         raise DataError(
-            "no rope of the campaign has levels in load and one slow pull, which K_0 is of",
+            "no rope of the campaign has both load levels and one slow pull (for K_0)",
             found=", ".join(line.name for line in lines) or "no rope with levels",
             needed="cyclic tests in load and a quasi-static test of the same specimen",
             hint=next(why, ""),
@@ -585,7 +586,7 @@ def _rope(folder: Path, name: str, tests: Sequence[LineSource]) -> LineSource:
     pulls = [line for line in tests if any(one.is_inverse_slope for one in line.curves)]
     absent = {}
     if len(pulls) > 1:
-        why = "there are several slow pulls, and each is a line: " + ", ".join(
+        why = "several slow pulls; each is a line of its own: " + ", ".join(
             line.name for line in pulls
         )
         absent = {one.quantity: why for one in pulls[0].curves}
@@ -701,7 +702,7 @@ def experiments_with_pulls(path: Path) -> list[LineSource]:
             )
     if not made:
         raise DataError(
-            "no specimen of the experiment has a slow pull, which K_0 is of",
+            "no specimen of the experiment has a slow pull (for K_0)",
             found=", ".join(line.name for line in found) or "no experiment with surfaces",
             needed="quasi_static = { SPECIMEN = TEST } of the experiment in campaign.toml",
         )

@@ -236,7 +236,7 @@ def _deployed_model(model: StrainModel, free_length: float | None) -> StrainMode
     """
     if model.method == "extensometer":
         raise DataError(
-            f"strain of '{model.specimen}' is from an extensometer, which knows no splices",
+            f"strain of '{model.specimen}' is from an extensometer, which does not include splices",
             needed="splices that are stated",
         )
     if model.method == "gauge-length":
@@ -351,7 +351,7 @@ def _assemble(tethers: Sequence[_Tether], parts: Sequence[SeriesPart] = ()) -> _
             "a tether is at the end of its curve before another one is taut",
             found=f"{end:.4g} m",
             needed=f"above {last:.4g} m",
-            hint="Their lengths differ by more than their stretch.",
+            hint="Their lengths differ by more than they stretch.",
         )
     nodes = np.unique(np.concatenate([one.length for one in own]))
     nodes = nodes[(nodes >= begin) & (nodes <= end)]
@@ -522,8 +522,8 @@ def _working_point(
             f"tether {which[0] + 1} of {assembly.n_tethers} goes slack",
             found=f"{least[which[1:]]:.4g} N on the assembly at the least",
             needed=f"above {_tension_at_slack(assembly):.4g} N",
-            hint="A slack tether tangles and is cut: more stretch, less amplitude, or equal "
-            "lengths.",
+            hint="A slack tether tangles and is cut: choose more stretch, less amplitude, or equal"
+            " lengths.",
         )
     low, high = (np.searchsorted(assembly.tension, one) for one in (least, peak))
     n_untested = np.concatenate([[0], np.cumsum(~assembly.is_tested)])
@@ -593,16 +593,16 @@ def _worst_sharing(
     """
     if n_tethers < 2:
         raise SettingsError(
-            "one tether shares with no other", found=str(n_tethers), needed="2 or more"
+            "a single tether shares no load", found=str(n_tethers), needed="2 or more"
         )
     if not 0 <= tolerance < 1:
         raise SettingsError(
-            "the tolerance is a share of the length", found=f"{tolerance:g}", needed="0 to 1"
+            "the tolerance is a fraction of the length", found=f"{tolerance:g}", needed="0 to 1"
         )
     load = np.asarray(tension, dtype=np.float64)
     if not np.all(load > 0):
         raise DataError(
-            "an assembly without tension shares nothing",
+            "an assembly without tension shares no load",
             found=f"{np.min(load):.4g} N",
             needed="above zero",
         )
@@ -1035,15 +1035,15 @@ def _tension(assembly: _AssemblyCurve, level: WorkingLevel) -> float:
 
 def _notes(assembly: _AssemblyCurve, model: StrainModel) -> tuple[str, ...]:
     notes = [
-        "weight, buoyancy, bending and twist of the assembly are not in it; its bridles stay "
-        "parallel",
-        "the uncertainty is that of the curve, which all tethers share; that of the splices and "
-        "of the lengths is not in it",
+        "not included: weight, buoyancy, bending and twist of the assembly; its bridles stay"
+        " parallel",
+        "the uncertainty is that of the curve, common to all tethers; that of splices and lengths"
+        " is not included",
     ]
     high = float(assembly.tension[-1]) / assembly.n_tethers
     if model.method == "tension-driven" and high > model.tension_high:
         notes.append(
-            f"the splices were marked up to {model.tension_high:.4g} N a tether; above that their "
-            "law is extrapolated"
+            f"the splices were marked up to {model.tension_high:.4g} N per tether; above that"
+            " their law is extrapolated"
         )
     return tuple(notes)

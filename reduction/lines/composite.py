@@ -276,7 +276,7 @@ class CompositeRule:
         """Refuse a rule that cannot be followed."""
         if not self.precedence or set(self.precedence) - set(_KINDS):
             raise SettingsError(
-                "the precedence names no kind of piece",
+                "the precedence names no known kind of piece",
                 found=", ".join(self.precedence) or "nothing",
                 needed="of " + ", ".join(_KINDS),
             )
@@ -800,22 +800,23 @@ def _notes_of(
     ]
     between = {kind: one for kind, one in blend.between_pieces.items() if not np.isnan(one)}
     if not between:
-        notes.append("no two pieces of one kind overlap: what is between them is not known")
+        notes.append("no two pieces of one kind overlap: the scatter between them is unknown")
     notes += [
         f"{kind} pieces differ by {one:.1%} of tension where they overlap"
         for kind, one in between.items()
     ]
     if not np.isnan(blend.beside_loops):
         notes.append(
-            f"first loadings differ by up to {blend.beside_loops:.1%} from what goes before them: "
-            "this is in their uncertainty where they stand alone"
+            f"first loadings differ by up to {blend.beside_loops:.1%} from the pieces of higher"
+            " precedence; their uncertainty includes this where they are alone"
         )
     if moved.any():
         share = change / blend.tension
         worst = int(np.argmax(np.abs(change)))
         notes.append(
-            f"pieces fall where they hand over: {moved.mean():.0%} of the nodes were moved so that "
-            f"the curve is nowhere softer than {rule.least_slope:g} of the softest piece there, by "
+            f"the mean of the pieces falls where one ends and the next begins: {moved.mean():.0%}"
+            " of the nodes were moved to keep the curve from being softer than"
+            f" {rule.least_slope:g} of the softest piece there, by "
             f"{np.sqrt(np.mean(change**2)):.4g} N rms, most by {change[worst]:+.4g} N "
             f"({share[worst]:+.1%}) at strain {strain[worst]:.4g}"
         )
@@ -828,11 +829,10 @@ def _notes_of(
                 f"the curve is {off:.1%} off the mean of its pieces, which differ by {apart:.1%} "
                 "where they overlap: "
                 + (
-                    "they are no pieces of one curve, as loops of a rope and its slow pull are "
-                    "none; name the kinds that are wanted"
+                    "they do not belong to one curve, such as loops of a rope and its slow pull;"
+                    " name the kinds that you want"
                     if several
-                    else "they hand over between tests in other states; name the tests that are "
-                    "wanted"
+                    else "the tests are of different states; name those that you want"
                 )
             )
     return tuple(notes)
@@ -862,7 +862,7 @@ class CompositeCurve:
     piece : ndarray of int, shape (n,)
         Index of the piece with the greatest weight; -1 where there is none.
     is_join, is_gap, is_moved : ndarray of bool, shape (n - 1,)
-        Of each interval: more than one piece has a say; no piece reaches; the curve is not the
+        Of each interval: several pieces contribute; no piece reaches; the curve is not the
         mean of the pieces, since that falls or is too soft nearby.
     monotone_change : ndarray, shape (n,)
         What making it rise has added to the weighted mean of the pieces; NaN without one. [N]
@@ -1117,7 +1117,7 @@ def used_of(source: PieceSource, curve: CompositeCurve) -> PieceSource:
     ...     piece_sources=("log Q", "log R"))
     >>> found = used_of(rope, compose(rope, CompositeRule(precedence=("static",))))
     >>> print(found.sources, found.notes)
-    ('log Q',) ('of other kinds, and not used: R',)
+    ('log Q',) ('of other kinds, not used: R',)
     """
     if not source.piece_sources:
         return source
@@ -1130,7 +1130,7 @@ def used_of(source: PieceSource, curve: CompositeCurve) -> PieceSource:
     return replace(
         source,
         sources=tuple(text for text in source.sources if text not in left),
-        notes=(*source.notes, f"of other kinds, and not used: {', '.join(left.values())}"),
+        notes=(*source.notes, f"of other kinds, not used: {', '.join(left.values())}"),
     )
 
 

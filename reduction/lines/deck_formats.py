@@ -105,7 +105,7 @@ def _orcaflex_text(line: ExportLine) -> str:
     head = header_lines(
         line,
         curve,
-        "syntax checked only: OrcaFlex was not run, look at the line type before it is used",
+        "syntax checked only: OrcaFlex was not run; inspect the line type before use",
         words.removesuffix(f"; drag refers to it, and not to the nominal {1000 * nominal:.4g} mm"),
         f"hydrodynamic coefficients: {water.source}",
         f"OD, for buoyancy and added mass, is the volume-equivalent diameter {1000 * volume:.4g} "
@@ -170,7 +170,7 @@ def _raft_text(line: ExportLine) -> str:
     cycle = straight_cycle(line)
     if cycle is None:
         raise SettingsError(
-            f"no cycle of {line.name} is known, and RAFT takes one stiffness alone",
+            f"no cycle of {line.name} is known, and RAFT takes a single stiffness",
             needed="--frequency, --mean-tension and --tension-amplitude of a line with surfaces, "
             "below the end of its curve, or the archive of a cyclic test and its mean curve",
         )
@@ -189,10 +189,11 @@ def _raft_text(line: ExportLine) -> str:
     head = header_lines(
         line,
         None,
-        "RAFT has one stiffness and no damping in a line: this is the straight line of one cycle, "
+        "RAFT has one stiffness and no damping per line: this is the linear stiffness of one"
+        " cycle, "
         f"K_ap {plain_number(cycle.stiffness, 6)} N about {plain_number(cycle.tension, 6)} N and "
         f"strain {cycle.strain:.6g}, {cycle.holds}",
-        f"its hysteresis energy, {plain_number(cycle.hysteresis_energy, 4)} J/m, is NOT in it",
+        f"its hysteresis energy, {plain_number(cycle.hysteresis_energy, 4)} J/m, is NOT included",
         f"it differs from the slow curve by up to {100 * float(off[inside].max(initial=0)):.2g} "
         "percent of the greatest tension within three amplitudes of the mean, and by "
         f"{100 * float(off.max()):.2g} percent over the whole of it: export again for another mean",

@@ -90,8 +90,8 @@ _LENGTH, _SEGMENTS = 10.0, 5
 NO_GRAVITY = "0 g"
 
 WEIGHTLESS = (
-    f"NO GRAVITY in this deck ({NO_GRAVITY}), so that its tension is that of its strain: put 9.81, "
-    "or take the line type into a deck of your own"
+    f"NO GRAVITY in this deck ({NO_GRAVITY}), so that its tension is that of its strain: set 9.81,"
+    " or copy the line type into your own deck"
 )
 
 _COURANT = 0.1
@@ -238,8 +238,9 @@ def _continued(line: ExportLine, curve: ThinnedCurve) -> ThinnedCurve:
 
 
 _BEYOND = (
-    f"the last row of the table is {100 * CONTINUED:g} percent beyond the end of the curve, "
-    "straight on at its last slope: no test went there, and beyond it the last tension is kept"
+    f"the last row of the table is {100 * CONTINUED:g} percent beyond the end of the curve,"
+    " extrapolated at its last slope without test data; beyond it the program keeps the last"
+    " tension"
 )
 
 
@@ -336,10 +337,10 @@ def _stiffness_words(part: Viscoelasticity) -> tuple[str, ...]:
 def _running_words(part: Viscoelasticity) -> str:
     """What a cycle has where the stiffness follows the running tension."""
     if not math.isfinite(part.frequency):
-        return "MoorDyn takes the running tension of the slow part for the mean"
+        return "MoorDyn uses the running tension of the slow part as the mean"
     running, held = part.running_stiffness_at(part.frequency), part.stiffness_at(part.frequency)
     return (
-        "MoorDyn takes the running tension of the slow part for the mean: a small cycle at "
+        "MoorDyn uses the running tension of the slow part as the mean: a small cycle at "
         f"{plain_number(part.frequency, 4)} Hz differs from static-dynamic by "
         f"{100 * (abs(running) / abs(held) - 1):+.1f} percent in K_ap, "
         f"{plain_number(abs(running))} N, and by "
@@ -381,7 +382,7 @@ def _table_files(
         words,
         "" if is_damped else without_damping(line),
         _BEYOND,
-        f"{table} belongs beside this file",
+        f"{table} must be in the folder of this file",
     )
     row = _line_type(line, table, number(written))
     strain = line.strain[-1] / 2
@@ -457,7 +458,7 @@ def _syrope_files(line: ExportLine, stem: str) -> dict[str, str]:
         _working_words(part, line.viscoelasticity),
         no_growth,
         _BEYOND,
-        f"{settings} and {working} belong beside this file",
+        f"{settings} and {working} must be in the folder of this file",
     )
     return {
         "": _deck(
@@ -531,9 +532,9 @@ def moorpy_files(line: ExportLine, stem: str, *, form: MoorPyForm = "table") -> 
         f"hydrodynamic coefficients: {line.hydrodynamics.source}",
         without_damping(line),
         _BEYOND,
-        f"MoorPy seeks {table} in the working folder: start it there",
+        f"MoorPy looks for {table} in the working folder: start it there",
         "MoorPy 1.2, which RAFT 2.0 brings, takes no table (KeyError 'EA'): use 1.3, or --to raft",
-        "with a table MoorPy takes the line as straight, and halves its weight to the ends",
+        "with a table MoorPy treats the line as straight, with half its weight at each end",
     )
     steepest = float(np.max(np.diff(curve.tension) / np.diff(curve.strain)))
     text = _deck(
@@ -561,7 +562,7 @@ def _library(line: ExportLine) -> str:
         words,
         f"hydrodynamic coefficients: {water.source}",
         without_damping(line),
-        f"holds for the diameter {1000 * diameter:.4g} mm alone: nothing is known of others",
+        f"holds for the diameter {1000 * diameter:.4g} mm only",
         f"found at {part.holds}" if part.holds else "",
         "the dynamic stiffness is K_ap at that frequency, since the library has no damping; "
         f"K_0 + K_1, that of fast cycles, is {plain_number(part.fast_stiffness, 6)} N"
@@ -622,7 +623,7 @@ def openfast_files(line: ExportLine, stem: str, *, form: OpenFastForm = "table")
     )
     remarks = [f"for MoorDyn of OpenFAST 5.0, run with its driver; {_ABOUT_GRAVITY}"]
     if len(files) > 1:
-        remarks.append("the table is sought in the folder where the program starts")
+        remarks.append("the program looks for the table in the folder where it is started")
     if form == "static-dynamic":
         remarks.append(
             "the program starts with the whole strain in the slow spring: leave out the first ten "

@@ -104,7 +104,7 @@ class Viscoelasticity:
         slope = self.dynamic_stiffness_per_mean_tension
         if not all(map(math.isfinite, (*numbers, slope))) or min(*numbers, slope) < 0:
             raise SettingsError(
-                "stiffness and damping of a line are not numbers of at least zero",
+                "stiffness and damping of a line must be zero or positive",
                 found=", ".join(plain_number(value, 6) for value in (*numbers, slope)),
             )
         if slope and not self.mean_tension >= 0:
@@ -441,17 +441,17 @@ def _warnings_of_identified(
     """Intervals in which there is no damping at all, or that are not known."""
     said = []
     if not math.isfinite(float(energy.surface_low)):
-        said.append("DOUBTFUL: how well the damping is known is not known: H has no interval")
+        said.append("DOUBTFUL: the uncertainty of the damping is unknown: H has no interval")
     elif float(energy.surface_low) <= 0:
         said.append(
-            "DOUBTFUL: the damping may be none: the 95 percent interval of H, "
-            f"{_interval_of(energy)}, holds zero"
+            "DOUBTFUL: the damping may be zero: the 95 percent interval of H, "
+            f"{_interval_of(energy)}, includes zero"
         )
     half = float(half_widths["relaxation_time"])
     time = float(line.relaxation_time)
     if half >= time:
         said.append(
-            f"DOUBTFUL: the dashpot is hardly known: tau {plain_number(time, 4)} s with a 95 "
+            f"DOUBTFUL: the dashpot is poorly known: tau {plain_number(time, 4)} s with a 95 "
             f"percent interval of +-{plain_number(half, 3)} s, from those of K_ap, H and K_0"
         )
     return said
@@ -460,11 +460,11 @@ def _warnings_of_identified(
 def _warnings_of_printed(time: DesignValues) -> list[str]:
     """The same of a tau that is a design value itself."""
     if not math.isfinite(float(time.surface_low)):
-        return ["DOUBTFUL: how well the dashpot is known is not known: tau has no interval"]
+        return ["DOUBTFUL: the uncertainty of the dashpot is unknown: tau has no interval"]
     if float(time.surface_low) <= 0:
         return [
-            "DOUBTFUL: the dashpot may be none: the 95 percent interval of tau, "
-            f"{_interval_of(time)}, holds zero"
+            "DOUBTFUL: the dashpot may be zero: the 95 percent interval of tau, "
+            f"{_interval_of(time)}, includes zero"
         ]
     return []
 
@@ -482,7 +482,7 @@ def _said_over_frequency(part: Viscoelasticity, frequencies: Floats, found: Desi
             f"{plain_number(own)} N{share}"
         )
     return (
-        "one K_1 and tau do not hold at every frequency; K_ap of the exported line against the "
+        "one K_1 and tau do not fit every frequency; K_ap of the exported line against the "
         f"surface at this mean tension and amplitude: {', '.join(rows)}"
     )
 
@@ -509,9 +509,9 @@ def _said_of_value(found: DesignValues) -> str:
     return (
         f"{found.source}: {found.quantity} {plain_number(float(found.value), 6)} {found.unit}, "
         + (f"95 percent of {of} {_interval_of(found)}" if known else "no interval known")
-        + (": its lower end is below zero: not told from zero" if is_vague else "")
+        + (": the interval includes zero" if is_vague else "")
         + (f", errata {', '.join(found.errata)}" if found.errata else "")
-        + ("" if found.is_inside else ", OUTSIDE what was tested")
+        + ("" if found.is_inside else ", OUTSIDE the tested range")
         + (", untested corner" if found.is_untested else "")
     )
 
@@ -667,7 +667,7 @@ def line_dynamics(
         spring, time = (float(one.value) for one in printed.values())
         part = _part(rest, spring, time, levels)
         notes = [
-            "K_1 and tau are those of the source: it has no K_ap and H to hold them against",
+            "K_1 and tau are those of the source: it has no K_ap and H for comparison",
             *_warnings_of_printed(printed[_TIME]),
         ]
     slope, growth = _growth(source, levels, part.fast_stiffness, is_identified=is_identified)
@@ -753,7 +753,7 @@ def _instead(
     spring, time = (float(one.value) for one in printed.values())
     if not (spring > 0 and time > 0):
         raise DataError(
-            f"{why}; and the printed ones are not above zero",
+            f"{why}; and the printed ones are not positive",
             found=f"K_1 {plain_number(spring, 4)} N, tau {plain_number(time, 4)} s; {numbers}",
             needed="other levels",
         )
@@ -761,10 +761,10 @@ def _instead(
     model = part.apparent_stiffness
     if not float(apparent.surface_low) <= model <= float(apparent.surface_high):
         raise DataError(
-            f"{why}; and the printed ones give another K_ap than the line has",
+            f"{why}; and the printed ones give a K_ap different from that of the line",
             found=f"K_ap {plain_number(model)} N; {numbers}",
             needed=_interval_of(apparent),
-            hint="Another level, or the curve alone: leave the levels away.",
+            hint="Use another level, or export the curve alone, without levels.",
         )
     return part
 
@@ -812,11 +812,11 @@ def _growth(
         f"{100 * worst / fast:.2g} percent of EA_d"
     )
     if slope * np.ptp(means) < _ROUNDING * np.abs(total).max():
-        return 0.0, f"{words}; it does not grow, and no slope is exported"
+        return 0.0, f"{words}; it does not increase, so no slope is exported"
     if fast - slope * levels["mean_tension"] <= 0:
         return 0.0, (
-            f"{words}; with it EA_d would be below zero at no tension, and no slope is exported: "
-            "the stiffness holds at this mean tension alone"
+            f"{words}; with it EA_d would be negative at zero tension, so no slope is exported:"
+            " the stiffness holds at this mean tension only"
         )
     return slope, words
 

@@ -216,7 +216,7 @@ def cycle_damping(
     found = (hysteresis_energy, frequency, strain_amplitude)
     if not all(value > 0 for value in found):
         raise DataError(
-            "no dashpot gives back the cycles of the test",
+            "no dashpot reproduces the cycles of the test",
             found=f"H {hysteresis_energy:.4g} J/m, {frequency:.4g} Hz, strain amplitude "
             f"{strain_amplitude:.4g}",
             needed="all above zero",
@@ -231,13 +231,13 @@ def damping_words(damping: CycleDamping) -> str:
     """What the dashpot beside a table is of, and what it is not."""
     energy, spread = damping.hysteresis_energy, 1.96 * damping.standard_uncertainty
     known = f" +-{plain_number(spread, 2)} (95 percent)" if math.isfinite(spread) else ""
-    doubt = "DOUBTFUL, the interval holds zero: " if spread >= energy else ""
+    doubt = "DOUBTFUL, the interval includes zero: " if spread >= energy else ""
     return (
         f"{doubt}internal damping {plain_number(damping.coefficient, 4)} N s, by which a "
         f"sinusoidal cycle of {damping.frequency:.4g} Hz and strain amplitude "
         f"{damping.strain_amplitude:.4g} has the hysteresis energy of the test, "
-        f"{plain_number(energy, 4)} J/m{known}; at twice the frequency it would have twice as "
-        "much, which was not measured"
+        f"{plain_number(energy, 4)} J/m{known}; at twice the frequency it has twice as much, which"
+        " was not measured"
     )
 
 
@@ -330,8 +330,8 @@ class ExportLine:
         word = re.sub(r"[^A-Za-z0-9_-]+", "_", re.sub("-{2,}", "-", bare)).strip("-")
         if not word.strip("_"):
             raise SettingsError(
-                "the name has no sign that a mooring code takes", found=self.name,
-                needed="letters A to Z or digits", hint="csv, json and netcdf take any name.",
+                "the name has no character that a mooring code accepts", found=self.name,
+                needed="letters A to Z or digits", hint="csv, json and netcdf accept any name.",
             )  # fmt: skip
         return word
 
@@ -498,7 +498,7 @@ def curve_from_zero(strain: ArrayLike, tension: ArrayLike) -> tuple[Floats, Floa
     load = np.asarray(tension, dtype=np.float64)
     if at.ndim != 1 or at.shape != load.shape or at.size < 2:
         raise DataError(
-            "a curve has not two points or more", found=f"{at.shape} strains, {load.shape} tensions"
+            "a curve has fewer than two points", found=f"{at.shape} strains, {load.shape} tensions"
         )
     if not (np.isfinite(at).all() and np.isfinite(load).all()):
         raise DataError("a curve has values that are not numbers", needed="finite numbers")
@@ -506,20 +506,21 @@ def curve_from_zero(strain: ArrayLike, tension: ArrayLike) -> tuple[Floats, Floa
     if back.any():
         first = int(np.argmax(back))
         raise DataError(
-            f"a curve turns back at {int(back.sum())} of {back.size} steps: a loop is not exported",
+            f"the curve reverses at {int(back.sum())} of {back.size} steps: a loop cannot be"
+            " exported",
             found=f"strain {at[first]:g} to {at[first + 1]:g}, tension {load[first]:g} to "
             f"{load[first + 1]:g} N after point {first + 1}",
             needed="one branch, or a mean: strain rising, tension not falling",
         )
     if np.any((at <= 0) & (load > 0)):
         raise DataError(
-            "a curve has tension where it has no strain",
+            "a curve has tension at zero strain",
             found=f"{load[at <= 0].max():g} N at strain {at[at <= 0].max():g}",
             needed="strain of the length at zero tension",
         )
     kept = load > 0
     if not kept.any():
-        raise DataError("a curve ends at no tension", found=f"{load[-1]:g} N")
+        raise DataError("a curve ends at zero tension", found=f"{load[-1]:g} N")
     slack = at[(at > 0) & ~kept]
     zero: Floats = np.zeros(1)
     if slack.size:
@@ -664,7 +665,8 @@ def without_damping(line: ExportLine) -> str:
         return ""
     return (
         f"no damping in this form: the hysteresis energy of a cycle, "
-        f"{plain_number(cycle.hysteresis_energy, 4)} J/m at {cycle.holds}, is NOT in it; K_ap is "
+        f"{plain_number(cycle.hysteresis_energy, 4)} J/m at {cycle.holds}, is NOT included; K_ap"
+        " is "
         f"{plain_number(cycle.stiffness, 6)} N"
     )
 
@@ -874,11 +876,11 @@ def guards_of(line: ExportLine) -> tuple[str, ...]:
     elif volume > (1 + _SAME) * diameter:
         words.append(
             f"DOUBTFUL: the displaced volume has a diameter of {1000 * volume:.4g} mm, above the "
-            f"nominal one of {1000 * diameter:.4g} mm: mass per length and diameter do not fit"
+            f"nominal one of {1000 * diameter:.4g} mm: mass per length and diameter disagree"
         )
     elif volume < _LEAST_FILL * diameter:
         words.append(
             f"DOUBTFUL: the displaced volume has a diameter of {1000 * volume:.4g} mm, far below "
-            f"the nominal one of {1000 * diameter:.4g} mm: mass per length and diameter do not fit"
+            f"the nominal one of {1000 * diameter:.4g} mm: mass per length and diameter disagree"
         )
     return tuple(words)

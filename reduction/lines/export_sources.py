@@ -59,8 +59,8 @@ CurveName = Literal["mean", "ascending", "descending"]
 _BRANCHES = ("ascending", "descending")
 
 _NOT_APART = (
-    "what the test shares with others, as a load cell, is not kept apart: all that is known of the "
-    "uncertainty counts as that of the curve alone"
+    "errors shared with other tests, such as the load cell, are not stored separately: the whole"
+    " uncertainty is assigned to this curve"
 )
 
 _STEP_BACK = 1e-3  # of the greatest tension: noise of a mean, not a loop
@@ -126,7 +126,9 @@ def _place(archive: xr.Dataset, dim: str, name: str | None) -> int:
         return 0
     if name not in names:
         raise SettingsError(
-            f"which {dim} is meant is not said" if name is None else f"there is no {dim} '{name}'",
+            f"which {dim} is meant is not stated"
+            if name is None
+            else f"there is no {dim} '{name}'",
             needed="--specimen " + " or ".join(names),
         )
     return names.index(name)
@@ -194,7 +196,7 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
     if curve == "mean":
         gap = np.nanmax(np.abs(np.diff(by_branch[[branches.index(b) for b in _BRANCHES]], axis=0)))
         notes.append(
-            f"the branches are up to {plain_number(gap, 4)} N apart; the loop is not in this curve"
+            f"the branches are up to {plain_number(gap, 4)} N apart; this curve has no hysteresis"
         )
     if np.flatnonzero(known).size <= np.ptp(np.flatnonzero(known)):
         notes.append("strain bins without a mean lie within the curve: a straight line joins them")
@@ -217,8 +219,8 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
         if turns.strain[1] - strain[-1] > _SHORT * (turns.strain[1] - turns.strain[0]):
             notes.append(
                 f"DOUBTFUL: the curve ends at strain {plain_number(strain[-1], 4)} and the mean "
-                f"cycle at {plain_number(turns.strain[1], 4)}: beyond its last row a code keeps "
-                "the tension, and a whole cycle has less stiffness than the test"
+                f"cycle at {plain_number(turns.strain[1], 4)}: beyond the last row a code keeps"
+                " the tension, so a whole cycle is softer than the test"
             )
     return {
         "name": specimen,
@@ -377,8 +379,10 @@ def assembly_table(line: DeployedLine) -> ValueTable:
             np.array(deployed.strain),
         ),
         TableColumn(
-            "secant_spring_constant", "N", "EA over that length, of a cycle of 5 % of the length "
-            "there to each side, by the tests that cover it", np.array(stiffness.spring_constant),
+            "secant_spring_constant", "N",
+            "EA over that length, for a cycle of 5 % of the length to each side, from the tests"
+            " that cover it",
+            np.array(stiffness.spring_constant),
         ),
         TableColumn(
             "least_spring_constant", "N", "least EA of these tests, 95 %",
@@ -532,9 +536,9 @@ def _stiffness_notes(
     ]
     if off:
         said.append(
-            "DOUBTFUL: the table joins tests that are not alike, and between the loads of these "
-            f"its EA is outside their interval: {', '.join(off)}; a mooring code takes its slope: "
-            "for the stiffness of a cycle export the tests about its mean alone"
+            "DOUBTFUL: the table joins unlike tests, and between these loads its EA is outside"
+            f" their interval: {', '.join(off)}; a mooring code uses its slope: for the stiffness"
+            " of a cycle, export only the tests at its mean"
         )
     return said
 
@@ -580,24 +584,25 @@ def composite_table(source: PieceSource, curve: CompositeCurve) -> ValueTable:
             TableColumn("tension", "N", "tension", np.array(curve.tension)),
             *spread_columns(
                 _composite_spread(curve),
-                "of the pieces by themselves, of what is between them, and of what making the "
-                "curve rise has moved",
+                "from the pieces, their mutual scatter, and the correction that makes the curve"
+                " rise",
             ),
             TableColumn("piece", "", "with the greatest weight; none in a gap", piece),
             TableColumn(
-                "is_join", "", "from the node before: more than one piece has a say",
+                "is_join", "", "from the previous node: several pieces contribute",
                 below(curve.is_join),
             ),
             TableColumn(
-                "is_gap", "", "from the node before: no piece reaches", below(curve.is_gap)
+                "is_gap", "", "from the previous node: no piece reaches", below(curve.is_gap)
             ),
             TableColumn(
-                "is_moved", "", "from the node before: not the mean of the pieces, which falls or "
+                "is_moved", "", "from the previous node: not the mean of the pieces, which falls"
+                                " or "
                 "is too soft nearby", below(curve.is_moved),
             ),
             TableColumn(
-                "monotone_change", "N", "what making the curve rise has added to the mean of the "
-                "pieces", np.array(curve.monotone_change),
+                "monotone_change", "N", "added to the mean of the pieces to make the curve rise",
+                np.array(curve.monotone_change),
             ),
         ),
         sources=source.sources,
@@ -656,7 +661,7 @@ def line_from_composite(source: PieceSource, curve: CompositeCurve, **stated: An
             *([f"DOUBTFUL: {curve.doubt}"] if curve.doubt else []),
             *_stiffness_notes(tests_of_curve(curve), 1 + curve.strain, curve.tension),
             *curve.notes,
-            *([f"more than one piece has a say at strain {', '.join(joins)}"] if joins else []),
+            *([f"several pieces contribute at strain {', '.join(joins)}"] if joins else []),
             *source.notes,
         ),
         is_synthetic=source.is_synthetic,
@@ -702,7 +707,7 @@ def line_from_lookup(
     words = "of a pull" if not curve.branch else f"{curve.branch} branch"
     sources = [f"{source.source}: {curve.quantity} over {curve.variable}, {words}"]
     if curve.errata:
-        sources.append(f"errata that touch the curve: {', '.join(curve.errata)}")
+        sources.append(f"errata that apply to the curve: {', '.join(curve.errata)}")
     part = None
     if levels:
         dynamics = line_dynamics(source, levels, extrapolate)
@@ -749,9 +754,8 @@ def _strength(source: LineSource) -> tuple[float, str]:
     # NaN where the line is new: then the rated one stands
     if left < source.rated_break_strength:
         return left, (
-            f"break strength {plain_number(left)} N: what the line has in its condition; "
-            f"new it was rated "
-            f"{plain_number(source.rated_break_strength)} N"
+            f"break strength {plain_number(left)} N: residual strength in this condition; rated"
+            f" when new {plain_number(source.rated_break_strength)} N"
         )
     return source.rated_break_strength, ""
 
@@ -821,16 +825,15 @@ def _points(source: LineSource, curve: LineCurve) -> tuple[Floats, Floats, list[
             )
         strain, tension = strain[: first + 1], tension[: first + 1]
         notes.append(
-            f"ends at {plain_number(tension[-1])} N, where the polynomial turns back; the "
-            f"source gives it up "
-            f"to {plain_number(top)} N"
+            f"ends at {plain_number(tension[-1])} N, where the polynomial turns back; the source"
+            f" states it up to {plain_number(top)} N"
         )
     below = (strain < 0) | ((strain == 0) & (tension > 0))
     if below.any() and tension[below][-1] < _LEAST_CUT * tension[-1]:
         notes.append(
             f"the polynomial has strain below zero up to "
-            f"{plain_number(tension[below][-1], 4)} N, by the "
-            "constant of its fit; that part is left out"
+            f"{plain_number(tension[below][-1], 4)} N, from the constant of its fit; that part is"
+            " left out"
         )
         strain, tension = strain[~below], tension[~below]
     if curve.coefficient.size and strain[0] > 0 and tension[0] == 0:
@@ -851,8 +854,8 @@ def _without_constant(strain: Floats, tension: Floats) -> tuple[Floats, Floats, 
     first = int(np.argmax(joins))
     doubt = "DOUBTFUL: " if constant > _LARGE_CONSTANT else ""
     said = (
-        f"{doubt}the regression has strain {constant:.4g} at no tension, a constant of its fit and "
-        f"no slack that was measured: in its place a straight line from 0 0 joins it at strain "
+        f"{doubt}the regression has strain {constant:.4g} at no tension, a constant of the fit,"
+        " not measured slack: replaced by a straight line from 0 0 that joins it at strain "
         f"{plain_number(strain[first], 4)} and {plain_number(tension[first], 4)} N; as "
         f"slack it would be "
         f"{100 * constant:.2g} m in 100 m of line"

@@ -38,7 +38,7 @@ from reduction.record.plain_text import safe_cell
 
 CONTRIBUTION = "tension_uncertainty_contribution"
 
-SIGNED = "what one standard uncertainty of each shared error adds to the tension"
+SIGNED = "change of tension per standard uncertainty of each shared error"
 """What stands where a format has a place for contributions."""
 
 
@@ -87,7 +87,7 @@ def curve_table(line: ExportLine) -> ValueTable:
             TableColumn("strain", "1", "nominal strain", at),
             TableColumn("tension", "N", "tension", load),
             *(() if spread is None else spread_columns(spread)),
-            TableColumn("is_tested", "", "inside the strains that were tested", tested),
+            TableColumn("is_tested", "", "within the tested strains", tested),
         ),
         sources=line.sources,
         notes=(*line.notes, range_of(line), *((f"at the start: {words}",) if words else ())),
@@ -291,7 +291,7 @@ def format_of_file(path: Path) -> str:
     form = _OF_SUFFIX.get(path.suffix.lower())
     if form is None:
         raise SettingsError(
-            "the end of the file's name says no format", found=path.name,
+            "the file extension names no format", found=path.name,
             needed=", ".join(_OF_SUFFIX),
         )  # fmt: skip
     return form
@@ -310,10 +310,10 @@ def table_of_values(
                    found.surface_low, found.surface_high),
         *_between_lines(found),
         _column("is_below_zero", "", "below zero, which it cannot be", found.is_below_zero),
-        _column("is_inside", "", "inside what was tested", found.is_inside),
-        _column("is_untested", "", "inside, farther from the runs than any", found.is_untested),
-        _column("peak_tension", "N", "greatest tension of the cycle", found.peak_tension),
-        _column("minimum_tension", "N", "least tension of the cycle", found.minimum_tension),
+        _column("is_inside", "", "within the tested range", found.is_inside),
+        _column("is_untested", "", "farther from the runs than any run", found.is_untested),
+        _column("peak_tension", "N", "peak tension of the cycle", found.peak_tension),
+        _column("minimum_tension", "N", "minimum tension of the cycle", found.minimum_tension),
         _column(f"peak_{_PERCENT}", "%", "the greatest tension so", 100 * found.peak_share),
         _column(f"minimum_{_PERCENT}", "%", "the least tension so", 100 * found.minimum_share),
         _column(f"peak_{_PERCENT}_in_its_condition", "%",
@@ -368,11 +368,11 @@ def table_of_difference(
         *_levels(second, b, other_levels, "other_"),
         _column(name, unit, f"{_meaning(name)}, {first.name}", a.value),
         _column(f"other_{name}", unit, f"{_meaning(name)}, {second.name}", b.value),
-        _column("difference", unit, "the second less the first", found.difference),
-        _column("ratio", "1", "the second over the first", found.ratio),
-        _column("surface_interval_low", unit, "lower end of 95 % of what the surfaces differ by",
+        _column("difference", unit, "second minus first", found.difference),
+        _column("ratio", "1", "second over first", found.ratio),
+        _column("surface_interval_low", unit, "lower 95 % limit of the difference of the surfaces",
                 found.surface_low),
-        _column("surface_interval_high", unit, "upper end of 95 % of what the surfaces differ by",
+        _column("surface_interval_high", unit, "upper 95 % limit of the difference of the surfaces",
                 found.surface_high),
         _column("interval_low", unit, "the same of one more run of the same lines", found.low),
         _column("interval_high", unit, "the same of one more run of the same lines", found.high),
@@ -395,11 +395,12 @@ def table_of_difference(
                 found.is_line_known),
         _column("is_line_different", "", "another line of each would differ",
                 found.is_line_different),
-        _column("is_inside", "", "inside what was tested, first line", a.is_inside),
-        _column("other_is_inside", "", "inside what was tested, second line", b.is_inside),
-        _column("is_untested", "", "inside, farther from the runs than any, first line",
+        _column("is_inside", "", "within the tested range, first line", a.is_inside),
+        _column("other_is_inside", "", "within the tested range, second line", b.is_inside),
+        _column("is_untested", "", "farther from the runs than any run, first line",
                 a.is_untested),
-        _column("other_is_untested", "", "inside, farther from the runs than any, second line",
+        _column("other_is_untested", "", "farther from the runs than any run, second"
+                                         " line",
                 b.is_untested),
         _column(f"peak_{_PERCENT}", "%", "greatest tension so, first line", 100 * a.peak_share),
         _column(f"minimum_{_PERCENT}", "%", "least tension so, first line", 100 * a.minimum_share),
@@ -478,7 +479,7 @@ def _meaning(name: str) -> str:
 
 
 def _source(line: LineSource, found: DesignValues) -> str:
-    errata = f"; errata that touch it: {', '.join(found.errata)}" if found.errata else ""
+    errata = f"; errata that apply: {', '.join(found.errata)}" if found.errata else ""
     return f"{line.name}: {found.source}{errata}"
 
 
@@ -492,7 +493,7 @@ def _about(line: LineSource) -> list[str]:
             line.rated_break_strength,
             "N",
         ),
-        ("strength that it has in its condition", line.tensile_strength, "N"),
+        ("residual strength in its condition", line.tensile_strength, "N"),
         ("diameter", line.diameter, "m"),
         ("linear density in air", line.linear_density, "kg/m"),
         ("linear density in water", line.wet_linear_density, "kg/m"),

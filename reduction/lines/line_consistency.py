@@ -428,7 +428,7 @@ def _of_surfaces(values: tuple[ConsistentValues, ...], name: str) -> tuple[str, 
     )
     own = plain_number(first.of_surfaces[name].ravel()[worst], 4)
     return (
-        f"the surfaces do not hold together at {int(everywhere.sum())} of {everywhere.size} "
+        f"the surfaces are inconsistent at {int(everywhere.sum())} of {everywhere.size} "
         f"points: {name} of its own surface is {own} {unit}, and K_ap, H and K_0 give {solved}",
     )
 
@@ -451,7 +451,7 @@ def _of_points(values: tuple[ConsistentValues, ...]) -> tuple[str, ...]:
     )
     solved = " or ".join(of(one.dissipation_spring_constant) for one in values)
     return (
-        f"the printed numbers cannot hold together at {int(everywhere.sum())} of "
+        f"the printed numbers are inconsistent at {int(everywhere.sum())} of "
         f"{everywhere.size} points: K_ap of a line is at most K_0 + K_1, and is "
         f"{of(values[0].of_surfaces[K_AP])} where K_0 + K_1 is {sums}; K_ap and H need a K_1 of "
         f"{solved}, printed is {of(values[0].of_surfaces[K_1])}",

@@ -265,8 +265,9 @@ def evaluate_levels(levels: LineLevels, at: Floats, name: str) -> LevelPoints:
         first = at[np.flatnonzero(~is_found)[0]]
         near = min(known, key=lambda one: _distance(levels, one.at, first))
         raise DataError(
-            f"{int((~is_found).sum())} of {size} points are no level at which {levels.quantity} of "
-            f"{name} was tested, nor between two of them",
+            f"{int((~is_found).sum())} of {size} points are neither a level at which"
+            f" {levels.quantity} of "
+            f"{name} was tested nor between two tested levels",
             found=_level_words(levels, first.tolist()),
             needed=f"one of the {len(known)} tested levels; the nearest is {near.words}",
             hint="`--list` shows every level; nothing is extrapolated, not even flagged.",
@@ -314,8 +315,7 @@ def _fill_between(
         rows[:, here] = np.outer(one.contribution, 1 - share) + np.outer(other.contribution, share)
         is_found |= here
         said.append(
-            f"not tested, interpolated between {one.words} and {other.words}: the interval spans "
-            f"those of both, and holds where {levels.quantity} only rises or only falls between "
-            "them"
+            f"not tested, interpolated between {one.words} and {other.words}: the interval spans"
+            f" both, and holds where {levels.quantity} is monotonic between them"
         )
     return said

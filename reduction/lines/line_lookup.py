@@ -132,8 +132,8 @@ def cycle_loads(
     if np.any(pushed):
         first = np.unravel_index(int(np.argmax(pushed)), pushed.shape)
         raise DataError(
-            f"{int(pushed.sum())} of {pushed.size} amplitudes are above their mean tension: the "
-            "line goes slack, and no surface knows of that",
+            f"{int(pushed.sum())} of {pushed.size} amplitudes are above their mean tension: the"
+            " line goes slack, which no surface describes",
             found=f"{plain_number(amplitude[first], 4)} N about {plain_number(mean[first], 4)} N",
             needed="an amplitude of at most the mean",
         )
@@ -231,10 +231,10 @@ def _refuse_slack(line: LineSource, loads: _CycleLoads) -> None:
         peak = loads.peak_tension[loads.is_slack].ravel()[0]
         raise DataError(
             f"{line.name} goes slack at {int(loads.is_slack.sum())} of {loads.is_slack.size} "
-            "points, and a tether must not",
+            "points, which a tether must not",
             found=f"a minimum tension of zero, peak {plain_number(peak, 4)} N",
             needed="a minimum above zero",
-            hint="A slack tether tangles and is cut: more stretch, or less amplitude.",
+            hint="A slack tether tangles and is cut: choose more stretch or less amplitude.",
         )
 
 
@@ -262,16 +262,14 @@ def _design_values(
     elif isinstance(of, LineCurve):
         notes.append("no interval is given: the source states no scatter of this curve")
     if loads.is_above_rule.any():
-        notes.append(f"the peak tension is above what the source allows: {line.rule}")
+        notes.append(f"the peak tension exceeds the limit of the source: {line.rule}")
     if loads.is_slack.any() and loads.peak_tension.max() > 0:
-        notes.append(
-            "the minimum is zero: a snap load, by which fibres fail (CG-D-39-80, sec. 5.0)"
-        )
+        notes.append("the minimum is zero: a snap load, which breaks fibres (CG-D-39-80, sec. 5.0)")
     below = int(np.sum(numbers["value"] < 0))
     if below:
         notes.append(
-            f"{below} of {inside.size} values are below zero, which {of.quantity} cannot be: the "
-            "surface says nothing there"
+            f"{below} of {inside.size} values are below zero, which {of.quantity} cannot be: the"
+            " surface is not valid there"
         )
     return DesignValues(
         quantity=of.quantity,
@@ -303,9 +301,9 @@ def _scatter_note(of: LineSurface | LineCurve | LineLevels, words: tuple[str, st
     """What the intervals hold, and what they do not."""
     if isinstance(of, LineSurface) and np.isfinite(of.line_scatter):
         return (
-            f"lines of this kind differ among each other by about {100 * of.line_scatter:.0f} % "
+            f"lines of this kind differ by about {100 * of.line_scatter:.0f} % "
             f"(CG-D-39-80, sec. 4.4.1), taken with {of.n_lines:.0f} lines and the degrees of "
-            "freedom of the surface: in the intervals of the kind and of another line alone"
+            "freedom of the surface: included only in the intervals of the kind and of another line"
         )
     told = words[0] or words[1]
     return f"the interval applies to {told}; scatter between lines is not included"
@@ -380,7 +378,7 @@ def _values_of_curve(
             if low < first < high
         )
         raise DataError(
-            f"{int((~inside).sum())} of {inside.size} points are outside what was tested of "
+            f"{int((~inside).sum())} of {inside.size} points are outside the tested range of "
             f"{curve.quantity} of {line.name}",
             found=f"{curve.variable} {plain_number(first)}{unit}",
             needed=f"{plain_number(curve.low)} to {plain_number(curve.high)}{unit}{gaps}",
@@ -605,10 +603,10 @@ def _refuse_outside(
                 f"{plain_number(high)} {unit}"
             )
     raise DataError(
-        f"{int((~inside).sum())} of {inside.size} points are outside what was tested of "
+        f"{int((~inside).sum())} of {inside.size} points are outside the tested range of "
         f"{surface.quantity} of {line.name}",
         found="; ".join(told),
-        needed="levels inside, which the source calls the range of usefulness",
+        needed="levels inside the tested range, the range of usefulness of the source",
         hint="--extrapolate flag gives the number and flags it.",
     )
 
@@ -793,8 +791,8 @@ def _dashpot(
         notes=tuple(
             dict.fromkeys(
                 (
-                    "N = K_1 tau; the intervals take the scatter of the two as independent, and "
-                    "what the runs share as it is",
+                    "N = K_1 tau; the intervals treat the scatter of the two as independent and"
+                    " include the errors that the runs share",
                     *spring.notes,
                     *time.notes,
                 )

@@ -311,7 +311,7 @@ class LineDifference:
 
     @property
     def is_inside(self) -> Bools:
-        """Inside what was tested of both."""
+        """Inside the tested ranges of both."""
         return np.asarray(self.first.is_inside & self.second.is_inside)
 
 

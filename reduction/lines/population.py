@@ -187,7 +187,7 @@ def specimens_of_kind(
             raise SettingsError(
                 f"the specimens are not of one kind: they differ in {what}",
                 found=", ".join(repr(one) for one in words),
-                needed="a search that leaves one, such as --material or --condition",
+                needed="a search that matches one, such as --material or --condition",
             )
     sizes = np.array([line.diameter for line in found])
     if sizes.size and np.ptp(sizes) > DIAMETER_TOLERANCE * np.mean(sizes):

@@ -239,8 +239,8 @@ _FREEDOM = 5.0
 _FIRST = "ten cycles"
 
 _BY_FRACTION = {
-    name: f"strain of the page is by a constant share of the position: by the marks of Table 3 the "
-    f"modulus is {ratio} times lower (WH5-34)"
+    name: "printed strain assumes a constant fraction of the position: with the marks of Table 3"
+    f" the modulus is lower by a factor of {ratio} (WH5-34)"
     for name, ratio in (("new", "1.145"), ("used", "1.163"))
 }
 

@@ -26,7 +26,7 @@ from reduction.experiments.surface_points import ABOVE_LEVERAGE
 from reduction.lines.archive_source import archives_of_lines, lines_of_open_archive, unique_names
 from reduction.lines.deck_formats import FORMS
 from reduction.lines.line_consistency import SOLVED, column_warnings, refitted_surfaces
-from reduction.lines.lookup_product import LineCurve, LineSource, LineSurface
+from reduction.lines.lookup_product import LineCurve, LineLevels, LineSource, LineSurface
 from reduction.lines.published_source import published_sources
 from reduction.published.printed_cells import REPORTS, ReportId, cells_of, errata_of
 from reduction.published.published_lines import published_lines
@@ -82,6 +82,8 @@ def _line_data(line: LineSource) -> dict[str, Any]:
             "factors": list(line.factor_names),
             "surfaces": {name: _surface(one) for name, one in line.surfaces.items()},
             "curves": [_curve(one) for one in line.curves],
+            "levels": [_levels(one) for one in line.levels],
+            "specimens": list(line.specimens),
             "absent": dict(line.absent),
             "notes": list(line.notes),
             "conditions": ", ".join(f"{name} {text}" for name, text in line.conditions.items()),
@@ -150,6 +152,17 @@ def _curve(curve: LineCurve) -> dict[str, Any]:
         "notes": list(curve.notes),
         "warnings": list(curve.warnings),
     }  # fmt: skip
+
+
+def _levels(levels: LineLevels) -> dict[str, Any]:
+    return {
+        "quantity": levels.quantity,
+        "variables": list(levels.variables),
+        "tests": list(levels.tests),
+        "at": _numbers(levels.at),
+        "value": _numbers(levels.value),
+        "conditions": [dict(one) for one in levels.conditions],
+    }
 
 
 def _components(component: tuple[Component, ...]) -> list[list[Any]]:
@@ -362,7 +375,7 @@ MOST_BYTES = 2_500_000
 
 _REPORT = "index.html"
 
-_FORMAT = 3
+_FORMAT = 4
 """Of what one page keeps for the next."""
 
 _TIMES = 3

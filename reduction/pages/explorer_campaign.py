@@ -151,7 +151,7 @@ SETTINGS: tuple[Setting, ...] = (
     Setting("phases.position_tolerance", "Phases", "range of position inside a standstill"),
     Setting("phases.tension_tolerance", "Phases", "range of tension inside a hold at one tension"),
     Setting("phases.slack_tension", "Phases", "a standstill at or below it is a rest"),
-    Setting("holds.minimum_duration", "Holds", "shortest hold that gives relaxation numbers"),
+    Setting("holds.minimum_duration", "Holds", "shortest hold for relaxation results"),
     Setting(
         "holds.maximum_terms", "Holds", "most Prony terms tried", slider=_Slider(1, 5, 1)
     ),
@@ -159,7 +159,7 @@ SETTINGS: tuple[Setting, ...] = (
     Setting("rope.last_cycles", "Rope", "last cycles that give the dynamic stiffness"),
     Setting("rope.reference_time", "Rope", "time after loading of the static stiffness"),
     Setting("rope.failure_share", "Rope", "share of the median peak below which it failed"),
-    Setting("slip.minimum_cycles", "Slips", "shortest test in which slips are looked for",
+    Setting("slip.minimum_cycles", "Slips", "shortest test that is searched for slips",
             kinds=_CYCLIC),
     Setting("slip.false_alarm", "Slips", "chance that a sound specimen shows a slip",
             kinds=_CYCLIC),

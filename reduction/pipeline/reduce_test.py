@@ -75,6 +75,7 @@ from reduction.stages.three_parameter_line.line_product import SlowPull
 from reduction.uncertainty.effects_on_answers import (
     load_train_notes,
     splice_friction_notes,
+    splice_slip_notes,
     with_weighed_notes,
 )
 from reduction.uncertainty.error_field import error_field
@@ -940,7 +941,8 @@ def reduce_test(
     )
     whole = with_weighed_notes(with_line_spread(with_shared_ratios(shared), settings.cycles))
     of_friction = splice_friction_notes(whole, instruments)
-    return replace(whole, notes=(*whole.notes, *load_train_notes(whole), *of_friction))
+    weighed = (*splice_slip_notes(whole), *load_train_notes(whole), *of_friction)
+    return replace(whole, notes=(*whole.notes, *weighed))
 
 
 def _with_shared_errors(

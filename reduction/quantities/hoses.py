@@ -173,13 +173,11 @@ OF_PREDICTIONS: tuple[Quantity, ...] = (
             SETTING,
             tables=("hoses",),
         ),
-        measured(
-            "cord_load_scale", "1", "scale factor on the load of the cord curve", tables=("hoses",)
-        ),
+        measured("cord_load_scale", "1", "scale scale factor of the cord load", tables=("hoses",)),
         measured(
             "cord_strain_scale",
             "1",
-            "scale factor on the strain of the cord curve",
+            "scale scale factor of the cord strain",
             tables=("hoses",),
         ),
         measured(

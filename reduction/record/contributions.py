@@ -54,7 +54,7 @@ class InstrumentErrors:
     area : float
         Relative, of an area that was stated instead of a diameter. [1]
     strain_gain : float
-        Relative, of strain: what the strain method itself may miss. [1]
+        Relative, of strain: error of the strain method itself. [1]
     rated_break_strength : float
         Relative. [1]
     stiffness : float

@@ -640,6 +640,16 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "slip-cycles-missing": (
         "note", "no search for slip: {n_missing} of {n_cycles} cycles are missing",
     ),
+    "splice-slipped": (
+        "warning",
+        lambda cycles, length, excess, effect: (
+            f"the splices slipped at cycle {cycles}, by at least {1000 * length:.0f} mm in all"
+            + ("" if excess != excess else
+               f": from there on, and in later tests without marks of their own, strain is at least"
+               f" {100 * excess:.1f} percentage points too large ({effect:.1%} of the mean strain)")
+            + ". Read the marks after the test, or use the cycles before the slip"
+        ),
+    ),
     "tension-steps-up": (
         "warning",
         "tension steps up at cycle {cycles}. A splice cannot do this: check the zero of the load"
@@ -1046,7 +1056,7 @@ _OF_EXPERIMENTS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " whether they are repeats or one run entered twice",
     ),
     "repeats-differ": (
-        "warning",
+        "note",
         "repeated runs differ by up to {spread:.2g} in coded levels (tolerance {tolerance:g}):"
         " pure error is computed after correcting them to common levels with the surface",
     ),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from math import hypot
 
@@ -210,10 +210,7 @@ def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
         force.label("EA"), "EA/MBL", *([] if is_of_lines else [of_branch.label("whole cycle")]),
         of_branch.label("ascending"), of_branch.label("descending"), "cycles used", "status",
     ]  # fmt: skip
-    place = columns.index("EA/MBL")
-    if all(row[place].text == NOT_GIVEN for row in found):
-        found = [[*row[:place], *row[place + 1 :]] for row in found]
-        del columns[place]
+    columns, found = _without_empty(columns, found, ["EA/MBL"])
     tangents = "EA of the tangent" if is_of_lines else "tangent modulus"
     whole = "" if is_of_lines else " Whole cycle: stress amplitude over strain amplitude."
     return make_table(
@@ -235,6 +232,204 @@ def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
             " interval.",
         ],
     )  # fmt: skip
+
+
+def pull_table(tests: Sequence[TestView]) -> PageTable | None:
+    """Return strain and load that pulls, breaks and weights reached, and the stiffness on the way.
+
+    None where no test is of such a kind.
+    """
+    own = [view for view in tests if view.kind in _PULLS]
+    is_of_lines = bool(own) and all(view.is_rope or view.is_hose for view in own)
+    found = [row for view in own for row in _pull_rows(view, is_of_lines=is_of_lines)]
+    if not found:
+        return None
+    has_cubic = any(_PULLED in view.data for view in own)
+    force, stress = (shown(kind, own[0].units) for kind in ("tension", "stress"))
+    columns = [
+        "specimen", "test", "ends at", shown("strain", own[0].units).label("strain"),
+        force.label("load"), force.label("EA at half the strain"),
+        *([] if is_of_lines else [stress.label("modulus there")]), "status",
+    ]  # fmt: skip
+    return make_table(
+        "Pulls and weights. EA: slope of load on strain of the first rise, at half the strain that"
+        " was reached.",
+        columns, found, is_compact=True, is_tall=len(found) > _MOST_ROWS,
+        remarks=[
+            *_about_spread(
+                found, own, [_FIRST_RISE, _PULLED, "pull_peak_tension", "interval_modulus"]
+            ),
+            *(["EA of a slow pull of a rope: K_0, by its cubic."] if has_cubic else []),
+        ],
+    )  # fmt: skip
+
+
+_PULLS = ("tensile", "quasi-static", "stepwise")
+
+_FIRST_RISE, _PULLED = "tangent_modulus_first_loading", "quasi_static_spring_constant"
+
+
+def _pull_rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]]:
+    force, stress = (shown(kind, view.units) for kind in ("tension", "stress"))
+    strain_unit = shown("strain", view.units)
+    areas, broke = view.array("area"), view.array("pull_is_break")
+    for place, name in enumerate(view.specimens):
+        curve = _rise(view, place)
+        if curve is None:
+            continue
+        strain, load, stiffness, is_modulus = curve
+        at_end = int(np.flatnonzero(np.isfinite(load.values))[-1])
+        ends: list[TableCell] = []
+        for peak, unit, of_curve in (
+            ("pull_peak_strain", strain_unit, _Series.known(strain)),
+            ("pull_peak_tension", force, load),
+        ):
+            known = view.array(peak)
+            if known is not None and np.isfinite(known[place]):
+                half = expanded_of(view, peak, known)
+                ends.append(measured(known[place], half.half[place], unit,
+                                     factor=half.factor[place]))  # fmt: skip
+            else:
+                ends.append(of_curve.cell(at_end, unit))
+        usable = np.flatnonzero(np.isfinite(stiffness.values))
+        area = float("nan") if areas is None else float(np.ravel(areas)[place])
+        if usable.size:
+            middle = int(usable[np.argmin(np.abs(strain[usable] - strain[at_end] / 2))])
+            line = stiffness.cell(middle, force, area if is_modulus else 1.0)
+            material = stiffness.cell(middle, stress, 1.0 if is_modulus else 1.0 / area)
+        else:
+            line = material = TableCell(NOT_GIVEN, is_number=True)
+        is_break = broke is not None and broke[place] == 1
+        yield [
+            words(name), words(f"{view.id} (earlier run)" if view.is_of_earlier_run else view.id),
+            words("break" if is_break else "greatest load"), *ends, line,
+            *([] if is_of_lines else [material]), _status(view),
+        ]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Series:
+    """Numbers along a rise with their half-widths and coverage factors."""
+
+    values: Floats
+    half: Floats
+    factor: Floats
+
+    @classmethod
+    def known(cls, values: Floats) -> _Series:
+        """Numbers without an uncertainty."""
+        unknown = np.full(values.shape, np.nan)
+        return cls(values, unknown, unknown)
+
+    def cell(self, place: int, unit: Shown, times: float = 1.0) -> TableCell:
+        """One of them, times a number."""
+        value, half = times * self.values[place], times * self.half[place]
+        return measured(value, half, unit, factor=float(self.factor[place]))
+
+
+def _rise(view: TestView, place: int) -> tuple[Floats, _Series, _Series, bool] | None:
+    """Return strains of a first rise, loads and stiffness there, and whether that is a modulus."""
+
+    def series(name: str, *own: int) -> _Series | None:
+        values = view.array(name)
+        if values is None:
+            return None
+        spread = expanded_of(view, name, values)
+        return _Series(values[own], spread.half[own], spread.factor[own])
+
+    pulled, strain = series(_PULLED, place), series("quasi_static_strain", place)
+    if pulled is not None and strain is not None and np.isfinite(pulled.values).any():
+        load = np.asarray(view.array("tension_grid"))
+        return strain.values, _Series.known(load), pulled, False
+    weights, middles = series("interval_modulus"), view.array("interval_strain")
+    if weights is not None and middles is not None:
+        rising = view.array_like("interval_branch", middles) == 1
+        strains, loads = (view.array_like(key, np.zeros(0)) for key in ("strain", "tension"))
+        top = np.nanargmax(loads)
+        at = np.append(middles[rising], strains[top])
+        load = np.append(np.full(at.size - 1, np.nan), loads[top])
+        slope = (
+            np.append(np.asarray(one)[rising], np.nan)
+            for one in (weights.values, weights.half, weights.factor)
+        )
+        return at, _Series.known(load), _Series(*slope), True
+    branch = (view.texts("branch_name") or BRANCH_NAMES).index(BRANCH_NAMES[0])
+    tangent = series(_FIRST_RISE, place, branch)
+    tension = series("branch_tension_first_loading", place, branch)
+    bins = view.array("first_loading_strain_bin")
+    if tangent is None or tension is None or bins is None or not np.isfinite(tension.values).any():
+        return None
+    return bins, tension, tangent, True
+
+
+def hold_table(tests: Sequence[TestView]) -> PageTable | None:
+    """Return the longest hold of each specimen in tests of relaxation or creep; None without."""
+    own = [view for view in tests if view.kind in ("relaxation", "creep")]
+    found = [row for view in own for row in _hold_rows(view)]
+    if not found:
+        return None
+    units = own[0].units
+    rates = ["tension per decade [%]", "strain per decade [%]"]
+    columns = [
+        "specimen", "test", shown("strain", units).label("strain"),
+        shown("tension", units).label("tension at the start"), "held for [h]",
+        "drop of tension [%]", *rates, "status",
+    ]  # fmt: skip
+    columns, found = _without_empty(columns, found, rates)
+    return make_table(
+        "Relaxation and creep: the longest hold of each test.",
+        columns, found, is_compact=True, is_tall=len(found) > _MOST_ROWS,
+        remarks=_about_spread(found, own, _OF_HOLD),
+    )  # fmt: skip
+
+
+def _about_spread(
+    rows: Sequence[Sequence[TableCell]], tests: Sequence[TestView], names: Sequence[str]
+) -> list[str]:
+    """Say what ± holds, where a number has one."""
+    factors = factors_of(rows)
+    return [plus_minus_of_tests(factors, tests, names)] if factors else []
+
+
+_OF_HOLD = (
+    "hold_strain", "hold_initial_tension", "relaxation_drop", "relaxation_rate_per_decade",
+    "creep_rate_per_decade",
+)  # fmt: skip
+
+
+def _hold_rows(view: TestView) -> Iterator[list[TableCell]]:
+    lasted, names = view.array("hold_duration"), view.texts("hold_specimen")
+    if lasted is None:
+        return
+    strain, force = shown("strain", view.units), shown("tension", view.units)
+    for name in view.specimens:
+        own = [place for place, one in enumerate(names) if one == name]
+        if not own:
+            continue
+        place = max(own, key=lambda one: float(lasted[one]))
+        cells = []
+        for key, unit in zip(_OF_HOLD, (strain, force, strain, strain, strain), strict=True):
+            values = view.array_like(key, lasted)
+            spread = expanded_of(view, key, values)
+            cells.append(
+                measured(values[place], spread.half[place], unit, factor=spread.factor[place])
+            )
+        yield [
+            words(name), words(f"{view.id} (earlier run)" if view.is_of_earlier_run else view.id),
+            *cells[:2], number(float(lasted[place]) / 3600.0, digits=3), *cells[2:], _status(view),
+        ]  # fmt: skip
+
+
+def _without_empty(
+    columns: list[str], rows: list[list[TableCell]], names: Collection[str]
+) -> tuple[list[str], list[list[TableCell]]]:
+    """Leave out those of some columns that have no number in any row."""
+    kept = [
+        place
+        for place, name in enumerate(columns)
+        if name not in names or any(row[place].text != NOT_GIVEN for row in rows)
+    ]
+    return [columns[place] for place in kept], [[row[place] for place in kept] for row in rows]
 
 
 _SAME_STRAINS = 0.8
@@ -352,8 +547,8 @@ def _differences(first: _Level, second: _Level) -> Iterator[str]:
     reached = second.of("earlier_maximum_strain")
     if reached > _LIKE_CONDITIONS * highest:
         yield (
-            f"stretched to {100 * reached:.0f} % in between, where {100 * highest:.0f} % was the"
-            " most before: softening by a greater stretch"
+            f"stretched to {100 * reached:.0f} % in between, at most {100 * highest:.0f} % before:"
+            " softening by the larger stretch"
         )
     cycles = second.of("earlier_cycles") - first.of("earlier_cycles")
     if cycles > 0:
@@ -403,11 +598,13 @@ def _rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]]:
                 + _which(view, place, float(constant[place]), float(of_constant.half[place])),
                 str(averaged[place]), is_number=True,
             ),
-            words(_STATUS_OF_DOUBT[any(one.severity == "warning" for one in view.notes)]),
+            _status(view),
         ]  # fmt: skip
 
 
-_STATUS_OF_DOUBT = {True: "check", False: "reduced"}
+def _status(view: TestView) -> TableCell:
+    is_doubted = any(one.severity == "warning" for one in view.notes)
+    return words("check" if is_doubted else "reduced")
 
 
 def _tangents(

@@ -17,7 +17,12 @@ from reduction.archive.write import read_details, write_text_atomically
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
 from reduction.record.plain_text import bare_cell
-from reduction.report.answer_tables import design_modulus_table, unlike_tests_table
+from reduction.report.answer_tables import (
+    design_modulus_table,
+    hold_table,
+    pull_table,
+    unlike_tests_table,
+)
 from reduction.report.campaign_sections import (
     ALL_COMPARISONS,
     CampaignView,
@@ -297,7 +302,7 @@ class CampaignPage:
         if not (self._keys or self._statuses or is_there(self._processed)):
             raise ArchiveError(
                 "there is nothing to report on",
-                found=f"no archive and no status.csv in {self._processed}",
+                found=f"neither an archive nor status.csv in {self._processed}",
                 needed="the folder of a campaign, such as processed/CAMPAIGN",
                 hint="Run the campaign first.",
             )
@@ -350,9 +355,9 @@ def _answers(
 
 
 def _answers_of(tests: Sequence[TestView]) -> list[PageTable]:
-    """Return the design moduli, and pairs of tests that are unlike over the same strains."""
-    tables = (design_modulus_table(tests), unlike_tests_table(tests))
-    return [table for table in tables if table is not None]
+    """Return design moduli, pairs of tests that are unlike over the same strains, pulls, holds."""
+    makers = (design_modulus_table, unlike_tests_table, pull_table, hold_table)
+    return [table for make in makers if (table := make(tests)) is not None]
 
 
 def _page_of(

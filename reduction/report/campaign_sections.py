@@ -395,7 +395,7 @@ def _shape(view: ComparisonView) -> str:
     return (
         f"Chi-square over all strains is {view.scalar('chi_square'):.4g} with"
         f" {view.scalar('chi_square_freedom'):.0f} degrees of freedom; the stated errors alone"
-        f" exceed that in {chance} of cases. It detects a wrong shape inside the band, and is"
+        f" exceed that in {chance} of cases. It detects a wrong shape within the band, and is"
         " given in addition to the verdict."
     )
 
@@ -481,9 +481,7 @@ def _rope_tiles(views: Sequence[RopeView]) -> list[Tile]:
 
 _SHOWN = ("outcomes", "surfaces", "predictions", "comparisons", "change_in_length")
 
-_STRAY = (
-    "Nothing in the campaign stands for this archive now: what is shown of it is of an earlier run."
-)
+_STRAY = "The campaign no longer makes this archive; its contents are from an earlier run."
 
 _Read = TypeVar("_Read")
 

@@ -202,7 +202,7 @@ def _all_faults(
             yield of_file("warning", view.id, _NO_TEST)
         archived_hash = " ".join(view.attribute("raw_file_sha256").split())
         if status and status.status != "failed" and status.raw_sha256 not in ("", archived_hash):
-            text = "The raw files of the archive are not those of status.csv."
+            text = "The raw files named in the archive differ from those in status.csv."
             yield of_file("warning", view.id, text)
         for one in view.notes:
             text = str(one)

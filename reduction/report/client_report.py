@@ -474,7 +474,7 @@ def _raw_file_table(tests: Sequence[TestView], *, synthetic: bool) -> PageTable 
     if not rows:
         return None
     return make_table(
-        "Logs that the results were made from.", ("test", "file", "SHA-256"), rows,
+        "Logs from which the results were made.", ("test", "file", "SHA-256"), rows,
 
     )  # fmt: skip
 

@@ -306,9 +306,9 @@ def draw_surface(
             f"{view.key}-{name}-surface", title,
             f"Surface of the {words} over {in_words(view.factors[planes.across[0]])} and"
             f" {in_words(view.factors[planes.across[1]])}, {in_words(held)} held in the middle of"
-            f" its range{_scale_words(name)}. Points: the runs made at this {in_words(held)}, lines"
-            " their distance from the surface. Turn it with the pointer; the same values"
-            " stand in the contours, whose SVG is lines throughout.",
+            f" its range{_scale_words(name)}. Points: the runs made at this {in_words(held)},"
+            " lines their distance from the surface. Drag to rotate; the contour figure shows the"
+            " same values.",
             data, synthetic=view.is_synthetic, height=430,
             scene={
                 "xaxis": axis(view.factor_label(planes.across[0])),
@@ -361,8 +361,7 @@ def draw_contours(
         data += points
         at = _at(view, planes.held, view.levels(planes.held)[place])
         says = (
-            " Grey: the runs say less there than at the worst of them (leverage above the greatest"
-            " of a run); a value there leans on the form of the surface."
+            " Grey: leverage above that of any run; values there depend on the form of the surface."
             if is_thin
             else ""
         )
@@ -396,7 +395,7 @@ def _scale_words(name: str) -> str:
     """Say on what scale a surface was fitted where it was not the response itself."""
     if name == _base_response(name):
         return ""
-    return f", fitted to the {in_words(name)} and brought back (medians)"
+    return f", fitted to the {in_words(name)} and transformed back (medians)"
 
 
 def _given(figure: Figure) -> list[Figure]:
@@ -524,8 +523,8 @@ def draw_cube(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> l
             f"{view.key}-{name}-cube", f"{view.name}: {words} on the cube",
             f"Value of the surface of the {words}{_scale_words(name)} at corners, edges and centre"
             f" [{shown.unit}]: to the right {ends[0]}, upward {ends[1]}, away {ends[2]}. Open"
-            " markers: the runs say less there than at the worst of them. A value ends at the"
-            " second digit of half its 95 % interval.",
+            " markers: leverage above that of any run. Values are rounded to two digits of the"
+            " half-width of the 95 % interval.",
             data, synthetic=view.is_synthetic, height=430,
             xaxis={
                 **axis(f"{view.factor_label(order[0])}, low to high"),
@@ -643,7 +642,7 @@ def draw_pareto(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
         }
         for own, tint, words in (
             (counts, COLOURS[0], "differs from zero"),
-            (~counts, _CHECK_GREY, "not told from zero"),
+            (~counts, _CHECK_GREY, "not significant"),
         )
         if own.any()
     ]  # fmt: skip
@@ -720,8 +719,8 @@ def _predicted(
     ]
     return make_figure(
         f"{view.key}-{name}-predicted", f"{view.name}: {in_words(name)} against measured",
-        "Value of the surface against the measured one, a point a run; dotted: equal. The pointer"
-        " shows the residual.",
+        "Surface value against measured value, one point per run; dotted: equal. Hover over a"
+        " point for its residual.",
         data, synthetic=view.is_synthetic,
         xaxis=axis(unit.label("measured")), yaxis=axis(unit.label("by the surface")),
     )  # fmt: skip
@@ -743,9 +742,9 @@ def _in_order(
     ]  # fmt: skip
     return make_figure(
         f"{view.key}-{name}-order", f"{view.name}: {in_words(name)}, residuals in order",
-        "Measured less surface, in the order"
-        f" {'the tests were made' if is_known else 'of the plan'}: a trend would be wear, heating"
-        " or bedding-in that no factor of the surface holds.",
+        "Measured minus surface, in the order"
+        f" {'the tests were made' if is_known else 'of the plan'}: a trend indicates wear, heating"
+        " or bedding-in that no factor accounts for.",
         data, synthetic=view.is_synthetic,
         xaxis=axis("order of the run [1]"), yaxis=axis(unit.label("residual"), zeroline=True),
     )  # fmt: skip
@@ -766,9 +765,9 @@ def _normal(view: ExperimentView, surfaces: ResponseSurfaces, index: int) -> Fig
     ]
     return make_figure(
         f"{view.key}-{name}-normal", f"{view.name}: {in_words(name)}, normal plot",
-        "Residuals over their own standard deviations, against the scores of a normal sample;"
-        f" dotted: as of one. Squared correlation {straight:.3f}. With few degrees of freedom such"
-        " a plot shows one run far off, and little of a distribution.",
+        "Standardised residuals against normal scores; dotted: a normal sample. Squared"
+        f" correlation {straight:.3f}. With few degrees of freedom the plot shows an outlier, but"
+        " little of the distribution.",
         data, synthetic=view.is_synthetic,
         xaxis=axis("normal score [1]"), yaxis=axis("studentized residual [1]"),
     )  # fmt: skip
@@ -810,16 +809,15 @@ def confounding_words(view: ExperimentView) -> list[str]:
     of_factors = np.abs(alias[1:])
     present = of_factors > _LEAST_ALIAS
     if not present.any():
-        return ["No interaction of two factors stands in a main effect: the columns are clear."]
+        return ["No two-factor interaction is aliased with a main effect."]
     largest = float(of_factors.max())
     whole = "the whole of" if largest > _FULL else f"up to {largest:.2g} of"
     numbers = sorted({int(number) for number in present.sum(axis=1)})
     many = " to ".join(map(str, dict.fromkeys([numbers[0], numbers[-1]])))
     return [
-        f"Confounding: each main effect holds {whole} {many} interactions of two other factors,"
-        " plus or minus. A"
-        " factor that looks active may be a sum of interactions, and one that looks idle may be"
-        " hidden by them: what comes out here is for a second experiment to confirm."
+        f"Confounding: each main effect is aliased with {whole} {many} interactions of two other"
+        " factors, with either sign. A factor that looks active may be a sum of interactions, and"
+        " one that looks inactive may be hidden by them. Confirm the result by a second experiment."
     ]
 
 
@@ -852,8 +850,8 @@ def _bars(
             )
     return make_figure(
         f"{view.key}-{name}-effects", f"{view.name}: effects on {in_words(name)} by size",
-        "Size of each effect. Dashed: the least that counts, for a factor judged alone; dotted: for"
-        " all of them at once. Dummies are columns that no factor uses, and show the scatter.",
+        "Size of each effect. Dashed: significance limit for one factor judged alone; dotted: for"
+        " all factors together. Dummies are columns without a factor; they show the scatter.",
         data, synthetic=view.is_synthetic, height=400,
         xaxis=axis(unit.label("size of the effect"), rangemode="tozero"),
         yaxis=named_axis("column of the plan [1]", [labels[k] for k in order]),
@@ -887,8 +885,8 @@ def _half_normal(
             )  # fmt: skip
     return make_figure(
         f"{view.key}-{name}-half-normal", f"{view.name}: {in_words(name)}, half-normal plot",
-        "Size of each effect against the half-normal quantile of its place. Scatter alone lies on"
-        " the dotted line from zero; a factor that acts lies above it, at the right.",
+        "Size of each effect against its half-normal quantile. Scatter alone follows the dotted"
+        " line; active factors lie above it, at the right.",
         data, synthetic=view.is_synthetic, height=400,
         xaxis=axis("half-normal quantile [1]"), yaxis=axis(unit.label("size of the effect")),
     )  # fmt: skip
@@ -927,7 +925,7 @@ _LARGE = 1e9
 _ON_SCALE = {
     "log": ", by its logarithm",
     "box-cox": ", by its Box-Cox transform",
-    "log-times-frequency": ", by the logarithm of frequency times it",
+    "log-times-frequency": ", by the logarithm of its product with frequency",
 }
 
 
@@ -1150,9 +1148,8 @@ def surface_coefficient_table(
         " in units.",
         remarks=list(filter(None, [
             of_numbers,
-            f"In units: {units}. Digits enough to compute with; the errors of coefficients in"
-            " units go together, so that a value of the surface is far better known than the sum of"
-            " theirs.",
+            f"In units: {units}. The digits suffice for computation. Errors of the coefficients"
+            " are correlated: a value of the surface is known much better than their sum suggests.",
             plus_minus(sheet.factors, _held(sources), left_out=_left_out(sources)),
             "Shared part: the part of ± common to all runs, with the same k; parts combine in"
             " quadrature. t and p are for the scatter alone." if sources else "",
@@ -1183,10 +1180,7 @@ def anova_table(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
         sheet.numbers("F", anova.f[index], "number")
         .probabilities("p", anova.p_value[index])
         .texts("tested against", anova.error_term)
-        .table(
-            f"{in_words(name).capitalize()}: analysis of variance, each source after those above"
-            " it."
-        )
+        .table(f"{in_words(name).capitalize()}: sequential analysis of variance.")
     )
 
 
@@ -1273,7 +1267,7 @@ def form_table(view: ExperimentView) -> PageTable | None:
     return sheet.table(
         "Coefficients of the stiffness forms of mooring codes.",
         remarks=[plus_minus(sheet.factors, "scatter of the runs about the form",
-                            left_out="that the form itself may be wrong: see its quality")],
+                            left_out="error of the form itself: see its quality")],
     )  # fmt: skip
 
 
@@ -1294,8 +1288,8 @@ def form_quality_table(view: ExperimentView) -> PageTable | None:
         .numbers("AICc", "stiffness_aicc")
         .table(
             "The forms against the quadratic surface of the same runs.",
-            remarks=["s: standard deviation of a run about the form. AICc: lower is better; one"
-                     " form against another on the same runs, nothing by itself."],
+            remarks=["s: standard deviation of a run about the form. AICc: lower is better;"
+                     " compare only forms fitted to the same runs."],
         )
     )  # fmt: skip
 
@@ -1423,7 +1417,7 @@ def negative_words(
     )
     bent = [one for one in surfaces.response_names if one != name and _base_response(one) == name]
     instead = (
-        f"Take the surface of its {in_words(bent[0]).split(' of ')[0]} instead, below: it cannot."
+        f"Use the surface of its {in_words(bent[0]).split(' of ')[0]} below, which stays positive."
         if bent
         else f'Ask for one that cannot: transform = {{ {name} = "log" }} in the campaign.'
     )
@@ -1456,9 +1450,9 @@ def quality_words(view: ExperimentView, surfaces: ResponseSurfaces, index: int) 
     else:
         p = float(lack.p_value[index])
         verdict = (
-            "the runs depart from the surface by more than repeats differ"
+            "the runs depart from the surface by more than repeated runs differ"
             if p < _SIGNIFICANCE
-            else "no departure is seen beyond the scatter of repeats"
+            else "no lack of fit beyond the scatter of repeated runs"
         )
         sentences.append(
             f"Lack of fit: F({lack.degrees_of_freedom[index]},"
@@ -1467,7 +1461,7 @@ def quality_words(view: ExperimentView, surfaces: ResponseSurfaces, index: int) 
         )
     if np.isfinite(surfaces.printed_f[index]):
         sentences.append(
-            "For comparison alone, the F that CG-D-39-80 prints, with the mean among the terms, is"
+            "For comparison only: the F that CG-D-39-80 prints, with the mean among the terms, is"
             f" {number_text(float(surfaces.printed_f[index]))} here."
         )
     return " ".join(sentences)
@@ -1486,7 +1480,7 @@ def stationary_words(view: ExperimentView, surfaces: ResponseSurfaces, index: in
     if not canonical.is_inside[index]:
         return (
             f"Stationary point: a {kind}, outside the tested range: within it the surface has no"
-            " summit and no hollow, and its greatest and least values lie on the boundary."
+            " maximum or minimum, and its extremes lie on the boundary."
         )
     unit = response_unit(surfaces.response_names[index], view.units)
     at = ", ".join(
@@ -1520,7 +1514,7 @@ def block_words(view: ExperimentView, surfaces: ResponseSurfaces, index: int) ->
         f"{name} {float(effect) * unit.factor:+.3g}{said}"
         for name, effect in zip(blocks.names, blocks.effect[index], strict=True)
     )
-    return [f"Specimens against their mean, over the same levels: {effects}."]
+    return [f"Difference of each specimen from their mean, at the same levels: {effects}."]
 
 
 def single_time_words(view: ExperimentView) -> list[str]:
@@ -1650,8 +1644,8 @@ def draw_single_time(
         make_figure(
             f"{view.key}-single-time", f"{view.name}: relaxation time against frequency",
             "Relaxation time of each run, on logarithmic axes. One relaxation time would lie on the"
-            " dotted level; dashed: as 1/f, which is a loss angle that does not change with"
-            f" frequency. Thin: the fit, tau ~ f⁻ⁿ with n = {exponent:.4f} ({low:.4f} to"
+            " dotted level; dashed: as 1/f, a loss angle that does not change with frequency."
+            f" Thin: the fit, tau ~ f⁻ⁿ with n = {exponent:.4f} ({low:.4f} to"
             f" {high:.4f}), one factor for each pair of loads. Bars: expanded"
             f" uncertainty (95 %, {factor_words(spread.factors)}).",
             data, synthetic=view.is_synthetic, height=420, is_wide=True,
@@ -1691,15 +1685,15 @@ def draw_forms(view: ExperimentView) -> list[Figure]:
     return [
         make_figure(
             f"{view.key}-forms", f"{view.name}: stiffness forms of mooring codes",
-            "Apparent spring constant by each form against the measured one, a point a run;"
+            "Apparent spring constant by each form against the measured value, one point per run;"
             " dotted: equal.",
             equal, synthetic=view.is_synthetic, height=400,
             xaxis=axis(unit.label("measured")), yaxis=axis(unit.label("by the form")),
         ),
         make_figure(
-            f"{view.key}-forms-missed", f"{view.name}: what the forms miss",
-            "Measured less form, against the mean tension: what bends here is the curve that a"
-            " form of straight lines has no room for.",
+            f"{view.key}-forms-missed", f"{view.name}: residuals of the forms",
+            "Measured minus form, against mean tension. A bend is curvature that a linear form"
+            " cannot follow.",
             missed, synthetic=view.is_synthetic, height=400,
             xaxis=axis(force.label("mean tension")),
             yaxis=axis(unit.label("measured less form")),
@@ -1732,8 +1726,7 @@ def draw_derived(view: ExperimentView) -> list[Figure]:
             make_figure(
                 f"{view.key}-derived-{name}", f"{view.name}: {symbol} from surfaces of E' and E''",
                 f"{symbol} from smooth surfaces of E' and E'' against {symbol} of the loops of each"
-                " run; dotted: equal. A run off the line is one that its neighbours do not bear"
-                " out.",
+                " run; dotted: equal. A run off the line disagrees with its neighbours.",
                 data, synthetic=view.is_synthetic, height=400,
                 xaxis=axis(unit.label(f"{symbol} of the loops")),
                 yaxis=axis(unit.label(f"{symbol} from surfaces")),

@@ -111,9 +111,9 @@ def draw_lives(view: OutcomeView) -> list[Figure]:
     return [
         make_figure(
             f"outcomes-lives-{number}", f"Cycles to failure against peak load, {title}",
-            "Each test; an arrow is a run-out or a failure of the termination: the line lasts at"
-            " least that. Line: median life, run-outs counted as what they are; shaded: its 95 %"
-            " bounds, between the loads tested only. The law has no fatigue limit.",
+            "Each test; an arrow is a run-out or a failure of the termination (a lower bound)."
+            " Line: median life, with run-outs as lower bounds; shaded: its 95 %"
+            " bounds, between the loads tested only. The model has no fatigue limit.",
             [
                 trace
                 for index, (series, name) in enumerate(
@@ -264,7 +264,7 @@ def strength_table(view: OutcomeView, name: str) -> PageTable | None:
     )
     return sheet.grouped(
         f"{what.capitalize()} by group: mean of the valid tests; a break in the termination is a"
-        " lower bound and stands apart. Change: against the group of the same line whose"
+        " lower bound and is listed apart. Change: against the group of the same line whose"
         " condition is new.",
         f"{name}_reason", _SCATTER, _BOUNDS,
     )  # fmt: skip
@@ -397,7 +397,7 @@ def snap_sentences(view: OutcomeView) -> list[str]:
         known += [f"the first at {high:.3g} %"] if high == high else []
         sentences.append(
             f"{name}: {', '.join(known)} of the rated break strength, of lines that go slack in"
-            " each cycle. These are loads of the tests, and no safe load."
+            " each cycle. These are tested loads, not safe loads."
         )
         sentences += [f"{name}: {note}." for note in levels.notes]
     return sentences
@@ -423,8 +423,8 @@ def answer_of_ropes(views: Sequence[RopeView]) -> PageTable | None:
         unit = shown("tension" if name.endswith("stiffness") else "strain", units)
         sheet.cells(unit.label(name), [_least_to_greatest(view, name, unit) for view in views])
     return sheet.table(
-        "Change-in-length properties of the ropes, least to greatest where the programme gives"
-        " several; between which tensions, and why one is missing, is in the section of the rope.",
+        "Change-in-length properties of the ropes, minimum to maximum where the programme gives"
+        " several. The section of each rope has the tensions, and reasons for missing values.",
         tall=16, remarks=[_about(sheet, views)],
     )  # fmt: skip
 
@@ -531,7 +531,7 @@ def pair_table(view: RopeView) -> PageTable | None:
         ("reference time", "static_reference_time"),
         ("static stiffness", "static_stiffness"),
         ("over strength", "static_stiffness_over_strength"),
-        ("change a decade of time", "static_stiffness_per_decade"),
+        ("change per decade of time", "static_stiffness_per_decade"),
         reason="static_refusal",
     )  # fmt: skip
 
@@ -543,8 +543,8 @@ def creep_table(view: RopeView) -> PageTable | None:
         ("tension", "hold_final_tension"),
         ("over strength", "creep_tension_over_strength"),
         ("lasts", "hold_duration"),
-        ("strain a decade of time", "creep_rate_per_decade", PERCENT),
-        ("strain a decade, over tension as a share of strength", "creep_compliance_per_decade",
+        ("strain per decade of time", "creep_rate_per_decade", PERCENT),
+        ("strain per decade over tension as a share of strength", "creep_compliance_per_decade",
          PERCENT),
         reason="hold_refusal",
     )  # fmt: skip

@@ -129,16 +129,16 @@ def hose_design_table(view: HoseView) -> PageTable:
         found.at("cord_layer", place).numbers(f"width of the ribbon {name}", "ribbon_width")
     (
         given.measured("outer diameter", "outer_diameter")
-        .measured("cords a length of fabric", "cords_per_length", view.per_length)
+        .measured("cords per length of fabric", "cords_per_length", view.per_length)
         .measured("diameter of a cord", "cord_diameter")
         .measured("Young's modulus of the rubber", "rubber_modulus")
-        .measured("factor on the load of the cord curve", "cord_load_scale")
-        .measured("factor on the strain of the cord curve", "cord_strain_scale")
+        .measured("scale factor of the cord load", "cord_load_scale")
+        .measured("scale factor of the cord strain", "cord_strain_scale")
         .measured("dead length, of the whole", "dead_length_share", PERCENT)
         .measured("working share of the break load of a cord", "working_share", PERCENT)
     )
     if view.scalar("minimum_inner_diameter"):
-        given.numbers("least bore that is allowed", "minimum_inner_diameter")
+        given.numbers("minimum bore allowed", "minimum_inner_diameter")
     spacing = np.nanmin(view.array("cord_spacing") / view.scalar("cord_diameter"))
     (
         found.numbers("cords in the section, both layers", "number_of_cords")
@@ -161,7 +161,7 @@ def hose_design_table(view: HoseView) -> PageTable:
 
         remarks=[
             f"Law of the rubber: {view.text('rubber_law')}. ±: expanded uncertainty, 95 %"
-            f" ({_K}), of what is stated; a number without ± counts as known.",
+            f" ({_K}), of what is stated; a number without ± is treated as exact.",
             *([] if view.scalar("dead_length_share") else [
                 "No dead length is stated: stretch-limited ends count as hose that stretches."
             ]),
@@ -190,8 +190,8 @@ def layer_table(view: HoseView) -> PageTable | None:
     return sheet.table(
         f"Non-structural layers of hose {view.name}: strain up to the working load, and the angles"
         " that keep them within their limits.",
-        remarks=["Strains of a layer that follows the hose; it adds nothing to the tension, even"
-                 " where it is stretched beyond its limit."],
+        remarks=["Strains of a layer that follows the hose; it carries no tension, even where it"
+                 " is stretched beyond its limit."],
     )  # fmt: skip
 
 
@@ -363,7 +363,8 @@ def calibration_table(view: ComparisonView) -> PageTable | None:
                 " strains", left_out="errors of the model",
             )
             + " Intervals are not cut at the bounds.",
-            f"The residuals are worth {view.scalar('effective_points'):.0f} independent points;"
+            f"The residuals are equivalent to {view.scalar('effective_points'):.0f} independent"
+            " points;"
             f" extra scatter needed to explain them: {added} {force.unit}.",
         ],
     )  # fmt: skip
@@ -433,11 +434,12 @@ def wires_table(found: PredictedArmour, units: UnitSystem) -> PageTable | None:
         " the cable.",
         is_compact=True,
         remarks=[
-            "Exact: the helix as it is, with the report's moments; small and intermediate angles"
-            " simplify it. With an energy: the rod whose tension is the slope of what it stores;"
-            " layers and cable go by it. Large angles: a spring without a core, another body.",
-            "No uncertainty is given: none is stated of the armour. The thinning of the wires and"
-            " the give of the core are in none of them.",
+            "Exact: the exact helix with the report's moments; small and intermediate angles are"
+            " approximations. With an energy: the rod whose tension is the derivative of its"
+            " strain energy, used for layers and cable. Large angles: a spring without a core, a"
+            " different body.",
+            "No uncertainty is given: none is stated of the armour. None includes thinning of the"
+            " wires or compliance of the core.",
         ],
     )  # fmt: skip
 
@@ -463,10 +465,10 @@ def layers_table(found: PredictedArmour, units: UnitSystem) -> PageTable | None:
             f"Layers at {100 * float(found.strain[0]):g} % of strain of the cable, innermost"
             " first.",
             is_compact=True,
-            remarks=["Torque: above zero of right-handed wires. The cable is held from turning; its"
-                     " core is rigid; friction between layers is left out. Lost by thinning: by"
-                     " which strain and tension are too high, since a wire that thins sinks to the"
-                     " core."],
+            remarks=["Torque: positive for right-handed wires. The cable is held against rotation;"
+                     " its core is rigid; friction between layers is neglected. Lost by thinning:"
+                     " the amount by which strain and tension are too high, since a thinning wire"
+                     " moves towards the core."],
         )
     )  # fmt: skip
 
@@ -482,12 +484,12 @@ def cable_table(found: PredictedArmour, units: UnitSystem) -> PageTable:
 
     add("tension", float(together.tension[0]))
     sheet.numbers("torque", together.torque, moment_unit(units))
-    left_over = "torque that is left over, of the layers' sizes"
+    left_over = "net torque over the sum of the layers' magnitudes"
     sheet.numbers(left_over, together.torque_imbalance, PERCENT, 3)
-    add("axial stiffness, held from turning", held)
-    add("axial stiffness, free to turn", free)
+    add("axial stiffness, held against rotation", held)
+    add("axial stiffness, free to rotate", free)
     if found.strength is None:
-        about = "First yield is not given: not every layer has a yield stress."
+        about = "First yield not given: not every layer has a yield stress."
     else:
         sheet.numbers("strain at first yield", [found.strength.strain], PERCENT)
         add("tension at first yield", found.strength.tension)
@@ -514,7 +516,7 @@ def use_table(found: PredictedArmour) -> PageTable | None:
     return sheet.table(
         f"Winding angles at which each theory is within {100 * found.tolerance:g} % of the exact"
         " rod.",
-        remarks=["From 5 to 85 degrees in steps of a half; of several ranges the longest."],
+        remarks=["From 5 to 85 degrees in steps of 0.5; the longest of several ranges."],
     )
 
 
@@ -536,7 +538,7 @@ def armour_design_table(found: PredictedArmour, units: UnitSystem) -> PageTable 
         .numbers("poisson ratio", of_layers(found, "poisson_ratio"), "number")
         .counts("wires", of_layers(found, "n_wires"))
         .texts("lay", found.layers.lay)
-        .table("Layers as given, the innermost first.")
+        .table("Layers as given, innermost first.")
     )
 
 
@@ -552,12 +554,12 @@ def extremes_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable | N
         sheet.numbers("at", times, "time", 3)
     less = [getattr(found.difference, f"{one}_of_{end}") for one, end in pairs]
     return sheet.numbers("less than classic", less, PERCENT).table(
-        "Extremes of the load over a period, found continuously and not among the times drawn.",
+        "Extremes of the load over a period, by optimisation between the plotted times.",
         remarks=[
             "Classic: Morison's equation on the whole section. Improved: on the part under water"
-            " in still water. Each has its extremes at times of its own.",
-            "No uncertainty is given: none is stated of the wave, the hose or the coefficients, and"
-            " those of the coefficients alone are tens of percent.",
+            " in still water. Each has its own times of extremes.",
+            "No uncertainty is given: none is stated for wave, hose or coefficients; that of the"
+            " coefficients alone is tens of percent.",
         ],
     )
 
@@ -574,7 +576,7 @@ def wave_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
         .numbers("current along the wave", [found.current_velocity], _velocity(units))
         .numbers("depth over length", [theory.relative_depth], "number")
         .numbers("height over length", [theory.steepness], "number")
-        .numbers("height over the height at which it breaks", [theory.breaking_ratio], "number")
+        .numbers("height over breaking height", [theory.breaking_ratio], "number")
         .numbers("Ursell number", [theory.ursell_number], "number")
         .numbers(
             "second harmonic of the surface over the first", [theory.elevation_ratio], "number"
@@ -583,7 +585,7 @@ def wave_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
             "second harmonic of the velocity over the first", [theory.velocity_ratio], "number"
         )
         .numbers(
-            "given length over that of the period, less one", [theory.length_mismatch], PERCENT
+            "given length over that of the period, minus one", [theory.length_mismatch], PERCENT
         )
         .turned(
             "The wave.", ("value",), "number",
@@ -605,12 +607,12 @@ def regime_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
         .numbers("immersion depth", [section.immersion_depth], "small length")
         .numbers("share of the section under water", [section.submerged_share], PERCENT)
         .numbers("section under water", [section.submerged_section_area], "area")
-        .numbers("level at which the water moves", [found.elevation], "small length")
-        .numbers("greatest velocity of the water", [regime.greatest_velocity], _velocity(units))
+        .numbers("level of the flow", [found.elevation], "small length")
+        .numbers("maximum velocity of the water", [regime.greatest_velocity], _velocity(units))
         .numbers("Keulegan-Carpenter number", [regime.keulegan_carpenter_number], "number")
         .numbers("Reynolds number", [regime.reynolds_number], "number")
         .numbers("Reynolds over Keulegan-Carpenter", [regime.frequency_parameter], "number")
-        .numbers("greatest drag over greatest inertia", [regime.drag_to_inertia], "number")
+        .numbers("maximum drag over maximum inertia", [regime.drag_to_inertia], "number")
         .numbers("diameter over wave length", [regime.diameter_to_length], "number")
         .turned(
             "The hose in the water, and the flow past it.", ("value",), "number",
@@ -627,19 +629,19 @@ def anchor_table(found: PredictedWaveLoad, units: UnitSystem) -> PageTable:
         Sheet(Calculated(units))
         .numbers("wind alone", [anchor.wind], "tension")
         .numbers("current alone", [anchor.current], "tension")
-        .numbers("wave alone, at its greatest", [anchor.wave], "tension")
+        .numbers("wave alone, maximum", [anchor.wave], "tension")
         .numbers("sum of the three", [anchor.separate], "tension")
         .numbers("wave and current as one flow, with the wind", [anchor.combined], "tension")
-        .numbers("combined less sum, over combined", [anchor.difference], PERCENT)
+        .numbers("combined minus sum, over combined", [anchor.difference], PERCENT)
         .turned(
             f"Horizontal force on {length.factor * found.hose_length:.4g} {length.unit} of hose,"
             " the anchor force.",
             ("value",), "force",
             remarks=[
                 f"Wind {speed.factor * found.wind_velocity:.4g} {speed.unit} at the hose, current"
-                f" {speed.factor * found.current_velocity:.4g} {speed.unit}. Drag goes with the"
-                " square of the velocity: loads do not add, velocities do. The whole length meets"
-                " one phase: it lies along the crest.",
+                f" {speed.factor * found.current_velocity:.4g} {speed.unit}. Drag varies with the"
+                " square of the velocity: velocities add, loads do not. The whole length is at one"
+                " phase: it lies along the crest.",
             ],
         )
     )  # fmt: skip
@@ -664,8 +666,8 @@ def wave_coefficient_table(found: PredictedWaveLoad) -> PageTable | None:
         )
         .table(
             "Coefficients of drag and inertia as published, and of this case.",
-            remarks=["None is for a cylinder that floats, and none comes with its range of KC and"
-                     " Re, on which they depend. Inertia: one plus the added mass."],
+            remarks=["None is for a floating cylinder, and none states its range of KC and Re."
+                     " Inertia: one plus the added mass."],
         )
     )  # fmt: skip
 

@@ -93,7 +93,7 @@ def _draw_composite(source: PieceSource, curve: CompositeCurve, units: UnitSyste
     ]  # fmt: skip
     return make_figure(
         "composite", f"Composite curve of {source.name}",
-        "Thick: the curve, dotted where no piece reaches, with its expanded uncertainty (95 %,"
+        "Thick: the curve with its expanded uncertainty, dotted where no piece reaches (95 %,"
         f" {factor_words([NORMAL])}). Thin: its pieces, solid of cycles, dashed of static tests,"
         " dotted of first rises.",
         data, synthetic=source.is_synthetic, height=520, is_wide=True,
@@ -143,9 +143,9 @@ def _draw_assembly(found: DeployedLine, units: UnitSystem) -> Figure:
     return make_figure(
         "assembly", f"Tension of {found.name}",
         f"Band: expanded uncertainty (95 %, {factor_words([NORMAL])}). Dotted where a tether is at"
-        " a strain that no test reaches. Marked: working points, with"
-        " their cycles from valley to peak as steep as their tests are; the curve, which joins"
-        " tests, is softer where it hands over from one to the next.",
+        " a strain that no test reaches. Marked: working points, with cycles from valley to peak"
+        " at the stiffness of their tests. The curve is softer where it passes from one test to"
+        " the next.",
         data, synthetic=found.source.is_synthetic, height=460, is_wide=True,
         xaxis=axis(length.label("length")), yaxis=axis(force.label("tension")),
     )  # fmt: skip
@@ -192,10 +192,10 @@ def _draw_stiffness(found: DeployedLine, units: UnitSystem) -> Figure:
         ]
     return make_figure(
         "assembly-stiffness", "Stiffness",
-        "EA over the length at which the assembly goes slack. Thin: each test alone, over a"
-        " twentieth of its own loads to each side. Thick: what is stated of each cycle, with the"
-        " interval of the tests that cover it (95 %). Dotted: the slope of the curve that joins the"
-        " tests, which belongs to none of them where it hands over.",
+        "EA over the slack length of the assembly. Thin: each test alone, over 5 % of its load"
+        " range to each side. Thick: each stated cycle, with the interval of the tests that cover"
+        " it (95 %). Dotted: slope of the joined curve, which belongs to no test where it passes"
+        " from one to the next.",
         data, synthetic=found.source.is_synthetic, height=520, is_wide=True,
         xaxis=axis(force.label("tension")), yaxis=axis(force.label("EA")),
     )  # fmt: skip
@@ -211,8 +211,8 @@ def _chords(length: Floats, tension: Floats, slack_length: float) -> tuple[Float
 
 
 _OF_WAVE = (
-    "A regular wave on a hose that lies along its crest and follows the surface; the water moves as"
-    " if the hose were not there. S. Zhang et al., Open Petroleum Eng. J., vol. 8, 2015."
+    "A regular wave on a hose that lies along its crest and follows the surface; the hose does not"
+    " disturb the flow. S. Zhang et al., Open Petroleum Eng. J., vol. 8, 2015."
 )
 
 _OF_ARMOUR = (
@@ -290,7 +290,7 @@ def write_single_page(
     units: UnitSystem,
     about: str,
     made_from: str = "the numbers of its SPEC.toml alone",
-    subtitle: str = "Predicted: nothing of it was measured.",
+    subtitle: str = "Predicted: nothing was measured.",
 ) -> Path:
     """Write a page of one section as ``index.html``."""
     section = TestSection(
@@ -327,8 +327,8 @@ def _with_unit(value: float, unit: Shown) -> str:
 
 
 _RULE = (
-    "The curve is the one that rises and is nearest to all pieces, each weighted by its "
-    "uncertainty and by what pieces of its kind differ by."
+    "The curve is the rising curve nearest to all pieces, each weighted by its uncertainty and by"
+    " the scatter between pieces of its kind."
 )
 
 _DOUBTS = ("DOUBTFUL", "no pieces of one curve", "slipped", "not known", "extrapolated")

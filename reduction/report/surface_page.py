@@ -256,7 +256,7 @@ def _against_measured(
     return [
         make_figure(
             f"predicted-{index}", f"{label}: surface against measured",
-            "Value of the surface against the measured one, a point per run; dotted: equal.",
+            "Surface value against measured value, one point per run; dotted: equal.",
             data, synthetic=False, xaxis=axis("measured"), yaxis=axis("by the surface"),
         )
     ]  # fmt: skip

@@ -66,8 +66,8 @@ STEPS = (0.25, 0.05, 0.01)
 """Strain from row to row: the first that a test of the campaign reaches; a rope is stiff. [1]"""
 
 CONDITIONING = (
-    "Conditioning, K_0 / (E' - K_0): how many times a relative error of K_0 enters E' - K_0, on"
-    " which K_1 and tau stand."
+    "Conditioning, K_0 / (E' - K_0): the factor by which a relative error of K_0 grows in E' -"
+    " K_0, from which K_1 and tau follow."
 )
 
 REFUSED = "refused because"
@@ -126,7 +126,7 @@ def _history_table(view: TestView) -> PageTable | None:
         .numbers("greatest tension seen", "earlier_maximum_tension")
         .numbers("permanent set", "permanent_set", PERCENT)
     )
-    return sheet.table("What each specimen had seen before this test.")
+    return sheet.table("History of each specimen before this test.")
 
 
 def _coefficient_table(view: TestView) -> PageTable | None:
@@ -136,9 +136,7 @@ def _coefficient_table(view: TestView) -> PageTable | None:
         return None
     sheet = Sheet(view, ("specimen",)).texts("method", "strain_method")
     if set(methods) == {"extensometer"}:
-        return sheet.turned(
-            "How strain was found: read off an extensometer, no splice in it.", view.specimens
-        )
+        return sheet.turned("Strain: read from an extensometer, without splices.", view.specimens)
     sheet.texts("marks from", "strain_marks_from")
     unit: Unit
     for name in COEFFICIENTS.values():
@@ -154,7 +152,7 @@ def _coefficient_table(view: TestView) -> PageTable | None:
         if np.isfinite(sheet.of(low) + sheet.of(high)).any():
             sheet.spans(f"{name} at the marks", low, high, unit, places=places)
     return sheet.turned(
-        "Position to strain of the splice-free length: method, and what it goes by.",
+        "Strain of the splice-free length from position: method and parameters.",
         view.specimens,
         remarks=[
             plus_minus(
@@ -198,9 +196,7 @@ def _mark_table(view: TestView) -> PageTable | None:
         .numbers("strain by the method", sheet.of("mark_strain") + residual, PERCENT)
         .cells("method minus marks [points of strain %]", map(_signed, residual))
     )
-    return sheet.table(
-        "Splice marks: what the tape read, and what the method makes of it.", tall=12
-    )
+    return sheet.table("Splice marks: tape readings, and strain by the method.", tall=12)
 
 
 def _signed(residual: float) -> TableCell:
@@ -330,8 +326,8 @@ def _stress_table(view: TestView) -> PageTable | None:
     for level, values in zip(levels, stress.T, strict=True):
         sheet.numbers(f"stress at {100 * level:g} %", values, "stress")
     return sheet.table(
-        "Nominal stress at stated elongations of the first loading (the rubber trade calls it"
-        " M100 and the like; it is no modulus)."
+        "Nominal stress at stated elongations of the first loading (M100 etc. in the rubber trade;"
+        " not a modulus)."
     )
 
 
@@ -349,7 +345,7 @@ def _slip_table(view: TestView) -> PageTable | None:
         .measured("step of peak tension", "slip_tension_step")
         .measured("splice let out", "slip_length")
     )
-    return sheet.table("Steps of a splice, told apart from steady creep.", remarks=[sheet.about()])
+    return sheet.table("Slips of a splice, apart from steady creep.", remarks=[sheet.about()])
 
 
 def _identity_table(view: TestView) -> PageTable | None:
@@ -385,7 +381,7 @@ def _elastomer_table(view: TestView) -> PageTable | None:
         .texts("stable over the range", np.where(sheet.of("elastomer_is_stable") == 1, "yes", "no"))
     )
     return sheet.table(
-        "Hyperelastic laws of the first loading; a law says nothing outside its fitted range.",
+        "Hyperelastic laws of the first loading; not valid outside the fitted range.",
         remarks=[
             plus_minus_of_tests(
                 [NORMAL], [view], ["elastomer_modulus", "elastomer_exponent"],
@@ -452,8 +448,8 @@ def interval_table(view: TestView) -> PageTable | None:
         .measured("interval modulus", "interval_modulus")
     )
     return sheet.table(
-        "Slope of stress on strain between two readings; none where a reading is flagged or the"
-        " weights turn.",
+        "Slope of stress on strain between two readings; not given where a reading is flagged or"
+        " loading reverses.",
         remarks=[sheet.about(found_from=OF_STEPS)],
     )
 
@@ -499,7 +495,7 @@ def _prony_table(view: TestView) -> PageTable | None:
         .counts("term", sheet.places["prony_term"] + 1)
         .measured("tension of the term", "prony_tension")
         .measured("relaxation time", "prony_time")
-        .measured("tension it tends to", "long_time_tension")
+        .measured("long-time tension", "long_time_tension")
     )
     return sheet.table(
         "Prony series of the holds.",
@@ -531,7 +527,7 @@ def _pull_table(view: TestView) -> PageTable | None:
         .numbers("residual of the cubic", "pull_residual", PERCENT)
         .numbers("rate of strain", "pull_strain_rate", Shown("%/min", 6000.0))
         .numbers("waiting time before the pull", "pull_waiting_time", Shown("h", 1 / 3600.0))
-        .numbers("tension at which the length was read", "pull_reference_tension")
+        .numbers("tension at the length reading", "pull_reference_tension")
     )
     return sheet.turned(
         "Slow pull: strain as a cubic of tension T, and the conditions it holds for.",

@@ -233,7 +233,9 @@ class TestView:
 
     def of_campaign(self) -> TestView:
         """Return the same test without what its own section alone shows: most of its numbers."""
-        own = [name for name in self.data.data_vars if any(one in str(name) for one in _OF_SECTION)]
+        kept = () if self.n_cycles else ("first_loading",)  # what a pull answers with
+        left_out = [one for one in _OF_SECTION if one not in kept]
+        own = [name for name in self.data.data_vars if any(one in str(name) for one in left_out)]
         return replace(self, data=self.data.drop_vars(own))
 
     def at_cycles(self, places: Integers) -> TestView:

@@ -521,21 +521,21 @@ FROM_READINGS = frozenset(
 _MEANINGS = {
     RANDOM: "scatter between cycles, noise, regression",
     "run_to_run": "scatter of runs at one point of the plan",
-    "regression": "what the surface misses of its runs beside that",
+    "regression": "lack of fit of the surface beyond that",
     "lag": "time between the channels",
     "strain_calibration": "fit to the readings at the splice marks",
     "splice_method": "splice law that was asked for",
     "splice_law": "which law the splices follow",
     "splice_friction": "friction in the splices",
-    "window": "what the regression window blurs",
-    "gauge_length": "length that strain is a share of",
-    "strain_gain": "what the strain method itself may miss",
+    "window": "blur by the regression window",
+    "gauge_length": "gauge length",
+    "strain_gain": "error of the strain method itself",
     "quasi_static_fit": "fit of the slow pull that gives K_0",
     "pull_rate": "a slow pull that is not slow beside the relaxation of the loops",
     "temperature": "stiffness at the temperature of the test",
-    "attached_mass": "inertia of what moves with a moving load cell",
+    "attached_mass": "inertia of the mass at a moving load cell",
     "linear_density": "inertia of the specimen itself",
-    "machine_compliance": "what frame, load cell and grips give by",
+    "machine_compliance": "compliance of frame, load cell and grips",
 }
 
 

@@ -121,6 +121,33 @@ def splice_friction_notes(
         )
 
 
+def splice_slip_notes(test: ReducedTest) -> Iterator[Note]:
+    """Say by how much strain is too large after slips: a warning where that is beyond its interval.
+
+    An extensometer lies on the free length, where no splice enters.
+    """
+    summary, slips = test.amplitude, test.slips
+    if summary is None or slips is None:
+        return
+    for index, specimen in enumerate(test.specimens):
+        own = [place for place, name in enumerate(slips.specimen) if name == specimen.name]
+        if not own:
+            continue
+        let_out = float(np.sum(slips.slip_length[own]))
+        excess = let_out / _length_of_strain(test, summary, index)
+        half = _EXPANDED * _standard_uncertainty(test, summary, "mean_strain", index)
+        found = note(
+            "splice-slipped",
+            specimen.name,
+            cycles=" and ".join(f"{cycle:,}" for cycle in slips.slip_cycle[own].tolist()),
+            length=let_out,
+            excess=excess,
+            effect=excess / float(summary.mean_strain[index]),
+        )
+        is_held = test.strain_models[index].method == "extensometer" or excess <= half
+        yield replace(found, severity="note") if is_held else found
+
+
 _OF_ANSWER = {"identity-open": _NAME, "drift-in-energy": "hysteresis_energy"}
 
 _EXPANDED = 2.0  # k of 95 %

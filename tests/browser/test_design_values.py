@@ -1,6 +1,7 @@
 """The design-value page shows, to the last digit, what the look-up of the command line shows."""
 
 import shlex
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -178,7 +179,7 @@ def test_lines_with_everything_at_once_have_the_answers_of_the_command(
     remarks = {
         part for one in wanted if "row" in one for part in dict(one["row"])["remark"].split("; ")
     }
-    assert {"OUTSIDE what was tested", "untested corner", "peak above the rule"} < remarks
+    assert {"OUTSIDE the tested range", "untested corner", "peak above the rule"} < remarks
 
 
 @pytest.fixture(scope="module")
@@ -316,9 +317,9 @@ def test_outside_what_was_tested_is_refused_with_what_was_tested(small, visit):
     assert "frequency 0.7 Hz, tested 0.1 to 0.5 Hz" in told
     assert shown.page.locator("[data-head]").count() == 0
     shown.page.locator("#flag").check()
-    assert "OUTSIDE what was tested" in shown.page.locator(".flags").inner_text()
+    assert "OUTSIDE the tested range" in shown.page.locator(".flags").inner_text()
     shown.page.locator("#level-frequency").fill("fast")
-    assert "frequency is no number" in shown.page.locator("#said").inner_text()
+    assert "frequency is not a number" in shown.page.locator("#said").inner_text()
 
 
 def test_the_search_leaves_the_lines_that_are_so(small, visit):
@@ -332,7 +333,7 @@ def test_the_search_leaves_the_lines_that_are_so(small, visit):
     shown.page.locator("#filter-diameter").select_option("25.4 mm")
     assert shown.page.locator("#line option").all_inner_texts() == ["nylon-double-braid-1in-new"]
     shown.page.locator("#find").fill("rubber")
-    assert "No line has all of these" in shown.page.locator("#said").inner_text()
+    assert "No line matches all filters" in shown.page.locator("#said").inner_text()
 
 
 def test_the_form_is_reached_and_used_by_keys(small, visit):
@@ -368,4 +369,27 @@ def test_the_commands_of_a_deck_are_copied(small, visit):
     changed = shown.page.locator("#export").inner_text().splitlines()
     assert '--frequency "0.4 Hz"' in changed[1] and "--extrapolate flag" in changed[1]
     assert changed[0] == first
+    assert shown.errors == []
+
+
+def test_levels_of_an_own_rope_are_the_table_of_the_command(campaigns, tmp_path, visit):
+    """Without its experiment the nylon line is known where it was tested."""
+    made = campaigns("nylon-synthetic").processed
+    rope = tmp_path / "processed" / "rope"
+    rope.mkdir(parents=True)
+    for name in ("R01.nc", "R02.nc", "R05.nc", "R11.nc", "status.csv"):
+        shutil.copy(made / name, rope)
+    said = reduction("lookup", rope, "--list", "--units", "us").stdout
+    heading = "Levels of line-1, known at tested levels and between two of them"
+    _, _, table = said.partition(heading)
+    wanted = [row.split() for row in table.splitlines() if row.startswith("R")]
+    assert len(wanted) == 4
+    shown = visit(write_design_page(tmp_path / "processed", tmp_path / "reports"))
+    page = shown.page
+    page.locator("input[name=units][value=us]").check()
+    page.locator("#line").select_option("rope/R05 line-1")
+    rows = page.get_by_role("region", name=heading).locator("tbody tr, table > tr")
+    cells = rows.evaluate_all("all => all.map(one => [...one.cells].map(cell => cell.textContent))")
+    found = [[cell.replace("\u202f", "") for cell in row] for row in cells[1:]]
+    assert found == wanted
     assert shown.errors == []

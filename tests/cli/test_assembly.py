@@ -245,10 +245,13 @@ LEVEL = "[[assembly.working]]\n"
     [
         (("n_tethers = 2", "n_tethers = 0"), "", 2, "assembly.n_tethers"),
         (("n_tethers = 2", "tethers = 2"), "", 2, "assembly.tethers: is not a known key"),
-        (("n_tethers = 2\n", ""), "", 2, "how many tethers there are is not said once; found neither"),
-        (("n_tethers = 2", 'n_tethers = 2\nfree_lengths = ["8 m"]'), "", 2, "not said once; found both"),
+        (("n_tethers = 2\n", ""), "", 2, "how many tethers there are is not said once; found"
+                                         " neither"),
+        (("n_tethers = 2", 'n_tethers = 2\nfree_lengths = ["8 m"]'), "", 2, "not said once; found"
+                                                                            " both"),
         (("n_tethers = 2", 'free_lengths = ["8 m"]'), "", 2, "free_length and free_lengths stand"),
-        (('free_length = "8 m"', 'free_length = "-8 m"'), "", 2, "assembly.free_length: is not positive"),
+        (('free_length = "8 m"', 'free_length = "-8 m"'), "", 2, "assembly.free_length: is not"
+                                                                 " positive"),
         (('free_length = "8 m"', 'free_length = "8 lbf"'), "", 2, "assembly.free_length: unit 'lbf'"),
         (('free_length = "8 m"', 'free_length = "?"'), "", 2, "1 value is still '?'"),
         (('n_tethers = 2\nfree_length = "8 m"', 'free_lengths = ["8 m", "0 m"]'), "", 2,
@@ -259,7 +262,8 @@ LEVEL = "[[assembly.working]]\n"
          "assembly.tolerance is not a fraction of a length"),
         (("n_tethers = 2", 'n_tethers = 1\ntolerance = "1 %"'), LEVEL + 'strain = "1"', 2,
          "assembly.tolerance is of tethers that are all alike; found one tether"),
-        (("n_tethers = 2", 'n_tethers = 2\ntolerance = "1 %"'), "", 2, "assembly.tolerance has no tension"),
+        (("n_tethers = 2", 'n_tethers = 2\ntolerance = "1 %"'), "", 2, "assembly.tolerance has no"
+                                                                       " tension"),
         (("n_tethers = 2", 'n_tethers = 2\nrated_break_strength = "-5 lbf"'), "", 2,
          "assembly.rated_break_strength: is not positive"),
         (('"rubber-tether-used"', '"rubber-tether-old"'), "", 2, "assembly.curve: unknown source"),
@@ -268,23 +272,29 @@ LEVEL = "[[assembly.working]]\n"
          "assembly.curve: rubber-tether-used has only its ascending branch"),
         (('"rubber-tether-used"', '"rubber-tether-used"\nbranch = "loop"'), "", 2, "assembly.curve.branch"),
         (('"rubber-tether-used"', '"rubber-tether-used"\nprecedence = []'), "", 2,
-         "assembly.curve.precedence: the precedence names no kind"),
+         "assembly.curve.precedence: the precedence names no known kind"),
         (('"rubber-tether-used"', '"rubber-tether-used"\nprecedence = ["static"]'), "", 4,
          "assembly.curve: rubber-tether-used: no piece is of a kind"),
-        (None, '[[assembly.parts]]\nname = "chain"\nlength = "-1 m"', 2, "assembly.parts.chain: chain has no length"),
+        (None, '[[assembly.parts]]\nname = "chain"\nlength = "-1 m"', 2, "assembly.parts.chain:"
+                                                                         " chain has no length"),
         (None, '[[assembly.parts]]\nlength = "1 m"\nspring_constant = "0 N"', 2,
          "assembly.parts.1: the spring constant of part 1 is not positive"),
-        (None, '[assembly.splices]\nlength = "-1 m"', 2, "assembly.splices.length is not a number of a splice"),
-        (None, '[assembly.splices]\nlength = "1 m"\nstrain = 0.4', 2, "a strain belongs to a tension"),
+        (None, '[assembly.splices]\nlength = "-1 m"', 2, "assembly.splices.length is not a number"
+                                                         " of a splice"),
+        (None, '[assembly.splices]\nlength = "1 m"\nstrain = 0.4', 2, "a strain belongs to a"
+                                                                      " tension"),
         (None, '[assembly.splices]\nlength = "1 m"\nat_tension = "9 N"', 2, "found at_tension alone"),
         (None, '[assembly.splices]\nlength = "1 m"\nstrain_ratio = 0.2\nstrain = 0.4\nat_tension = "9 N"', 2,
          "strain_ratio and strain are two laws"),
-        (None, '[assembly.splices]\nlength = "1 m"\nexponent = 3.0', 2, "exponent is not a number of a splice"),
-        (None, LEVEL, 2, "assembly.working.1: where the assembly stands is not said once; found nothing"),
+        (None, '[assembly.splices]\nlength = "1 m"\nexponent = 3.0', 2, "exponent is not a number"
+                                                                        " of a splice"),
+        (None, LEVEL, 2, "assembly.working.1: where the assembly stands is not said once; found"
+                         " nothing"),
         (None, LEVEL + 'strain = "1"\ntension = "9 N"', 2, "found tension, strain"),
         (None, LEVEL + 'tension = "-9 N"', 2, "assembly.working.1.tension: is not positive"),
         (None, LEVEL + 'tension = "9 N"\ntension_amplitude = "-1 N"', 2, "assembly.working.1.tension_amplitude: is negative"),
-        (None, LEVEL + 'tension = "90 kN"', 4, "assembly.working.1: the peak tension is beyond the curves"),
+        (None, LEVEL + 'tension = "90 kN"', 4, "assembly.working.1: the peak tension is beyond the"
+                                               " curves"),
         (None, LEVEL + 'tension = "100 N"\ntension_amplitude = "200 N"', 4, "assembly.working.1: "),
         (None, LEVEL + 'total_length = "5 m"', 4, "the assembly is slack at this total length"),
         (None, LEVEL + 'total_length = "99 m"', 4, "beyond its curve at this total length"),

@@ -83,7 +83,7 @@ def test_the_archive_of_surfaces_is_the_same_line_as_its_folder(nylon_campaign, 
         (CENTRE[:4], (), "--tension-amplitude", 2),
         (CENTRE, ("--curve", "mean"), "slow pull", 2),
         (CENTRE, ("--specimen", "line-9"), "there is no 'line-9'", 2),
-        ((*CENTRE[:3], "60 %RBS", *CENTRE[4:]), (), "outside what was tested", 4),
+        ((*CENTRE[:3], "60 %RBS", *CENTRE[4:]), (), "outside the tested range", 4),
     ],
 )
 def test_what_an_experiment_cannot_answer_is_refused(

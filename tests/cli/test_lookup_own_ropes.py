@@ -10,6 +10,7 @@ import pytest
 from commandruns import ROOT, run_once, shared_by_processes
 from scipy import stats
 
+import reduction
 from reduction.archive.open import reading
 from reduction.cli.lookup import one_line_of
 from reduction.lines.archive_source import lines_of_folder
@@ -149,6 +150,15 @@ def test_a_condition_that_was_not_tested_says_so(line):
             in_conditions(line, K_AP, asked)
         flagged = look_up(in_conditions(line, K_AP, asked, is_flagged=True), K_AP, **CENTRE)
         assert flagged.warnings[0].startswith("NOT TESTED at")
+
+
+def test_python_asks_for_conditions_as_the_command_does(rope):
+    found = reduction.look_up(rope, "dynamic_stiffness", medium="wet", **CENTRE)
+    assert float(found[K_AP]) == float(reduction.look_up(rope, K_AP, **CENTRE)[K_AP])
+    with pytest.raises(DataError, match="medium wet"):
+        reduction.look_up(rope, K_AP, medium="dry", **CENTRE)
+    flagged = reduction.look_up(rope, K_AP, temperature="5 degC", extrapolate="flag", **CENTRE)
+    assert flagged.attrs["warnings"].startswith("NOT TESTED at")
 
 
 def levels(conditions):

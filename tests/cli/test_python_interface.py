@@ -53,6 +53,33 @@ def test_a_look_up_is_that_of_the_command():
     assert bool(found.is_inside) is said["inside"]
 
 
+def test_a_ranking_is_that_of_the_command():
+    search = {"material": "nylon", "construction": "double braid", "condition": "new"}
+    load = {"frequency": "0.3 Hz", "mean_tension": "4000 lbf", "tension_amplitude": "1600 lbf"}
+    options = [
+        part
+        for key, text in (search | load).items()
+        for part in (f"--{key.replace('_', '-')}", text)
+    ]
+    said = of_command("published", "--rank", "--quantity", "K_ap", *options)
+    found = reduction.look_up("published", "K_ap", rank=True, **search, **load)
+    assert found.line.values.tolist() == [one["line"] for one in said["ranked"]]
+    for place, one in enumerate(said["ranked"]):
+        row = found.isel(line=place)
+        assert float(row.apparent_spring_constant) == pytest.approx(one["value"])
+        assert row.ties.item() == ", ".join(one["ties"])
+        assert float(row.apparent_spring_constant_line_low) == pytest.approx(
+            one["line_interval"][0]
+        )
+        assert bool(row.is_inside) is one["inside"]
+    assert found.attrs["errata"].startswith("CG-62")
+    (name,) = said["left_out"]
+    assert found.attrs["left_out"].startswith(f"{name}: ")
+    # one of 0.75 in alone is no ranking
+    with pytest.raises(DataError):
+        reduction.look_up("published", "K_ap", rank=True, diameter="0.75 in", **search, **load)
+
+
 def test_levels_are_texts_numbers_quantities_rows_and_named_arrays():
     plain = reduction.look_up(LINE, "K_ap", **LEVELS).apparent_spring_constant
     tension = float(reduction.look_up(LINE, "K_ap", **LEVELS).mean_tension)
@@ -82,8 +109,8 @@ def test_the_example_of_the_documentation_runs():
 def test_what_is_not_known_is_refused():
     with pytest.raises(DataError):
         reduction.look_up(LINE, "K_ap", **LEVELS | {"frequency": "5 Hz"})
-    with pytest.raises(SettingsError, match="temperature is not a level"):
-        reduction.look_up(LINE, "K_ap", **LEVELS, temperature=20.0)
+    with pytest.raises(SettingsError, match="heading is not a level"):
+        reduction.look_up(LINE, "K_ap", **LEVELS, heading=20.0)
     with pytest.raises(SettingsError, match="several dimensions"):
         reduction.look_up(LINE, "K_ap", **LEVELS | {"frequency": np.full((2, 2), 0.3)})
 

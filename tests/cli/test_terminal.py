@@ -72,7 +72,7 @@ def test_a_run_with_one_job_shows_how_far_it_is(narrow):
 def test_what_is_left_on_the_screen_fits_it_and_is_whole(narrow):
     _, said = narrow
     left = [line.split("\r")[-1] for line in ESCAPE.sub("", said).replace("\r\n", "\n").split("\n")]
-    start = next(place for place, line in enumerate(left) if line.startswith("test "))
+    start = next(place for place, line in enumerate(left) if line.startswith("Pulls and weights"))
     end = next(place for place, line in enumerate(left) if line.startswith("products:"))
     assert max(map(len, left[start:end])) <= 80
     text = " ".join(" ".join(left[start:end]).split())
@@ -112,14 +112,15 @@ def test_a_pipe_has_one_line_a_test_and_progress_beside_it(tmp_path):
     assert "\x1b" not in done.stdout + done.stderr
     assert done.stderr.startswith("1/1 static check: 1325: a length of 416.1 mm gives 167 %")
     lines = done.stdout.splitlines()
-    assert lines[0] == "Check:" and lines[1].startswith("  static: 1325: ")
-    place = next(number for number, line in enumerate(lines) if line.startswith("test "))
+    assert lines[0].startswith("Pulls and weights. EA: ")
+    assert lines[lines.index("Check:") + 1].startswith("  static: 1325: ")
+    place = next(number for number, line in enumerate(lines) if line.startswith("specimen "))
     head, row = lines[place : place + 2]
     columns = re.split(r"  +", head)
-    assert columns[0] == "test" and columns[-1] == "message"
+    assert columns[:2] == ["specimen", "test"] and columns[-1] == "status"
     cells = re.split(r"  +", row)
-    assert len(cells) == len(columns) and cells[0] == "static"
-    assert cells[-1].endswith("0.62 and 0.33 MPa")
+    assert len(cells) == len(columns) and cells[:2] == ["short-tether", "static"]
+    assert cells[-1] == "check"
 
 
 def test_help_is_drawn_at_a_terminal_and_plain_and_whole_in_a_pipe(at_terminal):

@@ -116,7 +116,7 @@ def test_a_line_for_raft_is_the_straight_one_through_the_turns(tmp_path):
     assert kind["diameter"] ** 2 * made["length"] == pytest.approx(10 * one.diameter**2)
     drag = kind["transverse_drag"] * kind["diameter"] * made["length"]
     assert drag == pytest.approx(1.2 * one.diameter * 10)
-    assert f"{LOST:.4g} J/m, is NOT in it" in " ".join(path.read_text().replace("#", "").split())
+    assert f"{LOST:.4g} J/m, is NOT included" in " ".join(path.read_text().replace("#", "").split())
 
 
 @pytest.mark.parametrize(("first", "factor"), [(3, 1.02), (-1, 0.9)])
@@ -154,7 +154,7 @@ def test_a_dashpot_that_is_a_tenth_off_is_found_by_its_energy(tmp_path):
 def test_a_form_without_damping_says_how_much_is_left_out(tmp_path, to, form):
     *_, deck = export_line(LINES["damped-table"], to, tmp_path / "deck.dat", form=form)
     head = " ".join(deck.read_text().replace("#", "").replace("/*", "").replace("*/", "").split())
-    assert f"{LOST:.4g} J/m at {FREQUENCY:g} Hz, strain 1 +- {AMPLITUDE:g}, is NOT in it" in head
+    assert f"{LOST:.4g} J/m at {FREQUENCY:g} Hz, strain 1 +- {AMPLITUDE:g}, is NOT included" in head
 
 
 def test_a_format_that_nothing_runs_is_refused(tmp_path):

@@ -143,7 +143,7 @@ def test_a_slow_pull_gives_rest_stiffness_and_strain_over_tension(folder):
     slope = 2 * step / (ends[1] - ends[0])
     between = look_up(line, "quasi_static_spring_constant", mean_tension=middle).value
     assert between == pytest.approx(slope, rel=1e-5)
-    with pytest.raises(DataError, match="outside what was tested of strain of line-1"):
+    with pytest.raises(DataError, match="outside the tested range of strain of line-1"):
         look_up(line, "strain", tension=1.01 * grid[-1])
 
 
@@ -203,7 +203,9 @@ def test_surfaces_of_tethers_refuse_zero_tension(folder, tmp_path):
     found = look_up(rope, "apparent_spring_constant", **at_zero)
     assert found.minimum_tension == 0
     assert found.is_inside
-    with pytest.raises(DataError, match="nylon goes slack at 1 of 1 points, and a tether must not"):
+    with pytest.raises(
+        DataError, match="nylon goes slack at 1 of 1 points, which a tether must not"
+    ):
         look_up(tether, "apparent_spring_constant", **at_zero)
     above = look_up(
         tether, "apparent_spring_constant", **(at_zero | {"tension_amplitude": 0.99 * lowest})

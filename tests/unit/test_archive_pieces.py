@@ -213,7 +213,7 @@ def test_what_is_left_out_is_said():
     assert set(found.notes) == {
         "T-1-end is left out: it is a part of T-1",
         "held (relaxation) has no mean curve",
-        "T-2: a splice slipped 2 times, and its strains hold the slip",
+        "T-2: the splices slipped 2 times, and the strain includes the slip",
     }
 
 
@@ -233,7 +233,7 @@ def test_strain_models_that_differ_are_told():
     tests = [cyclic(), cyclic("T-2", 2, coefficients={"splice_exponent": 0.9})]
     found = source_of_tests(tests, "new", branch="mean")
     assert found.model.coefficients["splice_exponent"] == 0.8
-    assert "strain models of their own; lengths are by that of c/T-1" in found.notes[-1]
+    assert "different strain models; lengths follow that of c/T-1" in found.notes[-1]
 
 
 def test_tests_of_two_campaigns_keep_their_campaigns_names():
@@ -251,7 +251,7 @@ def test_archives_without_the_specimen_are_passed_over():
 
 
 def test_one_test_twice_is_refused():
-    with pytest.raises(SettingsError, match="test c/T-1 stands there twice"):
+    with pytest.raises(SettingsError, match="test c/T-1 is listed twice"):
         source_of_tests([cyclic(), cyclic()], "new", branch="mean")
 
 
@@ -283,7 +283,7 @@ def test_only_tests_with_a_piece_in_the_curve_are_its_sources():
     curve = compose(found, CompositeRule(precedence=("static",)))
     used = used_of(found, curve)
     assert used.sources == ("archive c/Q",)
-    assert used.notes[-1] == "of other kinds, and not used: T-1, T-2"
+    assert used.notes[-1] == "of other kinds, not used: T-1, T-2"
     assert used.pieces == found.pieces
     assert used_of(used, curve) is used
     whole = compose(found, CompositeRule())

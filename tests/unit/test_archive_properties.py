@@ -48,7 +48,7 @@ def test_a_stiffness_and_a_strain_have_names_of_their_own(tmp_path):
 
 
 def test_nothing_is_no_archive():
-    with pytest.raises(ArchiveError, match="there are no properties to keep"):
+    with pytest.raises(ArchiveError, match="there are no properties to store"):
         properties_to_dataset({}, {}, origin=ORIGIN)
 
 
@@ -118,7 +118,7 @@ def test_a_stiffness_beyond_the_hold_says_so():
         static_elapsed_time=(("held_pair", "held_pair_point"), [[30.0, 300.0], [np.nan] * 2]),
     )
     beyond, refused = step_of_archive(dataset, "R-1").step.pairs
-    assert beyond.reason.startswith("read off the line beyond the hold")
+    assert beyond.reason.startswith("extrapolated beyond the hold")
     assert beyond.stiffness.value == 500.0
     assert refused.reason == "the lower hold has no strain"
     assert step_of_archive(dataset, "R-2").step.pairs == ()

@@ -25,8 +25,8 @@ def test_a_stiffness_that_grows_is_taken_at_its_mean_tension():
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"dashpot_coefficient": -1.0}, "not numbers of at least zero"),
-        ({"dashpot_coefficient": math.nan}, "not numbers of at least zero"),
+        ({"dashpot_coefficient": -1.0}, "must be zero or positive"),
+        ({"dashpot_coefficient": math.nan}, "must be zero or positive"),
         ({"dynamic_stiffness_per_mean_tension": 5.0}, "has no mean tension"),
         ({"dynamic_stiffness": 2e4}, "not above the static one"),
         ({"static_stiffness": 0.0}, "not above the static one"),

@@ -110,7 +110,7 @@ def test_a_test_without_a_curve_and_a_specimen_that_is_not_there_are_refused(
     test_archive, tmp_path
 ):
     path = test_archive()
-    with pytest.raises(SettingsError, match="which specimen is meant is not said"):
+    with pytest.raises(SettingsError, match="which specimen is meant is not stated"):
         line_from_archive(path)
     with pytest.raises(SettingsError, match="there is no specimen 'old'"):
         line_from_archive(path, specimen="old")

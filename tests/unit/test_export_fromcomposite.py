@@ -33,7 +33,7 @@ def test_the_line_says_what_the_curve_is_made_of():
     assert line.sources == ("archive a", "linear density: stated at the export")
     told = " ".join(line.notes)
     assert "no piece between strain 1.2 and 1.4" in told
-    assert "more than one piece has a say at strain 0.8" in told
+    assert "several pieces contribute at strain 0.8" in told
     assert line.notes[-1] == "held is left out"
 
 
@@ -59,7 +59,9 @@ def test_the_header_has_the_stiffness_of_the_tests_beside_that_of_the_table():
         (said,) = (note for note in notes if note.startswith("EA of the tests"))
         assert ("table 400 N" in said) == (not is_doubtful)
         assert ("T-1 cycles 400 N (400 to 400), table 400 N, 160 to 600 N" in said) != is_doubtful
-        warned = [note for note in notes if note.startswith("DOUBTFUL: the table joins tests")]
+        warned = [
+            note for note in notes if note.startswith("DOUBTFUL: the table joins unlike tests")
+        ]
         assert bool(warned) == is_doubtful
 
 

@@ -18,7 +18,7 @@ def test_strain_over_tension_becomes_tension_over_strain():
     assert found.tested == pytest.approx((0.0, 0.24))
     assert found.viscoelasticity is None
     assert found.linear_density == 0.1
-    assert "errata that touch the curve: CG-8" in found.sources
+    assert "errata that apply to the curve: CG-8" in found.sources
     assert found.notes == ("wet",)
 
 
@@ -62,10 +62,10 @@ def test_points_of_tension_over_strain_by_branch():
 
 def test_outside_the_box_is_refused_or_flagged():
     levels = LEVELS | {"mean_tension": 3500.0}
-    with pytest.raises(DataError, match="outside what was tested"):
+    with pytest.raises(DataError, match="outside the tested range"):
         line_from_lookup(source(), levels=levels)
     found = line_from_lookup(source(), levels=levels, extrapolate="flag")
-    assert any("OUTSIDE what was tested" in text for text in found.sources)
+    assert any("OUTSIDE the tested range" in text for text in found.sources)
 
 
 @pytest.mark.parametrize(
@@ -129,7 +129,7 @@ def test_the_constant_of_a_regression_is_no_slack(constant, join, doubt):
     assert found.tension[0] == pytest.approx(join)
     assert found.strain[0] == pytest.approx(constant + 1e-4 * join)
     assert found.tested == pytest.approx((constant + 1e-4 * join, constant + 0.4))
-    (said,) = (note for note in found.notes if "constant of its fit" in note)
+    (said,) = (note for note in found.notes if "constant of the fit" in note)
     assert said.startswith("DOUBTFUL") == doubt
     assert f"{100 * constant:.2g} m in 100 m" in said
     at, load, _ = curve_from_zero(found.strain, found.tension)
@@ -162,7 +162,7 @@ def test_the_strength_is_that_of_the_line_as_it_is():
     old = replace(source(), tensile_strength=12e3)
     found = line_from_lookup(old)
     assert found.rated_break_strength == 12e3
-    assert "new it was rated 28000 N" in found.notes[-1]
+    assert "rated when new 28000 N" in found.notes[-1]
     assert line_from_lookup(old, rated_break_strength=9e3).rated_break_strength == 9e3
     other = line_from_lookup(replace(source(), strength_of="the 1 in line"))
     assert np.isnan(other.rated_break_strength)

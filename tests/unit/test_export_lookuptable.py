@@ -71,7 +71,7 @@ def test_value_intervals_flags_and_errata_are_those_of_the_look_up(table, found)
         np.testing.assert_array_equal(column(table, name).values, expected)
     assert column(table, "interval_low").meaning.endswith("one more run of the same lines")
     # Table 11 prints the column of another quantity: CG-5
-    assert "errata that touch it: CG-5" in table.sources[0]
+    assert "errata that apply: CG-5" in table.sources[0]
     assert any(note.startswith("rule: peak at most 60 %") for note in table.notes)
     assert not table.is_synthetic
 
@@ -196,7 +196,7 @@ def test_a_table_says_of_which_branch_it_is():
 
 
 def test_faults_are_named(line, found):
-    with pytest.raises(SettingsError, match=r"says no format; found values.xls; needed .csv, "):
+    with pytest.raises(SettingsError, match=r"names no format; found values.xls; needed .csv, "):
         format_of_file(Path("values.xls"))
     with pytest.raises(SettingsError, match="levels of frequency are not those of the values"):
         table_of_values(line, found, {"frequency": np.zeros(2)})

@@ -19,7 +19,7 @@ def test_options_of_the_other_code_are_left_out():
     assert "NO GRAVITY" not in files[""]
     said = " ".join(files[""].split())
     assert "gravity is that of OpenFAST" in said
-    assert "sought in the folder where the program starts" in said
+    assert "looks for the table in the folder where it is started" in said
 
 
 def test_damping_of_a_table_is_a_number_above_zero():

@@ -57,5 +57,5 @@ def test_a_name_is_written_without_accents_and_refused_where_no_sign_is_left():
     assert line(name="tr\u00e9s souple").identifier == "tres_souple"
     named = line(name="\u7d22 \u4e00")
     assert named.name == "\u7d22 \u4e00"
-    with pytest.raises(SettingsError, match="no sign that a mooring code takes"):
+    with pytest.raises(SettingsError, match="no character that a mooring code accepts"):
         assert named.identifier

@@ -47,5 +47,5 @@ def test_the_error_is_the_greatest_anywhere():
 
 
 def test_a_loop_is_refused():
-    with pytest.raises(DataError, match="a loop is not exported"):
+    with pytest.raises(DataError, match="a loop cannot be exported"):
         _fit_smooth_curve(np.array([0.0, 1.0, 0.5]), np.array([0.0, 1.0, 0.2]))

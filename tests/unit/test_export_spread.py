@@ -110,7 +110,7 @@ def test_an_archive_that_keeps_no_parts_gives_the_whole_and_a_note(archive):
     names = [column.name for column in curve_table(one).columns]
     assert names == ["strain", "tension", "tension_standard_uncertainty", "is_tested"]
     np.testing.assert_allclose(one.spread.standard, np.sqrt(70))
-    assert "not kept apart" in one.notes[-1]
+    assert "not stored separately" in one.notes[-1]
 
 
 def test_a_composite_is_exported_with_what_its_table_has():

@@ -165,7 +165,7 @@ def test_a_wrong_column_of_a_line_of_one_law_is_found():
     (spring,) = (one for one in refitted_surfaces(line) if one.quantity == K_1)
     assert spring.greatest > critical_z(line.surfaces[K_1])
     told = consistency_warnings(line, K_1, design(line))
-    assert "cannot hold together" in told[0]
+    assert "are inconsistent" in told[0]
     assert "as printed does not follow" in told[1]
 
 
@@ -244,7 +244,7 @@ def test_own_surfaces_are_warned_of_outside_their_intervals_alone(name):
     at = {key: np.array([value]) for key, value in AT.items()}
     assert consistency_warnings(moved(0.9), name, at) == ()
     (told,) = consistency_warnings(moved(1.1), name, at)
-    assert told.startswith(f"the surfaces do not hold together at 1 of 1 points: {name}")
+    assert told.startswith(f"the surfaces are inconsistent at 1 of 1 points: {name}")
     assert "slow pull Q01" in told
     # the columns of own surfaces were fitted to runs that are known, not to a page
     assert refitted_surfaces(own_line(**{name: 0.5})) == ()

@@ -96,7 +96,7 @@ def test_a_point_outside_one_box_is_refused_and_flagged(lines):
     # 800 lb is above 12 % of 6,400 lb and below 12 % of 7,000 lb (Tables 3 and 5)
     at = {"frequency": 0.3, "mean_tension": 800 * LBF, "tension_amplitude": 400 * LBF}
     first = look_up(new, "apparent_spring_constant", **at)
-    with pytest.raises(DataError, match="outside what was tested of .* of polyester.*4-years"):
+    with pytest.raises(DataError, match="outside the tested range of .* of polyester.*4-years"):
         look_up(old, "apparent_spring_constant", **at)
     flagged = look_up(old, "apparent_spring_constant", extrapolate="flag", **at)
     found = compare_values(first, flagged)

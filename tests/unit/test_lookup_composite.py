@@ -129,7 +129,7 @@ def test_windows_that_fall_at_their_join_are_made_to_rise_and_it_is_said():
     curve = _composite_curve([piece(0.5, 1.5), piece(1.45, 2.5, factor=0.7)])
     assert (np.diff(curve.tension) > 0).all()
     assert curve.is_moved.any()
-    assert "pieces fall where they hand over" in curve.notes[-1]
+    assert "the mean of the pieces falls where one ends" in curve.notes[-1]
     # the change is in the uncertainty
     moved = np.abs(np.nan_to_num(curve.monotone_change))
     assert (curve.standard_uncertainty >= moved - 1e-9).all()
@@ -146,7 +146,7 @@ def test_the_curve_is_nowhere_softer_than_the_share_of_the_softest_piece():
 
 
 def test_rules_and_pieces_that_make_no_sense_are_refused():
-    with pytest.raises(SettingsError, match="names no kind of piece"):
+    with pytest.raises(SettingsError, match="names no known kind of piece"):
         CompositeRule(precedence=())
     with pytest.raises(SettingsError, match="taper is a share"):
         CompositeRule(taper=0.6)
@@ -211,7 +211,7 @@ def test_stiff_loops_along_a_soft_pull_are_told_to_be_no_pieces_of_one_curve():
             )
             for name, factor in (("a", 1.0), ("b", 1.02))
         ]  # fmt: skip
-    told = "they are no pieces of one curve"
+    told = "they do not belong to one curve"
     assert any(told in note for note in _composite_curve([*loops, pull]).notes)
     alone = _composite_curve([*loops, pull], rule=CompositeRule(precedence=("static",)))
     assert not any(told in note for note in alone.notes)
@@ -232,7 +232,9 @@ def test_a_first_loading_has_no_say_where_loops_reach_and_carries_what_it_differ
     assert curve.tension_at([1.0, 1.02, 1.5]) == pytest.approx([100.0, 102.0, 150.0])
     spread = np.interp(0.75, curve.strain, curve.standard_uncertainty)
     assert spread == pytest.approx(60 * 20 / 90, rel=1e-3)
-    assert any("first loadings differ by up to 22.2% from what" in note for note in curve.notes)
+    assert any(
+        "first loadings differ by up to 22.2% from the pieces" in note for note in curve.notes
+    )
     words = [curve.piece_words[place] for place in curve.piece[curve.piece >= 0]]
     assert (words[0], words[-1]) == ("T-2 first loading", "T-1 cycles")
     at = curve.strain[curve.piece >= 0]
@@ -267,5 +269,5 @@ def test_tests_of_one_kind_are_not_told_to_be_of_several():
     )
     told = [note for note in curve.notes if "off the mean of its pieces" in note]
     assert len(told) == 1
-    assert "tests in other states; name the tests that are wanted" in told[0]
+    assert "the tests are of different states; name those that you want" in told[0]
     assert "kinds" not in told[0]

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import reduction
 from reduction.cli import lookup as command
 from reduction.cli.main import app
 from reduction.lines.line_lookup import look_up
@@ -147,3 +148,35 @@ def test_the_command_prints_factors_and_writes_every_specimen(monkeypatch, tmp_p
     assert answer["specimens"]["rope-0"] == [VALUES[0], 2 * VALUES[0]]
     both = CliRunner().invoke(app, [*asked, "--against", "lab"])
     assert both.exit_code == 2
+
+
+def test_python_gives_the_population_of_the_command(monkeypatch):
+    monkeypatch.setattr(command, "lines_of_source", lambda source: ropes(gain=5e4))
+    options = [
+        "--frequency",
+        "0.1 Hz",
+        "--mean-tension",
+        "20 %RBS",
+        "--tension-amplitude",
+        "5 %RBS",
+    ]
+    asked = ["lookup", "lab", "--quantity", "K_ap", "--population", "95 %", *options, "--json"]
+    said = json.loads(CliRunner().invoke(app, asked, catch_exceptions=False).stdout)
+    found = reduction.look_up(
+        "lab", "K_ap", population="95 %", frequency="0.1 Hz", mean_tension="20 %RBS",
+        tension_amplitude="5 %RBS",
+    )  # fmt: skip
+    limits = said["population"]
+    assert float(found[K_AP]) == pytest.approx(said["value"])
+    for key in ("standard_deviation", "lower_limit", "upper_limit"):
+        assert float(found[key]) == pytest.approx(limits[key]), key
+    assert [float(found.two_sided_low), float(found.two_sided_high)] == pytest.approx(
+        limits["two_sided_limits"]
+    )
+    by_name = dict(zip(found.specimen.values.tolist(), found.of_specimens.values, strict=True))
+    assert by_name == pytest.approx(limits["specimens"])
+    assert found.attrs["one_sided_factor"] == pytest.approx(limits["one_sided_factor"])
+    grid = reduction.look_up("lab", "K_ap", population=0.95, **LEVEL | {"mean_tension": [2e5, 4e5]})
+    assert grid.of_specimens.values.tolist() == [[value, 2 * value] for value in VALUES]
+    with pytest.raises(SettingsError, match="one way to put lines together"):
+        reduction.look_up("lab", "K_ap", population=0.95, rank=True, **LEVEL)

@@ -59,5 +59,5 @@ def test_a_tested_tether_is_deployed_as_it_was_tested():
 
 
 def test_an_extensometer_knows_no_splices():
-    with pytest.raises(DataError, match="extensometer, which knows no splices"):
+    with pytest.raises(DataError, match="extensometer, which does not include splices"):
         _deployed_model(StrainModel("T", "extensometer"), np.float64(5.0))

@@ -104,11 +104,11 @@ def test_no_other_lengths_within_the_tolerance_load_a_tether_more():
 
 def test_sharing_that_makes_no_sense_is_refused():
     given = {"free_length": 1.0, "tolerance": 0.01}
-    with pytest.raises(SettingsError, match="one tether shares with no other"):
+    with pytest.raises(SettingsError, match="a single tether shares no load"):
         _worst_sharing(spring(), 1, 100.0, **given)
-    with pytest.raises(SettingsError, match="tolerance is a share of the length"):
+    with pytest.raises(SettingsError, match="tolerance is a fraction of the length"):
         _worst_sharing(spring(), 2, 100.0, free_length=1.0, tolerance=1.0)
-    with pytest.raises(DataError, match="without tension shares nothing"):
+    with pytest.raises(DataError, match="without tension shares no load"):
         _worst_sharing(spring(), 2, [100.0, 0.0], **given)
     with pytest.raises(DataError, match="beyond the curves of the assembly"):
         _worst_sharing(spring(), 2, 1000.0, **given)

@@ -65,7 +65,7 @@ def test_lengths_of_their_own_make_unequal_tethers():
 def test_splices_beyond_their_marks_are_told():
     marked = StrainModel("T", "tension-driven", DRIVEN.coefficients, tension_high=500.0)
     notes = deploy(CURVE, marked, n_tethers=2).notes
-    assert any("the splices were marked up to 500 N a tether" in note for note in notes)
+    assert any("the splices were marked up to 500 N per tether" in note for note in notes)
     # one tether ends at 2250 N, the two of them at twice that
     enough = StrainModel("T", "tension-driven", DRIVEN.coefficients, tension_high=3000.0)
     assert not any("marked up to" in note for note in deploy(CURVE, enough, n_tethers=2).notes)
@@ -77,7 +77,8 @@ def test_splices_beyond_their_marks_are_told():
         (WorkingLevel("total_length", 3.0), "working.2: the assembly is slack at this total length"),
         (WorkingLevel("total_length", 2.55 + 1.19), "working.2: the assembly is slack"),
         (WorkingLevel("total_length", 30.0), "working.2: the assembly is beyond its curve"),
-        (WorkingLevel("strain", 2.6), "beyond its curve at this strain; found 2.6 of the free length"),
+        (WorkingLevel("strain", 2.6), "beyond its curve at this strain; found 2.6 of the free"
+                                      " length"),
         (WorkingLevel("tension", 1e6), "working.2: the peak tension is beyond the curves"),
         (WorkingLevel("tension", 500.0, 600.0), "working.2: "),
     ],

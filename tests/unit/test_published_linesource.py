@@ -51,7 +51,7 @@ def test_figure_4_comes_back(lines, diameter, frequency, read, step):
     line = lines[f"nylon-double-braid-{diameter}in-new"]
     at = {"frequency": frequency, "mean_tension": 4000 * LBF, "tension_amplitude": 1600 * LBF}
     if diameter != "0.75":
-        with pytest.raises(DataError, match="outside what was tested"):
+        with pytest.raises(DataError, match="outside the tested range"):
             look_up(line, "apparent_spring_constant", **at)
     found = look_up(line, "apparent_spring_constant", extrapolate="flag", **at)
     assert found.value / LBF / 1e4 == pytest.approx(read, abs=step)

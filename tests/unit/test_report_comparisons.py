@@ -177,7 +177,7 @@ def test_events_are_marked_where_they_are_predicted_and_where_the_test_came_by()
     # the label of what is near the right edge stands on the left
     sides = {mark["name"]: mark["textposition"] for mark in marks if mark["text"] != [""]}
     assert sides == {"cords pick up": "bottom right", "working load": "top left"}
-    assert "Heavy: the ascending branch of the test" in figure.caption
+    assert "Thick: the ascending branch of the test" in figure.caption
     # 146 %, beyond the pull to 120 %
     assert "cords break" not in {name for name, _ in places}
 

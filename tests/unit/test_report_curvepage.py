@@ -26,7 +26,7 @@ def piece(name, low, high, kind="cyclic"):
 SOURCE = PieceSource(
     "<b>tether</b>", "mean", (piece("T-1", 0.5, 1.0), piece("T-2", 1.2, 2.0),
     piece("S", 0.2, 0.9, "static")), sources=("archive <a>",),
-    notes=("T-2: a splice slipped 2 times, and its strains hold the slip",), is_synthetic=True,
+    notes=("T-2: the splices slipped 2 times, and the strain includes the slip",), is_synthetic=True,
 )  # fmt: skip
 CURVE = compose(SOURCE, CompositeRule(precedence=("cyclic",)))
 
@@ -88,7 +88,7 @@ def test_a_page_of_a_composite_stands_alone_and_escapes_names(tmp_path):
     assert "<b>tether</b>" not in re.sub(r"<script.*?</script>", "", text, flags=re.S)
     assert "&lt;b&gt;tether&lt;/b&gt;" in text
     assert ">Warnings<" in text and "No two pieces of one kind overlap" in text
-    assert "a splice slipped 2 times" in text
+    assert "the splices slipped 2 times" in text
     assert "archive &lt;a&gt;" in text
     assert not re.search(r'<(?:script|link|img)[^>]+(?:src|href)="https?:', text)
 

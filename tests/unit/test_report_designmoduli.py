@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from reduction.report.answer_tables import design_modulus_table, unlike_tests_table
+from reduction.report.answer_tables import (
+    design_modulus_table,
+    hold_table,
+    pull_table,
+    unlike_tests_table,
+)
 from reduction.report.test_view import OF_NO_TEST, Status, TestView
 from reduction.report.text_style import NOT_GIVEN
 
@@ -166,7 +171,7 @@ def test_tests_of_one_specimen_that_differ_over_the_same_strains_stand_side_by_s
     assert [first[0], second[0]] == ["new", "used"]
     assert first[1:3] == ["early, late", "100 to 200"]
     assert first[5] == "0.500"
-    assert "stretched to 280 % in between, where 200 % was the most before" in first[6]
+    assert "stretched to 280 % in between, at most 200 % before" in first[6]
     assert "30 cycles" in first[6] and "strain amplitude and frequency alike" in first[6]
 
 
@@ -183,3 +188,96 @@ def test_other_strains_parts_of_a_test_and_like_values_are_no_such_pair():
     slow = with_level(make_view("slow"), middle=1.5, half=0.5, whole=0.7e6, test_frequency=0.01)
     (row, _) = texts(unlike_tests_table([one, slow]))
     assert row[6].startswith("frequency 0.10 times")
+
+
+RISE = ("specimen", "branch_name", "first_loading_strain_bin")
+
+
+def pulled(kind="quasi-static", *, of="rubber tether", **more):
+    """A first rise of a specimen of 500 mm2 to 40 %, of a tangent of 1, 2, 3 and 4 MPa.
+
+    Loads are those of the tangent; standard uncertainties 0.01 MPa and 1 N.
+    """
+    modulus = np.full((1, 2, 4), NAN)
+    modulus[0, 0] = [1e6, 2e6, 3e6, 4e6]
+    load = np.full((1, 2, 4), NAN)
+    load[0, 0] = [50.0, 150.0, 300.0, 500.0]
+    data = {
+        "specimen_kind": (S, [of]), "area": (S, [500e-6]),
+        "tangent_modulus_first_loading": (RISE, modulus),
+        "tangent_modulus_first_loading_standard_uncertainty": (RISE, modulus / modulus * 1e4),
+        "branch_tension_first_loading": (RISE, load),
+        "branch_tension_first_loading_standard_uncertainty": (RISE, load / load),
+        **{name: (("note",), []) for name in ("note", "note_stage", "note_code", "note_severity")},
+        "note_effect": ("note", np.zeros(0)),
+        **more,
+    }  # fmt: skip
+    own = {S: ["new"], "branch_name": ["ascending", "descending"],
+           "first_loading_strain_bin": [0.1, 0.2, 0.3, 0.4]}  # fmt: skip
+    return TestView(kind, xr.Dataset(data, own, {"test": "P-1", "test_kind": kind}))
+
+
+def test_a_pull_has_its_end_and_the_stiffness_half_way_there():
+    table = pull_table([pulled().without_samples().of_campaign()])
+    assert table.columns[3:7] == (
+        "strain [%]", "load [N]", "EA at half the strain [N]", "modulus there [MPa]",
+    )  # fmt: skip
+    # 2 MPa at 20 %, over 500 mm2
+    assert texts(table) == [
+        ["new", "P-1", "greatest load", "40.00", "500.0 ± 2.0", "1,000.0 ± 9.8", "2.000 ± 0.020",
+         "reduced"]
+    ]  # fmt: skip
+
+
+def test_a_break_has_its_own_load_and_strain_and_a_line_no_modulus():
+    more = {name: (S, [value]) for name, value in {
+        "pull_is_break": 1, "pull_peak_strain": 0.45, "pull_peak_strain_standard_uncertainty": 0.01,
+        "pull_peak_tension": 600.0, "pull_peak_tension_standard_uncertainty": 10.0,
+    }.items()}  # fmt: skip
+    table = pull_table([pulled("tensile", of="rope", **more)])
+    assert texts(table) == [
+        ["new", "P-1", "break", "45.0 ± 2.0", "600 ± 20", "1,000.0 ± 9.8", "reduced"]
+    ]
+
+
+def test_a_slow_pull_of_a_rope_has_k_0_half_way():
+    grid = (S, "tension_grid")
+    more = {
+        "tension_grid": ("tension_grid", [100.0, 200.0, 300.0]),
+        "quasi_static_strain": (grid, [[0.02, 0.05, 0.10]]),
+        "quasi_static_spring_constant": (grid, [[3e3, 4e3, 5e3]]),
+        "quasi_static_spring_constant_standard_uncertainty": (grid, [[100.0] * 3]),
+    }
+    (row,) = texts(pull_table([pulled(of="rope", **more)]))
+    assert row[3:6] == ["10.00", "300.0", "4,000 ± 200"]
+
+
+def test_weights_have_the_modulus_between_the_readings_half_way():
+    more = {
+        "tension": ("step", [0.0, 100.0, 200.0, 100.0]), "strain": ("step", [0.0, 0.1, 0.4, 0.2]),
+        "interval_strain": ("interval", [0.05, 0.25, 0.3]),
+        "interval_branch": ("interval", [1, 1, 2]),
+        "interval_modulus": ("interval", [2e6, 1e6, 9e6]),
+        "interval_modulus_standard_uncertainty": ("interval", [1e4] * 3),
+    }  # fmt: skip
+    view = pulled("stepwise", **more)
+    (row,) = texts(pull_table([replace(view, data=view.data.drop_dims("branch_name"))]))
+    assert row[3:7] == ["40.00", "200.0", "500.0 ± 9.8", "1.000 ± 0.020"]
+
+
+def test_a_relaxation_test_has_its_longest_hold_and_others_have_neither_table():
+    hold = {
+        "hold_specimen": ["new", "new"], "hold_duration": [60.0, 7200.0],
+        "hold_strain": [1.0, 1.5], "hold_initial_tension": [300.0, 400.0],
+        "hold_initial_tension_standard_uncertainty": [1.0, 2.0],
+        "relaxation_drop": [0.01, 0.05], "relaxation_rate_per_decade": [NAN, 0.02],
+        "creep_rate_per_decade": [NAN, NAN],
+    }  # fmt: skip
+    view = pulled("relaxation", **{name: ("hold", value) for name, value in hold.items()})
+    table = hold_table([view])
+    assert table.columns[-2:] == ("tension per decade [%]", "status")
+    assert texts(table) == [
+        ["new", "P-1", "150.0", "400.0 ± 3.9", "2.00", "5.000", "2.000", "reduced"]
+    ]
+    assert pull_table([view]) is None
+    assert pull_table([make_view()]) is None and hold_table([make_view()]) is None

@@ -39,7 +39,7 @@ def test_a_surface_below_zero_points_to_its_logarithm_or_says_how_to_get_one():
     laws = {"hysteresis_energy": falls}
     (with_log,) = warning(law_experiment(laws, transforms=[("hysteresis_energy", "log")]))
     assert "a hysteresis energy cannot be negative" in with_log
-    assert "Take the surface of its logarithm" in with_log
+    assert "Use the surface of its logarithm" in with_log
     (without,) = warning(law_experiment(laws))
     assert 'transform = { hysteresis_energy = "log" }' in without
     assert warning(law_experiment({"hysteresis_energy": hollow})) == []
@@ -50,8 +50,8 @@ def test_quality_has_the_freedom_of_fifteen_runs_and_the_statistic_of_the_report
     text = quality_words(view, view.surfaces, 0)
     assert "F(9, 5) = " in text
     assert "Lack of fit: F(3, 2) = " in text
-    assert "no departure is seen beyond the scatter of repeats" in text
-    assert "For comparison alone, the F that CG-D-39-80 prints" in text
+    assert "no lack of fit beyond the scatter of repeated runs" in text
+    assert "For comparison only: the F that CG-D-39-80 prints" in text
 
 
 def test_without_repeats_there_is_no_test_of_lack_of_fit():

@@ -321,9 +321,9 @@ def test_construction_is_complete_with_ribbons_and_cords():
     found = {row[0].text: row[1].text for row in table.rows}
     assert found["wrap angle from the axis [deg]"] == "68.00 ± 0.98"
     assert found["diameter of the inner layer [in]"] == "3.400"
-    assert found["cords a length of fabric [1/in]"] == "34.00"
+    assert found["cords per length of fabric [1/in]"] == "34.00"
     assert found["Young's modulus of the rubber [psi]"] == "200 ± 20"
-    assert found["least bore that is allowed [in]"] == "1.000"
+    assert found["minimum bore allowed [in]"] == "1.000"
     ribbon = np.pi * 3.4 * np.cos(np.radians(68))
     assert found["width of the ribbon of the inner layer [in]"] == f"{ribbon:.3f}"
     assert found["cords in the section, both layers"] == "280.1"
@@ -331,7 +331,7 @@ def test_construction_is_complete_with_ribbons_and_cords():
     same = hose_design_table(view(layer_diameter=(3.5 * INCH,) * 2, dead_length_share=0.04))
     names = [row[0].text for row in same.rows]
     assert "diameter of both cord layers [mm]" in names and len(same.remarks) == 1
-    assert not any("least bore that" in name for name in names)
+    assert not any("minimum bore" in name for name in names)
 
 
 def test_layers_that_carry_no_load_have_their_limits_angles_and_verdict():

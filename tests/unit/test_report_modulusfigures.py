@@ -39,7 +39,7 @@ def test_what_was_trimmed_away_is_drawn_to_both_sides_and_joins_the_curve():
     assert traces["ascending"]["y"] == [None, None, 2.0, 3.0, 4.0, None]
     assert traces["ascending, trimmed away"]["y"] == [None, 1.5, 2.1, None, 4.1, 9.0]
     assert traces["ascending, trimmed away"]["line"]["dash"] == "dot"
-    assert "trimmed away" in figure.caption
+    assert "trimmed ends" in figure.caption
 
 
 def test_where_nothing_was_trimmed_there_is_no_line_for_it():

@@ -329,7 +329,7 @@ def test_notes_that_differ_in_numbers_alone_stand_once_on_top_and_all_in_their_s
 
 def test_an_archive_from_other_raw_files_is_a_warning(report, rich_test):
     page = report(rich_test, status=STATUS + "T-1,reduced,0,,abc,0.1\r\n")
-    assert "are not those of status.csv" in "".join(page.text)
+    assert "differ from those in status.csv" in "".join(page.text)
 
 
 def test_a_file_that_is_no_archive_is_named_and_the_others_are_shown(report, rich_test, tmp_path):
@@ -503,7 +503,7 @@ def test_an_archive_of_the_campaign_that_nothing_stands_for_now_says_so(rich_tes
     write(rich_test)
     page = write_report(tmp_path, tmp_path / "r", stray=["surfaces.nc", "T-9.nc"])
     text = " ".join("".join(Page(page.read_text(encoding="utf-8")).text).split())
-    assert "surfaces.nc Nothing in the campaign stands for this archive now" in text
+    assert "surfaces.nc The campaign no longer makes this archive" in text
     assert "T-9.nc Nothing" not in text
 
 

@@ -177,7 +177,7 @@ def test_the_wave_is_described_with_what_it_was_computed_by(wave):
 def test_the_flow_is_told_by_its_numbers(wave):
     found = wave()
     values = {name: float(cell.value) for name, cell in shown_of(regime_table(found, "si")).items()}
-    speed = values["greatest velocity of the water [m/s]"]
+    speed = values["maximum velocity of the water [m/s]"]
     assert values["Keulegan-Carpenter number"] == pytest.approx(speed * 3.57 / 0.114)
     assert values["Reynolds number"] == pytest.approx(speed * 0.114 / 1.1892e-6)
     assert values["outer diameter [mm]"] == pytest.approx(0.114)
@@ -187,7 +187,7 @@ def test_the_flow_is_told_by_its_numbers(wave):
 def test_the_anchor_force_is_sum_and_combination(wave):
     table = anchor_table(wave(), "si")
     values = {name: float(cell.value) for name, cell in shown_of(table).items()}
-    parts = ("wind alone [N]", "current alone [N]", "wave alone, at its greatest [N]")
+    parts = ("wind alone [N]", "current alone [N]", "wave alone, maximum [N]")
     assert sum(values[name] for name in parts) == pytest.approx(values["sum of the three [N]"])
     assert (
         values["wave and current as one flow, with the wind [N]"] > values["sum of the three [N]"]
@@ -265,7 +265,7 @@ def test_errors_are_drawn_on_decades_and_heavy_where_a_theory_holds(armour):
     share = (2.5 / 27.5) ** 2 / (4 * 1.3 * np.sin(angle))
     miss = numbers(lines["large angles, a spring"]["y"])
     np.testing.assert_allclose(miss, 100 * (1 - share), atol=2e-3)
-    assert "Over the torsion moment of the whole change" in torsion.caption
+    assert "Relative to the torsion moment of the whole change" in torsion.caption
 
 
 def test_a_cable_at_rest_has_a_page_all_the_same(armour, tmp_path):

@@ -50,7 +50,7 @@ def test_a_slow_pull_has_its_curve_its_slope_and_its_conditions(view):
     assert any("range of use" in trace["name"] for trace in curve.data)
     rows = texts(_pull_table(view))
     assert rows["waiting time before the pull [h]"] == ["24.00"]
-    assert rows["tension at which the length was read [N]"] == ["5.000"]
+    assert rows["tension at the length reading [N]"] == ["5.000"]
     # the pull is strain over tension of 1 in 40 000, over 0 to 2000 N
     assert float(rows["strain, coefficient of T [N⁻¹]"][0].split()[0]) == pytest.approx(
         1 / 4e4, rel=0.02

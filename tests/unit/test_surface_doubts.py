@@ -31,6 +31,16 @@ def test_a_surface_that_falls_below_zero_in_a_corner_is_named_and_its_logarithm_
     assert negative_surfaces(fitted(plane, transforms="log")) == ()
 
 
+def test_a_surface_with_its_logarithm_beside_it_is_not_named():
+    plane = 2.1 - CODED.sum(axis=1)
+    both = fit_surfaces(
+        CODED, [plane, plane], units="coded", factor_names=["f", "T", "a"],
+        response_names=["energy", "log_energy"], low=[0] * 3, high=[1] * 3,
+        transforms=["none", "log"],
+    )  # fmt: skip
+    assert negative_surfaces(both) == ()
+
+
 def test_runs_below_zero_are_no_doubt_of_their_surface():
     assert negative_surfaces(fitted(1 - CODED.sum(axis=1))) == ()
 

@@ -26,7 +26,7 @@ function showRow(row) {
       last.append(", ", cell, " %RBS");
     } else if (head !== "remark") {
       last = element("dd");
-      last.append(cell, ` ${unit === "% of what it still has" ? "% of the strength it still has" : unit}`);
+      last.append(cell, ` ${unit === "% of residual strength" ? "% of the residual strength" : unit}`);
       at.append(element("dt", name), last);
     }
   }
@@ -38,7 +38,7 @@ function showRow(row) {
 
 // A table behind the answer, under the words that lead to it.
 function showTable({ intro, heads, rows }) {
-  const box = element("div", null, { class: "table", tabindex: "0", role: "region", "aria-label": "K_0, K_1 and tau" }), table = element("table"), head = element("tr");
+  const box = element("div", null, { class: "table", tabindex: "0", role: "region", "aria-label": intro || "K_0, K_1 and tau" }), table = element("table"), head = element("tr");
   if (intro) box.append(element("p", intro[0].toUpperCase() + intro.slice(1), { class: "small" }));
   head.append(...heads.map((text) => element("th", text.replaceAll("\n", " ").trim(), { scope: "col" })));
   table.append(head, ...rows.map((cells) => {
@@ -57,7 +57,7 @@ function showRefusal(said, asked) {
   const texts = [refusal.found && `found ${refusal.found}`, refusal.needed && `needed ${refusal.needed}`, hint].filter(Boolean);
   box.append(element("p", "Refused", { class: "refused-title" }), element("p", refusal.problem), listOf(texts));
   if ((refusal.hint ?? "").includes(FLAG_HINT)) {
-    box.append(element("p", "“Outside what was tested too, flagged” gives the number and flags it.", { class: "small" }));
+    box.append(element("p", "“Allow values outside the tested range, flagged” gives the number and flags it.", { class: "small" }));
   }
   said.append(box);
 }
@@ -74,8 +74,8 @@ function show() {
   byId("notes").replaceChildren();
   byId("synthetic").hidden = !line?.is_synthetic;
   if (!asked || !asked.quantity) {
-    byId("answer-title").textContent = line ? line.name : "No line is so";
-    said.append(element("p", line ? "Nothing of this line can be looked up." : "No line has all of these: take a filter or a word away."));
+    byId("answer-title").textContent = line ? line.name : "No line found";
+    said.append(element("p", line ? "This line has no values to look up." : "No line matches all filters and words: remove one."));
     if (line) showAbsent(line);
     byId("decks").hidden = true;
     brief("");
@@ -87,7 +87,7 @@ function show() {
   byId("command").textContent = commandOf(line, asked);
   byId("export").textContent = exportCommandsOf(line, asked).join("\n");
   if (asked.bad) {
-    said.append(element("p", `${asked.bad.replaceAll("_", " ")} is no number`, { class: "refused-title" }));
+    said.append(element("p", `${asked.bad.replaceAll("_", " ")} is not a number`, { class: "refused-title" }));
     brief("Not a number");
     return;
   }
@@ -110,6 +110,8 @@ function show() {
     }
     said.append(showRow(found.row), ...found.tables.map(showTable));
   }
+  const levels = tableOfLevels(line, asked.system);
+  if (levels) said.append(showTable(levels));
   showCharts(line, asked, found);
   showNotes(line, asked, found);
 }
@@ -138,7 +140,7 @@ function showCharts(line, asked, found) {
 function showAbsent(line) {
   const missing = Object.entries(line.absent).filter(([name]) => !line.quantities.includes(name));
   if (!missing.length) return;
-  byId("notes").append(element("h3", "What this line has not"),
+  byId("notes").append(element("h3", "Not available for this line"),
     listOf(missing.map(([name, why]) => `${name.replaceAll("_", " ")}: ${why}`)));
 }
 
@@ -159,7 +161,7 @@ function showNotes(line, asked, found) {
   if (Number.isFinite(line.rated_break_strength)) {
     fact("%RBS is of", `${grouped(short(scale * line.rated_break_strength))} ${force}${line.strength_of ? ` (${line.strength_of})` : ""}`);
   }
-  if (Number.isFinite(line.tensile_strength)) fact("strength it still has", `${grouped(short(scale * line.tensile_strength))} ${force}`);
+  if (Number.isFinite(line.tensile_strength)) fact("residual strength", `${grouped(short(scale * line.tensile_strength))} ${force}`);
   notes.append(element("h3", "Source"), facts);
   if (found.found) {
     notes.append(element("h3", "Notes"), listOf(found.said.map((one) => one.replace(/^note: /, ""))));

@@ -77,7 +77,7 @@ function apartWarning(values, name) {
   const [key, unit] = name === SPRING ? ["spring", "N"] : ["time", "s"];
   const solved = values.map((one) => `${plainNumber(one[key], 4)} ${unit} (${one.of}; the 95 % interval about it `
     + `is +-${plainNumber(one.half[name], 2)} ${unit})`).join(" or ");
-  return [`the surfaces do not hold together at 1 of 1 points: ${name} of its own surface is `
+  return [`the surfaces are inconsistent at 1 of 1 points: ${name} of its own surface is `
     + `${plainNumber(values[0].printed[name], 4)} ${unit}, and K_ap, H and K_0 give ${solved}`];
 }
 
@@ -96,7 +96,7 @@ function warningsOf(line, found, at) {
     const force = (number) => `${plainNumber(number, 4)} N`;
     const sums = values.map((one) => `${force(one.rest + one.printed[SPRING])} (${one.of}; `
       + `z ${(one.excess / one.uncertainty).toFixed(1)})`).join(" or ");
-    told.push("the printed numbers cannot hold together at 1 of 1 points: K_ap of a line is at most "
+    told.push("the printed numbers are inconsistent at 1 of 1 points: K_ap of a line is at most "
       + `K_0 + K_1, and is ${force(values[0].printed[AP])} where K_0 + K_1 is ${sums}; K_ap and H `
       + `need a K_1 of ${values.map((one) => force(one.spring)).join(" or ")}, printed is `
       + `${force(values[0].printed[SPRING])}`);
@@ -128,8 +128,8 @@ function moreTables(line, found, at, system) {
   };
   return [{
     intro: line.is_printed
-      ? "as printed, and with the K_1 and tau that K_ap, H and K_0 give by the line model:"
-      : "by the surfaces, and the K_1 and tau that K_ap, H and K_0 give by the line model:",
+      ? "as printed, and K_1 and tau from K_ap, H and K_0 by the line model:"
+      : "by the surfaces, and K_1 and tau from K_ap, H and K_0 by the line model:",
     heads: [...levels.map((one) => one[0]), "K_0 by", `K_ap\n[${force}]`, `K_0\n[${force}]`,
       `K_1 ${stated}\n[${force}]`, `K_1 solved\n[${force}]`, `tau ${stated}\n[s]`, "tau solved\n[s]", "remark"],
     rows: values.map((one) => [

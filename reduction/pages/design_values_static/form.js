@@ -89,7 +89,10 @@ function titleOf(quantity) {
 
 function fillQuantities(chosen) {
   const line = chosenLine();
-  fill(byId("quantity"), line ? line.quantities.map((one) => [one, titleOf(one)]) : [], chosen);
+  // what is known at tested levels alone stands in their table
+  const found = line ? line.quantities.filter((one) => one === DASHPOT || one in line.surfaces
+    || line.curves.some((curve) => curve.quantity === one)) : [];
+  fill(byId("quantity"), found.map((one) => [one, titleOf(one)]), chosen);
 }
 
 function fillBranches(chosen) {
@@ -115,7 +118,7 @@ function inUnit(line, name, value, unit) {
   return value / levelInSi(name, 1, unit, line.rated_break_strength);
 }
 
-// Fields of the levels; what was typed stays where the line has it inside what was tested.
+// Fields of the levels; what was typed stays where the line has it within the tested range.
 function makeLevels() {
   const line = chosenLine(), box = byId("levels");
   box.replaceChildren();

@@ -17,7 +17,7 @@ function cycleLoads(mean, amplitude, line) {
   const least = mean - amplitude;
   if (least < -EDGE * Math.max(mean, 1)) {
     throw new Refusal(
-      "1 of 1 amplitudes are above their mean tension: the line goes slack, and no surface knows of that",
+      "1 of 1 amplitudes are above their mean tension: the line goes slack, which no surface describes",
       {
         found: `${plainNumber(amplitude, 4)} N about ${plainNumber(mean, 4)} N`,
         needed: "an amplitude of at most the mean",
@@ -61,10 +61,10 @@ function loadsOfLine(line, levels, branch = "") {
   }
   if (line.is_tether) {
     if (loads.is_slack) {
-      throw new Refusal(`${line.name} goes slack at 1 of 1 points, and a tether must not`, {
+      throw new Refusal(`${line.name} goes slack at 1 of 1 points, which a tether must not`, {
         found: `a minimum tension of zero, peak ${plainNumber(loads.peak, 4)} N`,
         needed: "a minimum above zero",
-        hint: "A slack tether tangles and is cut: more stretch, or less amplitude.",
+        hint: "A slack tether tangles and is cut: choose more stretch or less amplitude.",
       });
     }
     loads = { ...loads, is_above_rule: false };

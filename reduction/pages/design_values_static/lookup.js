@@ -87,9 +87,9 @@ function valuesOfSurface(line, surface, levels, flag) {
       const unit = unitOf(name);
       return [`${name} ${plainNumber(value, 5)} ${unit}, tested ${plainNumber(low, 5)} to ${plainNumber(high, 5)} ${unit}`];
     });
-    throw new Refusal(`1 of 1 points are outside what was tested of ${surface.quantity} of ${line.name}`, {
+    throw new Refusal(`1 of 1 points are outside the tested range of ${surface.quantity} of ${line.name}`, {
       found: told.join("; "),
-      needed: "levels inside, which the source calls the range of usefulness",
+      needed: "levels inside the tested range, the range of usefulness of the source",
       hint: FLAG_HINT,
     });
   }
@@ -110,7 +110,7 @@ function valuesOfCurve(line, curve, levels, flag) {
     const unit = unitBehind(curve.variable);
     const gaps = curve.gaps.filter(([low, high]) => low < x && x < high)
       .map(([low, high]) => `, nothing between ${plainNumber(low, 5)} and ${plainNumber(high, 5)}`).join("");
-    throw new Refusal(`1 of 1 points are outside what was tested of ${curve.quantity} of ${line.name}`, {
+    throw new Refusal(`1 of 1 points are outside the tested range of ${curve.quantity} of ${line.name}`, {
       found: `${curve.variable} ${plainNumber(x, 5)}${unit}`,
       needed: `${plainNumber(curve.low, 5)} to ${plainNumber(curve.high, 5)}${unit}${gaps}`,
       hint: [curve.range_note, FLAG_HINT].filter(Boolean).join(". "),
@@ -146,19 +146,19 @@ function told(line, of, points, { loads, words, more, is_untested, freedom }) {
   const isCurve = "variable" in of;
   if (words[0] || words[1]) {
     notes.push(!isCurve && Number.isFinite(of.line_scatter)
-      ? `lines of this kind differ among each other by about ${(100 * of.line_scatter).toFixed(0)} % `
+      ? `lines of this kind differ by about ${(100 * of.line_scatter).toFixed(0)} % `
         + `(CG-D-39-80, sec. 4.4.1), taken with ${of.n_lines.toFixed(0)} lines and the degrees of `
-        + "freedom of the surface: in the intervals of the kind and of another line alone"
+        + "freedom of the surface: included only in the intervals of the kind and of another line"
       : `the interval applies to ${words[0] || words[1]}; scatter between lines is not included`);
   } else if (isCurve) {
     notes.push("no interval is given: the source states no scatter of this curve");
   }
-  if (loads.is_above_rule) notes.push(`the peak tension is above what the source allows: ${line.rule}`);
+  if (loads.is_above_rule) notes.push(`the peak tension exceeds the limit of the source: ${line.rule}`);
   if (loads.is_slack && loads.peak > 0) {
-    notes.push("the minimum is zero: a snap load, by which fibres fail (CG-D-39-80, sec. 5.0)");
+    notes.push("the minimum is zero: a snap load, which breaks fibres (CG-D-39-80, sec. 5.0)");
   }
   if (points.value < 0) {
-    notes.push(`1 of 1 values are below zero, which ${of.quantity} cannot be: the surface says nothing there`);
+    notes.push(`1 of 1 values are below zero, which ${of.quantity} cannot be: the surface is not valid there`);
   }
   return {
     ...points, ...loads, is_untested, freedom,

@@ -19,13 +19,13 @@ function span(factor, low, high) {
 function remarksOf(found) {
   const isBelow = found.value < 0;
   return [
-    ["OUTSIDE what was tested", !found.inside],
+    ["OUTSIDE the tested range", !found.inside],
     ["untested corner", found.is_untested],
-    ["peak above the strength it has", found.own_peak_share >= 1],
+    ["peak above the residual strength", found.own_peak_share >= 1],
     ["peak above the rule", found.is_above_rule],
     ["snap load: goes slack", found.is_slack && found.peak > 0],
     ["below zero: no value", isBelow],
-    ["lower end below zero: not told from zero", !isBelow && (found.low < 0 || found.surface_low < 0)],
+    ["interval includes zero", !isBelow && (found.low < 0 || found.surface_low < 0)],
   ].filter((one) => one[1]).map((one) => one[0]);
 }
 
@@ -56,7 +56,7 @@ function rowOf(line, found, levels, system) {
   row.push(["peak\n[%RBS]", short(100 * found.peak_share, 4)]);
   row.push(["minimum\n[%RBS]", short(100 * found.minimum_share, 4)]);
   if (Number.isFinite(line.tensile_strength)) {
-    row.push(["peak [% of what\nit still has]", short(100 * found.own_peak_share, 4)]);
+    row.push(["peak [% of\nresidual strength]", short(100 * found.own_peak_share, 4)]);
   }
   row.push(["remark", remarksOf(found).join("; ")]);
   return row;
@@ -77,7 +77,7 @@ function saidOf(line, found) {
     if (Number.isFinite(value)) said.push(`linear density ${what}: ${short(value)} kg/m`);
   }
   said.push(`rule: ${found.rule}`);
-  if (found.errata.length) said.push(`errata that touch it: ${found.errata.join(", ")}`);
+  if (found.errata.length) said.push(`errata that apply: ${found.errata.join(", ")}`);
   said.push(...found.notes.map((note) => `note: ${note}`));
   return distinct(said);
 }
@@ -120,4 +120,26 @@ function answer({ line, quantity, levels, branch = null, flag = false, system = 
     if (!(error instanceof Refusal)) throw error;
     return { refused: error.message, refusal: error, at };
   }
+}
+
+// Levels at which the tests of a rope were made, as the list of the command has them; null where
+// it is one test, or an experiment has fitted them.
+function tableOfLevels(line, system) {
+  const own = LINES.filter((one) => one.campaign && one.campaign === line.campaign
+    && one.specimens.some((name) => line.specimens.includes(name)));
+  const rows = own.flatMap((one) => one.levels.slice(0, 1).flatMap((levels) => levels.tests.map((test, place) => (
+    { levels, test, at: levels.at[place], value: levels.value[place], conditions: levels.conditions[place] ?? {} }))));
+  if (rows.length < 2 || own.some((one) => Object.keys(one.surfaces).length)) return null;
+  const { quantity, variables } = rows[0].levels;
+  const keys = distinct(rows.flatMap((one) => Object.keys(one.conditions)));
+  const [unit, factor] = displayUnit(unitOf(quantity), system), strength = line.rated_break_strength;
+  const cells = rows.map(({ test, at, value, conditions }) => {
+    const levels = levelCells(line, Object.fromEntries(variables.map((name, place) => [name, at[place]])), system);
+    return [["test", test], ...levels, [`${quantity.replaceAll("_", " ")}\n[${unit}]`, short(factor * value)],
+      ["\n[MBL]", short(value / strength, 3)], ...keys.map((key) => [key, conditions[key] ?? "-"])];
+  });
+  return {
+    intro: `Levels of ${line.specimens[0]}, known at tested levels and between two of them`,
+    heads: cells[0].map(([head]) => head), rows: cells.map((row) => row.map(([, text]) => text)),
+  };
 }

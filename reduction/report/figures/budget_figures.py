@@ -12,7 +12,7 @@ from reduction.report.product_views import ExperimentView
 from reduction.report.test_view import TestView
 from reduction.report.text_style import bar_look, is_hatched, source_words
 
-_HATCHED = " Hatched: of the same thing as the plain bar of that colour."
+_HATCHED = " Hatched: another error of the same instrument as the plain bar of that colour."
 
 _PER_LINE, _AROUND = 17, 110
 """Height of a line of the words of a bar, and of title and axis. [px]"""
@@ -45,7 +45,7 @@ def _figure(key: str, title: str, own: Sequence[AnswerBudget], synthetic: bool) 
     lines = max(name.count("\n") + 1 for name in names)
     return make_figure(
         key, title,
-        "Share of each source in the variance of a number, which stands with its expanded"
+        "Share of each source in the variance of a number, given with its expanded"
         f" uncertainty.{_HATCHED if any(map(is_hatched, sources)) else ''}",
         _bars(own, sources), synthetic=synthetic, spoken=_spoken(own),
         height=_AROUND + _PER_LINE * lines * len(own),

@@ -64,8 +64,8 @@ def draw_ratios(tests: Sequence[TestView]) -> list[Figure]:
                 f"campaign-ratio-{len(found)}",
                 _ratio_title(own[0][1] if len(own) == 1 else None, pair, branches),
                 f"Tangent modulus of {pair[0]} over that of {pair[1]} at the same strain,"
-                f" {branches}{'' if len(own) == 1 else ', each test'}; band: 95 % interval, of what"
-                " the two do not share. Where it leaves out 1 the two differ.",
+                f" {branches}{'' if len(own) == 1 else ', each test'}; band: 95 % interval without"
+                " errors common to both. They differ where it excludes 1.",
                 [trace for trace in data if trace["y"]], synthetic=any_synthetic(tests),
                 xaxis=axis("strain [%]"), yaxis=_ratio_axis(data),
                 shapes=[_level(1.0)],
@@ -219,8 +219,8 @@ def draw_parts(tests: Sequence[TestView]) -> list[Figure]:
                 found.append(
                     make_figure(
                         f"campaign-parts-{len(found)}", f"{whole}: its parts, {specimen}",
-                        f"Mean tangent modulus in the parts of {whole} that were logged apart:"
-                        f" what the long test changed. {_about_bands(parts)}",
+                        f"Mean tangent modulus in the parts of {whole} that were logged"
+                        f" separately: the change over the long test. {_about_bands(parts)}",
                         data, synthetic=any_synthetic(parts), height=400,
                         xaxis=axis("strain [%]"),
                         yaxis=_modulus_axis(data, _whole_units(parts)),

@@ -93,8 +93,8 @@ def draw_loops(view: TestView) -> list[Figure]:
             make_figure(
                 f"{view.key}-loops-{index}", f"{view.id}: loops, {specimen}",
                 f"Above: {words} against strain of the splice-free length, first, middle and last"
-                f" cycle{of_stored}; ascending solid, descending dashed. Below: the same less one"
-                " straight line, that of the first branch from end to end, so that the loops open.",
+                f" cycle{of_stored}; ascending solid, descending dashed. Below: the same minus the"
+                " chord of the first branch, which makes the loops visible.",
                 data, synthetic=view.is_synthetic, height=520,
                 xaxis=axis(in_strain.label("strain"), anchor="y"),
                 yaxis=axis(in_load.label("less the line"), domain=[0.0, 0.4], zeroline=True),
@@ -134,8 +134,8 @@ _PANELS: tuple[tuple[str, str, Kind, tuple[tuple[str, str], ...]], ...] = (
 )  # fmt: skip
 
 _CAPTIONS = {
-    "peaks": "Greatest (solid) and least (dashed) tension of each cycle.",
-    "spring-constant": "Tension amplitude over strain amplitude, force per unit strain.",
+    "peaks": "Peak (solid) and minimum (dashed) tension of each cycle.",
+    "spring-constant": "Tension amplitude over strain amplitude.",
     "energy": "Closed-loop area of tension against strain: energy lost per cycle and unit of"
     " relaxed free length.",
     "loss-factor": "Loss over storage spring constant, from the fundamental of each cycle.",
@@ -242,11 +242,11 @@ def _about_band(view: TestView) -> str:
 def _of_many(n_cycles: int) -> str:
     if n_cycles <= POINTS:
         return ""
-    return f" Of {n_cycles:,} cycles those are drawn that are least or greatest of their stretch."
+    return f" Of {n_cycles:,} cycles only the minima and maxima of short intervals are drawn."
 
 
 def _slip_words(view: TestView) -> str:
-    words = " Vertical lines: steps of a splice, with specimen and cycle; shaded: where it may lie."
+    words = " Vertical lines: slips of a splice, with specimen and cycle; shaded: possible cycles."
     return words if view.array("slip_cycle") is not None else ""
 
 
@@ -281,10 +281,9 @@ def draw_amplitude_pairs(tests: Sequence[TestView]) -> list[Figure]:
             data += [_entry(specimen, order) for specimen, order in drawn.items()]
         figure = make_figure(
             f"campaign-{name}", f"{words.capitalize()} of each test",
-            f"{words.capitalize()}, mean over the cycles of a test, against mean strain. The"
-            " level bar is the strain range of the cycles: tests at one mean strain and two"
-            " amplitudes stand above each other. Colour and shape of a marker are"
-            " the test's, its filling the specimen's (grey in the legend)."
+            f"{words.capitalize()}, mean over the cycles of a test, against mean strain."
+            " Horizontal bars: strain range of the cycles. Colour and shape of a marker: test;"
+            " filling: specimen (grey in the legend)."
             " " + plus_minus_of_tests(factors, [*seen.values()], [name], mark="Upright bar, ±"),
             data, synthetic=any_synthetic(tests), height=400,
             xaxis=axis("mean strain [%]"), yaxis=axis(unit.label(words)),

@@ -55,8 +55,8 @@ def draw_holds(view: TestView) -> list[Figure]:
                 make_figure(
                     f"{view.key}-hold-{kind}-{index}", f"{view.id}: {kind}, {specimen}",
                     f"{what.capitalize()} in the holds at {held} against time since the hold"
-                    " began; dashed grey: the fitted Prony series,"
-                    " which is for a step in length, where the record supports one.",
+                    " began; dashed grey: the fitted Prony series (of a step in length), where the"
+                    " record supports one.",
                     traces, synthetic=view.is_synthetic,
                     xaxis=axis(
                         shown("time", view.units).label("time since the hold began"),
@@ -164,14 +164,14 @@ def draw_pull(view: TestView) -> list[Figure]:
         make_figure(
             f"{view.key}-pull", f"{view.id}: load against strain, slow pull",
             "Tension against strain as logged (grey), and strain as a cubic of tension over its"
-            " range of use, beyond which it is not to be taken.",
+            " range of use. Do not use it beyond.",
             curves, synthetic=view.is_synthetic, height=400,
             xaxis=axis(percent.label("strain")), yaxis=axis(force.label("tension")),
         ),
         make_figure(
             f"{view.key}-pull-constant", f"{view.id}: quasi-static spring constant",
-            "K_0, the slope of tension on strain, against tension: to be taken at the mean tension"
-            " of interest."
+            "K_0, the slope of tension on strain, against tension. Use the value at the mean"
+            " tension of interest."
             f" {_about_band(view)}",
             slopes, synthetic=view.is_synthetic, height=400,
             xaxis=axis(force.label("tension")),
@@ -236,8 +236,8 @@ def draw_stiffness(view: RopeView) -> list[Figure]:
     return [
         make_figure(
             f"{view.key}-stiffness", f"Stiffness against tension, {view.specimen}",
-            "Force per unit strain. Bars across: the tensions it is between, cycle or holds; bars"
-            f" up: expanded uncertainty (95 %, {factor_words(spread.factors)}).",
+            "Force per unit strain. Horizontal bars: tension range of the cycle or holds;"
+            f" vertical bars: expanded uncertainty (95 %, {factor_words(spread.factors)}).",
             data, synthetic=view.is_synthetic, height=400,
             xaxis=axis(force.label("tension"), rangemode="tozero"),
             yaxis=axis(force.label("stiffness"), rangemode="tozero"),

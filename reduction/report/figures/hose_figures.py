@@ -171,7 +171,7 @@ def draw_chart(view: HoseView) -> list[Figure]:
             "Each line is a wrap angle, given at its end in degrees from the axis, with the dead"
             " length of this hose; it ends where its cords break. Below zero a cord is slack: above"
             f" {np.degrees(NEUTRAL_ANGLE):.2f} degrees it is so at first. Geometry of a long hose"
-            " that keeps its volume; no load is in it.",
+            " of constant volume, without load.",
             data, synthetic=view.is_synthetic, height=480, is_wide=True,
             xaxis=strain_axis(range=[0, 104 * last]), yaxis=axis("strain of the cords [%]"),
         )
@@ -188,8 +188,8 @@ def draw_limits(view: HoseView) -> list[Figure]:
         figures.append(
             _limit(
                 view, "spacing", "Spacing of the cords",
-                "Between centres of neighbouring cords of one layer, over their diameter. Below one"
-                " they touch: the layer jams, and the prediction does not hold.",
+                "Spacing of neighbouring cords of one layer over cord diameter. Below 1 the cords"
+                " touch and jam, and the prediction does not hold.",
                 strain, ratio, 1.0, "cord spacing over cord diameter [1]", "cords touch",
             )
         )  # fmt: skip
@@ -199,9 +199,9 @@ def draw_limits(view: HoseView) -> list[Figure]:
         figures.append(
             _limit(
                 view, "bore", "Bore",
-                "Of the stretched hose, whose volume is kept. Below its limit the prediction does"
-                " not hold: what lies in the bore is squeezed.",
-                strain, bore, small.factor * least, small.label("bore"), "least that is allowed",
+                "Bore of the stretched hose at constant volume. Below its limit the prediction"
+                " does not hold: the contents of the bore are squeezed.",
+                strain, bore, small.factor * least, small.label("bore"), "minimum allowed",
             )
         )  # fmt: skip
     return figures
@@ -241,8 +241,9 @@ _FACTOR = factor_words([NORMAL])
 _DASHES = ("solid", "dash", "dot", "dashdot")
 
 _STATIC = (
-    " From the static curve of one cord and a long, straight, closed hose full of water: nothing of"
-    " cycles, speed, heat or compression is in it, and of the ends only the stated dead length."
+    " From the static curve of one cord and a long, straight, closed, water-filled hose. Not"
+    " included: cycling, rate, temperature, compression, and end effects beyond the stated dead"
+    " length."
 )
 
 _KINK = (
@@ -281,8 +282,8 @@ def draw_tension(view: HoseView) -> list[Figure]:
     return _kept_figure(
         make_figure(
             f"{view.key}-tension", f"Predicted tension, hose {view.name}",
-            f"{about}The safe working load is that of the hose where a cord has its working share"
-            f" of its break load.{grey}{_STATIC}",
+            f"{about}Safe working load: a cord carries its working share of its break"
+            f" load.{grey}{_STATIC}",
             data, synthetic=view.is_synthetic, height=460, is_wide=True,
             xaxis=strain_axis(), yaxis=axis(force.label("tension"), rangemode="tozero"),
             **_slack_zone(view),
@@ -304,8 +305,8 @@ def draw_pressure(view: HoseView) -> list[Figure]:
     return _kept_figure(
         make_figure(
             f"{view.key}-pressure", f"Predicted fill pressure, hose {view.name}",
-            "In the bore, above the pressure outside: what the cords squeeze out of the water of a"
-            f" closed hose; none while they are slack, and none in an open hose.{about}",
+            "Pressure in the bore of a closed hose above that outside, caused by the cords; zero"
+            f" while they are slack and in an open hose.{about}",
             data, synthetic=view.is_synthetic, height=400,
             xaxis=strain_axis(), yaxis=axis(unit.label("fill pressure"), rangemode="tozero"),
             **_slack_zone(view),
@@ -328,7 +329,7 @@ def draw_budget(view: HoseView) -> list[Figure]:
         make_figure(
             f"{view.key}-budget", f"Where the uncertainty of tension comes from, hose {view.name}",
             "Share of each uncertain number in the variance of the tension at held strain. Sources"
-            " are taken as independent; numbers without a stated uncertainty count as known.",
+            " are taken as independent; numbers without a stated uncertainty are treated as exact.",
             [
                 line(
                     strain, row, name=name, colour=colour(index), width=0.8, stackgroup="share"
@@ -452,18 +453,13 @@ def draw_comparison(view: ComparisonView) -> list[Figure]:
     data += _events(view, force)
     judged = view.judged if view.judged == "midline" else f"{view.judged} branch"
     about = f"{_shaded(view)} " if has_band else ""
-    fitted = (
-        " Calibrated: with the numbers of the hose that were fitted to this very test."
-        if view.fitted
-        else ""
-    )
+    fitted = " Calibrated: with the numbers fitted to this test." if view.fitted else ""
     return _kept(
         make_figure(
             f"{view.key}-tension", f"Measured and predicted tension, {view.name}",
-            f"{about}Heavy: the {judged} of the test, by which the prediction is judged."
+            f"{about}Thick: the {judged} of the test, which is compared with the prediction."
             f"{fitted}"
-            " Filled marks: what is predicted to happen to the cords; open: where the test reached"
-            " that tension.",
+            " Filled marks: predicted cord events; open: where the test reached that tension.",
             data, synthetic=view.is_synthetic, height=460, is_wide=True,
             xaxis=_strain_axis(), yaxis=axis(force.label("tension"), rangemode="tozero"),
         )
@@ -500,12 +496,12 @@ def _shaded(view: ComparisonView) -> str:
     of_test = f"scatter, and errors common to all samples: {shared}" if shared else "scatter alone"
     return (
         f"Shaded: expanded uncertainty, 95 % ({factor_words([NORMAL])}), of the prediction from"
-        f" what is stated of the hose, and of the judged curve of the test: {of_test}."
+        f" the stated errors of the hose, and of the compared curve of the test: {of_test}."
     )
 
 
 def draw_error(view: ComparisonView) -> list[Figure]:
-    """Draw predicted less measured tension within what it may be, and what calibration leaves."""
+    """Draw predicted minus measured tension within what it may be, and what calibration leaves."""
     force = shown("tension", view.units)
     strain = _percent(view)
     allowed = force.factor * view.allowed
@@ -530,20 +526,19 @@ def draw_error(view: ComparisonView) -> list[Figure]:
         )  # fmt: skip
     data += _marked(view, force)
     bounds = (
-        f" Shaded: U, {view.scalar('coverage_factor'):.2f} standard uncertainties of test and"
-        " prediction together, which the largest ratio of a right prediction stays below in 95 % of"
-        " all cases."
+        f" Shaded: U, {view.scalar('coverage_factor'):.2f} combined standard uncertainties of test"
+        " and prediction; the largest ratio of a correct prediction stays below this in 95 % of"
+        " cases."
         if np.any(allowed > 0)
         else ""
     )
     return _kept(
         make_figure(
             f"{view.key}-error", f"Comparison error, {view.name}",
-            "Predicted less measured tension: above zero the hose is softer than predicted."
-            f"{bounds} Marked: the greatest difference, and the largest in terms of its"
-            " uncertainty.",
+            "Predicted minus measured tension: above zero the hose is softer than predicted."
+            f"{bounds} Marked: the largest, and the largest relative to its uncertainty.",
             data, synthetic=view.is_synthetic, height=440, is_wide=True,
-            xaxis=_strain_axis(), yaxis=axis(force.label("predicted less measured")),
+            xaxis=_strain_axis(), yaxis=axis(force.label("predicted minus measured")),
         )
     )  # fmt: skip
 
@@ -581,7 +576,7 @@ def draw_cycle_bias(view: ComparisonView) -> list[Figure]:
     return [
         make_figure(
             f"{view.key}-cycles", f"Bias cycle by cycle, {view.name}",
-            "Mean of predicted less measured tension over the strains, each cycle at its"
+            "Mean of predicted minus measured tension over the strains, each cycle at its"
             f" {view.judged}: it rises where the hose softens.{about}",
             data, synthetic=view.is_synthetic, height=360,
             xaxis=axis("cycle number [1]", type="log", **_cycle_ticks(number)),
@@ -616,8 +611,7 @@ def draw_all_comparisons(views: Sequence[ComparisonView]) -> list[Figure]:
             make_figure(
                 "comparisons-tension", "Measured and predicted tension of the hoses",
                 "Solid: predicted from construction alone, shaded with its 95 % interval. Dashed:"
-                " measured in a static test, at the curve that is judged; dotted: in a dynamic"
-                " test.",
+                " measured in a static test, at the compared curve; dotted: in a dynamic test.",
                 _tensions(firsts, names, force), synthetic=is_synthetic, height=460, is_wide=True,
                 xaxis=_strain_axis(), yaxis=axis(force.label("tension"), rangemode="tozero"),
             )
@@ -625,10 +619,10 @@ def draw_all_comparisons(views: Sequence[ComparisonView]) -> list[Figure]:
         *_kept(
             make_figure(
                 "comparisons-relative", "Relative difference of all comparisons",
-                "Predicted less measured over measured tension, at the judged curve of each; solid:"
-                " static, dashed: dynamic. Left out where less than"
-                f" {100 * _LEAST_TENSION:g} % of the greatest tension of the test was measured:"
-                " there any difference is large beside it.",
+                "Predicted minus measured over measured tension, at the compared curve of each;"
+                " solid: static, dashed: dynamic. Left out where less than"
+                f" {100 * _LEAST_TENSION:g} % of the peak tension was measured, where relative"
+                " differences mean little.",
                 shares, synthetic=is_synthetic, height=460, is_wide=True,
                 xaxis=_strain_axis(), yaxis=axis("difference over measured tension [%]"),
             )

@@ -86,9 +86,8 @@ def draw_moduli(view: TestView) -> list[Figure]:
             make_figure(
                 f"{view.key}-modulus-{index}",
                 f"{view.id}: modulus, {specimen}",
-                "Tangent modulus against strain, mean over the cycles. Dotted with crosses: what"
-                " was trimmed away at the ends of a branch, where the rate is not constant; no"
-                f" number is taken from there. {about}",
+                "Tangent modulus against strain, mean over the cycles. Dotted with crosses:"
+                f" trimmed ends of a branch, where the rate is not constant; not used. {about}",
                 [trace for trace in data if any(value is not None for value in trace["y"])],
                 synthetic=view.is_synthetic,
                 height=400,
@@ -235,8 +234,8 @@ def draw_mooney(view: TestView) -> list[Figure]:
         figure = make_figure(
             f"{view.key}-mooney-{index}", f"{view.id}: Mooney plot, {specimen}",
             "Reduced stress: stress of the first loading over twice the difference of stretch ratio"
-            " and its inverse square. Lines: the fitted laws in their range. An upturn at"
-            " the left is the rubber coming to the end of its chains.",
+            " and its inverse square. Lines: the fitted laws in their range. An upturn at the left"
+            " shows the limited extensibility of the rubber.",
             data, synthetic=view.is_synthetic,
             xaxis=axis("inverse of the stretch ratio [1]"),
             yaxis=axis(unit.label("reduced stress")),
@@ -333,7 +332,7 @@ def draw_steps(view: TestView) -> list[Figure]:
     readings = make_figure(
         f"{view.key}-steps", f"{view.id}: tension against strain",
         "Each reading of the stepwise test; ascending solid, descending dashed; ringed readings"
-        " are flagged and take no part in the moduli beside them"
+        " are flagged and not used for moduli"
         f"{_reasons(view, words)}.",
         data, synthetic=view.is_synthetic, height=400,
         xaxis=axis(in_strain.label("strain")), yaxis=axis(in_tension.label("tension")),

@@ -119,19 +119,19 @@ def draw_record(view: TestView) -> list[Figure]:
     caption = (
         "Position and tension against time. The background is the phase: "
         + ", ".join(PHASE_VALUES)
-        + ". Marks are flagged samples; flags that hold for whole stretches"
+        + ". Marks: flagged samples. Flags of whole intervals"
         + " (rate not constant, resampled, extrapolated) can be switched on in the legend."
     )
     caption += _of_part(view)
     if is_dense:
         caption += (
-            " The cycles are too many to be told apart here: filled from the least to the greatest"
-            f" of every short interval of the {time.shape[0]:,} samples."
+            " Too many cycles to show singly: filled from minimum to maximum of each short"
+            f" interval of the {time.shape[0]:,} samples."
         )
     elif time.shape[0] > POINTS:
         caption += (
-            f" The {time.shape[0]:,} samples are thinned out so that the least and the greatest"
-            " of every short interval stay."
+            f" The {time.shape[0]:,} samples are reduced to the minimum and maximum of each short"
+            " interval."
         )
     if left_out:
         caption += f" {left_out} short phases are not shaded."
@@ -198,7 +198,7 @@ def draw_tension_position(view: TestView) -> list[Figure]:
     if drawn.size:
         cycles = ", ".join(f"{cycle:.0f}" for cycle in drawn)
         caption = (
-            "Tension against crosshead position: what is logged outside the cycles, and of the"
+            "Tension against crosshead position: the record outside the cycles, and of the"
             f" {view.n_cycles:,} cycles numbers {cycles}."
         )
     return [
@@ -363,11 +363,12 @@ def _figure(view: TestView, place: int, model: StrainModel, marks: _Marks) -> Fi
     relaxed = number_text(model.coefficients[_LENGTH] * length.factor)
     return make_figure(
         f"{view.key}-splices-{place}", f"{view.id}: splice correction, {model.specimen}",
-        f"Above: length of both splices, which is position less the free length read at the marks,"
-        f" against {by}, and the method {model.method} (95 %, {factor_words([NORMAL])}, of its"
-        " coefficients). Below: strain by the method less strain at the marks, in points of strain;"
-        " shaded: the same 95 %. Filled: marks read in this test; open: those of the specimen's"
-        f" other tests. Dotted: how far this test goes. Free length at zero tension: {relaxed}"
+        "Above: length of both splices (position minus free length read at the marks) against"
+        f" {by}, and the method {model.method} (95 %, {factor_words([NORMAL])}, of its"
+        " coefficients). Below: strain by the method minus strain at the marks, in percentage"
+        " points; shaded: the same 95 %. Filled: marks read in this test; open: those of the"
+        " specimen's"
+        f" other tests. Dotted: range of this test. Free length at zero tension: {relaxed}"
         f" {length.unit}.",
         [
             *_upper(model, marks, np.append(reach, marks.along), length, across),

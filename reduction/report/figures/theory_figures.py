@@ -62,8 +62,8 @@ _ABOUT = {
     "axial_force": "Along the wire: the cross section times its stress.",
     "shear_force": "On the section of the wire, along its binormal.",
     "bending_moment": "Above zero where it bends the wire more.",
-    "torsion_moment": "About the wire. By the report's moments it vanishes at 45 degrees and"
-    " changes sign; a rod with an energy has torsion there.",
+    "torsion_moment": "About the wire. With the report's moments it vanishes and changes sign at"
+    " 45 degrees; a rod with a strain energy has torsion there.",
 }
 
 
@@ -136,15 +136,15 @@ def draw_errors(found: PredictedArmour) -> list[Figure]:
                  colour=COLOURS[6], dash="solid", width=1)
         )  # fmt: skip
         relative = (
-            " Over the torsion moment of the whole change of curvature and torsion, since its own"
-            " passes zero."
+            " Relative to the torsion moment of the whole change of curvature and torsion, since"
+            " the moment itself passes zero."
             if quantity == "torsion_moment"
             else ""
         )
         figures.append(
             make_figure(
                 f"armour-error-{quantity.replace('_', '-')}", f"Error of the {words}",
-                f"Size of theory less exact, over exact; heavy: within {tolerance:g} %. More than"
+                f"Magnitude of (theory - exact) / exact; thick: within {tolerance:g} %. More than"
                 f" 1000 % and less than 0.001 % are not drawn.{relative}"
                 f" {_of_wire(found)}",
                 data, synthetic=False, height=400, xaxis=_angle_axis(),
@@ -249,7 +249,7 @@ def _direction(found: PredictedWaveLoad, name: str, unit: Shown) -> Figure:
         f"wave-{name}", f"{name.capitalize()} load per length",
         f"Above zero: {_UP[name]}. Marked: greatest and least load of a period, found between the"
         f" times that are drawn. At its greatest the improved load is {less:.3g} % less than the"
-        " classic one, which takes the hose as wholly under water. What is not drag is inertia.",
+        " classic one, which assumes full immersion. The rest of the load is inertia.",
         data, synthetic=False, height=420, is_wide=True,
         xaxis=axis("time [s]"), yaxis=axis(unit.label(f"{name} load")),
     )  # fmt: skip
@@ -325,9 +325,9 @@ def draw_section(found: PredictedWaveLoad, units: UnitSystem) -> list[Figure]:
         make_figure(
             "wave-section", "Section of the hose in still water",
             f"To scale. {share:.1f} % of the section is under water: its weight over that of the"
-            f" water it displaces. Immersion depth {depth:.4g} {small.unit} of"
-            f" {2 * radius:.4g} {small.unit}. The immersion is kept in the wave: the hose follows"
-            " the surface.",
+            f" water that it displaces. Immersion depth {depth:.4g} {small.unit} of"
+            f" {2 * radius:.4g} {small.unit}. The immersion is constant: the hose follows the"
+            " surface.",
             data, synthetic=False, height=360,
             xaxis=axis(small.label("across"), range=[-reach, reach], zeroline=False),
             yaxis=axis(

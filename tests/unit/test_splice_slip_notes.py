@@ -1,0 +1,58 @@
+"""By how much strain is too large after a slip, and when that is worth a warning."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from reduction.stages.strain.strain_model import StrainModel
+from reduction.uncertainty.effects_on_answers import splice_slip_notes
+
+GAUGE_LENGTH = 2.5  # m
+# strain is 40 % of the position in metres: one metre of stroke over 2.5 m
+LINE = StrainModel(
+    "new", "marks",
+    {"free_length_intercept": 0.0, "free_length_slope": 1.0, "relaxed_free_length": GAUGE_LENGTH},
+)  # fmt: skip
+
+
+def reduced(*, spread, method=None):
+    """A test of two slips of 40 and 60 mm: 4 percentage points of strain on a mean of 160 %."""
+    model = LINE if method is None else StrainModel("new", method, {})
+    summary = SimpleNamespace(
+        mean_strain=np.array([1.6]), strain_amplitude=np.array([0.5]),
+        mean_tension=np.array([400.0]), tension_amplitude=np.array([200.0]),
+        uncertainty={"mean_strain": np.array([spread])},
+    )  # fmt: skip
+    slips = SimpleNamespace(
+        specimen=("new", "new"), slip_cycle=np.array([601, 1501]),
+        slip_length=np.array([0.04, 0.06]),
+    )  # fmt: skip
+    return SimpleNamespace(
+        amplitude=summary, slips=slips, specimens=(SimpleNamespace(name="new"),),
+        strain_models=(model,), contributions=None,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("spread", "method", "severity"),
+    [(0.004, None, "warning"), (0.03, None, "note"), (0.004, "extensometer", "note")],
+    ids=["beyond its interval", "within its interval", "extensometer"],
+)
+def test_a_slip_is_a_warning_where_the_strain_moves_beyond_its_interval(spread, method, severity):
+    (found,) = splice_slip_notes(reduced(spread=spread, method=method))
+    assert found.severity == severity
+    words = str(found)
+    assert "new: the splices slipped at cycle 601 and 1,501, by at least 100 mm in all" in words
+    assert ("4.0 percentage points too large (2.5% of the mean strain)" in words) == (
+        method is None
+    )
+
+
+def test_no_slip_has_no_note():
+    test = reduced(spread=0.004)
+    test.slips = SimpleNamespace(specimen=("used",), slip_cycle=np.array([5]),
+                                 slip_length=np.array([0.04]))  # fmt: skip
+    assert list(splice_slip_notes(test)) == []
+    test.slips = None
+    assert list(splice_slip_notes(test)) == []
