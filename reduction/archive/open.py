@@ -19,7 +19,12 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from reduction import __version__
-from reduction.archive.dataset_builder import SCHEMA_NAME, SCHEMA_VERSION, build_dataset
+from reduction.archive.dataset_builder import (
+    SCHEMA_NAME,
+    SCHEMA_VERSION,
+    build_dataset,
+    variable_of,
+)
 from reduction.quantities.names import (
     COMPARISON_SCHEMA,
     OUTCOME_SCHEMA,
@@ -164,7 +169,7 @@ def _as_read(built: xr.Dataset) -> xr.Dataset:
         }
         if values.dtype.kind == "U":
             values = values.astype(object)
-        variables[name] = xr.Variable(variable.dims, values, attributes)
+        variables[name] = variable_of(name, variable.dims, values, attributes=attributes)
     coordinates = set(built.coords)
     return xr.Dataset(
         {name: one for name, one in variables.items() if name not in coordinates},
