@@ -116,6 +116,8 @@ _USUAL: dict[tuple[str, Dimension], tuple[float, float]] = {
     ("g/m", "linear_density"): (0.001, 0.0),
     ("kg/m^3", "density"): (1.0, 0.0),
     ("m/N", "compliance"): (1.0, 0.0),
+    ("1/m", "per_length"): (1.0, 0.0),
+    ("1/in", "per_length"): (39.37007874015748, 0.0),
 }
 """Factor and offset of the units that logs and campaigns have most, as pint gives them; each unit
 with all its dimensions but that of information."""
