@@ -139,11 +139,12 @@ def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> Re
             is_kept[row, places] = True
             out["coefficient"][row] = 0.0
             for name, values in (
-                ("coefficient", found.params), ("coefficient_standard_uncertainty", found.bse),
-                ("t", found.tvalues), ("p_value", found.pvalues),
+                ("coefficient", found.coefficient),
+                ("coefficient_standard_uncertainty", found.standard_uncertainty),
+                ("t", found.t), ("p_value", found.p_value),
             ):  # fmt: skip
                 out[name][row, places] = values[: len(places)]
-            sigma[row], freedom[row] = np.sqrt(found.scale), found.df_resid
+            sigma[row], freedom[row] = np.sqrt(found.variance), found.degrees_of_freedom
     return ReducedSurfaces(
         is_kept=is_kept,
         **out,
