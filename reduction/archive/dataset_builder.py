@@ -107,7 +107,8 @@ def variable_of(
     if dims != (name,):
         return xr.Variable(dims, values, attributes, encoding, fastpath=True)
     index = pd.Index(values, dtype=object if values.dtype.kind in "UO" else None)
-    return xr.IndexVariable(dims, index, attributes, encoding)
+    made: xr.IndexVariable = xr.IndexVariable(dims, index, attributes, encoding)  # type: ignore[no-untyped-call]
+    return made
 
 
 def _attributes(row: Quantity, present: Values) -> dict[str, Any]:

@@ -153,6 +153,12 @@ class ReadOnce:
         return len(self._kept) < _MOST and archive.nbytes <= min(LARGEST, room)
 
 
+def keep_written(opener: Opener, path: Path, written: xr.Dataset) -> None:
+    """Keep an archive that was just written, where it is opened by what keeps any."""
+    if isinstance(opener, ReadOnce):
+        opener.keep(path, written)
+
+
 def _stamp_of(path: Path) -> tuple[int, ...]:
     found = path.stat() if path.is_file() else None
     return () if found is None else (found.st_mtime_ns, found.st_size, found.st_ino)
@@ -169,7 +175,7 @@ def _as_read(built: xr.Dataset) -> xr.Dataset:
         }
         if values.dtype.kind == "U":
             values = values.astype(object)
-        variables[name] = variable_of(name, variable.dims, values, attributes=attributes)
+        variables[name] = variable_of(str(name), variable.dims, values, attributes=attributes)
     coordinates = set(built.coords)
     return xr.Dataset(
         {name: one for name, one in variables.items() if name not in coordinates},
