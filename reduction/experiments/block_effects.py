@@ -146,12 +146,12 @@ def _fit_random_intercept(
         # levels that the terms take up have no scatter of their own
         ratio[row] = ratio_of_variances(response, part, block[used]) if rank > n_columns else 0.0
         found = regress(response, part, np.eye(len(part)) + ratio[row] * of_block @ of_block.T)
-        coefficient[row], factor[row] = found.coefficient, found.covariance_factor
-        sigma[row] = np.sqrt(found.variance)
+        coefficient[row], factor[row] = found.params, found.normalized_cov_params
+        sigma[row] = np.sqrt(found.scale)
         with np.errstate(divide="ignore", invalid="ignore"):
-            t[row] = found.t
+            t[row] = found.tvalues
         count = of_block.sum(axis=0)
-        level = ratio[row] / (1 + ratio[row] * count) * (found.residual @ of_block)
+        level = ratio[row] / (1 + ratio[row] * count) * (found.resid @ of_block)
         effect[row] = np.where(count > 0, level, np.nan)
         between = int((count > 0).sum()) - int(is_between.sum())
         freedom[row] = np.where(is_between, between, len(part) - rank)

@@ -1,4 +1,4 @@
-r"""Statistics of one regression at a time: tests, variance, residuals, blocks.
+r"""Statistics of one regression at a time, by statsmodels: tests, variance, residuals, blocks.
 
 Analysis of variance of response surfaces.  Sources are sequential: blocks, first order,
 interactions, squares, as R's rsm prints them [3]_; in a design whose levels are met exactly the
@@ -6,8 +6,8 @@ order makes no difference.
 
 Leverage, Cook's distance, studentized residuals, and how straight their probability plot is.
 
-statsmodels takes half a second to import: it is imported where blocks count as random, so that
-what has none does not wait for it.
+statsmodels takes half a second to import: it is imported where the first regression is fitted,
+so that what fits nothing does not wait for it.
 
 References
 ----------
@@ -25,11 +25,11 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
-from scipy.special import fdtrc, ndtri, stdtr
+from scipy.special import ndtri
 
 from reduction.experiments.fit_results import Anova, Diagnostics, LackOfFit, LeastSquares
 from reduction.experiments.least_squares_fit import FIXES_A_TERM
@@ -39,66 +39,16 @@ from reduction.record.measurement import Floats, Integers
 _NO_RATIO, _ALL_BETWEEN = 1e-8, 1e6
 """Ratio of variances below which the search for it has come to nil, and the largest."""
 
-
-@dataclass(frozen=True)
-class Regression:
-    """Least squares of one response; with a covariance of its runs, of both made independent."""
-
-    basis: Floats
-    """Orthogonal columns of the matrix, (n_runs, n_columns)."""
-    effect: Floats
-    """Of each of these columns, (n_columns,)."""
-    coefficient: Floats
-    covariance_factor: Floats
-    residual: Floats
-    """Of the runs as they are, (n_runs,)."""
-    sum_of_squares: float
-    degrees_of_freedom: int
-
-    @property
-    def variance(self) -> float:
-        """Of the residuals."""
-        return float(np.divide(self.sum_of_squares, self.degrees_of_freedom))
-
-    @property
-    def standard_uncertainty(self) -> Floats:
-        """Of the coefficients."""
-        return np.asarray(np.sqrt(np.diagonal(self.covariance_factor) * self.variance))
-
-    @property
-    def t(self) -> Floats:
-        """Student's, of each coefficient."""
-        return np.asarray(self.coefficient / self.standard_uncertainty)
-
-    @property
-    def p_value(self) -> Floats:
-        """Of each coefficient."""
-        return np.asarray(2 * stdtr(self.degrees_of_freedom, -np.abs(self.t)))
-
-    def f_test(self, sum_of_squares: float, n_terms: int) -> tuple[float, float]:
-        """F and p of what several terms explain."""
-        f = sum_of_squares / n_terms / self.variance
-        return f, float(fdtrc(n_terms, self.degrees_of_freedom, f))
+Regressions = Mapping[int, Any]
+"""Results of statsmodels by the row of their response; there is none where there is no surface."""
 
 
-Regressions = Mapping[int, Regression]
-"""By the row of their response; there is none where there is no surface."""
-
-
-def regress(response: Floats, matrix: Floats, covariance: Floats | None = None) -> Regression:
+def regress(response: Floats, matrix: Floats, covariance: Floats | None = None) -> Any:
     """Least squares of one response, generalized where its runs share a covariance."""
-    target, columns = response, matrix
-    if covariance is not None:
-        root = np.linalg.cholesky(covariance)
-        target, columns = np.linalg.solve(root, response), np.linalg.solve(root, matrix)
-    basis, triangle = np.linalg.qr(columns)
-    effect = basis.T @ target
-    coefficient, half = np.linalg.solve(triangle, effect), np.linalg.inv(triangle)
-    left = target - basis @ effect
-    return Regression(
-        basis, effect, coefficient, half @ half.T, response - matrix @ coefficient,
-        float(left @ left), len(matrix) - matrix.shape[1],
-    )  # fmt: skip
+    from statsmodels.regression.linear_model import GLS, OLS  # type: ignore[import-untyped]
+
+    model = OLS(response, matrix) if covariance is None else GLS(response, matrix, covariance)
+    return model.fit()
 
 
 def regress_each(
@@ -128,15 +78,16 @@ def anova_table(
     n_groups = len(groups)
     table = np.full((4, fit.reason.size, n_groups + 4), np.nan)
     for row, result in regressions.items():
-        n_columns = result.effect.size
+        orthogonal = regress(result.model.endog, np.linalg.qr(result.model.exog)[0])
+        n_columns = orthogonal.params.size
         # behind the mean; a response may have fewer blocks
         edges = [1, *(part.stop - fit.coefficient.shape[1] + n_columns for part in groups.values())]
         for at, (start, stop) in enumerate(pairwise(edges)):
-            explained = float(np.sum(result.effect[start:stop] ** 2))
-            table[:2, row, at] = stop - start, explained
+            table[:2, row, at] = stop - start, np.sum(orthogonal.params[start:stop] ** 2)
             if stop > start and fit.reason[row] == 0:
-                table[2:, row, at] = result.f_test(explained, stop - start)
-        table[:2, row, n_groups] = result.degrees_of_freedom, result.sum_of_squares
+                test = orthogonal.f_test(np.eye(n_columns)[start:stop])
+                table[2:, row, at] = test.fvalue, test.pvalue
+        table[:2, row, n_groups] = result.df_resid, result.ssr
         table[:2, row, n_groups + 3] = table[:2, row, : n_groups + 1].sum(axis=1)
         table[:, row, n_groups + 1] = (
             lack.degrees_of_freedom[row], lack.sum_of_squares[row], lack.f[row], lack.p_value[row]
@@ -170,13 +121,13 @@ def diagnose(regressions: Regressions, fit: LeastSquares) -> Diagnostics:
     found = np.full((3, *leverage.shape), np.nan)
     straightness = np.full(fit.reason.size, np.nan)
     for row, result in regressions.items():
-        freedom = result.degrees_of_freedom
+        influence, freedom = result.get_influence(), result.df_resid
         used = np.isfinite(leverage[row])
-        of_run = np.sum(result.basis**2, axis=1)
         own = leverage[row, used] < FIXES_A_TERM
         with np.errstate(divide="ignore", invalid="ignore"):
-            inner = np.where(own, result.residual / np.sqrt(result.variance * (1 - of_run)), np.nan)
-            distance = inner**2 / result.effect.size * of_run / (1 - of_run)
+            inner = np.where(own, influence.resid_studentized_internal, np.nan)
+            distance = np.where(own, influence.cooks_distance[0], np.nan)
+            # statsmodels fits anew without each run, and without one that fixes a term cannot
             without = freedom - inner**2
             outer = inner * np.sqrt((freedom - 1) / np.where(without > 1e-9 * freedom, without, 0))
         found[:, row, used] = distance, inner, outer if freedom > 1 else np.nan * outer
@@ -197,12 +148,9 @@ def term_tests(
     # from the end: a response may have fewer blocks
     place = np.where(column > 0, column - fit.coefficient.shape[1], 0)
     for row, result in regressions.items():
-        t[row], p_value[row] = result.t[place], result.p_value[place]
-        own = slice(1 - column.size, None)
-        explained = result.coefficient[own] @ np.linalg.solve(
-            result.covariance_factor[own, own], result.coefficient[own]
-        )
-        overall_f[row], overall_p_value[row] = result.f_test(float(explained), column.size - 1)
+        t[row], p_value[row] = result.tvalues[place], result.pvalues[place]
+        overall = result.f_test(np.eye(result.params.size)[1 - column.size :])
+        overall_f[row], overall_p_value[row] = overall.fvalue, overall.pvalue
     return t, p_value, overall_f, overall_p_value
 
 

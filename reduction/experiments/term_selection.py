@@ -139,12 +139,11 @@ def reduce_terms(surfaces: ResponseSurfaces, *, hierarchical: bool = True) -> Re
             is_kept[row, places] = True
             out["coefficient"][row] = 0.0
             for name, values in (
-                ("coefficient", found.coefficient),
-                ("coefficient_standard_uncertainty", found.standard_uncertainty),
-                ("t", found.t), ("p_value", found.p_value),
+                ("coefficient", found.params), ("coefficient_standard_uncertainty", found.bse),
+                ("t", found.tvalues), ("p_value", found.pvalues),
             ):  # fmt: skip
                 out[name][row, places] = values[: len(places)]
-            sigma[row], freedom[row] = np.sqrt(found.variance), found.degrees_of_freedom
+            sigma[row], freedom[row] = np.sqrt(found.scale), found.df_resid
     return ReducedSurfaces(
         is_kept=is_kept,
         **out,
