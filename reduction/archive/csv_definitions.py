@@ -76,7 +76,7 @@ def _edges_of_bins(archive: xr.Dataset) -> Variables:
 
 def _cycle_count(archive: xr.Dataset) -> Variables:
     """Count the cycles."""
-    return {"n_cycles": xr.Variable((), archive.sizes.get("cycle", 0))}
+    return {"n_cycles": xr.Variable((), np.asarray(archive.sizes.get("cycle", 0)), fastpath=True)}
 
 
 def _chords_of_branches(archive: xr.Dataset) -> Variables:
@@ -94,7 +94,7 @@ def _fit_of_parameters(archive: xr.Dataset) -> Variables:
     """Repeat what is said of a fit beside each of its parameters."""
     fit = archive.variables["elastomer_parameter_fit"].values - 1
     return {
-        str(name): xr.Variable("elastomer_parameter", np.asarray(variable.values)[fit])
+        str(name): xr.Variable(("elastomer_parameter",), variable.values[fit], fastpath=True)
         for name, variable in archive.variables.items()
         if variable.dims == ("elastomer_fit",)
     }
@@ -155,7 +155,9 @@ def _along_specimen(
     every = [f"{name}{suffix}" for name in names for suffix in ("", "_standard_uncertainty")]
     return {
         name: xr.Variable(
-            "specimen", np.where(rows >= 0, archive.variables[name].values[rows], np.nan)
+            ("specimen",),
+            np.where(rows >= 0, archive.variables[name].values[rows], np.nan),
+            fastpath=True,
         )
         for name in every
         if name in archive and archive.variables[name].dims == (dim,)

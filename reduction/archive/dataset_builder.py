@@ -10,10 +10,11 @@ import hashlib
 import json
 import re
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
@@ -79,13 +80,34 @@ def _sizes(values: Values, schema: Mapping[str, Quantity]) -> dict[str, int]:
 
 
 def _variable(array: NDArray[Any], row: Quantity, present: Values, auxiliary: str) -> xr.Variable:
-    made = xr.Variable(
+    made = variable_of(
+        row.name,
         row.dims,
         array if row.is_text else array.astype(row.dtype, copy=False),
-        attrs=_attributes(row, present),
+        attributes=_attributes(row, present),
         encoding={"group": row.group} | _encoding(array, row, auxiliary),
     )
     release_pages(array)
+    return made
+
+
+def variable_of(
+    name: str,
+    dims: tuple[Hashable, ...],
+    values: NDArray[Any],
+    *,
+    attributes: Mapping[str, Any],
+    encoding: Mapping[str, Any] | None = None,
+) -> xr.Variable:
+    """Make a variable of an array as it is; labels of a dimension as an index.
+
+    Of labels that are no index yet xarray asks whether they are arrays of pint, which takes longer
+    to import than a test to read.
+    """
+    if dims != (name,):
+        return xr.Variable(dims, values, attributes, encoding, fastpath=True)
+    index = pd.Index(values, dtype=object if values.dtype.kind in "UO" else None)
+    made: xr.IndexVariable = xr.IndexVariable(dims, index, attributes, encoding)  # type: ignore[no-untyped-call]
     return made
 
 

@@ -6,7 +6,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Collection, Container, Hashable, Iterator, Mapping
-from contextlib import AbstractContextManager, contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from importlib.util import find_spec
 from itertools import product
 from pathlib import Path
@@ -19,7 +19,12 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from reduction import __version__
-from reduction.archive.dataset_builder import SCHEMA_NAME, SCHEMA_VERSION, build_dataset
+from reduction.archive.dataset_builder import (
+    SCHEMA_NAME,
+    SCHEMA_VERSION,
+    build_dataset,
+    variable_of,
+)
 from reduction.quantities.names import (
     COMPARISON_SCHEMA,
     OUTCOME_SCHEMA,
@@ -83,6 +88,9 @@ _OF_CAMPAIGN: dict[str, dict[str, Quantity]] = {
 def reading(path: Path) -> Iterator[xr.Dataset]:
     """Open an archive for a block in which its values are read, and close it.
 
+    Of a small archive of a test all values are read at once, which takes less time than to ask
+    the netCDF library for its variables.
+
     Parameters
     ----------
     path : pathlib.Path
@@ -98,8 +106,9 @@ def reading(path: Path) -> Iterator[xr.Dataset]:
     ArchiveError
         As `open_archive`, and if the library fails while something is read in the block.
     """
-    with failing_reads(str(path)), open_archive(path) as dataset:
-        yield dataset
+    own = _read_own(path)
+    with failing_reads(str(path)), open_archive(path) if own is None else nullcontext(own) as found:
+        yield found
 
 
 class ReadOnce:
@@ -120,17 +129,11 @@ class ReadOnce:
         stamp = _stamp_of(path)
         if self._kept.get(path, (None,))[0] != stamp:
             self._kept.pop(path, None)
-            archive = _read_own(path)
-            if archive is None:
-                with reading(path) as opened:
-                    if not self._has_room(opened):
-                        yield opened
-                        return
-                    archive = opened.load()
-            _freeze(archive)
-            if not self._has_room(archive):
-                yield archive
-                return
+            with reading(path) as archive:
+                if not self._has_room(archive):
+                    yield archive
+                    return
+                _freeze(archive.load())
             self._kept[path] = stamp, archive
         yield self._kept[path][1].copy()
 
@@ -146,6 +149,12 @@ class ReadOnce:
         """Whether it is kept; pass after pass over many finds those that were there first."""
         room = _ROOM - sum(other.nbytes for _, other in self._kept.values())
         return len(self._kept) < _MOST and archive.nbytes <= min(LARGEST, room)
+
+
+def keep_written(opener: Opener, path: Path, written: xr.Dataset) -> None:
+    """Keep an archive that was just written, where it is opened by what keeps any."""
+    if isinstance(opener, ReadOnce):
+        opener.keep(path, written)
 
 
 def _stamp_of(path: Path) -> tuple[int, ...]:
@@ -164,7 +173,7 @@ def _as_read(built: xr.Dataset) -> xr.Dataset:
         }
         if values.dtype.kind == "U":
             values = values.astype(object)
-        variables[name] = xr.Variable(variable.dims, values, attributes)
+        variables[name] = variable_of(str(name), variable.dims, values, attributes=attributes)
     coordinates = set(built.coords)
     return xr.Dataset(
         {name: one for name, one in variables.items() if name not in coordinates},
@@ -253,6 +262,7 @@ def _read_own(path: Path) -> xr.Dataset | None:
                       if name in held}  # fmt: skip
             if len(values) < len(held):
                 return None
+            held.clear()  # or the file looks for each of them when it is closed
         found = build_dataset(values, schema, attributes=attributes)
         found = _as_read(found)
         return found if _fault_of_form(found) is None else None

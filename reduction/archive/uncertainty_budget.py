@@ -232,8 +232,10 @@ def effective_freedom(archive: xr.Dataset, name: str) -> Floats:
     of_rows = np.asarray(np.inf)
     if known is not None:
         # where the archive has several experiments each has its own errors
-        of_each = xr.Variable(known.dims, np.where(known.values > 0, known.values, np.inf))
-        of_rows = (of_each * xr.ones_like(rows)).transpose(COMPONENT, *variable.dims).values
+        dims = (COMPONENT, *variable.dims)
+        of_each = np.where(known.values > 0, known.values, np.inf)
+        of_each = of_each.transpose([known.dims.index(dim) for dim in dims if dim in known.dims])
+        of_rows = of_each.reshape([known.sizes.get(dim, 1) for dim in dims])
     return effective_degrees_of_freedom(
         spread.values,
         own,
@@ -629,7 +631,7 @@ def _budget_at(
         for one, value in zip(components, rows, strict=False)
         if one.source and value != 0
     }
-    few = read(xr.Variable(variable.dims, 1 / freedom))
+    few = read(xr.Variable(variable.dims, 1 / freedom, fastpath=True))
     return budget_of(
         name,
         str(variable.attrs.get("units", "")),

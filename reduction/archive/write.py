@@ -62,7 +62,7 @@ def _write_netcdf(dataset: xr.Dataset, path: Path) -> str:
         ]
         written = hashlib.sha256()
         for place, values in todo:
-            letters = _characters(values) if values.dtype.kind == "U" else values
+            letters = _characters(values) if values.dtype.kind in "UO" else values
             written.update(place.name.encode())
             for part in _parts(letters.shape, letters):
                 place[part] = letters[part]
@@ -113,7 +113,7 @@ def _defined(file: netCDF4.Dataset, name: str, variable: xr.Variable) -> netCDF4
     encoding, dims = variable.encoding, tuple(str(dim) for dim in variable.dims)
     attributes = dict(variable.attrs)
     kind: Any = variable.dtype
-    if variable.dtype.kind == "U":
+    if variable.dtype.kind in "UO":  # labels of a dimension are objects
         length = f"{name}_strlen"
         file.createDimension(length, _characters(variable.values).shape[-1])
         kind, dims = "S1", (*dims, length)
@@ -138,9 +138,9 @@ def _defined(file: netCDF4.Dataset, name: str, variable: xr.Variable) -> netCDF4
     return place
 
 
-def _characters(values: NDArray[np.str_]) -> NDArray[np.bytes_]:
+def _characters(values: NDArray[Any]) -> NDArray[np.bytes_]:
     """Text as bytes of UTF-8 along one more dimension."""
-    encoded = np.char.encode(values, "utf-8")
+    encoded = np.char.encode(values.astype(np.str_, copy=False), "utf-8")
     letters = encoded.astype(f"S{max(encoded.dtype.itemsize, 1)}")
     return np.ascontiguousarray(letters).view("S1").reshape(*values.shape, letters.dtype.itemsize)
 

@@ -151,7 +151,7 @@ def entry_of(path: Path, archive: xr.Dataset) -> CatalogueEntry:
     whole["test_kind"] = part or str(attributes.get("test_kind", ""))
     if "cycle" in archive.sizes:
         whole["n_cycles"] = float(archive.sizes["cycle"])
-    names = archive.variables["specimen"].to_numpy().tolist() if "specimen" in archive.sizes else []
+    names = archive.variables["specimen"].values.tolist() if "specimen" in archive.sizes else []
     ends = _strain_ends(archive) if names else []
     of_specimens = [
         whole
@@ -171,7 +171,7 @@ def _conditions(archive: xr.Dataset, place: int) -> dict[str, str | float]:
     found: dict[str, str | float] = {}
     for name in (*TEXTS, *NUMBERS):
         if name != "specimen" and name in archive and archive.variables[name].dims == ("specimen",):
-            value = archive.variables[name].to_numpy()[place]
+            value = archive.variables[name].values[place]
             found[name] = float(value) if name in NUMBERS else str(value)
     return _known(found)
 
@@ -197,8 +197,8 @@ def _strain_ends(archive: xr.Dataset) -> list[dict[str, str | float]]:
             low, high = _widened(low, high, spread)
     if {"mean_strain", "strain_amplitude"} <= set(archive.variables) and "cycle" in archive.sizes:
         mean, half = (
-            archive.variables["mean_strain"].to_numpy(),
-            archive.variables["strain_amplitude"].to_numpy(),
+            archive.variables["mean_strain"].values,
+            archive.variables["strain_amplitude"].values,
         )
         low, high = _widened(low, high, np.concatenate([mean - half, mean + half], axis=-1))
     return [
@@ -273,9 +273,7 @@ def _block(
             whose = f"{dim}_specimen"
             if whose in archive and archive.variables[whose].dims == (dim,) and specimens:
                 number = {name: place for place, name in enumerate(specimens)}
-                of_row = [
-                    number.get(str(name), _WHOLE) for name in archive.variables[whose].to_numpy()
-                ]
+                of_row = [number.get(str(name), _WHOLE) for name in archive.variables[whose].values]
                 specimen = np.array(of_row, np.int32)[index]
     columns = {
         # the row of the whole test stands before those of its specimens
@@ -298,13 +296,13 @@ def _labels(archive: xr.Dataset, dim: str) -> NDArray[Any]:
     is_text = _column_type(dim) == "string"
     if dim == "comparison" and {"ratio_numerator", "ratio_denominator"} <= set(archive.variables):
         pairs = zip(
-            archive.variables["ratio_numerator"].to_numpy(),
-            archive.variables["ratio_denominator"].to_numpy(),
+            archive.variables["ratio_numerator"].values,
+            archive.variables["ratio_denominator"].values,
             strict=True,
         )
         labels: NDArray[Any] = np.array([f"{over} over {under}" for over, under in pairs])
     elif dim not in archive.variables:
         labels = np.arange(1, archive.sizes[dim] + 1)
     else:
-        labels = archive.variables[dim].to_numpy()
+        labels = archive.variables[dim].values
     return labels.astype(str).astype(object) if is_text else labels.astype(float)

@@ -291,7 +291,7 @@ def _of_rate(survey: Survey) -> Iterator[Note]:
     """The rate that is stated against the speed or the frequency of the log."""
     levels = survey.levels
     match = _NUMBER.match(survey.plan.attributes.get("rate", ""))
-    if match is None or levels is None:
+    if match is None or levels is None or "%" in match[2]:  # a rate of strain is neither
         return
     shown: tuple[tuple[Dimension, float, str], ...] = (
         ("velocity", levels.speed, "m/s"), ("frequency", levels.frequency, "Hz"),

@@ -18,7 +18,7 @@ from reduction.archive.campaign_products import (
     comparisons_to_dataset,
     predictions_to_dataset,
 )
-from reduction.archive.open import Opener, reading
+from reduction.archive.open import Opener, keep_written, reading
 from reduction.archive.shared_errors import curve_errors_of
 from reduction.archive.test_dataset import stored_cycles
 from reduction.archive.write import write_archive
@@ -163,9 +163,9 @@ def write_comparisons(
     if old.is_file() and not done and not any(one.status == "no_work" for one in statuses):
         take_away(old)
     if done:
-        write_named(
+        written = write_named(
             done,
-            folder / "comparisons.nc",
+            old,
             hoses={one.hose: campaign.hoses[one.hose] for one in done},
             campaign_id=campaign.id,
             attributes=campaign.attributes,
@@ -175,6 +175,7 @@ def write_comparisons(
             ],
             command=command,
         )
+        keep_written(opener, old, written)
     return statuses
 
 
@@ -280,7 +281,7 @@ def write_named(
     attributes: Mapping[str, str],
     sources: Sequence[Source],
     command: str,
-) -> None:
+) -> xr.Dataset:
     """Write comparisons as one archive."""
     settings: dict[str, Any] = {
         "hoses": {name: _settings_of_hose(plan) for name, plan in hoses.items()},
@@ -311,4 +312,4 @@ def write_named(
             command=command,
         ),
     )
-    write_archive(dataset, path)
+    return write_archive(dataset, path)

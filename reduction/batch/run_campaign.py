@@ -17,7 +17,7 @@ import xarray as xr
 from reduction import __version__
 from reduction.archive.campaign_products import outcomes_to_dataset
 from reduction.archive.csv_tables import write_tables
-from reduction.archive.open import Opener, ReadOnce, reading
+from reduction.archive.open import Opener, ReadOnce, keep_written, reading
 from reduction.archive.product_files import (
     OF_CAMPAIGN,
     SUPERSEDED,
@@ -148,7 +148,8 @@ def _write_change_in_length(
         command=command,
     )
     path = folder / "change_in_length.nc"
-    write_archive(properties_to_dataset(found, component, origin=origin), path)
+    written = write_archive(properties_to_dataset(found, component, origin=origin), path)
+    keep_written(opener, path, written)
     return path
 
 
@@ -391,7 +392,7 @@ def _run(
         campaign, first, chosen, errors=wanted.errors, basis=basis, folder=folder,
         workers=workers, lock=lock, progress=progress, clock=clock, force=force,
         command=command,
-        written=opener.keep if isinstance(opener, ReadOnce) else lambda path, archive: None,
+        written=partial(keep_written, opener),
     )  # fmt: skip
     lock.confirm()  # before what is made of all tests
     if archives_of_tests(folder):

@@ -197,7 +197,7 @@ def _line_source_of_experiment(
         name = next((f"{one}{response}" for one in _SCALES if f"{one}{response}" in names), None)
         if name is not None:
             shared = _shared(dataset, row, name, len(fitted.exponents))
-            plan = dataset["run_plan"].to_numpy()[row, :, : len(factors)]
+            plan = dataset["run_plan"].values[row, :, : len(factors)]
             surfaces[response] = _surface(
                 fitted, names.index(name), response, name, scale, shared, plan
             )
@@ -259,7 +259,7 @@ def _shared(
     rows = stored(dataset, f"{name}_coefficient_uncertainty_contribution")
     if rows is None:
         return (), np.empty((0, n_terms))
-    own = rows.to_numpy()[row, :, :n_terms]
+    own = rows.values[row, :, :n_terms]
     component = components_of(dataset, row)
     # an experiment with fewer errors than another of the archive is filled up
     is_one = np.array([bool(one.source) for one in component], dtype=bool)

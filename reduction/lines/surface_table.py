@@ -136,12 +136,12 @@ def printed_table(path: Path, *, specimen: str | None = None) -> ValueTable:
     the archive.
     """
     with reading(path) as archive:
-        names = [str(one) for one in archive["experiment"].to_numpy()]
+        names = [str(one) for one in archive["experiment"].values]
         chosen = [
             place
             for place, name in enumerate(names)
             if specimen in (None, name)
-            and [str(one) for one in archive["factor_name"].to_numpy()[place]] == list(CYCLE)
+            and [str(one) for one in archive["factor_name"].values[place]] == list(CYCLE)
         ]
         if not chosen:
             raise DataError(
@@ -180,20 +180,18 @@ def _printed_cells(
     """One column of one response."""
 
     def of(name: str) -> float:
-        return float(archive[f"{response}_{name}"].to_numpy()[place])
+        return float(archive[f"{response}_{name}"].values[place])
 
     pounds = display_unit(unit, "us")[1]
-    coefficient = archive[f"{response}{_COEFFICIENT}"].to_numpy()[place]
+    coefficient = archive[f"{response}{_COEFFICIENT}"].values[place]
     if not np.isfinite(coefficient).all():
         return [""] * (len(_FACTORS) + len(_FOOT))
     ranges = []
     for number, name in enumerate(CYCLE):
-        ends = [
-            float(archive[f"factor_{end}"].to_numpy()[place, number]) for end in ("low", "high")
-        ]
-        shown = str(archive["factor_unit"].to_numpy()[place, number])
+        ends = [float(archive[f"factor_{end}"].values[place, number]) for end in ("low", "high")]
+        shown = str(archive["factor_unit"].values[place, number])
         if name != "frequency" and shown == "1":
-            strength = archive["run_rated_break_strength"].to_numpy()[place]
+            strength = archive["run_rated_break_strength"].values[place]
             ends = [end * float(np.nanmean(strength)) for end in ends]
         by = display_unit("N", "us")[1] if name != "frequency" else 1.0
         low, high = (f"{end * by:.4g}" for end in ends)
@@ -244,7 +242,7 @@ def _rows(
     """Columns of one surface."""
 
     def of(name: str) -> Floats:
-        return np.asarray(archive[f"{response}{name}"].to_numpy()[place], dtype=np.float64)
+        return np.asarray(archive[f"{response}{name}"].values[place], dtype=np.float64)
 
     coefficient = of(_COEFFICIENT)
     if not np.isfinite(coefficient).any():
@@ -252,21 +250,21 @@ def _rows(
     is_log = response.startswith("log_")
     system: UnitSystem = "si" if is_log else units
     unit, factor = _shown(archive[f"{response}{_COEFFICIENT}"].attrs.get("units", "1"), system)
-    names = [str(one) for one in archive["factor_name"].to_numpy()[place]]
-    shown = [_shown(str(one), system) for one in archive["factor_unit"].to_numpy()[place]]
-    terms = [str(one) for one in archive["term_name"].to_numpy()[place]]
+    names = [str(one) for one in archive["factor_name"].values[place]]
+    shown = [_shown(str(one), system) for one in archive["factor_unit"].values[place]]
+    terms = [str(one) for one in archive["term_name"].values[place]]
     powers = np.array([[_power(term, name) for name in names] for term in terms])
     per_level = factor / np.prod(np.array([one[1] for one in shown]) ** powers, axis=1)
     contribution = np.nan_to_num(of(f"{_COEFFICIENT}_uncertainty_contribution"))
     covariance = of("_sigma") ** 2 * of(_COVARIANCE) + contribution.T @ contribution
     n_terms = len(terms)
-    low, high = (archive[f"factor_{end}"].to_numpy()[place] for end in ("low", "high"))
+    low, high = (archive[f"factor_{end}"].values[place] for end in ("low", "high"))
     levels = "; ".join(
         f"{name} {one[1] * a:.6g} to {one[1] * b:.6g} {one[0]}"
         for name, one, a, b in zip(names, shown, low, high, strict=True)
     )
     return {
-        "experiment": np.full(n_terms, str(archive["experiment"].to_numpy()[place])),
+        "experiment": np.full(n_terms, str(archive["experiment"].values[place])),
         "response": np.full(n_terms, response),
         "term": np.array([f"B{number + 1}" for number in range(n_terms)]),
         "term_name": np.array(terms),

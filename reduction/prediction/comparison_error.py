@@ -562,10 +562,12 @@ class _Fit(NamedTuple):
 
 
 class _Fitted(NamedTuple):
-    squares: float
+    """Fits with the bend at each of several strains."""
+
+    squares: Floats
     residual: Floats
-    jump: float
-    variance: float  # of the jump, for noise as it is stated
+    jump: Floats
+    variance: Floats  # of the jump, for noise as it is stated
 
 
 def measured_pick_up(measured: MeasuredCurve) -> PickUp:
@@ -639,12 +641,11 @@ def _window(measured: MeasuredCurve, place: Integers) -> Integers:
             break
         axis = measured.strain
         tried = axis[part[_MARGIN:-_MARGIN]]
-        found = [_fitted(measured, part, at, _ORDER, axis) for at in tried]
-        k = int(np.argmin([one.squares for one in found]))
-        one = found[k]
+        found = _fitted(measured, part, tried, _ORDER, axis)
+        k = int(np.argmin(found.squares))
         freedom = max(part.size - 2 * _ORDER - 2, 1)
-        ratio = one.jump / np.sqrt(one.variance * max(one.squares / freedom, 1e-12))
-        if ratio > best and 0 < k < len(found) - 1:
+        ratio = found.jump[k] / np.sqrt(found.variance[k] * max(found.squares[k] / freedom, 1e-12))
+        if ratio > best and 0 < k < tried.size - 1:
             best, kept = ratio, part
     return kept
 
@@ -655,7 +656,7 @@ def _bend(measured: MeasuredCurve, place: Integers, degree: int) -> _Fit:
     low, high = float(strain[_MARGIN]), float(strain[-1 - _MARGIN])
 
     def squares_at(tried: Floats, axis: Floats) -> Floats:
-        return np.array([_fitted(measured, place, at, degree, axis).squares for at in tried])
+        return _fitted(measured, place, tried, degree, axis).squares
 
     tried = strain[_MARGIN:-_MARGIN]
     at = float(tried[np.argmin(squares_at(tried, measured.strain))])
@@ -663,7 +664,7 @@ def _bend(measured: MeasuredCurve, place: Integers, degree: int) -> _Fit:
     for _ in range(2):
         tried = np.linspace(max(low, at - width), min(high, at + width), _CANDIDATES)
         at, width = float(tried[np.argmin(squares_at(tried, node))]), 2 * width / _CANDIDATES
-    fit = _fitted(measured, place, at, degree, node)
+    fit = _Fitted(*(one[0] for one in _fitted(measured, place, np.array([at]), degree, node)))
     freedom = max(place.size - _ORDER - 2 - degree, 1)
     unit = max(fit.squares / freedom, 1e-12) * autocorrelation_length(fit.residual)
     around = np.linspace(max(low, at - 3 * step), min(high, at + 3 * step), _CANDIDATES)
@@ -678,34 +679,34 @@ def _bend(measured: MeasuredCurve, place: Integers, degree: int) -> _Fit:
     return _Fit(
         strain=at,
         uncertainty=uncertainty,
-        jump=fit.jump,
+        jump=float(fit.jump),
         jump_uncertainty=float(np.sqrt(fit.variance * unit)),
         is_inside=low + step < at < high - step,
     )
 
 
 def _fitted(
-    measured: MeasuredCurve, place: Integers, at: float, degree: int, axis: Floats
+    measured: MeasuredCurve, place: Integers, at: Floats, degree: int, axis: Floats
 ) -> _Fitted:
-    """Least squares with the bend at one strain, on the nodes of the reading or at the centres."""
-    x, past = axis / axis[-1], np.maximum(axis - at, 0.0)  # powers that are not alike
-    below = [x**k for k in range(_ORDER + 1)]
+    """Least squares with the bend at each strain, on the nodes of the reading or at the centres."""
+    x, past = axis / axis[-1], np.maximum(axis - at[:, None], 0.0)  # powers that are not alike
+    below = [np.broadcast_to(x**k, past.shape) for k in range(_ORDER + 1)]
     above = [past * (past / axis[-1]) ** k for k in range(degree)]
-    curves = np.array([*below, *above])
+    curves = np.stack([*below, *above], axis=1)
     is_node = axis.size == measured.reading.node.size
-    basis = (measured.reading.of(curves) if is_node else curves)[:, place].T
+    basis = (measured.reading.of(curves) if is_node else curves)[..., place].swapaxes(1, 2)
     noise = measured.independent_uncertainty()[place]
     noise = np.maximum(noise, np.median(noise) / 10 + _TINY)
-    tension = measured.tension_of(measured.judged)[place]
+    tension = measured.tension_of(measured.judged)[place] / noise
     directions, triangle = np.linalg.qr(basis / noise[:, None])
-    along = directions.T @ (tension / noise)
-    residual = tension / noise - directions @ along
-    of_jump = np.linalg.pinv(triangle)[_ORDER + 1]
+    along = tension @ directions
+    residual = tension - (directions @ along[..., None])[..., 0]
+    of_jump = np.linalg.pinv(triangle)[:, _ORDER + 1]
     return _Fitted(
-        squares=float(residual @ residual),
+        squares=np.sum(residual**2, axis=1),
         residual=residual,
-        jump=float(of_jump @ along),
-        variance=float(of_jump @ of_jump),
+        jump=np.sum(of_jump * along, axis=1),
+        variance=np.sum(of_jump**2, axis=1),
     )
 
 

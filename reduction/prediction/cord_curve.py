@@ -27,6 +27,7 @@ References
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -86,6 +87,11 @@ class CordCurve:
         """Of the last point. [N]."""
         return float(self.load[-1])
 
+    @cached_property
+    def cubic(self) -> scipy.interpolate.PchipInterpolator:
+        """Load by strain, monotone between the points."""
+        return scipy.interpolate.PchipInterpolator(self.strain, self.load)
+
 
 FEW_KNOTS = 32
 """Up to here a comparison with every knot is quicker than a search."""
@@ -123,7 +129,7 @@ def pieces_of(curve: CordCurve, *, order: Literal[0, 1, -1] = 0) -> CordPieces:
     >>> print(line.coefficient[-2])
     [ 0. 650. nan]
     """
-    cubic = scipy.interpolate.PchipInterpolator(curve.strain, curve.load)
+    cubic = curve.cubic
     match order:
         case 1:
             coefficient = cubic.derivative().c

@@ -37,6 +37,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import product
 from math import degrees, pi
 from typing import Any, Literal
@@ -286,10 +287,10 @@ def _design_with(design: HoseDesign, numbers: Mapping[str, Any]) -> HoseDesign:
     """
     changes: dict[str, Any] = {}
     for name, value in numbers.items():
-        before = _number_of(design, name)
         if name == "layer_diameter":
             inner, outer = design.layer_diameter
-            changes[name] = (inner + (value - before), outer + (value - before))
+            wider = value - _number_of(design, name)
+            changes[name] = (inner + wider, outer + wider)
         else:
             changes[name] = value
     return replace(design, **changes)
@@ -523,10 +524,15 @@ class _FitProblem:
     shared: Floats
     load: _Load
 
-    @property
+    @cached_property
     def used(self) -> Bools:
         """Which strains of the judged curve were measured, shape (n_strain,)."""
         return np.isfinite(self.tension_of_test())
+
+    @cached_property
+    def held_at(self) -> dict[str, float]:
+        """Numbers of the design that are not fitted and not known either."""
+        return {name: _number_of(self.design, name) for name in self.held}
 
     @property
     def n_traced(self) -> int:
@@ -547,7 +553,7 @@ class _FitProblem:
         p, q = len(self.names), len(self.held)
         values = [traced[:, :p] * self.unit]
         for k, (name, spread) in enumerate(self.held.items()):
-            at = _number_of(self.design, name) + spread * traced[:, p + k]
+            at = self.held_at[name] + spread * traced[:, p + k]
             values.append(np.clip(at, *_range_of(name))[:, None])
         numbers, names = np.hstack(values), (*self.names, *self.held)
         node = self.measured.reading.node

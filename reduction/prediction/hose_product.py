@@ -8,7 +8,7 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from math import pi
 from typing import Literal
 
@@ -125,11 +125,12 @@ class HoseDesign:
     def shape(self) -> tuple[int, ...]:
         """Of the designs together; () for one."""
         numbers = [
-            getattr(self, item.name)
-            for item in fields(self)
-            if item.name not in ("layer_diameter", "cord", "rubber_law")
+            value
+            for name, value in vars(self).items()
+            if name not in ("layer_diameter", "cord", "rubber_law")
         ]
-        return np.broadcast_shapes(*(np.shape(one) for one in (*numbers, *self.layer_diameter)))
+        shapes = {np.shape(one) for one in (*numbers, *self.layer_diameter)}
+        return np.broadcast_shapes(*shapes)
 
 
 def _need(name: str, value: Floats, is_good: Bools, needed: str) -> None:

@@ -99,7 +99,7 @@ def rows_of_response(name: str) -> Iterator[Quantity]:
 _OF_SURFACES = tuple(row for name in SURFACE_NAMES for row in rows_of_response(name))
 
 QUANTITIES: dict[str, Quantity] = SINGLE_QUANTITIES | {
-    row.name: row for name in (*SURFACE_NAMES, "response") for row in rows_of_response(name)
+    row.name: row for row in (*_OF_SURFACES, *rows_of_response("response"))
 }
 """Every name that may stand in a product or a table, without its companions."""
 

@@ -100,6 +100,7 @@ _USUAL: dict[tuple[str, Dimension], tuple[float, float]] = {
     ("ksi", "stress"): (6894757.293168363, 0.0),
     ("Hz", "frequency"): (1.0, 0.0),
     ("mHz", "frequency"): (0.001, 0.0),
+    ("cycle/minute", "frequency"): (0.016666666666666666, 0.0),
     ("K", "temperature"): (1.0, 0.0),
     ("degC", "temperature"): (1.0, 273.15),
     ("°C", "temperature"): (1.0, 273.15),
@@ -110,11 +111,14 @@ _USUAL: dict[tuple[str, Dimension], tuple[float, float]] = {
     ("mm/s", "velocity"): (0.001, 0.0),
     ("mm/min", "velocity"): (1.6666666666666667e-05, 0.0),
     ("ft/s", "velocity"): (0.30479999999999996, 0.0),
+    ("in/min", "velocity"): (0.0004233333333333333, 0.0),
     ("in/s", "velocity"): (0.0254, 0.0),
     ("kg/m", "linear_density"): (1.0, 0.0),
     ("g/m", "linear_density"): (0.001, 0.0),
     ("kg/m^3", "density"): (1.0, 0.0),
     ("m/N", "compliance"): (1.0, 0.0),
+    ("1/m", "per_length"): (1.0, 0.0),
+    ("1/in", "per_length"): (39.37007874015748, 0.0),
 }
 """Factor and offset of the units that logs and campaigns have most, as pint gives them; each unit
 with all its dimensions but that of information."""
@@ -198,7 +202,20 @@ def scale_to_si(unit: str, dimension: Dimension) -> tuple[float, float]:
     (0.01, 0.0)
     """
     usual = _USUAL.get((unit, dimension))
-    return _scale_by_pint(unit, dimension) if usual is None else usual
+    if usual is not None:
+        return usual
+    others = [other for known, other in _USUAL if known == unit]
+    if others and dimension != "information":
+        raise _of_other_dimension(unit, dimension, others[0])
+    return _scale_by_pint(unit, dimension)
+
+
+def _of_other_dimension(unit: str, dimension: Dimension, found: str) -> SettingsError:
+    return SettingsError(
+        f"unit '{unit}' is not a unit of {dimension}",
+        found=f"'{unit}', a unit of {found or 'another dimension'}",
+        needed=f"a unit of {dimension}, such as {DIMENSIONS[dimension]}",
+    )
 
 
 def _scale_by_pint(unit: str, dimension: Dimension) -> tuple[float, float]:
@@ -227,11 +244,7 @@ def _scale_by_pint(unit: str, dimension: Dimension) -> tuple[float, float]:
         zero = known.Quantity(0.0, text).to(target_unit).magnitude
         one = known.Quantity(1.0, text).to(target_unit).magnitude
     except pint.DimensionalityError as error:
-        raise SettingsError(
-            f"unit '{unit}' is not a unit of {dimension}",
-            found=f"'{unit}', a unit of {error.dim1 or 'another dimension'}",
-            needed=f"a unit of {dimension}, such as {target}",
-        ) from error
+        raise _of_other_dimension(unit, dimension, str(error.dim1)) from error
     except (pint.PintError, *_NO_UNIT) as error:
         raise SettingsError(
             f"unit '{unit}' is not known",

@@ -133,7 +133,9 @@ def run_blocks(
         release_pages(*samples)
         return result
 
-    n_workers = min(_n_processors(), len(todo), max(1, _TOGETHER // longest))
+    n_workers = min(len(todo), max(1, _TOGETHER // longest))
+    if n_workers > 1:
+        n_workers = min(n_workers, _n_processors())
     if n_workers < 2:
         results = [run(item) for item in todo]
     else:
