@@ -666,7 +666,7 @@ def _bend(measured: MeasuredCurve, place: Integers, degree: int) -> _Fit:
         at, width = float(tried[np.argmin(squares_at(tried, node))]), 2 * width / _CANDIDATES
     fit = _Fitted(*(one[0] for one in _fitted(measured, place, np.array([at]), degree, node)))
     freedom = max(place.size - _ORDER - 2 - degree, 1)
-    unit = max(fit.squares / freedom, 1e-12) * autocorrelation_length(fit.residual)
+    unit = max(float(fit.squares) / freedom, 1e-12) * autocorrelation_length(fit.residual)
     around = np.linspace(max(low, at - 3 * step), min(high, at + 3 * step), _CANDIDATES)
     above = squares_at(around, node) - fit.squares
     inside = around[above <= unit]
