@@ -1430,7 +1430,9 @@ def _turns(
     if kind != "sharp":
         return [kind] * len(noises)
     return [
-        "sharp" if kind_of_turns(way * force, peak, noise=own) == "sharp" else "hidden"
+        "sharp"
+        if kind_of_turns(way * force, peak, noise=own, in_doubt=kind) == "sharp"
+        else "hidden"
         for force, (own, _), (way, _) in zip(tension, noises, ways, strict=True)
     ]
 

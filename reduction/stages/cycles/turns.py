@@ -166,7 +166,9 @@ def noise_in_extreme(
 Turn = Literal["sharp", "hidden", "rounded"]
 
 
-def kind_of_turns(driven: Floats, peak: Integers, *, noise: float) -> Turn:
+def kind_of_turns(
+    driven: Floats, peak: Integers, *, noise: float, in_doubt: Turn = "hidden"
+) -> Turn:
     """Whether a wave turns from sample to sample, rounds its turns, or hides them in noise.
 
     Parameters
@@ -177,12 +179,14 @@ def kind_of_turns(driven: Floats, peak: Integers, *, noise: float) -> Turn:
         Samples of its peaks. [1]
     noise : float
         Standard deviation of one reading. [any]
+    in_doubt : {"hidden", "sharp", "rounded"}
+        Kind where noise may be what rounds the turns, or does not: of the other channel, that of
+        the driven one, which moves both. [-]
 
     Returns
     -------
     kind : {"sharp", "hidden", "rounded"}
-        Hidden where the steps beside the turn are within three times the noise, and where noise
-        may be what rounds them or does not. [-]
+        Hidden where the steps beside the turn are within three times the noise. [-]
 
     Raises
     ------
@@ -198,6 +202,8 @@ def kind_of_turns(driven: Floats, peak: Integers, *, noise: float) -> Turn:
     sharp rounded
     >>> print(kind_of_turns(triangle, peaks, noise=0.5))
     hidden
+    >>> print(kind_of_turns(triangle, peaks, noise=0.3, in_doubt="sharp"))
+    sharp
     """
     inside = peak[(peak >= _BESIDE) & (peak < driven.size - _BESIDE)]
     if inside.size == 0:
@@ -209,8 +215,10 @@ def kind_of_turns(driven: Floats, peak: Integers, *, noise: float) -> Turn:
     rounded = np.median(np.minimum(level[:, 1] + rise, level[:, 3] + fall) - level[:, 2])
     # of a median over turns, of two readings before less one before and one at the turn
     unknown = 1.25 * 6**0.5 * noise / some.size**0.5
-    if not step > _CLEAR * noise or abs(rounded - _ROUNDED * step) < unknown:
+    if not step > _CLEAR * noise:
         return "hidden"
+    if abs(rounded - _ROUNDED * step) < unknown:
+        return in_doubt
     return "sharp" if rounded < _ROUNDED * step else "rounded"
 
 

@@ -370,9 +370,9 @@ def summarise_amplitude(
     Uncertainty is type A: scatter over the cycles over the root of their number; of a
     single cycle, its own. Trend over the cycles is in the scatter; where the cycles settle, how
     far the mean is from there is in it too. Cycles with NaN are left out.  Beside it stands
-    what all cycles have alike: a turn missed between two samples in amplitudes, K_ap and K', the
-    place of the drift within its cycle in the energy, and in the
-    frequency what the driven channel and the other one differ by.
+    what all cycles have alike: a turn missed between two samples in means, amplitudes, K_ap and
+    K', the place of the drift within its cycle in the energy, and in the frequency what the driven
+    channel and the other one differ by.
 
     Examples
     --------
@@ -429,6 +429,8 @@ def summarise_amplitude(
             of_force / means["tension_amplitude"], of_strain / means["strain_amplitude"]
         )
     for name, missed in (
+        ("mean_tension", of_force),  # of a peak that is missed by more than a valley
+        ("mean_strain", of_strain),
         ("tension_amplitude", of_force),
         ("strain_amplitude", of_strain),
         ("apparent_spring_constant", apart * means["apparent_spring_constant"]),
