@@ -164,8 +164,8 @@ def readings_that_fit(
     --------
     Twice the diameter, of a tether of 1 MPa:
 
-    >>> readings_that_fit(0.25e6, (0.3e6, 3.2e6), load_unit="lbf")[:74]
-    'load in kgf, not lbf; half that diameter (was it doubled?); a diameter of '
+    >>> readings_that_fit(0.25e6, (0.3e6, 3.2e6), load_unit="lbf")[:80]
+    'load in daN, not lbf; load in kgf, not lbf; half that diameter (was it doubled?)'
     """
     low, high = band
     factors = {

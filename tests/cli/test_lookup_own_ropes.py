@@ -98,7 +98,7 @@ def test_between_two_levels_the_interval_spans_both_and_outside_nothing_is_given
         with pytest.raises(DataError, match="the nearest is R11"):
             look_up(line, K_AP, extrapolate=extrapolate, **at(0.3, 0.35, 0.05))
     # inside the box, but on no line between two tests
-    with pytest.raises(DataError, match="nor between two of them"):
+    with pytest.raises(DataError, match="nor between two tested levels"):
         look_up(line, K_AP, **at(0.37, 0.17, 0.06))
     with pytest.raises(SettingsError, match=r"--frequency with one of 0.3 Hz, 0.5 Hz"):
         look_up(line, K_AP, mean_tension=0.21 * STRENGTH)
