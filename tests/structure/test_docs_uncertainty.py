@@ -36,7 +36,7 @@ def test_what_the_page_says_of_137_psi_follows_from_the_printed_digits():
         2 * 0.01 * step / diameter,
     ]  # fmt: skip
     relative.append(np.sqrt(np.sum(np.square(relative))))
-    told = rows("| source | what is known |")
+    told = rows("| source | known |")
     assert [row[2] for row in told] == [f"{100 * one:.2f} %" for one in relative]
     assert [row[3] for row in told] == [f"{one * modulus:.2f}" for one in relative]
     assert f"{1.96 * relative[-1] * modulus:.1f} psi (k = 1.96)" in PAGE
