@@ -10,16 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from nopage import leave_out_page
-from strangers import make
-
-from reduction.batch import run_campaign as batch_run
-from reduction.campaign.load import load_campaign
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-from coverage_strangers import NO_TESTS, Realisation, judge_curves, judge_run, judge_surfaces
-
-from reduction.archive.open import open_archive
+from coverage_strangers import realise
 
 pytestmark = pytest.mark.slow
 
@@ -33,35 +26,15 @@ OF_EACH, OF_ALL = 0.6, 0.9
 
 
 @pytest.fixture(scope="module")
-def held(tmp_path_factory):
-    """By law, whether each number is held by its interval; and how many tests were refused."""
-    found = {}
-    with pytest.MonkeyPatch.context() as patch:
-        leave_out_page(patch)
-        for law in LAWS:
-            folder = tmp_path_factory.mktemp(law)
-            truth = make(law, SEED, folder)
-            batch_run.run_campaign(
-                load_campaign(folder / "campaign.toml"), processed=folder / "p",
-                reports=folder / "r", clock=lambda: 0.0,
-            )  # fmt: skip
-            one = Realisation(law, sum(len(pieces) for pieces in truth.tests.values()))
-            for path in sorted(folder.glob("p/*/*.nc")):
-                if path.stem in NO_TESTS:
-                    continue
-                with open_archive(path) as opened:
-                    archive = opened.load()
-                for place, name in enumerate(archive["specimen"].to_numpy().astype(str)):
-                    true = truth.tests.get(path.stem, {}).get(name)
-                    if true is not None:
-                        judge_curves(one, archive, place, truth, f"{path.stem}/{name}/")
-                        judge_run(one, archive, place, true)
-            judge_surfaces(one, folder / "p", truth)
-            found[law] = {
-                cell: np.array([error <= half for error, half in pairs])
-                for cell, pairs in one.cells.items()
-            }
-    return found
+def held():
+    """By law and cell, whether each number is held by its interval."""
+    return {
+        law: {
+            cell: np.array([error <= half for error, half in pairs])
+            for cell, pairs in realise(law, SEED).cells.items()
+        }
+        for law in LAWS
+    }
 
 
 @pytest.mark.parametrize("law", LAWS)

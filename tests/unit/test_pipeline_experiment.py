@@ -395,12 +395,13 @@ def test_the_error_of_the_slow_pull_is_said_to_be_outside_the_standard_errors():
     assert not any(said in note for note in map(str, other.notes))
 
 
-def test_a_surface_below_zero_is_named():
+def test_a_surface_below_zero_is_not_named_where_its_logarithm_stands_beside_it():
     runs, line = made()
     response = runs.response.copy()
     response[1] = 2.1 - runs.coded_plan.sum(axis=1)
-    notes = tuple(map(str, fit(changed(runs, response=response), line).notes))
-    assert any("surface of hysteresis_energy falls below zero" in note for note in notes)
+    found = fit(changed(runs, response=response), line)
+    assert "log_hysteresis_energy" in found.surfaces.response_names
+    assert "surface-below-zero" not in [one.code for one in found.notes]
 
 
 def test_a_drift_over_the_order_that_is_stated_is_named():
