@@ -96,7 +96,7 @@ axes.plot([], [], color="#D55E00", label="used")
 axes.set(
     xlabel="strain [%]",
     ylabel="tangent modulus, ascending [psi]",
-    title="Table 5: points as printed, lines as corrected, WHOI-2005-10",
+    title="Table 5: points as published, lines as corrected, WHOI-2005-10",
 )
 axes.legend()
 
