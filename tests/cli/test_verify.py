@@ -114,8 +114,8 @@ def test_a_pipe_among_the_archives_is_a_finding_and_is_not_waited_for(place):
     os.mkfifo(folder / "x.nc")
     (folder / "T-1.nc").unlink()
     os.mkfifo(folder / "T-1.nc")
-    for words in (("verify", folder), ("report", folder), ("diff", folder, folder)):
-        with BoundedRuns() as bounded:
+    with BoundedRuns() as bounded:
+        for words in (("verify", folder), ("report", folder), ("diff", folder, folder)):
             done = bounded.run(*map(str, words), cwd=place, seconds=60)
-        assert done.status == 6
-        assert "found a pipe, a socket or a device; needed a file" in done.errors
+            assert done.status == 6
+            assert "found a pipe, a socket or a device; needed a file" in done.errors

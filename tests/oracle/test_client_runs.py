@@ -35,7 +35,7 @@ LINES = {
 }
 FORMS = [
     ("moordyn", "table"), ("moordyn", "damped-table"), ("moordyn", "static-dynamic"),
-    ("moordyn", "load-dependent"), ("moordyn", "syrope"), ("moorpy", "table"),
+    pytest.param("moordyn", "load-dependent", marks=pytest.mark.nightly), ("moordyn", "syrope"), ("moorpy", "table"),
     ("moorpy", "library"), ("raft", ""),
     ("openfast", "table"), ("openfast", "damped-table"), ("openfast", "static-dynamic"),
     ("whoi-cable", "expression"), ("whoi-cable", "table"),
