@@ -98,12 +98,12 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "channels-not-used": ("note", "read, but not part of a record: {channels}"),
     "clock-coarse": (
         "note",
-        "the clock advances by {tick:.3g} s, with {rows:.3g} rows at each reading: the rows are"
+        "the time is in steps of {tick:.3g} s, with {rows:.3g} rows at the same time: the rows are"
         " spread evenly, which agrees with it throughout",
     ),
     "clock-coarse-uneven": (
         "warning",
-        "the clock advances by {tick:.3g} s, with {rows:.3g} rows at each reading on average, but"
+        "the time is in steps of {tick:.3g} s, with {rows:.3g} rows at the same time on average, but"
         " not evenly: the rows are spread within each reading, so that rates and frequency are"
         " known no better than that. Export a finer time",
     ),
