@@ -103,8 +103,8 @@ _OF_READING: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "clock-coarse-uneven": (
         "warning",
-        "the time is in steps of {tick:.3g} s, with {rows:.3g} rows at the same time on average, but"
-        " not evenly: the rows are spread within each reading, so that rates and frequency are"
+        "the time is in steps of {tick:.3g} s, with {rows:.3g} rows at the same time on average,"
+        " but not evenly: the rows are spread within each reading, so that rates and frequency are"
         " known no better than that. Export a finer time",
     ),
     "record-of-pieces": ("note", "one record joined from {n_pieces} files: {files}"),
