@@ -29,6 +29,7 @@ from reduction.experiments.fit_results import ResponseSurfaces
 from reduction.experiments.least_squares_fit import fit_least_squares, two_sided_p
 from reduction.experiments.response_matrix import block_contrasts
 from reduction.experiments.surface_points import evaluate_surfaces
+from reduction.quantities.names import SCALES
 from reduction.record.errors import DataError
 from reduction.record.measurement import Floats
 from reduction.record.notes import Note, note
@@ -161,8 +162,11 @@ def negative_surfaces(surfaces: ResponseSurfaces) -> tuple[Note, ...]:
     measured = np.where(surfaces.transform_exponent == 1, 1.0, np.nan)[:, None] * (
         surfaces.fitted + surfaces.residual
     )
-    names = surfaces.response_names
-    bent = [name for name in names if any(other.endswith(f"_{name}") for other in names)]
+    bent = {
+        name
+        for name in surfaces.response_names
+        if any(scale + name in surfaces.response_names for scale in SCALES)
+    }
     return tuple(
         note("surface-below-zero", response=name)
         for name, low, values in zip(surfaces.response_names, lowest, measured, strict=True)

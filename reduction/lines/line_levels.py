@@ -27,6 +27,9 @@ SAME_LEVEL = 0.02
 """Share within which a machine that is told one level reaches it, and two levels are one. [1]"""
 
 
+INTERPOLATED = "not tested, interpolated between"
+"""How a note on a value between two tested levels begins."""
+
 TESTED_IN = ("medium", "soak", "temperature")
 """Conditions in which a value is another one."""
 
@@ -315,7 +318,7 @@ def _fill_between(
         rows[:, here] = np.outer(one.contribution, 1 - share) + np.outer(other.contribution, share)
         is_found |= here
         said.append(
-            f"not tested, interpolated between {one.words} and {other.words}: the interval spans"
+            f"{INTERPOLATED} {one.words} and {other.words}: the interval spans"
             f" both, and holds where {levels.quantity} is monotonic between them"
         )
     return said

@@ -305,7 +305,12 @@ def _scatter_note(of: LineSurface | LineCurve | LineLevels, words: tuple[str, st
             f"(CG-D-39-80, sec. 4.4.1), taken with {of.n_lines:.0f} lines and the degrees of "
             "freedom of the surface: included only in the intervals of the kind and of another line"
         )
-    told = words[0] or words[1]
+    return interval_note(*words)
+
+
+def interval_note(interval_of: str, surface_interval_of: str) -> str:
+    """What an interval is of that holds no scatter between lines, as `DesignValues` names it."""
+    told = interval_of or surface_interval_of
     return f"the interval applies to {told}; scatter between lines is not included"
 
 

@@ -28,6 +28,8 @@ from scipy.optimize import brentq
 from scipy.special import chdtrc, chndtrix, nctdtrit, ndtri
 
 from reduction.lines.line_curve import half_width_of_parts, shared_half_width, shared_of
+from reduction.lines.line_levels import INTERPOLATED
+from reduction.lines.line_lookup import interval_note
 from reduction.lines.line_search import DIAMETER_TOLERANCE
 from reduction.lines.lookup_product import DesignValues, LineSource
 from reduction.record.errors import DataError, SettingsError
@@ -234,7 +236,7 @@ def population_values(
     """
     one, two = tolerance_factors(len(lines), share)
     for line, value in zip(lines, found, strict=True):
-        if any("not tested, interpolated" in text for text in value.notes):
+        if any(text.startswith(INTERPOLATED) for text in value.notes):
             raise DataError(
                 f"{line.name} was not tested at every point", found="a level between two tested",
                 needed="levels at which each of the specimens was tested",
@@ -264,7 +266,7 @@ def population_values(
         text if all(text in one.notes for one in found) else f"{line.name}: {text}"
         for line, value in zip(lines, found, strict=True)
         for text in value.notes
-        if not text.startswith("the interval is of")
+        if text != interval_note(value.interval_of, value.surface_interval_of)
     ]
     notes = (
         f"{n} specimens: {', '.join(names)}; their scatter is taken as normal",

@@ -643,7 +643,7 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "splice-slipped": (
         "warning",
         lambda cycles, length, excess, effect: (
-            f"the splices slipped at cycle {cycles}, by at least {1000 * length:.0f} mm in all"
+            f"the splices slipped at {cycles}, by at least {1000 * length:.0f} mm in all"
             + ("" if excess != excess else
                f": from there on, and in later tests without marks of their own, strain is at least"
                f" {100 * excess:.1f} percentage points too large ({effect:.1%} of the mean strain)")

@@ -230,7 +230,8 @@ def notes_on_zero(
             reach = max(high - rest.load, rest.load - low)
             said = {"load": rest.load, "n_rests": rest.n_rests, "zero": zero}
             serious = max(_SERIOUS * reach, _COVERED * offset_uncertainty)
-            change = rest.later - rest.earlier
+            # a rise that the stretch of the later rest explains is none
+            change = rest.drift or min(rest.later - rest.earlier, 0.0)
             if abs(change) > serious:
                 notes.append(note("load-zero-drifts", name, earlier=rest.earlier, later=rest.later,
                                   effect=change / reach, carried=rest.drift))  # fmt: skip

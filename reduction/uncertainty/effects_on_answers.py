@@ -139,7 +139,8 @@ def splice_slip_notes(test: ReducedTest) -> Iterator[Note]:
         found = note(
             "splice-slipped",
             specimen.name,
-            cycles=" and ".join(f"{cycle:,}" for cycle in slips.slip_cycle[own].tolist()),
+            cycles=("cycle " if len(own) == 1 else "cycles ")
+            + " and ".join(f"{cycle:,}" for cycle in slips.slip_cycle[own].tolist()),
             length=let_out,
             excess=excess,
             effect=excess / float(summary.mean_strain[index]),

@@ -100,6 +100,15 @@ def test_a_zero_that_drifts_between_the_rests_is_said_with_its_size(earlier, lat
         assert not any(one.code.startswith("load-zero-wrong") for one in found)
 
 
+def test_a_rise_that_the_stretch_of_the_later_rest_explains_is_not_told():
+    # 8 N at 0.008 of a stroke of 1 m that ends at 400 N: less than three times the mean stiffness
+    load, stands = log_with_drift(0.0, last_place=0.008)
+    load[600:] += 8.0
+    found = load_at_slack(load, stands, np.array([True, True]), stroke=1.0)
+    assert found.later - found.earlier == pytest.approx(8.0, abs=0.5)
+    assert not any("drift" in one for one in notes(load, found))
+
+
 def test_a_load_that_falls_towards_zero_is_told_and_not_carried():
     load = np.concatenate([np.full(300, 6.0), np.full(300, 400.0), np.full(300, 0.2)])
     found = load_at_slack(load, rests((0, 299), (600, 899)), np.array([True, True]), stroke=1.0)

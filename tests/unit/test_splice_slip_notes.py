@@ -43,7 +43,7 @@ def test_a_slip_is_a_warning_where_the_strain_moves_beyond_its_interval(spread, 
     (found,) = splice_slip_notes(reduced(spread=spread, method=method))
     assert found.severity == severity
     words = str(found)
-    assert "new: the splices slipped at cycle 601 and 1,501, by at least 100 mm in all" in words
+    assert "new: the splices slipped at cycles 601 and 1,501, by at least 100 mm in all" in words
     assert ("4.0 percentage points too large (2.5% of the mean strain)" in words) == (
         method is None
     )

@@ -41,6 +41,16 @@ def test_a_surface_with_its_logarithm_beside_it_is_not_named():
     assert negative_surfaces(both) == ()
 
 
+def test_a_response_whose_name_ends_another_one_is_named_all_the_same():
+    plane = 2.1 - CODED.sum(axis=1)
+    both = fit_surfaces(
+        CODED, [plane, plane + 1], units="coded", factor_names=["f", "T", "a"],
+        response_names=["energy", "hysteresis_energy"], low=[0] * 3, high=[1] * 3,
+    )  # fmt: skip
+    (words,) = map(str, negative_surfaces(both))
+    assert words.startswith("the surface of energy falls below zero")
+
+
 def test_runs_below_zero_are_no_doubt_of_their_surface():
     assert negative_surfaces(fitted(1 - CODED.sum(axis=1))) == ()
 

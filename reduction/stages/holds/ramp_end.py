@@ -140,10 +140,10 @@ def level_at_end(
     Method of [1]_: lines through 3, 5, 7, 10, ... samples, each 1.4 times as long, until the
     value at zero of one differs from that of any before by more than twice their standard
     uncertainties together.  That of a third as many samples as the last before it is taken, and
-    what the two differ by is carried: several times its bias where a series bends evenly, and half
-    as much again as it where the series bends most at its beginning, as a relaxation over decades
-    of time does.  A machine that rings scatters its first samples more than their noise: the
-    scatter about a line counts where it is greater.
+    what the two differ by is carried: several times its bias where a series bends evenly, and of
+    the size of its bias where the series bends most at its beginning, as a relaxation over
+    decades of time does.  A machine that rings scatters its first samples more than their noise:
+    the scatter about a line counts where it is greater.
 
     Examples
     --------
