@@ -1361,7 +1361,8 @@ ANGLE = ("wrap_angle", "wrap angle", "angle")
 add("hose-angle-complement", H, "statement", "The wrap angle was measured from the hoop: 26 deg for 64 deg from the axis.", say(ANGLE, ("axis", "complement", "90", "64", "54.7")), do(setkey, H64, "wrap_angle", '"26 deg"'))
 add("hose-angle-in-radians", H, "statement", "The wrap angle is 1.117 rad and was entered as 1.117 deg.", say(ANGLE, ("rad", "unit", "axis", "54.7", "64")), do(setkey, H64, "wrap_angle", '"1.117 deg"'))
 add("hose-wall-for-outer-diameter", H, "statement", "The thickness of the wall was entered as the outer diameter: it is less than the bore.", say(("outer_diameter", "outer diameter"), ("inner", "bore", "wrap", "wall")), do(setkey, H64, "outer_diameter", '"1.25 in"'))
-add("hose-bore-radius-for-diameter", H, "statement", "The radius of the bore was entered as the inner diameter: more rubber, and a load above the measured one.",
+# the measured curve lies 8 % beside the wrong design and 10 % beside the right one
+add("hose-bore-radius-for-diameter", H, "no", "The radius of the bore was entered as the inner diameter: more rubber, and a load above the measured one.",
     say(("inner_diameter", "inner diameter", "bore", "rubber"), ("measured", "rubber_modulus", "ratio", "radius", "wall", "reject", "differ", "beyond", "calibrat")), do(setkey, H64, "inner_diameter", '"1.25 in"'))
 add("hose-wrap-radius-for-diameter", H, "statement", "The radius of the cords was entered as the wrap diameter: the cords would lie in the bore.", say(("wrap_diameter", "wrap diameter"), ("inner", "bore", "wall", "radius")), do(setkey, H64, "wrap_diameter", '"1.75 in"'))
 add("hose-wrap-diameter-ft", H, "statement", "`3.5 ft` was entered for a wrap diameter of 3.5 in: the cords would lie outside of the hose.", say(("wrap_diameter", "wrap diameter"), ("outer", "wall", "unit", "skin")), do(setkey, H64, "wrap_diameter", '"3.5 ft"'))

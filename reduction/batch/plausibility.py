@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -18,6 +19,8 @@ from reduction.campaign.plan import Campaign, ExperimentPlan
 from reduction.experiments.designs import engineering_levels
 from reduction.experiments.run_sheet import NOT_OF_PLAN
 from reduction.pipeline.reduce_test import greatest_strain
+from reduction.prediction.hose_comparison import loading_of
+from reduction.prediction.hose_product import HoseDesign
 from reduction.prediction.hose_tension import predict_hose
 from reduction.quantities.units import Dimension, scale_to_si
 from reduction.record.errors import ReductionError, SettingsError
@@ -25,6 +28,7 @@ from reduction.record.measurement import Floats, Specimen
 from reduction.record.notes import Note, note
 from reduction.stages.plausible_bands import Bands, bands_of, readings_that_fit, words_of_ratio
 from reduction.stages.strain.strain_model import StrainModel
+from reduction.stages.strain.stress import constant_volume_diameter
 
 Models = Mapping[tuple[str, str], StrainModel]
 
@@ -50,6 +54,12 @@ _JUMP_OF_KINDS = 2.5  # between a slow pull and cycles
 
 _LIKE_STRAIN, _LIKE_RATE = 1.3, 2.2
 
+_FEWEST_ON_CURVE = 3  # tests, one of them held against the others
+
+_SPREAD, _BEYOND = 1.1, 1.5  # greatest strain of the others over their least, and beyond them
+
+_OFF_CURVE = 1.7  # peak tension over that of the others at its strain
+
 _MOST_COMPARED = 40  # tests of one specimen
 
 _FALLEN = 0.5  # of the greatest tension, at the end
@@ -66,11 +76,23 @@ _COARSE = 0.015  # step of a load, of its greatest value
 
 _DRIFT = 0.05  # of the mean tension
 
+_RAMP = 0.1  # of the mean tension
+
 _STEADY = 0.7  # of the fall over the first half of the cycles, by which the second half falls
 
 _MOST_STROKES = 5  # of a pull or a hold, and what sets it up
 
-_AS_PREDICTED = 1.45  # tension of a hose over what its design gives
+# tension of a hose over what its design gives: cords are 1.4 times as stiff at 0.1 Hz
+_AS_PREDICTED = {"static": 1.2, "dynamic": 1.45}
+
+_NOT_STATIC = 0.03  # Hz, between the 0.01 of slow cycles and the 0.1 of the dynamic tests
+
+_BY_LENGTH = 2.0  # length of a hose over that of the one that was tested
+
+_LBF, _PSI = 4.4482216, 6.8947573  # N, kPa
+
+# greatest over least diameter before stretch, by constant volume: twice what calipers squeeze
+_ONE_VOLUME = 1.1
 
 _BY_DESIGN = 1.25  # size of the tested hose over that of its design
 
@@ -148,10 +170,38 @@ def _of_specimen(
         )  # fmt: skip
 
 
+def _of_stretched(specimen: Specimen) -> Iterator[Note]:
+    """Diameters at several stretches that one volume of rubber does not have."""
+    groups: dict[float, list[float]] = {}
+    for stretch, reading in sorted(specimen.stretched_diameters):
+        groups.setdefault(stretch, []).append(reading)
+    stretches = np.array(list(groups))
+    means = np.array([np.mean(group) for group in groups.values()])
+
+    def apart(order: Sequence[int]) -> float:
+        relaxed = constant_volume_diameter(stretches, means[list(order)])
+        return float(relaxed.max() / relaxed.min())
+
+    as_stated = range(means.size)
+    if means.size < 2 or apart(as_stated) < _ONE_VOLUME:
+        return
+    relaxed = constant_volume_diameter(stretches, means)
+    pairs = [
+        (one, other) for one, other in combinations(as_stated, 2)
+        if apart([{one: other, other: one}.get(place, place) for place in as_stated]) < _ONE_VOLUME
+    ]  # fmt: skip
+    yield note(
+        "stretched-diameters-apart", specimen.name, least=float(relaxed.min()),
+        greatest=float(relaxed.max()),
+        swapped=" and ".join(f"{100 * stretches[one]:g} %" for one in (*pairs, ())[0]),
+    )  # fmt: skip
+
+
 def _of_sizes(specimen: Specimen, bands: Bands | None) -> Iterator[Note]:
     """Diameter, strength and mass of a specimen against each other."""
     if not specimen.has_area:
         return
+    yield from _of_stretched(specimen)
     readings = specimen.diameter
     if readings and max(readings) > 1.3 * min(readings):
         yield note("diameter-readings-apart", specimen.name, least=min(readings),
@@ -227,6 +277,10 @@ def _of_statements(campaign: Campaign, survey: Survey, models: Models) -> Iterat
         if step > _COARSE * greatest:
             yield note("load-in-steps", name, step=step, share=step / greatest)
         yield from _of_mean(name, levels.like_means[index])
+        first, last = levels.mean_ramps[index]
+        if abs(last - first) > _RAMP * abs(first):
+            yield note("mean-tension-ramps", name, first=first, last=last,
+                       is_of_load=plan.control == "load")  # fmt: skip
         if levels.is_copy[index]:
             yield note("channels-alike", name, others=", ".join(plan.specimens[:index]))
 
@@ -364,7 +418,11 @@ def _of_pairs(surveys: Sequence[Survey], models: Models) -> Iterator[tuple[str, 
             for name in survey.plan.specimens:
                 by_specimen.setdefault(name, []).append(survey)
     for name, several in by_specimen.items():
-        yield from _of_stiffness(name, several[:_MOST_COMPARED], models)
+        compared = several[:_MOST_COMPARED]
+        unlike = list(_of_stiffness(name, compared, models))
+        yield from unlike
+        if not unlike:
+            yield from _off_the_others(name, compared, models)
 
 
 def _of_stiffness(
@@ -389,6 +447,41 @@ def _of_stiffness(
                 survey.plan.id,
                 note("stiffness-jumps", name, other=test, ratio=ratio, like=words_of_ratio(ratio)),
             )
+
+
+def _off_the_others(
+    name: str, several: Sequence[Survey], models: Models
+) -> Iterator[tuple[str, Note]]:
+    """The test of a specimen whose peak lies far off the curve through the peaks of the others.
+
+    Tension as a power of strain, by least squares: runs at several means follow one such curve,
+    though none of them is like another.
+    """
+    rows = [
+        (survey.plan.id, strain, tension)
+        for survey in several if survey.plan.kind == "cyclic"
+        for strain in [greatest_strain(survey.extremes, name, models.get((survey.plan.id, name)))]
+        for tension in [survey.extremes.greatest_tension.get(name, np.nan)]
+        if strain > 0 and tension > 0
+    ]  # fmt: skip
+    if len(rows) < _FEWEST_ON_CURVE:
+        return
+    strain, tension = np.log([row[1:] for row in rows]).T
+    off = np.full(len(rows), np.nan)
+    for place in range(len(rows)):
+        of_others = np.arange(len(rows)) != place
+        x, y = strain[of_others], tension[of_others]
+        beyond = max(x.min() - strain[place], strain[place] - x.max())
+        if np.ptp(x) > np.log(_SPREAD) and beyond < np.log(_BEYOND):
+            slope, start = np.polyfit(x, y, 1)
+            off[place] = tension[place] - (start + slope * strain[place])
+    if np.isnan(off).all():
+        return
+    worst = int(np.nanargmax(np.abs(off)))
+    if abs(off[worst]) > np.log(_OFF_CURVE):
+        ratio = float(np.exp(off[worst]))
+        yield rows[worst][0], note("peak-off-others", name, ratio=ratio,
+                                   like=words_of_ratio(ratio))  # fmt: skip
 
 
 def _stiffness_ratio(one: Survey, other: Survey, name: str, models: Models) -> tuple[float, float]:
@@ -554,10 +647,20 @@ _DEAD = 0.3
 
 def _of_hoses(campaign: Campaign) -> Iterator[tuple[str, Note]]:
     """Designs of hoses that no hose has, said with the tests that are held against them."""
+    designs: dict[str, dict[str, set[str]]] = {}
+    for plan in campaign.comparisons.values():
+        of_test = designs.setdefault(plan.specimen, {}).setdefault(plan.measured, set())
+        of_test.add(plan.predicted)
     for plan in campaign.comparisons.values():
         hose = campaign.hoses.get(plan.predicted)
         if hose is None:
             continue
+        of_tests = designs[plan.specimen].values()
+        others = sorted(set.union(*of_tests) - designs[plan.specimen][plan.measured])
+        # one test against several designs is meant; tests that share none are of two hoses
+        if others and not set.intersection(*of_tests):
+            yield plan.measured, note("two-designs-of-one", plan.specimen, hose=plan.predicted,
+                                      other=" and ".join(others))  # fmt: skip
         design, name = hose.design, plan.predicted
         cord, spacing = (
             float(np.mean(design.cord_diameter)),
@@ -597,27 +700,94 @@ def _of_predictions(campaign: Campaign, surveys: Sequence[Survey]) -> Iterator[t
         survey, hose = read.get(plan.measured), campaign.hoses.get(plan.predicted)
         if survey is None or hose is None:
             continue
+        loading = plan.loading or loading_of(survey.plan.kind)
+        frequency = np.nan if survey.levels is None else survey.levels.frequency
+        if loading == "static" and frequency > _NOT_STATIC:
+            yield plan.measured, note("static-at-frequency", plan.name, frequency=frequency)
         gauge = campaign.specimens[plan.specimen].gauge_length
+        if gauge is None:
+            continue
+        length = hose.length / gauge
+        if np.isfinite(length) and not 1 / _BY_LENGTH <= length <= _BY_LENGTH:
+            yield plan.measured, note("hose-length-not-tested", plan.specimen, hose=hose.name,
+                                      ratio=length, like=words_of_ratio(length))  # fmt: skip
         samples = survey.extremes.all_over.get(plan.specimen)
-        if gauge is None or samples is None or not survey.extremes.position_is_length:
+        if samples is None or not survey.extremes.position_is_length:
             continue
         strain = samples.position / gauge - 1
-        top = _TOP * float(np.nanmax(strain))
-        near = (np.abs(strain - top) < 0.05 * top) & np.isfinite(samples.tension)
-        if not top > 0 or not near.any():
-            continue
-        try:
-            predicted = float(np.ravel(predict_hose(hose.design, [top]).tension)[0])
-        except ReductionError:
+        nodes, tension = _curve_at_nodes(strain, samples.tension)
+        off = _misfit(hose.design, nodes, tension)
+        if not off.size or not np.isfinite(off).all():
             continue  # what is wrong with the design is said where it is predicted
-        if not predicted > 0:
-            continue
-        ratio = float(np.median(samples.tension[near])) / predicted
-        if np.isfinite(ratio) and not 1 / _AS_PREDICTED <= ratio <= _AS_PREDICTED:
+        far = float(np.sqrt(np.mean(off**2)))
+        if far > np.log(_AS_PREDICTED[loading]):
+            ratio = float(np.exp(np.mean(off)))
             yield plan.measured, note(
                 "hose-unlike-design", plan.specimen, hose=plan.predicted, ratio=ratio,
-                strain=top, like=words_of_ratio(ratio),
+                low=float(nodes[0]), high=float(nodes[-1]), like=words_of_ratio(ratio),
+                readings=_slips_that_fit(hose.design, nodes, tension, far),
             )  # fmt: skip
 
 
-_TOP = 0.8  # of the greatest strain, below what the cords' last stretch makes of an angle
+def _curve_at_nodes(strain: Floats, tension: Floats) -> tuple[Floats, Floats]:
+    """Mean tension of both ways at some strains, where it is positive on all of them."""
+    top = float(np.nanmax(strain, initial=0.0))
+    nodes, found = [], []
+    for node in np.array(_NODES) * top:
+        near = (np.abs(strain - node) < 0.05 * top) & np.isfinite(tension)
+        level = float(np.median(tension[near])) if near.any() else np.nan
+        if level > 0:
+            nodes.append(node)
+            found.append(level)
+    return np.array(nodes), np.array(found)
+
+
+def _misfit(design: HoseDesign, strain: Floats, tension: Floats) -> Floats:
+    """Logarithm of measured over predicted tension; empty where nothing is predicted."""
+    if not strain.size:
+        return np.empty(0)
+    try:
+        predicted = np.asarray(predict_hose(design, strain).tension)
+    except ReductionError:
+        return np.empty(0)
+    return np.log(tension / predicted) if (predicted > 0).all() else np.empty(0)
+
+
+def _slips_that_fit(design: HoseDesign, strain: Floats, tension: Floats, far: float) -> str:
+    """Slips in one input of a hose by which its design would pull as the test did."""
+    fits = {}
+    for (key, factor), words in _SLIPS.items():
+        try:
+            other = replace(design, **{key: getattr(design, key) * factor})
+        except ReductionError:
+            continue
+        off = _misfit(other, strain, tension)
+        if off.size and (left := float(np.sqrt(np.mean(off**2)))) < min(0.5 * far, _FITS):
+            fits[words] = left
+    return "; ".join(sorted(fits, key=lambda words: fits[words])[:_NAMED])
+
+
+_NODES = (0.4, 0.6, 0.8, 0.95)  # of the greatest strain
+
+_FITS = 0.15  # logarithm of measured over predicted tension that a design may be off by
+
+_NAMED = 3
+
+_SLIPS = {
+    ("cords_per_length", 2.0): "twice the cords_per_length (was one of two layers counted?)",
+    ("cords_per_length", 0.5): "half the cords_per_length (were the layers counted twice?)",
+    ("cords_per_length", 12.0): "cords_per_length per inch, not per foot",
+    ("cords_per_length", 2.54): "cords_per_length per cm, not per inch",
+    ("cords_per_length", 1 / 2.54): "cords_per_length per inch, not per cm",
+    ("cord_load_scale", 2.0): "twice the load of a cord",
+    ("cord_load_scale", 0.5): "half the load of a cord",
+    ("cord_load_scale", _LBF): "load of a cord in lbf, not N",
+    ("cord_load_scale", 1 / _LBF): "load of a cord in N, not lbf",
+    ("inner_diameter", 2.0): "twice the inner_diameter (is it the radius of the bore?)",
+    ("inner_diameter", 0.5): "half the inner_diameter",
+    ("rubber_modulus", 3.0): "three times the rubber_modulus (is it a shear modulus?)",
+    ("rubber_modulus", 1 / 3): "a third of the rubber_modulus",
+    ("rubber_modulus", _PSI): "rubber_modulus in psi, not kPa",
+    ("rubber_modulus", 1 / _PSI): "rubber_modulus in kPa, not psi",
+}
+"""Slips that people make with the inputs of a hose, by what the input would be multiplied with."""

@@ -210,6 +210,7 @@ def hose_of(path: Path, name: str, place: str, keys: _HoseKeys, cord: CordSectio
         strain_step=keys.strain_step,
         greatest_strain=np.nan if keys.greatest_strain is None else keys.greatest_strain,
         layers=tuple(_layer(path, f"{place}.layers.{one.name}", one) for one in keys.layers),
+        length=length,
     )
 
 

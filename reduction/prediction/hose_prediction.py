@@ -56,7 +56,8 @@ class HosePlan:
 
     ``standard_uncertainty`` is by name of `reduction.prediction.hose_product.HOSE_PARAMETERS`, in
     the unit of that number; ``strain_step`` and ``greatest_strain`` are of the whole length [1],
-    the latter NaN to go on to the break of the cords.
+    the latter NaN to go on to the break of the cords; ``length`` is relaxed, NaN where it is not
+    stated [m].
     """
 
     name: str
@@ -65,6 +66,7 @@ class HosePlan:
     strain_step: float = 0.01
     greatest_strain: float = float("nan")
     layers: tuple[HelicalLayer, ...] = ()
+    length: float = float("nan")
 
 
 @dataclass(frozen=True)

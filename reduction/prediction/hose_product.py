@@ -107,7 +107,9 @@ class HoseDesign:
         _need("rubber_modulus", modulus, (modulus >= 0) & np.isfinite(modulus), "zero or more")
         _need("layer_diameter", inner, inner > bore, "above inner_diameter")
         _need("layer_diameter", outer, outer >= inner, "the inner layer before the outer one")
-        _need("outer_diameter", skin, skin > outer, "above the diameter of the cord layers")
+        laid = float(np.max(outer))
+        _need("outer_diameter", skin, skin > outer,
+              f"above the diameter of the cord layers, {laid:g} in SI (wrap_diameter)")  # fmt: skip
         share = np.asarray(self.dead_length_share, dtype=np.float64)
         _need("dead_length_share", share, (share >= 0) & (share < 1), "from 0 to below 1")
         working = np.asarray(self.working_share)

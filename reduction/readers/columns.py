@@ -178,7 +178,25 @@ def find_column(
         channel=wanted.key,
         found=_listing(stripped),
         needed=f"'{wanted.column}'",
+        hint=_why_not_there(wanted.column.strip(), stripped, is_text=row is not None),
     )
+
+
+def _why_not_there(wanted: str, names: Sequence[str], *, is_text: bool) -> str | None:
+    """What keeps a name from being found: another delimiter, another spelling, lines above."""
+    for mark in ";,\t|":
+        if any(wanted in map(str.strip, name.split(mark)) for name in names if mark in name):
+            shown = {"\t": "\\t"}.get(mark, mark)
+            return f'The names are parted by "{shown}": set delimiter = "{shown}".'
+    alike = [name for name in names if name.casefold() == wanted.casefold()]
+    if alike:
+        return f"It is spelled '{alike[0]}' there."
+    if is_text:
+        return (
+            "Lines above the names (a preamble of the logger) are skipped with preamble_rows = N,"
+            " or with comment where they begin with a mark."
+        )
+    return None
 
 
 def stated_scale(text: str, dimension: Dimension) -> tuple[float, float]:

@@ -252,6 +252,14 @@ def _what_to_set(found: str, want: DeclaredColumn, layout: Layout) -> str:
             'Set unit = "clock" where it is a time of day (09:45:30); of dates take another column '
             "for the time, or sample_interval."
         )
+    if found == str(want.column).strip():
+        return (
+            "This row repeats the names: the logger wrote its header a second time, so it was"
+            " started again. Make two logs of it, one from each header."
+        )
+    if layout.decimal == "," and re.fullmatch(r"[+-]?\d*\.\d+([eE][+-]?\d+)?", found):
+        no_groups = ' and thousands = ""' if layout.thousands == "." else ""
+        return f'Set decimal = "."{no_groups} where the point is a decimal mark.'
     if _is_unit(found, want.dimension):
         return (
             "Set has_unit_row = true where this is a row of units; preamble_rows = N skips rows "

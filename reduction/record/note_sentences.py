@@ -1267,6 +1267,20 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "the measured strain stands at its greatest value for {n_samples} samples while the"
         " crosshead moves: its range ends there, and strain amplitudes are too small",
     ),
+    "mean-tension-ramps": (
+        "warning",
+        lambda first, last, is_of_load: (
+            f"the mean tension {'falls' if last < first else 'rises'} steadily from {first:.4g} to"
+            f" {last:.4g} N over the cycles, "
+            + (
+                "though the machine drives the load"
+                if is_of_load
+                else "and the middle of the stroke with it"
+            )
+            + ": the machine did not hold the level (a leaking accumulator, a drifting set point)."
+            " Every number of this test is a mean over these levels"
+        ),
+    ),
     "zero-or-relaxation": (
         "note",
         lambda earlier, later: (
@@ -1318,6 +1332,15 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             " and the factor of the load, and the unit of the rated_break_strength"
         ),
     ),
+    "stretched-diameters-apart": (
+        "warning",
+        lambda least, greatest, swapped: (
+            "at constant volume the diameters that were read on the stretched specimen imply"
+            f" {1e3 * least:.4g} to {1e3 * greatest:.4g} mm before stretch, but rubber keeps its"
+            " volume. Check these diameters and the stretch under which each stands"
+            + (f"; they agree if those at {swapped} change places" if swapped else "")
+        ),
+    ),
     "diameter-readings-apart": (
         "warning",
         lambda least, greatest: (
@@ -1344,7 +1367,8 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
                 if method == "gauge-length"
                 else "the unit of the extensometer"
                 if method == "extensometer"
-                else "the unit of position and of the marks, and the target_strain"
+                else "the unit of position and of the marks, that the row slack was read at slack,"
+                " and the target_strain"
             )
         ),
     ),
@@ -1370,11 +1394,30 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "hose-unlike-design": (
         "warning",
-        lambda hose, ratio, strain, like: (
-            f"at {100 * strain:.3g} % strain its tension is {ratio:.3g} times that of its design"
-            f" {hose}{_is_like(like)}. Check the unit of load, the gauge length, the named file and"
-            " hose (swapped?), the inner diameter (bore), the length, and the number, angle and"
-            " load of its cords (both layers counted once)"
+        lambda hose, ratio, low, high, like, readings: (
+            f"between {100 * low:.3g} and {100 * high:.3g} % strain its tension is on average"
+            f" {ratio:.3g} times that of its design {hose}{_is_like(like)}. Check the unit of load,"
+            " the gauge length, the named file and hose (swapped?), the inner diameter (bore), the"
+            " length, and the number, angle and load of its cords (both layers counted once)"
+            + (f".{_would_fit(readings)}" if readings else "")
+        ),
+    ),
+    "two-designs-of-one": (
+        "warning",
+        "it is compared with {hose} here and with {other} elsewhere. Check the specimen of this"
+        " test, and which design is its own",
+    ),
+    "static-at-frequency": (
+        "warning",
+        "taken as static, but its log cycles at {frequency:.3g} Hz, at which cords are stiffer than"
+        ' in a slow pull; loading = "dynamic" says so',
+    ),
+    "hose-length-not-tested": (
+        "warning",
+        lambda hose, ratio, like: (
+            f"the length of {hose} is {ratio:.3g} times its gauge length{_is_like(like)}: the dead"
+            " ends are another share of it than of the hose that was tested. Check the length, the"
+            " gauge length and their units"
         ),
     ),
     "waveform-not-as-stated": (
@@ -1424,6 +1467,14 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             f"it is {ratio:.3g} times as stiff as in {other}{_is_like(like)}. Check that"
             " the unit, gain and factor of the load are those of the other test, and that file and"
             " specimen are not swapped"
+        ),
+    ),
+    "peak-off-others": (
+        "warning",
+        lambda ratio, like: (
+            f"its greatest tension is {ratio:.3g} times what the other tests of the specimen have"
+            f" at this strain{_is_like(like)}. Check that the unit, gain and factor of the load are"
+            " theirs, and that file and specimen are not swapped"
         ),
     ),
     "tension-behind-position": (
@@ -1504,14 +1555,17 @@ SENTENCES: Mapping[str, tuple[Severity, str | Callable[..., str]]] = {
 
 CAUSES = (
     "log-used-twice", "channels-alike", "column-of-another", "diameter-readings-apart",
+    "stretched-diameters-apart",
     "cycles-in-other-kind", "rate-not-as-stated", "level-not-as-stated",
     "load-never-falls", "load-zero-drifts", "load-zero-wrong", "load-negative",
     "load-falls-with-stretch", "extensometer-ends", "load-in-steps",
     "tape-off-crosshead", "marks-alike", "loops-run-backward",
     "extensometer-against-stroke", "gauge-against-length",
     "modulus-outside-band", "strength-outside-band", "tension-above-strength", "stiffness-jumps",
-    "run-off-plan", "cord-stress-outside-band", "cords-do-not-fit", "hose-rubber-outside-band",
-    "wrap-angle-outside-band", "dead-length-large", "hose-not-of-design", "hose-unlike-design",
+    "peak-off-others", "run-off-plan", "mean-tension-ramps", "cord-stress-outside-band",
+    "cords-do-not-fit", "hose-rubber-outside-band", "wrap-angle-outside-band",
+    "dead-length-large", "two-designs-of-one", "hose-length-not-tested", "static-at-frequency",
+    "hose-not-of-design", "hose-unlike-design",
     "target-strain-missed", "density-outside-band", "strain-above-band",
     "extensometer-off-at-slack", "reference-tension-elsewhere", "strain-below-zero",
     "tension-late", "tension-behind-position", "loops-give-work", "loops-not-of-a-sine",

@@ -65,6 +65,10 @@ class TestLevels:
     like_means : ndarray, shape (n_specimens, 3)
         Mean tension of the first, middle and last of the cycles between equal positions; NaN where
         they are few, or where a slack rest after them shows the zero of the load. [N]
+    mean_ramps : ndarray, shape (n_specimens, 2)
+        Mean tension of the first and the last cycle by the straight line through all, where the
+        machine lets it go: the means follow the line, and the machine drives the load, or the
+        middle of its stroke goes the same way. NaN elsewhere. [N]
     """
 
     __test__ = False  # a test of a tether, not of this software
@@ -83,6 +87,7 @@ class TestLevels:
     is_copy: Bools
     load_step: Floats
     like_means: Floats
+    mean_ramps: Floats
 
 
 def levels_of_test(
@@ -145,7 +150,7 @@ def levels_of_test(
     mean, amplitude, lead = nothing.copy(), nothing.copy(), nothing.copy()
     frequency = speed = np.nan
     waveform = ""
-    like_means = np.full((n_specimens, 3), np.nan)
+    like_means, mean_ramps = np.full((n_specimens, 3), np.nan), np.full((n_specimens, 2), np.nan)
     if cycles is not None and cycles.n_cycles:
         some = np.unique(
             np.linspace(0, cycles.n_cycles - 1, min(cycles.n_cycles, _MOST_CYCLES)).astype(int)
@@ -167,9 +172,14 @@ def levels_of_test(
             if known.size:
                 mean[index], amplitude[index], lead[index] = np.median(known, axis=0)
             shapes += [row[4 if control == "load" else 3] for row in rows]
+        middles = (take_samples(position, valley) + take_samples(position, peak)) / 2
         if control == "position" and not _rests_after(standstills, int(cycles.last[-1])):
-            like = _alike((take_samples(position, valley) + take_samples(position, peak)) / 2, rise)
+            like = _alike(middles, rise)
             like_means = np.array([_three_means(load, cycles, some[like]) for load in tension])
+        mean_ramps = np.array([
+            _mean_ramp(load, cycles, some, None if control == "load" else middles)
+            for load in tension
+        ])  # fmt: skip
         shapes = [one for one in shapes if np.isfinite(one)]
         shape = float(np.median(shapes)) if shapes else np.nan
         far = {name: abs(shape - known) for name, known in _SHAPES.items()}
@@ -203,6 +213,7 @@ def levels_of_test(
         ], dtype=np.bool_),
         load_step=np.array([_load_step(load) for load in tension]),
         like_means=like_means,
+        mean_ramps=mean_ramps,
     )  # fmt: skip
 
 
@@ -235,6 +246,24 @@ def _three_means(load: Floats, cycles: Cycles, some: Integers) -> Floats:
     return np.array([
         means[:part].mean(), means[middle : middle + part].mean(), means[-part:].mean()
     ])  # fmt: skip
+
+
+_ON_LINE = 0.98  # of the variance of the means: steps between levels leave more beside a line
+
+
+def _mean_ramp(
+    load: Floats, cycles: Cycles, some: Integers, middles: Floats | None
+) -> tuple[float, float]:
+    """Mean tension of the first and last cycle, where it ramps as no specimen makes it."""
+    means = np.array([_middle(load[cycles.first[one] : cycles.last[one] + 1]) for one in some])
+    rows = np.stack([means] if middles is None else [means, middles])
+    if means.size < _FEWEST_LIKE or not np.isfinite(rows).all() or not np.ptp(rows, axis=1).all():
+        return np.nan, np.nan
+    along = np.corrcoef(some, rows)[0, 1:]
+    if (along**2 < _ON_LINE).any() or np.ptp(np.sign(along)):
+        return np.nan, np.nan
+    slope, start = np.polyfit(some, means, 1)
+    return float(start + slope * some[0]), float(start + slope * some[-1])
 
 
 def _middle(values: Floats) -> float:

@@ -684,12 +684,23 @@ _HINT = (
 )
 
 
-def _hint(time: Floats) -> str:
-    """What to look at where no cycle is found; a log may be too coarse to show any."""
+_CUT_OFF = 0.03  # of the samples, at the top of the range: a sine has 2 % of them there
+
+_AT_TOP = 1e-3  # of the range
+
+
+def _hint(time: Floats, values: Floats) -> str:
+    """What to look at where no cycle is found; a log may be too coarse, or cut off at a value."""
     step = median_step(time)
+    top = float(np.nanmax(values))
+    share = float(np.mean(values > top - _AT_TOP * (top - float(np.nanmin(values)))))
+    cut_off = (
+        f"{share:.0%} of the samples stand at {top:.6g}, the greatest value: the channel is"
+        " saturated there, or the machine dwells. "
+    )
     return (
-        f"{_HINT} The samples stand {step:.4g} s apart: cycles shorter than "
-        f"{FEWEST_SAMPLES * step:.4g} s need a log with more of them."
+        f"{cut_off if share > _CUT_OFF else ''}{_HINT} The samples stand {step:.4g} s"
+        f" apart: cycles shorter than {FEWEST_SAMPLES * step:.4g} s need a log with more of them."
     )
 
 
@@ -804,7 +815,7 @@ def _paired_cycles(
             found=f"a range of {_range(values):.4g} {unit}, "
             f"{max(found.reversals.size - 1, 0)} movements of {found.band:.4g} {unit} or more",
             needed="two half cycles or more",
-            hint=_hint(time),
+            hint=_hint(time, values),
         )
     return found, []
 
@@ -1005,7 +1016,7 @@ def find_cycles(
             found=f"{reversals.size - 1} movements of {band:.4g} or more, none followed by one "
             "of similar range without a standstill or a gap between",
             needed="an ascending and a descending half cycle of similar range",
-            hint=_hint(time),
+            hint=_hint(time, values),
         )
     notes += _refuse_coarse(time, first, last)
     if first.size == 1:
