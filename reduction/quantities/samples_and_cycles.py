@@ -651,6 +651,14 @@ OF_RECORD: tuple[Quantity, ...] = (
             BOUND,
             tables=("cycles",),
         ),
+        stated(
+            "energy_turn_missed",
+            "J m-1",
+            "half width of the possible range of the hysteresis energy, as the wave "
+            "turns between samples",
+            BOUND,
+            tables=("cycles",),
+        ),
         measured(
             "foot_strain",
             "1",

@@ -934,6 +934,10 @@ def loop_contributions(
             of_lag["loss_spring_constant"] = of_lag["hysteresis_energy"] / (
                 np.pi * strain_amplitude**2
             )
+        if waveform == "other":  # readings beside a corner and the approach to it are late alike
+            of_lag["apparent_spring_constant"] = (
+                -4 * frequency * errors.lag * ramps * apparent_spring_constant
+            )
         component, values = _with(
             component, values, Component("lag", errors.tension_instrument), of_lag
         )

@@ -53,7 +53,7 @@ from reduction.record.contributions import (
 )
 from reduction.record.measurement import Floats, LoadTrain, Record, areas_of
 from reduction.record.notes import Note, note
-from reduction.record.samples import empty_like, full_like, release_pages
+from reduction.record.samples import empty_like, full_like, release_pages, take_samples
 from reduction.record.settings import CycleSettings
 from reduction.stages.channel_lag import LagEstimate, lag_by_turns
 from reduction.stages.cycles.cycle_product import Cycles, Loops
@@ -187,6 +187,7 @@ def _speed_ratio(
     model: StrainModel,
     cycles: Cycles,
     settings: CycleSettings,
+    record: Record | None,
 ) -> Floats:
     """Speed of the ramps over that of ramps without a stop at their ends."""
     frequency, mean, amplitude = (
@@ -196,7 +197,15 @@ def _speed_ratio(
     if settings.control == "load":
         half = swing
     elif model.method == "extensometer":
-        return np.ones(np.shape(frequency))
+        if record is None:
+            return np.ones(np.shape(frequency))
+        valley, peak = (
+            take_samples(record.crosshead_position, at[:, 0])
+            for at in (cycles.branch_first, cycles.branch_last)
+        )
+        half = (peak - valley) / 2
+        if np.ndim(frequency) == 0:
+            half = np.asarray(np.nanmedian(half))
     else:
         ends = [
             position_by_model(model, strain=mean + way * amplitude, tension=tension + way * swing)
@@ -234,8 +243,8 @@ def _inertia_of(
     )  # fmt: skip
 
 
-def _train_of(test: ReducedTest) -> LoadTrain:
-    return LoadTrain() if test.record is None else test.record.load_train
+def _train_of(record: Record | None) -> LoadTrain:
+    return LoadTrain() if record is None else record.load_train
 
 
 def _of_loops(
@@ -245,7 +254,7 @@ def _of_loops(
     model: StrainModel,
     cycles: Cycles,
     settings: CycleSettings,
-    train: LoadTrain,
+    record: Record | None,
     *,
     line: LineParameters | None = None,
 ) -> Contributions:
@@ -263,8 +272,8 @@ def _of_loops(
         **values,
         waveform="sinusoidal" if over_time else settings.waveform,
         control=settings.control,
-        speed_ratio=_speed_ratio(loops, index, model, cycles, settings),
-        inertia=_inertia_of(train, loops, index, errors),
+        speed_ratio=_speed_ratio(loops, index, model, cycles, settings, record),
+        inertia=_inertia_of(_train_of(record), loops, index, errors),
     )  # fmt: skip
 
 
@@ -330,7 +339,7 @@ def _strain_rates(
         mean_strain=float(summary.mean_strain[index]),
         strain_amplitude=float(amplitude),
         waveform=cycles.waveform,
-        speed_ratio=float(_speed_ratio(summary, index, model, test.cycles, cycles)),
+        speed_ratio=float(_speed_ratio(summary, index, model, test.cycles, cycles, test.record)),
     )
     return np.stack([[rate, -rate], [slope, -slope]])
 
@@ -787,7 +796,7 @@ def _of_ends(
     if loops is None or ends is None:
         return
     mean, half = loops.mean_strain[index], loops.strain_amplitude[index]
-    inertia = _inertia_of(_train_of(test), loops, index, errors)
+    inertia = _inertia_of(_train_of(test.record), loops, index, errors)
     high, low = (
         error_field(errors, model, strain=strain, tension=tension[index], inertia=inertia)
         for strain, tension in (
@@ -851,9 +860,7 @@ def _of_each(
         part = _cycles_of_test(test, block)
         if part.loops is None or part.cycles is None:
             continue
-        of_block = _of_loops(
-            part.loops, index, errors, model, part.cycles, settings, _train_of(test)
-        )
+        of_block = _of_loops(part.loops, index, errors, model, part.cycles, settings, test.record)
         component = of_block.component
         for name in names:
             if name not in rows:
@@ -1390,7 +1397,7 @@ def _of_specimen(
         inertia = (
             None
             if summary is None or cycles.waveform == "triangular"
-            else _inertia_of(_train_of(test), summary, index, errors)
+            else _inertia_of(_train_of(test.record), summary, index, errors)
         )
         yield _of_curves(test.curves, "", index, errors, model, area, rate, inertia)
         if test.segments is not None:
@@ -1402,7 +1409,7 @@ def _of_specimen(
         rate = _rise_rates(test, index) if errors.lag else np.zeros((2, 2, 1))
         yield _of_curves(test.first_loading, "_first_loading", index, errors, model, area, rate)
     if summary is not None and test.cycles is not None:
-        of_loop = _of_loops(summary, index, errors, model, test.cycles, cycles, _train_of(test))
+        of_loop = _of_loops(summary, index, errors, model, test.cycles, cycles, test.record)
         yield _named(of_loop, "test_", left_out=_OF_CYCLES_ALONE)
         if np.isfinite(area):
             yield _named(_of_dynamic_modulus(of_loop, summary, index, errors, area), "test_")
@@ -1414,7 +1421,7 @@ def _of_specimen(
             yield _named(rest, "test_")
             line = test.line_of_test
             of_both = _of_loops(
-                summary, index, errors, model, test.cycles, cycles, _train_of(test), line=line
+                summary, index, errors, model, test.cycles, cycles, test.record, line=line
             )
             yield _named(_of_line(line, summary, index, of_both, rest), "test_")
 
@@ -1432,7 +1439,7 @@ def _contributions_to_cycles(
     if part.loops is None or part.cycles is None or test.cycles is None:
         return Contributions(())
     model = test.strain_models[index]
-    of_loop = _of_loops(part.loops, index, errors, model, part.cycles, cycles, _train_of(test))
+    of_loop = _of_loops(part.loops, index, errors, model, part.cycles, cycles, test.record)
     parts = [of_loop]
     if part.end_moduli is not None:
         parts += _of_ends(part, index, errors, float(areas_of(test.specimens)[index]))
@@ -1442,12 +1449,12 @@ def _contributions_to_cycles(
             pull, origin or PullOrigin(errors, model),
             np.asarray(amplitude.mean_tension[index]),
             _of_loops(
-                amplitude, index, errors, model, test.cycles, cycles, _train_of(test)
+                amplitude, index, errors, model, test.cycles, cycles, test.record
             ),
             line, index,
         )  # fmt: skip
         of_both = _of_loops(
-            part.loops, index, errors, model, part.cycles, cycles, _train_of(test), line=part.line
+            part.loops, index, errors, model, part.cycles, cycles, test.record, line=part.line
         )
         parts.append(_of_line(part.line, part.loops, index, of_both, rest))
     return merged(parts)

@@ -10,7 +10,7 @@ from strangers import make
 
 JUDGED = ("frequency", "loss_factor", "apparent_spring_constant", "hysteresis_energy")
 LAWS = ("settling-angle", "unequal-elastic", "unequal-lossy", "noisy-turns", "relaxing-mean",
-        "work-out")  # fmt: skip
+        "work-out", "dwelling", "fast-corners")  # fmt: skip
 # 24 realisations of each law have the 95 % intervals judged; a single one of them is allowed more
 WITHIN = 3.5
 

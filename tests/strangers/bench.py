@@ -429,6 +429,59 @@ def unequal_lossy(rng: np.random.Generator, area: float) -> Loop:
     return _unequal(rng, area, lossy=True)
 
 
+def _cornered(rng: np.random.Generator, area: float, dwell: bool) -> Loop:
+    """Corners of a piece of two relaxation times, one of them about the interval of the log."""
+    amplitude = rng.uniform(0.01, 0.1)
+    mean = amplitude * rng.uniform(1.5, 3.0)
+    period, rate = float(rng.choice([2.0, 5.0, 10.0, 20.0])), rng.uniform(30.0, 100.0)
+    step = period / round(rate) / FINE
+    per = round(period / step)
+    cycles = int(rng.integers(10, 21))
+    if dwell:
+        up = rng.uniform(0.25, 0.4)
+        parts = [round(share * per) for share in (up, 0.5 - up, up)]
+    else:
+        parts = [round(rng.uniform(0.6, 0.75) * per)]
+    ends = np.cumsum([0, *parts, per - sum(parts)])
+    path = np.interp(np.arange(per), ends, [-1, 1, 1, -1, -1] if dwell else [-1, 1, -1])
+    strain = mean + amplitude * np.append(np.tile(path, cycles), path[0])
+    stiffness = rng.uniform(1.0, 4.0) * 1e6 * area
+    tension = stiffness * strain
+    for share, time in (
+        (rng.uniform(0.2, 0.6), FINE * step * rng.uniform(0.3, 3.0)),
+        (rng.uniform(0.1, 0.4), period * rng.uniform(0.1, 0.4)),
+    ):
+        ratio = step / time
+        gain, decay = -float(np.expm1(-ratio)) / ratio, float(np.exp(-ratio))
+        push = gain * share * stiffness * np.diff(strain[: per + 1])
+        states = np.zeros(per + 1)
+        for turn in range(2):
+            for k, value in enumerate(push.tolist()):
+                states[k + 1] = decay * states[k] + value
+            if turn == 0:
+                states[0] = states[-1] / (1.0 - decay**per)
+        tension = tension + np.append(np.tile(states[:-1], cycles), states[-1])
+    peak = int(ends[1])
+    measures = loop_measures(strain, tension, [(0, peak, per)], step)
+    truth = {name: float(values[0]) for name, values in measures.items()}
+    truth["frequency"] = 1.0 / period
+    turns = [0]
+    for _ in range(cycles):
+        turns.extend([turns[-1] + peak, turns[-1] + per])
+    waveform = "other" if dwell else "triangular"
+    return Loop(step, strain, tension, turns, truth, waveform=waveform, noise=1e-3)
+
+
+def dwelling(rng: np.random.Generator, area: float) -> Loop:
+    """Ramps with a dwell at both ends, on a piece that relaxes within a sample or two."""
+    return _cornered(rng, area, dwell=True)
+
+
+def fast_corners(rng: np.random.Generator, area: float) -> Loop:
+    """Unequal ramps of a piece that relaxes within a sample or two."""
+    return _cornered(rng, area, dwell=False)
+
+
 def _steady(rng: np.random.Generator, area: float, angle: float, noise: float) -> Loop:
     frequency, step, cycles, mean, amplitude = _sine(rng)
     stiffness = rng.uniform(1.0, 4.0) * 1e6 * area
@@ -478,6 +531,8 @@ LOOPS: dict[str, Callable[[np.random.Generator, float], Loop]] = {
     "relaxing-mean": relaxing_mean,
     "work-out": work_out,
     "reversed-channel": reversed_channel,
+    "dwelling": dwelling,
+    "fast-corners": fast_corners,
 }
 
 

@@ -163,7 +163,7 @@ def solve(
                 for splice in (near, far)
             )
         strain = strain + residual / gain
-    if worst > 1e-12:
+    if worst > 1e-10:
         raise ArithmeticError(f"balance of lengths: residual {worst:.1e}")
     return State(strain, tension, lengths[0], lengths[1], slips[0], slips[1])
 

@@ -125,7 +125,7 @@ def make_cycles():
 def make_loops(rng, n_specimens):
     names = [item.name for item in fields(Loops) if item.name != "uncertainty"]
     values = {name: array(rng, n_specimens, N_CYCLES) for name in names}
-    bare = {"cycle_start_time", "tension_turn_missed", "strain_turn_missed"}
+    bare = {"cycle_start_time", "tension_turn_missed", "strain_turn_missed", "energy_turn_missed"}
     uncertain = [name for name in names if name not in bare]
     return Loops(
         **values, uncertainty={name: array(rng, n_specimens, N_CYCLES) for name in uncertain}

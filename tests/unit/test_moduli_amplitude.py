@@ -12,7 +12,9 @@ AREA = np.array([5e-4, 4e-4])
 
 def loops_of(values, uncertainty=None):
     fields = {name: values.copy() for name in Loops.__dataclass_fields__ if name != "uncertainty"}
-    fields |= dict.fromkeys(("tension_turn_missed", "strain_turn_missed"), 0 * values)
+    fields |= dict.fromkeys(
+        ("tension_turn_missed", "strain_turn_missed", "energy_turn_missed"), 0 * values
+    )
     return Loops(**fields, uncertainty=uncertainty or {})
 
 

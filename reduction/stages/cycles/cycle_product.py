@@ -89,8 +89,8 @@ class Loops:
     fundamental over time, which a linear model of the material asks for; of a sine
     they are the storage and loss spring constants.  ``tension_turn_missed`` and
     ``strain_turn_missed`` are by how much half a range that turns between samples may
-    be too small or too large, together.  ``foot_strain`` is that of the turn a cycle begins with,
-    with the creep of no cycle taken off.
+    be too small or too large, together, ``energy_turn_missed`` the same of the area.
+    ``foot_strain`` is that of the turn a cycle begins with, with the creep of no cycle taken off.
     """
 
     frequency: Floats
@@ -112,6 +112,7 @@ class Loops:
     loss_over_time: Floats
     tension_turn_missed: Floats
     strain_turn_missed: Floats
+    energy_turn_missed: Floats
     foot_strain: Floats
     uncertainty: dict[str, Floats]
 

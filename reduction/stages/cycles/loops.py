@@ -88,7 +88,10 @@ from reduction.stages.cycles.periods import (
 )
 from reduction.stages.cycles.turns import (
     Turn,
+    energy_at_corner,
+    has_corners,
     kind_of_turns,
+    level_at_corner,
     level_of_turn,
     missed_by_extreme,
     noise_in_extreme,
@@ -680,7 +683,7 @@ MEASURED = (
     "force_rise", "force_turn", "force_fall", "strain_rise", "strain_turn", "strain_fall",
     "phase_work", "phase_sine",
     "force_top", "force_begin", "force_end_turn", "force_missed",
-    "strain_top", "strain_begin", "strain_end_turn", "strain_missed",
+    "strain_top", "strain_begin", "strain_end_turn", "strain_missed", "energy_missed",
 )  # fmt: skip
 
 """What is summed over the samples of a cycle, in this order."""
@@ -875,7 +878,7 @@ def _quantities_of_cycles(
             )
             for name, drift in (("force", force_drift), ("strain", strain_drift))
         )
-    energy = _without_drift(
+    energy = row["energy_missed"] + _without_drift(
         row["energy"],
         end_tension=row["force_end"],
         mean_tension=row["force_mean"],
@@ -904,6 +907,7 @@ def _quantities_of_cycles(
             u_half = u_extreme / np.sqrt(2)
             u_strain = np.hypot(strain_noise, missed * strain_amplitude) / np.sqrt(2)
             if turn != "rounded":  # of one cycle the turn lies anywhere between two samples
+                u_extreme = np.hypot(u_extreme, row["force_missed"] / np.sqrt(12))
                 u_half = np.hypot(u_half, row["force_missed"] / np.sqrt(12))
                 u_strain = np.hypot(u_strain, row["strain_missed"] / np.sqrt(12))
             # a missed turn takes the same share off both amplitudes; only noise is left
@@ -941,11 +945,12 @@ def _quantities_of_cycles(
             "loss_spring_constant": loss,
             "loss_factor": factor,
             "fundamental_energy_share": share,
-            "closed_loop_energy": row["energy"],
+            "closed_loop_energy": row["energy"] + row["energy_missed"],
             "storage_over_time": over_time,
             "loss_over_time": lost_over_time,
             "tension_turn_missed": row["force_missed"],
             "strain_turn_missed": row["strain_missed"],
+            "energy_turn_missed": row["energy_missed"],
             "foot_strain": begin,
         }
         uncertainty = {
@@ -956,7 +961,9 @@ def _quantities_of_cycles(
             "peak_tension": u_extreme,
             "valley_tension": u_extreme,
             "apparent_spring_constant": u_apparent,
-            "hysteresis_energy": np.hypot(u_energy, (row["energy"] - energy) / _PLACE_OF_DRIFT),
+            "hysteresis_energy": np.hypot(
+                u_energy, (row["energy"] + row["energy_missed"] - energy) / _PLACE_OF_DRIFT
+            ),
             "storage_spring_constant": u_storage,
             "loss_spring_constant": u_loss,
             "loss_factor": np.abs(factor) * np.hypot(u_loss / loss, u_storage / storage),
@@ -1091,10 +1098,12 @@ _FIELDS = (
     "strain_amplitude", "peak_tension", "valley_tension", "apparent_spring_constant",
     "hysteresis_energy", "storage_spring_constant", "loss_spring_constant", "loss_factor",
     "fundamental_energy_share", "closed_loop_energy", "storage_over_time", "loss_over_time",
-    "tension_turn_missed", "strain_turn_missed", "foot_strain",
+    "tension_turn_missed", "strain_turn_missed", "energy_turn_missed", "foot_strain",
 )  # fmt: skip
 
-_WITHOUT_UNCERTAINTY = ("cycle_start_time", "tension_turn_missed", "strain_turn_missed")
+_WITHOUT_UNCERTAINTY = (
+    "cycle_start_time", "tension_turn_missed", "strain_turn_missed", "energy_turn_missed",
+)  # fmt: skip
 
 
 def _extremes(values: Floats, first: Integers, last: Integers) -> tuple[Floats, Floats]:
@@ -1113,13 +1122,15 @@ def _readings_at_turns(
     reach: int,
     turn: Turn,
     way: int,
+    moved: Floats | None,
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """Greatest reading near each peak, least ones near both valleys, and what they miss.
 
     A turn between two samples lies above the readings, and below where the lines beside it cross,
     since no machine turns at once: half way, and half the range is missed by as much again.  Of a
-    turn that is rounded over samples the readings miss less.  A series of way -1 falls where the
-    driven channel rises.
+    turn that is rounded over samples the readings miss less.  What answers a corner of the channel
+    that ``moved`` it turns where its approach meets that corner: it may relax before the next
+    reading.  A series of way -1 falls where the driven channel rises.
     """
     values = way * series
     begin, peak, end = branch_first[:, 0], branch_last[:, 0], branch_last[:, 1]
@@ -1137,6 +1148,16 @@ def _readings_at_turns(
     if turn == "sharp":
         above = level_of_turn(values, peak, top, sign=1) - top
         below = last - level_of_turn(values, end, last, sign=-1)
+        if moved is not None:
+            noise = reading_noise(moved)
+            at_top = _places(values, peak - reach, np.minimum(peak + reach, end))
+            at_last = _places(-values, np.maximum(end - reach, peak), end)
+            of_peak = level_at_corner(values, moved, at_top, sign=1, noise=noise)
+            of_valley = level_at_corner(values, moved, at_last, sign=-1, noise=noise)
+            above, below = np.fmax(above, of_peak - top), np.fmax(below, last - of_valley)
+        else:
+            top = _plateau(values, peak - reach, np.minimum(peak + reach, end), top)
+            last = -_plateau(-values, np.maximum(end - reach, peak), end, -last)
         top, last, missed = top + above / 2, last - below / 2, (above + below) / 2
     elif turn == "rounded":
         above = missed_by_extreme(values, peak, top, sign=1)
@@ -1146,6 +1167,58 @@ def _readings_at_turns(
     elif turn == "hidden":  # at most what lines of these ramps add where they cross half way
         missed = (top - (first + last) / 2) / (end - begin)
     return way * top, way * first, way * last, missed
+
+
+def _energy_of_tips(
+    force: Floats,
+    stretch: Floats,
+    moved: Floats,
+    answer: Floats,
+    branch_first: Integers,
+    branch_last: Integers,
+) -> Floats:
+    """What the polygon of the readings lacks of each loop at both its corners."""
+    begin, peak, end = branch_first[:, 0], branch_last[:, 0], branch_last[:, 1]
+    noise = reading_noise(moved)
+    middle = (peak + end) // 2
+    return sum(
+        (
+            energy_at_corner(force, stretch, moved, at, sign=sign, noise=noise)
+            for at, sign in (
+                (_places(answer, begin, middle), 1), (_places(-answer, middle, end), -1),
+            )
+        ),
+        np.zeros(peak.size),
+    )  # fmt: skip
+
+
+_ON_PLATEAU = 6.0  # noise of a reading below the greatest one, on a plateau of some tens
+
+_FEWEST_ON_PLATEAU = 5
+
+
+def _plateau(values: Floats, low: Integers, high: Integers, top: Floats) -> Floats:
+    """Mean of the readings of a plateau, of which noise makes the greatest one too great."""
+    noise = reading_noise(values)
+    level = np.array(top)
+    for row, (start, stop) in enumerate(
+        zip(np.maximum(low, 0).tolist(), high.tolist(), strict=True)
+    ):
+        window = values[start : stop + 1]
+        on = window[window >= top[row] - _ON_PLATEAU * noise]
+        if on.size < _FEWEST_ON_PLATEAU:
+            return np.array(top)
+        level[row] = on.mean()
+    return level
+
+
+def _places(values: Floats, low: Integers, high: Integers) -> Integers:
+    """Sample of the greatest value in each of some windows."""
+    known = np.where(np.isfinite(values), values, -np.inf)
+    return np.array([
+        start + int(np.argmax(known[start : stop + 1]))
+        for start, stop in zip(np.maximum(low, 0).tolist(), high.tolist(), strict=True)
+    ])  # fmt: skip
 
 
 def _without_noise(
@@ -1213,8 +1286,21 @@ def _measure(
         else tuple(
             one
             for series, way in zip((force, stretch), ways, strict=True)
-            for one in _readings_at_turns(series, *branches, reach=reach, turn=turn, way=way)
+            for one in _readings_at_turns(
+                series,
+                *branches,
+                reach=reach,
+                turn=turn,
+                way=way,
+                moved=None if series is moved else moved,
+            )
         )
+    )
+    # half of it, as of the levels: no machine turns at once
+    tips = (
+        _energy_of_tips(force, stretch, moved, ways[moved is force] * answer, *branches) / 2
+        if turn == "sharp"
+        else np.zeros(first.size)
     )
     measured = np.array(
         [
@@ -1229,6 +1315,7 @@ def _measure(
             *_part_means(stretch, basis, middles),
             *at_phase,
             *at_turns,
+            tips,
         ]
     )
     measured[:, lost_force | lost_stretch] = np.nan
@@ -1331,7 +1418,8 @@ def close_loops(
     noises = [(reading_noise(force), reading_noise(stretch)) for force, stretch in
               zip(tension, strain, strict=True)]  # fmt: skip
     branch = float(np.median(cycles.branch_last - cycles.branch_first, axis=0).min())
-    reach = max(int(_REACH_OF_TURN * branch), 1)
+    # on a plateau the driven channel turns anywhere, and the other one at its beginning
+    reach = max(int((1.0 if waveform == "other" else _REACH_OF_TURN) * branch), 1)
     ways = [(_way(force, cycles), _way(stretch, cycles)) for force, stretch in
             zip(tension, strain, strict=True)]  # fmt: skip
     turns = _turns(tension, moved, cycles, waveform, noises, ways)
@@ -1422,10 +1510,19 @@ def _turns(
     noises: list[tuple[float, float]],
     ways: list[tuple[int, int]],
 ) -> list[Turn]:
-    """How the wave of each specimen turns; a wave that is said to have no corner rounds them."""
+    """How the wave of each specimen turns; a sine has no corner, another wave what it shows."""
     peak = cycles.branch_last[:, 0]
-    if waveform != "triangular":
+    if waveform == "sinusoidal":
         return ["rounded"] * len(noises)
+    if waveform == "other":
+        begin, end = cycles.branch_first[:, 0], cycles.branch_last[:, 1]
+        return [
+            "sharp"
+            if has_corners(driven, _places(way * force, begin, end), sign=1,
+                           noise=reading_noise(driven))
+            else "rounded"
+            for force, (way, _) in zip(tension, ways, strict=True)
+        ]  # fmt: skip
     kind = kind_of_turns(driven, peak, noise=reading_noise(driven))
     if kind != "sharp":
         return [kind] * len(noises)

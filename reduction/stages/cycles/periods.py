@@ -180,26 +180,16 @@ def own_periods(
     [20.8 20.8 20.8 20.8]
     """
     period, spread = np.array(duration), time_of_sample(duration, cycles)
-    touch = np.flatnonzero(touching(cycles))
+    touch = np.flatnonzero(_follow(time, cycles, duration))
     if not touch.size:
         return period, spread
     for column, owner in ((1, touch), (0, touch - 1)):
         begin, end = cycles.branch_first[:, column], cycles.branch_last[:, column]
-        middle, reach = (begin + end) // 2, np.maximum((end - begin) // _FLANK, 1)
-        low, high = np.maximum(middle - reach, begin), np.minimum(middle + reach, end)
-        at, level = take_samples(time, middle), take_samples(driven, middle)
-        rise = take_samples(driven, high) - take_samples(driven, low)
-        whole = take_samples(driven, end) - take_samples(driven, begin)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            speed = rise / (take_samples(time, high) - take_samples(time, low))
-            steep = speed * (take_samples(time, end) - take_samples(time, begin)) / whole > _STEEP
-            apart = level[touch] - level[touch - 1]
-            alike = np.abs(apart) < _STEEP * np.abs(whole[touch])
-            later, earlier = (at[one] - way * apart / 2 / speed[one]
-                              for one, way in ((touch, 1), (touch - 1, -1)))  # fmt: skip
-            found = later - earlier
-            own = noise / np.abs(speed[touch])
-        usable = steep[touch] & steep[touch - 1] & alike & (found > 0)
+        found, own, usable = _flank_to_flank(time, driven, (begin + end) // 2, begin, end, touch)
+        if not usable.all():  # where a wave dwells, the middle of a branch may be no flank
+            middle = _half_way(driven, begin, end)
+            found, own, usable = _flank_to_flank(time, driven, middle, begin, end, touch)
+        own = noise * own
         period[owner[usable]], spread[owner[usable]] = found[usable], own[usable]
         if column:
             of_fall = spread.copy()
@@ -209,3 +199,48 @@ def own_periods(
     second = np.diff(period[touch - 1])
     jitter = np.sqrt(np.median(second**2) / _OF_SECOND) if second.size else 0.0
     return period, np.maximum(spread, jitter)
+
+
+_ALIKE = 0.02  # of a cycle, by which rests between cycles may differ and be a part of the wave
+
+
+def _follow(time: Floats, cycles: Cycles, duration: Floats) -> Bools:
+    """Which cycles touch the one before them, or come after a rest that all of them have."""
+    rest = take_samples(time, cycles.first[1:]) - take_samples(time, cycles.last[:-1])
+    usual = float(np.median(rest)) if rest.size else 0.0
+    alike = np.abs(rest - usual) <= _ALIKE * float(np.median(duration))
+    follows = alike & (usual < float(np.median(duration)))
+    return np.asarray(touching(cycles) | np.concatenate([[False], follows]))
+
+
+def _flank_to_flank(
+    time: Floats, driven: Floats, middle: Integers, begin: Integers, end: Integers, touch: Integers
+) -> tuple[Floats, Floats, Bools]:
+    """Time between the flanks of touching branches, time per unit of noise, and whether they are.
+
+    At one level of both, about a sample in the middle of each.
+    """
+    reach = np.maximum((end - begin) // _FLANK, 1)
+    low, high = np.maximum(middle - reach, begin), np.minimum(middle + reach, end)
+    at, level = take_samples(time, middle), take_samples(driven, middle)
+    rise = take_samples(driven, high) - take_samples(driven, low)
+    whole = take_samples(driven, end) - take_samples(driven, begin)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        speed = rise / (take_samples(time, high) - take_samples(time, low))
+        steep = speed * (take_samples(time, end) - take_samples(time, begin)) / whole > _STEEP
+        apart = level[touch] - level[touch - 1]
+        alike = np.abs(apart) < _STEEP * np.abs(whole[touch])
+        later, earlier = (at[one] - way * apart / 2 / speed[one]
+                          for one, way in ((touch, 1), (touch - 1, -1)))  # fmt: skip
+        found = later - earlier
+        per_noise = 1 / np.abs(speed[touch])
+    return found, per_noise, steep[touch] & steep[touch - 1] & alike & (found > 0)
+
+
+def _half_way(driven: Floats, begin: Integers, end: Integers) -> Integers:
+    """First sample of each branch that is half way from its beginning to its end."""
+    found = begin.copy()
+    for row, (first, last) in enumerate(zip(begin.tolist(), end.tolist(), strict=True)):
+        branch = driven[first : last + 1] - (driven[first] + driven[last]) / 2
+        found[row] += int(np.argmax(branch * np.sign(branch[-1]) >= 0))
+    return found

@@ -40,7 +40,11 @@ _SMOOTHED = 1.2  # noise over the step from sample to sample: width that rounds 
 
 _CLEAR = 3.0  # noise of a reading, by which a step from sample to sample shows where a turn is
 
+_STEEP = 10.0  # noise of a reading, by which the steps of one turn show a corner
+
 _ROUNDED = 0.2  # of that step, by which a turn lies below the lines beside it
+
+_MOST_CORNERS = 0.8  # of the turns of a wave
 
 _BESIDE = 3  # samples on either side of a turn by which lines cross
 
@@ -258,6 +262,134 @@ def level_of_turn(values: Floats, turn: Integers, extreme: Floats, *, sign: int)
     crossing, offset, *_ = _crossing(values, turn, sign=sign)
     known = np.isfinite(offset)
     return np.asarray(sign * np.where(known, np.maximum(crossing, sign * extreme), sign * extreme))
+
+
+def level_at_corner(
+    values: Floats, moved: Floats, extreme_at: Integers, *, sign: int, noise: float
+) -> Floats:
+    """Level to which the approach of a series goes on, to the corner of the channel that moves it.
+
+    What relaxes within a sample after the corner leaves no line there: the readings after it say
+    nothing of the level, and those before it all.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_samples,)
+        A series. [any]
+    moved : ndarray, shape (n_samples,)
+        The channel that the machine moves, rising where the series does. [any]
+    extreme_at : ndarray of int, shape (n_turns,)
+        Samples of its extreme readings. [1]
+    sign : {1, -1}
+        1 of peaks, -1 of valleys. [1]
+    noise : float
+        Standard deviation of one reading of ``moved``. [any]
+
+    Returns
+    -------
+    level : ndarray, shape (n_turns,)
+        The extreme reading where ``moved`` has no corner beside it, or is past it. [any]
+
+    Raises
+    ------
+    IndexError
+        If an extreme lies outside the series.
+
+    Examples
+    --------
+    Held from 0.6 samples after the reading, and decayed before the next one:
+
+    >>> place = np.arange(11)
+    >>> drive = np.minimum(place - 5.6, 0)
+    >>> force = np.where(place <= 5, 100 + 10 * (place - 5.6), 80)
+    >>> print(level_at_corner(force, drive, np.array([5]), sign=1, noise=0))
+    [100.]
+    """
+    offset = _offset_of_corner(moved, extreme_at, sign=sign, noise=noise)
+    reading = sign * take_samples(values, extreme_at)
+    before = extreme_at - (offset < 0)
+    level = sign * values
+    approach = level[before] - level[before - 1]
+    beyond = level[before] + approach * np.where(offset < 0, 1 + offset, offset)
+    return np.asarray(sign * np.where(np.isfinite(offset), np.fmax(beyond, reading), reading))
+
+
+def energy_at_corner(
+    tension: Floats,
+    strain: Floats,
+    moved: Floats,
+    extreme_at: Integers,
+    *,
+    sign: int,
+    noise: float,
+) -> Floats:
+    r"""Area between a corner and the chord of the two readings beside it.
+
+    .. math:: \Delta H = \tfrac12 \left[(T_c - T_i)(\varepsilon_j - \varepsilon_i)
+              - (T_j - T_i)(\varepsilon_c - \varepsilon_i)\right]
+
+    Parameters
+    ----------
+    tension, strain, moved : ndarray, shape (n_samples,)
+        Two series, and the one of them, or the third, that the machine moves. [N], [1], [any]
+    extreme_at : ndarray of int, shape (n_turns,)
+        Samples at which the series that answers has its extremes. [1]
+    sign : {1, -1}
+        1 of peaks, -1 of valleys, of ``moved``. [1]
+    noise : float
+        Standard deviation of one reading of ``moved``. [any]
+
+    Returns
+    -------
+    energy : ndarray, shape (n_turns,)
+        That the polygon of the readings lacks; 0 where there is no corner. [J m-1]
+
+    Raises
+    ------
+    IndexError
+        If an extreme lies outside the series.
+
+    Examples
+    --------
+    To 0.1 of strain at 100 N half a sample after a reading, then at once 40 N less:
+
+    >>> strain = np.minimum((np.arange(11) - 5.5) * 0.01, 0) + 0.1
+    >>> force = np.where(np.arange(11) <= 5, 1000 * strain, 60)
+    >>> print(energy_at_corner(force, strain, strain, np.array([5]), sign=1, noise=0).round(4))
+    [0.1]
+    """
+    offset = _offset_of_corner(moved, extreme_at, sign=sign, noise=noise)
+    before = extreme_at - (offset < 0)
+    beyond = np.where(offset < 0, 1 + offset, offset)
+    after = np.minimum(before + 1, moved.size - 1)
+    (force, stretch), (to_force, to_stretch) = (
+        ((one[before] - one[before - 1]) * beyond for one in (tension, strain)),
+        (one[after] - one[before] for one in (tension, strain)),
+    )
+    area = (force * to_stretch - to_force * stretch) / 2
+    return np.where(np.isfinite(offset), area, 0.0)
+
+
+def has_corners(moved: Floats, extreme_at: Integers, *, sign: int, noise: float) -> bool:
+    """Whether a channel has a corner beside most of the extremes of the one that answers it."""
+    offset = _offset_of_corner(moved, extreme_at, sign=sign, noise=noise)
+    return bool(np.isfinite(offset).mean() > _MOST_CORNERS)
+
+
+def _offset_of_corner(moved: Floats, extreme_at: Integers, *, sign: int, noise: float) -> Floats:
+    """Samples from an extreme to the corner beside it; NaN where there is none."""
+    window = extreme_at[:, None] + np.arange(-_BESIDE, _BESIDE + 1)
+    usable = (window[:, 0] >= 0) & (window[:, -1] < moved.size)
+    drive = sign * moved[np.clip(window, 0, moved.size - 1)]
+    steps = np.diff(drive, axis=1)
+    rise, on = steps[:, 1], steps[:, 4]
+    # two steps alike before the corner and two after it, and a change of slope between them
+    alike = np.maximum(np.abs(steps[:, 0] - rise), np.abs(steps[:, 5] - on))
+    usable &= (rise > _STEEP * noise) & (alike < _ROUNDED * rise + 2 * noise)
+    usable &= rise - on > 2 * _ROUNDED * rise
+    with np.errstate(divide="ignore", invalid="ignore"):
+        offset = (drive[:, 4] - drive[:, 2] - rise - on) / (rise - on)
+    return np.where(usable & (np.abs(offset) <= 1), offset, np.nan)
 
 
 def missed_by_extreme(values: Floats, turn: Integers, extreme: Floats, *, sign: int) -> Floats:

@@ -223,7 +223,7 @@ _QUANTITIES = (
     "loss_spring_constant", "loss_factor", "closed_loop_energy",
 )  # fmt: skip
 
-_WITHIN_STEP = np.sqrt(12)  # width of an even distribution over its deviation
+_WITHIN_STEP = np.sqrt(8)  # width over deviation, of what is likeliest at either end
 
 _WITHIN_CYCLE = np.sqrt(6)  # half width of a triangular distribution over its deviation
 
@@ -383,9 +383,9 @@ def summarise_amplitude(
     >>> loops = Loops(
     ...     **{name: one for name in Loops.__dataclass_fields__ if name not in (
     ...         "apparent_spring_constant", "tension_turn_missed", "strain_turn_missed",
-    ...         "uncertainty")},
+    ...         "energy_turn_missed", "uncertainty")},
     ...     apparent_spring_constant=np.array([[100.0, 110.0]]), uncertainty={},
-    ...     tension_turn_missed=0 * one, strain_turn_missed=0 * one,
+    ...     tension_turn_missed=0 * one, strain_turn_missed=0 * one, energy_turn_missed=0 * one,
     ... )
     >>> summary = summarise_amplitude(loops, area=[1e-4])
     >>> print(summary.dynamic_modulus, summary.uncertainty["dynamic_modulus"])
@@ -416,11 +416,12 @@ def summarise_amplitude(
         )
     means["frequency"], uncertainty["frequency"] = _mean_frequency(loops, break_in_cycles)
     # a wave that turns between samples does so in all cycles alike, or nearly
-    of_force, of_strain = (
+    of_force, of_strain, of_energy = (
         np.nan_to_num(np.nanmean(np.where(np.isfinite(one), one, 0.0), axis=1))
         for one in (
             loops.tension_turn_missed[:, break_in_cycles:],
             loops.strain_turn_missed[:, break_in_cycles:],
+            loops.energy_turn_missed[:, break_in_cycles:],
         )
     )
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -435,6 +436,8 @@ def summarise_amplitude(
         ("strain_amplitude", of_strain),
         ("apparent_spring_constant", apart * means["apparent_spring_constant"]),
         ("storage_spring_constant", apart * means["storage_spring_constant"]),
+        ("hysteresis_energy", of_energy),
+        ("loss_spring_constant", of_energy / (np.pi * means["strain_amplitude"] ** 2)),
     ):
         uncertainty[name] = np.hypot(uncertainty[name], np.abs(missed) / _WITHIN_STEP)
     # where in its cycle a drift takes place is not known, and is the same in all of them
@@ -812,7 +815,7 @@ def fit_peak_trend(loops: Loops, *, area: ArrayLike, break_in_cycles: int = 0) -
     Examples
     --------
     >>> peak = 700 - 20 * np.log10(np.arange(1.0, 11.0))[None]
-    >>> loops = Loops(*[peak] * 20, uncertainty={})
+    >>> loops = Loops(*[peak] * 21, uncertainty={})
     >>> trend = fit_peak_trend(loops, area=[5e-4])
     >>> print(trend.peak_tension_per_decade.round(3), trend.peak_tension_change.round(4))
     [-20.] [-0.0286]

@@ -621,7 +621,7 @@ def find_slips(
     >>> from reduction.stages.cycles.cycle_product import Loops
     >>> peak = 700 + np.random.default_rng(0).standard_normal((1, 200))
     >>> peak[:, 120:] -= 8.0
-    >>> loops = Loops(*[peak] * 20, uncertainty={})
+    >>> loops = Loops(*[peak] * 21, uncertainty={})
     >>> slips = find_slips(
     ...     loops, specimens=("new",), settings=SlipSettings(), tension_slope=[200.0]
     ... )
