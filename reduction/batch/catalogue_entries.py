@@ -94,6 +94,7 @@ def rebuild(folder: Path) -> dict[str, str]:
 
 
 def _write(entries: Sequence[CatalogueEntry], path: Path) -> None:
+    """Write the tests and their numbers, sorted by quantity, a part of them at a time."""
     rows: list[dict[str, Any]] = []
     numbers = []
     for entry in entries:
@@ -104,22 +105,50 @@ def _write(entries: Sequence[CatalogueEntry], path: Path) -> None:
     tests = pyarrow.Table.from_pylist(
         [row | {"row": place} for place, row in enumerate(rows)], schema=_TESTS
     )
-    table = pyarrow.concat_tables([tests.schema.empty_table(), *numbers], promote_options="default")
     # each number with the conditions of its test: the file can be read by itself
-    for name in ("is_whole", *CONDITIONS):
-        place = table.schema.get_field_index(name)
-        table = table.set_column(place, name, tests[name].take(table["row"]))
-    table = table.sort_by("quantity")
-    schema = table.schema.with_metadata({MARK: _mark()})
-    tests = pyarrow.concat_tables([schema.empty_table(), tests], promote_options="default")
+    conditions = tests.select(["row", "is_whole", *CONDITIONS])
+    schemas = {tuple(one.schema.names): one.schema for one in (tests, *numbers, conditions)}
+    schema = pyarrow.unify_schemas(schemas.values()).with_metadata({MARK: _mark()})
     remove_abandoned(path)
     with (
         _whole_file(path) as part,
         part.open("wb") as file,  # opened here: a path may be no text
         pyarrow.parquet.ParquetWriter(file, schema, compression="zstd") as writer,
     ):
-        writer.write_table(tests, max(1, tests.num_rows))  # the first group are the tests
-        writer.write_table(table, _ROWS_AT_ONCE)
+        writer.write_table(_complete(tests, schema), max(1, tests.num_rows))  # the first group
+        for some in _by_quantity(numbers):
+            # in one piece: each piece of each column costs as much as some thousand rows
+            table = pyarrow.concat_tables(some, promote_options="default").combine_chunks()
+            of_test = conditions.take(table["row"]).drop_columns("row")
+            for name in of_test.column_names:
+                table = table.append_column(name, of_test[name])
+            writer.write_table(_complete(table, schema), table.num_rows)
+
+
+def _complete(table: Any, schema: Any) -> Any:
+    """The table with all columns of the file in their order."""
+    found = pyarrow.concat_tables([schema.empty_table(), table], promote_options="default")
+    return found.select(schema.names).cast(schema)
+
+
+def _by_quantity(numbers: Sequence[Any]) -> Iterator[list[Any]]:
+    """Slices of tables that are sorted by quantity themselves, enough for a group of the file."""
+    slices: list[tuple[str, int, int, int]] = []
+    for place, table in enumerate(numbers):
+        names = table["quantity"].to_numpy(zero_copy_only=False)
+        ends = [*(np.flatnonzero(names[1:] != names[:-1]) + 1).tolist(), len(names)]
+        for start, stop in zip([0, *ends[:-1]], ends, strict=True):
+            if stop > start:
+                slices.append((str(names[start]), place, start, stop))
+    some, n_rows = [], 0
+    for _, place, start, stop in sorted(slices):
+        some.append(numbers[place].slice(start, stop - start))
+        n_rows += stop - start
+        if n_rows >= _ROWS_AT_ONCE:
+            yield some
+            some, n_rows = [], 0
+    if some:
+        yield some
 
 
 def _kept_cycles(n_cycles: int) -> NDArray[np.intp]:
