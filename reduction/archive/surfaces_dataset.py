@@ -160,7 +160,7 @@ _LABELS = {
 }
 
 
-def stiffness_values(forms: Sequence[StiffnessForm], quality: FormQuality) -> Values:
+def _stiffness_values(forms: Sequence[StiffnessForm], quality: FormQuality) -> Values:
     """Return the forms of one response beside the quadratic surface of the same runs.
 
     Parameters
@@ -255,7 +255,7 @@ def point_values(
             f"{name}_point_discrepancy": both.discrepancy[index],
             f"{name}_point_value_degrees_of_freedom": both.degrees_of_freedom[index],
         }
-        values |= both_parts(
+        values |= _both_parts(
             f"{name}_point_value",
             both.random_standard_uncertainty[index],
             None if shared is None else both.contribution[:, index],
@@ -267,7 +267,7 @@ def point_values(
     return values
 
 
-def both_parts(name: str, random: Floats, rows: Floats | None) -> Values:
+def _both_parts(name: str, random: Floats, rows: Floats | None) -> Values:
     """Return the uncertainty of a quantity with its parts; one part alone has no other beside it.
 
     Parameters
@@ -383,7 +383,7 @@ _SINGLE_TIME = {
 """Field of the check to name after ``single_time_``."""
 
 
-def experiment_values(result: ExperimentResult) -> Values:
+def _experiment_values(result: ExperimentResult) -> Values:
     """Return every number and text of an experiment but its notes and its stiffness forms.
 
     Parameters
@@ -531,7 +531,7 @@ def _with_shared(
         ("eigenvalue", coded @ slopes[1][0].T),
     ):
         of = f"{name}_{what}"
-        found |= both_parts(of, values[f"{of}_standard_uncertainty"], rows)
+        found |= _both_parts(of, values[f"{of}_standard_uncertainty"], rows)
     return found
 
 
@@ -668,9 +668,9 @@ def surfaces_to_dataset(results: Sequence[ExperimentResult], *, origin: Origin) 
 
 
 def _values_of(result: ExperimentResult) -> Values:
-    values = experiment_values(result)
+    values = _experiment_values(result)
     if result.form_quality is not None and result.stiffness_forms:
-        values |= stiffness_values(result.stiffness_forms, result.form_quality)
+        values |= _stiffness_values(result.stiffness_forms, result.form_quality)
     return values
 
 

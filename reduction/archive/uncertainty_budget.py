@@ -277,7 +277,7 @@ def place_name(dim: str) -> str:
 
 
 def parse_place(name: str, text: str) -> str:
-    """Label of a place as `find_place` takes it: a strain as a number, a tension in newton.
+    """Label of a place as `_find_place` takes it: a strain as a number, a tension in newton.
 
     Parameters
     ----------
@@ -383,7 +383,7 @@ def _number(value: float, variable: xr.Variable) -> str:
     return f"{value:.6g}" if unit in ("", "1") else f"{value:.6g} {unit}"
 
 
-def find_place(
+def _find_place(
     archive: xr.Dataset, dim: str, text: str | None, others: Mapping[str, int] | None = None
 ) -> int:
     """Index along a dimension of what was asked for.
@@ -454,7 +454,7 @@ def _nearest(archive: xr.Dataset, dim: str, value: float) -> int:
     return int(np.argmin(np.abs(middle - value)))
 
 
-def read_at(
+def _read_at(
     archive: xr.Dataset, values: xr.Variable, place: Mapping[str, int], on_axis: float | None
 ) -> Floats:
     """Values at a place, shape (n_components,) or (); between points where one is given.
@@ -566,10 +566,10 @@ def budget_from_archive(archive: xr.Dataset, quantity: str, at: Mapping[str, str
     asked = {dim: at.get(place_name(dim), at.get(dim)) for dim in dims}
     place: dict[str, int] = {}
     for dim, text in asked.items():
-        place[dim] = find_place(archive, dim, text, place)
+        place[dim] = _find_place(archive, dim, text, place)
     on_axis = [text for dim, text in asked.items() if dim in ON_AN_AXIS and text is not None]
     strain = float(on_axis[0]) if on_axis else None
-    if not np.isfinite(read_at(archive, variable, place, strain)):
+    if not np.isfinite(_read_at(archive, variable, place, strain)):
         shown = _labels(archive, place, strain)
         raise ArchiveError(
             f"there is no {name} there",
@@ -622,7 +622,7 @@ def _budget_at(
     freedom = np.broadcast_to(random_freedom(archive, name), variable.shape)
 
     def read(values: xr.Variable) -> Floats:
-        return read_at(archive, values, place, strain)
+        return _read_at(archive, values, place, strain)
 
     components = components_of(archive, place.get("experiment"))
     rows = read(contribution)

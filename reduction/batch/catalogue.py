@@ -255,7 +255,7 @@ _EXAMPLE = 'such as "frequency >= 0.1 Hz" or "medium = wet"'
 
 
 @dataclass(frozen=True)
-class Condition:
+class _Condition:
     """What has to hold of a row.
 
     Parameters
@@ -276,7 +276,7 @@ class Condition:
     is_share: bool = False
 
 
-def condition_of(text: str) -> Condition:
+def condition_of(text: str) -> _Condition:
     """Read a condition.
 
     Parameters
@@ -286,7 +286,7 @@ def condition_of(text: str) -> Condition:
 
     Returns
     -------
-    condition : Condition
+    condition : _Condition
         In SI.
 
     Raises
@@ -297,7 +297,7 @@ def condition_of(text: str) -> Condition:
     Examples
     --------
     >>> condition_of("mean_tension > 100 lbf")
-    Condition(name='mean_tension', operator='>', value=444.82216152605, is_share=False)
+    _Condition(name='mean_tension', operator='>', value=444.82216152605, is_share=False)
     """
     form = _FORM.fullmatch(text)
     if form is None or not form[3]:
@@ -319,11 +319,11 @@ def condition_of(text: str) -> Condition:
                 found=repr(text),
                 needed=f'"{name} = ..." or "{name} != ..."',
             )
-        return Condition(name, operator, value)
+        return _Condition(name, operator, value)
     share = _SHARE.fullmatch(value)
     if share is not None and row.unit == "N":
-        return Condition(name, operator, _number(share[1], text) / 100, is_share=True)
-    return Condition(name, operator, _value(value, row.unit, name))
+        return _Condition(name, operator, _number(share[1], text) / 100, is_share=True)
+    return _Condition(name, operator, _value(value, row.unit, name))
 
 
 def _number(digits: str, text: str) -> float:
@@ -483,7 +483,7 @@ class Query:
         of the text.
     synthetic : bool, optional
         Only synthetic data, or only measured data.
-    where : tuple of Condition
+    where : tuple of _Condition
         All have to hold; a number that is missing fits none.
     quantity : tuple of str
         Numbers that are shown; a row needs one of them.
@@ -500,7 +500,7 @@ class Query:
     names: dict[str, tuple[str, ...]] = field(default_factory=dict)
     words: dict[str, str] = field(default_factory=dict)
     synthetic: bool | None = None
-    where: tuple[Condition, ...] = ()
+    where: tuple[_Condition, ...] = ()
     quantity: tuple[str, ...] = ()
     by_cycle: bool = False
     sort: tuple[str, ...] = ()
@@ -613,7 +613,7 @@ def _texts_that(column: pd.Series[Any], fits: Callable[[str], bool]) -> NDArray[
     return column.isin([text for text in column.dropna().unique() if fits(text)]).to_numpy()
 
 
-def _holds(table: pd.DataFrame, name: str, condition: Condition) -> NDArray[np.bool_]:
+def _holds(table: pd.DataFrame, name: str, condition: _Condition) -> NDArray[np.bool_]:
     """Rows of which a condition holds; a number or text that is missing fits none."""
     column = table[name]
     holds: NDArray[np.bool_]

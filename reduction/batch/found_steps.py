@@ -25,14 +25,14 @@ _UNLIKE = 0.5  # of the range of a cycle; of the ratio of ranges, less one
 
 
 @dataclass(frozen=True)
-class FoundSteps:
+class _FoundSteps:
     """Steps that were found, none in a log of one level, and what is to be said of the log."""
 
     steps: tuple[StepPlan, ...] = ()
     remark: Note | None = None
 
 
-def find_steps(plan: TestPlan, located: Located | None, campaign: Campaign) -> FoundSteps:
+def find_steps(plan: TestPlan, located: Located | None, campaign: Campaign) -> _FoundSteps:
     """Find the levels of a cyclic log that states no steps.
 
     Raises
@@ -41,7 +41,7 @@ def find_steps(plan: TestPlan, located: Located | None, campaign: Campaign) -> F
         If the log has several and the campaign names the test as one.
     """
     if located is None or located.cycles is None or plan.kind not in _LOOKED_AT:
-        return FoundSteps()
+        return _FoundSteps()
     time, cycles = located.record.time, located.cycles
     control = control_channel(located.position, located.tension, plan.settings.cycles)
     levels = find_levels(time, control, cycles)
@@ -51,11 +51,11 @@ def find_steps(plan: TestPlan, located: Located | None, campaign: Campaign) -> F
         _refuse_one_name(plan, levels, steps, campaign)
         left_out = cycles.n_cycles - sum(one.last - one.first + 1 for one in levels)
         found = note("levels-found", n_levels=len(levels), steps=steps, n_left_out=left_out)
-        return FoundSteps(_as_steps(plan, ranges), found)
+        return _FoundSteps(_as_steps(plan, ranges), found)
     mean, ratio = spread_of_cycles(time, control, cycles)
     if levels or mean > _UNLIKE or ratio > 1 + _UNLIKE:
-        return FoundSteps(remark=note("cycles-unlike", mean=mean, ratio=ratio, steps=steps))
-    return FoundSteps()
+        return _FoundSteps(remark=note("cycles-unlike", mean=mean, ratio=ratio, steps=steps))
+    return _FoundSteps()
 
 
 def _refuse_one_name(

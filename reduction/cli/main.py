@@ -209,7 +209,7 @@ OptionalSpecPath = Annotated[
 ]
 
 
-class DesignName(StrEnum):
+class _DesignName(StrEnum):
     """Designs that the command line knows."""
 
     BOX_BEHNKEN = "box-behnken"
@@ -217,7 +217,7 @@ class DesignName(StrEnum):
 
 
 def experiment(
-    kind: Annotated[DesignName, typer.Argument(help="Design.", show_default=False)],
+    kind: Annotated[_DesignName, typer.Argument(help="Design.", show_default=False)],
     spec: SpecPath,
     out: Annotated[
         Path | None,
@@ -252,7 +252,7 @@ def surface(
         fit_runs(runs, spec, out=out, output=output)
 
 
-class PredictionName(StrEnum):
+class _PredictionName(StrEnum):
     """Predictions that the command line knows."""
 
     HOSE = "hose"
@@ -261,7 +261,7 @@ class PredictionName(StrEnum):
 
 
 def predict(
-    kind: Annotated[PredictionName, typer.Argument(help="What to predict.", show_default=False)],
+    kind: Annotated[_PredictionName, typer.Argument(help="What to predict.", show_default=False)],
     spec: SpecPath,
     out: Annotated[
         Path | None,
@@ -275,9 +275,9 @@ def predict(
 ) -> None:
     """Predict a stretch hose, helical armour or wave load from its construction."""
     with guarded(CommandOutput(json=json, quiet=quiet, units=units)) as output:
-        if kind is PredictionName.HOSE:
+        if kind is _PredictionName.HOSE:
             from reduction.cli.predictions import predict_hose as predict_it
-        elif kind is PredictionName.ARMOUR:
+        elif kind is _PredictionName.ARMOUR:
             from reduction.cli.predictions import predict_cable as predict_it
         else:
             from reduction.cli.predictions import predict_wave as predict_it
@@ -308,14 +308,14 @@ def compare(
             compare_test(Path(here), spec, out=out, output=output)
 
 
-class BranchName(StrEnum):
+class _BranchName(StrEnum):
     """Branches of a cycle."""
 
     ASCENDING = "ascending"
     DESCENDING = "descending"
 
 
-class Extrapolation(StrEnum):
+class _Extrapolation(StrEnum):
     """What is done outside the tested range."""
 
     REFUSE = "refuse"
@@ -343,7 +343,7 @@ def lookup(
     ] = None,
     tension: Annotated[str | None, typer.Option(help="Tension on a load-strain curve.")] = None,
     strain: Annotated[str | None, typer.Option(help='Such as "100 %".')] = None,
-    branch: Annotated[BranchName | None, typer.Option(help="Branch of the cycle.")] = None,
+    branch: Annotated[_BranchName | None, typer.Option(help="Branch of the cycle.")] = None,
     line: Annotated[str | None, typer.Option(help="Name of a line in SOURCE.")] = None,
     against: Annotated[
         str | None, typer.Option(help="Compare with another line: both values, difference, ratio.")
@@ -365,8 +365,8 @@ def lookup(
     medium: Annotated[str | None, typer.Option(help='Tested in: "wet", "dry".')] = None,
     temperature: Annotated[str | None, typer.Option(help='Tested at: "5 degC".')] = None,
     extrapolate: Annotated[
-        Extrapolation, typer.Option(help="Outside the tested range.")
-    ] = Extrapolation.REFUSE,
+        _Extrapolation, typer.Option(help="Outside the tested range.")
+    ] = _Extrapolation.REFUSE,
     table: Annotated[
         bool,
         typer.Option("--table", help="Table over several values of a level, separated by commas."),
@@ -451,7 +451,7 @@ def lookup(
                 look_up_against(here[0], here[1], wanted, output=output)
 
 
-class CurveName(StrEnum):
+class _CurveName(StrEnum):
     """What of a cycle becomes one curve."""
 
     MEAN = "mean"
@@ -472,7 +472,7 @@ def composite(
         str | None, typer.Option(help="Required if the archives contain several.")
     ] = None,
     branch: Annotated[
-        CurveName | None,
+        _CurveName | None,
         typer.Option(help="Branch of the cycles; default mean.", show_default=False),
     ] = None,
     precedence: Annotated[

@@ -533,7 +533,7 @@ def lines_of_folder(folder: Path) -> list[LineSource]:
     its slow pull.  It bears the name of the specimen, its tests are called TEST SPECIMEN.
     """
     found = [(path.stem, lines_of_archive(path)) for path in archives_of_lines(folder)]
-    named = with_unique_names(found)
+    named = _with_unique_names(found)
     fitted = {one for line in named if line.surfaces for one in line.specimens}
     tests: dict[str, list[LineSource]] = {}
     for line in named:
@@ -729,13 +729,13 @@ def _pull_of(folder: Path, test: str, specimen: str, opener: Opener = reading) -
     )  # fmt: skip
 
 
-def with_unique_names(found: Sequence[tuple[str, Sequence[LineSource]]]) -> list[LineSource]:
+def _with_unique_names(found: Sequence[tuple[str, Sequence[LineSource]]]) -> list[LineSource]:
     """Lines of a campaign by their files; a specimen that is in several is called TEST SPECIMEN.
 
     Examples
     --------
     >>> line = LineSource("new", "", "rubber", "", "", 0.025, 3e3)
-    >>> [one.name for one in with_unique_names([("T-1", [line]), ("T-2", [line])])]
+    >>> [one.name for one in _with_unique_names([("T-1", [line]), ("T-2", [line])])]
     ['T-1 new', 'T-2 new']
     """
     lines = [line for _, own in found for line in own]
@@ -744,7 +744,7 @@ def with_unique_names(found: Sequence[tuple[str, Sequence[LineSource]]]) -> list
 
 
 def unique_names(named: Sequence[tuple[str, str]]) -> list[str]:
-    """Names of lines by their tests and specimens, as `with_unique_names` gives them."""
+    """Names of lines by their tests and specimens, as `_with_unique_names` gives them."""
     count = Counter(name for _, name in named)
     return [f"{test} {name}" if count[name] > 1 else name for test, name in named]
 

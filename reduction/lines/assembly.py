@@ -638,7 +638,7 @@ class WorkingLevel:
 
 
 @dataclass(frozen=True)
-class StiffnessOfTest:
+class _StiffnessOfTest:
     """What one test says of a cycle.
 
     Parameters
@@ -691,7 +691,7 @@ class WorkingState:
         Loads that the tests which cover the cycle have in common. [N]
     curve_spring_constant : float
         EA of the curve between these loads, which joins tests. [N]
-    tests : tuple of StiffnessOfTest
+    tests : tuple of _StiffnessOfTest
         Of each piece of the curve.
     nearest : str
         The test that is nearest in mean and amplitude, of those that count; empty without one.
@@ -720,14 +720,14 @@ class WorkingState:
     common_low: float
     common_high: float
     curve_spring_constant: float
-    tests: tuple[StiffnessOfTest, ...]
+    tests: tuple[_StiffnessOfTest, ...]
     nearest: str
     doubt: str
     note: str
     sharing: _LoadSharing | None
 
     @property
-    def used(self) -> tuple[StiffnessOfTest, ...]:
+    def used(self) -> tuple[_StiffnessOfTest, ...]:
         """Tests whose EA count."""
         return tuple(one for one in self.tests if np.isfinite(one.spring_constant))
 
@@ -924,7 +924,7 @@ def _state(
     )
     found = stiffness_of_cycles(tests, low, high, slack_length=slack)
     said = tuple(
-        StiffnessOfTest(
+        _StiffnessOfTest(
             one.words, one.low, one.high, float(found.covered[place, 0]),
             float(found.test_spring_constant[place, 0]),
             float(found.test_standard_uncertainty[place, 0]),
@@ -995,7 +995,7 @@ _LITTLE = 0.1
 
 
 def _doubts_of_slope(
-    tests: Sequence[StiffnessOfTest], joined: float, least: float, greatest: float
+    tests: Sequence[_StiffnessOfTest], joined: float, least: float, greatest: float
 ) -> list[str]:
     """Why no EA is known of a cycle, or the curve does not have that of its tests."""
     if not np.isfinite(least):

@@ -581,7 +581,7 @@ def continued_tension(line: ExportLine, strain: ArrayLike) -> Floats:
 
 
 @dataclass(frozen=True)
-class StraightCycle:
+class _StraightCycle:
     """The straight line through the turns of a cycle, and the energy that is not in it.
 
     Parameters
@@ -614,7 +614,7 @@ class StraightCycle:
 _IN_A_CYCLE = 200
 
 
-def straight_cycle(line: ExportLine) -> StraightCycle | None:
+def straight_cycle(line: ExportLine) -> _StraightCycle | None:
     """The cycle of a line about its mean; None where none is known.
 
     Notes
@@ -640,7 +640,7 @@ def straight_cycle(line: ExportLine) -> StraightCycle | None:
         rate = 2 * np.pi * damping.frequency * amplitude * np.cos(phase)
         loop = continued_tension(line, mean + amplitude * np.sin(phase))
         reach = max(float(np.ptp(loop + damping.coefficient * rate)), float(np.ptp(turns)))
-        return StraightCycle(
+        return _StraightCycle(
             mean, float(turns.mean()), amplitude, reach / (2 * amplitude),
             damping.hysteresis_energy,
             f"{damping.frequency:.4g} Hz, strain {mean:.4g} +- {amplitude:.4g}",
@@ -651,7 +651,7 @@ def straight_cycle(line: ExportLine) -> StraightCycle | None:
     if part.mean_tension > tension[-1]:
         return None
     stiffness = part.apparent_stiffness
-    return StraightCycle(
+    return _StraightCycle(
         float(np.interp(part.mean_tension, tension, strain)), part.mean_tension,
         part.tension_amplitude / stiffness, stiffness,
         part.hysteresis_energy_at(part.frequency, part.tension_amplitude), part.holds,

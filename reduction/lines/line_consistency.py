@@ -58,7 +58,7 @@ _OF_ALL_COEFFICIENTS = 0.05
 
 @dataclass(frozen=True)
 @read_only_arrays
-class ConsistentValues:
+class _ConsistentValues:
     """A line at points, as printed and as it holds together; arrays have one shape (...).
 
     Parameters
@@ -108,7 +108,7 @@ class ConsistentValues:
 
 @dataclass(frozen=True)
 @read_only_arrays
-class RefittedSurface:
+class _RefittedSurface:
     """The coefficients of one column beside those that the other columns ask for.
 
     Parameters
@@ -149,7 +149,7 @@ def consistent_values(
     frequency: ArrayLike,
     mean_tension: ArrayLike,
     tension_amplitude: ArrayLike,
-) -> tuple[ConsistentValues, ...]:
+) -> tuple[_ConsistentValues, ...]:
     """A line at points by its surfaces, and K_1 and tau that hold with its K_ap and H.
 
     Parameters
@@ -161,7 +161,7 @@ def consistent_values(
 
     Returns
     -------
-    values : tuple of ConsistentValues
+    values : tuple of _ConsistentValues
         One for each slow pull; of an open coefficient the first of its values.
 
     Notes
@@ -230,7 +230,7 @@ def consistent_values(
                 if name in points
             }
         found.append(
-            ConsistentValues(
+            _ConsistentValues(
                 slow_pull=label,
                 of_surfaces=columns,
                 quasi_static_spring_constant=rest,
@@ -297,7 +297,7 @@ def _half_of_difference(parts: Sequence[tuple[Floats, _Part]]) -> Floats:
     )
 
 
-def refitted_surfaces(line: LineSource) -> tuple[RefittedSurface, ...]:
+def refitted_surfaces(line: LineSource) -> tuple[_RefittedSurface, ...]:
     """Printed K_1 and tau of a line against a quadratic through the solved ones.
 
     Parameters
@@ -307,7 +307,7 @@ def refitted_surfaces(line: LineSource) -> tuple[RefittedSurface, ...]:
 
     Returns
     -------
-    surfaces : tuple of RefittedSurface
+    surfaces : tuple of _RefittedSurface
         One for each slow pull and each of K_1 and tau that is printed; runs without a solution
         are left out, and nothing is fitted where too few are left.
 
@@ -347,7 +347,7 @@ def refitted_surfaces(line: LineSource) -> tuple[RefittedSurface, ...]:
             )
             error = surface.sigma * np.sqrt(np.diag(np.linalg.inv(terms.T @ terms)))
             found.append(
-                RefittedSurface(
+                _RefittedSurface(
                     quantity=name,
                     slow_pull=values.slow_pull,
                     printed=surface.coefficient,
@@ -410,7 +410,7 @@ def consistency_warnings(
     return tuple(found)
 
 
-def _of_surfaces(values: tuple[ConsistentValues, ...], name: str) -> tuple[str, ...]:
+def _of_surfaces(values: tuple[_ConsistentValues, ...], name: str) -> tuple[str, ...]:
     """Of the points where K_1 or tau is apart by every slow pull, the worst."""
     if not values:
         return ()
@@ -433,7 +433,7 @@ def _of_surfaces(values: tuple[ConsistentValues, ...], name: str) -> tuple[str, 
     )
 
 
-def _of_points(values: tuple[ConsistentValues, ...]) -> tuple[str, ...]:
+def _of_points(values: tuple[_ConsistentValues, ...]) -> tuple[str, ...]:
     """Of the points that are impossible by every slow pull, the worst."""
     if not values or not np.all([one.is_impossible for one in values], axis=0).any():
         return ()
@@ -459,7 +459,7 @@ def _of_points(values: tuple[ConsistentValues, ...]) -> tuple[str, ...]:
 
 
 def column_warnings(
-    line: LineSource, name: str, refits: tuple[RefittedSurface, ...]
+    line: LineSource, name: str, refits: tuple[_RefittedSurface, ...]
 ) -> tuple[str, ...]:
     """A column that is wrong by every slow pull."""
     own = [one for one in refits if one.quantity == name]

@@ -36,7 +36,7 @@ TESTED_IN = ("medium", "soak", "temperature")
 
 @dataclass(frozen=True)
 @read_only_arrays
-class LevelPoints:
+class _LevelPoints:
     """Tested levels at points; arrays have the shape (n_points,), contributions a row per error.
 
     ``low`` and ``high`` are of one more test, NaN where a level has a single one; ``notes`` name
@@ -205,7 +205,7 @@ def _scaled(levels: LineLevels, at: Floats) -> Floats:
     return np.where(_is_log(levels), np.log(np.where(_is_log(levels), at, 1.0)), at)
 
 
-def evaluate_levels(levels: LineLevels, at: Floats, name: str) -> LevelPoints:
+def evaluate_levels(levels: LineLevels, at: Floats, name: str) -> _LevelPoints:
     """Value at points, of a tested level or between two of them.
 
     Parameters
@@ -219,7 +219,7 @@ def evaluate_levels(levels: LineLevels, at: Floats, name: str) -> LevelPoints:
 
     Returns
     -------
-    points : LevelPoints
+    points : _LevelPoints
         [unit of the quantity]
 
     Raises
@@ -275,7 +275,7 @@ def evaluate_levels(levels: LineLevels, at: Floats, name: str) -> LevelPoints:
             needed=f"one of the {len(known)} tested levels; the nearest is {near.words}",
             hint="`--list` shows every level; nothing is extrapolated, not even flagged.",
         )
-    return LevelPoints(**out, contribution=rows, notes=tuple(dict.fromkeys(said)))
+    return _LevelPoints(**out, contribution=rows, notes=tuple(dict.fromkeys(said)))
 
 
 def _distance(levels: LineLevels, a: Floats, b: Floats) -> float:

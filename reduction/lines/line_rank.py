@@ -29,7 +29,7 @@ _CLOSE = 1e-6
 
 
 @dataclass(frozen=True)
-class LevelOutside:
+class _LevelOutside:
     """A level that was not tested, and the end of the tested range that it is beyond, in SI."""
 
     name: str
@@ -39,7 +39,7 @@ class LevelOutside:
 
 
 @dataclass(frozen=True)
-class RankedLine:
+class _RankedLine:
     """A line at its place.
 
     ``ties`` name the lines whose 95 % intervals overlap its own, of the lines that were tested;
@@ -51,17 +51,17 @@ class RankedLine:
     values: DesignValues
     ties: tuple[str, ...]
     kind_ties: tuple[str, ...] | None
-    outside: tuple[LevelOutside, ...]
+    outside: tuple[_LevelOutside, ...]
 
 
 @dataclass(frozen=True)
-class LineRanking:
+class _LineRanking:
     """Lines from the least value to the greatest, and those that have no place, with the reason.
 
     ``errata`` are those of sentences of a report that order some of these lines.
     """
 
-    ranked: tuple[RankedLine, ...]
+    ranked: tuple[_RankedLine, ...]
     left_out: tuple[tuple[str, str], ...]
     errata: tuple[Erratum, ...]
 
@@ -73,7 +73,7 @@ def rank_lines(
     *,
     branch: Branch | None = None,
     extrapolate: Literal["refuse", "flag"] = "refuse",
-) -> LineRanking:
+) -> _LineRanking:
     """Order lines by a quantity at one load.
 
     Parameters
@@ -91,7 +91,7 @@ def rank_lines(
 
     Returns
     -------
-    ranking : LineRanking
+    ranking : _LineRanking
         A line is left out where it was not tested, or where the load is above what its source
         allows: no choice.
 
@@ -105,7 +105,7 @@ def rank_lines(
     Figure 4 of [1]_ as numbers.  Two lines tie where their intervals have a value in common, which
     is more cautious than the interval of their difference.
     """
-    found: list[tuple[LineSource, DesignValues, tuple[LevelOutside, ...]]] = []
+    found: list[tuple[LineSource, DesignValues, tuple[_LevelOutside, ...]]] = []
     left_out: list[tuple[str, str]] = []
     for line, at in zip(lines, levels, strict=True):
         try:
@@ -128,12 +128,12 @@ def rank_lines(
         )  # fmt: skip
     found.sort(key=lambda one: float(one[1].value))
     ranked = tuple(
-        RankedLine(
+        _RankedLine(
             line, values, _ties(place, found, "surface") or (), _ties(place, found, "line"), outside
         )
         for place, (line, values, outside) in enumerate(found)
     )
-    return LineRanking(
+    return _LineRanking(
         ranked, tuple(left_out), _told_otherwise([one for one, *_ in found], quantity)
     )
 
@@ -148,7 +148,7 @@ def _reason(error: ReductionError) -> str:
     return "; ".join(part for part in parts if part)
 
 
-def _outside(line: LineSource, quantity: str, at: Mapping[str, float]) -> tuple[LevelOutside, ...]:
+def _outside(line: LineSource, quantity: str, at: Mapping[str, float]) -> tuple[_LevelOutside, ...]:
     """Levels just outside the box of a surface; none where one is farther off than that."""
     surface = line.surfaces.get(quantity)
     if surface is None:
@@ -164,7 +164,7 @@ def _outside(line: LineSource, quantity: str, at: Mapping[str, float]) -> tuple[
             return ()
         is_below = at[name] < low
         found.append(
-            LevelOutside(
+            _LevelOutside(
                 name, at[name], low if is_below else high, "below" if is_below else "above"
             )
         )
@@ -173,7 +173,7 @@ def _outside(line: LineSource, quantity: str, at: Mapping[str, float]) -> tuple[
 
 def _ties(
     place: int,
-    found: Sequence[tuple[LineSource, DesignValues, tuple[LevelOutside, ...]]],
+    found: Sequence[tuple[LineSource, DesignValues, tuple[_LevelOutside, ...]]],
     which: Literal["surface", "line"],
 ) -> tuple[str, ...] | None:
     """Other lines whose intervals overlap; None where there is no interval."""
@@ -216,12 +216,12 @@ def _is_row(row: str, line: LineSource) -> bool:
     return size is not None and abs(size * _INCH - line.diameter) < _CLOSE
 
 
-def outside_words(found: LevelOutside, unit: str, factor: float) -> str:
+def outside_words(found: _LevelOutside, unit: str, factor: float) -> str:
     """A level that was not tested, in words.
 
     Examples
     --------
-    >>> outside_words(LevelOutside("tension_amplitude", 1600.0, 1680.0, "below"), "lbf", 1.0)
+    >>> outside_words(_LevelOutside("tension_amplitude", 1600.0, 1680.0, "below"), "lbf", 1.0)
     'tension amplitude 1,600 lbf, below the 1,680 lbf that it was tested from'
     """
     value, end = (plain_number(factor * one, 4) for one in (found.value, found.end))

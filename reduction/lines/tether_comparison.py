@@ -41,7 +41,7 @@ _TABLES = ("consolidated", "raw")
 
 
 @dataclass(frozen=True)
-class ComparedTethers:
+class _ComparedTethers:
     """Two windows of one table.
 
     Parameters
@@ -99,7 +99,7 @@ def _marked_line(tether: PublishedTether) -> _MarkedLine:
     )
 
 
-def compared_tethers(first: LineSource, second: LineSource) -> ComparedTethers | None:
+def compared_tethers(first: LineSource, second: LineSource) -> _ComparedTethers | None:
     """Two published windows out of one table.
 
     Parameters
@@ -109,7 +109,7 @@ def compared_tethers(first: LineSource, second: LineSource) -> ComparedTethers |
 
     Returns
     -------
-    pair : ComparedTethers or None
+    pair : _ComparedTethers or None
         None where one of them is no published tether, or both are and no table has both whole.
 
     Examples
@@ -139,7 +139,7 @@ def _rows(name: str, data: str) -> list[TetherSegment]:
     ]
 
 
-def _pair(first: str, second: str, data: str) -> ComparedTethers:
+def _pair(first: str, second: str, data: str) -> _ComparedTethers:
     table = TABLE_OF_DATA[data]
     sources = []
     told = [f"both moduli are of Table {table} of WHOI-2005-10"]
@@ -161,7 +161,7 @@ def _pair(first: str, second: str, data: str) -> ComparedTethers:
         )
     one, other = sources
     told += [*_over_common_strain(one, other, f"Table {table}"), *_other_table(first, second, data)]
-    return ComparedTethers(one, other, tuple(told))
+    return _ComparedTethers(one, other, tuple(told))
 
 
 def _by_marks(tether: PublishedTether, source: LineSource) -> LineSource:

@@ -53,7 +53,7 @@ _MANY, _LONG = 12, 40
 
 
 @dataclass(frozen=True)
-class FigureFiles:
+class _FigureFiles:
     """What was written of one figure, and how it is spoken of on a page."""
 
     row: FigureRow
@@ -70,7 +70,7 @@ def units_of_report(report: str, asked: str | None) -> UnitSystem:
     return "us" if asked == "us" else "si"
 
 
-def write_figure(figure: ReportFigure, folder: Path, units: UnitSystem) -> FigureFiles:
+def write_figure(figure: ReportFigure, folder: Path, units: UnitSystem) -> _FigureFiles:
     """Write SVG, PNG and CSV of one figure.
 
     Raises
@@ -102,7 +102,7 @@ def write_figure(figure: ReportFigure, folder: Path, units: UnitSystem) -> Figur
             part.write_bytes(contents[path.suffix[1:]])
     labels = "; ".join(filter(None, (scale.label for scale in scales)))
     names = ", ".join(one.name for one in figure.series)
-    return FigureFiles(
+    return _FigureFiles(
         figure.row, slug, base64.b64encode(contents["svg"]).decode(),
         f"{figure.row.shows}. Axes: {labels}. Drawn: {names}.", paths,
     )  # fmt: skip
@@ -110,7 +110,7 @@ def write_figure(figure: ReportFigure, folder: Path, units: UnitSystem) -> Figur
 
 def write_page(
     report: str,
-    drawn: Sequence[FigureFiles],
+    drawn: Sequence[_FigureFiles],
     rows: Sequence[FigureRow],
     folder: Path,
     campaign: str,

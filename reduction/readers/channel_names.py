@@ -116,7 +116,7 @@ class SeenColumn:
 
 
 @dataclass(frozen=True)
-class Proposal:
+class _Proposal:
     """Channels as lines of TOML, whether any was found, and what is a guess in them."""
 
     lines: tuple[str, ...]
@@ -295,7 +295,7 @@ def _are_one_signal(one: SeenColumn, other: SeenColumn) -> bool:
     return bool(np.corrcoef(a, b)[0, 1] > _SAME)
 
 
-def propose_channels(columns: Sequence[SeenColumn]) -> Proposal:
+def propose_channels(columns: Sequence[SeenColumn]) -> _Proposal:
     """Lines of a layout's ``channels`` table for the columns of a log."""
     lines: list[str] = []
     keys: list[str] = []
@@ -367,7 +367,7 @@ def propose_channels(columns: Sequence[SeenColumn]) -> Proposal:
         for column in columns
         if column.number not in used
     ]
-    return Proposal(tuple(lines), tuple(keys), tuple(remarks))
+    return _Proposal(tuple(lines), tuple(keys), tuple(remarks))
 
 
 _STILL = 0.01  # of the seen range of a channel: it is at rest within it

@@ -36,7 +36,7 @@ def read_json(path: Path, layout: Layout, *, name: str, watch: Watch | None = No
     raw, content = json_content(path, watch, layout.encoding)
     setting = "matrix" if layout.matrix else "group"
     place = layout.matrix or layout.group
-    table = json_table(path, _entry(path, content, place, setting), place, content, layout)
+    table = _json_table(path, _entry(path, content, place, setting), place, content, layout)
     for wanted in declared_columns(layout):
         channel = layout.channels.get(wanted.key)
         if channel is not None and channel.unit_key:
@@ -55,7 +55,7 @@ def read_json(path: Path, layout: Layout, *, name: str, watch: Watch | None = No
     )
 
 
-def json_table(path: Path, rows: Any, place: str, content: Any, layout: Layout) -> ColumnTable:
+def _json_table(path: Path, rows: Any, place: str, content: Any, layout: Layout) -> ColumnTable:
     """Columns of what stands in one place of a JSON log; they are numbers once they are loaded."""
     where = f"'{place}'" if place else "the file"
     if isinstance(rows, dict) or (isinstance(rows, list) and rows and isinstance(rows[0], dict)):

@@ -43,7 +43,7 @@ class RenderedSection:
 
     key: str
     title: str
-    text: str | StoredText
+    text: str | _StoredText
 
     @property
     def html(self) -> str:
@@ -72,7 +72,7 @@ class ScratchTexts:
         content = section.html.encode()
         self._file.seek(self._end)
         self._file.write(content)
-        found = StoredText(self, self._end, len(content))
+        found = _StoredText(self, self._end, len(content))
         self._end += len(content)
         return replace(section, text=found)
 
@@ -83,7 +83,7 @@ class ScratchTexts:
 
 
 @dataclass(frozen=True)
-class StoredText:
+class _StoredText:
     """One of the texts on disk."""
 
     scratch: ScratchTexts

@@ -78,7 +78,7 @@ def last_motion(place: Floats, band: float) -> Motion | None:
 
 
 @dataclass(frozen=True)
-class Approach:
+class _Approach:
     """An approach to a standstill.
 
     Parameters
@@ -98,7 +98,7 @@ class Approach:
 
 def find_approach(
     time: Floats, values: Floats, *, begin: int, first: int, last: int, noise_range: float
-) -> Approach | None:
+) -> _Approach | None:
     """Where a channel that comes to a stand ends its approach and begins to settle.
 
     Parameters
@@ -114,7 +114,7 @@ def find_approach(
 
     Returns
     -------
-    approach : Approach or None
+    approach : _Approach or None
         None where noise hides it or the record does not show it.
 
     Raises
@@ -184,7 +184,7 @@ def find_approach(
     stop = int(np.searchsorted(time[: last + 1], latest + chord, side="right")) + 1
     known = away + 1 + np.flatnonzero(np.isfinite(values[away + 1 : min(stop, last) + 1]))
     if known.size < 2:
-        return Approach(min(away + 1, first), motion.reach, rate)
+        return _Approach(min(away + 1, first), motion.reach, rate)
     seconds, left = time[known], motion.sign * (values[known] - level)
     ahead = np.maximum(np.searchsorted(seconds, seconds + chord), np.arange(known.size) + 1)
     ahead = np.minimum(ahead, known.size - 1)
@@ -192,7 +192,7 @@ def find_approach(
     slow = left - left[ahead] < SLOW_SHARE * rate * passed
     slow &= (passed > 0) & (seconds <= latest)
     end = int(known[np.argmax(slow)]) if slow.any() else first
-    return Approach(_at_corner(time, values, end, start, last, chord, rate), motion.reach, rate)
+    return _Approach(_at_corner(time, values, end, start, last, chord, rate), motion.reach, rate)
 
 
 def _at_corner(

@@ -52,12 +52,12 @@ _ALPHA = 0.22
 _SLACK = "rgba(140,140,140,0.16)"
 
 
-def percent(view: HoseView) -> Floats:
+def _percent(view: HoseView | ComparisonView) -> Floats:
     """Strains of a hose as shown."""
     return 100 * view.array("strain")
 
 
-def strain_axis(**more: Any) -> dict[str, Any]:
+def _strain_axis(**more: Any) -> dict[str, Any]:
     """Return the axis that all figures of a hose share."""
     return axis("strain of the hose [%]", **more)
 
@@ -173,7 +173,7 @@ def draw_chart(view: HoseView) -> list[Figure]:
             f" {np.degrees(NEUTRAL_ANGLE):.2f} degrees it is so at first. Geometry of a long hose"
             " of constant volume, without load.",
             data, synthetic=view.is_synthetic, height=480, is_wide=True,
-            xaxis=strain_axis(range=[0, 104 * last]), yaxis=axis("strain of the cords [%]"),
+            xaxis=_strain_axis(range=[0, 104 * last]), yaxis=axis("strain of the cords [%]"),
         )
     )  # fmt: skip
 
@@ -181,7 +181,7 @@ def draw_chart(view: HoseView) -> list[Figure]:
 def draw_limits(view: HoseView) -> list[Figure]:
     """Draw spacing of the cords and bore, each only where its limit is near or stated."""
     figures: list[Figure] = []
-    strain, diameter = percent(view), view.scalar("cord_diameter")
+    strain, diameter = _percent(view), view.scalar("cord_diameter")
     ratio = view.array("cord_spacing") / diameter
     small = shown("small length", view.units)
     if np.nanmin(ratio) < _NEAR:
@@ -217,7 +217,7 @@ def _limit(
             line(strain, values, name=title.lower(), colour=NET, width=2.4),
             line(strain[[0, -1]], np.full(2, limit), name=words, colour=CORDS, dash="dash"),
         ],
-        synthetic=view.is_synthetic, height=360, xaxis=strain_axis(), yaxis=axis(label),
+        synthetic=view.is_synthetic, height=360, xaxis=_strain_axis(), yaxis=axis(label),
     )  # fmt: skip
 
 
@@ -255,7 +255,7 @@ _KINK = (
 def draw_tension(view: HoseView) -> list[Figure]:
     """Draw tension against strain, what carries it, and what happens on the way."""
     force = shown("tension", view.units)
-    strain, tension = percent(view), view.array("tension")
+    strain, tension = _percent(view), view.array("tension")
     spread = view.array_like("tension_standard_uncertainty", tension)
     # no tension, no share of it
     cords = np.where(tension == 0, 0.0, tension * view.array("cord_share"))
@@ -285,7 +285,7 @@ def draw_tension(view: HoseView) -> list[Figure]:
             f"{about}Safe working load: a cord carries its working share of its break"
             f" load.{grey}{_STATIC}",
             data, synthetic=view.is_synthetic, height=460, is_wide=True,
-            xaxis=strain_axis(), yaxis=axis(force.label("tension"), rangemode="tozero"),
+            xaxis=_strain_axis(), yaxis=axis(force.label("tension"), rangemode="tozero"),
             **_slack_zone(view),
         )
     )  # fmt: skip
@@ -294,7 +294,7 @@ def draw_tension(view: HoseView) -> list[Figure]:
 def draw_pressure(view: HoseView) -> list[Figure]:
     """Draw fill pressure against strain."""
     unit = shown("stress", view.units)
-    strain, pressure = percent(view), view.array("fill_pressure")
+    strain, pressure = _percent(view), view.array("fill_pressure")
     spread = view.array_like("fill_pressure_standard_uncertainty", pressure)
     data: list[Trace] = []
     if view.sources:
@@ -308,7 +308,7 @@ def draw_pressure(view: HoseView) -> list[Figure]:
             "Pressure in the bore of a closed hose above that outside, caused by the cords; zero"
             f" while they are slack and in an open hose.{about}",
             data, synthetic=view.is_synthetic, height=400,
-            xaxis=strain_axis(), yaxis=axis(unit.label("fill pressure"), rangemode="tozero"),
+            xaxis=_strain_axis(), yaxis=axis(unit.label("fill pressure"), rangemode="tozero"),
             **_slack_zone(view),
         )
     )  # fmt: skip
@@ -324,7 +324,7 @@ def draw_budget(view: HoseView) -> list[Figure]:
     if not kept.any():
         return []
     names, share = _largest(view.sources, 100 * variance[:, kept] / total[kept])
-    strain = percent(view)[kept]
+    strain = _percent(view)[kept]
     return _kept_figure(
         make_figure(
             f"{view.key}-budget", f"Where the uncertainty of tension comes from, hose {view.name}",
@@ -336,7 +336,7 @@ def draw_budget(view: HoseView) -> list[Figure]:
                 )
                 for index, (name, row) in enumerate(zip(names, share, strict=True))
             ],
-            synthetic=view.is_synthetic, height=400, xaxis=strain_axis(),
+            synthetic=view.is_synthetic, height=400, xaxis=_strain_axis(),
             yaxis=axis("share of the variance [%]", range=[0, 100]),
         )
     )  # fmt: skip
@@ -361,7 +361,7 @@ def draw_all_hoses(views: Sequence[HoseView]) -> list[Figure]:
     force = shown("tension", views[0].units)
     data: list[Trace] = []
     for index, view in enumerate(views):
-        strain, tension = percent(view), view.array("tension")
+        strain, tension = _percent(view), view.array("tension")
         name = f"{view.name}, {DEGREES.factor * view.wrap_angle:.4g} deg"
         if view.sources:
             spread = view.array_like("tension_standard_uncertainty", tension)
@@ -399,7 +399,7 @@ def draw_all_hoses(views: Sequence[HoseView]) -> list[Figure]:
             f"Net tension against strain of the whole length, events marked.{about}"
             " The hoses need not share a cord or a cross section." + _STATIC,
             data, synthetic=any(view.is_synthetic for view in views), height=480, is_wide=True,
-            xaxis=strain_axis(), yaxis=axis(force.label("tension"), rangemode="tozero"),
+            xaxis=_strain_axis(), yaxis=axis(force.label("tension"), rangemode="tozero"),
         )
     )  # fmt: skip
 
@@ -658,14 +658,6 @@ def _tensions(views: Sequence[ComparisonView], names: Sequence[str], force: Show
             )
         )  # fmt: skip
     return data
-
-
-def _percent(view: ComparisonView) -> Floats:
-    return 100 * view.array("strain")
-
-
-def _strain_axis() -> dict[str, Any]:
-    return axis("strain of the hose [%]")
 
 
 def _measured(view: ComparisonView, curve: str, force: Shown) -> Trace:

@@ -49,7 +49,7 @@ _MOST_CORNERS = 0.8  # of the turns of a wave
 _BESIDE = 3  # samples on either side of a turn by which lines cross
 
 
-def excess_of_greatest(below: ArrayLike) -> float:
+def _excess_of_greatest(below: ArrayLike) -> float:
     r"""Mean of the greatest of normal readings whose levels lie below the highest.
 
     .. math:: E \max_j (z_j - d_j)
@@ -77,7 +77,7 @@ def excess_of_greatest(below: ArrayLike) -> float:
     --------
     Of two readings of one level 1 / sqrt(pi) = 0.5642, of three 3 / (2 sqrt(pi)) = 0.8463:
 
-    >>> print(round(excess_of_greatest([0, 0]), 4), round(excess_of_greatest([0, 0, 0]), 4))
+    >>> print(round(_excess_of_greatest([0, 0]), 4), round(_excess_of_greatest([0, 0, 0]), 4))
     0.5642 0.8463
     """
     distance = np.asarray(below, dtype=np.float64)
@@ -159,12 +159,12 @@ def noise_in_extreme(
         terms = np.stack([np.ones(place.size), *sides, *(one**2 for one in sides)], axis=1)
         beside = place != 0
         shape = terms @ np.linalg.lstsq(terms[beside], mean[beside], rcond=None)[0]
-        return noise * excess_of_greatest((shape.max() - shape) / noise)
+        return noise * _excess_of_greatest((shape.max() - shape) / noise)
     step = float(mean.max() - min(mean[0], mean[-1])) / reach
     width = min(int(_SMOOTHED * noise / step) if step > 0 else reach, reach) // 2 * 2 + 1
     padded = np.pad(mean, width // 2, mode="edge")
     shape = np.convolve(padded, np.full(width, 1 / width), mode="valid")
-    return noise * excess_of_greatest((shape.max() - shape) / noise)
+    return noise * _excess_of_greatest((shape.max() - shape) / noise)
 
 
 Turn = Literal["sharp", "hidden", "rounded"]

@@ -92,7 +92,7 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
 
 
 @dataclass(frozen=True)
-class LevelAtEnd:
+class _LevelAtEnd:
     """A series at the end of its ramp.
 
     Parameters
@@ -111,7 +111,7 @@ class LevelAtEnd:
 
 def level_at_end(
     since: Floats, values: Floats, *, noise: float, shortest: float = 0.0
-) -> LevelAtEnd:
+) -> _LevelAtEnd:
     """A series at time zero, of the longest line through its first samples that it follows.
 
     Parameters
@@ -127,7 +127,7 @@ def level_at_end(
 
     Returns
     -------
-    level : LevelAtEnd
+    level : _LevelAtEnd
         Of the mean where there are fewer than three samples. [unit of the series]
 
     Raises
@@ -153,11 +153,11 @@ def level_at_end(
     """
     n_samples = min(since.size, MOST_ON_LINE)
     if n_samples < FEWEST_ON_LINE:
-        return LevelAtEnd(float(np.mean(values[:n_samples])), noise, 0.0, n_samples)
+        return _LevelAtEnd(float(np.mean(values[:n_samples])), noise, 0.0, n_samples)
     origin = float(values[0])
     x, y = since[:n_samples], values[:n_samples] - origin
     sums = [np.cumsum(one) for one in (x, y, x * x, x * y, y * y)]
-    found: list[LevelAtEnd] = []
+    found: list[_LevelAtEnd] = []
     count = min(max(FEWEST_ON_LINE, int(np.searchsorted(x, shortest))), n_samples)
     while True:
         sx, sy, sxx, sxy, syy = (float(one[count - 1]) for one in sums)
@@ -175,13 +175,13 @@ def level_at_end(
             back = found[-1 - _STEPS_BACK :] if len(found) > _STEPS_BACK else found
             chosen = next(one for one in back if one.standard_uncertainty <= largest)
             break
-        chosen = LevelAtEnd(value, spread, slope, count)
+        chosen = _LevelAtEnd(value, spread, slope, count)
         found.append(chosen)
         if count == n_samples:
             break
         count = min(int(np.ceil(_GROWTH * count)), n_samples)
     bias = found[-1].value - chosen.value
-    return LevelAtEnd(
+    return _LevelAtEnd(
         origin + chosen.value,
         float(np.hypot(chosen.standard_uncertainty, bias)),
         chosen.slope,
