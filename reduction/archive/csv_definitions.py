@@ -20,36 +20,30 @@ ERROR = (
 )  # fmt: skip
 """Columns that say which error a row is of."""
 
+# those of curves, a row for each error and each place of a grid, stay in the archives alone
 _FILES = {
     ("specimen",): "shared_errors",
     ("specimen", "branch_name", "segment"): "shared_errors_segments",
-    ("specimen", "branch_name", "strain_bin"): "shared_errors_curves",
-    ("specimen", "branch_name", "first_loading_strain_bin"): "shared_errors_first_loading",
     ("specimen", "strain_level"): "shared_errors_stress",
-    ("specimen", "tension_grid"): "shared_errors_slow_pull",
     ("specimen", "break_share"): "shared_errors_break_share",
     ("specimen", "pull_term"): "shared_errors_cubic",
     ("hold",): "shared_errors_holds",
-    ("hold", "hold_time"): "shared_errors_hold_times",
     ("hold", "prony_term"): "shared_errors_prony",
     ("held_pair",): "shared_errors_static_stiffness",
     ("interval",): "shared_errors_stepwise",
     ("step",): "shared_errors_weights",
     ("slip",): "shared_errors_slips",
     ("elastomer_parameter",): "shared_errors_elastomer",
-    ("comparison", "branch_name", "ratio_strain_bin"): "shared_errors_ratios",
 }
 
 # whose they are, where a row of the table itself would not say
 _LABELS_OF = {
     ("hold",): ("specimen=hold_specimen", "hold_number"),
-    ("hold", "hold_time"): ("specimen=hold_specimen", "hold_number"),
     ("hold", "prony_term"): ("specimen=hold_specimen", "hold_number"),
     ("held_pair",): ("specimen=held_pair_specimen",),
     ("slip",): ("specimen=slip_specimen", "slip_cycle"),
     ("step",): ("clock",),
     ("elastomer_parameter",): ("elastomer_parameter_fit", "elastomer_parameter_name"),
-    ("comparison", "branch_name", "ratio_strain_bin"): ("ratio_numerator", "ratio_denominator"),
 }
 
 

@@ -122,6 +122,7 @@ class ReadOnce:
 
     def __init__(self) -> None:
         self._kept: dict[Path, tuple[tuple[int, ...], xr.Dataset]] = {}
+        self._sizes: dict[Path, int] = {}  # bytes, which take long to add up
 
     @contextmanager
     def __call__(self, path: Path) -> Iterator[xr.Dataset]:
@@ -135,6 +136,7 @@ class ReadOnce:
                     return
                 _freeze(archive.load())
             self._kept[path] = stamp, archive
+            self._sizes[path] = archive.nbytes
         yield self._kept[path][1].copy()
 
     def keep(self, path: Path, written: xr.Dataset) -> None:
@@ -144,11 +146,14 @@ class ReadOnce:
         found = _as_read(written)
         _freeze(found)
         self._kept[path] = _stamp_of(path), found
+        self._sizes[path] = found.nbytes
 
     def _has_room(self, archive: xr.Dataset) -> bool:
         """Whether it is kept; pass after pass over many finds those that were there first."""
-        room = _ROOM - sum(other.nbytes for _, other in self._kept.values())
-        return len(self._kept) < _MOST and archive.nbytes <= min(LARGEST, room)
+        if len(self._kept) >= _MOST:
+            return False
+        room = _ROOM - sum(self._sizes[path] for path in self._kept)
+        return archive.nbytes <= min(LARGEST, room)
 
 
 def keep_written(opener: Opener, path: Path, written: xr.Dataset) -> None:

@@ -118,6 +118,11 @@ def _over_pages(
     return list(pages)
 
 
+_SEGMENTS_ELSEWHERE = (
+    "The straight-line segments of each test are in its section and in tables/moduli.csv."
+)
+
+
 def _write_pages(
     content: Page,
     sections: Sequence[RenderedSection],
@@ -142,7 +147,12 @@ def _write_pages(
         links = [
             link for name, page in zip(names, pages, strict=True) for link in _links(page, name)
         ]
-        text = render_page(replace(content, links=links, beside=beside))
+        content = replace(content, links=links, beside=beside)
+        text = render_page(content)
+        if content.segments is not None and len(text.encode("utf-8")) > most_in_all:
+            # of many tests they are the largest table, and each has its own in its section
+            about = (*content.about, _SEGMENTS_ELSEWHERE)
+            text = render_page(replace(content, segments=None, about=about))
     write_text_atomically(index, text)
     for path in out.iterdir():
         if _is_page_of_tests(path.name) and path not in kept:

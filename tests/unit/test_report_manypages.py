@@ -1,11 +1,13 @@
 """A campaign of more tests than one page has room for has pages beside it."""
 
 import re
+from dataclasses import replace
 
 import pytest
 
 from reduction.report.campaign_page import _over_pages, _write_pages
 from reduction.report.page_template import Page, RenderedSection
+from reduction.report.text_style import PageTable, TableCell
 
 CONTENT = Page(
     title="Many <tests>", campaign="many", summary="", about=["Units: SI."], tiles=(), faults=(),
@@ -98,3 +100,16 @@ def test_sections_that_have_room_together_but_not_beside_the_rest_stand_on_a_pag
     # nothing is gained where there is no section to move
     assert _write_pages(CONTENT, [], tmp_path / "none", most_in_all=1).exists()
     assert not (tmp_path / "none" / "tests-01.html").exists()
+
+
+def test_segments_of_many_tests_are_left_to_the_section_of_each(tmp_path):
+    row = (TableCell("T-1"), TableCell("1.2"))
+    pieces, other = (
+        PageTable(name, ("test", "E"), (row,) * 40) for name in ("straight pieces", "all tests")
+    )
+    content = replace(CONTENT, has_tests=True, segments=pieces, specimens=other, tests=other)
+    page = _write_pages(content, sections(3), tmp_path, most=250)
+    assert "straight pieces" in page.read_text()
+    short = _write_pages(content, sections(3), tmp_path, most=250, most_in_all=100).read_text()
+    assert "straight pieces" not in short and "all tests" in short
+    assert "The straight-line segments of each test are in its section" in short

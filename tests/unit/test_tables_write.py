@@ -13,7 +13,7 @@ from reduction.archive.csv_tables import (
     STATIC_DYNAMIC_COLUMNS,
     write_tables,
 )
-from reduction.archive.shared_errors import SHARED_OF_CHANNELS
+from reduction.archive.shared_errors import SHARED, SHARED_OF_CHANNELS
 from reduction.archive.surfaces_dataset import surfaces_to_dataset
 from reduction.archive.write import write_archive
 from reduction.quantities.names import QUANTITIES, RESPONSES, TEST_SCHEMA
@@ -124,6 +124,9 @@ def test_every_number_of_an_archive_but_the_samples_is_in_a_table():
         "stretched_diameter_strain", "standstill_position_tolerance", "slack_tension",
         "hold_tension_tolerance",
         *(f"{name}_uncertainty_contribution" for name in SHARED_OF_CHANNELS),
+        # what an error does to each place of a curve
+        *(f"{name}_uncertainty_contribution" for name, dims in SHARED.items()
+          if {"strain_bin", "first_loading_strain_bin", "ratio_strain_bin", "hold_time", "tension_grid"} & set(dims)),
     }  # fmt: skip
     missing = {
         name
