@@ -57,8 +57,8 @@ from reduction.record.samples import (
 )
 from reduction.record.settings import CycleSettings, ReductionSettings
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.cycles.cycle_search import label_phases
-from reduction.stages.cycles.loop_sense import notes_of_loops
+from reduction.stages.cycles.cycle_search import control_channel, label_phases
+from reduction.stages.cycles.loop_sense import notes_of_loops, waveform_of_log
 from reduction.stages.holds.relaxation_and_creep import HoldResult, reduce_holds
 from reduction.stages.moduli.modulus_product import ModulusCurves
 from reduction.stages.moduli.slack_length import slack_crossings, slack_strain_at_unloading
@@ -788,6 +788,17 @@ def _no_hold(standstills: Standstills, settings: ReductionSettings) -> Note:
     )  # fmt: skip
 
 
+def _with_waveform_of_log(settings: ReductionSettings, located: Located) -> ReductionSettings:
+    """Take a wave that is neither a triangle nor a sine as what it is, whatever is stated."""
+    cycles = located.cycles
+    if cycles is None or not cycles.n_cycles:
+        return settings
+    driven = control_channel(located.position, located.tension, settings.cycles)
+    if waveform_of_log(located.record.time, driven, cycles) != "other":
+        return settings
+    return replace(settings, cycles=replace(settings.cycles, waveform="other"))
+
+
 def reduce_test(
     located: Located,
     *,
@@ -844,6 +855,7 @@ def reduce_test(
     """
     record, standstills, cycles = located.record, located.standstills, located.cycles
     position, tension = located.position, located.tension
+    settings = _with_waveform_of_log(settings, located)
     phase = label_phases(record.time, standstills=standstills, cycles=cycles)
     strain = strain_of_record(record, position, tension, models)
     instruments = _with_drift_of_zero(located, instruments)

@@ -1422,7 +1422,15 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "waveform-not-as-stated": (
         "warning",
-        "the stated waveform is {stated}, but that of the log is {found}. Check waveform",
+        lambda stated, found: (
+            f"the stated waveform is {stated}, but that of the log is"
+            + (
+                " neither a triangle nor a sine, and its loops are reduced as those of waveform ="
+                ' "other". State it'
+                if found == "other"
+                else f" {found}. Check waveform"
+            )
+        ),
     ),
     "gauge-against-length": (
         "warning",

@@ -16,17 +16,13 @@ from reduction.record.measurement import Bools, Floats, Integers, read_only_arra
 from reduction.record.samples import finite_extremes, take_samples
 from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.cycle_search import find_reversals
+from reduction.stages.cycles.loop_sense import waveform_of_log
 from reduction.stages.load_at_slack import stands_at_slack_length
 from reduction.stages.standstills import Standstills
 
 _MOST_CYCLES = 40  # that are looked at, spread over the test
 
 _MOST_POINTS = 4000  # of a record without cycles
-
-_SHAPES = {"triangular": 1 / np.sqrt(3), "sinusoidal": 1 / np.sqrt(2)}
-"""Root mean square over half the range. [1]"""
-
-_LIKE, _UNLIKE = 0.04, 0.09  # of such a shape
 
 
 @dataclass(frozen=True)
@@ -164,14 +160,12 @@ def levels_of_test(
             rates = np.abs(rise) / (take_samples(time, peak) - take_samples(time, valley))
         rates = rates[np.isfinite(rates)]
         speed = float(np.median(rates)) if rates.size else np.nan
-        shapes = []
         for index, load in enumerate(tension):
             rows = [_of_cycle(time, position, load, int(cycles.first[one]), int(cycles.last[one]))
                     for one in some]  # fmt: skip
-            known = np.array([row[:3] for row in rows if np.isfinite(row[:3]).all()])
+            known = np.array([row for row in rows if np.isfinite(row).all()])
             if known.size:
                 mean[index], amplitude[index], lead[index] = np.median(known, axis=0)
-            shapes += [row[4 if control == "load" else 3] for row in rows]
         middles = (take_samples(position, valley) + take_samples(position, peak)) / 2
         if control == "position" and not _rests_after(standstills, int(cycles.last[-1])):
             like = _alike(middles, rise)
@@ -180,14 +174,7 @@ def levels_of_test(
             _mean_ramp(load, cycles, some, None if control == "load" else middles)
             for load in tension
         ])  # fmt: skip
-        shapes = [one for one in shapes if np.isfinite(one)]
-        shape = float(np.median(shapes)) if shapes else np.nan
-        far = {name: abs(shape - known) for name, known in _SHAPES.items()}
-        nearest = min(far, key=far.__getitem__)
-        if far[nearest] < _LIKE:
-            waveform = nearest
-        elif far[nearest] > _UNLIKE:
-            waveform = "other"
+        waveform = _waveform(time, tension if control == "load" else position[None], cycles)
     else:
         speed = _speed(time, position)
     rests = np.flatnonzero(standstills.is_rest)
@@ -274,13 +261,13 @@ def _middle(values: Floats) -> float:
 
 def _of_cycle(
     time: Floats, position: Floats, load: Floats, first: int, last: int
-) -> tuple[float, float, float, float, float]:
-    """Mean and amplitude of tension, lead of it over position, and the shape of either."""
+) -> tuple[float, float, float]:
+    """Mean and amplitude of tension, and lead of it over position."""
     at = slice(first, last + 1)
     t, x, force = time[at], position[at], load[at]
     known = np.isfinite(x) & np.isfinite(force)
     if known.sum() < 4 or not np.ptp(t[known]) > 0:
-        return (np.nan,) * 5
+        return (np.nan,) * 3
     t, x, force = t[known], x[known], force[known]
     low, high = float(force.min()), float(force.max())
     phase = 2 * np.pi * (t - t[0]) / (t[-1] - t[0])
@@ -289,16 +276,13 @@ def _of_cycle(
     of_force, of_position = ((force - force.mean()) * wave).sum(), ((x - x.mean()) * wave).sum()
     angle = np.angle(of_force * np.conj(of_position))
     lead = float(angle / (2 * np.pi) * (t[-1] - t[0]))
-    return (low + high) / 2, (high - low) / 2, lead, _shape(x, weight), _shape(force, weight)
+    return (low + high) / 2, (high - low) / 2, lead
 
 
-def _shape(values: Floats, weight: Floats) -> float:
-    """Root mean square about the middle over half the range. [1]."""
-    low, high = float(values.min()), float(values.max())
-    if not high > low:
-        return np.nan
-    middle = values - (low + high) / 2
-    return float(np.sqrt((weight * middle**2).sum() / weight.sum())) / ((high - low) / 2)
+def _waveform(time: Floats, driven: Floats, cycles: Cycles) -> str:
+    """Waveform of the channels that are driven, where all are alike."""
+    found = {waveform_of_log(time, one, cycles) for one in driven}
+    return found.pop() if len(found) == 1 else ""
 
 
 def _some(n_samples: int) -> slice:

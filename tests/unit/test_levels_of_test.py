@@ -106,3 +106,31 @@ def test_the_step_of_a_coarse_load_is_found_and_that_of_a_fine_one_is_none():
     found = levels(position, np.stack([20 * np.round(fine / 20), fine, np.round(fine)]))
     assert found.load_step[0] == pytest.approx(20)
     assert np.isnan(found.load_step[1:]).all()
+
+
+@pytest.mark.parametrize("dwell", [0.075, 0.1, 0.125, 0.15, 0.25])
+@pytest.mark.parametrize("noise", [0.0, 0.003])
+def test_ramps_with_a_dwell_at_both_ends_are_no_sine(dwell, noise):
+    # a quarter of the time at rest has the root mean square of a sine
+    ramp = 0.5 - dwell
+    phase = 0.05 * np.arange(1200) / 5 % 1
+    wave = np.interp(phase, [0, ramp, 0.5, 1 - dwell, 1], [-1, 1, 1, -1, -1])
+    position = 2 + wave + np.random.default_rng(3).normal(0, noise, phase.size)
+    for stated in ("triangular", "sinusoidal", "other"):
+        assert levels(position, 100 * position, waveform=stated).waveform == "other"
+
+
+@pytest.mark.parametrize("distortion", [0.0, 0.02])
+def test_a_sine_with_a_little_of_a_harmonic_stays_one(distortion):
+    phase = 0.4 * np.pi * 0.05 * np.arange(1200)
+    position = 2 - np.cos(phase) + distortion * np.cos(3 * phase)
+    position += np.random.default_rng(4).normal(0, 0.005, phase.size)
+    assert levels(position, 100 * position).waveform == "sinusoidal"
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.8])
+def test_two_unequal_ramps_are_triangular(share):
+    phase = 0.05 * np.arange(1200) / 5 % 1
+    position = 2 + np.interp(phase, [0, share, 1], [-1, 1, -1])
+    position += np.random.default_rng(5).normal(0, 0.005, phase.size)
+    assert levels(position, 100 * position, waveform="triangular").waveform == "triangular"

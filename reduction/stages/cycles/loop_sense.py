@@ -18,12 +18,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
 from reduction.record.measurement import Bools, Floats
 from reduction.record.notes import Note, note
-from reduction.stages.cycles.cycle_product import Loops
+from reduction.stages.cycles.cycle_product import Cycles, Loops
+from reduction.stages.cycles.loops import reading_noise
 
 _OF_A_SPECIMEN = (
     "apparent_spring_constant", "hysteresis_energy", "storage_spring_constant",
@@ -105,6 +107,95 @@ def contradicts_sine(loops: Loops) -> Bools:
         greater = max(abs(_median(lost[known])), abs(_median(by_energy)))
         told[row] = abs(_median(apart)) > max(_SINE_TOLD * greater, _BEYOND_SCATTER * scatter)
     return told
+
+
+_MOST_CYCLES = 40  # that are looked at, spread over the test
+
+_FEWEST_READINGS = 10  # of a cycle whose shape can be told
+
+_LIKE_LINES, _UNLIKE_LINES = 0.06, 0.09  # of half the range, root mean square: a twentieth at rest
+
+_LIKE_SINE = 0.03  # a symmetrical trapezoid has 0.033 at least
+
+
+def waveform_of_log(
+    time: Floats, driven: Floats, cycles: Cycles
+) -> Literal["triangular", "sinusoidal", "other", ""]:
+    """Tell the waveform of a test by the channel that the machine drives.
+
+    Parameters
+    ----------
+    time, driven : ndarray, shape (n_samples,)
+        [s], and position or tension. [m] or [N]
+    cycles : Cycles
+        Of the record.
+
+    Returns
+    -------
+    waveform : str
+        ``triangular`` where two straight lines from turn to turn fit, ``sinusoidal`` where a sine
+        does, ``other`` where neither comes near, as of ramps with dwells; empty in between, and
+        where the readings are too few.
+
+    Raises
+    ------
+    IndexError
+        If a cycle lies outside the record.
+
+    Notes
+    -----
+    The median over some forty cycles. A symmetrical trapezoid that rests for a quarter to a third
+    of its time has the root mean square of a sine, and 0.03 to 0.05 of harmonics.
+
+    Examples
+    --------
+    >>> from reduction.record.settings import CycleSettings, PhaseSettings
+    >>> from reduction.stages.cycles.cycle_search import find_cycles
+    >>> from reduction.stages.standstills import find_standstills
+    >>> time = np.arange(0, 60, 0.1)
+    >>> def told(wave):
+    ...     stands = find_standstills(time, wave, wave[None], settings=PhaseSettings())
+    ...     cycles = find_cycles(time, wave, wave[None], stands, settings=CycleSettings())
+    ...     return waveform_of_log(time, wave, cycles)
+    >>> triangle = np.abs((time / 5) % 2 - 1)
+    >>> print(told(triangle), told(np.cos(time)), told(np.clip(triangle, 0.15, 0.85)))
+    triangular sinusoidal other
+    """
+    n_cycles = cycles.n_cycles
+    some = np.unique(np.linspace(0, n_cycles - 1, min(n_cycles, _MOST_CYCLES)).astype(int))
+    apart = np.array([
+        _apart_from_shapes(time[first : last + 1], driven[first : last + 1])
+        for first, last in zip(cycles.first[some].tolist(), cycles.last[some].tolist(), strict=True)
+    ]).reshape(-1, 3)  # fmt: skip
+    apart = apart[np.isfinite(apart).all(axis=1)]
+    if not apart.size:
+        return ""
+    lines, sine, noise = np.median(apart, axis=0).tolist()
+    if lines < _LIKE_LINES and lines < sine:
+        return "triangular"
+    if sine < _LIKE_SINE:
+        return "sinusoidal"
+    is_far = lines > _UNLIKE_LINES + _WITHIN * noise and sine > _LIKE_SINE + _WITHIN * noise
+    return "other" if is_far else ""
+
+
+def _apart_from_shapes(time: Floats, driven: Floats) -> tuple[float, float, float]:
+    """Root mean square about two lines and about a sine, and noise, over half the range."""
+    known = np.isfinite(driven)
+    t, x = time[known], driven[known]
+    if t.size < _FEWEST_READINGS or not np.ptp(x) > 0:
+        return np.nan, np.nan, np.nan
+    half = float(np.ptp(x)) / 2
+    turn = int(np.argmax(np.abs(x - x[0])))
+    lines = np.interp(t, t[[0, turn, -1]], x[[0, turn, -1]])
+    phase = 2 * np.pi * (t - t[0]) / (t[-1] - t[0])
+    basis = np.stack([np.ones(t.size), np.cos(phase), np.sin(phase)], axis=1)
+    sine = basis @ np.linalg.lstsq(basis, x)[0]
+    return (
+        float(np.sqrt(np.mean((x - lines) ** 2))) / half,
+        float(np.sqrt(np.mean((x - sine) ** 2))) / half,
+        reading_noise(x) / half,
+    )
 
 
 _SINE_TOLD = 0.05  # of the loss: no machine draws a sine to a per cent
