@@ -1156,8 +1156,11 @@ def _readings_at_turns(
             of_valley = level_at_corner(values, moved, at_last, sign=-1, noise=noise)
             above, below = np.fmax(above, of_peak - top), np.fmax(below, last - of_valley)
         else:
-            top = _plateau(values, peak - reach, np.minimum(peak + reach, end), top)
-            last = -_plateau(-values, np.maximum(end - reach, peak), end, -last)
+            # a machine that dwells is at the level of its corner, and misses nothing
+            upper = _plateau(values, peak - reach, np.minimum(peak + reach, end), top)
+            lower = _plateau(-values, np.maximum(end - reach, peak), end, -last)
+            top, above = (top, above) if upper is None else (upper, 0 * above)
+            last, below = (last, below) if lower is None else (-lower, 0 * below)
         top, last, missed = top + above / 2, last - below / 2, (above + below) / 2
     elif turn == "rounded":
         above = missed_by_extreme(values, peak, top, sign=1)
@@ -1197,8 +1200,11 @@ _ON_PLATEAU = 6.0  # noise of a reading below the greatest one, on a plateau of 
 _FEWEST_ON_PLATEAU = 5
 
 
-def _plateau(values: Floats, low: Integers, high: Integers, top: Floats) -> Floats:
-    """Mean of the readings of a plateau, of which noise makes the greatest one too great."""
+def _plateau(values: Floats, low: Integers, high: Integers, top: Floats) -> Floats | None:
+    """Mean of the readings of a plateau, of which noise makes the greatest one too great.
+
+    None where a window has no plateau.
+    """
     noise = reading_noise(values)
     level = np.array(top)
     for row, (start, stop) in enumerate(
@@ -1207,7 +1213,7 @@ def _plateau(values: Floats, low: Integers, high: Integers, top: Floats) -> Floa
         window = values[start : stop + 1]
         on = window[window >= top[row] - _ON_PLATEAU * noise]
         if on.size < _FEWEST_ON_PLATEAU:
-            return np.array(top)
+            return None
         level[row] = on.mean()
     return level
 
