@@ -1158,7 +1158,8 @@ def _readings_at_turns(
         else:
             # a machine that dwells is at the level of its corner, and misses nothing
             upper = _plateau(values, peak - reach, np.minimum(peak + reach, end), top)
-            lower = _plateau(-values, np.maximum(end - reach, peak), end, -last)
+            stop = np.minimum(end + reach, np.append(peak[1:], values.size - 1))
+            lower = _plateau(-values, np.maximum(end - reach, peak), stop, -last)
             top, above = (top, above) if upper is None else (upper, 0 * above)
             last, below = (last, below) if lower is None else (-lower, 0 * below)
         top, last, missed = top + above / 2, last - below / 2, (above + below) / 2
@@ -1298,7 +1299,8 @@ def _measure(
                 reach=reach,
                 turn=turn,
                 way=way,
-                moved=None if series is moved else moved,
+                # of two the other one answers: strain follows the position that is driven
+                moved=moved if (series is force) != (moved is force) else None,
             )
         )
     )
