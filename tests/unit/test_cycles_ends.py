@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
+from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_pairing import _without_stands
+from reduction.stages.cycles.cycle_search import find_cycles
+from reduction.stages.standstills import find_standstills
 
 STROKES = [2.0, 4, 2, 4, 2]
 
@@ -40,3 +43,21 @@ def test_a_hold_of_every_valley_is_no_wait():
 
 def test_two_extremes_have_no_turn_to_be_held_against():
     assert moved([2.0, 2, 2, 2, 4], [0, 4]) == [0, 4]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_wait_that_flickers_between_two_codes_of_a_converter_is_no_part_of_a_cycle(seed):
+    # the extreme is a reading one code below the wait, somewhere in it
+    rng = np.random.default_rng(seed)
+    time = np.arange(0, 80, 0.05)
+    starts = rng.uniform(4.5, 8)
+    phase = np.clip(time - starts, 0, 56.25) / 7.5
+    position = 9.4973 - 0.7 * np.cos(2 * np.pi * phase) + rng.normal(0, 0.0004, time.size)
+    position[time < 2] = np.linspace(10.2, 8.8023, int((time < 2).sum()))
+    position = 0.0037 * np.round(position / 0.0037)
+    tension = 100 * position[None]
+    stands = find_standstills(time, position, tension, settings=PhaseSettings())
+    found = find_cycles(
+        time, position, tension, stands, settings=CycleSettings(waveform="sinusoidal")
+    )
+    assert np.diff(time[found.first]) == pytest.approx(7.5, abs=0.5)
