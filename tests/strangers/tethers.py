@@ -404,7 +404,7 @@ def steady_truth(
     ``moved`` are the sudden slips: branches in which one happens are left out of the curves
     (the rubber unloads and loads there), and such loops out of the means over the cycles.
     """
-    turns = refine_turns(state.strain, turns)
+    planned, turns = turns, refine_turns(state.strain, turns)
     found = find_branches(state.strain, turns)
     loops = found.loops[2:]
     up, down = (
@@ -413,6 +413,9 @@ def steady_truth(
     )
     grid = common_grid(state.strain, up + down)
     measures = loop_measures(state.strain, state.tension, loops, time_step)
+    # the strain turns a step beside the crosshead, which is what keeps the time
+    place = dict(zip(turns, planned, strict=True))
+    measures["frequency"] = np.array([1 / (place[c] - place[a]) / time_step for a, _, c in loops])
     splice = state.near + state.far
     rest = specimen.near.length + specimen.far.length
     arrays: dict[str, Array] = {"strain": grid}

@@ -375,13 +375,24 @@ def _both_sides(values: Floats, nodes: Indices, tolerance: float) -> tuple[int, 
 
 
 def _steps_still(values: Floats, turn: int, far: int, tolerance: float) -> int:
-    """Samples from a turn, towards another, up to the last before the signal goes away."""
+    """Samples from a turn, towards another, up to the last before the signal goes away.
+
+    One sample beyond the tolerance that comes back at once is noise, not a movement.
+
+    Examples
+    --------
+    >>> print(_steps_still(np.array([0.0, 1, 2, 1, 1, 5, 9]), 0, 6, 1.5))
+    4
+    """
     step, reach = (1 if far > turn else -1), abs(far - turn)
     begin, count, last = 0, _STEPS_READ, 0
     while begin <= reach:
         stop = min(begin + count, reach + 1)
-        level = values[turn + step * np.arange(begin, stop)]
+        # one more than is looked at, which says whether the last of them comes back
+        level = values[turn + step * np.arange(begin, min(stop, reach) + 1)]
         away = np.abs(level - values[turn]) > tolerance  # a missing sample is no movement
+        away[:-1] &= away[1:] | np.isnan(level[1:])
+        away, level = away[: stop - begin], level[: stop - begin]
         seen = np.flatnonzero(np.isfinite(level[: int(np.argmax(away)) if away.any() else None]))
         last = begin + int(seen[-1]) if seen.size else last
         if away.any():
