@@ -431,6 +431,59 @@ def test_the_period_of_ramps_is_told_by_their_flanks():
     assert error < stated < 2 * error
 
 
+def strokes_of_many_amplitudes(shape, seed, *, n_cycles=40, per_cycle=50):
+    """Time, strain, its turns, and cycles, of half cycles to turns that are drawn anew each time."""
+    rng = np.random.default_rng(seed)
+    turns = 1 + 0.2 * np.where(np.arange(2 * n_cycles + 1) % 2, 1, -1) * rng.uniform(
+        0.85, 1.15, 2 * n_cycles + 1
+    )
+    share = np.arange(per_cycle // 2) / (per_cycle // 2)
+    if shape == "sinusoidal":
+        share = (1 - np.cos(np.pi * share)) / 2
+    strain = np.append((turns[:-1, None] + np.diff(turns)[:, None] * share).ravel(), turns[-1])
+    time = np.arange(strain.size) * 10 / per_cycle
+    return time, strain, turns, cycles_of(per_cycle, n_cycles, strain.size)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_sines_of_many_amplitudes_have_the_stiffness_of_their_turns_within_its_interval(seed):
+    # a spring that stiffens, two sliders and three Maxwell elements; 1,000 steps a cycle, 50 are logged
+    time, strain, _, _ = strokes_of_many_amplitudes("sinusoidal", seed, per_cycle=1000)
+    held = np.zeros(5)
+    slip, fades = np.array([12.0, 6.0]), np.exp(-0.01 / np.array([0.5, 3.0, 30.0]))
+    tension = []
+    for step in np.diff(strain, prepend=strain[0]).tolist():
+        held += step * np.array([150, 80, 150, 100, 100])
+        held[:2] = np.clip(held[:2], -slip, slip)
+        held[2:] *= fades
+        tension.append(held.sum())
+    tension = 400 * strain + 300 * strain**2 + tension
+
+    def amplitudes(values):
+        """Half of what lies between the extremes near the turns, and the valleys' mean."""
+        at = np.arange(1000, 38_001, 1000)
+        low = np.array([values[one - 250 : one + 250].min() for one in (*at, at[-1] + 1000)])
+        high = np.array([values[one + 250 : one + 750].max() for one in at])
+        return (high - (low[:-1] + low[1:]) / 2) / 2
+
+    true = np.mean(amplitudes(tension) / amplitudes(strain))
+    loops = close_loops(
+        time[::20], tension[None, ::20], strain[None, ::20], cycles_of(50, 40, 2001),
+        waveform="sinusoidal",
+    )  # fmt: skip
+    found = summarise_amplitude(loops, area=[1e-3])
+    spread = found.uncertainty["apparent_spring_constant"][0]
+    assert abs(found.apparent_spring_constant[0] - true) < 2 * spread
+    assert spread < 0.01 * true
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_ramps_of_many_amplitudes_keep_the_period_of_the_machine(seed):
+    time, strain, _, cycles = strokes_of_many_amplitudes("triangular", seed)
+    loops = close_loops(time, 900 * strain[None], strain[None], cycles, waveform="triangular")
+    assert loops.frequency[0] == pytest.approx(0.1, rel=1e-6)
+
+
 def test_the_work_of_a_drift_is_given_beside_the_energy_and_carried():
     # C = amplitude times the drift of a cycle (see `_without_drift`), 2 % of a large amplitude
     angle = 2 * np.pi * np.arange(8 * 200 + 1) / 200

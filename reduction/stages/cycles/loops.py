@@ -797,6 +797,17 @@ def _shape_of_wave(
     return _Shape(half, float(high + low) / 2, abs(half - float(blunt)))
 
 
+_IRREGULAR = 0.03  # change of amplitude from one cycle to the next, median
+
+
+def _change_of(amplitude: Floats) -> float:
+    """Median change from one cycle to the next, over the median. [1]."""
+    known = amplitude[np.isfinite(amplitude)]
+    if known.size < _FEWEST_INSIDE:
+        return 0.0
+    return float(np.median(np.abs(np.diff(known))) / np.median(known))
+
+
 def _quantities_of_cycles(
     measured: Floats,
     cycles: Cycles,
@@ -862,6 +873,12 @@ def _quantities_of_cycles(
         mean_strain = mean_strain + of_strain.middle * strain_amplitude
         amplitude, strain_amplitude = amplitude * of_force.half, strain_amplitude * of_strain.half
         begin = mean_strain - strain_amplitude
+        # cycles of many amplitudes have no wave in common: what their logged extremes say of K_ap
+        if _change_of(amplitude if control == "load" else strain_amplitude) > _IRREGULAR:
+            by_extremes = np.nanmean(peak - valley) / np.nanmean(row["high"] - row["low"])
+            by_wave = np.nanmean(amplitude) / np.nanmean(strain_amplitude)
+            of_shape = amplitude * (by_extremes / by_wave - 1)
+            row["force_missed"] = np.hypot(row["force_missed"], of_shape)
     else:
         begin = row["strain_begin"]
         turns = [row["force_top"], row["force_begin"], row["force_end_turn"]]

@@ -8,6 +8,8 @@ References
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from reduction.record.measurement import Bools, Floats, Integers
@@ -17,6 +19,10 @@ from reduction.stages.cycles.cycle_product import Cycles
 _FLANK = 8  # part of a branch, on either side of its middle, that gives its speed
 
 _STEEP = 0.25  # of the mean speed of a branch
+
+_BEYOND_NOISE = 6
+
+_IRREGULAR = 0.5  # of the branches have another amplitude than the one before
 
 _OF_SECOND = 6 * 0.4549  # variance of a second difference, and the median of chi-square
 
@@ -183,13 +189,13 @@ def own_periods(
     touch = np.flatnonzero(_follow(time, cycles, duration))
     if not touch.size:
         return period, spread
+    flanks = partial(_flank_to_flank, time, driven, noise)
     for column, owner in ((1, touch), (0, touch - 1)):
         begin, end = cycles.branch_first[:, column], cycles.branch_last[:, column]
-        found, own, usable = _flank_to_flank(time, driven, (begin + end) // 2, begin, end, touch)
+        found, own, usable = flanks((begin + end) // 2, begin, end, touch)
         if not usable.all():  # where a wave dwells, the middle of a branch may be no flank
             middle = _half_way(driven, begin, end)
-            found, own, usable = _flank_to_flank(time, driven, middle, begin, end, touch)
-        own = noise * own
+            found, own, usable = flanks(middle, begin, end, touch)
         period[owner[usable]], spread[owner[usable]] = found[usable], own[usable]
         if column:
             of_fall = spread.copy()
@@ -214,27 +220,45 @@ def _follow(time: Floats, cycles: Cycles, duration: Floats) -> Bools:
 
 
 def _flank_to_flank(
-    time: Floats, driven: Floats, middle: Integers, begin: Integers, end: Integers, touch: Integers
+    time: Floats,
+    driven: Floats,
+    noise: float,
+    middle: Integers,
+    begin: Integers,
+    end: Integers,
+    touch: Integers,
 ) -> tuple[Floats, Floats, Bools]:
-    """Time between the flanks of touching branches, time per unit of noise, and whether they are.
+    """Time between the flanks of touching branches, spread of one time, and whether they are.
 
-    At one level of both, about a sample in the middle of each.
+    At one level of both, about a sample in the middle of each; each half way up its own where
+    their ends lie apart by more than readings miss of a corner, as from one amplitude to another.
     """
     reach = np.maximum((end - begin) // _FLANK, 1)
     low, high = np.maximum(middle - reach, begin), np.minimum(middle + reach, end)
     at, level = take_samples(time, middle), take_samples(driven, middle)
     rise = take_samples(driven, high) - take_samples(driven, low)
-    whole = take_samples(driven, end) - take_samples(driven, begin)
+    ends = take_samples(driven, np.stack([begin, end]))
+    whole = ends[1] - ends[0]
+    half_way = ends.mean(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         speed = rise / (take_samples(time, high) - take_samples(time, low))
         steep = speed * (take_samples(time, end) - take_samples(time, begin)) / whole > _STEEP
         apart = level[touch] - level[touch - 1]
         alike = np.abs(apart) < _STEEP * np.abs(whole[touch])
-        later, earlier = (at[one] - way * apart / 2 / speed[one]
-                          for one, way in ((touch, 1), (touch - 1, -1)))  # fmt: skip
+        step = np.abs(rise / (high - low))[touch]
+        missed = step + _BEYOND_NOISE * noise
+        is_other = np.abs(ends[:, touch] - ends[:, touch - 1]).max(axis=0) > missed
+        if is_other.mean() > _IRREGULAR:  # then two that are alike are so by chance
+            is_other[:] = True
+        later, earlier = (
+            at[one] + np.where(is_other, half_way[one] - level[one], -way * apart / 2) / speed[one]
+            for one, way in ((touch, 1), (touch - 1, -1))
+        )
         found = later - earlier
-        per_noise = 1 / np.abs(speed[touch])
-    return found, per_noise, steep[touch] & steep[touch - 1] & alike & (found > 0)
+        # a corner is missed by up to half a step, so that half way is by up to a quarter
+        of_level = np.hypot(noise, np.where(is_other, step / 4 / np.sqrt(3), 0.0))
+        own = of_level / np.abs(speed[touch])
+    return found, own, steep[touch] & steep[touch - 1] & alike & (found > 0)
 
 
 def _half_way(driven: Floats, begin: Integers, end: Integers) -> Integers:
