@@ -611,6 +611,23 @@ def mean_of(series: Floats) -> float:
     return first + float(sum((series[part] - first).sum() for part in parts)) / series.size
 
 
+def step_that_fills(values: Floats) -> float:
+    """Step between neighbours by value: half of the whole range lies in steps at least as long.
+
+    Readings that fall on the same few places again and again leave it as long as those are apart.
+
+    Examples
+    --------
+    >>> print(step_that_fills(np.array([0.0, 1, 2, 3, 0.001, 1.001, 2.001])))
+    0.999
+    """
+    steps = np.sort(np.diff(np.sort(values[np.isfinite(values)])))
+    if not steps.size:
+        return 0.0
+    reached = np.cumsum(steps)
+    return float(steps[np.searchsorted(reached, reached[-1] / 2)])
+
+
 def median_step_reaches(series: Floats, factor: float, value: float) -> bool:
     """Whether a multiple of the median difference of neighbours is as great as a value.
 

@@ -78,7 +78,7 @@ from numpy.typing import ArrayLike
 from reduction.record.arrays import as_same_shape, run_blocks
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
-from reduction.record.samples import empty_like, release_pages, take_samples
+from reduction.record.samples import empty_like, release_pages, step_that_fills, take_samples
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.periods import (
     own_periods,
@@ -703,7 +703,7 @@ class _Shape:
 
 _MOST_HARMONICS = 8
 
-_PER_HARMONIC = 5  # samples of a cycle
+_FINEST = 1e-3  # of a cycle, between phases
 
 _CYCLES_OF_SHAPE, _SAMPLES_OF_SHAPE = 60, 400  # that are looked at; of each of them
 
@@ -753,15 +753,13 @@ def _shape_of_wave(
     drift = _mean_drift(parts[3:], ends)
     sine = sine + drift / np.pi
     amplitude = np.hypot(cosine, sine)
-    readings = float(np.median(cycles.last - cycles.first))
-    order = int(min(_MOST_HARMONICS, readings // _PER_HARMONIC))
     known = np.flatnonzero(np.isfinite(amplitude + mean) & (amplitude > 0))
     # cycles of another amplitude are not of one wave
     middle = np.median(amplitude[known]) if known.size else np.nan
     known = known[np.abs(amplitude[known] - middle) < _OF_ONE_WAVE * middle]
     if known.size > _FEWEST_INSIDE:
         known = known[1:-1]  # what stands beside cycles of another amplitude may hold part of them
-    if order < 2 or not known.size:
+    if not known.size:
         return _Shape()
     some = known[
         np.unique(np.linspace(0, known.size - 1, min(known.size, _CYCLES_OF_SHAPE)).astype(int))
@@ -775,6 +773,11 @@ def _shape_of_wave(
         usable = np.isfinite(level)
         phases.append((phase - np.arctan2(sine[one], cosine[one]))[usable])
         waves.append(level[usable] / amplitude[one])
+    # a log in step with its period reads the same few phases of every cycle
+    read = np.concatenate(phases) / (2 * np.pi) % 1
+    order = min(_MOST_HARMONICS, int(1 / max(step_that_fills(read), _FINEST) - 2) // 2)
+    if order < 2:
+        return _Shape()
     orders = np.arange(1, order + 1)
 
     def terms(phase: Floats) -> Floats:

@@ -42,6 +42,7 @@ from reduction.stages.moduli.tangent_window import (
     adapt_window,
     choose_grid_and_window,
     narrower_windows,
+    pooled_spacing,
     sample_spacing,
     window_blur,
 )
@@ -442,7 +443,11 @@ def tangent_curves(
 
     change, noise, missed = _adapted(
         specimens,
-        halves=narrower_windows(grid, spacing=_spacing(strain, cycles)),
+        halves=narrower_windows(
+            grid,
+            spacing=max(sample_spacing(row[None], cycles, 0.0) for row in strain),
+            pooled=lambda: max(pooled_spacing(row, cycles) for row in strain),
+        ),
         minimum_count=settings.minimum_count,
     )
     blur = blur - change
@@ -495,11 +500,6 @@ def tangent_curves(
             "the group that begins with the cycle",
         ),
     )
-
-
-def _spacing(strain: Floats, cycles: Cycles) -> float:
-    """Strain from sample to sample of the specimen whose samples lie furthest apart. [1]."""
-    return max(sample_spacing(row[None], cycles, 0.0) for row in strain)
 
 
 def _not_below(deviation: Floats, least: Floats) -> Floats:

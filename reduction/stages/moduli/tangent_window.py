@@ -23,7 +23,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import ceil, comb, floor, log10, sqrt
 
@@ -33,7 +33,7 @@ from numpy.typing import ArrayLike
 
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Floats
-from reduction.record.samples import take_samples
+from reduction.record.samples import step_that_fills, take_samples
 from reduction.record.settings import ModulusSettings
 from reduction.stages.cycles.cycle_product import Cycles
 
@@ -344,8 +344,49 @@ def window_blur(slope: ArrayLike, *, half_window: int) -> tuple[Floats, float]:
     return blur, sqrt(variance)
 
 
-def narrower_windows(grid: StrainGrid, *, spacing: float) -> list[int]:
-    """Half windows in bins, each half of the one before, that samples so far apart can fill."""
+_FEWEST_WINDOWS = 3  # of which one can be told from what it blurs
+
+
+def pooled_spacing(strain: Floats, cycles: Cycles) -> float:
+    """Strain from sample to sample where those of many cycles are taken together.
+
+    On the branch that is filled less.  A slow log that is not in step with its period fills the
+    branches a little more with every cycle; one that is in step reads the same few strains again.
+
+    Examples
+    --------
+    Two cycles of three readings a branch, of which the second lies half a step beside the first.
+
+    >>> strain = np.array([0.0, 2, 4, 2, 0, 1, 3, 5, 3, 1])
+    >>> pair = np.array([[0, 2], [5, 7]])
+    >>> cycles = Cycles(pair[:, 0], pair[:, 0] + 4, pair, pair + 2, np.ones((2, 2)), np.zeros(10),
+    ...     np.zeros(10), np.ones(10, dtype=bool), 0.1)
+    >>> print(pooled_spacing(strain, cycles))
+    1.0
+    """
+    chosen = np.unique(np.linspace(0, cycles.n_cycles - 1, _BRANCHES_READ).astype(int))
+    found = 0.0
+    for column in (0, 1):
+        read = np.concatenate([
+            strain[first : last + 1][cycles.is_in_trimmed_branch[first : last + 1]]
+            for first, last in zip(cycles.branch_first[chosen, column].tolist(),
+                                   cycles.branch_last[chosen, column].tolist(), strict=True)
+        ])  # fmt: skip
+        found = max(found, step_that_fills(read))
+    return found
+
+
+def narrower_windows(grid: StrainGrid, *, spacing: float, pooled: Callable[[], float]) -> list[int]:
+    """Half windows in bins, each half of the one before, that samples so far apart can fill.
+
+    Of one cycle, or of all of them together where one fills too few windows.
+    """
+    halves = _halved(grid, spacing)
+    return halves if len(halves) >= _FEWEST_WINDOWS else _halved(grid, pooled())[:_FEWEST_WINDOWS]
+
+
+def _halved(grid: StrainGrid, spacing: float) -> list[int]:
+    """Half windows down to the narrowest that holds a few samples."""
     halves = [grid.half_window]
     while halves[-1] > 1:
         narrower = halves[-1] // 2
@@ -470,10 +511,17 @@ def adapt_window(
             is_sound &= ~(away > _CONTRADICTED * noises[narrow])
         chosen = np.where(is_sound, wide, chosen)
     missed = (_UNSEEN_OF_BLUR * _near(np.abs(blur[0]), half_windows[0], is_highest=True)) ** 2
+    # of a curve shorter than two windows no blur is known: its modulus may change within one
+    is_blind = [(one == 0).all(axis=-1, keepdims=True) for one in blur]
+    missed += np.where(is_blind[0], _range(slope[0]) ** 2 / 3, 0.0)
     for wide, half in enumerate(half_windows[:-1]):
         squares = {n: (slope[wide] - slope[n]) ** 2 for n in range(wide + 1, last + 1)}
+        # against the next one a blind window is not given the benefit of the noise
         of_wide = np.maximum.reduce([
-            _near(square - noises[narrow] ** 2, half, is_highest=False)
+            _near(
+                square - np.where(is_blind[wide] & (narrow == wide + 1), 0.0, noises[narrow] ** 2),
+                half, is_highest=False,
+            )
             for narrow, square in squares.items()
         ])  # fmt: skip
         missed = np.where((chosen == wide) & (finest > wide), of_wide, missed)
@@ -488,6 +536,15 @@ def adapt_window(
         np.choose(chosen, rough),
         np.sqrt(np.maximum(missed, 0.0) + _missed_at_ends(adapted, half_windows[0]) ** 2),
     )
+
+
+def _range(slope: Floats) -> Floats:
+    """Range of each curve, 0 where nothing of it is known."""
+    known = np.isfinite(slope)
+    high, low = (
+        way * np.where(known, way * slope, -np.inf).max(axis=-1, keepdims=True) for way in (1, -1)
+    )
+    return np.where(known.any(axis=-1, keepdims=True), high - low, 0.0)
 
 
 def _missed_at_ends(slope: Floats, half_window: int) -> Floats:
