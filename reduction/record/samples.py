@@ -611,6 +611,31 @@ def mean_of(series: Floats) -> float:
     return first + float(sum((series[part] - first).sum() for part in parts)) / series.size
 
 
+_CODES_READ = 1 << 16  # samples
+
+_OF_CODES = 0.99  # of the steps, that are whole multiples of one
+
+
+def step_of_codes(values: Floats) -> float:
+    """Step between the codes of a channel, all of whose steps are multiples of it; 0 of others.
+
+    Examples
+    --------
+    >>> wave = np.sin(np.arange(500) / 20)
+    >>> print(round(step_of_codes(np.round(wave, 2)), 3), step_of_codes(wave))
+    0.01 0.0
+    """
+    steps = np.abs(np.diff(values[:_CODES_READ]))
+    steps = steps[np.isfinite(steps)]
+    steps = steps[steps > 1e-9 * steps.max(initial=0.0)]
+    if not steps.size:
+        return 0.0
+    step = float(steps.min())
+    multiple = steps / step
+    whole = np.abs(multiple - np.round(multiple)) < 0.05
+    return step if whole.mean() >= _OF_CODES else 0.0
+
+
 def step_that_fills(values: Floats) -> float:
     """Step between neighbours by value: half of the whole range lies in steps at least as long.
 

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
-from reduction.record.samples import BLOCK, sample_blocks, take_samples
+from reduction.record.samples import BLOCK, sample_blocks, step_of_codes, take_samples
 from reduction.stages.standstills import Standstills, median_step, noise_range
 
 _SAME_LEVEL = 0.3  # of the stroke
@@ -296,30 +296,6 @@ class _FittedRun:
 
 
 _CODES_APART = 1.5  # steps of a converter: it flickers between two codes, without noise
-
-_CODES_READ = 1 << 16  # samples
-
-_OF_CODES = 0.99  # of the steps, that are whole multiples of one
-
-
-def _step_of_codes(values: Floats) -> float:
-    """Step between the codes of a channel, all of whose steps are multiples of it; 0 of others.
-
-    Examples
-    --------
-    >>> wave = np.sin(np.arange(500) / 20)
-    >>> print(round(_step_of_codes(np.round(wave, 2)), 3), _step_of_codes(wave))
-    0.01 0.0
-    """
-    steps = np.abs(np.diff(values[:_CODES_READ]))
-    steps = steps[np.isfinite(steps)]
-    steps = steps[steps > 1e-9 * steps.max(initial=0.0)]
-    if not steps.size:
-        return 0.0
-    step = float(steps.min())
-    multiple = steps / step
-    whole = np.abs(multiple - np.round(multiple)) < 0.05
-    return step if whole.mean() >= _OF_CODES else 0.0
 
 
 def _without_stands(
@@ -635,7 +611,7 @@ def find_half_cycles(
     # of the channel that stands still: the tension where it is held, else the position
     still = standstills.tension_tolerance
     tolerance = standstills.position_tolerance if still is None else still
-    noise = max(noise_range(values), _CODES_APART * _step_of_codes(values))
+    noise = max(noise_range(values), _CODES_APART * step_of_codes(values))
     runs = [
         _fit_ends(time, values, run, is_sinusoidal=is_sinusoidal, still=tolerance, tolerance=noise)
         for run in _runs_that_cycle(

@@ -78,7 +78,13 @@ from numpy.typing import ArrayLike
 from reduction.record.arrays import as_same_shape, run_blocks
 from reduction.record.errors import DataError
 from reduction.record.measurement import Bools, Floats, Integers, read_only_arrays
-from reduction.record.samples import empty_like, release_pages, step_that_fills, take_samples
+from reduction.record.samples import (
+    empty_like,
+    release_pages,
+    step_of_codes,
+    step_that_fills,
+    take_samples,
+)
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.periods import (
     own_periods,
@@ -622,7 +628,12 @@ _LEAST_STEP = 1e-9  # of the half range
 
 
 def _at_equal_phase(
-    values: Floats, driven: Floats, time: Floats, branch_first: Integers, branch_last: Integers
+    values: Floats,
+    driven: Floats,
+    time: Floats,
+    branch_first: Integers,
+    branch_last: Integers,
+    held: tuple[Floats, Floats, Floats] | None = None,
 ) -> tuple[Floats, Floats]:
     r"""Integral of a series over the sine of the phase of another, and the mean of that sine.
 
@@ -633,7 +644,8 @@ def _at_equal_phase(
     -----
     Between samples of a branch the series is a straight line over the other, so that the turns,
     near which the phase runs fast, cost nothing; where noise sends the other backward it is a
-    straight line over the sine.
+    straight line over the sine.  Readings within the noise of a level at which the other is
+    ``held``, in its first valley, peak and last valley, are at that level: noise is no movement.
 
     Examples
     --------
@@ -647,14 +659,17 @@ def _at_equal_phase(
     """
     n_cycles = branch_first.shape[0]
     work, mean = np.zeros(n_cycles), np.zeros(n_cycles)
+    still = 0.0 if held is None else _ON_PLATEAU / 2 * reading_noise(driven)
     for column, way in ((0, -1.0), (1, 1.0)):
         begin, end = branch_first[:, column], branch_last[:, column]
+        low, high = (driven[begin], driven[end]) if held is None else held[column : column + 2]
         length = end - begin + 1
         row = np.repeat(np.arange(n_cycles), length)
         at = np.arange(row.size) + np.repeat(begin - np.cumsum(length) + length, length)
-        half, middle = (driven[end] - driven[begin]) / 2, (driven[end] + driven[begin]) / 2
+        half, middle = np.abs(high - low) / 2, (high + low) / 2
         with np.errstate(divide="ignore", invalid="ignore"):
-            level = (driven[at] - middle[row]) / np.abs(half)[row]
+            level = (driven[at] - middle[row]) / half[row]
+            level = np.where(np.abs(np.abs(level) - 1) * half[row] < still, np.sign(level), level)
         np.clip(level, -1, 1, out=level)
         angle, sine = way * np.arccos(level), way * np.sqrt(1 - level**2)
         step, rise = np.diff(level), np.diff(sine)
@@ -1220,23 +1235,55 @@ _ON_PLATEAU = 6.0  # noise of a reading below the greatest one, on a plateau of 
 
 _FEWEST_ON_PLATEAU = 5
 
+_BENT = 0.45  # noise, by which the middle of a dome or the beginning of a decay is above the whole
+
 
 def _plateau(values: Floats, low: Integers, high: Integers, top: Floats) -> Floats | None:
     """Mean of the readings of a plateau, of which noise makes the greatest one too great.
 
-    None where a window has no plateau.
+    None where a window has no plateau: its middle lies no higher than its ends, as that of a dome
+    does, and its beginning no higher than its end, as of what relaxes.  The middle half is taken,
+    since ramps begin in the noise.
     """
     noise = reading_noise(values)
-    level = np.array(top)
+    level = np.full(top.shape, np.nan)
+    bent = []
     for row, (start, stop) in enumerate(
         zip(np.maximum(low, 0).tolist(), high.tolist(), strict=True)
     ):
+        if not np.isfinite(top[row]):
+            continue
         window = values[start : stop + 1]
-        on = window[window >= top[row] - _ON_PLATEAU * noise]
+        on = window[np.abs(window - top[row]) <= _ON_PLATEAU * noise]
         if on.size < _FEWEST_ON_PLATEAU:
-            return None
-        level[row] = on.mean()
-    return level
+            continue
+        quarter, half = on.size // 4, on.size // 2
+        middle = np.median(on)
+        bent.append(
+            (np.median(on[quarter : on.size - quarter]) - middle, np.median(on[:half]) - middle)
+        )
+        level[row] = np.mean(on[quarter : on.size - quarter])
+    if 2 * len(bent) < top.size or np.mean(bent, axis=0).max() > _BENT * noise:
+        return None
+    # of a cycle that begins or ends in its plateau little of it is left
+    return np.where(np.isfinite(level), level, top - np.nanmedian(top - level))
+
+
+def _held_levels(
+    values: Floats, way: int, branch_first: Integers, branch_last: Integers
+) -> tuple[Floats, Floats, Floats] | None:
+    """Levels of first valley, peak and last valley where a channel is held at all of them."""
+    upward = way * values
+    begin, peak, end = branch_first[:, 0], branch_last[:, 0], branch_last[:, 1]
+    first, top, last = (
+        _plateau(sign * upward, low, high, sign * upward[at])
+        for sign, low, high, at in (
+            (-1, begin, peak, begin), (1, begin, end, peak), (-1, peak, end, end),
+        )
+    )  # fmt: skip
+    if first is None or top is None or last is None:
+        return None
+    return -way * first, way * top, -way * last
 
 
 def _places(values: Floats, low: Integers, high: Integers) -> Integers:
@@ -1246,6 +1293,37 @@ def _places(values: Floats, low: Integers, high: Integers) -> Integers:
         start + int(np.argmax(known[start : stop + 1]))
         for start, stop in zip(np.maximum(low, 0).tolist(), high.tolist(), strict=True)
     ])  # fmt: skip
+
+
+def _noise_and_rounding(values: Floats, noise: float) -> tuple[float, float]:
+    r"""Noise of readings before they were rounded, and what rounding leaves of an error in a mean.
+
+    .. math:: \sigma^2 = s^2 - q^2 / 12, \qquad u = q / \sqrt{12} \; e^{-2 (\pi \sigma / q)^2}
+
+    Noise of more than half a step makes the mean of rounded readings that of the readings.  The
+    median of third differences is itself a number of steps where these are coarse: there it is
+    their mean square, but for those of a turn, that says what the noise is.
+
+    Examples
+    --------
+    >>> level = np.random.default_rng(1).normal(0, 1, 4000) + np.sin(np.arange(4000) / 300) * 100
+    >>> for step in (3, 1.2):
+    ...     rounded = step * np.round(level / step)
+    ...     print(np.round(_noise_and_rounding(rounded, reading_noise(rounded)), 1))
+    [1.  0.1]
+    [1. 0.]
+    """
+    step = step_of_codes(values)
+    if noise > _COARSE * step:
+        return noise, 0.0
+    third = np.abs(np.diff(values[:_NOISE_SAMPLES], n=3))
+    third = third[np.isfinite(third) & (third < _FAR * step)]
+    square = float(np.mean(third**2)) / 20 if third.size else 0.0
+    own = np.sqrt(max(square - step**2 / 12, 0.0))
+    return float(own), float(step / np.sqrt(12) * np.exp(-2 * (np.pi * own / step) ** 2))
+
+
+_COARSE, _FAR = 1.5, 12.0  # steps of a converter
 
 
 def _without_noise(
@@ -1258,10 +1336,12 @@ def _without_noise(
     noise: float,
     way: int,
     chose_turns: bool,
+    may_dwell: bool,
 ) -> None:
     """Valleys of cycles that touch made one, and what noise adds to extremes taken off.
 
-    ``measured`` has the rows of top, first and last valley and is changed.
+    ``measured`` has the rows of top, first and last valley and is changed.  A channel that is held
+    at its turns is at the mean of what it reads there.
     """
     top, first, last = measured
     touch = np.flatnonzero(touching(cycles))
@@ -1275,6 +1355,15 @@ def _without_noise(
     if turn == "sharp":
         return
     peak = cycles.branch_last[:, 0]
+    if may_dwell:
+        begin, end = cycles.branch_first[:, 0], cycles.branch_last[:, 1]
+        after = np.append(peak[1:], values.size - 1)
+        upper = _plateau(way * values, begin, end, way * top)
+        lower = _plateau(-way * values, peak, after, -way * last)
+        if upper is not None and lower is not None:
+            top[:], last[:] = way * upper, -way * lower
+            first[touch] = last[touch - 1]
+            return
     of_peak, of_valley = (
         noise_in_extreme(values, turn, reach=reach, sign=sign, noise=noise, chose_turn=chose_turns)
         for turn, sign in ((peak, way), (cycles.first[touch], -way))
@@ -1302,10 +1391,11 @@ def _measure(
     force, lost_force = _bridge_gaps(tension, first, last)
     stretch, lost_stretch = _bridge_gaps(strain, first, last)
     moved, answer = (force, stretch) if control == "load" else (stretch, force)
+    held = _held_levels(moved, ways[moved is stretch], *branches) if waveform == "other" else None
     at_phase = (
         (np.zeros(first.size),) * 2
         if waveform == "sinusoidal"
-        else _at_equal_phase(answer, moved, time, *branches)
+        else _at_equal_phase(answer, moved, time, *branches, held)
     )
     at_turns = (
         (np.zeros(first.size),) * 8
@@ -1488,10 +1578,14 @@ def close_loops(
                 (force, noise, ways[index][0], _OF_TURNS, control == "load"),
                 (stretch, strain_noise, ways[index][1], _OF_TURNS + 4, control == "position"),
             ):
+                # the step of a converter lifts no extreme, and moves it alike in all cycles
+                own, rounded = _noise_and_rounding(series, of_series)
+                missed = measured[index, rows + 3]
+                np.hypot(missed, rounded, out=missed)
                 _without_noise(
                     measured[index, rows : rows + 3], series, cycles, reach=reach,
-                    turn=turns[index], noise=of_series, way=way,
-                    chose_turns=chose_turns,
+                    turn=turns[index], noise=own, way=way,
+                    chose_turns=chose_turns, may_dwell=waveform == "other",
                 )  # fmt: skip
         shapes = None
         if waveform == "sinusoidal":

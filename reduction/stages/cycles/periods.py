@@ -168,8 +168,8 @@ def own_periods(
     Notes
     -----
     A turn is known to a sample, and noise puts it beside ([1]_); the middle of a flank passes one
-    level within the noise over its speed.  A cycle goes on to the rise of the next, the last of a
-    row from the fall of the one before.
+    level within the noise over its speed.  A cycle has the mean of the time from its rise to the
+    next one and of that to its fall from the one before; the last of a row the latter.
 
     Examples
     --------
@@ -190,15 +190,23 @@ def own_periods(
     if not touch.size:
         return period, spread
     flanks = partial(_flank_to_flank, time, driven, noise)
-    for column, owner in ((1, touch), (0, touch - 1)):
+
+    def between(column: int) -> tuple[Floats, Floats, Bools]:
+        """From each flank to the one of the cycle before."""
         begin, end = cycles.branch_first[:, column], cycles.branch_last[:, column]
         found, own, usable = flanks((begin + end) // 2, begin, end, touch)
         if not usable.all():  # where a wave dwells, the middle of a branch may be no flank
-            middle = _half_way(driven, begin, end)
-            found, own, usable = flanks(middle, begin, end, touch)
-        period[owner[usable]], spread[owner[usable]] = found[usable], own[usable]
-        if column:
-            of_fall = spread.copy()
+            found, own, usable = flanks(_half_way(driven, begin, end), begin, end, touch)
+        return found, own, usable
+
+    (rise, of_rise, has_rise), (fall, own, has_fall) = between(0), between(1)
+    period[touch[has_fall]], spread[touch[has_fall]] = fall[has_fall], own[has_fall]
+    of_fall = spread.copy()
+    # a channel that creeps passes a level earlier on the way up and later on the way down
+    both = has_rise & has_fall
+    period[touch[has_rise] - 1], spread[touch[has_rise] - 1] = rise[has_rise], of_rise[has_rise]
+    period[touch[both] - 1] = (rise[both] + fall[both]) / 2
+    spread[touch[both] - 1] = np.hypot(of_rise[both], own[both]) / np.sqrt(2)
     # where the flanks change, the errors of both remain in a sum of periods
     last = np.setdiff1d(touch, touch - 1)
     spread[last] = np.hypot(spread[last - 1], np.sqrt(2) * of_fall[last])
@@ -230,8 +238,8 @@ def _flank_to_flank(
 ) -> tuple[Floats, Floats, Bools]:
     """Time between the flanks of touching branches, spread of one time, and whether they are.
 
-    At one level of both, about a sample in the middle of each; each half way up its own where
-    their ends lie apart by more than readings miss of a corner, as from one amplitude to another.
+    At one level of both, about a sample in the middle of each; each half way up its own where the
+    ends of most lie apart by more than readings miss of a corner, as of amplitudes that change.
     """
     reach = np.maximum((end - begin) // _FLANK, 1)
     low, high = np.maximum(middle - reach, begin), np.minimum(middle + reach, end)
@@ -248,16 +256,22 @@ def _flank_to_flank(
         step = np.abs(rise / (high - low))[touch]
         missed = step + _BEYOND_NOISE * noise
         is_other = np.abs(ends[:, touch] - ends[:, touch - 1]).max(axis=0) > missed
-        if is_other.mean() > _IRREGULAR:  # then two that are alike are so by chance
-            is_other[:] = True
-        later, earlier = (
-            at[one] + np.where(is_other, half_way[one] - level[one], -way * apart / 2) / speed[one]
-            for one, way in ((touch, 1), (touch - 1, -1))
-        )
-        found = later - earlier
+        at_one_level, at_half_way = (
+            np.subtract(*(at[one] + shift / speed[one] for one, shift in (
+                (touch, later), (touch - 1, earlier))))
+            for later, earlier in (
+                (-apart / 2, apart / 2),
+                tuple(half_way[one] - level[one] for one in (touch, touch - 1)),
+            )
+        )  # fmt: skip
         # a corner is missed by up to half a step, so that half way is by up to a quarter
-        of_level = np.hypot(noise, np.where(is_other, step / 4 / np.sqrt(3), 0.0))
-        own = of_level / np.abs(speed[touch])
+        of_step = step / 4 / np.sqrt(3) / np.abs(speed[touch])
+        # one end that is unlike, as beside a hold, may be of a machine that rounds the others
+        of_way = np.abs(at_one_level - at_half_way) / np.sqrt(24)
+        is_irregular = is_other.mean() > _IRREGULAR
+        found = at_half_way if is_irregular else at_one_level
+        beside = of_step if is_irregular else np.where(is_other, of_way, 0.0)
+        own = np.hypot(noise / np.abs(speed[touch]), beside)
     return found, own, steep[touch] & steep[touch - 1] & alike & (found > 0)
 
 
