@@ -615,25 +615,32 @@ _CODES_READ = 1 << 16  # samples
 
 _OF_CODES = 0.99  # of the steps, that are whole multiples of one
 
+_OF_TURNS = 0.1  # of them, that are followed by another
+
 
 def step_of_codes(values: Floats) -> float:
     """Step between the codes of a channel, all of whose steps are multiples of it; 0 of others.
+
+    A ramp without noise has one step too, but does not go now by one code and now by another.
 
     Examples
     --------
     >>> wave = np.sin(np.arange(500) / 20)
     >>> print(round(step_of_codes(np.round(wave, 2)), 3), step_of_codes(wave))
     0.01 0.0
+    >>> print(step_of_codes(0.25 * np.arange(100)))
+    0.0
     """
     steps = np.abs(np.diff(values[:_CODES_READ]))
     steps = steps[np.isfinite(steps)]
-    steps = steps[steps > 1e-9 * steps.max(initial=0.0)]
-    if not steps.size:
+    moves = steps[steps > 1e-9 * steps.max(initial=0.0)]
+    if not moves.size:
         return 0.0
-    step = float(steps.min())
-    multiple = steps / step
+    step = float(moves.min())
+    multiple = moves / step
     whole = np.abs(multiple - np.round(multiple)) < 0.05
-    return step if whole.mean() >= _OF_CODES else 0.0
+    turns = np.count_nonzero(np.diff(np.round(steps / step)))
+    return step if whole.mean() >= _OF_CODES and turns > _OF_TURNS * moves.size else 0.0
 
 
 def step_that_fills(values: Floats) -> float:

@@ -7,6 +7,7 @@ import pytest
 
 from reduction.record.errors import DataError
 from reduction.record.settings import ModulusSettings
+from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.moduli import local_regression as groups
 from reduction.stages.moduli import tangent_modulus as specimencurves
 from reduction.stages.moduli.tangent_modulus import tangent_curves
@@ -53,6 +54,43 @@ def test_cubic_law_comes_back(triangle, per_cycle, begins):
     expected = np.broadcast_to(law(curves.strain_bin), known.shape)
     assert curves.branch_tension[0][known] == pytest.approx(expected[known], rel=1e-4)
     assert (curves.tangent_modulus_count[0, :, 26] == 10).all()
+
+
+def slow_sine(per_cycle, n_cycles=30):
+    """Strain 1 +- 0.25 of some readings a cycle, in step with the cycles or not, and its cycles."""
+    turn = np.arange(int(per_cycle * n_cycles) + 1) / per_cycle
+    strain = 1 - 0.25 * np.cos(2 * np.pi * turn)
+    valley = np.round(np.arange(n_cycles + 1) * per_cycle).astype(int)
+    valley[-1] = min(valley[-1], strain.size - 1)
+    peak = np.round((np.arange(n_cycles) + 0.5) * per_cycle).astype(int)
+    first = np.column_stack([valley[:-1], peak])
+    branch = np.zeros(strain.size, np.int8)
+    number = np.zeros(strain.size, np.int32)
+    for cycle, (low, top, end) in enumerate(zip(valley[:-1], peak, valley[1:], strict=True)):
+        branch[low:top], branch[top:end] = 1, 2
+        number[low:end] = cycle + 1
+    return strain, Cycles(
+        valley[:-1], valley[1:], first, np.column_stack([peak, valley[1:]]),
+        np.ones((n_cycles, 2)), number, branch, (branch > 0) & (np.abs(strain - 1) < 0.225), 0.1,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("per_cycle", [12, 12.4, 13.37, 15.3, 17.4])
+@pytest.mark.parametrize("power", [3, 5])
+def test_a_slow_sine_has_the_modulus_of_its_law_or_says_what_its_window_misses(per_cycle, power):
+    strain, cycles = slow_sine(per_cycle)
+    noise = np.random.default_rng(2).normal(0, 0.3, strain.size)
+    curves = curves_of(strain, 200 * strain + 60 * strain**power + noise, cycles)
+    true = (200 + 60 * power * curves.strain_bin ** (power - 1)) / AREA
+    spread = np.hypot(
+        curves.tangent_modulus_standard_uncertainty, curves.tangent_modulus_window_uncertainty
+    )
+    away = np.abs(curves.tangent_modulus - true) / spread
+    known = np.isfinite(away)
+    assert known[0].any(axis=1).all()
+    assert np.mean(away[known] > 2) < 0.1
+    # in step with the cycles no more is read of a branch than six strains
+    assert np.nanmedian(spread / true) < (0.5 if per_cycle == 12 else 0.15)
 
 
 def test_branches_are_kept_apart(triangle):

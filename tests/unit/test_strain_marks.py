@@ -63,6 +63,11 @@ def test_a_mark_has_the_tension_of_the_last_ten_seconds_of_its_hold():
     assert slack == pytest.approx(5.0 - 5 / 6, abs=0.06)  # a third of a short hold
 
 
+def test_a_hold_whose_readings_are_all_flagged_is_the_place_of_no_mark():
+    flagged = [*HOLDS, (300.0, 390.0, np.nan, False)]
+    assert measured(TWO, flagged, RAMP) == pytest.approx(measured(TWO, HOLDS, RAMP))
+
+
 def test_the_start_of_the_hold_is_the_other_bound():
     _, low, high = measured(TWO, HOLDS, RAMP, reading="start")
     assert low == pytest.approx(20.0 + 5.0, abs=0.06)

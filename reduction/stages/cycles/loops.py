@@ -659,7 +659,7 @@ def _at_equal_phase(
     """
     n_cycles = branch_first.shape[0]
     work, mean = np.zeros(n_cycles), np.zeros(n_cycles)
-    still = 0.0 if held is None else _ON_PLATEAU / 2 * reading_noise(driven)
+    still = 0.0 if held is None else reading_noise(driven)
     for column, way in ((0, -1.0), (1, 1.0)):
         begin, end = branch_first[:, column], branch_last[:, column]
         low, high = (driven[begin], driven[end]) if held is None else held[column : column + 2]
@@ -669,7 +669,9 @@ def _at_equal_phase(
         half, middle = np.abs(high - low) / 2, (high + low) / 2
         with np.errstate(divide="ignore", invalid="ignore"):
             level = (driven[at] - middle[row]) / half[row]
-            level = np.where(np.abs(np.abs(level) - 1) * half[row] < still, np.sign(level), level)
+            is_held = np.abs(np.abs(level) - 1) * half[row] < still
+            is_end = (at == begin[row]) | (at == end[row])
+            level = np.where(is_held | is_end, np.sign(level), level)
         np.clip(level, -1, 1, out=level)
         angle, sine = way * np.arccos(level), way * np.sqrt(1 - level**2)
         step, rise = np.diff(level), np.diff(sine)
@@ -1296,32 +1298,35 @@ def _places(values: Floats, low: Integers, high: Integers) -> Integers:
 
 
 def _noise_and_rounding(values: Floats, noise: float) -> tuple[float, float]:
-    r"""Noise of readings before they were rounded, and what rounding leaves of an error in a mean.
+    r"""Noise of readings before they were rounded, and what rounding leaves of an error.
 
-    .. math:: \sigma^2 = s^2 - q^2 / 12, \qquad u = q / \sqrt{12} \; e^{-2 (\pi \sigma / q)^2}
+    .. math:: \sigma^2 = s^2 - q^2 / 12, \qquad
+              u = q / \sqrt{12} \; e^{-2 (\pi \sigma_e / q)^2}, \qquad \sigma_e = 0.55 \, \sigma
 
-    Noise of more than half a step makes the mean of rounded readings that of the readings.  The
-    median of third differences is itself a number of steps where these are coarse: there it is
-    their mean square, but for those of a turn, that says what the noise is.
+    The greatest of some ten noisy readings scatters by about 0.55 of their noise, and its mean over
+    many cycles is free of the steps where that is more than half of one.  The median of third
+    differences is itself a number of steps where these are coarse: there it is their mean square,
+    but for those of a turn, that says what the noise is.
 
     Examples
     --------
     >>> level = np.random.default_rng(1).normal(0, 1, 4000) + np.sin(np.arange(4000) / 300) * 100
-    >>> for step in (3, 1.2):
-    ...     rounded = step * np.round(level / step)
-    ...     print(np.round(_noise_and_rounding(rounded, reading_noise(rounded)), 1))
-    [1.  0.1]
-    [1. 0.]
+    >>> rounded = 3 * np.round(level / 3)
+    >>> print([round(one, 1) for one in _noise_and_rounding(rounded, reading_noise(rounded))])
+    [1.0, 0.5]
     """
     step = step_of_codes(values)
-    if noise > _COARSE * step:
+    if not step or noise > _COARSE * step:
         return noise, 0.0
     third = np.abs(np.diff(values[:_NOISE_SAMPLES], n=3))
     third = third[np.isfinite(third) & (third < _FAR * step)]
     square = float(np.mean(third**2)) / 20 if third.size else 0.0
     own = np.sqrt(max(square - step**2 / 12, 0.0))
-    return float(own), float(step / np.sqrt(12) * np.exp(-2 * (np.pi * own / step) ** 2))
+    of_extreme = _OF_GREATEST * own
+    return float(own), float(step / np.sqrt(12) * np.exp(-2 * (np.pi * of_extreme / step) ** 2))
 
+
+_OF_GREATEST = 0.55  # of the noise: scatter of the greatest of some ten readings
 
 _COARSE, _FAR = 1.5, 12.0  # steps of a converter
 

@@ -206,7 +206,7 @@ def own_periods(
     both = has_rise & has_fall
     period[touch[has_rise] - 1], spread[touch[has_rise] - 1] = rise[has_rise], of_rise[has_rise]
     period[touch[both] - 1] = (rise[both] + fall[both]) / 2
-    spread[touch[both] - 1] = np.hypot(of_rise[both], own[both]) / np.sqrt(2)
+    spread[touch[both] - 1] = np.hypot(of_rise[both], own[both]) / 2
     # where the flanks change, the errors of both remain in a sum of periods
     last = np.setdiff1d(touch, touch - 1)
     spread[last] = np.hypot(spread[last - 1], np.sqrt(2) * of_fall[last])
@@ -267,7 +267,7 @@ def _flank_to_flank(
         # a corner is missed by up to half a step, so that half way is by up to a quarter
         of_step = step / 4 / np.sqrt(3) / np.abs(speed[touch])
         # one end that is unlike, as beside a hold, may be of a machine that rounds the others
-        of_way = np.abs(at_one_level - at_half_way) / np.sqrt(24)
+        of_way = np.abs(at_one_level - at_half_way) / np.sqrt(12)
         is_irregular = is_other.mean() > _IRREGULAR
         found = at_half_way if is_irregular else at_one_level
         beside = of_step if is_irregular else np.where(is_other, of_way, 0.0)

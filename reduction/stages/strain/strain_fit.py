@@ -379,7 +379,9 @@ def measure_mark_tension(
             np.inf,
             np.abs(standstills.mean_position - position),
         )
-        distance[np.isnan(distance)] = np.inf  # of a hold whose readings of position are all flagged
+        distance[np.isnan(distance)] = (
+            np.inf
+        )  # of a hold whose readings of position are all flagged
         nearest = float(distance.min(initial=np.inf))
         if is_slack:
             measured.append(slack)
