@@ -344,7 +344,9 @@ def window_blur(slope: ArrayLike, *, half_window: int) -> tuple[Floats, float]:
     return blur, sqrt(variance)
 
 
-_FEWEST_WINDOWS = 3  # of which one can be told from what it blurs
+_FULLER = 2.0  # more samples, since those of several cycles lie beside each other
+
+_MOST_POOLED = 3  # windows that all cycles together fill, where one cycle fills one alone
 
 
 def pooled_spacing(strain: Floats, cycles: Cycles) -> float:
@@ -379,10 +381,10 @@ def pooled_spacing(strain: Floats, cycles: Cycles) -> float:
 def narrower_windows(grid: StrainGrid, *, spacing: float, pooled: Callable[[], float]) -> list[int]:
     """Half windows in bins, each half of the one before, that samples so far apart can fill.
 
-    Of one cycle, or of all of them together where one fills too few windows.
+    Of one cycle, or of all of them together where one fills no narrower one.
     """
     halves = _halved(grid, spacing)
-    return halves if len(halves) >= _FEWEST_WINDOWS else _halved(grid, pooled())[:_FEWEST_WINDOWS]
+    return halves if len(halves) > 1 else _halved(grid, pooled() * _FULLER)[:_MOST_POOLED]
 
 
 def _halved(grid: StrainGrid, spacing: float) -> list[int]:
