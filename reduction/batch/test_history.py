@@ -1,4 +1,10 @@
-"""What a specimen had seen before a test, its strain model and its instruments."""
+"""What a specimen had seen before a test, its strain model and its instruments.
+
+References
+----------
+.. [1] K. R. Bitting, "The Dynamic Behavior of Nylon and Polyester Line," U.S. Coast Guard R&D
+   Center, Groton, CT, Rep. CG-D-39-80, Apr. 1980, App. D.
+"""
 
 from __future__ import annotations
 
@@ -29,6 +35,8 @@ from reduction.stages.strain.zero_strain import ZeroStrain
 Models = Mapping[tuple[str, str], StrainModel]
 
 Place = tuple[int, int]
+
+_ALIKE = 0.02  # loads within this are one level, as of levels in a look-up
 
 
 @dataclass(frozen=True)
@@ -164,7 +172,10 @@ def _greatest(values: Sequence[float]) -> float:
 def history_remarks(survey: Survey, past: EarlierTests, campaign: Campaign) -> tuple[Note, ...]:
     """What the campaign leaves open about the place of a test in its specimens' history."""
     plan = survey.plan
-    remarks = (*_unknown(survey, past), *_unlogged(survey, past, campaign))
+    remarks = (
+        *_unknown(survey, past), *_unlogged(survey, past, campaign),
+        *_after_greater_load(survey, past),
+    )  # fmt: skip
     shared = [
         name
         for name in plan.specimens
@@ -186,6 +197,24 @@ def _unlogged(survey: Survey, past: EarlierTests, campaign: Campaign) -> tuple[N
         count = _unlogged_cycles(_earlier(survey, past, name), own, before)
         if count:
             remarks.append(note("cycles-in-no-log", name, n_cycles=count))
+    return tuple(remarks)
+
+
+def _after_greater_load(survey: Survey, past: EarlierTests) -> tuple[Note, ...]:
+    """Earlier loads that a test does not reach: [1]_ finds K_0 to depend on the greatest."""
+    remarks = []
+    for name in survey.plan.specimens:
+        own = survey.extremes.greatest_tension.get(name, np.nan)
+        loads = {
+            entry.plan.id: entry.extremes.greatest_tension.get(name, np.nan)
+            for entry in _earlier(survey, past, name)
+        }
+        # where one of them is not known, the greatest is not either
+        if (greatest := _greatest([*loads.values()])) > (1 + _ALIKE) * own:
+            test = max(loads, key=loads.__getitem__)
+            remarks.append(
+                note("after-a-greater-load", name, test=test, earlier=greatest, tension=own)
+            )
     return tuple(remarks)
 
 

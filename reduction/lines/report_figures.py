@@ -142,7 +142,7 @@ def figure_rows() -> list[FigureRow]:
     Examples
     --------
     >>> [row.from_or_why_not for row in figure_rows() if row.figure == "24"]
-    ['photograph or drawing, no curve', 'record not printed']
+    ['photograph or drawing, no curve', 'record not printed; sec. 4.1 prints two of its loads']
     """
     text = (files("reduction.published") / "data" / "figures.csv").read_text("utf-8")
     return [FigureRow(**row) for row in csv.DictReader(text.splitlines())]
@@ -399,7 +399,7 @@ class _Segments:
             if tether in self.tethers and is_wanted:
                 series += self._of(table, test, tether, cells)
         if self.with_weights:
-            series.append(_of_weights())
+            series += _of_weights()
         quantity = "branch_tension" if self.is_load else "tangent_modulus"
         for place, line in enumerate(own, start=2):
             for curve in line.curves:
@@ -473,15 +473,14 @@ def _printed_load(
     return x, y, load.recomputed, load.tolerance, " ".join(dict.fromkeys(errata))
 
 
-def _of_weights() -> Series:
+def _of_weights() -> Iterator[Series]:
     """Slopes between the weights of Table 4 of [2]_, on a tether of 1 in."""
     found = reduce_stepwise(published_static_test(), area=np.pi / 4 * _INCH**2)
     middle = (found.strain[1:] + found.strain[:-1]) / 2
-    up = found.interval_branch == 1
-    x = np.concatenate([middle[up], [np.nan], middle[~up]])
-    y = np.concatenate([found.interval_modulus[up], [np.nan], found.interval_modulus[~up]])
-    keep = np.isfinite(y) | np.isnan(x)
-    return Series("static test, 1997, up and down", "curve", x[keep], y[keep], colour=6)
+    for dash, (word, way) in enumerate((("up", 1), ("down", 2))):
+        keep = (found.interval_branch == way) & np.isfinite(found.interval_modulus)
+        yield Series(f"static test, 1997, {word}", "curve", middle[keep],
+                     found.interval_modulus[keep], colour=6, dash=dash)  # fmt: skip
 
 
 def _strength(row: FigureRow, own: Sequence[LineSource]) -> ReportFigure:

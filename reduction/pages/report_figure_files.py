@@ -210,6 +210,8 @@ def _draw_lines(axes: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> No
     for one in figure.series:
         at = [scale.factor * values for scale, values in zip(scales, (one.x, one.y), strict=True)]
         name, colour = _name(one), _colour(one)
+        if not np.isfinite(one.y).any():
+            name += " (no curve)"  # its printed points alone are drawn
         if one.is_own and own > _MOST_OWN:
             name, colour = f"own: {own} series, see the table", "#00000080"
         look: dict[str, Any] = {"color": colour, "label": None if name in named else name}
@@ -219,7 +221,7 @@ def _draw_lines(axes: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> No
             named.add(name)
             continue
         has_erratum = np.array([bool(erratum) for erratum in one.errata], dtype=bool)
-        errata = ", ".join(dict.fromkeys(filter(None, one.errata)))
+        errata = ", ".join(dict.fromkeys(" ".join(one.errata).split()))
         # printed points lie on their curves: the legend tells once what they are
         usual = name if one.is_own or one.colour < 0 else "printed"
         for chosen, fill, name in (
@@ -231,6 +233,7 @@ def _draw_lines(axes: Any, figure: ReportFigure, scales: Sequence[_Scale]) -> No
                 axes.errorbar(
                     *(values[chosen] for values in at[::turn]), **bar, **look, linestyle="none",
                     marker="s" if one.dash else "o", markersize=5.0, capsize=2.0,
+                    zorder=3.0,  # own lines do not hide what is printed
                 )  # fmt: skip
                 named.add(name)
     axes.set(xlabel=first.label, ylabel=second.label)
@@ -267,6 +270,8 @@ def _draw_surfaces(drawn: Any, figure: ReportFigure, scales: Sequence[_Scale]) -
             lines = flat.contour(x, y, z, 8, colors=_colour(one), linewidths=1.0)
             flat.clabel(lines, fontsize=7.0, fmt=lambda value: f"{value:,.6g}")
     _in_space(space, scales[:3])
+    for axis in (flat.xaxis, flat.yaxis):
+        axis.set_major_formatter("{x:,.6g}")
     flat.set(xlabel=scales[0].label, ylabel=scales[1].label, title=f"contours of {scales[2].label}")
     _legend(space)
 
@@ -298,4 +303,5 @@ def _in_space(space: Any, scales: Sequence[_Scale]) -> None:
     space.view_init(elev=25.0, azim=-125.0)
     space.tick_params(labelsize="x-small")
     space.locator_params(nbins=5)
-    space.zaxis.set_major_formatter("{x:,.6g}")
+    for axis in (space.xaxis, space.yaxis, space.zaxis):
+        axis.set_major_formatter("{x:,.6g}")

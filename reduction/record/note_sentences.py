@@ -31,6 +31,11 @@ def _pascals(value: float) -> str:
     return f"{value / 1e9:.3g} GPa" if abs(value) >= 1e9 else f"{value / 1e6:.3g} MPa"
 
 
+def _newtons(value: float) -> str:
+    """A force to four digits, without a power of ten."""
+    return f"{float(f'{value:.4g}'):,.10g} N"
+
+
 def _one(of: str) -> str:
     """A kind with its article."""
     return f"{'an' if of[0] in 'aeiou' else 'a'} {of}"
@@ -964,6 +969,13 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note",
         "{n_cycles} earlier cycles were not logged: earlier_maximum_strain and"
         " earlier_maximum_tension include only the logged tests",
+    ),
+    "after-a-greater-load": (
+        "note",
+        lambda test, earlier, tension: (
+            f"test {test} loaded it to {_newtons(earlier)} before, this test reaches"
+            f" {_newtons(tension)}: all results are those after the greater load"
+        ),
     ),
     "earlier-test-failed": (
         "note",

@@ -1,5 +1,6 @@
 """What a specimen had seen before a test: cycles in logs, between them, and of a wagger."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -115,3 +116,38 @@ def test_specimens_that_share_tests_without_an_order_are_asked_for_one():
     campaign = SimpleNamespace(specimens={"hose": Specimen("hose")})
     (remark,) = map(str, history_remarks(surveys[0], earlier_tests_of(surveys, {}), campaign))
     assert remark.endswith("the effect of earlier tests is not known. Set order")
+
+
+def loaded(*loads, **told):
+    """Tests A, B, ... of one specimen in order, each up to a load [N]; nothing of it where None."""
+    surveys = [survey(name, place, **told) for place, name in enumerate("ABCDEF"[: len(loads)])]
+    return [
+        one if load is None
+        else replace(one, extremes=replace(one.extremes, greatest_tension={"hose": load}))
+        for one, load in zip(surveys, loads, strict=True)
+    ]  # fmt: skip
+
+
+def after_greater(surveys):
+    campaign = SimpleNamespace(specimens={"hose": Specimen("hose")})
+    past = earlier_tests_of(surveys, {})
+    remarks = [one for entry in surveys for one in history_remarks(entry, past, campaign)]
+    assert {one.severity for one in remarks} <= {"note"}
+    return [
+        (one.numbers["test"], one.numbers["earlier"], one.numbers["tension"])
+        for one in remarks
+        if one.code == "after-a-greater-load"
+    ]
+
+
+def test_a_test_after_a_greater_load_than_its_own_says_which_and_how_great():
+    # CG-D-39-80, App. D: K_0 "is affected by rate of loading, the maximum loading" and the rest
+    assert after_greater(loaded(300.0, 900.0, 600.0, 950.0, 890.0)) == [
+        ("B", 900.0, 600.0), ("D", 950.0, 890.0),
+    ]  # fmt: skip
+    # 2 % apart is the same load, and the first test and ever greater ones have none before
+    assert after_greater(loaded(900.0, 885.0, 1000.0)) == []
+
+
+def test_no_load_is_called_the_greatest_where_one_is_not_known():
+    assert after_greater(loaded(900.0, None, 600.0)) == []

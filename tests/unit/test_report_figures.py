@@ -142,6 +142,23 @@ def test_axial_tension_is_that_of_a_squared_cosine():
     assert wire.y == pytest.approx(force, rel=1e-3)
 
 
+def test_the_static_test_has_a_curve_of_the_weights_put_on_and_one_of_those_taken_off():
+    # Table 4: 51 and 74 lb at 9.31 and 11.38 in, and at 11.68 and (151 %) 15.38 in; 9.31 in is 52 %
+    up, down = drawn("WHOI-2005-10", "35").series[-2:]
+    assert (up.name, down.name) == ("static test, 1997, up", "static test, 1997, down")
+    per_inch = 23 * POUND * (9.31 / 1.52) / (np.pi / 4 * 0.0254**2)
+    assert up.y[0] == pytest.approx(per_inch / (11.38 - 9.31), rel=0.01)
+    assert down.y[-1] == pytest.approx(per_inch / (15.38 - 11.68), rel=0.01)
+
+
+def test_a_legend_says_where_printed_points_have_no_curve_and_names_each_erratum_once(tmp_path):
+    svg, *_ = write_figure(drawn("WHOI-2005-10", "23"), tmp_path, "us").paths
+    text = svg.read_text(encoding="utf-8")
+    assert "T-6 used, Table 5 (no curve)" in text
+    assert "T-5 used, Table 5 (no curve)" not in text
+    assert "printed, WH5-6, WH5-5<" in text
+
+
 def own_line(notes=()):
     curve = LineCurve(
         "quasi_static_spring_constant", "mean_tension", 0.0, 9e3, coefficient=np.array([5e4, 2.0])
