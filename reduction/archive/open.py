@@ -134,7 +134,7 @@ class ReadOnce:
                 if not self._has_room(archive):
                     yield archive
                     return
-                _freeze(archive.load())
+                _freeze(in_memory(archive))
             self._kept[path] = stamp, archive
             self._sizes[path] = archive.nbytes
         yield self._kept[path][1].copy()
@@ -185,6 +185,16 @@ def _as_read(built: xr.Dataset) -> xr.Dataset:
         {name: one for name, one in variables.items() if name in coordinates},
         built.attrs,
     )
+
+
+def in_memory(archive: xr.Dataset) -> xr.Dataset:
+    """Return the archive with all its values read, so that its file may be closed.
+
+    As `xarray.Dataset.load`, which imports Dask to ask it whether the arrays are its own.
+    """
+    for variable in archive.variables.values():
+        _ = variable.values  # which an archive that was opened without chunks keeps
+    return archive
 
 
 def _freeze(archive: xr.Dataset) -> None:
