@@ -97,7 +97,11 @@ def _fit_of_parameters(archive: xr.Dataset) -> Variables:
 def _one_specimen(archive: xr.Dataset) -> Variables:
     """Leave out the axis of a specimen that is alone."""
     return {
-        str(name): variable.isel(specimen=0)
+        str(name): xr.Variable(
+            [dim for dim in variable.dims if dim != "specimen"],
+            np.asarray(variable.values.take(0, axis=variable.dims.index("specimen"))),
+            fastpath=True,
+        )
         for name, variable in archive.variables.items()
         if "specimen" in variable.dims
     }

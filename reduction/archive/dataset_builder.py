@@ -39,18 +39,28 @@ _CHUNK = 65536  # values; half a megabyte, which a cycle of a long record costs 
 
 
 def build_dataset(
-    values: Values, schema: Mapping[str, Quantity], *, attributes: Mapping[str, str]
+    values: Values,
+    schema: Mapping[str, Quantity],
+    *,
+    attributes: Mapping[str, str],
+    is_stored: bool = False,
 ) -> xr.Dataset:
-    """Bring arrays into the form of the archive, in the order of the schema."""
+    """Bring arrays into the form of the archive, in the order of the schema.
+
+    Where they were stored already, nothing is said of how to store them.
+    """
     unknown = sorted(set(values) - set(schema))
     if unknown:
         raise ArchiveError("values without a place in the schema", found=", ".join(unknown))
     # zero-length dimensions turn unlimited in a file, so what is empty is left out
     present = {name: values[name] for name in schema if name in values and values[name].size}
     sizes = _sizes(present, schema)
-    auxiliary = next((schema["time"].dims[0] for name in present if name == "time"), "")
+    auxiliary = schema["time"].dims[0] if "time" in present else ""
     variables = {
-        name: _variable(array, schema[name], present, auxiliary) for name, array in present.items()
+        name: _stored(array, schema[name], present)
+        if is_stored
+        else _variable(array, schema[name], present, auxiliary)
+        for name, array in present.items()
     }
     coordinates = {name for name in variables if name == "time" or name in sizes}
     return xr.Dataset(
@@ -89,6 +99,18 @@ def _variable(array: NDArray[Any], row: Quantity, present: Values, auxiliary: st
     )
     release_pages(array)
     return made
+
+
+def _stored(array: NDArray[Any], row: Quantity, present: Values) -> xr.Variable:
+    return variable_of(row.name, row.dims, array, attributes=as_read(_attributes(row, present)))
+
+
+def as_read(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """Attributes of a variable as a reader finds them: one number alone is no array."""
+    return {
+        name: value[0] if isinstance(value, np.ndarray) and value.size == 1 else value
+        for name, value in attributes.items()
+    }
 
 
 def variable_of(

@@ -22,6 +22,7 @@ from reduction import __version__
 from reduction.archive.dataset_builder import (
     SCHEMA_NAME,
     SCHEMA_VERSION,
+    as_read,
     build_dataset,
     variable_of,
 )
@@ -134,7 +135,7 @@ class ReadOnce:
                 if not self._has_room(archive):
                     yield archive
                     return
-                _freeze(archive.load())
+                _freeze(in_memory(archive))
             self._kept[path] = stamp, archive
             self._sizes[path] = archive.nbytes
         yield self._kept[path][1].copy()
@@ -172,12 +173,9 @@ def _as_read(built: xr.Dataset) -> xr.Dataset:
     variables: dict[Any, xr.Variable] = {}
     for name, variable in built.variables.items():
         values = variable.values
-        attributes = {
-            key: value[0] if isinstance(value, np.ndarray) and value.size == 1 else value
-            for key, value in variable.attrs.items()
-        }
         if values.dtype.kind == "U":
             values = values.astype(object)
+        attributes = as_read(variable.attrs)
         variables[name] = variable_of(str(name), variable.dims, values, attributes=attributes)
     coordinates = set(built.coords)
     return xr.Dataset(
@@ -185,6 +183,16 @@ def _as_read(built: xr.Dataset) -> xr.Dataset:
         {name: one for name, one in variables.items() if name in coordinates},
         built.attrs,
     )
+
+
+def in_memory(archive: xr.Dataset) -> xr.Dataset:
+    """Return the archive with all its values read, so that its file may be closed.
+
+    As `xarray.Dataset.load`, which imports Dask to ask it whether the arrays are its own.
+    """
+    for variable in archive.variables.values():
+        _ = variable.values  # which an archive that was opened without chunks keeps
+    return archive
 
 
 def _freeze(archive: xr.Dataset) -> None:
@@ -224,7 +232,10 @@ def variables_if(
                 for stored in (name, f"{_BESIDE}{name}"):
                     is_there = isinstance(place.get(stored, getlink=True), h5py.HardLink)
                     if is_there and place[stored].dtype != _NO_VARIABLE:
-                        found[name] = schema[name].dims, _values_of(place[stored].id, schema[name])
+                        found[name] = (
+                            schema[name].dims,
+                            _values_of(place[stored].id, schema[name], place[stored].dtype),
+                        )
     except (KeyError, RuntimeError, ValueError) as error:  # of the library, where the disk fails
         raise OSError(str(error)) from error
     return xr.Dataset(found)
@@ -255,29 +266,33 @@ def _read_own(path: Path) -> xr.Dataset | None:
             held: dict[str, h5py.h5d.DatasetID] = {}
             if _fault_in_group(file.id, path.stat().st_size, held=held) is not None:
                 return None
-            sizes = (math.prod(one.shape or ()) * one.dtype.itemsize for one in held.values())
-            if sum(sizes) > LARGEST:
+            if sum(map(_n_bytes, held.values())) > LARGEST:
                 return None
             # a dimension stands there as a variable without values where it has none
-            held = {name: one for name, one in held.items() if one.dtype != _NO_VARIABLE}
-            schema = _schema_of_file(held)
+            types = {name: one.dtype for name, one in held.items()}
+            types = {name: one for name, one in types.items() if one != _NO_VARIABLE}
+            schema = _schema_of_file(types)
             if schema not in (TEST_SCHEMA, STEPWISE_SCHEMA):
                 return None
-            values = {name: _values_of(held[name], row) for name, row in schema.items()
-                      if name in held}  # fmt: skip
-            if len(values) < len(held):
+            values = {name: _values_of(held[name], row, types[name])
+                      for name, row in schema.items() if name in types}  # fmt: skip
+            if len(values) < len(types):
                 return None
             held.clear()  # or the file looks for each of them when it is closed
-        found = build_dataset(values, schema, attributes=attributes)
-        found = _as_read(found)
+        found = build_dataset(values, schema, attributes=attributes, is_stored=True)
         return found if _fault_of_form(found) is None else None
     return None
 
 
-def _values_of(held: h5py.h5d.DatasetID, row: Quantity) -> NDArray[Any]:
+def _n_bytes(held: h5py.h5d.DatasetID) -> int:
+    """Size of the values of a variable, unpacked."""
+    return int(math.prod(held.shape or ()) * held.get_type().get_size())
+
+
+def _values_of(held: h5py.h5d.DatasetID, row: Quantity, stored_type: np.dtype[Any]) -> NDArray[Any]:
     """Read all values of a variable; `ValueError` where they are not of the type of its row."""
     values = np.empty(held.shape, "S1" if row.is_text else row.dtype)
-    if held.dtype != values.dtype:
+    if stored_type != values.dtype:
         raise ValueError(row.name)
     held.read(h5py.h5s.ALL, h5py.h5s.ALL, values)
     if not row.is_text:
@@ -490,7 +505,7 @@ def _fault_in_group(
         made = one.get_create_plist()
         if made.get_layout() == h5py.h5d.VIRTUAL or made.get_external_count():
             return f"a variable '{name}' whose values lie in other files"
-        n_bytes = math.prod(one.shape or ()) * one.get_type().get_size()
+        n_bytes = _n_bytes(one)
         if n_bytes > _MOST_PACKED * size:
             return f"a variable '{name}' of {n_bytes:,} bytes in a file of {size:,}"
         if held is not None:

@@ -43,13 +43,16 @@ LEFT_OUT: Final = frozenset(
 
 _SAMPLES_AT_ONCE = 1_000_000
 
-_ROWS_AT_ONCE = 65_536
+_CYCLES_AT_ONCE = 10_000
+
+_ROWS_AT_ONCE = 16_384  # their conditions, and what the writer keeps of 60 columns, take 40 MB
 
 _WHOLE = -1
 
+_TYPES: Final = {"row": pyarrow.int32(), "is_whole": pyarrow.bool_()}
+
 _TESTS = pyarrow.schema(
-    [("row", pyarrow.int32()), ("is_whole", pyarrow.bool_())]
-    + [(name, _column_type(name)) for name in (*CONDITIONS, *NUMBER)]
+    list(_TYPES.items()) + [(name, _column_type(name)) for name in (*CONDITIONS, *NUMBER)]
 )
 
 
@@ -107,8 +110,9 @@ def _write(entries: Sequence[CatalogueEntry], path: Path) -> None:
     )
     # each number with the conditions of its test: the file can be read by itself
     conditions = tests.select(["row", "is_whole", *CONDITIONS])
-    schemas = {tuple(one.schema.names): one.schema for one in (tests, *numbers, conditions)}
-    schema = pyarrow.unify_schemas(schemas.values()).with_metadata({MARK: _mark()})
+    names = dict.fromkeys(name for one in (tests, *numbers) for name in one.column_names)
+    types = {name: _TYPES.get(name) or _column_type(name) for name in names}
+    schema = pyarrow.schema(types.items(), {MARK: _mark()})
     remove_abandoned(path)
     with (
         _whole_file(path) as part,
@@ -123,12 +127,19 @@ def _write(entries: Sequence[CatalogueEntry], path: Path) -> None:
             for name in of_test.column_names:
                 table = table.append_column(name, of_test[name])
             writer.write_table(_complete(table, schema), table.num_rows)
+    # what the writer had is not needed again
+    pyarrow.default_memory_pool().release_unused()
 
 
 def _complete(table: Any, schema: Any) -> Any:
-    """The table with all columns of the file in their order."""
-    found = pyarrow.concat_tables([schema.empty_table(), table], promote_options="default")
-    return found.select(schema.names).cast(schema)
+    """The table with all columns of the file in their order, and texts as such."""
+    columns = [
+        table[one.name].cast(one.type)
+        if one.name in table.column_names
+        else pyarrow.nulls(table.num_rows, one.type)
+        for one in schema
+    ]
+    return pyarrow.table(columns, schema=schema)
 
 
 def _by_quantity(numbers: Sequence[Any]) -> Iterator[list[Any]]:
@@ -262,25 +273,16 @@ def _block(
     archive: xr.Dataset, dims: tuple[Hashable, ...], group: list[str], specimens: list[str]
 ) -> Any:
     axes = [np.arange(archive.sizes[dim]) for dim in dims]
-    cycles: dict[str, NDArray[np.intp]] = {}
     if "cycle" in dims and archive.sizes["cycle"]:
-        cycles["cycle"] = _kept_cycles(archive.sizes["cycle"])
-        axes[dims.index("cycle")] = cycles["cycle"]
+        axes[dims.index("cycle")] = _kept_cycles(archive.sizes["cycle"])
     shape = tuple(len(axis) for axis in axes)
-    # of many cycles the others are not read
-    read = {
-        name: archive.variables[name].isel(cycles, missing_dims="ignore")
-        for one in group
-        for name in (one, f"{one}_standard_uncertainty")
-        if name in archive.variables
-    }
-    values = np.stack([np.asarray(read[name].values, float) for name in group])
+    values = np.stack([_at_kept_cycles(archive.variables[name]) for name in group])
     spread = np.full_like(values, np.nan)
     for row, name in enumerate(group):
-        own = read.get(f"{name}_standard_uncertainty")
+        own = archive.variables.get(f"{name}_standard_uncertainty")
         if own is not None:
             missing = [axis for axis, dim in enumerate(dims) if dim not in own.dims]
-            spread[row] = np.broadcast_to(np.expand_dims(own.values, missing), shape)
+            spread[row] = np.broadcast_to(np.expand_dims(_at_kept_cycles(own), missing), shape)
     # where a quantity is known anywhere its other places stand as missing, so that all keep their
     # order; a quantity of which nothing is known is not there
     known = np.isfinite(values)
@@ -311,13 +313,27 @@ def _block(
         "value": values[found],
         "standard_uncertainty": spread[found],
     } | place
-    types = {"row": pyarrow.int32()}
-    return pyarrow.table(
-        {
-            name: pyarrow.array(column, types.get(name) or _column_type(name), from_pandas=True)
-            for name, column in columns.items()
-        }
-    )
+    return pyarrow.table({name: _column(name, values) for name, values in columns.items()})
+
+
+def _column(name: str, values: NDArray[Any]) -> Any:
+    """A column of numbers as it is kept: of a text that stands in many rows there is one."""
+    column = pyarrow.array(values, _TYPES.get(name) or _column_type(name), from_pandas=True)
+    return column.dictionary_encode() if pyarrow.types.is_string(column.type) else column
+
+
+def _at_kept_cycles(variable: xr.Variable) -> Floats:
+    """Values of a variable at the cycles whose numbers are kept; of many the others are not read.
+
+    Xarray would ask Dask of each index whether it is its own, and import it for that.
+    """
+    n_cycles = variable.sizes.get("cycle", 0)
+    if n_cycles > _CYCLES_AT_ONCE:
+        variable = variable.isel(cycle=_kept_cycles(n_cycles))
+    values = np.asarray(variable.values, dtype=np.float64)
+    if 0 < n_cycles <= _CYCLES_AT_ONCE:
+        values = values.take(_kept_cycles(n_cycles), axis=variable.dims.index("cycle"))
+    return values
 
 
 def _labels(archive: xr.Dataset, dim: str) -> NDArray[Any]:

@@ -418,8 +418,12 @@ def as_reduction_error(error: Exception) -> ReductionError:
     )
 
 
-# records larger than this together are read again and not kept between the passes: 230 bytes a row
+# records larger than this together are read again and not kept between the passes: 90 bytes a row
 KEPT_SAMPLES = 1_000_000
+
+# those of a log with more are not sent between processes: of 10,000 rows that takes 1 ms, and to
+# read them again 40 ms
+SENT_SAMPLES = 100_000
 
 
 @dataclass
@@ -427,7 +431,7 @@ class FirstPass:
     """What the tests of a campaign hold, without their samples; and the records that are kept.
 
     ``surveys`` are in the order of the campaign; a test that failed carries its error.  ``kept``
-    holds, by log, the surveys with their records, where the log was read in this process.
+    holds, by log, the surveys with their records, as far as there is room.
     """
 
     surveys: list[Survey]
@@ -455,7 +459,7 @@ def survey_campaign(
     for ended in work_on(_survey, tasks, workers=workers, begun=progress.begun):
         found = ended.value or [Survey(campaign.tests[ended.test], error=ended.error)]
         n_rows += sum(survey.n_rows for survey in found)
-        if not is_elsewhere and (n_rows <= KEPT_SAMPLES or len(campaign.tests) == 1):
+        if n_rows <= KEPT_SAMPLES or len(campaign.tests) == 1:
             kept[ended.test] = found
         of_log[ended.test] = [replace(survey, located=None) for survey in found]
         progress.ended(ended.test)
@@ -481,8 +485,10 @@ def _survey(campaign: Campaign, log: str, lock: RunLock | None, is_elsewhere: bo
     if lock is not None:
         lock.confirm()
     surveys = survey_log(campaign, log)
-    # to send a record between processes takes longer than to read it again
-    return [replace(one, located=None) for one in surveys] if is_elsewhere else surveys
+    is_sent = sum(survey.n_rows for survey in surveys) <= SENT_SAMPLES
+    return (
+        surveys if is_sent or not is_elsewhere else [replace(one, located=None) for one in surveys]
+    )
 
 
 def with_record(survey: Survey, kept: Sequence[Survey] | None) -> Survey:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import multiprocessing
 import os
 import platform
@@ -181,7 +182,7 @@ def local_workers(number: int) -> Iterator[Workers]:
     threads = max(1, (available or 1) // number)
     pool = ProcessPoolExecutor(
         number, mp_context=multiprocessing.get_context("spawn"), initializer=_begin,
-        initargs=(threads,),
+        initargs=(threads, gc.get_threshold()),
     )  # fmt: skip
     try:
         _start(pool, number)
@@ -208,9 +209,13 @@ def _start(pool: ProcessPoolExecutor, number: int) -> None:
         ) from error
 
 
-def _begin(threads: int) -> None:
-    """Share the processors of the machine, before any library looks for them."""
+def _begin(threads: int, threshold: tuple[int, int, int]) -> None:
+    """Share the processors of the machine, before any library looks for them.
+
+    Objects are looked through for circles as often as where the worker was started.
+    """
     os.environ |= {"OMP_NUM_THREADS": str(threads), "OPENBLAS_NUM_THREADS": "1"}
+    gc.set_threshold(*threshold)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 

@@ -24,7 +24,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 from scipy.special import chdtrc, chndtrix, nctdtrit, ndtri
 
 from reduction.lines.line_curve import half_width_of_parts, shared_half_width, shared_of
@@ -96,7 +96,7 @@ def tolerance_factors(n: int, share: float, confidence: float = CONFIDENCE) -> t
     def missed(k: float) -> float:
         return float(density @ chdtrc(freedom, freedom * square / k**2)) - confidence
 
-    return one, float(brentq(missed, 1e-3, 1e5, xtol=1e-10))
+    return one, float(scipy.optimize.brentq(missed, 1e-3, 1e5, xtol=1e-10))
 
 
 @dataclass(frozen=True)

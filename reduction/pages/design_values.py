@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -58,12 +57,11 @@ def _numbers(values: ArrayLike) -> Any:
     [1.5, None, 'inf']
     """
     array = np.asarray(values)
-    if array.ndim:
-        return [_numbers(one) for one in array]
-    number = array.item()
-    if isinstance(number, float) and not math.isfinite(number):
-        return None if math.isnan(number) else "inf" if number > 0 else "-inf"
-    return number
+    shown = array.astype(object)
+    if array.dtype.kind == "f":
+        for is_so, text in ((np.isnan, None), (np.isposinf, "inf"), (np.isneginf, "-inf")):
+            shown[is_so(array)] = text
+    return shown.tolist()
 
 
 def _line_data(line: LineSource) -> dict[str, Any]:

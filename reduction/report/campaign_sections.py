@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 import xarray as xr
 
-from reduction.archive.open import Opener, reading
+from reduction.archive.open import Opener, in_memory, reading
 from reduction.experiments.fit_results import FIT_REASONS, ResponseSurfaces
 from reduction.quantities.units import UnitSystem
 from reduction.record.errors import ArchiveError
@@ -609,7 +609,7 @@ def read_campaign(
         return [(view, _make_outcome_section(view))]
 
     def experiments(data: xr.Dataset) -> list[tuple[ExperimentView, TestSection]]:
-        loaded = data.load()
+        loaded = in_memory(data)
         views = [
             ExperimentView(f"experiment-{index}", loaded, index, units)
             for index in range(loaded.sizes["experiment"])

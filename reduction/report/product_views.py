@@ -14,6 +14,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from reduction.archive.campaign_products import outcomes_of_dataset
+from reduction.archive.open import in_memory
 from reduction.archive.surfaces_dataset import surface_names, surfaces_of
 from reduction.archive.variables import read_notes, stored
 from reduction.experiments.fit_results import ResponseSurfaces
@@ -144,7 +145,7 @@ class HoseView(RowView):
 
 def view_hoses(archive: xr.Dataset, units: UnitSystem) -> list[HoseView]:
     """Return each hose of an archive of predictions, which may then be closed."""
-    data = archive.load()
+    data = in_memory(archive)
     return [HoseView(f"hose-{k}", data, k, units) for k in range(data.sizes["hose"])]
 
 
@@ -366,7 +367,7 @@ class ComparisonView(RowView):
 
 def view_comparisons(archive: xr.Dataset, units: UnitSystem) -> list[ComparisonView]:
     """Return each comparison of an archive of them, which may then be closed."""
-    data = archive.load()
+    data = in_memory(archive)
     return [
         ComparisonView(f"comparison-{k}", data, k, units) for k in range(data.sizes["comparison"])
     ]
@@ -709,7 +710,7 @@ def view_ropes(
     archive: xr.Dataset, tests: Mapping[str, TestView], units: UnitSystem
 ) -> list[RopeView]:
     """Return the ropes of an archive of properties, which may then be closed."""
-    data = archive.load()
+    data = in_memory(archive)
     used = json.loads(str(data.attrs.get("settings", "{}"))).get("tests", {})
     owners = data["property_specimen"].values.astype(str)
     return [

@@ -18,6 +18,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from reduction.archive.open import in_memory
 from reduction.archive.shared_errors import stated_errors_of
 from reduction.archive.test_dataset import stored_cycles
 from reduction.archive.uncertainty_budget import effective_freedom
@@ -46,8 +47,14 @@ from reduction.report.text_style import (
 OF_NO_TEST = "of_no_test"
 """Status of an archive that status.csv has no row for: the campaign has no such test now."""
 
-_OF_SECTION = ("first_loading", "_by_cycle", "_at_time", "_untrimmed")
+_OF_SECTION = (
+    "_by_cycle", "_at_time", "_untrimmed", "elastomer_", "prony_", "modulus_ratio_uncertainty",
+    "segment_tension_low_", "segment_tension_high_",
+)  # fmt: skip
 """In the names of numbers that figures and tables over several tests leave out."""
+
+_OF_CYCLES = ("first_loading", "branch_tension")
+"""The same where the test has cycles; they are what a pull answers with."""
 
 _REACHED = (
     "apparent_spring_constant",  # whether it had settled
@@ -223,19 +230,19 @@ class TestView:
 
     def without_samples(self) -> TestView:
         """Return the same test without its record, all in memory: what campaign figures use."""
-        data = self.data.drop_dims("sample", errors="ignore")
-        single = [
+        single = self.data.data_vars
+        left_out = [
             name
-            for name in data.data_vars
-            if "cycle" in data.variables[name].dims and name not in _REACHED
+            for name, variable in self.data.variables.items()
+            if "sample" in variable.dims
+            or ("cycle" in variable.dims and name in single and name not in _REACHED)
         ]
-        return replace(self, data=data.drop_vars(single).load())
+        return replace(self, data=in_memory(self.data.drop_vars(left_out)))
 
     def of_campaign(self) -> TestView:
         """Return the same test without what its own section alone shows: most of its numbers."""
-        kept = () if self.n_cycles else ("first_loading",)  # what a pull answers with
-        left_out = [one for one in _OF_SECTION if one not in kept]
-        own = [name for name in self.data.data_vars if any(one in str(name) for one in left_out)]
+        left_out = _OF_SECTION + (_OF_CYCLES if self.n_cycles else ())
+        own = [name for name in self.data.variables if any(one in str(name) for one in left_out)]
         return replace(self, data=self.data.drop_vars(own))
 
     def at_cycles(self, places: Integers) -> TestView:

@@ -70,10 +70,22 @@ def test_records_beyond_the_bound_are_not_kept(campaign, monkeypatch):
     assert list(survey_campaign(campaign).kept) == ["T01"]
 
 
-def test_records_that_were_read_by_workers_are_read_again(campaign):
+def test_long_records_are_not_sent_between_processes(campaign, monkeypatch):
+    def records(is_elsewhere):
+        return [one.located is not None for one in firstpass._survey(*given, is_elsewhere)]
+
+    given = firstpass.with_one_log(campaign, "T02"), "T02", None
+    assert records(is_elsewhere=True) == [True, True]
+    monkeypatch.setattr(firstpass, "SENT_SAMPLES", 10)
+    assert records(is_elsewhere=True) == [False, False]
+    assert records(is_elsewhere=False) == [True, True]
+
+
+def test_surveys_of_workers_are_those_of_this_process(campaign):
     with local_workers(2) as workers:
         first = survey_campaign(campaign, workers=workers)
-    assert first.kept == {} and all(one.located is None for one in first.surveys)
+    assert sorted(first.kept) == ["T01", "T02", "T03", "T04"]
+    assert all(one.located is None for one in first.surveys)
     here = survey_campaign(campaign)
     assert [(one.plan.id, one.n_rows, one.n_cycles, one.sources) for one in first.surveys] == [
         (one.plan.id, one.n_rows, one.n_cycles, one.sources) for one in here.surveys

@@ -25,6 +25,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -614,6 +615,16 @@ class Hold:
         """From the first to the last sample. [s]."""
         return float(self.time[-1] - self.time[0]) if self.time.size else 0.0
 
+    @cached_property
+    def tension_noise(self) -> float:
+        """Standard deviation of one reading of tension, its quantum included. [N]."""
+        return _noise_of(self.tension)
+
+    @cached_property
+    def motion(self) -> _Motion:
+        """Of the crosshead since the end of the ramp, on blocks in the logarithm of time."""
+        return _motion_of(self)
+
     @property
     def strain_uncertainty(self) -> float:
         """Of its mean strain (type A); NaN with fewer than two readings. [1]."""
@@ -692,7 +703,7 @@ def _hold_ends(hold: Hold) -> _Ends:
     first = level_at_end(
         shifted(hold.time, hold.ramp_end_time),
         hold.tension,
-        noise=_noise_of(hold.tension),
+        noise=hold.tension_noise,
         shortest=0.0 if hold.ramp is None else _BESIDE * hold.ramp.length,
     )
     u_initial = first.standard_uncertainty
@@ -706,7 +717,7 @@ def _hold_ends(hold: Hold) -> _Ends:
     late = _late_load(hold, first.value)
     if late is not None:
         u_initial = float(np.hypot(u_initial, _LATE_MISSES * late.rise))
-    above = hold.logged_peak - SIGNIFICANT * _noise_of(hold.tension) - first.value
+    above = hold.logged_peak - SIGNIFICANT * hold.tension_noise - first.value
     # it has not settled at once: the tension is somewhere between the two
     if SIGNIFICANT * u_initial < above < LARGEST_DISAGREEMENT * first.value:
         u_initial = float(np.hypot(u_initial, above / np.sqrt(3)))
@@ -731,7 +742,7 @@ def _late_load(hold: Hold, initial: float) -> _LateLoad | None:
     if stop - begin < _SAMPLES_BESIDE:
         return None
     blocks = logarithmic_blocks(since[begin:stop], hold.tension[begin:stop], per_decade=10)
-    motion = _motion_of(hold)
+    motion = hold.motion
     value = blocks.value
     if motion.greatest and np.isfinite(hold.ramp.stiffness):
         distance = np.interp(blocks.elapsed, motion.time - hold.ramp_end_time, motion.distance)
@@ -739,7 +750,7 @@ def _late_load(hold: Hold, initial: float) -> _LateLoad | None:
     at = int(np.argmax(value))
     rise = float(value[at]) - initial
     end_known_to = initial * hold.ramp.end_uncertainty / hold.ramp.length
-    told = SIGNIFICANT * float(np.hypot(_noise_of(hold.tension), end_known_to))
+    told = SIGNIFICANT * float(np.hypot(hold.tension_noise, end_known_to))
     if not rise > max(told, _LATE_LEAST * initial):
         return None
     return _LateLoad(rise, float(blocks.value[at]), float(blocks.elapsed[at]))
@@ -799,7 +810,7 @@ _MOTION_WORTH = 0.005  # of the tension that is lost: less changes no number
 
 def _at_one_length(hold: Hold, ends: _Ends) -> tuple[Hold, float]:
     """The hold at the length of the end of its ramp, and what is not known of that. [N]."""
-    motion = _motion_of(hold)
+    motion = hold.motion
     stiffness = np.nan if hold.ramp is None else hold.ramp.stiffness
     worth = stiffness * motion.greatest
     if not abs(worth) > _MOTION_WORTH * abs(ends.initial - ends.final):
@@ -854,7 +865,7 @@ def _motion_reason(hold: Hold, ends: _Ends) -> Note | None:
 
     It may be off by a tenth of the drop; without a ramp nothing says what it is worth.
     """
-    motion = _motion_of(hold).greatest
+    motion = hold.motion.greatest
     if hold.ramp is None or not np.isfinite(hold.ramp.stiffness):
         moved, worth = abs(motion) > 0.5 * hold.position_tolerance, float("nan")
     else:
@@ -871,7 +882,7 @@ def _start_reason(hold: Hold, ends: _Ends) -> Note | None:
 
     A peak beside the end is within what is known of the tension there, unless that is too little.
     """
-    noise = _noise_of(hold.tension)
+    noise = hold.tension_noise
     spread = np.hypot(ends.initial_uncertainty, START_KNOWN_TO * ends.initial)
     limits = {
         hold.logged_peak: (1 + LARGEST_DISAGREEMENT) * ends.initial,

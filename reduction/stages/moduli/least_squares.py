@@ -200,8 +200,8 @@ class _Projected(NamedTuple):
 
 def _projected(columns: Floats, slopes: Floats, target: Floats) -> _Projected:
     """Amplitudes solved for by least squares, of least length where columns depend on others."""
-    scale = np.sqrt((columns * columns).sum(axis=1))
-    finite: Bools = np.isfinite(scale.sum(axis=1) + slopes.sum(axis=(1, 2)))
+    scale = np.sqrt(np.einsum("snc,snc->sc", columns, columns))
+    finite: Bools = np.isfinite(scale).all(axis=1) & np.isfinite(slopes).all(axis=(1, 2))
     if not finite.all():
         columns = np.where(finite[:, None, None], columns, 0.0)
         slopes = np.where(finite[:, None, None], slopes, 0.0)
