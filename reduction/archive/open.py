@@ -149,6 +149,11 @@ class ReadOnce:
         self._kept[path] = _stamp_of(path), found
         self._sizes[path] = found.nbytes
 
+    def forget(self, path: Path) -> None:
+        """Let an archive go that few steps will open again."""
+        self._kept.pop(path, None)
+        self._sizes.pop(path, None)
+
     def _has_room(self, archive: xr.Dataset) -> bool:
         """Whether it is kept; pass after pass over many finds those that were there first."""
         if len(self._kept) >= _MOST:
@@ -161,6 +166,12 @@ def keep_written(opener: Opener, path: Path, written: xr.Dataset) -> None:
     """Keep an archive that was just written, where it is opened by what keeps any."""
     if isinstance(opener, ReadOnce):
         opener.keep(path, written)
+
+
+def forget(opener: Opener, path: Path) -> None:
+    """Let an archive go, where it is opened by what keeps any."""
+    if isinstance(opener, ReadOnce):
+        opener.forget(path)
 
 
 def _stamp_of(path: Path) -> tuple[int, ...]:

@@ -17,7 +17,7 @@ import xarray as xr
 from reduction import __version__
 from reduction.archive.campaign_products import outcomes_to_dataset
 from reduction.archive.csv_tables import write_tables
-from reduction.archive.open import Opener, ReadOnce, keep_written, reading
+from reduction.archive.open import Opener, ReadOnce, forget, keep_written, reading
 from reduction.archive.product_files import (
     OF_CAMPAIGN,
     SUPERSEDED,
@@ -354,6 +354,9 @@ def run_campaign(
             raise
 
 
+_ON_DESIGN_PAGE = 32  # tests at most whose curves the page of design values has room for
+
+
 def _refuse_name(folder: Path) -> None:
     """Refuse a folder that the netCDF library cannot name, before anything is reduced for it."""
     name = str(folder.absolute())
@@ -428,10 +431,13 @@ def _run(
     page = CampaignPage(folder, units=units, stray=stray, opener=opener)
     if archives or products:
         entries: dict[Path, CatalogueEntry] = {}
+        opened_again = set(sorted(archives)[:_ON_DESIGN_PAGE])
 
         def each(path: Path, archive: xr.Dataset) -> None:
             entries[path] = entry_of(path, archive)
             page.add(path, archive)
+            if path not in opened_again:
+                forget(opener, path)
 
         # of a thousand archives each is opened once for all that is made of it
         tables = write_tables(archives, folder / "tables", opener=opener, each=each, **products)

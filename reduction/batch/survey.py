@@ -419,7 +419,7 @@ def as_reduction_error(error: Exception) -> ReductionError:
 
 
 # records larger than this together are read again and not kept between the passes: 90 bytes a row
-KEPT_SAMPLES = 1_000_000
+KEPT_SAMPLES = 500_000
 
 # those of a log with more are not sent between processes: of 10,000 rows that takes 1 ms, and to
 # read them again 40 ms

@@ -49,7 +49,11 @@ OF_NO_TEST = "of_no_test"
 
 _OF_SECTION = (
     "_by_cycle", "_at_time", "_untrimmed", "elastomer_", "prony_", "modulus_ratio_uncertainty",
-    "segment_tension_low_", "segment_tension_high_",
+    "segment_tension_low_", "segment_tension_high_", "standstill_", "mark_", "splice_",
+    "stretched_diameter", "crosshead_position_", "nominal_stress_", "closed_loop_energy",
+    "storage_spring_constant", "loss_spring_constant", "slope_reading_spread",
+    "mean_identity_residual", "segment_misfit", "segment_criterion", "hold_ramp_",
+    "tangent_modulus_scatter", "strain_coefficient_correlation",
 )  # fmt: skip
 """In the names of numbers that figures and tables over several tests leave out."""
 

@@ -12,7 +12,14 @@ import pytest
 
 from reduction.archive import open as module
 from reduction.archive.dataset_builder import SCHEMA_VERSION
-from reduction.archive.open import ReadOnce, failing_reads, open_archive, reading
+from reduction.archive.open import (
+    ReadOnce,
+    failing_reads,
+    forget,
+    in_memory,
+    open_archive,
+    reading,
+)
 from reduction.record.errors import ArchiveError
 
 
@@ -243,6 +250,23 @@ def test_a_step_cannot_change_what_the_next_one_is_given(rich_test, write):
                     variable.values[...] = 0
     with opener(path) as archive, reading(path) as on_disk:
         assert archive.identical(on_disk)
+
+
+def test_an_archive_that_is_let_go_is_read_anew(rich_test, write, opened):
+    path, opener = write(rich_test), ReadOnce()
+    for _ in range(2):
+        with opener(path):
+            forget(opener, path)
+    assert len(opened) == 2
+    forget(reading, path)  # which keeps none
+
+
+def test_an_archive_in_memory_outlives_its_file(rich_test, write):
+    path = write(rich_test)
+    with open_archive(path) as archive:
+        kept = in_memory(archive)
+    with reading(path) as on_disk:
+        assert kept.identical(on_disk)
 
 
 def test_as_many_are_kept_as_there_is_room_for(
