@@ -615,7 +615,7 @@ _CODES_READ = 1 << 16  # samples
 
 _OF_CODES = 0.99  # of the steps, that are whole multiples of one
 
-_OF_TURNS = 0.1  # of them, that are followed by another
+_OF_TURNS = 0.3  # of them, that are followed by another
 
 
 def step_of_codes(values: Floats) -> float:
