@@ -369,7 +369,7 @@ def test_more_at_work_than_there_are_places_are_turned_away(server, session):
         ]
         end = time.monotonic() + 20
         while server._places._value or server._waiting:  # until every place is at work
-            assert time.monotonic() < end
+            assert time.monotonic() < end, [one.done() and one.exception() for one in asked]
             threading.Event().wait(0.01)
         with pytest.raises((ConnectionError, http.client.HTTPException)):
             ask(server, "GET", "/explore.css")
