@@ -79,7 +79,8 @@ def start_campaign(folder: Path, output: CommandOutput) -> None:
         with (folder / name).open("x", encoding="utf-8", newline="") as file:
             file.write(text)
         output.say(f"wrote {folder / name}")
-    output.say(f"next: replace every ? in them, then: reduction check {folder / 'campaign.toml'}")
+    output.say("next: replace every ? in these files, then run:")
+    output.say(f"reduction check {folder / 'campaign.toml'}")
     output.answer({"written": [str(folder / name) for name in texts]})
 
 

@@ -711,7 +711,7 @@ def _table(
     """One row a point; of the intervals those that are known."""
     heads, levels = _shown_levels(points, line.rated_break_strength, found.value.size, system)
     is_levels = _levels_of(line, found.quantity) is not None
-    run, of = "one more run", "the surface" if found.interval_of else "the one test"
+    run, of = "one more run", "the surface" if found.interval_of else "this test"
     if is_levels:
         run, of = "one more test", "the tests"
     intervals = [
@@ -857,7 +857,7 @@ def _said_of_lines(output: CommandOutput, *pairs: tuple[LineSource, DesignValues
         conditions = conditions_of(line, found.quantity)
         if conditions:
             words = ", ".join(f"{name} {text}" for name, text in conditions.items())
-            told.append(f"tested in{of}: {words}")
+            told.append(f"test conditions{of}: {words}")
         told.append(f"rule: {found.rule}")
         if found.errata:
             told.append(f"errata that apply{of}: {', '.join(found.errata)}")
@@ -1129,7 +1129,7 @@ def _with_halves(found: DesignValues, place: int, factor: float) -> tuple[float,
 def _verdict(is_known: Bools, is_different: Bools, place: int) -> str:
     if not is_known.ravel()[place]:
         return "no interval"
-    return "differ" if is_different.ravel()[place] else "not told apart"
+    return "differ" if is_different.ravel()[place] else "no difference shown"
 
 
 def _remark(found: LineDifference, place: int) -> str:

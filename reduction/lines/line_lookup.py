@@ -260,7 +260,7 @@ def _design_values(
     if words[0] or words[1]:
         notes.append(_scatter_note(of, words))
     elif isinstance(of, LineCurve):
-        notes.append("no interval is given: the source states no scatter of this curve")
+        notes.append("no interval is given: the source does not state the scatter of this curve")
     if loads.is_above_rule.any():
         notes.append(f"the peak tension exceeds the limit of the source: {line.rule}")
     if loads.is_slack.any() and loads.peak_tension.max() > 0:
@@ -311,7 +311,7 @@ def _scatter_note(of: LineSurface | LineCurve | LineLevels, words: tuple[str, st
 def interval_note(interval_of: str, surface_interval_of: str) -> str:
     """What an interval is of that holds no scatter between lines, as `DesignValues` names it."""
     told = interval_of or surface_interval_of
-    return f"the interval applies to {told}; scatter between lines is not included"
+    return f"the interval applies to {told}; scatter between specimens is not included"
 
 
 def sigma_from_r2(coefficient: ArrayLike, r2: float, *, n_factors: int = 3) -> float:

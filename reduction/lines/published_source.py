@@ -239,8 +239,8 @@ _FREEDOM = 5.0
 _FIRST = "ten cycles"
 
 _BY_FRACTION = {
-    name: "printed strain assumes a constant fraction of the position: with the marks of Table 3"
-    f" the modulus is lower by a factor of {ratio} (WH5-34)"
+    name: "the report took strain as a fixed fraction of the crosshead position. For strain by the"
+    f" tape readings of its Table 3, divide the value by {ratio} (WH5-34)"
     for name, ratio in (("new", "1.145"), ("used", "1.163"))
 }
 
@@ -416,10 +416,8 @@ def source_of_segments(
     moduli = np.repeat([one.modulus for one in rows], 2)
     tensions = np.array([[one.tension_low, one.tension_high] for one in rows]).ravel()
     errata = tuple(dict.fromkeys(erratum for one in rows for erratum in one.errata))
-    notes = tuple(
-        dict.fromkeys(f"remark on a printed cell: {note}" for one in rows for note in one.notes)
-    )
     table = TABLE_OF_DATA[data]
+    notes = tuple(dict.fromkeys(f"Table {table}: {note}" for one in rows for note in one.notes))
     keep = np.isfinite(tensions)
     curves = [
         LineCurve(
@@ -451,8 +449,8 @@ def source_of_segments(
         },
         kind=specimen.kind,
         notes=(
-            "moduli are chords of straight pieces of the ascending branch, with strain by a "
-            "constant fraction of the position",
+            "the printed moduli are slopes of straight segments of the ascending branch, with "
+            "strain as a fixed fraction of the crosshead position",
         ),
     )
 

@@ -186,7 +186,7 @@ def _by_marks(tether: PublishedTether, source: LineSource) -> LineSource:
         source,
         source=f"{source.source}, strain by the marks of Table 3",
         curves=tuple(of(curve) for curve in source.curves),
-        notes=("moduli are chords of straight pieces of the ascending branch",),
+        notes=("the printed moduli are slopes of straight segments of the ascending branch",),
     )
 
 

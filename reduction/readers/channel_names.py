@@ -459,10 +459,10 @@ class _Start:
         shown = f'"{_round(reading, scatter)} {unit}"'
         at_rest = f"in the first rest ({self.words}) {key} reads {shown}"
         if abs(reading) <= max(_TOLD * float(np.ptp(load)), noise):
-            return "", [f"guess: no zero is needed: {at_rest}, which is next to nothing"]
+            return "", [f"guess: no zero is needed: {at_rest}, which is negligible"]
         if reading < 0 and load.max() > -load.min():
             return f", zero = {shown}", [
-                f"guess: zero {shown}: {at_rest}, and a slack line does not push"
+                f"guess: zero {shown}: {at_rest}, and a slack line cannot push"
             ]
         return f', zero = "{UNKNOWN}"', [
             f"unknown: zero: {at_rest}: that is the zero if the specimen was slack there, and"

@@ -378,9 +378,9 @@ def _look_at_text(path: Path) -> _SeenTable:
     if table.name_row is None:
         remarks.append("guess: there is no row of names; columns are numbers")
     else:
-        remarks.append(f"guess: names stand in row {table.name_row + 1}")
+        remarks.append(f"guess: column names are in row {table.name_row + 1}")
     if table.unit_row is not None:
-        remarks.append(f"guess: units stand in row {table.unit_row + 1}")
+        remarks.append(f"guess: units are in row {table.unit_row + 1}")
     is_blocks = "block_marker" in settings
     return _SeenTable(
         "blocks" if is_blocks else "delimited", columns, settings, tuple(remarks),

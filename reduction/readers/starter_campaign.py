@@ -31,33 +31,33 @@ _MARKS = {"test", "specimen", "hold"}
 _COLUMNS = ("id", "kind", "file", "layout", "order", "specimens")
 
 _SPECIMENS = """\
-# One such section for each specimen: copy it, and put the specimen's name, such as tether-A, in
-# place of the ? in brackets. The same name stands in the column specimens of tests.csv in every
-# test of this specimen, so that its history is known; of several, parted by ;, the first hung
-# at tension.1.
+# One section per specimen: copy it, and replace the ? in the brackets by the specimen's name, such
+# as tether-A. Use this name in the column specimens of tests.csv in every test of the specimen, so
+# that its load history is known. Several specimens in one test: in the order of tension.1,
+# tension.2, ..., separated by ;
 """
 
 _SPECIMEN = """\
 kind = "?"  # rubber tether, stretch hose, rope, wire, elastomer or other
 diameter = ["?"]  # before stretch, each reading with its unit: ["1.04 in", "1.03 in"]
-# instead of it: area = "2.3 mm2", or width = "11.4 mm" and thickness = "0.2 mm", or
-# linear_density = "0.11 kg/m" and density = "1140 kg/m3"; a rope or a hose needs none of them
+# or instead: area = "2.3 mm2"; width = "11.4 mm" and thickness = "0.2 mm"; or
+# linear_density = "0.11 kg/m" and density = "1140 kg/m3". A rope or a hose needs none of these.
 """
 
 _SPECIMEN_MORE = """\
-# material = ""  # what is known: EPDM, nylon, ...
+# material = ""  # EPDM, nylon, ...
 # rated_break_strength = ""  # with its unit: "800 lbf"
 """
 
 _GAUGE = """\
-gauge_length = "?"  # the length that stretches, with its unit: "2.5 m"; none where there are marks
+gauge_length = "?"  # length that stretches: "2.5 m"; delete this line if you have marks.csv
 """
 
 _NO_MARKS = """\
-# How position becomes strain. Where there are splices: tape readings at their toes, in a table
+# How strain is computed. With splices: from tape readings at their toes, in a table with columns
 # test,specimen,hold,near_toe_mm,far_toe_mm,far_thimble_mm
 # strain = { marks = "marks.csv" }
-# Where there are none, by the gauge_length of each specimen."""
+# Without splices: from the gauge_length of each specimen."""
 
 _SIZES = re.compile(
     r"width|thickness|diameter|area|cross.?section|length|breite|dicke|durchmesser|länge|"
@@ -172,7 +172,7 @@ def _specimen_lines(names: list[str], logs: list[_Log], *, has_gauge: bool) -> l
     for name in names:
         key = name if name != UNKNOWN else toml_text(name)
         lines += [f"[specimens.{key}]", _SPECIMEN.rstrip()]
-        lines += [f"# a log says: {toml_comment(line)}" for line in list(said)[:_MOST_SAID]]
+        lines += [f"# from the log: {toml_comment(line)}" for line in list(said)[:_MOST_SAID]]
         lines += [*([_GAUGE.rstrip()] if has_gauge else []), _SPECIMEN_MORE]
     return lines
 

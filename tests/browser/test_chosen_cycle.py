@@ -42,7 +42,7 @@ def archive(small, *names):
 
 
 def test_no_cycle_is_chosen_at_first_and_the_page_says_so(shown):
-    assert shown.state.inner_text() == "No cycle chosen of 12"
+    assert shown.state.inner_text() == "No cycle selected (1 to 12)"
     assert shown.section.get_by_role("button", name="Clear").is_disabled()
     assert marks(shown, "record") == []
 
@@ -98,7 +98,7 @@ def test_a_point_that_is_clicked_chooses_its_cycle_and_the_button_lets_it_go(sho
     assert shown.input.input_value() == "3"
     wait_for(lambda: len(marks(shown, "record")) == 1)
     shown.section.get_by_role("button", name="Clear").press("Enter")
-    assert shown.state.inner_text() == "No cycle chosen of 12"
+    assert shown.state.inner_text() == "No cycle selected (1 to 12)"
     wait_for(lambda: marks(shown, "record") == [])
 
 
@@ -128,5 +128,5 @@ def test_a_number_without_a_cycle_chooses_the_nearest_and_says_so(shown):
 def test_another_test_keeps_its_own_choice(shown):
     choose(shown, 6)
     other = shown.open_section("T02.a")
-    assert other.get_by_role("status").inner_text() == "No cycle chosen of 6"
+    assert other.get_by_role("status").inner_text() == "No cycle selected (1 to 6)"
     assert shown.state.inner_text().startswith("Cycle 6 of 12")

@@ -105,7 +105,7 @@ def test_places_have_the_names_by_which_they_are_asked_for(product):
     assert told.exit_code == 0, told.output
     assert "branch ascending, strain 0.9" in told.output
     # the machine is a sentence in the campaign, and stands there whole
-    assert "generated in the shape of the TMT linear drive, WHOI-2005-10 sec. 3.2" in told.output
+    assert "simulated linear drive (after TMT, WHOI-2005-10 sec. 3.2)" in told.output
     away = run("budget", product, "--quantity", "tangent_modulus", "--at", "specimen=new", "--at",
                "branch=descending", "--at", "strain=131 %")  # fmt: skip
     assert "found specimen=new, branch=descending, strain=1.3" in away.output

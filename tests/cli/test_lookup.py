@@ -419,7 +419,7 @@ def test_kinds_are_told_apart_with_the_scatter_between_lines_alone(command):
     assert answer["kind_different"] is False
     assert answer["kind_interval"][0] < 0 < answer["kind_interval"][1]
     text = command(*pair).stdout
-    assert "not told apart" in text
+    assert "no difference shown" in text
     assert "lines of this kind differ by about 50 %" in text
 
 
@@ -477,7 +477,7 @@ def test_no_name_is_broken_in_a_pipe(command):
 def test_a_curve_without_an_interval_says_why(command):
     text = command("lookup", "rubber-tether-new-T-5", "--quantity", "tangent_modulus", "--strain",
                    "200 %").stdout  # fmt: skip
-    assert "no interval is given: the source states no scatter of this curve" in text
+    assert "no interval is given: the source does not state the scatter of this curve" in text
 
 
 def test_a_difference_says_of_which_lines_its_interval_is(command):

@@ -14,7 +14,7 @@ from reduction.cli.main import app
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "own-logs.md").read_text(encoding="utf-8")
-[BLOCK] = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+BLOCK = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)[-1]
 
 
 def test_the_certificates_give_the_standard_uncertainties_of_the_page():
@@ -73,3 +73,38 @@ def test_the_budget_of_the_page_is_that_of_the_command(tmp_path):
     assert set(told) == {name for name, share in found.items() if share >= 0.05}
     for name, share in told.items():
         assert found[name] == pytest.approx(float(share), abs=0.3), name
+
+
+def test_the_edits_of_the_example_make_the_draft_ready_for_a_run(tmp_path):
+    made = tmp_path / "my-logs"
+    made.mkdir()
+    for name in ("T-1.csv", "T-2.csv"):
+        shutil.copy(ROOT / "raw" / "tmt-synthetic" / name, made)
+    assert CliRunner().invoke(app, ["init", str(made)]).exit_code == 0
+    text = (made / "campaign.toml").read_text(encoding="utf-8")
+    start, end = text.index('[specimens."?"]'), text.index("[defaults]")
+    section = re.sub(r"(?m)^gauge_length = .*\n", "", text[start:end])
+    section = section.replace('kind = "?"', 'kind = "rubber tether"')
+    pairs = (("new", "1.04 in"), ("used", "0.94 in"))
+    specimens = "".join(
+        section.replace('[specimens."?"]', f"[specimens.{name}]").replace('["?"]', f'["{size}"]')
+        for name, size in pairs
+    )
+    assert all(f'`["{size}"]`' in PAGE or f'= ["{size}"]`' in PAGE for _, size in pairs)
+    end_of_file = text[end:].replace("# strain = {", "strain = {")
+    (made / "campaign.toml").write_text(text[:start] + specimens + end_of_file, encoding="utf-8")
+    tests = (made / "tests.csv").read_text(encoding="utf-8")
+    for row, edited in (("T-1,,T-1.csv,log,,?;?", "T-1,,T-1.csv,log,1,new;used"),
+                        ("T-2,,T-2.csv,log,,?;?", "T-2,,T-2.csv,log,2,new;used")):  # fmt: skip
+        assert row in tests
+        tests = tests.replace(row, edited)
+    (made / "tests.csv").write_text(tests, encoding="utf-8")
+    marks = (ROOT / "raw" / "tmt-synthetic" / "marks.csv").read_text(encoding="utf-8")
+    kept = [row for row in marks.splitlines() if row.startswith(("test,", "T-1,", "T-2,"))]
+    (made / "marks.csv").write_text("\n".join(kept) + "\n", encoding="utf-8")
+    told = CliRunner().invoke(app, ["check", str(made / "campaign.toml")])
+    assert told.exit_code == 0 and told.output.count("ready for a run") == 2, told.output
+    taut = [row for row in kept if ",slack," not in row]
+    (made / "marks.csv").write_text("\n".join(taut) + "\n", encoding="utf-8")
+    told = CliRunner().invoke(app, ["check", str(made / "campaign.toml")])
+    assert told.exit_code == 1 and "the marks have no slack row" in told.output, told.output

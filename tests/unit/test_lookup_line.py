@@ -179,7 +179,7 @@ def test_a_curve_of_one_test_has_students_interval_of_its_cycles_and_no_other():
     assert np.isnan(found.high)
     assert np.isnan(found.line_high)
     assert found.surface_interval_of == "the mean over the cycles of this one test"
-    assert any("scatter between lines is not included" in note for note in found.notes)
+    assert any("scatter between specimens is not included" in note for note in found.notes)
 
 
 def test_what_lies_between_two_measured_bins_is_outside():

@@ -54,7 +54,7 @@ def test_the_scatter_between_lines_is_that_of_one_quantity():
     assert np.isnan(found.line_high)
     assert np.isnan(found.kind_low)
     assert np.isfinite(found.high)
-    assert any("scatter between lines is not included" in one for one in found.notes)
+    assert any("scatter between specimens is not included" in one for one in found.notes)
 
 
 def test_ninety_five_of_a_hundred_lines_that_were_drawn_are_inside():

@@ -240,5 +240,5 @@ def test_a_remark_on_a_cell_says_that_it_is_one(lines):
         for one in line.curves
         for note in one.notes
     }
-    assert "remark on a printed cell: stray dash" in notes
-    assert "stray dash" not in notes
+    assert "Table 6: 230- is printed where 230 is meant" in notes
+    assert "230- is printed where 230 is meant" not in notes

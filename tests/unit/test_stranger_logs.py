@@ -268,7 +268,7 @@ def test_a_load_below_zero_at_rest_is_proposed_as_the_zero(tmp_path):
     number, unit = layout["channels"]["tension"]["1"]["zero"].split()
     # 3.5 - 20, to a two-thousandth of what the load travels
     assert float(number) == pytest.approx(-16.5, abs=0.1) and unit == "N"
-    assert "guess: zero" in text and "a slack line does not push" in text
+    assert "guess: zero" in text and "a slack line cannot push" in text
 
 
 def test_a_load_that_is_next_to_nothing_at_rest_needs_no_zero(tmp_path):
@@ -324,4 +324,4 @@ def test_a_specimen_of_a_single_log_is_named_and_its_sizes_are_quoted(tmp_path):
     preamble = b"Specimen width (mm);6\nOperator;AB\n\n"
     text, _ = draft(tmp_path, "log.csv", preamble + text_log(LOAD).replace(b",", b";"))
     assert set(tomllib.loads(text)["specimens"]) == {"specimen-1"}
-    assert "# a log says: Specimen width (mm) 6\n" in text and "Operator" not in text
+    assert "# from the log: Specimen width (mm) 6\n" in text and "Operator" not in text

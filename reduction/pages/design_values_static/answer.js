@@ -131,7 +131,7 @@ function showCharts(line, asked, found) {
   }
   if (byId("charts").childElementCount) {
     const bands = byId("charts").querySelector(".band")
-      ? "Light band: 95 % of one more run; dark band: 95 % of the surface, or of the one test. " : "";
+      ? "Light band: 95 % of one more run; dark band: 95 % of the surface, or of this test. " : "";
     const others = Object.keys(asked.levels).length > 1 ? " The other levels stay as chosen." : "";
     byId("charts").append(element("p", `${bands}Grey: not tested.${others}`, { class: "small legend" }));
   }

@@ -141,7 +141,7 @@ function jointsOf(curve, x) {
 
 // Numbers with what has to be told of them.
 function told(line, of, points, { loads, words, more, is_untested, freedom }) {
-  const conditions = line.conditions ? [`tested in: ${line.conditions}`] : [];
+  const conditions = line.conditions ? [`test conditions: ${line.conditions}`] : [];
   const notes = [...conditions, ...line.notes, ...of.notes, ...more];
   const isCurve = "variable" in of;
   if (words[0] || words[1]) {
@@ -149,9 +149,9 @@ function told(line, of, points, { loads, words, more, is_untested, freedom }) {
       ? `lines of this kind differ by about ${(100 * of.line_scatter).toFixed(0)} % `
         + `(CG-D-39-80, sec. 4.4.1), taken with ${of.n_lines.toFixed(0)} lines and the degrees of `
         + "freedom of the surface: included only in the intervals of the kind and of another line"
-      : `the interval applies to ${words[0] || words[1]}; scatter between lines is not included`);
+      : `the interval applies to ${words[0] || words[1]}; scatter between specimens is not included`);
   } else if (isCurve) {
-    notes.push("no interval is given: the source states no scatter of this curve");
+    notes.push("no interval is given: the source does not state the scatter of this curve");
   }
   if (loads.is_above_rule) notes.push(`the peak tension exceeds the limit of the source: ${line.rule}`);
   if (loads.is_slack && loads.peak > 0) {

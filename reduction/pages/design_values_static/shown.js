@@ -65,7 +65,7 @@ function rowOf(line, found, levels, system) {
 function intervalsOf(found) {
   return [
     ["95 % of\none more run", found.low, found.high],
-    [`95 % of\nthe ${found.interval_of ? "surface" : "one test"}`, found.surface_low, found.surface_high],
+    [`95 % of\n${found.interval_of ? "the surface" : "this test"}`, found.surface_low, found.surface_high],
     ["95 % of\nanother line", found.line_low, found.line_high],
   ].filter((one) => Number.isFinite(one[1]));
 }

@@ -34,7 +34,7 @@ const choose = (section, wanted) => {
   test.clear.disabled = place === null;
   test.bar.classList.toggle("chosen", place !== null);
   if (place === null) {
-    test.state.textContent = `No cycle chosen of ${grouped(test.count)}`;
+    test.state.textContent = `No cycle selected (1 to ${grouped(test.count)})`;
   } else {
     const [from, to] = [test.start[place], test.end[place]];
     const when = from === null ? "" : `, from ${tidy(from)} to ${tidy(to)} s`;

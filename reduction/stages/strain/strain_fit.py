@@ -984,7 +984,7 @@ def _tape_error(marks: SpliceMarks) -> float:
 
     Slack rows of one specimen are readings of the same lengths, test after test.
     """
-    if marks.is_reading_stated:
+    if marks.is_reading_stated or not marks.is_slack.any():
         return marks.reading_uncertainty
     slack = np.stack([marks.near_toe, marks.far_toe, marks.far_thimble])[:, marks.is_slack]
     scatter = float(((slack - slack.mean(axis=1, keepdims=True)) ** 2).sum())
