@@ -600,7 +600,7 @@ def look_up_ranked(source: str, wanted: LookupRequest, *, output: CommandOutput)
               for names in (one.ties, one.kind_ties)),
             said[one.line.name] or "-",
         )  # fmt: skip
-    output.say(f"{wanted.quantity}, from the least to the greatest")
+    output.say(f"{wanted.quantity}, lowest first")
     output.show(table)
     for name, why in found.left_out:
         output.say(f"not ranked: {name}: {why}")

@@ -222,13 +222,13 @@ def outside_words(found: _LevelOutside, unit: str, factor: float) -> str:
     Examples
     --------
     >>> outside_words(_LevelOutside("tension_amplitude", 1600.0, 1680.0, "below"), "lbf", 1.0)
-    'tension amplitude 1,600 lbf, below the 1,680 lbf that it was tested from'
+    'tension amplitude 1,600 lbf, below 1,680 lbf, the lowest that was tested'
     """
     value, end = (plain_number(factor * one, 4) for one in (found.value, found.end))
-    reach = "from" if found.side == "below" else "to"
+    reach = "lowest" if found.side == "below" else "highest"
     return (
-        f"{found.name.replace('_', ' ')} {_thousands(value)} {unit}, {found.side} the "
-        f"{_thousands(end)} {unit} that it was tested {reach}"
+        f"{found.name.replace('_', ' ')} {_thousands(value)} {unit}, {found.side} "
+        f"{_thousands(end)} {unit}, the {reach} that was tested"
     )
 
 

@@ -423,13 +423,13 @@ def _notes(first: DesignValues, second: DesignValues) -> tuple[str, ...]:
     without = [one for one in (first, second) if not one.component]
     if len(without) == 2:
         return (
-            "of neither is it known what it shares with the other, as a load cell: the intervals "
-            "are put together as independent",
+            "it is not known which errors the two share, such as that of a load cell: they are "
+            "treated as independent",
         )
     if without:
         which = "first" if without[0] is first else "second"
         return (
-            f"of the {which} it is not known what it shares with the other: its interval counts as "
+            f"it is not known which errors the {which} shares with the other: they are treated as "
             "independent",
         )
     both = set(first.component) & set(second.component)

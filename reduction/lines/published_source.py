@@ -343,7 +343,9 @@ def _surface(line: PublishedLine, found: PublishedSurface) -> LineSurface:
     if not np.isfinite(found.r2):
         notes.append("r2 is open: no interval can be given")
     if not found.passes_f_test:
-        notes.append("the surface fails its F test at 5 %: it says no more than the mean")
+        notes.append(
+            "the surface fails its F test at 5 %: it explains the runs no better than their mean"
+        )
     notes += [
         f"the tested levels are open: shares of {box.rated_break_strength:.0f} N (Table "
         f"{box.table}) or of {other.rated_break_strength:.0f} N (Table {other.table}); the "
@@ -354,12 +356,12 @@ def _surface(line: PublishedLine, found: PublishedSurface) -> LineSurface:
     if found.response == "apparent_spring_constant":
         scatter = line_scatter(line)
     if np.isfinite(n_lines):
-        notes.append(f"the surface is of {n_lines:.0f} lines")
+        notes.append(f"the surface was fitted to {n_lines:.0f} lines")
     elif np.isfinite(scatter):
         n_lines = _FEWEST
         notes.append(
-            f"of how many lines the surface is, is not printed: {_FEWEST:.0f}, the fewest of any, "
-            "are taken for the scatter between lines"
+            f"the number of lines is not printed; {_FEWEST:.0f}, the smallest of any surface, is "
+            "assumed for the scatter between lines"
         )
     if is_documentation(line):
         notes.append(

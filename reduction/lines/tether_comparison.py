@@ -142,7 +142,7 @@ def _rows(name: str, data: str) -> list[TetherSegment]:
 def _pair(first: str, second: str, data: str) -> _ComparedTethers:
     table = TABLE_OF_DATA[data]
     sources = []
-    told = [f"both moduli are of Table {table} of WHOI-2005-10"]
+    told = [f"both moduli are from Table {table} of WHOI-2005-10"]
     is_marked = all(tether_windows()[name][1] == _MARKED for name in (first, second))
     for name in (first, second):
         tether, test, condition = tether_windows()[name]
@@ -152,12 +152,13 @@ def _pair(first: str, second: str, data: str) -> _ComparedTethers:
         tethers = [tether_windows()[name][0] for name in (first, second)]
         divisors = " and ".join(f"{_marked_line(one).ratio:.3f} ({one.name})" for one in tethers)
         told.append(
-            f"strain is by the marks of Table 3, moduli of the page are divided by {divisors}"
+            f"strain is by the tape readings of Table 3: printed moduli are divided by {divisors}"
         )
     else:
         told.append(
-            "strain is by a constant share of the position, as on the page: marks are printed of "
-            "T-1 alone, where it makes moduli 1.145 (new) and 1.163 (used) times too great"
+            "strain is a fixed fraction of the crosshead position, as printed: tape readings are "
+            "printed for T-1 only, where this makes moduli 1.145 (new) and 1.163 (used) times too "
+            "large"
         )
     one, other = sources
     told += [*_over_common_strain(one, other, f"Table {table}"), *_other_table(first, second, data)]
@@ -171,20 +172,11 @@ def _by_marks(tether: PublishedTether, source: LineSource) -> LineSource:
     def of(curve: LineCurve) -> LineCurve:
         at = line.strain(curve.at)
         value = curve.value / line.ratio if curve.quantity == "tangent_modulus" else curve.value
-        notes = tuple(note for note in curve.notes if "by the marks of Table 3" not in note)
-        return replace(
-            curve,
-            at=at,
-            value=value,
-            low=float(at[0]),
-            high=float(at[-1]),
-            notes=notes,
-            warnings=(),
-        )
+        return replace(curve, at=at, value=value, low=float(at[0]), high=float(at[-1]), warnings=())
 
     return replace(
         source,
-        source=f"{source.source}, strain by the marks of Table 3",
+        source=f"{source.source}, strain by the tape readings of Table 3",
         curves=tuple(of(curve) for curve in source.curves),
         notes=("the printed moduli are slopes of straight segments of the ascending branch",),
     )
@@ -205,9 +197,9 @@ def _over_common_strain(first: LineSource, second: LineSource, table: str) -> li
         return []
     chords = [_chord(one, low, high) for one in (first, second)]
     return [
-        f"from {100 * low:.0f} to {100 * high:.0f} %, which both have, the mean modulus of {table} "
-        f"is {chords[0] / 1e6:.3f} MPa (first) and {chords[1] / 1e6:.3f} MPa (second), ratio "
-        f"{chords[1] / chords[0]:.2f}: pieces of a curve that bends depend on where they end"
+        f"over their common strains, {100 * low:.0f} to {100 * high:.0f} %, the mean modulus of "
+        f"{table} is {chords[0] / 1e6:.3f} MPa (first) and {chords[1] / 1e6:.3f} MPa (second), "
+        f"ratio {chords[1] / chords[0]:.2f}: slopes of segments depend on where the segments end"
     ]
 
 

@@ -536,5 +536,5 @@ def test_tethers_are_compared_within_one_table(command):
     assert "Table 5" in found["first"]["source"]
     assert "Table 5" in found["second"]["source"]
     assert command(*named).stdout.startswith(
-        "both moduli are of Table 5 of WHOI-2005-10; strain is"
+        "both moduli are from Table 5 of WHOI-2005-10; strain is"
     )

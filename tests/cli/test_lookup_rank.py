@@ -54,7 +54,7 @@ def test_the_screen_says_what_is_below_the_tested_amplitudes(command):
     }
     for size in ("1", "1.25"):
         assert (
-            "tension amplitude 1,600 lbf, below the 1,680 lbf that it was tested from" in rows[size]
+            "tension amplitude 1,600 lbf, below 1,680 lbf, the lowest that was tested" in rows[size]
         )
     assert "tested from" not in rows["0.75"]
     assert rows["1"].startswith("1=") and rows["1.25"].startswith("3 ")

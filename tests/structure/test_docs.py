@@ -97,7 +97,7 @@ def test_every_format_has_a_section():
 
 def test_every_key_is_explained():
     assert not {key for key in keys(SECTIONS) if f"`{key}`" not in CAMPAIGN} - {
-        "campaign", "specimens", "layouts", "defaults", "tests",
+        "campaign", "specimens", "layouts", "defaults", "tests", "experiments",
     }  # fmt: skip
     assert not {key for key in keys((Layout, Channel)) if f"`{key}`" not in LAYOUTS}
 

@@ -107,4 +107,4 @@ def test_the_edits_of_the_example_make_the_draft_ready_for_a_run(tmp_path):
     taut = [row for row in kept if ",slack," not in row]
     (made / "marks.csv").write_text("\n".join(taut) + "\n", encoding="utf-8")
     told = CliRunner().invoke(app, ["check", str(made / "campaign.toml")])
-    assert told.exit_code == 1 and "the marks have no slack row" in told.output, told.output
+    assert told.exit_code == 4 and "the marks have no slack row" in told.output, told.output

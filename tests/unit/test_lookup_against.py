@@ -309,9 +309,9 @@ def test_of_a_published_line_it_is_said_that_it_counts_as_independent(lines):
     share = 0.01 * published.value[None]
     ours = replace(published, component=(GAIN,), contribution=share)
     (note,) = compare_values(published, ours).notes
-    assert note.startswith("of the first it is not known what it shares")
+    assert note.startswith("it is not known which errors the first shares")
     (note,) = compare_values(published, published).notes
-    assert note.startswith("of neither is it known")
+    assert note.startswith("it is not known which errors the two share")
 
 
 def test_surfaces_of_one_campaign_lose_what_both_share(lines):
