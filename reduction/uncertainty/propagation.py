@@ -935,9 +935,13 @@ def loop_contributions(
                 np.pi * strain_amplitude**2
             )
         if waveform == "other":  # readings beside a corner and the approach to it are late alike
-            of_lag["apparent_spring_constant"] = (
-                -4 * frequency * errors.lag * ramps * apparent_spring_constant
-            )
+            of_approach = 4 * frequency * errors.lag * ramps
+            of_lag |= {
+                "apparent_spring_constant": -of_approach * apparent_spring_constant,
+                "tension_amplitude": -of_approach * felt,
+                "peak_tension": -of_approach * felt,
+                "valley_tension": of_approach * felt,
+            }
         component, values = _with(
             component, values, Component("lag", errors.tension_instrument), of_lag
         )

@@ -714,3 +714,62 @@ def test_time_reversed_turns_the_sign_of_the_energy():
     ahead, _ = _loop_energy(tension, strain, np.array([0]), np.array([50]))
     back, _ = _loop_energy(tension[::-1], strain[::-1], np.array([0]), np.array([50]))
     assert back == pytest.approx(-ahead)
+
+
+def sliding(wave, *, stick, held=True):
+    """Tension of a spring of 100 N beside a slider of 10 N that sticks with ``stick`` N.
+
+    One that is not held slides back wherever the machine stops.
+    """
+    force, drag = [], 0.0
+    for step in np.diff(wave, prepend=wave[0]).tolist():
+        drag = min(10.0, max(-10.0, drag + stick * step)) if step or held else 0.0
+        force.append(drag)
+    return 200 + 100 * wave + np.array(force)
+
+
+@pytest.mark.parametrize("phase", [0.2, 0.5, 0.8])
+@pytest.mark.parametrize("stick", [200.0, 1000.0, 1e6])
+@pytest.mark.parametrize(
+    ("waveform", "up", "dwell", "held"),
+    [("triangular", 20, 0, True), ("triangular", 50, 0, True), ("other", 14, 6, True),
+     ("other", 14, 6, False), ("other", 40, 10, True), ("sinusoidal", 10, 0, True),
+     ("sinusoidal", 25, 0, True)],
+)  # fmt: skip
+def test_loops_with_friction_keep_their_area_between_readings(
+    waveform, up, dwell, held, stick, phase
+):
+    # strain 0 to 1; readings of every cycle lie at the same places of the wave
+    fine, n_cycles, period = 100, 12, 2 * (up + dwell)
+    at = np.arange(n_cycles * period * fine + fine) / fine % period
+    if waveform == "sinusoidal":
+        wave = 0.5 - 0.5 * np.cos(2 * np.pi * at / period)
+    else:
+        wave = np.interp(at, np.cumsum([0, up, dwell, up, dwell]), [0.0, 1.0, 1.0, 0.0, 0.0])
+    tension = sliding(wave, stick=stick, held=held)
+    cycle = slice(5 * period * fine, 6 * period * fine + 1)
+    truth = {
+        "hysteresis_energy": np.trapezoid(tension[cycle], wave[cycle]),
+        "tension_amplitude": np.ptp(tension[cycle]) / 2,
+    }
+    read = slice(round(phase * fine), None, fine)
+    rng = np.random.default_rng(2)
+    strain = wave[read] + 1e-4 * rng.normal(size=wave[read].size)
+    force = tension[read] + 1e-2 * rng.normal(size=strain.size)
+    first = period * np.arange(1, n_cycles - 1)
+    peak = first + up - (phase > 0)
+    pair = np.stack([first, peak], axis=1)
+    cycles = Cycles(
+        first, first + period, pair, np.stack([peak, first + period], axis=1),
+        np.ones((first.size, 2)), np.zeros(force.size, np.int32), np.zeros(force.size, np.int8),
+        np.zeros(force.size, bool), 0.1,
+    )  # fmt: skip
+    loops = close_loops(
+        1.0 * np.arange(force.size), force[None], strain[None], cycles, waveform=waveform,
+        driven=strain,
+    )  # fmt: skip
+    found = summarise_amplitude(loops, area=[1e-3])
+    for name, true in truth.items():
+        off = (getattr(found, name)[0] - true) / found.uncertainty[name][0]
+        assert abs(off) < 2.5, (name, off, found.uncertainty[name][0] / true)
+        assert found.uncertainty[name][0] < 0.06 * true

@@ -436,8 +436,12 @@ def summarise_amplitude(
         ("strain_amplitude", of_strain),
         ("apparent_spring_constant", apart * means["apparent_spring_constant"]),
         ("storage_spring_constant", apart * means["storage_spring_constant"]),
-        ("hysteresis_energy", of_energy),
-        ("loss_spring_constant", of_energy / (np.pi * means["strain_amplitude"] ** 2)),
+        # half of its range is what was added: at a corner the truth is at either end of it
+        ("hysteresis_energy", _WITHIN_STEP * of_energy),
+        (
+            "loss_spring_constant",
+            _WITHIN_STEP * of_energy / (np.pi * means["strain_amplitude"] ** 2),
+        ),
     ):
         uncertainty[name] = np.hypot(uncertainty[name], np.abs(missed) / _WITHIN_STEP)
     # where in its cycle a drift takes place is not known, and is the same in all of them
