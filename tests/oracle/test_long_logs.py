@@ -165,8 +165,8 @@ from reduction.batch.reduce_tests import _reduce_survey
 from reduction.batch.survey import survey_log
 from reduction.campaign.load import load_campaign
 from reduction.readers.layout import LogParts
-Parts.folder_of = lambda self, n_bytes: self.folder
-Parts.length_of = lambda self, n_bytes: 1 << 22
+LogParts.folder_of = lambda self, n_bytes: self.folder
+LogParts.length_of = lambda self, n_bytes: 1 << 22
 campaign = load_campaign(write_campaign(Path(sys.argv[2]), n_rows=int(sys.argv[3])))
 [survey] = survey_log(campaign, "long")
 models, _ = fit_strain_models(campaign, [survey])
