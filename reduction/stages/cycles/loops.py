@@ -1393,7 +1393,6 @@ def _without_noise(
     turn: Turn,
     noise: float,
     way: int,
-    chose_turns: bool,
     may_dwell: bool,
 ) -> None:
     """Valleys of cycles that touch made one, and what noise adds to extremes taken off.
@@ -1423,7 +1422,7 @@ def _without_noise(
             first[touch] = last[touch - 1]
             return
     of_peak, of_valley = (
-        noise_in_extreme(values, turn, reach=reach, sign=sign, noise=noise, chose_turn=chose_turns)
+        noise_in_extreme(values, turn, reach=reach, sign=sign, noise=noise)
         for turn, sign in ((peak, way), (cycles.first[touch], -way))
     )
     top -= way * of_peak
@@ -1633,9 +1632,9 @@ def close_loops(
     for index, (force, stretch) in enumerate(zip(tension, strain, strict=True)):
         noise, strain_noise = noises[index]
         if waveform != "sinusoidal":
-            for series, of_series, way, rows, chose_turns in (
-                (force, noise, ways[index][0], _OF_TURNS, control == "load"),
-                (stretch, strain_noise, ways[index][1], _OF_TURNS + 4, control == "position"),
+            for series, of_series, way, rows in (
+                (force, noise, ways[index][0], _OF_TURNS),
+                (stretch, strain_noise, ways[index][1], _OF_TURNS + 4),
             ):
                 # the step of a converter lifts no extreme, and moves it alike in all cycles
                 own, rounded = _noise_and_rounding(series, of_series)
@@ -1644,7 +1643,7 @@ def close_loops(
                 _without_noise(
                     measured[index, rows : rows + 3], series, cycles, reach=reach,
                     turn=turns[index], noise=own, way=way,
-                    chose_turns=chose_turns, may_dwell=waveform == "other",
+                    may_dwell=waveform == "other",
                 )  # fmt: skip
         shapes = None
         if waveform == "sinusoidal":

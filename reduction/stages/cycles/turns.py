@@ -98,7 +98,6 @@ def noise_in_extreme(
     reach: int,
     sign: int,
     noise: float,
-    chose_turn: bool = False,
 ) -> float:
     r"""How far noise lifts the extreme reading beside a turn, on average.
 
@@ -114,8 +113,6 @@ def noise_in_extreme(
         1 of peaks, -1 of valleys. [1]
     noise : float
         Standard deviation of one reading. [any]
-    chose_turn : bool
-        Whether the turns were found in this series: its own noise then puts them beside. [-]
 
     Returns
     -------
@@ -130,8 +127,8 @@ def noise_in_extreme(
     Notes
     -----
     Source: [1]_, with the mean over the turns as their shape, smoothed over as many samples as
-    leave a sharp turn within a third of the noise.  Of the series that chose the turns the mean is
-    blunt; parabolas on either side that meet in the turn stand for it.
+    leave a sharp turn within a third of the noise.  Noise puts turns beside where they are, and
+    their mean would be blunt: they are laid on the middle of their flanks.
 
     Examples
     --------
@@ -143,25 +140,30 @@ def noise_in_extreme(
     >>> greatest = np.mean([noisy[one - 25 : one + 25].max() for one in peak])
     >>> excess = noise_in_extreme(noisy, peak, reach=25, sign=1, noise=3.0)
     >>> print(round(greatest - 200, 1), round(excess, 1))
-    1.6 1.7
+    1.6 1.8
     """
     reach = min(reach, _MOST_REACH)
-    inside = turn[(turn >= reach) & (turn < values.size - reach)]
+    inside = turn[(turn >= 2 * reach) & (turn < values.size - 2 * reach)]
     if inside.size < _FEWEST_TURNS or reach < 1 or not noise > 0:
         return 0.0
     some = inside[np.linspace(0, inside.size - 1, min(inside.size, _MOST_TURNS)).astype(int)]
     place = np.arange(-reach, reach + 1)
-    mean = sign * np.mean([take_samples(values, one + place) for one in some], axis=0)
+    levels = sign * np.stack([take_samples(values, one + place) for one in some])
+    mean = levels.mean(axis=0)
     if not np.isfinite(mean).all():
         return 0.0
-    if chose_turn and reach > 1:
-        sides = [np.where(place * way > 0, np.abs(place) / reach, 0.0) for way in (-1, 1)]
-        terms = np.stack([np.ones(place.size), *sides, *(one**2 for one in sides)], axis=1)
-        beside = place != 0
-        shape = terms @ np.linalg.lstsq(terms[beside], mean[beside], rcond=None)[0]
-        return noise * _excess_of_greatest((shape.max() - shape) / noise)
+    # what chose the turns put them beside: the first moment of the window says where they are
+    weight = levels - min(mean[0], mean[-1])
+    middle = (weight @ place) / np.maximum(weight.sum(axis=1), np.spacing(1.0))
+    shift = np.round(middle - np.median(middle)).astype(int)
+    mean = sign * np.mean(
+        [take_samples(values, one + place) for one in (some + shift).tolist()], axis=0
+    )
+    if not np.isfinite(mean).all():
+        return 0.0
     step = float(mean.max() - min(mean[0], mean[-1])) / reach
-    width = min(int(_SMOOTHED * noise / step) if step > 0 else reach, reach) // 2 * 2 + 1
+    rough = _SMOOTHED * noise * min(6 / np.sqrt(some.size), 1.0)
+    width = min(int(rough / step) if step > 0 else reach, reach) // 2 * 2 + 1
     padded = np.pad(mean, width // 2, mode="edge")
     shape = np.convolve(padded, np.full(width, 1 / width), mode="valid")
     return noise * _excess_of_greatest((shape.max() - shape) / noise)
