@@ -793,3 +793,31 @@ def test_noise_lifts_the_extremes_of_rounded_turns_by_what_is_taken_off(rounded,
         lifted.append(noisy[found].mean() - ramps[peak].mean())
         taken_off.append(noise_in_extreme(noisy, found, reach=25, sign=1, noise=3.0))
     assert np.mean(taken_off) == pytest.approx(np.mean(lifted), abs=0.25 * 3)
+
+
+@pytest.mark.parametrize("waveform", ["sinusoidal", "triangular"])
+def test_a_wave_that_grows_to_its_amplitude_keeps_the_frequency_of_the_machine(waveform):
+    # half strokes of 2 s from level to level; amplitudes .4, .6, .8 and then 1 of 0.2
+    sizes = np.minimum(1, (np.arange(20) + 2) / 5)
+    levels = [1 - 0.2 * sizes[0]]
+    for size in sizes:
+        levels += [1 + 0.2 * size, 1 - 0.2 * size]
+    time = np.arange(0, 80, 0.0537)
+    half, share = (time // 2).astype(int), time % 2 / 2
+    if waveform == "sinusoidal":
+        share = (1 - np.cos(np.pi * share)) / 2
+    low, high = np.array(levels)[half], np.array(levels)[np.minimum(half + 1, 40)]
+    strain = low + (high - low) * share + np.random.default_rng(5).normal(0, 1e-4, time.size)
+    turn = np.searchsorted(time, 2 * np.arange(40.0))
+    first, peak, last = turn[:-2:2], turn[1:-1:2], turn[2::2]
+    cycles = Cycles(
+        first, last, np.stack([first, peak], axis=1), np.stack([peak, last], axis=1),
+        np.ones((first.size, 2)), np.zeros(time.size, np.int32), np.zeros(time.size, np.int8),
+        np.zeros(time.size, bool), 0.1,
+    )  # fmt: skip
+    loops = close_loops(
+        time, 500 * strain[None], strain[None], cycles, waveform=waveform, driven=strain
+    )
+    found = summarise_amplitude(loops, area=[1e-3])
+    assert found.frequency[0] == pytest.approx(0.25, rel=1e-4)
+    assert abs(found.frequency[0] - 0.25) < 3 * found.uncertainty["frequency"][0]

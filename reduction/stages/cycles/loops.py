@@ -481,8 +481,43 @@ def _cycle_basis(
     )
 
 
-def _mean_period(turns: Floats, first: Integers, last: Integers, *, last_turn: Floats) -> Floats:
-    """Mean duration of up to 21 cycles that touch, around each cycle.
+def steady_cycles(*amplitudes: Floats) -> Bools:
+    """Cycles but for the first and the last ones, each of another amplitude than its neighbour.
+
+    Examples
+    --------
+    >>> print(steady_cycles(np.array([0.4, 0.6, 0.8, 1.0, 1.0, 1.01, 1.0, 0.7])).astype(int))
+    [0 0 0 0 1 1 0 0]
+    """
+    kept = np.ones(amplitudes[0].size, dtype=bool)
+    for amplitude in amplitudes:
+        if not np.isfinite(amplitude).any():
+            continue
+        with np.errstate(invalid="ignore"):
+            changes = np.abs(np.diff(amplitude)) > _GROWING * np.nanmedian(amplitude)
+        if changes.all():
+            continue
+        # and the one beside them, which begins or ends at their level
+        for part, first in (
+            (kept, int(np.argmin(changes))),
+            (kept[::-1], int(np.argmin(changes[::-1]))),
+        ):
+            part[: first + (first > 0)] = False
+    return kept
+
+
+_GROWING = 0.03  # of the amplitude, from one cycle to the next
+
+
+def _mean_period(
+    turns: Floats,
+    first: Integers,
+    last: Integers,
+    *,
+    last_turn: Floats,
+    steady: Bools | None = None,
+) -> Floats:
+    """Mean duration of up to 21 cycles that touch, around each cycle; of steady ones if any are.
 
     Examples
     --------
@@ -496,8 +531,14 @@ def _mean_period(turns: Floats, first: Integers, last: Integers, *, last_turn: F
     run = np.searchsorted(breaks, place, side="right")
     starts = np.concatenate([[0], breaks])
     stops = np.append(breaks, first.size) - 1
-    low = np.maximum(place - _AROUND, starts[run])
-    high = np.minimum(place + _AROUND, stops[run])
+    if steady is not None:
+        # a wave that grows turns early or late by its phase
+        begin = np.maximum(place[np.argmax(steady)], starts)
+        end = np.minimum(place[::-1][np.argmax(steady[::-1])], stops)
+        starts, stops = np.where(begin <= end, (begin, end), (starts, stops))
+    centre = np.clip(place, starts[run], stops[run])
+    low = np.maximum(centre - _AROUND, starts[run])
+    high = np.minimum(centre + _AROUND, stops[run])
     mean: Floats = (last_turn[high] - turns[low]) / (high - low + 1)
     return mean
 
@@ -1744,7 +1785,7 @@ def _sine_period(
     hundred samples is known to a hundredth of one.  The phase of the other channel moves with its
     loss angle, which settles over a test.
     """
-    phased = np.empty(cycles.n_cycles)
+    phased, amplitude = np.empty((2, cycles.n_cycles))
     blocks = cycles.blocks(_BLOCK)
 
     def find(block: slice) -> None:
@@ -1752,7 +1793,9 @@ def _sine_period(
         first, last = cycles.first[block] - low, cycles.last[block] - low
         basis = _cycle_basis(time[low:high], first, last, period=period[block])
         level, _ = _bridge_gaps(driven[low:high], first, last)
-        phased[block] = _phase_turns(*_fundamental(level, basis)[:2], basis, time[low:high])
+        cosine, sine, _ = _fundamental(level, basis)
+        amplitude[block] = np.hypot(cosine, sine)
+        phased[block] = _phase_turns(cosine, sine, basis, time[low:high])
 
     run_blocks(find, blocks, samples=(time, driven), longest=cycles.longest)
     # a wrong period turns the phase about the middle of the cycle, which it leaves alone
@@ -1764,7 +1807,9 @@ def _sine_period(
         turns = middle - (middle - phased) * found / period
         last_turn = np.append(turns[1:], np.nan)
         last_turn[ends_run] = (turns + found)[ends_run]
-        found = _mean_period(turns, cycles.first, cycles.last, last_turn=last_turn)
+        found = _mean_period(
+            turns, cycles.first, cycles.last, last_turn=last_turn, steady=steady_cycles(amplitude)
+        )
     # the phase of a fundamental is uncertain by the noise of all readings of its cycle
     rise = take_samples(driven, cycles.branch_last[:, 0])
     half = float(np.nanmedian(rise - take_samples(driven, cycles.branch_first[:, 0]))) / 2

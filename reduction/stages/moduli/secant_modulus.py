@@ -39,7 +39,7 @@ from reduction.record.measurement import Floats
 from reduction.record.notes import note
 from reduction.record.samples import take_samples
 from reduction.stages.cycles.cycle_product import Cycles, Loops
-from reduction.stages.cycles.loops import reading_noise, slope_readings
+from reduction.stages.cycles.loops import reading_noise, slope_readings, steady_cycles
 from reduction.stages.moduli.least_squares import lag_one_inflation
 from reduction.stages.moduli.local_regression import curve_at
 from reduction.stages.moduli.modulus_product import (
@@ -295,6 +295,12 @@ def _mean_frequency(loops: Loops, break_in_cycles: int) -> tuple[Floats, Floats]
     own = loops.uncertainty.get("frequency", np.zeros(loops.frequency.shape))[:, break_in_cycles:]
     for row in range(n_specimens):
         known = np.isfinite(frequency[row]) & (frequency[row] > 0)
+        # the phase of a wave that still grows, or dies out, is not that of the machine
+        steady = known & steady_cycles(
+            loops.strain_amplitude[row, break_in_cycles:],
+            loops.tension_amplitude[row, break_in_cycles:],
+        )
+        known = steady if 2 * steady.sum() > known.sum() else known
         # a cycle that waits, as before the machine starts, is no measure of the others
         n = int(known.sum())
         if n:
