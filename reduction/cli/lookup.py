@@ -20,6 +20,7 @@ from reduction.lines.line_consistency import (
     K_1,
     K_AP,
     TIME,
+    ConsistentValues,
     consistent_values,
     refitted_surfaces,
 )
@@ -759,6 +760,15 @@ def _slow_pulls_at(line: LineSource, points: Mapping[str, Floats]) -> list[tuple
     return [(of, evaluate_curve(curve, mean).value) for of, curve in line.slow_pulls.items()]
 
 
+def _consistent(
+    line: LineSource, found: DesignValues, points: Mapping[str, Floats]
+) -> tuple[ConsistentValues, ...]:
+    """K_1 and tau that go with K_ap and H at points of a surface; nothing of tests at levels."""
+    if found.quantity not in (K_AP, ENERGY, K_1, TIME, DASHPOT) or not line.surfaces:
+        return ()
+    return consistent_values(line, **points)
+
+
 def _show_consistent(
     line: LineSource, found: DesignValues, points: Mapping[str, Floats], output: CommandOutput
 ) -> None:
@@ -777,9 +787,7 @@ def _show_consistent(
             for mean, value in zip(points["mean_tension"].ravel(), values.ravel(), strict=True):
                 table.add_row(as_given(scale * float(mean)), of, short(scale * float(value)), z)
         output.show(table)
-    if found.quantity not in (K_AP, ENERGY, K_1, TIME, DASHPOT):
-        return
-    found_values = consistent_values(line, **points)
+    found_values = _consistent(line, found, points)
     if not found_values:
         return
     heads, levels = _shown_levels(
@@ -977,11 +985,7 @@ def _document(
                 },
                 "apart": {name: of(one.is_apart(name)) for name in one.half_width},
             }
-            for one in (
-                consistent_values(line, **points)
-                if found.quantity in (K_AP, ENERGY, K_1, TIME, DASHPOT)
-                else ()
-            )
+            for one in _consistent(line, found, points)
         ],
         "errata": list(found.errata),
         "notes": list(found.notes),

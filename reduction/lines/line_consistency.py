@@ -58,7 +58,7 @@ _OF_ALL_COEFFICIENTS = 0.05
 
 @dataclass(frozen=True)
 @read_only_arrays
-class _ConsistentValues:
+class ConsistentValues:
     """A line at points, as printed and as it holds together; arrays have one shape (...).
 
     Parameters
@@ -149,7 +149,7 @@ def consistent_values(
     frequency: ArrayLike,
     mean_tension: ArrayLike,
     tension_amplitude: ArrayLike,
-) -> tuple[_ConsistentValues, ...]:
+) -> tuple[ConsistentValues, ...]:
     """A line at points by its surfaces, and K_1 and tau that hold with its K_ap and H.
 
     Parameters
@@ -161,7 +161,7 @@ def consistent_values(
 
     Returns
     -------
-    values : tuple of _ConsistentValues
+    values : tuple of ConsistentValues
         One for each slow pull; of an open coefficient the first of its values.
 
     Notes
@@ -230,7 +230,7 @@ def consistent_values(
                 if name in points
             }
         found.append(
-            _ConsistentValues(
+            ConsistentValues(
                 slow_pull=label,
                 of_surfaces=columns,
                 quasi_static_spring_constant=rest,
@@ -410,7 +410,7 @@ def consistency_warnings(
     return tuple(found)
 
 
-def _of_surfaces(values: tuple[_ConsistentValues, ...], name: str) -> tuple[str, ...]:
+def _of_surfaces(values: tuple[ConsistentValues, ...], name: str) -> tuple[str, ...]:
     """Of the points where K_1 or tau is apart by every slow pull, the worst."""
     if not values:
         return ()
@@ -433,7 +433,7 @@ def _of_surfaces(values: tuple[_ConsistentValues, ...], name: str) -> tuple[str,
     )
 
 
-def _of_points(values: tuple[_ConsistentValues, ...]) -> tuple[str, ...]:
+def _of_points(values: tuple[ConsistentValues, ...]) -> tuple[str, ...]:
     """Of the points that are impossible by every slow pull, the worst."""
     if not values or not np.all([one.is_impossible for one in values], axis=0).any():
         return ()

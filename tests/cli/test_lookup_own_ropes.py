@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 from commandruns import ROOT, run_once, shared_by_processes
 from scipy import stats
+from typer.testing import CliRunner
 
 import reduction
 from reduction.archive.open import reading
 from reduction.cli.lookup import one_line_of
+from reduction.cli.main import app
 from reduction.lines.archive_source import lines_of_folder
 from reduction.lines.line_levels import evaluate_levels
 from reduction.lines.line_lookup import look_up
@@ -211,3 +213,12 @@ def test_export_writes_the_level_that_was_tested(command, line, rope, tmp_path):
     for to in ("csv", "netcdf"):
         done = command(*asked, "--to", to, "--out", tmp_path / f"rope.{to}")
         assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("quantity", ["K_ap", "hysteresis_energy", "loss_factor"])
+def test_the_levels_of_one_run_of_an_experiment_may_be_left_out(tmp_path_factory, quantity):
+    made = run_once("nylon-synthetic", shared_by_processes(tmp_path_factory)).processed
+    done = CliRunner().invoke(
+        app, ["lookup", str(made), "--line", "R01 line-1", "--quantity", quantity]
+    )
+    assert done.exit_code == 0 and "95 % of the tests" in " ".join(done.output.split()), done.output
