@@ -390,7 +390,7 @@ def _values_of_curve(
             hint=". ".join(
                 part
                 for part in (
-                    curve.range_note, "--extrapolate flag gives the number and flags it."
+                    curve.range_note, "--extrapolate flag gives the number, where there is one, and flags it."
                 )
                 if part
             ),
@@ -612,7 +612,7 @@ def _refuse_outside(
         f"{surface.quantity} of {line.name}",
         found="; ".join(told),
         needed="levels inside the tested range, the range of usefulness of the source",
-        hint="--extrapolate flag gives the number and flags it.",
+        hint="--extrapolate flag gives the number, where there is one, and flags it.",
     )
 
 

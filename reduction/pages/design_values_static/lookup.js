@@ -73,7 +73,7 @@ function onlyLevels(line, quantity, levels, allowed, needed) {
   }
 }
 
-const FLAG_HINT = "--extrapolate flag gives the number and flags it.";
+const FLAG_HINT = "--extrapolate flag gives the number, where there is one, and flags it.";
 
 function valuesOfSurface(line, surface, levels, flag) {
   onlyLevels(line, surface.quantity, levels, line.factors, `levels of ${line.factors.join(", ")}`);
