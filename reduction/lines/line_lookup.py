@@ -75,6 +75,8 @@ SLACK_SHARE = 0.3
 LEAST_SHARE = 0.03
 """Least tension over the break strength with which a line was found to keep its strength. [1]"""
 
+_HOW_FLAGGED = "--extrapolate flag gives the number, where there is one, and flags it."
+
 _SLACK = 1e-9
 
 
@@ -390,7 +392,7 @@ def _values_of_curve(
             hint=". ".join(
                 part
                 for part in (
-                    curve.range_note, "--extrapolate flag gives the number, where there is one, and flags it."
+                    curve.range_note, _HOW_FLAGGED
                 )
                 if part
             ),
@@ -612,7 +614,7 @@ def _refuse_outside(
         f"{surface.quantity} of {line.name}",
         found="; ".join(told),
         needed="levels inside the tested range, the range of usefulness of the source",
-        hint="--extrapolate flag gives the number, where there is one, and flags it.",
+        hint=_HOW_FLAGGED,
     )
 
 

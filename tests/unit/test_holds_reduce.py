@@ -294,3 +294,47 @@ def test_tension_at_stated_times_carries_the_delay_of_a_late_load():
     apart = np.abs(delayed.tension_at_time - prompt.tension_at_time)
     known = np.isfinite(apart)
     assert np.all(apart[known] < 2.5 * delayed.tension_at_time_standard_uncertainty[known])
+
+
+def response(time, start, size):
+    """Tension after a ramp of 5 s from a start, by integration of the terms in closed form."""
+    since = np.clip(time - start, 0, None)
+    part = np.clip(since / 5, 0, 1)
+    times, sizes = TERMS["relaxation_time"], TERMS["tension"]
+    grown = -np.expm1(-np.minimum(since, 5)[:, None] / times) * times / 5
+    fade = np.exp(-np.clip(since - 5, 0, None)[:, None] / times)
+    return size * (325 * part + (grown * fade) @ sizes)
+
+
+@pytest.mark.parametrize("late", [0.1, 0.5, 0.9])
+def test_tension_at_stated_times_counts_from_the_end_of_the_ramp_between_two_samples(late):
+    # one reading a second, of which the first in the hold comes some time after the ramp has ended
+    rng = np.random.default_rng(8)
+    time = np.arange(400.0) + late
+    position = 4 + 2 * np.clip((time - 20) / 5, 0, 1) + rng.uniform(-0.004, 0.004, time.size)
+    tension = response(time, 20.0, 1.0) + rng.normal(0, 0.1, time.size)
+    (hold,) = reduce(time, position, tension, spans=((0, 20), (25, 1e9)))
+    stated = np.array(HoldSettings().times)
+    truth = response(25 + stated, 20.0, 1.0)
+    seen = np.isfinite(hold.tension_at_time)
+    assert seen[1:4].all()
+    off = (hold.tension_at_time - truth) / hold.tension_at_time_standard_uncertainty
+    assert np.abs(off[seen]).max() < 3
+    assert hold.tension_at_time[1] == pytest.approx(truth[1], abs=0.5)
+
+
+def test_a_hold_whose_first_sample_lies_below_it_does_not_lengthen_the_ramp_after_it():
+    # the first hold begins with a sample a tenth of a second before its ramp has ended
+    rng = np.random.default_rng(9)
+    time = np.arange(0, 400, STEP) + 0.03
+    way = np.clip((time - 20) / 5, 0, 1) + np.clip((time - 200) / 5, 0, 1)
+    position = 4 + 2 * way + rng.uniform(-0.004, 0.004, time.size)
+    tension = response(time, 20.0, 1.0) + response(time, 200.0, 1.0)
+    tension = tension + rng.normal(0, 0.1, time.size)
+    spans = ((0, 20), (24.9, 200), (205, 1e9))
+    first, second = reduce(time, position, tension, spans=spans)
+    assert second.ramp_duration == pytest.approx(5, abs=0.5)
+    assert not [str(one) for one in second.refusals if "late" in str(one)]
+    peak = response(np.array([205.0]), 20.0, 1.0) + response(np.array([205.0]), 200.0, 1.0)
+    off = (second.hold_initial_tension - peak[0]) / second.hold_initial_tension_standard_uncertainty
+    assert abs(off) < 3

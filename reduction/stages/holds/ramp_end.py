@@ -80,7 +80,8 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
     entered = int(time.size - np.argmax((left > near)[::-1]))
     slowing = end - float(time[min(entered, time.size - 1)]) - near / stroke * duration
     first = max(time.size - 2 - _STEPS_BEFORE, 0)
-    rate = (place[-2] - place[first]) / (time[-2] - time[first])
+    # of a ramp of few samples the first step is cut short as well
+    rate = float(np.median(np.diff(place[first:-1]) / np.diff(time[first:-1])))
     last = place[-1] - place[-2]
     step = float(time[-1] - time[-2])
     width = max(slowing, 0.0)

@@ -465,9 +465,12 @@ def _rate_per_decade(blocks: _LogBlocks, *, ramp_duration: float) -> _Rate:
 
 
 def _value_at_times(
-    elapsed: ArrayLike, values: ArrayLike, times: ArrayLike
+    elapsed: ArrayLike, values: ArrayLike, times: ArrayLike, *, begin_uncertainty: float = 0.0
 ) -> tuple[Floats, Floats]:
     """Series at stated times, each from a line through the samples within a tenth of it.
+
+    The line is over the logarithm of time, on which a relaxation bends least.  What the series
+    changes by within the uncertainty of the time at which it begins [s] is part of its own.
 
     Examples
     --------
@@ -484,31 +487,39 @@ def _value_at_times(
         if after == time.size or (after == 0 and time[0] != wanted):
             continue
         first, last = np.searchsorted(time, [0.9 * wanted, 1.1 * wanted])
+        slope = 0.0
         if last - first < 4:
             # Too few samples for a line of their own: the two beside the time.
             gap = float(time[after] - time[after - 1]) if after else 0.0
             if gap <= 0.2 * wanted or median_step_reaches(time, 1.5, gap):
                 beside = slice(max(after - 1, 0), after + 1)
                 found[index] = np.interp(wanted, time[beside], series[beside])
-                spread[index] = noise
+                slope = float(np.ptp(series[beside])) / gap if gap else 0.0
+                spread[index] = np.hypot(noise, slope * begin_uncertainty)
             continue
-        found[index], spread[index] = _on_line(
+        found[index], slope, own = _on_line(
             time[first:last], series[first:last], wanted, noise=noise
         )
+        spread[index] = np.hypot(own, slope * begin_uncertainty)
         release_pages(time, series)
     return found, spread
 
 
-def _on_line(time: Floats, series: Floats, wanted: float, *, noise: float) -> tuple[float, float]:
-    """Value of the regression of a series at a time, and its standard uncertainty."""
+def _on_line(
+    time: Floats, series: Floats, wanted: float, *, noise: float
+) -> tuple[float, float, float]:
+    """Value and rate of the regression of a series at a time, and the noise of the value."""
     count = time.size
-    mean, square, product = mean_of(time) - wanted, 0.0, 0.0
+    mean, square, product = 0.0, 0.0, 0.0
     for part in sample_blocks(count, time, series):
-        off = (time[part] - wanted) - mean
+        mean += float(np.log(time[part] / wanted).sum()) / count
+    for part in sample_blocks(count, time, series):
+        off = np.log(time[part] / wanted) - mean
         square += float(off @ off)
         product += float(off @ series[part])
-    value = mean_of(series) - product / square * mean
-    return value, noise * float(np.sqrt(1 / count + mean**2 / square))
+    slope = product / square
+    own = noise * float(np.sqrt(1 / count + mean**2 / square))
+    return mean_of(series) - slope * mean, slope / wanted, own
 
 
 TENSION_TOLERANCE = 0.01
@@ -1017,7 +1028,7 @@ def select_hold(
 
     Notes
     -----
-    The ramp is looked for from the start of the standstill before, or of the record.
+    The ramp is looked for from the middle of the standstill before, or the start of the record.
 
     Examples
     --------
@@ -1035,7 +1046,8 @@ def select_hold(
     24 24.0 5
     """
     first, last = int(standstills.first[index]), int(standstills.last[index])
-    begin = int(standstills.first[index - 1]) if index else 0
+    # the first samples of the standstill before may lie below it, where a ramp ended between two
+    begin = int(standstills.first[index - 1] + standstills.last[index - 1]) // 2 if index else 0
     # under load control the machine moves the tension, and the length answers
     moved, answer, band = position, tension, standstills.position_tolerance
     if standstills.tension_tolerance is not None:
@@ -1220,7 +1232,7 @@ def _with_delay(
     None before that: the load has not come yet.
     """
     value, spread = (np.where(times > delay, one, np.nan) for one in found)
-    later, _ = _value_at_times(shifted(hold.time, hold.start_time), hold.tension, times + delay)
+    later, _ = _value_at_times(shifted(hold.time, hold.ramp_end_time), hold.tension, times + delay)
     lost = np.nan_to_num(value - later) / np.sqrt(3)
     return value, np.hypot(spread, lost)
 
@@ -1275,9 +1287,14 @@ def _result(
             f"end of the ramp, final tension the mean of the last {ends.n_final} of "
             f"{hold.time.size}"
         )
-        tension_at = _value_at_times(shifted(hold.time, hold.start_time), hold.tension, times)
+        unsure = 0.0 if hold.ramp is None else hold.ramp.end_uncertainty
+        tension_at = _value_at_times(
+            shifted(hold.time, hold.ramp_end_time), hold.tension, times, begin_uncertainty=unsure
+        )
         if known.size > 1:
-            strain_at = _value_at_times(shifted(times_known, hold.start_time), known, times)
+            strain_at = _value_at_times(
+                shifted(times_known, hold.ramp_end_time), known, times, begin_uncertainty=unsure
+            )
         reasons = _reasons_against(hold, ends, settings) if kind == "relaxation" else []
         hold.refusals.extend(reasons)
         late = ends.late
