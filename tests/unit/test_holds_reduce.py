@@ -332,7 +332,7 @@ def test_a_hold_whose_first_sample_lies_below_it_does_not_lengthen_the_ramp_afte
     tension = response(time, 20.0, 1.0) + response(time, 200.0, 1.0)
     tension = tension + rng.normal(0, 0.1, time.size)
     spans = ((0, 20), (24.9, 200), (205, 1e9))
-    first, second = reduce(time, position, tension, spans=spans)
+    _, second = reduce(time, position, tension, spans=spans)
     assert second.ramp_duration == pytest.approx(5, abs=0.5)
     assert not [str(one) for one in second.refusals if "late" in str(one)]
     peak = response(np.array([205.0]), 20.0, 1.0) + response(np.array([205.0]), 200.0, 1.0)
