@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import pickle
 import re
 from collections.abc import Callable, Collection, Container, Hashable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
@@ -37,6 +38,7 @@ from reduction.quantities.names import (
 )
 from reduction.quantities.row import GROUPS, Quantity
 from reduction.record.errors import ArchiveError, SettingsError
+from reduction.record.scratch_file import ScratchFile
 
 Chunks = int | Mapping[str, int | Literal["auto"] | tuple[int, ...]]
 """Values of a chunk, or by dimension, as `xarray.open_dataset` takes them."""
@@ -44,15 +46,16 @@ Chunks = int | Mapping[str, int | Literal["auto"] | tuple[int, ...]]
 Opener = Callable[[Path], AbstractContextManager[xr.Dataset]]
 """How a step opens an archive for a block: as `reading` does."""
 
+KeptArchive = bytes
+"""An archive that was just written, pickled: it goes from a worker to the scratch file as it is."""
+
 _CACHE = 1 << 20
 """Bytes of each variable that the library keeps as they are read: two chunks of an archive. Its own
 64 MB hold all that was ever read of a test, beside what is made of it."""
 
-_MOST = 64  # archives that are kept in memory, each of which takes 1.5 MB beside its values
+LARGEST = 8_000_000  # bytes of values of an archive that is kept in a run, unpacked
 
-LARGEST = 8_000_000  # bytes of values of one, unpacked
-
-_ROOM = 64_000_000  # and of all
+_ROOM = 2_000_000_000  # bytes of all on disk, beside archives of nearly the same size
 
 _BESIDE = "_nc4_non_coord_"
 """Before the name of a variable that has the name of a dimension and is not its coordinate."""
@@ -113,65 +116,52 @@ def reading(path: Path) -> Iterator[xr.Dataset]:
 
 
 class ReadOnce:
-    """Opens small archives whole, once, and gives them again from memory.
+    """Reads small archives from their files once, and gives them again from a scratch file.
 
     To open an archive takes longer than to read all of a small one, since the library looks at each
     of its 350 variables; the steps of a run read each several times.  Called as `reading`, it gives
-    a copy in which variables may be added, and values may not be changed.  A file that is another
-    one by now is read anew.
+    an archive that is the caller's alone.  A file that is another one by now is read anew.
     """
 
     def __init__(self) -> None:
-        self._kept: dict[Path, tuple[tuple[int, ...], xr.Dataset]] = {}
-        self._sizes: dict[Path, int] = {}  # bytes, which take long to add up
+        self._scratch = ScratchFile()
+        self._kept: dict[Path, tuple[tuple[int, ...], slice]] = {}
 
     @contextmanager
     def __call__(self, path: Path) -> Iterator[xr.Dataset]:
         """Open an archive for a block, as `reading` does."""
         stamp = _stamp_of(path)
-        if self._kept.get(path, (None,))[0] != stamp:
-            self._kept.pop(path, None)
+        known, place = self._kept.get(path, ((), slice(0)))
+        if stamp and known == stamp:
+            content = self._scratch.get(place)
+        else:
             with reading(path) as archive:
-                if not self._has_room(archive):
+                if archive.nbytes > LARGEST or self._scratch.n_bytes > _ROOM:
                     yield archive
                     return
-                _freeze(in_memory(archive))
-            self._kept[path] = stamp, archive
-            self._sizes[path] = archive.nbytes
-        yield self._kept[path][1].copy()
+                content = pickle.dumps(in_memory(archive).copy())  # which has no file to close
+            self._put(path, stamp, content)
+        yield pickle.loads(content)  # noqa: S301  # of this object
 
-    def keep(self, path: Path, written: xr.Dataset) -> None:
-        """Keep an archive that was just written, as a reader finds it."""
-        if not self._has_room(written):
-            return
-        found = _as_read(written)
-        _freeze(found)
-        self._kept[path] = _stamp_of(path), found
-        self._sizes[path] = found.nbytes
+    def keep(self, path: Path, written: KeptArchive) -> None:
+        """Keep an archive that was just written."""
+        if self._scratch.n_bytes <= _ROOM:
+            self._put(path, _stamp_of(path), written)
 
-    def forget(self, path: Path) -> None:
-        """Let an archive go that few steps will open again."""
-        self._kept.pop(path, None)
-        self._sizes.pop(path, None)
-
-    def _has_room(self, archive: xr.Dataset) -> bool:
-        """Whether it is kept; pass after pass over many finds those that were there first."""
-        if len(self._kept) >= _MOST:
-            return False
-        room = _ROOM - sum(self._sizes[path] for path in self._kept)
-        return archive.nbytes <= min(LARGEST, room)
+    def _put(self, path: Path, stamp: tuple[int, ...], content: bytes) -> None:
+        with suppress(OSError):  # without room on the disk it is read again
+            self._kept[path] = stamp, self._scratch.put(content)
 
 
-def keep_written(opener: Opener, path: Path, written: xr.Dataset) -> None:
+def as_kept(written: xr.Dataset) -> KeptArchive | None:
+    """An archive that was just written as a reader finds it, for `keep_written`; no large one."""
+    return pickle.dumps(_as_read(written)) if written.nbytes <= LARGEST else None
+
+
+def keep_written(opener: Opener, path: Path, written: KeptArchive | None) -> None:
     """Keep an archive that was just written, where it is opened by what keeps any."""
-    if isinstance(opener, ReadOnce):
+    if isinstance(opener, ReadOnce) and written is not None:
         opener.keep(path, written)
-
-
-def forget(opener: Opener, path: Path) -> None:
-    """Let an archive go, where it is opened by what keeps any."""
-    if isinstance(opener, ReadOnce):
-        opener.forget(path)
 
 
 def _stamp_of(path: Path) -> tuple[int, ...]:
@@ -204,11 +194,6 @@ def in_memory(archive: xr.Dataset) -> xr.Dataset:
     for variable in archive.variables.values():
         _ = variable.values  # which an archive that was opened without chunks keeps
     return archive
-
-
-def _freeze(archive: xr.Dataset) -> None:
-    for variable in archive.variables.values():
-        variable.values.flags.writeable = False
 
 
 def place_of(path: Path) -> tuple[str, float]:

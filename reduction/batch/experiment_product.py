@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from reduction import __version__
-from reduction.archive.open import Opener, keep_written, reading
+from reduction.archive.open import Opener, as_kept, keep_written, reading
 from reduction.archive.shared_errors import shared_contributions
 from reduction.archive.surfaces_dataset import surfaces_to_dataset
 from reduction.archive.variables import read_notes, stored
@@ -293,7 +293,7 @@ def write_experiments(
             command=command,
         ),
     )
-    keep_written(opener, path, write_archive(dataset, path))
+    keep_written(opener, path, as_kept(write_archive(dataset, path)))
     statuses |= {result.name: _status(result) for result in results}
     return list(statuses.values())
 

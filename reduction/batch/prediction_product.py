@@ -18,7 +18,7 @@ from reduction.archive.campaign_products import (
     comparisons_to_dataset,
     predictions_to_dataset,
 )
-from reduction.archive.open import Opener, keep_written, reading
+from reduction.archive.open import Opener, as_kept, keep_written, reading
 from reduction.archive.shared_errors import curve_errors_of
 from reduction.archive.test_dataset import stored_cycles
 from reduction.archive.write import write_archive
@@ -175,7 +175,7 @@ def write_comparisons(
             ],
             command=command,
         )
-        keep_written(opener, old, written)
+        keep_written(opener, old, as_kept(written))
     return statuses
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import xarray as xr
 
 from reduction import __version__
-from reduction.archive.open import LARGEST
+from reduction.archive.open import KeptArchive, as_kept
 from reduction.archive.test_dataset import kept_samples, to_dataset
 from reduction.archive.write import write_archive
 from reduction.batch.campaign_status import Progress, Status, TestStatus, note_message
@@ -148,7 +148,7 @@ class _Made:
     message: str
     error: ReductionError | None
     seconds: float
-    written: xr.Dataset | None = None
+    written: KeptArchive | None = None
 
 
 def reduce_campaign(
@@ -165,7 +165,7 @@ def reduce_campaign(
     clock: Callable[[], float],
     force: bool,
     command: str,
-    written: Callable[[Path, xr.Dataset], None] = lambda path, archive: None,
+    written: Callable[[Path, KeptArchive], None] = lambda path, archive: None,
 ) -> list[TestStatus]:
     """Bring the archives of tests up to date; ``written`` is given those that are small."""
     progress.stage("reduce", len(chosen))
@@ -234,5 +234,5 @@ def _make(
     except Exception as failure:
         # a campaign goes on after a failed test, even where the failure is a defect here
         return _Made("failed", "", as_reduction_error(failure), clock() - start)
-    is_small = written is not None and written.nbytes <= LARGEST
-    return _Made(status, message, None, clock() - start, written if is_small else None)
+    as_found = None if written is None else as_kept(written)
+    return _Made(status, message, None, clock() - start, as_found)

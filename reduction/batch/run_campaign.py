@@ -17,7 +17,7 @@ import xarray as xr
 from reduction import __version__
 from reduction.archive.campaign_products import outcomes_to_dataset
 from reduction.archive.csv_tables import write_tables
-from reduction.archive.open import Opener, ReadOnce, forget, keep_written, reading
+from reduction.archive.open import Opener, ReadOnce, as_kept, keep_written, reading
 from reduction.archive.product_files import (
     OF_CAMPAIGN,
     SUPERSEDED,
@@ -149,7 +149,7 @@ def _write_change_in_length(
     )
     path = folder / "change_in_length.nc"
     written = write_archive(properties_to_dataset(found, component, origin=origin), path)
-    keep_written(opener, path, written)
+    keep_written(opener, path, as_kept(written))
     return path
 
 
@@ -354,9 +354,6 @@ def run_campaign(
             raise
 
 
-_ON_DESIGN_PAGE = 32  # tests at most whose curves the page of design values has room for
-
-
 def _refuse_name(folder: Path) -> None:
     """Refuse a folder that the netCDF library cannot name, before anything is reduced for it."""
     name = str(folder.absolute())
@@ -397,6 +394,8 @@ def _run(
         command=command,
         written=partial(keep_written, opener),
     )  # fmt: skip
+    if workers is not None:
+        workers.executor.shutdown()  # what is made of all tests takes the memory that they had
     lock.confirm()  # before what is made of all tests
     if archives_of_tests(folder):
         record_campaign(folder, campaign.path)
@@ -431,13 +430,10 @@ def _run(
     page = CampaignPage(folder, units=units, stray=stray, opener=opener)
     if archives or products:
         entries: dict[Path, CatalogueEntry] = {}
-        opened_again = set(sorted(archives)[:_ON_DESIGN_PAGE])
 
         def each(path: Path, archive: xr.Dataset) -> None:
             entries[path] = entry_of(path, archive)
             page.add(path, archive)
-            if path not in opened_again:
-                forget(opener, path)
 
         # of a thousand archives each is opened once for all that is made of it
         tables = write_tables(archives, folder / "tables", opener=opener, each=each, **products)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from reduction.record.errors import DataError, SettingsError
 from reduction.record.measurement import Bools, Floats
-from reduction.record.samples import any_sample, release_pages, trim_heap
+from reduction.record.samples import BLOCK, any_sample, release_pages, trim_heap
 
 
 def _refuse(name: str, values: Floats, bad: Bools, what: str, needed: str) -> None:
@@ -27,9 +27,11 @@ def _refuse(name: str, values: Floats, bad: Bools, what: str, needed: str) -> No
 def as_finite(name: str, values: ArrayLike) -> Floats:
     """Return the values as float64, or raise `DataError` where one is not finite."""
     array = np.asarray(values, dtype=np.float64)
-    # a mask of all samples is made where one is wrong
-    if array.ndim == 1 and not any_sample(
-        lambda part: ~np.isfinite(array[part]), array.size, array
+    # of a long series a mask of all samples is made where one is wrong
+    if (
+        array.ndim == 1
+        and array.size > BLOCK
+        and not any_sample(lambda part: ~np.isfinite(array[part]), array.size, array)
     ):
         return array
     bad = ~np.isfinite(array)
@@ -133,7 +135,9 @@ def run_blocks(
         release_pages(*samples)
         return result
 
-    n_workers = min(len(todo), max(1, _TOGETHER // longest))
+    # to start threads takes longer than to go over a short series
+    is_short = samples and max(one.shape[-1] for one in samples) <= BLOCK
+    n_workers = 1 if is_short else min(len(todo), max(1, _TOGETHER // longest))
     if n_workers > 1:
         n_workers = min(n_workers, _n_processors())
     if n_workers < 2:

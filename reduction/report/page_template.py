@@ -14,13 +14,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
-from tempfile import TemporaryFile
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
 
 from reduction import __version__
 from reduction.quantities.units import UnitSystem
+from reduction.record.scratch_file import ScratchFile
 from reduction.report.campaign_summary import SummaryFinding, Tile
 from reduction.report.figure_data import Figure
 from reduction.report.test_section import Part, TestSection
@@ -60,39 +60,29 @@ class ScratchTexts:
     """Texts on disk until a page is written: memory has no room for a thousand sections."""
 
     def __init__(self) -> None:
-        self._file = TemporaryFile()  # as long as one of its texts
-        self._end = 0
-
-    def __del__(self) -> None:
-        """Give the disk back."""
-        self._file.close()
+        self._file = ScratchFile()
 
     def stored(self, section: RenderedSection) -> RenderedSection:
         """Put the text of a section on disk."""
-        content = section.html.encode()
-        self._file.seek(self._end)
-        self._file.write(content)
-        found = _StoredText(self, self._end, len(content))
-        self._end += len(content)
-        return replace(section, text=found)
-
-    def read(self, begin: int, n_bytes: int) -> str:
-        """A text."""
-        self._file.seek(begin)
-        return self._file.read(n_bytes).decode()
+        place = self._file.put(section.html.encode())
+        return replace(section, text=_StoredText(self._file, place))
 
 
 @dataclass(frozen=True)
 class _StoredText:
     """One of the texts on disk."""
 
-    scratch: ScratchTexts
-    begin: int
-    n_bytes: int
+    file: ScratchFile
+    place: slice
+
+    @property
+    def n_bytes(self) -> int:
+        """Its length as UTF-8."""
+        return int(self.place.stop - self.place.start)
 
     def read(self) -> str:
         """The text."""
-        return self.scratch.read(self.begin, self.n_bytes)
+        return self.file.get(self.place).decode()
 
 
 @dataclass(frozen=True)

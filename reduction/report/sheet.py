@@ -322,7 +322,7 @@ class Sheet:
             return shown(unit, self.view.units)
         if not isinstance(source, str):
             return None
-        own = self.data[source].attrs.get("units") if source in self.data else None
+        own = self.data.variables[source].attrs.get("units") if source in self.data else None
         return shown_unit(own or QUANTITIES[source].unit, self.view.units)
 
 

@@ -87,7 +87,10 @@ def _field_rows(
         tension, strain, tension_slope, strain_slope, strain_slope_over_tension,
         tension_slope_over_strain,
     )  # fmt: skip
-    return np.stack([np.broadcast_to(one, like.shape) for one in given])
+    rows = np.empty((len(given), *like.shape))
+    for place, one in enumerate(given):
+        rows[place] = one
+    return rows
 
 
 def _steps_of(load: Floats) -> Floats:

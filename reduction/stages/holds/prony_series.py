@@ -254,7 +254,7 @@ def fit_prony(
 
     def basis(log_times: Floats) -> tuple[Floats, Floats]:
         # A search that strays stays finite.
-        times = np.exp(np.clip(log_times, -LARGEST_LOG, LARGEST_LOG))[:, None, :]
+        times = np.exp(np.minimum(np.maximum(log_times, -LARGEST_LOG), LARGEST_LOG))[:, None, :]
         decay = _exponentials(time, times)
         level = np.ones((len(log_times), time.size, 1))
         return np.concatenate([level, decay], axis=2), decay * (time[:, None] / times)

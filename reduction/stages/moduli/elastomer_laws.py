@@ -124,31 +124,25 @@ def _ogden_columns(
     >>> print(_ogden_columns(np.array([2.0]), np.array([2.0])))
     [[1.75]]
     """
-    log = np.log(_checked(stretch_ratio, deformation))[:, None]
-    columns: Floats = np.exp((exponents - 1) * log) - np.exp(
-        (LATERAL[deformation] * exponents - 1) * log
-    )
-    return columns
+    return _ogden_basis(stretch_ratio, exponents, deformation=deformation)[0]
 
 
-def _ogden_slopes(
+def _ogden_basis(
     stretch_ratio: Floats, exponents: Floats, *, deformation: Deformation = "uniaxial"
-) -> Floats:
-    r"""Derivatives of the columns of Ogden's law, each by its own exponent.
+) -> tuple[Floats, Floats]:
+    r"""Columns of Ogden's law, and the derivative of each by its own exponent.
 
     .. math:: \ln\lambda \, (\lambda^{\alpha_i - 1} - q \lambda^{q \alpha_i - 1})
 
     Examples
     --------
-    >>> print(_ogden_slopes(np.array([2.0]), np.array([2.0])).round(4))
+    >>> print(_ogden_basis(np.array([2.0]), np.array([2.0]))[1].round(4))
     [[1.4729]]
     """
     log = np.log(_checked(stretch_ratio, deformation))[:, None]
     lateral = LATERAL[deformation]
-    slopes: Floats = log * (
-        np.exp((exponents - 1) * log) - lateral * np.exp((lateral * exponents - 1) * log)
-    )
-    return slopes
+    along, across = np.exp((exponents - 1) * log), np.exp((lateral * exponents - 1) * log)
+    return along - across, log * (along - lateral * across)
 
 
 def hyperelastic_stress(
@@ -302,10 +296,7 @@ def _fit(law: Law, strain: Floats, stress: Floats) -> tuple[Floats, Floats, Floa
     if law == "ogden-2":
         stretch = 1 + strain
         fit = fit_separable(
-            lambda exponents: (
-                _ogden_columns(stretch, exponents[:, None, :]),
-                _ogden_slopes(stretch, exponents[:, None, :]),
-            ),
+            lambda exponents: _ogden_basis(stretch, exponents[:, None, :]),
             stress,
             starts=list(combinations(STARTING_EXPONENTS, 2)),
         )

@@ -56,6 +56,8 @@ FIRST_DAMPING = 1e-3
 
 LAST_DAMPING = 1e12
 
+_DIGITS = float(np.finfo(np.float64).eps)
+
 SEARCH_STEPS = 200
 
 POLISHING_STEPS = 30
@@ -164,27 +166,26 @@ def _covariance(jacobian: Floats, parameters: Floats, variance: float) -> Floats
 
 
 def _polished(
-    parameters: Floats, residual: Callable[[Floats], Floats], jacobian: Callable[[Floats], Floats]
-) -> Floats:
-    """Gauss-Newton steps while they get shorter.
+    parameters: Floats, evaluate: Callable[[Floats], tuple[Floats, Floats]]
+) -> tuple[Floats, Floats, Floats]:
+    """Gauss-Newton steps while they get shorter; parameters, with residuals and Jacobian there.
 
     A trust region stops where the sum of squares no longer changes, at half the digits of
     the parameters; these steps follow its gradient to the last ones, so that the answer
     does not depend on the way that led there.
     """
-    scale = np.linalg.norm(jacobian(parameters), axis=0)
-    if np.any(scale == 0):
-        return parameters
-    shortest, left = np.inf, residual(parameters)
+    residual, jacobian = evaluate(parameters)
+    scale = np.linalg.norm(jacobian, axis=0)
+    shortest = 0.0 if np.any(scale == 0) else np.inf
     for _ in range(POLISHING_STEPS):
-        step = -_solve(jacobian(parameters), left)
+        step = -_solve(jacobian, residual)
         length = float(np.linalg.norm(step * scale))
-        trial = residual(parameters + step)
+        trial, bent = evaluate(parameters + step)
         # Not where the search had only run aground: there a step leads anywhere.
-        if not (length < shortest and trial @ trial <= (left @ left) * (1 + 1e-9)):
+        if not (length < shortest and trial @ trial <= (residual @ residual) * (1 + 1e-9)):
             break
-        parameters, shortest, left = parameters + step, length, trial
-    return parameters
+        parameters, shortest, residual, jacobian = parameters + step, length, trial, bent
+    return parameters, residual, jacobian
 
 
 class _Projected(NamedTuple):
@@ -214,7 +215,7 @@ def _projected(columns: Floats, slopes: Floats, target: Floats) -> _Projected:
         amplitude = np.linalg.solve(triangle, share[..., None])[..., 0] / scale
     else:
         left, size, right = np.linalg.svd(triangle)
-        least = np.finfo(np.float64).eps * target.size * size[:, 0]
+        least = _DIGITS * target.size * size[:, 0]
         counts = np.greater(size, least[:, None])
         base = base @ (left * counts[:, None, :])
         share = target @ base
@@ -262,17 +263,17 @@ def _search(basis: Basis, target: Floats, starts: Floats) -> tuple[Floats, Float
         there = _projected(*basis(shapes[at] + step), target)
         gain = here.squares - there.squares
         better = gain > 0
-        length = np.linalg.norm(step, axis=1)
+        length = np.sqrt((step * step).sum(axis=1))
         # shorter than its digits count, or a gain below those of the sum
-        ends = length <= NEAR * (NEAR + np.linalg.norm(shapes[at], axis=1))
-        ends |= expected <= np.finfo(np.float64).eps * here.squares
+        ends = length <= NEAR * (NEAR + np.sqrt((shapes[at] ** 2).sum(axis=1)))
+        ends |= expected <= _DIGITS * here.squares
         # the steps over all parameters that follow find the rest of what the sum can lose
         ends |= (expected <= _ENOUGH * here.squares) & (damping[at] < 1.0)
         moved = at[better]
         shapes[moved] += step[better]
         for old, new in zip(found, there, strict=True):
             old[moved] = new[better]
-        foreseen = np.clip(gain[better] / expected[better], 0.0, 1.0)
+        foreseen = np.minimum(np.maximum(gain[better] / expected[better], 0.0), 1.0)
         damping[moved] *= np.maximum(1 / 3, 1 - (2 * foreseen - 1) ** 3)
         growth[moved] = 2.0
         stayed = at[~better]
@@ -358,15 +359,11 @@ def fit_separable(
             needed=f"more than {n_parameters}",
         )
 
-    def jacobian(parameters: Floats) -> Floats:
+    def together(parameters: Floats) -> tuple[Floats, Floats]:
         columns, slopes = weighted(parameters[None, n_amplitudes:])
-        amplitude = parameters[n_amplitudes - n_shapes : n_amplitudes]
-        return -np.concatenate([columns[0], slopes[0] * amplitude], axis=1)
-
-    def together(parameters: Floats) -> Floats:
-        columns, _ = weighted(parameters[None, n_amplitudes:])
-        left: Floats = target - columns[0] @ parameters[:n_amplitudes]
-        return left
+        amplitude = parameters[:n_amplitudes]
+        bent = slopes[0] * amplitude[n_amplitudes - n_shapes :]
+        return target - columns[0] @ amplitude, -np.concatenate([columns[0], bent], axis=1)
 
     shapes, squares = _search(weighted, target, first_shapes)
     if not np.isfinite(squares).any():
@@ -374,12 +371,11 @@ def fit_separable(
     alike = shapes[squares <= squares.min() * (1 + ALIKE)]
     best: Floats = alike[int(np.argmin(np.sum(alike**2, axis=1)))]
     amplitude = _solve(weighted(best[None])[0][0], target)
-    found = _polished(np.concatenate([amplitude, best]), together, jacobian)
-    residual = together(found)
+    found, residual, jacobian = _polished(np.concatenate([amplitude, best]), together)
     freedom = target.size - n_parameters
     return SeparableFit(
         amplitude=found[:n_amplitudes],
         shape=found[n_amplitudes:],
-        covariance=_covariance(jacobian(found), found, float(residual @ residual) / freedom),
+        covariance=_covariance(jacobian, found, float(residual @ residual) / freedom),
         residual=residual,
     )

@@ -112,7 +112,7 @@ def _search(pairs: _Pairs, maximum_segments: int) -> list[Integers]:
     start = np.zeros(1, dtype=np.int64)
     levels = [_Paths(start, start, np.zeros(1), np.zeros(1), np.zeros(1))]
     found: list[Integers] = []
-    for _ in range(maximum_segments):
+    for n_segments in range(1, maximum_segments + 1):
         paths = levels[-1]
         allowed = pairs.is_allowed[paths.last]
         closing = np.flatnonzero(allowed[:, end])
@@ -125,8 +125,9 @@ def _search(pairs: _Pairs, maximum_segments: int) -> list[Integers]:
             knots.append(int(level.last[at]))
             at = int(level.parent[at])
         found.append(np.array(knots[::-1]))
-        path, knot = np.nonzero(allowed[:, :end])
-        levels.append(paths.step(pairs, path, knot))
+        if n_segments < maximum_segments:  # the last level is larger than all before
+            path, knot = np.nonzero(allowed[:, :end])
+            levels.append(paths.step(pairs, path, knot))
     return found
 
 
