@@ -8,6 +8,7 @@ import pickle
 import re
 from collections.abc import Callable, Collection, Container, Hashable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from functools import cached_property
 from importlib.util import find_spec
 from itertools import product
 from pathlib import Path
@@ -227,11 +228,9 @@ def variables_if(
             for place, name in product(places, names):
                 for stored in (name, f"{_BESIDE}{name}"):
                     is_there = isinstance(place.get(stored, getlink=True), h5py.HardLink)
-                    if is_there and place[stored].dtype != _NO_VARIABLE:
-                        found[name] = (
-                            schema[name].dims,
-                            _values_of(place[stored].id, schema[name], place[stored].dtype),
-                        )
+                    one = _Stored(place[stored].id) if is_there else None
+                    if one is not None and one.dtype != _NO_VARIABLE:
+                        found[name] = schema[name].dims, _values_of(one, schema[name])
     except (KeyError, RuntimeError, ValueError) as error:  # of the library, where the disk fails
         raise OSError(str(error)) from error
     return xr.Dataset(found)
@@ -259,38 +258,47 @@ def _read_own(path: Path) -> xr.Dataset | None:
             is_own = attributes.get("software_version") == __version__
             if not is_own or attributes.get("schema_version") != SCHEMA_VERSION:
                 return None
-            held: dict[str, h5py.h5d.DatasetID] = {}
+            held: dict[str, _Stored] = {}
             if _fault_in_group(file.id, path.stat().st_size, held=held) is not None:
                 return None
-            if sum(map(_n_bytes, held.values())) > LARGEST:
+            if sum(one.n_bytes for one in held.values()) > LARGEST:
                 return None
             # a dimension stands there as a variable without values where it has none
-            types = {name: one.dtype for name, one in held.items()}
-            types = {name: one for name, one in types.items() if one != _NO_VARIABLE}
-            schema = _schema_of_file(types)
+            known = {name: one for name, one in held.items() if one.dtype != _NO_VARIABLE}
+            schema = _schema_of_file(known)
             if schema not in (TEST_SCHEMA, STEPWISE_SCHEMA):
                 return None
-            values = {name: _values_of(held[name], row, types[name])
-                      for name, row in schema.items() if name in types}  # fmt: skip
-            if len(values) < len(types):
+            values = {name: _values_of(known[name], row)
+                      for name, row in schema.items() if name in known}  # fmt: skip
+            if len(values) < len(known):
                 return None
+            known.clear()
             held.clear()  # or the file looks for each of them when it is closed
         found = build_dataset(values, schema, attributes=attributes, is_stored=True)
         return found if _fault_of_form(found) is None else None
     return None
 
 
-def _n_bytes(held: h5py.h5d.DatasetID) -> int:
-    """Size of the values of a variable, unpacked."""
-    return int(math.prod(held.shape or ()) * held.get_type().get_size())
+class _Stored:
+    """A variable of a file, which is asked once for its shape and its type: both take long."""
+
+    def __init__(self, held: h5py.h5d.DatasetID) -> None:
+        self.held, self.shape, self._type = held, held.shape or (), held.get_type()
+        self.n_bytes = int(math.prod(self.shape) * self._type.get_size())  # unpacked
+
+    @cached_property
+    def dtype(self) -> np.dtype[Any]:
+        """Of its values."""
+        found: np.dtype[Any] = self._type.dtype
+        return found
 
 
-def _values_of(held: h5py.h5d.DatasetID, row: Quantity, stored_type: np.dtype[Any]) -> NDArray[Any]:
+def _values_of(stored: _Stored, row: Quantity) -> NDArray[Any]:
     """Read all values of a variable; `ValueError` where they are not of the type of its row."""
-    values = np.empty(held.shape, "S1" if row.is_text else row.dtype)
-    if stored_type != values.dtype:
+    values = np.empty(stored.shape, "S1" if row.is_text else row.dtype)
+    if stored.dtype != values.dtype:
         raise ValueError(row.name)
-    held.read(h5py.h5s.ALL, h5py.h5s.ALL, values)
+    stored.held.read(h5py.h5s.ALL, h5py.h5s.ALL, values)
     if not row.is_text:
         return values
     words = values.view(f"S{values.shape[-1]}")[..., 0]
@@ -484,11 +492,12 @@ def _fault_in_group(
     group: h5py.h5g.GroupID,
     size: int,
     inside: str = "",
-    held: dict[str, h5py.h5d.DatasetID] | None = None,
+    held: dict[str, _Stored] | None = None,
 ) -> str | None:
+    links = group.links
     for raw in group:
         name = inside + raw.decode(errors="replace")[:80]
-        if group.links.get_info(raw).type != h5py.h5l.TYPE_HARD:
+        if links.get_info(raw).type != h5py.h5l.TYPE_HARD:
             return f"a link '{name}'"
         one = h5py.h5o.open(group, raw)
         if isinstance(one, h5py.h5g.GroupID) and name in GROUPS:
@@ -501,13 +510,13 @@ def _fault_in_group(
         made = one.get_create_plist()
         if made.get_layout() == h5py.h5d.VIRTUAL or made.get_external_count():
             return f"a variable '{name}' whose values lie in other files"
-        n_bytes = _n_bytes(one)
-        if n_bytes > _MOST_PACKED * size:
-            return f"a variable '{name}' of {n_bytes:,} bytes in a file of {size:,}"
+        stored = _Stored(one)
+        if stored.n_bytes > _MOST_PACKED * size:
+            return f"a variable '{name}' of {stored.n_bytes:,} bytes in a file of {size:,}"
         if held is not None:
             own = raw.decode().removeprefix(_BESIDE)
             if own not in held or held[own].dtype == _NO_VARIABLE:
-                held[own] = one
+                held[own] = stored
     return None
 
 

@@ -412,19 +412,23 @@ def _run(
         command=command,
         opener=opener,
     )
+    names = [survey.plan.id for survey in surveys]
+    # of a log that failed nobody knows which steps it has now
+    unknown = tuple(f"{survey.plan.id}." for survey in surveys if survey.error is not None)
+    read = {source.name: source.sha256 for survey in surveys for source in survey.sources}
+    # what else is known of the logs is 0.1 MB a test, which the tables and pages need
+    del wanted, first, basis, surveys, chosen
     progress.stage("tables", 0)
-    ours = [folder / f"{survey.plan.id}.nc" for survey in surveys]
+    ours = [folder / f"{name}.nc" for name in names]
     archives = [path for path in ours if path.exists()]
     report, tables, answers = None, [], ShownAnswers((), (), ())
-    rows = _all_rows(folder / "status.csv", surveys, statuses)
+    rows = _all_rows(folder / "status.csv", names, statuses)
     if statuses:
         write_text_atomically(folder / "status.csv", status_csv(rows))
     keep_details(folder, campaign.report)
     products = requested_products(campaign, folder, has_lengths=has_lengths)
     gone = [path for path in archives_of_tests(folder) if path not in ours]
     gone += [folder / f"{name}.nc" for name in OF_CAMPAIGN if name not in products]
-    # of a log that failed nobody knows which steps it has now
-    unknown = tuple(f"{survey.plan.id}." for survey in surveys if survey.error is not None)
     stray = [path.name for path in gone if path.stem.startswith(unknown)]
     superseded = _put_aside([path for path in gone if path.name not in stray], folder)
     page = CampaignPage(folder, units=units, stray=stray, opener=opener)
@@ -440,6 +444,7 @@ def _run(
         write_catalogue(
             [*archives, *products.values()], folder / FILE_NAME, entries=entries, opener=opener
         )
+        entries.clear()
     if archives or products or statuses:  # where all tests failed the page says that and why
         progress.stage("report", 0)
         made = {one.test for one in statuses if one.status not in ("failed", "no_work")}
@@ -458,8 +463,7 @@ def _run(
         superseded=tuple(superseded),
         stray=tuple(stray),
         tables=tuple(tables),
-        read=campaign.small_files
-        | {source.name: source.sha256 for entry in surveys for source in entry.sources},
+        read=campaign.small_files | read,
         answers=answers,
     )
 
@@ -550,11 +554,9 @@ def _write_parts(
     return parts, lengths is not None
 
 
-def _all_rows(
-    path: Path, surveys: Sequence[Survey], statuses: Sequence[TestStatus]
-) -> list[TestStatus]:
+def _all_rows(path: Path, names: Sequence[str], statuses: Sequence[TestStatus]) -> list[TestStatus]:
     """One row for each test of the campaign; a test that was not asked for keeps its own."""
     new = {status.test: status for status in statuses}
-    before = read_status(path) if len(new) < len(surveys) else {}
-    rows = [new.get(survey.plan.id) or before.get(survey.plan.id) for survey in surveys]
+    before = read_status(path) if len(new) < len(names) else {}
+    rows = [new.get(name) or before.get(name) for name in names]
     return [row for row in rows if row is not None]

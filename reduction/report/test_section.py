@@ -237,8 +237,10 @@ def _design_table(tests: Sequence[TestView], specimen: str, step: float) -> Page
 
 def _at_round_strains(view: TestView, specimen: str, step: float) -> dict[int, TableCell]:
     """Return a cell for each multiple of the step that a branch reaches."""
+    if specimen not in view.specimens:
+        return {}
     bins, modulus = view.array("strain_bin"), view.array("tangent_modulus")
-    if bins is None or modulus is None or bins.size == 0 or specimen not in view.specimens:
+    if bins is None or modulus is None or bins.size == 0:
         return {}
     row = view.specimens.index(specimen)
     spread = expanded_of(view, "tangent_modulus", modulus)

@@ -126,7 +126,7 @@ class TestView:
         """True for weights hung one after another; there is no record then."""
         return "step" in self.data.sizes
 
-    @property
+    @cached_property
     def specimens(self) -> tuple[str, ...]:
         """Names of the specimens."""
         return self.texts("specimen")

@@ -13,6 +13,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import ceil, floor, isfinite, log10
 from typing import Any, Literal
 
@@ -262,7 +263,7 @@ class PageTable:
     remarks: tuple[str, ...] = ()
     is_compact: bool = False
 
-    @property
+    @cached_property
     def number_columns(self) -> tuple[bool, ...]:
         """Which columns hold numbers: they stand flush right, header and all."""
         return tuple(

@@ -439,9 +439,11 @@ def _envelope(
 ) -> Trace | None:
     pieces: list[tuple[Floats, Floats, Floats]] = []
     for view in tests:
+        if specimen not in view.specimens:
+            continue
         strain = view.array("strain_bin")
         low, high = view.array("tangent_modulus_minimum"), view.array("tangent_modulus_maximum")
-        if strain is None or low is None or high is None or specimen not in view.specimens:
+        if strain is None or low is None or high is None:
             continue
         row = view.specimens.index(specimen)
         for place in range(low.shape[1]):

@@ -295,9 +295,11 @@ def draw_amplitude_pairs(tests: Sequence[TestView]) -> list[Figure]:
 
 def _summary(view: TestView, specimen: str, name: str) -> Floats | None:
     """Return mean strain, strain amplitude, value, its expanded uncertainty and the factor."""
+    if specimen not in view.specimens:
+        return None
     mean, amplitude = view.array("test_mean_strain"), view.array("test_strain_amplitude")
     values = view.array(name)
-    if mean is None or amplitude is None or values is None or specimen not in view.specimens:
+    if mean is None or amplitude is None or values is None:
         return None
     row = view.specimens.index(specimen)
     spread = expanded_of(view, name, values)
