@@ -28,6 +28,7 @@ from reduction.archive.dataset_builder import (
     build_dataset,
     variable_of,
 )
+from reduction.archive.scratch_file import ScratchFile
 from reduction.quantities.names import (
     COMPARISON_SCHEMA,
     OUTCOME_SCHEMA,
@@ -39,7 +40,6 @@ from reduction.quantities.names import (
 )
 from reduction.quantities.row import GROUPS, Quantity
 from reduction.record.errors import ArchiveError, SettingsError
-from reduction.record.scratch_file import ScratchFile
 
 Chunks = int | Mapping[str, int | Literal["auto"] | tuple[int, ...]]
 """Values of a chunk, or by dimension, as `xarray.open_dataset` takes them."""

@@ -19,8 +19,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
 
 from reduction import __version__
+from reduction.archive.scratch_file import ScratchFile
 from reduction.quantities.units import UnitSystem
-from reduction.record.scratch_file import ScratchFile
 from reduction.report.campaign_summary import SummaryFinding, Tile
 from reduction.report.figure_data import Figure
 from reduction.report.test_section import Part, TestSection

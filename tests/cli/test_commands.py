@@ -208,7 +208,7 @@ def test_init_writes_a_starter_once_and_never_over_a_file(small, command):
     done = command("init", small / "raw")
     assert done.returncode == 0, done.stderr
     assert {"campaign.toml", "tests.csv"} <= {path.name for path in (small / "raw").iterdir()}
-    assert f"then: reduction check {small / 'raw' / 'campaign.toml'}" in done.stdout
+    assert f"reduction check {small / 'raw' / 'campaign.toml'}" in done.stdout
     again = command("init", small / "raw")
     assert again.returncode == 2 and "the folder already contains a campaign" in again.stderr
     check = command("check", small / "raw" / "campaign.toml")

@@ -50,7 +50,7 @@ def test_the_open_row_of_table_6_is_told_with_its_own_numbers():
 def test_other_tests_are_of_table_6_without_marks():
     found = pair("rubber-tether-new-T-2", "rubber-tether-used-T-2")
     assert all("Table 6" in one.source for one in (found.first, found.second))
-    assert "marks are printed of T-1 alone" in found.notes[1]
+    assert "tape readings are printed for T-1 only" in found.notes[1]
 
 
 def test_one_table_serves_two_tests_where_the_other_has_an_open_row():
