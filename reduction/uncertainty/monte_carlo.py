@@ -55,6 +55,7 @@ from reduction.stages.three_parameter_line.line_model import (
 from reduction.stages.three_parameter_line.line_of_loops import (
     covariance_of_means,
     relative_deviations,
+    relative_shared,
 )
 from reduction.stages.three_parameter_line.line_product import LineParameters
 
@@ -274,6 +275,8 @@ def _drawn(
     names = FUNDAMENTAL_INPUTS if reading == "fundamental" else AMPLITUDE_INPUTS
     means, deviations = relative_deviations(loops, names[:-1], break_in_cycles=break_in_cycles)
     of_means, freedom = covariance_of_means(deviations)
+    alike = relative_shared(loops, names[:-1], break_in_cycles=break_in_cycles)
+    of_means = of_means + np.eye(len(alike)) * alike.T[..., None] ** 2
     rest = line.quasi_static_spring_constant
     values = dict(zip(names, (*means, rest), strict=True))
     # K_0 is the pull's: nothing of it scatters from cycle to cycle

@@ -4,6 +4,7 @@ import pytest
 from reduction.record.errors import DataError
 from reduction.stages.cycles.cycle_product import Cycles, Loops
 from reduction.stages.cycles.loops import close_loops
+from reduction.stages.moduli.secant_modulus import summarise_amplitude
 from reduction.stages.three_parameter_line.line_model import (
     _storage_and_loss,
     apparent_spring_constant,
@@ -108,6 +109,32 @@ def test_the_random_part_of_a_run_is_the_scatter_of_runs(reading):
         values = np.array([getattr(line, name)[0] for line in runs])
         stated = np.sqrt(np.mean([line.random_uncertainty[name][0] ** 2 for line in runs]))
         assert stated == pytest.approx(values.std(ddof=1), rel=0.25), name
+
+
+@pytest.mark.parametrize("at_a_turn", [False, True], ids=["evenly", "at a turn"])
+@pytest.mark.parametrize("reading", ["amplitude", "fundamental"])
+def test_creep_may_take_place_anywhere_in_the_cycle(reading, at_a_turn):
+    time, tension, strain = series(20)
+    turn = time * FREQUENCY
+    loops = loops_of(time, tension, strain + 4e-4 * (np.floor(turn) if at_a_turn else turn))
+    line = identify_run(loops, **K0, reading=reading)
+    stored, lost = _storage_and_loss(frequency=FREQUENCY, **LINE)
+    for name, true in (
+        ("loss_spring_constant", lost),
+        ("dissipation_spring_constant", SPRING),
+        ("relaxation_time", TIME),
+    ):
+        error = getattr(line, name)[0] - true
+        # all of it at one turn is the root of six: the end of a triangular distribution
+        assert abs(error) < 2.6 * line.random_uncertainty[name][0], name
+    factor = summarise_amplitude(loops, area=[1e-4])
+    assert abs(factor.loss_factor[0] - lost / stored) < 2.6 * factor.uncertainty["loss_factor"][0]
+
+
+def test_noise_of_many_smooth_cycles_is_no_kink():
+    loops = loops_of(*series(800, noise=0.002, seed=1))
+    scatter = loops.hysteresis_energy.std() / np.sqrt(800)
+    assert loops.energy_turn_missed.max() < 2 * scatter
 
 
 def test_more_cycles_make_the_random_part_smaller_and_the_shared_part_not():

@@ -126,6 +126,44 @@ class Loops:
             uncertainty=self.uncertainty | own,
         )  # fmt: skip
 
+    def shared_by_cycles(self, break_in_cycles: int) -> dict[str, Floats]:
+        """Standard uncertainties that the cycles have alike, so that no mean over them is better.
+
+        A turn between two readings lies there in all cycles, or nearly, and so does the part of a
+        cycle in which it drifts.  Shape (n_specimens,) each, without the cycles of the break-in.
+        """
+
+        def mean(name: str) -> Floats:
+            values: Floats = getattr(self, name)[:, break_in_cycles:]
+            known = np.isfinite(values)
+            return np.asarray(np.where(known, values, 0.0).sum(axis=1) / known.sum(axis=1))
+
+        with np.errstate(divide="ignore", invalid="ignore"):
+            tension, strain, energy = (
+                np.nan_to_num(mean(f"{name}_turn_missed"))
+                for name in ("tension", "strain", "energy")
+            )
+            # tension may turn at another place between its samples than strain
+            apart = np.hypot(tension / mean("tension_amplitude"), strain / mean("strain_amplitude"))
+            # half of what a turn may hold was added to the area: the truth is at either end of it
+            area = np.hypot(
+                energy, (mean("closed_loop_energy") - mean("hysteresis_energy")) / _WITHIN_CYCLE
+            )
+            loss = area / (np.pi * mean("strain_amplitude") ** 2)
+            storage = mean("storage_spring_constant")
+            return {
+                # of a peak that is missed by more than a valley
+                "mean_tension": tension / _WITHIN_STEP,
+                "mean_strain": strain / _WITHIN_STEP,
+                "tension_amplitude": tension / _WITHIN_STEP,
+                "strain_amplitude": strain / _WITHIN_STEP,
+                "apparent_spring_constant": apart * mean("apparent_spring_constant") / _WITHIN_STEP,
+                "storage_spring_constant": np.abs(apart * storage) / _WITHIN_STEP,
+                "hysteresis_energy": area,
+                "loss_spring_constant": loss,
+                "loss_factor": np.hypot(loss / storage, apart * mean("loss_factor") / _WITHIN_STEP),
+            }
+
     def release_pages(self) -> None:
         """Take the tables of a long test, which lie on disk, off the memory of the process."""
         own = (getattr(self, item.name) for item in fields(self))
@@ -133,3 +171,8 @@ class Loops:
             *(one for one in own if isinstance(one, np.ndarray)), *self.uncertainty.values()
         )
         trim_heap(self.frequency)
+
+
+_WITHIN_STEP = np.sqrt(8)  # width over deviation, of what is likeliest at either end
+
+_WITHIN_CYCLE = np.sqrt(6)  # half width of a triangular distribution over its deviation

@@ -130,13 +130,13 @@ def _sums_over_cycles(values: Floats, first: Integers, last: Integers) -> Floats
     return np.asarray(np.add.reduceat(values[:stop], pairs[:-1])[::2])
 
 
-def _smooth_steps(strain: Floats, first: Integers, last: Integers) -> Floats:
-    """Eighth-order change of strain per sample at each sample, shape (n_samples,).
+def _smooth_steps(strain: Floats, first: Integers, last: Integers, stride: int = 1) -> Floats:
+    """Eighth-order change of strain per stride of samples at each sample, shape (n_samples,).
 
-    Where the record ends within four samples of a cycle, that cycle is continued
+    Where the record ends within four strides of a cycle, that cycle is continued
     periodically, its drift added, so that a log of one cycle is as good as any.
     """
-    reach = len(_EIGHTH_ORDER)
+    reach = stride * len(_EIGHTH_ORDER)
     ahead, behind = strain[:0], strain[:0]
     if first[0] < reach:
         start, stop = first[0], last[0]
@@ -152,9 +152,9 @@ def _smooth_steps(strain: Floats, first: Integers, last: Integers) -> Floats:
     high = strain.size - (reach - ahead.size)
     inner = change[low:high]
     for offset, weight in enumerate(_EIGHTH_ORDER, start=1):
-        at = reach + offset
+        at = reach + stride * offset
         inner += weight * padded[at : at + inner.size]
-        at = reach - offset
+        at = reach - stride * offset
         inner -= weight * padded[at : at + inner.size]
     return change
 
@@ -1014,6 +1014,11 @@ def _quantities_of_cycles(
                 u_energy / energy, np.sqrt(2) * strain_noise / strain_amplitude
             )
         factor = loss / storage
+        # where in its cycle the drift takes place is not known
+        placed = np.abs(row["energy"] - energy) / _PLACE_OF_DRIFT
+        per_energy = 1 / (np.pi * strain_amplitude**2)
+        u_loss = np.hypot(u_loss, placed * per_energy)
+        u_over_time_lost = np.hypot(u_over_time, placed * per_energy)
         values = {
             "mean_tension": mean,
             "tension_amplitude": amplitude,
@@ -1043,7 +1048,7 @@ def _quantities_of_cycles(
             "peak_tension": u_extreme,
             "valley_tension": u_extreme,
             "apparent_spring_constant": u_apparent,
-            "hysteresis_energy": np.hypot(u_energy, (row["energy"] - energy) / _PLACE_OF_DRIFT),
+            "hysteresis_energy": np.hypot(u_energy, placed),
             "storage_spring_constant": u_storage,
             "loss_spring_constant": u_loss,
             "loss_factor": np.abs(factor) * np.hypot(u_loss / loss, u_storage / storage),
@@ -1051,7 +1056,7 @@ def _quantities_of_cycles(
             * np.hypot(u_over_time / np.abs(lost_over_time), u_energy / np.abs(energy)),
             "closed_loop_energy": u_energy,
             "storage_over_time": u_over_time,
-            "loss_over_time": u_over_time,
+            "loss_over_time": u_over_time_lost,
             "foot_strain": np.sqrt(2) * u_strain,
         }
     return values, uncertainty
@@ -1301,7 +1306,7 @@ def _energy_by_chance(tension: Floats, strain: Floats, first: Integers, last: In
     """
     first, last = first[:_MOST_FOLDED], last[:_MOST_FOLDED]
     part = slice(int(first[0]), int(last[-1]) + 1)
-    step = _smooth_steps(strain, first, last)[part]
+    own = first, last
     force, first, last = tension[part], first - part.start, last - part.start
     closing = (force[last] + force[first]) / 2
     place = np.arange(force.size)
@@ -1309,10 +1314,12 @@ def _energy_by_chance(tension: Floats, strain: Floats, first: Integers, last: In
     found = 0.0
     for stride in range(2, 1 + min(4, int(np.median(last - first)) // 6)):
         energies = []
+        # from the same readings, so that noise of strain meets changes of tension, not tension
+        steps = _smooth_steps(strain, *own, stride)[part]
         for rest in range(stride):
-            own = np.where(place % stride == rest, step, 0.0)
-            work, travel = (_sums_over_cycles(one, first, last) for one in (own * force, own))
-            energies.append(stride * np.nanmean(work - closing * travel))
+            step = np.where(place % stride == rest, steps, 0.0)
+            work, travel = (_sums_over_cycles(one, first, last) for one in (step * force, step))
+            energies.append(np.nanmean(work - closing * travel))
         found = max(found, float(np.std(energies)) / stride**2)
     return found
 

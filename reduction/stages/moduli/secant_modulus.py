@@ -223,10 +223,6 @@ _QUANTITIES = (
     "loss_spring_constant", "loss_factor", "closed_loop_energy",
 )  # fmt: skip
 
-_WITHIN_STEP = np.sqrt(8)  # width over deviation, of what is likeliest at either end
-
-_WITHIN_CYCLE = np.sqrt(6)  # half width of a triangular distribution over its deviation
-
 
 def _mean_over_cycles(values: Floats, uncertainty: Floats | None) -> tuple[Floats, Floats]:
     """Mean over the last axis without NaN, and its standard uncertainty of type A."""
@@ -421,40 +417,8 @@ def summarise_amplitude(
             None if own is None else own[:, break_in_cycles:],
         )
     means["frequency"], uncertainty["frequency"] = _mean_frequency(loops, break_in_cycles)
-    # a wave that turns between samples does so in all cycles alike, or nearly
-    of_force, of_strain, of_energy = (
-        np.nan_to_num(np.nanmean(np.where(np.isfinite(one), one, 0.0), axis=1))
-        for one in (
-            loops.tension_turn_missed[:, break_in_cycles:],
-            loops.strain_turn_missed[:, break_in_cycles:],
-            loops.energy_turn_missed[:, break_in_cycles:],
-        )
-    )
-    with np.errstate(divide="ignore", invalid="ignore"):
-        # tension may turn at another place between its samples than strain
-        apart = np.hypot(
-            of_force / means["tension_amplitude"], of_strain / means["strain_amplitude"]
-        )
-    for name, missed in (
-        ("mean_tension", of_force),  # of a peak that is missed by more than a valley
-        ("mean_strain", of_strain),
-        ("tension_amplitude", of_force),
-        ("strain_amplitude", of_strain),
-        ("apparent_spring_constant", apart * means["apparent_spring_constant"]),
-        ("storage_spring_constant", apart * means["storage_spring_constant"]),
-        # half of its range is what was added: at a corner the truth is at either end of it
-        ("hysteresis_energy", _WITHIN_STEP * of_energy),
-        (
-            "loss_spring_constant",
-            _WITHIN_STEP * of_energy / (np.pi * means["strain_amplitude"] ** 2),
-        ),
-    ):
-        uncertainty[name] = np.hypot(uncertainty[name], np.abs(missed) / _WITHIN_STEP)
-    # where in its cycle a drift takes place is not known, and is the same in all of them
-    drift = means["closed_loop_energy"] - means["hysteresis_energy"]
-    uncertainty["hysteresis_energy"] = np.hypot(
-        uncertainty["hysteresis_energy"], np.abs(drift) / _WITHIN_CYCLE
-    )
+    for name, shared in loops.shared_by_cycles(break_in_cycles).items():
+        uncertainty[name] = np.hypot(uncertainty[name], shared)
     # of a loss angle that noise turns negative there is no ellipse to read slopes from
     tangent = np.where(means["loss_factor"] >= 0, means["loss_factor"], np.nan)
     means["slope_reading_spread"] = slope_readings(

@@ -87,6 +87,26 @@ def relative_deviations(
     return means, deviations
 
 
+def relative_shared(loops: Loops, names: Sequence[str], *, break_in_cycles: int) -> Floats:
+    """Relative standard uncertainty that the cycles of a run share, shape (n_inputs, n_specimens).
+
+    Examples
+    --------
+    A loop that drifts by a tenth of its energy, evenly or at a turn (triangular distribution).
+
+    >>> one = {name: np.full((1, 3), 1.0) for name in Loops.__dataclass_fields__}
+    >>> turns = dict.fromkeys(
+    ...     ("tension_turn_missed", "strain_turn_missed", "energy_turn_missed"), np.zeros((1, 3)))
+    >>> loops = Loops(**one | turns | {"closed_loop_energy": np.full((1, 3), 1.1),
+    ...     "uncertainty": {}})
+    >>> print(relative_shared(loops, ["hysteresis_energy"], break_in_cycles=0).round(4))
+    [[0.0408]]
+    """
+    shared = loops.shared_by_cycles(break_in_cycles)
+    means, _ = relative_deviations(loops, names, break_in_cycles=break_in_cycles)
+    return np.abs(np.stack([shared.get(name, 0.0 * means[0]) for name in names]) / means)
+
+
 def covariance_of_means(deviations: Floats) -> tuple[Floats, Floats]:
     """Relative covariance of the means over the cycles, neighbouring cycles being alike.
 
@@ -327,8 +347,8 @@ def identify_run(
     cycle whose noise hides K_1 is not left out of one side of the distribution.  The
     random part is from the scatter of the cycles, carried by the sensitivities at the mean
     and so with all correlations between K_ap, H and amplitude, and widened by the likeness
-    of neighbouring cycles (type A); it needs three cycles.  The part of K_0 is as large as
-    for one cycle.
+    of neighbouring cycles (type A); it needs three cycles.  What the loops have alike
+    (`Loops.shared_by_cycles`) is beside it; the part of K_0 is as large as for one cycle.
 
     Examples
     --------
@@ -375,9 +395,11 @@ def identify_run(
     carried = table(line.storage_spring_constant, line.loss_spring_constant, above)
     # (outputs, inputs, specimens) with (inputs, specimens, cycles)
     moved = (carried[:, :-1, :, None] * deviations).sum(axis=1)
+    alike = relative_shared(loops, names[:-1], break_in_cycles=break_in_cycles)
     random, both = {}, {}
     for row, name in enumerate(OUTPUTS):
-        random[name] = np.abs(getattr(line, name)) * _scatter(moved[row])
+        of_loops = np.sqrt(((carried[row, :-1] * alike) ** 2).sum(axis=0))
+        random[name] = np.abs(getattr(line, name)) * np.hypot(_scatter(moved[row]), of_loops)
         both[name] = np.hypot(random[name], line.shared_uncertainty[name])
     line = replace(line, random_uncertainty=random, uncertainty=both)
     return replace(line, notes=_remarks(loops, line))
