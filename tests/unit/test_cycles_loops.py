@@ -527,6 +527,40 @@ def test_a_channel_that_is_held_at_its_turns_is_not_at_its_greatest_reading(
     assert found.storage_spring_constant[0] == pytest.approx(900, rel=3e-3)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_tension_that_relaxes_in_the_noise_of_a_dwell_is_not_at_its_mean_there(seed):
+    time, _, strain, cycles = trapezoids(160, 30, rounded=4, noise=0.0, seed=0)
+    # a spring of 900 N and a Maxwell element of 400 N and 0.6 s, exact for even steps
+    step, keep = np.diff(strain), np.exp(-np.diff(time) / 0.6)
+    held = np.zeros_like(strain)
+    for at in range(1, strain.size):
+        held[at] = (held[at - 1] + 400 * step[at - 1]) * keep[at - 1]
+    tension = 900 * strain + held
+    true = np.ptp(tension[4800 // 2 :]) / 2
+    rng = np.random.default_rng(seed)
+    loops = close_loops(
+        time,
+        (tension + rng.normal(0, 0.1 * true, tension.size))[None],
+        (strain + rng.normal(0, 2e-3, strain.size))[None],
+        cycles,
+        waveform="other",
+    )
+    # the mean over a dwell is 11 % less than where it begins
+    assert summarise_amplitude(loops, area=[1e-3]).tension_amplitude[0] == pytest.approx(
+        true, rel=0.02
+    )
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_window_that_noise_fills_does_not_stop_a_reduction(seed):
+    # ramps of 3 N over 60 readings in 2 N of noise
+    ramps = np.append(np.tile(np.r_[0:60, 60:0:-1], 30), 0) * 0.05
+    noisy = ramps + np.random.default_rng(seed).normal(0, 2, ramps.size)
+    peak = np.arange(60, ramps.size, 120)
+    excess = noise_in_extreme(noisy, peak, reach=15, sign=1, noise=2.0)
+    assert 2.0 < excess < 5.0  # of 31 normal readings of one level the greatest is 4.1 N above
+
+
 @pytest.mark.parametrize("noise", [0.2, 2.0])
 @pytest.mark.parametrize("top", [0.1, 1.3, 2.6, 3.9])
 def test_a_load_in_coarse_steps_is_not_taken_for_one_with_noise(noise, top):

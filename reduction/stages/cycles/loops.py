@@ -1340,6 +1340,10 @@ _FEWEST_ON_PLATEAU = 5
 
 _BENT = 0.45  # noise, by which the middle of a dome or the beginning of a decay is above the whole
 
+_PARTS = 5  # of a plateau: tension that relaxes at once is above its mean in the first or second
+
+_LEVEL, _CLEARLY = 0.25, 5.0  # noise and standard errors of the mean, within which it is level
+
 
 def _plateau(values: Floats, low: Integers, high: Integers, top: Floats) -> Floats | None:
     """Mean of the readings of a plateau, of which noise makes the greatest one too great.
@@ -1361,12 +1365,17 @@ def _plateau(values: Floats, low: Integers, high: Integers, top: Floats) -> Floa
         if on.size < _FEWEST_ON_PLATEAU:
             continue
         quarter, half = on.size // 4, on.size // 2
+        parts = np.add.reduceat(on, np.arange(_PARTS) * on.size // _PARTS)
+        parts /= np.diff(np.arange(_PARTS + 1) * on.size // _PARTS)
         middle = np.median(on)
-        bent.append(
-            (np.median(on[quarter : on.size - quarter]) - middle, np.median(on[:half]) - middle)
-        )
+        halves = np.median(on[quarter : on.size - quarter]), np.median(on[:half])
+        bent.append(np.append(parts, halves) - middle)
         level[row] = np.mean(on[quarter : on.size - quarter])
-    if 2 * len(bent) < top.size or np.mean(bent, axis=0).max() > _BENT * noise:
+    if 2 * len(bent) < top.size:
+        return None
+    mean, spread = np.mean(bent, axis=0), np.std(bent, axis=0) / np.sqrt(len(bent))
+    clearly = mean > np.maximum(_CLEARLY * spread, _LEVEL * noise)
+    if mean[_PARTS:].max() > _BENT * noise or clearly.any():
         return None
     # of a cycle that begins or ends in its plateau little of it is left
     return np.where(np.isfinite(level), level, top - np.nanmedian(top - level))
