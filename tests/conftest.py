@@ -11,6 +11,10 @@ from visits import browser, visit
 
 from reduction.stages.cycles.cycle_product import Cycles
 
+# modules, items and reports stay to the end: they are looked through for circles as seldom as the
+# command does it
+gc.set_threshold(100_000, 20, 50)
+
 # an example takes as long as the machine lets it: others may work beside
 hypothesis.settings.register_profile("some", deadline=None, max_examples=20)
 hypothesis.settings.register_profile("nightly", deadline=None, max_examples=100)
@@ -79,13 +83,9 @@ SLOW_FIXTURES = {"synthetic", "static", "nylon_campaign", "hose_campaign", "camp
 
 
 def pytest_collection_finish(session):
-    """What was collected stays to the end: it is not looked through for circles again and again.
-
-    In between as seldom as the command does it.
-    """
+    """What was collected stays to the end: it is not looked through for circles again."""
     gc.collect()
     gc.freeze()
-    gc.set_threshold(100_000, 20, 50)
 
 
 def is_nightly(config):

@@ -281,6 +281,7 @@ def test_a_log_too_coarse_for_its_cycles_is_refused_by_check_as_by_run(
         )
 
 
+@pytest.mark.nightly
 def test_a_log_with_few_samples_in_its_cycles_is_flagged_by_check(command, tmp_path):
     checked, done = run_thinned(command, "nylon-synthetic", tmp_path, 20)
     assert (checked.returncode, done.returncode) == (0, 0)

@@ -21,7 +21,7 @@ from reduction.batch.run_lock import _run_named
 from reduction.batch.workers import local_workers
 from reduction.campaign.load import load_campaign
 
-N_TESTS = 8
+N_TESTS = 6
 SOUND = {"T01", "T02.a", "T02.b", *(f"T{number:02}" for number in range(4, N_TESTS + 1))}
 
 

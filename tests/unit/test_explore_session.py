@@ -66,6 +66,7 @@ def test_an_archive_stands_while_nothing_is_changed(session):
     assert made.error == "" and made.is_standing and made.also == ()
 
 
+@pytest.mark.nightly  # tests/browser/test_explorer.py saves and runs one setting by each click
 def test_numbers_that_are_shown_are_those_of_a_run_after_the_save(place, monkeypatch):
     # what is made of archives takes long
     nothing = {"write_tables": [], "CampaignPage.write": (None, _NO_ANSWERS)}

@@ -103,7 +103,7 @@ def test_the_random_part_by_amplitudes_covers_the_scatter_of_the_cycles():
 def test_the_random_part_of_a_run_is_the_scatter_of_runs(reading):
     runs = [
         identify_run(loops_of(*series(20, noise=0.002, seed=seed)), **K0, reading=reading)
-        for seed in range(200)
+        for seed in range(60)
     ]
     for name in NAMES:
         values = np.array([getattr(line, name)[0] for line in runs])
