@@ -14,6 +14,8 @@ import plotly.graph_objects as go
 import pytest
 
 from reduction.archive.open import open_archive
+from reduction.archive.test_dataset import to_dataset
+from reduction.archive.write import write_archive
 from reduction.record.errors import ArchiveError
 from reduction.record.notes import Note, note
 from reduction.report.campaign_page import write_report
@@ -98,6 +100,14 @@ def report(tmp_path, write):
     return make
 
 
+@pytest.fixture(scope="module")
+def rich_page(tmp_path_factory, rich_test):
+    """The page of one test with everything."""
+    folder = tmp_path_factory.mktemp("rich")
+    write_archive(to_dataset(rich_test, version="1.2.3", command="run"), folder / "T-1.nc")
+    return Page(write_report(folder, folder / "reports").read_text(encoding="utf-8"))
+
+
 def plain(text):
     return Note("fixture", "note", text=text)
 
@@ -108,8 +118,8 @@ def renamed(test, test_id, **attributes):
     return replace(test, description=description)
 
 
-def test_nothing_is_fetched(report, rich_test):
-    page = report(rich_test)
+def test_nothing_is_fetched(rich_page):
+    page = rich_page
     for tag, attributes in page.elements:
         for name in ("src", "href", "data", "srcset", "poster", "action"):
             assert not re.match(r"(https?:)?//", attributes.get(name) or ""), (tag, attributes)
@@ -191,7 +201,7 @@ def test_names_with_markup_quotes_lines_and_500_characters_are_text(report, rich
     assert long in everything
 
 
-def test_a_specimen_name_with_markup_is_text_in_the_figures(report, rich_test, monkeypatch):
+def test_a_specimen_name_with_markup_is_text_in_the_figures(rich_page, monkeypatch):
     names = {"new": "<b>new</b>" + "y" * 500, "used": "<i>used</i>"}
     texts = TestView.texts
     monkeypatch.setattr(
@@ -199,7 +209,7 @@ def test_a_specimen_name_with_markup_is_text_in_the_figures(report, rich_test, m
         "texts",
         lambda self, name: tuple(names.get(text, text) for text in texts(self, name)),
     )
-    page = report(rich_test)
+    page = rich_page
     for figure in page.figures().values():
         drawn = [trace["name"] for trace in figure["data"]] + [figure["layout"]["title"]["text"]]
         drawn += [note["text"] for note in figure["layout"].get("annotations", ())]
@@ -208,8 +218,8 @@ def test_a_specimen_name_with_markup_is_text_in_the_figures(report, rich_test, m
     assert not any(tag == "i" for tag, _ in page.elements)
 
 
-def test_synthetic_data_are_called_so_once_and_in_every_figure(report, rich_test):
-    page = report(rich_test)
+def test_synthetic_data_are_called_so_once_and_in_every_figure(rich_page):
+    page = rich_page
     assert sum("SYNTHETIC DATA" in text for text in page.text) == 1
     for figure in page.figures().values():
         assert figure["layout"]["title"]["subtitle"]["text"] == "SYNTHETIC DATA"
@@ -276,8 +286,8 @@ def test_a_campaign_without_a_summary_is_described_by_what_it_holds(
     assert sentence in "".join(page.text)
 
 
-def test_a_campaign_of_one_test_is_not_described_by_the_summary_of_its_archive(report, rich_test):
-    assert "1 test (1 cyclic) of 2 specimens: new, used." in "".join(report(rich_test).text)
+def test_a_campaign_of_one_test_is_not_described_by_the_summary_of_its_archive(rich_page):
+    assert "1 test (1 cyclic) of 2 specimens: new, used." in "".join(rich_page.text)
 
 
 def test_the_summary_of_a_campaign_is_shown_as_it_stands(report, rich_test):
@@ -364,8 +374,8 @@ def test_a_test_with_little_in_it_has_a_section(report, request, name):
     assert test.description.test_id in "".join(page.text)
 
 
-def test_headings_go_down_one_level_at_a_time_and_tables_say_what_heads_what(report, rich_test):
-    page = report(rich_test)
+def test_headings_go_down_one_level_at_a_time_and_tables_say_what_heads_what(rich_page):
+    page = rich_page
     levels = [int(tag[1]) for tag, _ in page.elements if re.fullmatch(r"h[1-6]", tag)]
     assert levels[0] == 1
     assert levels.count(1) == 1
@@ -385,16 +395,16 @@ def test_the_page_of_design_values_is_linked_where_one_is_written(report, rich_t
     assert beside == ["../design-values.html"]
 
 
-def test_a_plot_says_what_it_shows_and_has_a_caption(report, rich_test):
-    page = report(rich_test)
+def test_a_plot_says_what_it_shows_and_has_a_caption(rich_page):
+    page = rich_page
     plots = [a for _, a in page.elements if a.get("class") == "plot"]
     assert all(a["role"] == "group" and a["aria-label"] for a in plots)
     assert len(plots) == sum(tag == "figcaption" for tag, _ in page.elements) > 0
 
 
-def test_the_page_says_what_a_constant_fraction_would_read(report, rich_test):
+def test_the_page_says_what_a_constant_fraction_would_read(rich_page):
     # 1 / 0.86 is 1.163
-    assert "reads these moduli 16.3 % high" in "".join(report(rich_test).text)
+    assert "reads these moduli 16.3 % high" in "".join(rich_page.text)
 
 
 def test_holds_are_numbered_by_time_alike_for_all_specimens(report, rich_test):
@@ -424,8 +434,8 @@ def test_holds_are_numbered_by_time_alike_for_all_specimens(report, rich_test):
     assert "hold 1 new: ramp of 4 s left out" in text
 
 
-def test_how_the_terms_were_chosen_stands_once_a_hold_below_the_prony_table(report, rich_test):
-    page = report(rich_test)
+def test_how_the_terms_were_chosen_stands_once_a_hold_below_the_prony_table(rich_page, rich_test):
+    page = rich_page
     assert not any("chosen" in cell[1] for cell in page.rows("Prony series")[0])
     said = re.findall(r"Number of terms, hold \d+, \w+: [^<\n]+", "".join(page.text))
     assert len(said) == len(set(said)) == len(rich_test.holds)
@@ -445,8 +455,8 @@ def test_wherever_a_plus_minus_stands_its_meaning_stands_too(
         assert PLUS_MINUS in text, text[:300]
 
 
-def test_the_first_answer_is_the_modulus_to_design_with_and_the_rest_is_folded(report, rich_test):
-    page = report(rich_test)
+def test_the_first_answer_is_the_modulus_to_design_with_and_the_rest_is_folded(rich_page):
+    page = rich_page
     headings = [a.get("id") for tag, a in page.elements if tag == "h2"]
     assert headings[0] == "answer"
     captions = list(page.tables)
@@ -464,8 +474,8 @@ def test_without_round_strains_the_segments_alone_are_folded(report, rich_test):
     assert len(folded) == 1
 
 
-def test_what_to_check_stands_before_the_answers_and_leads_to_the_whole_list(report, rich_test):
-    page = report(rich_test)
+def test_what_to_check_stands_before_the_answers_and_leads_to_the_whole_list(rich_page):
+    page = rich_page
     lists = [a for tag, a in page.elements if tag == "ul" and a.get("class") == "urgent"]
     assert len(lists) == 1
     text = "".join(page.text)
@@ -474,8 +484,8 @@ def test_what_to_check_stands_before_the_answers_and_leads_to_the_whole_list(rep
     assert text.index("the last cycle is broken", first + 1) > text.index("Problems found", first)
 
 
-def test_the_notes_of_a_test_stand_under_headings_most_serious_first(report, rich_test):
-    text = "".join(report(rich_test).text)
+def test_the_notes_of_a_test_stand_under_headings_most_serious_first(rich_page):
+    text = "".join(rich_page.text)
     text = text[text.index("All notes on this test") :]
     places = [text.index(words) for words in ("Check before use", "Numbers withheld")]
     assert places == sorted(places)
