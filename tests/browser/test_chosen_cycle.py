@@ -41,6 +41,7 @@ def archive(small, *names):
         return [data[name].to_numpy() for name in names]
 
 
+@pytest.mark.nightly
 def test_no_cycle_is_chosen_at_first_and_the_page_says_so(shown):
     assert shown.state.inner_text() == "No cycle selected (1 to 12)"
     assert shown.section.get_by_role("button", name="Clear").is_disabled()

@@ -42,7 +42,8 @@ def hostile(request, small, tmp_path_factory):
     return name, folder / "reports" / "many" / "index.html"
 
 
-@pytest.mark.parametrize("width", [390, pytest.param(1280, marks=pytest.mark.nightly)])
+@pytest.mark.nightly
+@pytest.mark.parametrize("width", [390, 1280])
 def test_a_name_is_text_and_breaks_no_layout(hostile, visit, width):
     name, page = hostile
     shown = visit(page, width=width)

@@ -15,6 +15,7 @@ def shown(small, visit):
     return visit(small.page)
 
 
+@pytest.mark.nightly
 def test_every_control_is_reached_by_the_key_and_seen_when_it_is(shown):
     shown.open_section("T02.a")
     wanted = shown.page.evaluate(
