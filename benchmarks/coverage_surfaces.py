@@ -73,12 +73,43 @@ def relaxing(rng: np.random.Generator) -> Law:
     return at
 
 
+def powers(rng: np.random.Generator) -> Law:
+    """Draw powers of all three levels, in stiffness and loss angle."""
+    of_stiffness = rng.uniform([0.02, 0.1, -0.4], [0.12, 0.8, -0.05])
+    of_angle, tangent = (rng.uniform(-0.5, 0.2), -0.6, 0.5), rng.uniform(0.05, 0.25)
+
+    def at(levels: Floats) -> tuple[Floats, Floats, Floats]:
+        scaled = levels / [0.25, 0.2, 0.08]
+        spring = 1.9 * np.prod(scaled**of_stiffness, axis=1)
+        lost = np.sin(np.arctan(tangent * np.prod(scaled**of_angle, axis=1)))
+        static = 0.96 * (1 + 2.2 * (levels[:, 1] - 0.21))
+        return spring, np.pi * levels[:, 2] ** 2 / spring * lost, static
+
+    return at
+
+
+def slipping(rng: np.random.Generator) -> Law:
+    """Draw an amplitude above which strands slip: softer and with more loss from there on."""
+    onset, softer = rng.uniform(0.06, 0.11), rng.uniform(2, 8)
+
+    def at(levels: Floats) -> tuple[Floats, Floats, Floats]:
+        frequency, mean, swing = levels.T
+        static, beyond = 1.2 * (1 + 2.2 * (mean - 0.21)), np.maximum(swing - onset, 0)
+        spring = static * (1.9 + 0.1 * np.log(frequency / 0.2) - softer * beyond)
+        lost = np.sin(np.arctan(0.1 + 0.8 * beyond))
+        return spring, np.pi * swing**2 / spring * lost, static
+
+    return at
+
+
 LAWS: dict[str, Callable[[np.random.Generator], Law]] = {
     "line, tau falling": lambda rng: line(rng, "falling"),
     "line, tau constant": lambda rng: line(rng, "constant"),
     "constant loss angle": lambda rng: line(rng, "angle"),
     "spring-pot": lambda rng: line(rng, "fractional"),
     "three relaxation times": relaxing,
+    "powers": powers,
+    "slip from an amplitude on": slipping,
 }
 
 
