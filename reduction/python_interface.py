@@ -50,7 +50,7 @@ from reduction.record.errors import SettingsError
 _INTERVALS = {
     "": "95 % interval of one more run",
     "surface_": "95 % interval of the surface, or of the curve of one test",
-    "line_": "95 % interval of another line of the kind",
+    "line_": "95 % interval of another specimen of the kind",
 }
 
 _SHARES = {

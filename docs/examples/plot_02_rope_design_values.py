@@ -18,7 +18,7 @@ line = "nylon-8-strand-plaited-0.5in-new"
 levels = {"frequency": "0.3 Hz", "mean_tension": "21 %RBS", "tension_amplitude": "8.5 %RBS"}
 
 # %%
-# One value, by its symbol: with the 95 % interval of one more run at these levels, and of another line of the kind
+# One value, by its symbol: with the 95 % interval of one more run at these levels, and of another specimen of the kind
 # where that is known.
 
 found = reduction.look_up(line, "K_ap", **levels)

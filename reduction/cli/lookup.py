@@ -537,8 +537,8 @@ def _population_table(
     values, share = found.values, f"{100 * found.share:g} %"
     heads, levels = _shown_levels(points, kind.rated_break_strength, values.value.size, system)
     table = table_of(
-        *heads, f"mean\n[{unit}]", "standard\ndeviation", "95 % of the mean\nof the kind",
-        "95 % of\nanother specimen", f"{share} are\nabove", f"{share} are\nbelow",
+        *heads, f"mean\n[{unit}]", "standard\ndeviation", "95 % interval,\nmean of the kind",
+        "95 % interval,\nanother specimen", f"{share} are\nabove", f"{share} are\nbelow",
         f"{share} are\nbetween", texts=0,
     )  # fmt: skip
     for place, numbers in enumerate(levels):
@@ -576,8 +576,9 @@ def look_up_ranked(source: str, wanted: LookupRequest, *, output: CommandOutput)
     size, per_metre = ("in", 1 / 0.0254) if output.units == "us" else ("mm", 1e3)
     place = {one.line.name: number for number, one in enumerate(found.ranked, start=1)}
     table = table_of(
-        "rank", "line", f"diameter\n[{size}]", f"value\n[{unit}]", "95 % of\nthese lines",
-        "95 % of\nanother line", "ties with\n(these lines)", "ties with\n(another line)", "remark",
+        "rank", "line", f"diameter\n[{size}]", f"value\n[{unit}]",
+        "95 % interval,\nthese specimens", "95 % interval,\nanother specimen",
+        "ties with\n(these specimens)", "ties with\n(another specimen)", "remark",
         texts=2,
     )  # fmt: skip
     _fold_last(table)
@@ -718,9 +719,9 @@ def _table(
     intervals = [
         (head, low.ravel(), high.ravel())
         for head, low, high in (
-            (f"95 % of\n{run}", found.low, found.high),
-            (f"95 % of\n{of}", found.surface_low, found.surface_high),
-            ("95 % of\nanother line", found.line_low, found.line_high),
+            (f"95 % interval,\n{run}", found.low, found.high),
+            (f"95 % interval,\n{of}", found.surface_low, found.surface_high),
+            ("95 % interval,\nanother specimen", found.line_low, found.line_high),
         )
         if np.isfinite(low).any()
     ]
@@ -940,9 +941,9 @@ def _document(
         "surface_interval": [of(found.surface_low), of(found.surface_high)],
         "surface_interval_of": found.surface_interval_of or None,
         "kind_interval": [of(found.kind_low), of(found.kind_high)],
-        "kind_interval_of": "the mean of all lines of the kind",
+        "kind_interval_of": "the mean of all specimens of the kind",
         "line_interval": [of(found.line_low), of(found.line_high)],
-        "line_interval_of": "another line of the kind",
+        "line_interval_of": "another specimen of the kind",
         "inside": of(found.is_inside),
         "untested": of(found.is_untested),
         "peak_tension": of(found.peak_tension),
@@ -1077,12 +1078,12 @@ def _show_difference(
         output.show(_difference_table(first, found, points, unit, factor, output.system))
     output.say("differ: the 95 % interval of the difference excludes zero")
     output.say(
-        "the 95 % interval of the difference is for these lines: the surfaces or curves that were"
-        " tested"
+        "the 95 % interval of the difference is for these specimens: the surfaces or curves that"
+        " were tested"
     )
     output.say(
-        "these lines: the two surfaces of the tested lines; the kinds, another line of each:"
-        " including the scatter between lines, where a source states it"
+        "these specimens: the two surfaces of those tested; the kinds, another specimen of each:"
+        " including the scatter between specimens, where a source states it"
     )
     for note in found.notes:
         output.say(note)
@@ -1100,8 +1101,8 @@ def _difference_table(
     heads, levels = _shown_levels(points, first.rated_break_strength, found.difference.size, system)
     table = table_of(
         *heads, f"first\n[{unit}]", f"second\n[{unit}]", f"difference\n[{unit}]", "ratio",
-        "95 % of the\ndifference of\nthese lines", "these\nlines", "the kinds",
-        "another line\nof each", "remark", texts=0,
+        "95 % interval of\nthe difference,\nthese specimens", "these\nspecimens", "the kinds",
+        "another specimen\nof each", "remark", texts=0,
     )  # fmt: skip
     _fold_last(table)
     numbers = ("difference", "ratio", "surface_low", "surface_high")

@@ -303,9 +303,10 @@ def _scatter_note(of: LineSurface | LineCurve | LineLevels, words: tuple[str, st
     """What the intervals hold, and what they do not."""
     if isinstance(of, LineSurface) and np.isfinite(of.line_scatter):
         return (
-            f"lines of this kind differ by about {100 * of.line_scatter:.0f} % "
-            f"(CG-D-39-80, sec. 4.4.1), taken with {of.n_lines:.0f} lines and the degrees of "
-            "freedom of the surface: included only in the intervals of the kind and of another line"
+            f"specimens of this kind differ by about {100 * of.line_scatter:.0f} % "
+            f"(CG-D-39-80, sec. 4.4.1), taken with {of.n_lines:.0f} specimens and the degrees of "
+            "freedom of the surface: included only in the intervals of the kind and of another "
+            "specimen"
         )
     return interval_note(*words)
 
@@ -492,9 +493,9 @@ def _joints(curve: LineCurve, at: Floats) -> list[str]:
     ]
 
 
-_RUN = "one more run of the same lines"
+_RUN = "one more run of the same specimens"
 
-_SURFACE = "the surface of these lines"
+_SURFACE = "the surface of these specimens"
 
 
 def _values_of_surface(

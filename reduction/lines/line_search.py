@@ -271,7 +271,7 @@ class LineDifference:
     surface_low, surface_high : ndarray
         95 % interval of the difference of the two surfaces; NaN where one has none. [unit]
     low, high : ndarray
-        The same of one more run of the same lines. [unit]
+        The same of one more run of the same specimens. [unit]
     kind_low, kind_high : ndarray
         The same of the means of all lines of the two kinds, with the scatter between lines. [unit]
     line_low, line_high : ndarray

@@ -358,16 +358,16 @@ class DesignValues:
     value : ndarray
         The median where the surface is of a transform. [unit]
     low, high : ndarray
-        95 % interval of one more run of the same lines there; NaN where nothing is known of the
+        95 % interval of one more run of the same specimens there; NaN where nothing is known of the
         scatter, as of a curve of one test. [unit]
     surface_low, surface_high : ndarray
         95 % interval of the surface itself, or of the curve of one test: `surface_interval_of`.
         [unit]
     kind_low, kind_high : ndarray
-        95 % interval of the mean of all lines of the kind; NaN where the scatter between lines is
-        not known. [unit]
+        95 % interval of the mean of all specimens of the kind; NaN where the scatter between
+        specimens is not known. [unit]
     line_low, line_high : ndarray
-        The same of another line of the kind. [unit]
+        The same of another specimen of the kind. [unit]
     is_inside : ndarray of bool
         Between the levels, or the ends of the range, that were tested.
     is_untested : ndarray of bool

@@ -356,12 +356,12 @@ def _surface(line: PublishedLine, found: PublishedSurface) -> LineSurface:
     if found.response == "apparent_spring_constant":
         scatter = line_scatter(line)
     if np.isfinite(n_lines):
-        notes.append(f"the surface was fitted to {n_lines:.0f} lines")
+        notes.append(f"the surface was fitted to {n_lines:.0f} specimens")
     elif np.isfinite(scatter):
         n_lines = _FEWEST
         notes.append(
             f"the number of lines is not printed; {_FEWEST:.0f}, the smallest of any surface, is "
-            "assumed for the scatter between lines"
+            "assumed for the scatter between specimens"
         )
     if is_documentation(line):
         notes.append(

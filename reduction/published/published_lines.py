@@ -596,8 +596,9 @@ def scatter_notes(line: PublishedLine) -> tuple[str, ...]:
     if line.condition == "new":
         return ()
     return (
-        "exposed lines differ among each other by about half, new ones by a tenth (sec. 4.4.1): "
-        "that is in no interval but those of the kind and of another line, which K_ap has",
+        "exposed specimens differ among each other by about half, new ones by a tenth "
+        "(sec. 4.4.1): that is in no interval but those of the kind and of another specimen, "
+        "which K_ap has",
     )
 
 

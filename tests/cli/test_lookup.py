@@ -349,7 +349,7 @@ def test_json_says_of_what_each_number_is(command):
         "frequency": "Hz", "mean_tension": "N", "tension_amplitude": "N",
     }  # fmt: skip
     assert answer["tension_unit"] == "N"
-    assert answer["interval_of"] == "one more run of the same lines"
+    assert answer["interval_of"] == "one more run of the same specimens"
     assert answer["line_interval"][1] > answer["interval"][1]
     assert answer["below_zero"] is False
     # 42 % of 7,000 lb is 2,940 lb; Table 10: 3,241 lb
@@ -363,7 +363,7 @@ def test_json_says_of_what_each_number_is(command):
     ).stdout  # fmt: skip
     assert "90.71" in text
     assert "peak above the rule" in text
-    assert "another line" in text
+    assert "another specimen" in text
 
 
 def test_a_list_says_whose_strength_it_is_and_in_which_units(command):
@@ -420,7 +420,7 @@ def test_kinds_are_told_apart_with_the_scatter_between_lines_alone(command):
     assert answer["kind_interval"][0] < 0 < answer["kind_interval"][1]
     text = command(*pair).stdout
     assert "no difference shown" in text
-    assert "lines of this kind differ by about 50 %" in text
+    assert "specimens of this kind differ by about 50 %" in text
 
 
 def test_one_line_of_a_campaign_is_named_by_its_test_and_specimen(command, two_tests):
@@ -483,7 +483,7 @@ def test_a_curve_without_an_interval_says_why(command):
 def test_a_difference_says_of_which_lines_its_interval_is(command):
     text = command("lookup", f"{PLAIT}-new", "--against", f"{PLAIT}-4-years", "--quantity", "K_ap",
                    *LEVELS).stdout  # fmt: skip
-    assert "the 95 % interval of the difference is for these lines" in text
+    assert "the 95 % interval of the difference is for these specimens" in text
 
 
 def test_an_interval_that_reaches_below_zero_is_not_told_from_zero(command):

@@ -69,7 +69,7 @@ def test_value_intervals_flags_and_errata_are_those_of_the_look_up(table, found)
         ("minimum_tension", found.minimum_tension),
     ):  # fmt: skip
         np.testing.assert_array_equal(column(table, name).values, expected)
-    assert column(table, "interval_low").meaning.endswith("one more run of the same lines")
+    assert column(table, "interval_low").meaning.endswith("one more run of the same specimens")
     # Table 11 prints the column of another quantity: CG-5
     assert "errata that apply: CG-5" in table.sources[0]
     assert any(note.startswith("rule: peak at most 60 %") for note in table.notes)

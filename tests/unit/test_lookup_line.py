@@ -160,8 +160,8 @@ def test_points_of_another_number_of_factors_are_refused():
 
 def test_the_intervals_say_of_what_they_are():
     surface = look_up(LINE, "apparent_spring_constant", **CENTRE)
-    assert surface.interval_of == "one more run of the same lines"
-    assert surface.surface_interval_of == "the surface of these lines"
+    assert surface.interval_of == "one more run of the same specimens"
+    assert surface.surface_interval_of == "the surface of these specimens"
     assert np.isnan(surface.line_low)
     curve = look_up(LINE, "strain", tension=200.0)
     assert (curve.interval_of, curve.surface_interval_of) == ("", "")

@@ -1,4 +1,4 @@
-"""Intervals of the kind and of another line: by hand, and against lines that were drawn."""
+"""Intervals of the kind and of another specimen: by hand, and against lines that were drawn."""
 
 import numpy as np
 import pytest
@@ -41,7 +41,7 @@ def test_another_line_is_as_far_as_the_report_says(name, share, n_lines):
     assert np.log(found.kind_high / found.value) == pytest.approx(kind, rel=1e-6)
     assert 0 < found.line_low < found.low < found.value < found.high < found.line_high
     assert found.line_low < found.kind_low < found.kind_high < found.line_high
-    assert found.interval_of == "one more run of the same lines"
+    assert found.interval_of == "one more run of the same specimens"
     assert any(
         f"by about {100 * share:.0f} % (CG-D-39-80, sec. 4.4.1)" in one for one in found.notes
     )

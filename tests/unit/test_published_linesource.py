@@ -225,10 +225,10 @@ def test_what_the_report_gives_for_documentation_alone_says_so(lines):
         line = lines[f"nylon-8-strand-plaited-0.5in-{age}-years"]
         found = look_up(line, "apparent_spring_constant", **centre(line))
         assert any("no inference is drawn from it" in note for note in found.notes)
-        assert "the surface was fitted to 2 lines" in found.notes
+        assert "the surface was fitted to 2 specimens" in found.notes
     new = lines["nylon-8-strand-plaited-0.5in-new"]
     notes = look_up(new, "apparent_spring_constant", **centre(new)).notes
-    assert "the surface was fitted to 3 lines" in notes
+    assert "the surface was fitted to 3 specimens" in notes
     assert not any("inference" in note for note in notes)
 
 

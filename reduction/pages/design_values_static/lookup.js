@@ -94,7 +94,7 @@ function valuesOfSurface(line, surface, levels, flag) {
     });
   }
   const hasInterval = Number.isFinite(surface.sigma);
-  const words = hasInterval ? ["one more run of the same lines", "the surface of these lines"] : ["", ""];
+  const words = hasInterval ? ["one more run of the same specimens", "the surface of these specimens"] : ["", ""];
   return told(line, surface, points, {
     loads: loadsOfLine(line, levels), words, more: [],
     is_untested: points.inside && points.leverage > DATA.above_leverage * surface.greatest_leverage,
@@ -146,9 +146,9 @@ function told(line, of, points, { loads, words, more, is_untested, freedom }) {
   const isCurve = "variable" in of;
   if (words[0] || words[1]) {
     notes.push(!isCurve && Number.isFinite(of.line_scatter)
-      ? `lines of this kind differ by about ${(100 * of.line_scatter).toFixed(0)} % `
-        + `(CG-D-39-80, sec. 4.4.1), taken with ${of.n_lines.toFixed(0)} lines and the degrees of `
-        + "freedom of the surface: included only in the intervals of the kind and of another line"
+      ? `specimens of this kind differ by about ${(100 * of.line_scatter).toFixed(0)} % `
+        + `(CG-D-39-80, sec. 4.4.1), taken with ${of.n_lines.toFixed(0)} specimens and the degrees of `
+        + "freedom of the surface: included only in the intervals of the kind and of another specimen"
       : `the interval applies to ${words[0] || words[1]}; scatter between specimens is not included`);
   } else if (isCurve) {
     notes.push("no interval is given: the source does not state the scatter of this curve");

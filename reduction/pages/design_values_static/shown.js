@@ -64,9 +64,9 @@ function rowOf(line, found, levels, system) {
 
 function intervalsOf(found) {
   return [
-    ["95 % of\none more run", found.low, found.high],
-    [`95 % of\n${found.interval_of ? "the surface" : "this test"}`, found.surface_low, found.surface_high],
-    ["95 % of\nanother line", found.line_low, found.line_high],
+    ["95 % interval,\none more run", found.low, found.high],
+    [`95 % interval,\n${found.interval_of ? "the surface" : "this test"}`, found.surface_low, found.surface_high],
+    ["95 % interval,\nanother specimen", found.line_low, found.line_high],
   ].filter((one) => Number.isFinite(one[1]));
 }
 
