@@ -25,6 +25,7 @@ from reduction.experiments.surface_points import ABOVE_LEVERAGE
 from reduction.lines.archive_source import archives_of_lines, lines_of_open_archive, unique_names
 from reduction.lines.deck_formats import FORMS
 from reduction.lines.line_consistency import SOLVED, column_warnings, refitted_surfaces
+from reduction.lines.line_search import joined_conditions
 from reduction.lines.lookup_product import LineCurve, LineLevels, LineSource, LineSurface
 from reduction.lines.published_source import published_sources
 from reduction.published.printed_cells import REPORTS, ReportId, cells_of, errata_of
@@ -84,7 +85,7 @@ def _line_data(line: LineSource) -> dict[str, Any]:
             "specimens": list(line.specimens),
             "absent": dict(line.absent),
             "notes": list(line.notes),
-            "conditions": ", ".join(f"{name} {text}" for name, text in line.conditions.items()),
+            "conditions": dict(line.conditions),
             "rule": line.rule,
             "slow_pulls": {of: _curve(one) for of, one in line.slow_pulls.items()},
             "is_printed": line.is_printed,
@@ -342,6 +343,15 @@ class _Reading:
     def campaign(self) -> _CampaignLines:
         """What was read, in the order of the folder."""
         files = {path.stem: self._files[path] for path in self.paths if path in self._files}
+        lines = [line for one in files.values() for line in one["lines"]]
+        for line in lines:
+            if line["surfaces"]:
+                # those of its runs, as a look-up in the folder has it
+                line["conditions"] = joined_conditions(
+                    one["conditions"]
+                    for one in lines
+                    if one["levels"] and set(one["specimens"]) & set(line["specimens"])
+                )
         return _CampaignLines(self._name, files, self._faults, len(self._left))
 
 

@@ -221,4 +221,6 @@ def test_the_levels_of_one_run_of_an_experiment_may_be_left_out(tmp_path_factory
     done = CliRunner().invoke(
         app, ["lookup", str(made), "--line", "R01 line-1", "--quantity", quantity]
     )
-    assert done.exit_code == 0 and "95 % interval, the tests" in " ".join(done.output.split()), done.output
+    assert done.exit_code == 0 and "95 % interval, the tests" in " ".join(done.output.split()), (
+        done.output
+    )

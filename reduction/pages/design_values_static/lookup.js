@@ -141,8 +141,7 @@ function jointsOf(curve, x) {
 
 // Numbers with what has to be told of them.
 function told(line, of, points, { loads, words, more, is_untested, freedom }) {
-  const conditions = line.conditions ? [`test conditions: ${line.conditions}`] : [];
-  const notes = [...conditions, ...line.notes, ...of.notes, ...more];
+  const notes = [...line.notes, ...of.notes, ...more];
   const isCurve = "variable" in of;
   if (words[0] || words[1]) {
     notes.push(!isCurve && Number.isFinite(of.line_scatter)
@@ -225,7 +224,7 @@ function dashpotOf(line, levels, flag) {
     low: value - half("low"), high: value + half("high"),
     surface_low: value - half("surface_low"), surface_high: value + half("surface_high"),
     errata: distinct([...spring.errata, ...time.errata]),
-    notes: distinct(["N = K_1 tau; the intervals take the scatter of the two as independent, and "
-      + "what the runs share as it is", ...spring.notes, ...time.notes]),
+    notes: distinct(["N = K_1 tau; the intervals treat the scatter of the two as independent and "
+      + "include the errors that the runs share", ...spring.notes, ...time.notes]),
   };
 }

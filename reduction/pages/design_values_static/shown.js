@@ -76,6 +76,8 @@ function saidOf(line, found) {
   for (const [what, value] of [["in air", line.linear_density], ["in water", line.wet_linear_density]]) {
     if (Number.isFinite(value)) said.push(`linear density ${what}: ${short(value)} kg/m`);
   }
+  const conditions = Object.entries(line.conditions).map(([name, text]) => `${name} ${text}`);
+  if (conditions.length) said.push(`test conditions: ${conditions.join(", ")}`);
   said.push(`rule: ${found.rule}`);
   if (found.errata.length) said.push(`errata that apply: ${found.errata.join(", ")}`);
   said.push(...found.notes.map((note) => `note: ${note}`));
