@@ -855,3 +855,36 @@ def test_a_wave_that_grows_to_its_amplitude_keeps_the_frequency_of_the_machine(w
     found = summarise_amplitude(loops, area=[1e-3])
     assert found.frequency[0] == pytest.approx(0.25, rel=1e-4)
     assert abs(found.frequency[0] - 0.25) < 3 * found.uncertainty["frequency"][0]
+
+
+@pytest.mark.parametrize("per_cycle", [25, 61, 121])
+def test_loss_of_sharp_ramps_carries_the_tips_between_readings(per_cycle):
+    # a Maxwell element of 0.5 s beside a spring, T = 5 s, turns at odd places between readings
+    fine = 40
+    n_cycles, size = 24, per_cycle * fine
+    turn = np.arange(size * n_cycles + 1) / size
+    wave = 2 * np.abs((turn + 0.5) % 1 - 0.5) * 2 - 1
+    step, keep = np.diff(wave), np.exp(-5 / size / 0.5)
+    held = np.zeros_like(wave)
+    for at in range(1, wave.size):
+        held[at] = (held[at - 1] + 300 * step[at - 1] / 2) * keep + 300 * step[at - 1] / 2
+    tension = 600 + 0.05 * (900 * wave + held)
+    last = slice(-size - 1, None)
+    area = abs(np.trapezoid(tension[last], 0.05 * wave[last]))
+    shift = fine // 2 + 7
+    places = np.arange(shift, wave.size, fine)
+    strain, tension, time = 1 + 0.05 * wave[places], tension[places], 5 * turn[places]
+    first = np.arange(n_cycles - 1) * per_cycle
+    cycles = Cycles(
+        first, first + per_cycle,
+        np.column_stack([first, first + per_cycle // 2]),
+        np.column_stack([first + per_cycle // 2, first + per_cycle]),
+        np.ones((first.size, 2)), np.zeros(time.size, np.int32), np.zeros(time.size, np.int8),
+        np.zeros(time.size, bool), 0.01,
+    )  # fmt: skip
+    loops = close_loops(time, tension[None], strain[None], cycles, waveform="triangular")
+    found = summarise_amplitude(loops, area=[1e-4], break_in_cycles=4)
+    true = area / (np.pi * 0.05**2)
+    assert (
+        abs(found.loss_spring_constant[0] - true) < 2 * found.uncertainty["loss_spring_constant"][0]
+    )

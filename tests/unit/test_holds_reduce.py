@@ -7,7 +7,7 @@ from scipy.signal import lfilter
 from reduction.record.errors import DataError
 from reduction.record.settings import HoldSettings
 from reduction.stages.holds.prony_series import prony_tension
-from reduction.stages.holds.relaxation_and_creep import reduce_holds
+from reduction.stages.holds.relaxation_and_creep import _value_at_times, reduce_holds
 from reduction.stages.standstills import Standstills
 
 STEP = 0.1
@@ -338,3 +338,29 @@ def test_a_hold_whose_first_sample_lies_below_it_does_not_lengthen_the_ramp_afte
     peak = response(np.array([205.0]), 20.0, 1.0) + response(np.array([205.0]), 200.0, 1.0)
     off = (second.hold_initial_tension - peak[0]) / second.hold_initial_tension_standard_uncertainty
     assert abs(off) < 3
+
+
+@pytest.mark.parametrize("interval", [1.0, 2.0])
+@pytest.mark.parametrize("late", [0.1, 0.35, 0.6, 0.85])
+def test_between_two_readings_of_a_slow_log_a_fall_may_bend(interval, late):
+    # fast Maxwell terms, as read once in one or two seconds; the chord is up to 2 % too high
+    def tension(elapsed):
+        terms = (600, 0.3), (150, 3.0), (100, 300.0)
+        return 1000 + sum(force * np.exp(-elapsed / time) for force, time in terms)
+
+    elapsed = np.append(0.0, np.arange(late * interval, 600, interval))
+    value, spread = _value_at_times(elapsed, tension(elapsed), [1.0, 3.0])
+    known = np.isfinite(value)
+    assert known.any()
+    error = np.abs(value - tension(np.array([1.0, 3.0])))[known]
+    assert (error < 2 * spread[known]).all()
+
+
+def test_a_converter_in_coarse_steps_leaves_no_value_without_uncertainty():
+    rng = np.random.default_rng(3)
+    elapsed = np.arange(0.0, 600, 0.1)
+    true = 1500 - 40 * np.log10(1 + elapsed)
+    read = 20 * np.round((true + rng.normal(0, 0.5, elapsed.size)) / 20)
+    value, spread = _value_at_times(elapsed, read, [10.0, 60.0])
+    expected = 1500 - 40 * np.log10(1 + np.array([10.0, 60.0]))
+    assert (np.abs(value - expected) < 2 * spread).all()

@@ -15,6 +15,8 @@ from reduction.stages.three_parameter_line.rope_programme import (
 
 def loops_with(shape, *, u=0.0, **given):
     fields = {name: np.ones(shape) for name in Loops.__dataclass_fields__ if name != "uncertainty"}
+    # no turn lies between two readings
+    fields |= {name: np.zeros(shape) for name in fields if name.endswith("_turn_missed")}
     fields |= {name: np.broadcast_to(values, shape).astype(float) for name, values in given.items()}
     return Loops(**fields, uncertainty={name: np.full(shape, u) for name in fields})
 
@@ -48,6 +50,12 @@ class TestBeddingIn:
 
 
 class TestDynamicStiffness:
+    def test_a_turn_that_is_missed_in_every_cycle_is_in_its_uncertainty(self):
+        loops = loops_with((1, 10), strain_turn_missed=0.02)
+        found = dynamic_stiffness(loops, last_cycles=10, rated_break_strength=[np.nan])
+        # evenly likely at either end: the range over the root of eight
+        assert found.dynamic_stiffness_standard_uncertainty[0, 0] == pytest.approx(0.02 / 8**0.5)
+
     def test_the_last_cycles_of_each_level_count(self):
         stiffness = [900, 100, 101, 99, 100, 800, 200, 202, 198, 200.0]
         loops = loops_with(

@@ -126,15 +126,15 @@ class Loops:
             uncertainty=self.uncertainty | own,
         )  # fmt: skip
 
-    def shared_by_cycles(self, break_in_cycles: int) -> dict[str, Floats]:
+    def shared_by_cycles(self, cycles: slice | Integers) -> dict[str, Floats]:
         """Standard uncertainties that the cycles have alike, so that no mean over them is better.
 
         A turn between two readings lies there in all cycles, or nearly, and so does the part of a
-        cycle in which it drifts.  Shape (n_specimens,) each, without the cycles of the break-in.
+        cycle in which it drifts.  Shape (n_specimens,) each, over some of the cycles.
         """
 
         def mean(name: str) -> Floats:
-            values: Floats = getattr(self, name)[:, break_in_cycles:]
+            values: Floats = getattr(self, name)[:, cycles]
             known = np.isfinite(values)
             return np.asarray(np.where(known, values, 0.0).sum(axis=1) / known.sum(axis=1))
 
@@ -149,7 +149,11 @@ class Loops:
             area = np.hypot(
                 energy, (mean("closed_loop_energy") - mean("hysteresis_energy")) / _WITHIN_CYCLE
             )
-            loss = area / (np.pi * mean("strain_amplitude") ** 2)
+            # of the area, and of the square of the amplitude that it is divided by
+            loss = np.hypot(
+                area / (np.pi * mean("strain_amplitude") ** 2),
+                2 * strain / mean("strain_amplitude") * mean("loss_spring_constant") / _WITHIN_STEP,
+            )
             storage = mean("storage_spring_constant")
             return {
                 # of a peak that is missed by more than a valley

@@ -46,6 +46,7 @@ from reduction.record.samples import (
     sample_blocks,
     select_samples,
     shifted,
+    step_of_codes,
 )
 from reduction.record.settings import HoldSettings
 from reduction.stages.approach import find_approach, last_motion
@@ -470,7 +471,9 @@ def _value_at_times(
     """Series at stated times, each from a line through the samples within a tenth of it.
 
     The line is over the logarithm of time, on which a relaxation bends least.  What the series
-    changes by within the uncertainty of the time at which it begins [s] is part of its own.
+    changes by within the uncertainty of the time at which it begins [s] is part of its own, and so
+    is the step of a converter.  Between two readings of a slow log a series that bends one way
+    lies between their chord and the chord behind them, drawn on.
 
     Examples
     --------
@@ -481,7 +484,9 @@ def _value_at_times(
     time = as_increasing("elapsed", elapsed)
     time, series = as_same_shape(elapsed=time, values=as_finite("values", values))
     found, spread = np.full((2, *np.shape(times)), np.nan)
-    noise = reading_noise(series)
+    noise, step = reading_noise(series), step_of_codes(series)
+    # rounding that noise does not spread over several codes is alike in all readings
+    rounding = step / np.sqrt(12) * np.exp(-2 * (np.pi * noise / step) ** 2) if step else 0.0
     for index, wanted in enumerate(np.asarray(times, dtype=np.float64)):
         after = int(np.searchsorted(time, wanted))
         if after == time.size or (after == 0 and time[0] != wanted):
@@ -495,12 +500,18 @@ def _value_at_times(
                 beside = slice(max(after - 1, 0), after + 1)
                 found[index] = np.interp(wanted, time[beside], series[beside])
                 slope = float(np.ptp(series[beside])) / gap if gap else 0.0
-                spread[index] = np.hypot(noise, slope * begin_uncertainty)
+                bend = 0.0
+                if 0 < after < time.size - 1:
+                    behind = (series[after + 1] - series[after]) / (time[after + 1] - time[after])
+                    drawn_on = series[after] - behind * (time[after] - wanted)
+                    bend = abs(float(found[index] - drawn_on)) / np.sqrt(3)
+                of_begin = slope * begin_uncertainty
+                spread[index] = np.sqrt(noise**2 + rounding**2 + of_begin**2 + bend**2)
             continue
         found[index], slope, own = _on_line(
             time[first:last], series[first:last], wanted, noise=noise
         )
-        spread[index] = np.hypot(own, slope * begin_uncertainty)
+        spread[index] = np.sqrt(own**2 + rounding**2 + (slope * begin_uncertainty) ** 2)
         release_pages(time, series)
     return found, spread
 

@@ -417,7 +417,7 @@ def summarise_amplitude(
             None if own is None else own[:, break_in_cycles:],
         )
     means["frequency"], uncertainty["frequency"] = _mean_frequency(loops, break_in_cycles)
-    for name, shared in loops.shared_by_cycles(break_in_cycles).items():
+    for name, shared in loops.shared_by_cycles(slice(break_in_cycles, None)).items():
         uncertainty[name] = np.hypot(uncertainty[name], shared)
     # of a loss angle that noise turns negative there is no ellipse to read slopes from
     tangent = np.where(means["loss_factor"] >= 0, means["loss_factor"], np.nan)

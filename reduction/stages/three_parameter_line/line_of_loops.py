@@ -102,7 +102,7 @@ def relative_shared(loops: Loops, names: Sequence[str], *, break_in_cycles: int)
     >>> print(relative_shared(loops, ["hysteresis_energy"], break_in_cycles=0).round(4))
     [[0.0408]]
     """
-    shared = loops.shared_by_cycles(break_in_cycles)
+    shared = loops.shared_by_cycles(slice(break_in_cycles, None))
     means, _ = relative_deviations(loops, names, break_in_cycles=break_in_cycles)
     return np.abs(np.stack([shared.get(name, 0.0 * means[0]) for name in names]) / means)
 

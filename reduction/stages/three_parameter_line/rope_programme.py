@@ -285,6 +285,11 @@ def dynamic_stiffness(
             values = getattr(loops, quantity)[:, cycles]
             means[row, :, column] = mean_of_rows(values)
             errors[row, :, column] = [_mean_and_drift(one)[1] for one in values]
+        # what a turn between two readings may hold is alike in all of them
+        alike = loops.shared_by_cycles(cycles)
+        numbers[1, :, column] = np.hypot(numbers[1, :, column], alike["apparent_spring_constant"])
+        for row, quantity in ((1, "mean_tension"), (2, "tension_amplitude")):
+            errors[row, :, column] = np.hypot(errors[row, :, column], alike[quantity])
     return DynamicStiffness(
         level=names,
         n_cycles=used,
