@@ -888,3 +888,27 @@ def test_loss_of_sharp_ramps_carries_the_tips_between_readings(per_cycle):
     assert (
         abs(found.loss_spring_constant[0] - true) < 2 * found.uncertainty["loss_spring_constant"][0]
     )
+
+
+@pytest.mark.parametrize("per_cycle", [13.4, 14.3, 15.7, 16.3])
+def test_corners_of_a_dwell_of_three_readings_are_no_noise(per_cycle):
+    n_cycles = 24
+    count = int(per_cycle * (n_cycles + 1))
+    turn = np.arange(count) / per_cycle
+    level = np.clip(np.interp(turn % 1, [0, 0.3, 0.5, 0.8, 1], [-1, 1, 1, -1, -1]), -1, 1)
+    rng = np.random.default_rng(2)
+    strain = 0.05 + 0.01 * level + rng.normal(0, 5e-6, count)
+    at = np.round(per_cycle * np.arange(2 * n_cycles + 1) / 2).astype(int)
+    first, peak, last = at[:-2:2], at[1:-1:2], at[2::2]
+    # turns stand on the first reading of each dwell
+    peak = np.ceil(per_cycle * (np.arange(n_cycles) + 0.3)).astype(int)
+    cycles = Cycles(
+        first, last, np.stack([first, peak], axis=1), np.stack([peak, last], axis=1),
+        np.ones((n_cycles, 2)), np.zeros(count, np.int32), np.zeros(count, np.int8),
+        np.zeros(count, bool), 0.001,
+    )  # fmt: skip
+    tension = 250e3 * strain + rng.normal(0, 2, count)
+    loops = close_loops(5 * turn, tension[None], strain[None], cycles, waveform="other")
+    found = summarise_amplitude(loops, area=[1e-4])
+    assert found.strain_amplitude[0] == pytest.approx(0.01, rel=5e-3)
+    assert found.tension_amplitude[0] == pytest.approx(2500, rel=5e-3)

@@ -1345,6 +1345,25 @@ _PARTS = 5  # of a plateau: tension that relaxes at once is above its mean in th
 _LEVEL, _CLEARLY = 0.25, 5.0  # noise and standard errors of the mean, within which it is level
 
 
+def _within_scatter(noise: float, top: Floats) -> float:
+    """Noise of a reading, no more than the scatter of the extremes from cycle to cycle allows.
+
+    Third differences take the corners of a wave of some fifteen readings a cycle for noise.
+
+    Examples
+    --------
+    >>> print(_within_scatter(2.0, np.full(9, 5.0)), _within_scatter(2.0, np.arange(4.0)))
+    0.0 2.0
+    """
+    change = np.diff(top[np.isfinite(top)])
+    if change.size < _FEWEST_ON_PLATEAU:
+        return noise
+    return min(noise, float(np.sqrt(np.mean(change**2) / 2)) / _LEAST_OF_GREATEST)
+
+
+_LEAST_OF_GREATEST = 0.2  # of the noise: half the scatter of the greatest of hundreds of readings
+
+
 def _plateau(values: Floats, low: Integers, high: Integers, top: Floats) -> Floats | None:
     """Mean of the readings of a plateau, of which noise makes the greatest one too great.
 
@@ -1352,7 +1371,7 @@ def _plateau(values: Floats, low: Integers, high: Integers, top: Floats) -> Floa
     does, and its beginning no higher than its end, as of what relaxes.  The middle half is taken,
     since ramps begin in the noise.
     """
-    noise = reading_noise(values)
+    noise = _within_scatter(reading_noise(values), top)
     level = np.full(top.shape, np.nan)
     bent = []
     for row, (start, stop) in enumerate(
@@ -1478,6 +1497,7 @@ def _without_noise(
             top[:], last[:] = way * upper, -way * lower
             first[touch] = last[touch - 1]
             return
+    noise = _within_scatter(noise, top)
     of_peak, of_valley = (
         noise_in_extreme(values, turn, reach=reach, sign=sign, noise=noise)
         for turn, sign in ((peak, way), (cycles.first[touch], -way))
