@@ -24,6 +24,8 @@ def reduced(rest, spread, *, scatter=0.001, contributions=None, n_cycles=8):
     rng = np.random.default_rng(5)
     shape = (2, n_cycles)
     own = {name: np.ones(shape) for name in Loops.__dataclass_fields__ if name != "uncertainty"}
+    # no turn lies between two readings
+    own |= {name: np.zeros(shape) for name in own if name.endswith("_turn_missed")}
     own |= {
         "storage_spring_constant": STORED * (1 + scatter * rng.normal(size=shape)),
         "loss_spring_constant": LOST * (1 + scatter * rng.normal(size=shape)),
