@@ -250,17 +250,38 @@ def check_stated_errors(
                     found=f"{limit.stated:.4g} {limit.unit}",
                     needed=f"at most {limit.most:.4g} {limit.unit}, {limit.what}",
                 )
+    notes = list(_not_used(located.record, instruments))
     period = _periods(located)
     lag = max((errors.lag for errors in instruments), default=0.0)
     is_short = lag > _LINEAR * period
-    if not is_short.any():
-        return ()
-    return (
-        note(
+    if is_short.any():
+        notes.append(note(
             "stated-lag-long", lag=lag, n_short=int(is_short.sum()), n_cycles=period.size,
             shortest=float(period.min()),
+        ))  # fmt: skip
+    return tuple(notes)
+
+
+def _not_used(record: Record, instruments: Sequence[InstrumentErrors]) -> Iterator[Note]:
+    """Noise and resolution that are stated beside what the layout declares of the same readings."""
+    pairs = (
+        ("tension", "N", record.tension_standard_uncertainty, "tension_reading"),
+        (
+            "crosshead_position",
+            "m",
+            (record.position_standard_uncertainty,) * len(instruments),
+            "position_reading",
         ),
-    )  # fmt: skip
+    )
+    for channel, unit, declared, name in pairs:
+        for own, errors in zip(declared, instruments, strict=False):
+            stated = getattr(errors, name)
+            if np.isfinite(own) and stated > 0:
+                yield note(
+                    "reading-error-not-used",
+                    channel=channel, stated=stated, declared=float(own), unit=unit,
+                )  # fmt: skip
+                break
 
 
 def _limits(located: Located, index: int, errors: InstrumentErrors) -> Iterator[_Limit]:

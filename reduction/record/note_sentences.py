@@ -557,6 +557,12 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         " {n_cycles} cycles (shortest {shortest:.4g} s): its effect on stiffness and loss is"
         " estimated to first order only, so their uncertainties are too small",
     ),
+    "reading-error-not-used": (
+        "note",
+        "noise and resolution of {channel} stated in [uncertainty] ({stated:.3g} {unit} together)"
+        " are not used: the layout declares standard_uncertainty, {declared:.3g} {unit}, for its"
+        " readings",
+    ),
     "inertia-taken-off": (
         "note",
         lambda mass, force, width, n_lost, cell: (

@@ -643,6 +643,24 @@ def step_of_codes(values: Floats) -> float:
     return step if whole.mean() >= _OF_CODES and turns > _OF_TURNS * moves.size else 0.0
 
 
+def rounding_left(step: float, noise: float) -> float:
+    r"""Standard uncertainty that rounding leaves in a mean of readings with normal noise.
+
+    .. math:: u = q / \sqrt{12} \; e^{-2 (\pi \sigma / q)^2}
+
+    Noise of more than half a step spreads the readings over several codes, and their mean is free
+    of the steps.
+
+    Examples
+    --------
+    >>> print(round(rounding_left(1.0, 0.0), 3), round(rounding_left(1.0, 0.5), 3))
+    0.289 0.002
+    """
+    if not step:
+        return 0.0
+    return float(step / np.sqrt(12) * np.exp(-2 * (np.pi * noise / step) ** 2))
+
+
 def step_that_fills(values: Floats) -> float:
     """Step between neighbours by value: half of the whole range lies in steps at least as long.
 

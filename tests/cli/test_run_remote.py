@@ -115,7 +115,8 @@ def test_logs_behind_signed_addresses_leave_no_secret_anywhere(here, command, tm
     for name, data in [*products.items(), *after_the_fault.items()]:
         assert not any(secret.encode() in data for secret in SECRETS), name
     expected = files_below(here / "processed")
-    assert products.keys() >= expected.keys()
+    # logs that are elsewhere may change unseen: such a run is never taken for finished
+    assert products.keys() >= expected.keys() - {"small/finished-run.json"}
     for test in ("A", "B"):
         with (
             xr.open_dataset(tmp_path / "processed" / "small" / f"{test}.nc") as found,

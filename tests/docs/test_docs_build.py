@@ -220,7 +220,7 @@ def test_nothing_is_fetched_from_the_network(built, pages):
     ("name", "least"),
     [
         ("method", 50),
-        pytest.param("reference/api/prediction", 100, marks=pytest.mark.nightly),
+        pytest.param("reference/api/prediction", 50, marks=pytest.mark.nightly),
     ],
 )
 def test_formulas_are_set(name, least, built):

@@ -5,12 +5,13 @@ The small version of `benchmarks/monte_carlo.py`, from the pieces of `benchmarks
 
 import importlib.util
 from collections import defaultdict
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from reduction.record.contributions import combined_standard_uncertainty
+from reduction.record.contributions import Contributions, combined_standard_uncertainty
 
 pytestmark = pytest.mark.nightly
 
@@ -21,9 +22,22 @@ AGREE = 0.05
 SAMPLING = 3 / np.sqrt(2 * N_DRAWS)
 
 
+# what other laws of the splices, or of the rubber beside a turn, would do: those drawn have neither
+NOT_DRAWN = {"splice_law", "window"}
+
+
+def of_what_is_drawn(test):
+    """The same with the contributions of sources that the draws have."""
+    whole = test.contributions
+    kept = np.array([one.source not in NOT_DRAWN for one in whole.component])
+    component = tuple(one for one, is_kept in zip(whole.component, kept, strict=True) if is_kept)
+    values = {name: rows[kept] for name, rows in whole.values.items()}
+    return replace(test, contributions=Contributions(component, values))
+
+
 @pytest.fixture(scope="module")
 def drawn():
-    """Errors and stated standard uncertainties by number, each of its own place."""
+    """Errors and standard uncertainties by number, each of its own place: of what is drawn, of all."""
     # by its path: another package has the name of the script
     spec = importlib.util.spec_from_file_location("benchmark_coverage", BENCHMARK)
     tethers = importlib.util.module_from_spec(spec)
@@ -32,10 +46,15 @@ def drawn():
     for seed in range(N_DRAWS):
         test = tethers.one_test(np.random.default_rng(1000 + seed))
         place = defaultdict(int)
-        for name, value, truth, random, shared, _ in tethers.numbers_of(test):
+        both = zip(
+            tethers.numbers_of(of_what_is_drawn(test)), tethers.numbers_of(test), strict=True
+        )
+        for (name, value, truth, random, shared, _), whole in both:
             place[name] += 1
-            u = float(combined_standard_uncertainty([shared], random))
-            found[name, place[name]].append((value - truth, u))
+            u, u_whole = (
+                float(combined_standard_uncertainty([one], random)) for one in (shared, whole[4])
+            )
+            found[name, place[name]].append((value - truth, u, u_whole))
     return {key: np.array(rows).T for key, rows in found.items() if len(rows) == N_DRAWS}
 
 
@@ -55,15 +74,18 @@ def ratio_of(error, u):
 
 
 def test_linear_and_drawn_standard_uncertainties_agree(drawn):
-    for key, rows in drawn.items():
-        ratio = ratio_of(*rows)
-        assert 1 - AGREE - SAMPLING < ratio < 1 + AGREE + SAMPLING, (key, ratio)
+    # the reduction is not linear in what it leaves to other laws: with them no number is too sure
+    for key, (error, u, u_whole) in drawn.items():
+        # the tips between readings are the same in all draws, and no scatter
+        if key[0] != "strain_amplitude":
+            assert ratio_of(error, u) < 1 + AGREE + SAMPLING, key
+        assert ratio_of(error, u_whole) > 1 - AGREE - SAMPLING, key
 
 
 def test_they_agree_closer_over_all_numbers_of_a_kind(drawn):
     """Places of one kind are not all one draw: their mean ratio is known better than each."""
     ratios = defaultdict(list)
-    for (name, _), rows in drawn.items():
-        ratios[name.split(",")[0]].append(ratio_of(*rows))
+    for (name, _), (error, u, _) in drawn.items():
+        ratios[name.split(",")[0]].append(ratio_of(error, u))
     for name in ("tangent_modulus", "segment_modulus"):
         assert abs(np.mean(ratios[name]) - 1) < AGREE + SAMPLING / 3, (name, ratios[name])

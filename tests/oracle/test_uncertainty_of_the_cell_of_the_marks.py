@@ -29,7 +29,7 @@ NAMES = (
 
 
 def reduced(folder, wrong=(), gain=0.0):
-    """Numbers of T-2, and the contributions of each cell's gain."""
+    """Numbers of T-2 by one law of the splices, and the contributions of each cell's gain."""
     raw = folder / "raw"
     raw.mkdir(parents=True)
     for name in ("campaign.toml", "marks.csv", *(f"{test}.csv" for test in TESTS)):
@@ -47,6 +47,10 @@ def reduced(folder, wrong=(), gain=0.0):
         path.write_text("".join(head) + table.to_csv(index=False, float_format="%.8g"))
     before, rest = (raw / "campaign.toml").read_text().split("[uncertainty]")
     rest = rest.split("[defaults]", 1)[1].replace("[tests.T-2]", '[tests.T-2]\nload_cell = "B"', 1)
+    # of an average of laws the contributions of a second cell are not those of the average
+    marks = 'strain = { marks = "marks.csv" }'
+    assert marks in rest
+    rest = rest.replace(marks, 'strain = { method = "tension-driven", marks = "marks.csv" }')
     stated = f'[uncertainty.tension]\ngain = "{100 * GAIN} %"\n'
     rest = rest.split("[tests.T-4]")[0]
     (raw / "campaign.toml").write_text(f'{before}{stated}[defaults]\nload_cell = "A"{rest}')
@@ -93,7 +97,7 @@ def test_each_cell_moves_the_numbers_by_the_logs_that_it_read(stated, tmp_path, 
         known = np.isfinite(wanted) & np.isfinite(found)
         assert known.any()
         # segments move with their breakpoints a little, which are held as found
-        allowed = 3e-4 if name == "segment_modulus" else 2e-5
+        allowed = 4e-4 if name == "segment_modulus" else 2e-5
         np.testing.assert_allclose(found[known], wanted[known], atol=allowed, err_msg=name)
 
 

@@ -7,6 +7,7 @@ from reduction.stages.cycles.cycle_product import Cycles
 from reduction.stages.cycles.loop_sense import (
     contradicts_sine,
     notes_of_loops,
+    waveform_of_log,
     without_backward_loops,
 )
 from reduction.stages.cycles.loops import close_loops
@@ -92,3 +93,15 @@ def test_the_work_of_a_drift_is_told():
 @pytest.mark.parametrize("loss_angle", [0.0, 0.02, 0.3])
 def test_loops_of_a_sine_are_those_of_a_sine(loss_angle):
     assert not contradicts_sine(loops_of(loss_angle, drift=0.2)).any()
+
+
+@pytest.mark.filterwarnings("error")
+def test_rows_that_stand_twice_in_a_log_are_no_wave():
+    time = np.append(np.arange(101), np.arange(1, 101)) * 0.1
+    wave = np.cos(2 * np.pi * time / 10)
+    both = np.zeros((1, 2), np.int64)
+    cycles = Cycles(
+        np.array([1]), np.array([101]), both, both, np.ones((1, 2)), np.zeros(201, np.int32),
+        np.zeros(201, np.int8), np.zeros(201, bool), 0.1,
+    )  # fmt: skip
+    assert waveform_of_log(time, wave, cycles) == ""

@@ -72,9 +72,25 @@ def test_a_zero_of_a_large_instrument_in_a_small_test_can_be_meant():
     assert check(tension_offset=3500.0, tension_reading=400.0, position_offset=60.0) == ()
 
 
-def test_a_reading_of_which_the_layout_says_something_is_not_looked_at():
-    assert check(record={"tension_standard_uncertainty": (1.0,)}, tension_reading=1e6) == ()
-    assert check(record={"position_standard_uncertainty": 1e-3}, position_reading=1e6) == ()
+@pytest.mark.parametrize(
+    ("declared", "stated", "words"),
+    [
+        (
+            {"tension_standard_uncertainty": (1.0,)}, {"tension_reading": 1e6},
+            "tension stated in [uncertainty] (1e+06 N together) are not used",
+        ),
+        (
+            {"position_standard_uncertainty": 1e-3}, {"position_reading": 2e-3},
+            "the layout declares standard_uncertainty, 0.001 m",
+        ),
+    ],
+)  # fmt: skip
+def test_a_reading_of_which_the_layout_says_something_is_not_used_and_a_note_says_so(
+    declared, stated, words
+):
+    (note,) = check(record=declared, **stated)
+    assert note.severity == "note" and words in str(note)
+    assert check(record=declared) == ()
 
 
 @pytest.mark.parametrize(

@@ -147,7 +147,7 @@ class Loops:
             apart = np.hypot(tension / mean("tension_amplitude"), strain / mean("strain_amplitude"))
             # half of what a turn may hold was added to the area: the truth is at either end of it
             area = np.hypot(
-                energy, (mean("closed_loop_energy") - mean("hysteresis_energy")) / _WITHIN_CYCLE
+                energy, (mean("closed_loop_energy") - mean("hysteresis_energy")) / PLACE_OF_DRIFT
             )
             # of the area, and of the square of the amplitude that it is divided by
             loss = np.hypot(
@@ -162,7 +162,7 @@ class Loops:
                 "tension_amplitude": tension / _WITHIN_STEP,
                 "strain_amplitude": strain / _WITHIN_STEP,
                 "apparent_spring_constant": apart * mean("apparent_spring_constant") / _WITHIN_STEP,
-                "storage_spring_constant": np.abs(apart * storage) / _WITHIN_STEP,
+                "storage_spring_constant": apart * storage / _WITHIN_STEP,
                 "hysteresis_energy": area,
                 "loss_spring_constant": loss,
                 "loss_factor": np.hypot(loss / storage, apart * mean("loss_factor") / _WITHIN_STEP),
@@ -179,4 +179,4 @@ class Loops:
 
 _WITHIN_STEP = np.sqrt(8)  # width over deviation, of what is likeliest at either end
 
-_WITHIN_CYCLE = np.sqrt(6)  # half width of a triangular distribution over its deviation
+PLACE_OF_DRIFT = np.sqrt(6)  # half width of a triangular distribution over its deviation

@@ -183,7 +183,7 @@ def _apart_from_shapes(time: Floats, driven: Floats) -> tuple[float, float, floa
     """Root mean square about two lines and about a sine, and noise, over half the range."""
     known = np.isfinite(driven)
     t, x = time[known], driven[known]
-    if t.size < _FEWEST_READINGS or not np.ptp(x) > 0:
+    if t.size < _FEWEST_READINGS or not np.ptp(x) > 0 or not t[-1] > t[0]:
         return np.nan, np.nan, np.nan
     half = float(np.ptp(x)) / 2
     turn = int(np.argmax(np.abs(x - x[0])))

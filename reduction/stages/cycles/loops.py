@@ -81,11 +81,12 @@ from reduction.record.measurement import Bools, Floats, Integers, read_only_arra
 from reduction.record.samples import (
     empty_like,
     release_pages,
+    rounding_left,
     step_of_codes,
     step_that_fills,
     take_samples,
 )
-from reduction.stages.cycles.cycle_product import Cycles, Loops
+from reduction.stages.cycles.cycle_product import PLACE_OF_DRIFT, Cycles, Loops
 from reduction.stages.cycles.periods import (
     own_periods,
     spread_of_turns,
@@ -1015,7 +1016,7 @@ def _quantities_of_cycles(
             )
         factor = loss / storage
         # where in its cycle the drift takes place is not known
-        placed = np.abs(row["energy"] - energy) / _PLACE_OF_DRIFT
+        placed = np.abs(row["energy"] - energy) / PLACE_OF_DRIFT
         per_energy = 1 / (np.pi * strain_amplitude**2)
         u_loss = np.hypot(u_loss, placed * per_energy)
         u_over_time_lost = np.hypot(u_over_time, placed * per_energy)
@@ -1090,9 +1091,6 @@ def _mean_and_amplitude(
     foot = np.where(follows, (1 - rise_share) * begin + rise_share * end, far)
     amplitude = np.abs(top - foot) / 2 - np.where(follows, 0.0, np.abs(drift) / 4)
     return (top + foot) / 2, np.where(np.isnan(drift), np.nan, amplitude)
-
-
-_PLACE_OF_DRIFT = np.sqrt(6)  # half width of a triangular distribution over its deviation
 
 
 def _missed_turn(amplitude: Floats | float, n_samples: Floats) -> Floats:
@@ -1332,7 +1330,7 @@ D times the root of 16 / 720."""
 
 _EITHER = 2**0.5
 """What relaxes at a corner is at one end of its range or at the other, and not between them: the
-whole of half the range, where `reduction.stages.moduli.secant_modulus` takes it over this."""
+whole of half the range, where `Loops.shared_by_cycles` takes it over this."""
 
 _ON_PLATEAU = 6.0  # noise of a reading below the greatest one, on a plateau of some tens
 
@@ -1384,8 +1382,8 @@ def _plateau(values: Floats, low: Integers, high: Integers, top: Floats) -> Floa
         if on.size < _FEWEST_ON_PLATEAU:
             continue
         quarter, half = on.size // 4, on.size // 2
-        parts = np.add.reduceat(on, np.arange(_PARTS) * on.size // _PARTS)
-        parts /= np.diff(np.arange(_PARTS + 1) * on.size // _PARTS)
+        ends = np.arange(_PARTS + 1) * on.size // _PARTS
+        parts = np.add.reduceat(on, ends[:-1]) / np.diff(ends)
         middle = np.median(on)
         halves = np.median(on[quarter : on.size - quarter]), np.median(on[:half])
         bent.append(np.append(parts, halves) - middle)
@@ -1451,8 +1449,7 @@ def _noise_and_rounding(values: Floats, noise: float) -> tuple[float, float]:
     third = third[np.isfinite(third) & (third < _FAR * step)]
     square = float(np.mean(third**2)) / 20 if third.size else 0.0
     own = np.sqrt(max(square - step**2 / 12, 0.0))
-    of_extreme = _OF_GREATEST * own
-    return float(own), float(step / np.sqrt(12) * np.exp(-2 * (np.pi * of_extreme / step) ** 2))
+    return float(own), rounding_left(step, _OF_GREATEST * own)
 
 
 _OF_GREATEST = 0.55  # of the noise: scatter of the greatest of some ten readings

@@ -155,11 +155,12 @@ def noise_in_extreme(
     # what chose the turns put them beside: the first moment of the window says where they are
     weight = levels - min(mean[0], mean[-1])
     total = weight.sum(axis=1)
-    middle = (weight @ place) / np.where(total > 0, total, np.nan)
-    shift = np.nan_to_num(np.round(middle - np.nanmedian(middle))) if (total > 0).any() else 0.0
     # of a window that noise fills its moment says nothing
-    blurred = total * reach <= 2 * noise * np.sqrt((place**2).sum())
-    shift = np.where(blurred, 0, np.clip(shift, -reach, reach)).astype(int)
+    clear = total * reach > 2 * noise * np.sqrt((place**2).sum())
+    shift = np.zeros(some.size, dtype=int)
+    if clear.any():
+        middle = (weight[clear] @ place) / total[clear]
+        shift[clear] = np.clip(np.round(middle - np.median(middle)), -reach, reach)
     mean = sign * np.mean(
         [take_samples(values, one + place) for one in (some + shift).tolist()], axis=0
     )

@@ -43,6 +43,7 @@ from reduction.record.samples import (
     mean_of,
     median_step_reaches,
     release_pages,
+    rounding_left,
     sample_blocks,
     select_samples,
     shifted,
@@ -484,9 +485,8 @@ def _value_at_times(
     time = as_increasing("elapsed", elapsed)
     time, series = as_same_shape(elapsed=time, values=as_finite("values", values))
     found, spread = np.full((2, *np.shape(times)), np.nan)
-    noise, step = reading_noise(series), step_of_codes(series)
-    # rounding that noise does not spread over several codes is alike in all readings
-    rounding = step / np.sqrt(12) * np.exp(-2 * (np.pi * noise / step) ** 2) if step else 0.0
+    noise = reading_noise(series)
+    rounding = rounding_left(step_of_codes(series), noise)
     for index, wanted in enumerate(np.asarray(times, dtype=np.float64)):
         after = int(np.searchsorted(time, wanted))
         if after == time.size or (after == 0 and time[0] != wanted):

@@ -372,9 +372,9 @@ def summarise_amplitude(
     Uncertainty is type A: scatter over the cycles over the root of their number; of a
     single cycle, its own. Trend over the cycles is in the scatter; where the cycles settle, how
     far the mean is from there is in it too. Cycles with NaN are left out.  Beside it stands
-    what all cycles have alike: a turn missed between two samples in means, amplitudes, K_ap and
-    K', the place of the drift within its cycle in the energy, and in the frequency what the driven
-    channel and the other one differ by.
+    what all cycles have alike: a turn missed between two samples in means, amplitudes, K_ap, K',
+    loss and loss factor, the place of the drift within its cycle in energy and loss, and in the
+    frequency what the driven channel and the other one differ by.
 
     Examples
     --------
