@@ -907,8 +907,17 @@ def test_corners_of_a_dwell_of_three_readings_are_no_noise(per_cycle):
         np.ones((n_cycles, 2)), np.zeros(count, np.int32), np.zeros(count, np.int8),
         np.zeros(count, bool), 0.001,
     )  # fmt: skip
-    tension = 250e3 * strain + rng.normal(0, 2, count)
+    # and half of its force in a Maxwell element of 0.5 s, so that peaks fall between readings
+    fine = np.arange(0, turn[-1] + 1e-9, 1e-3)
+    wave = np.clip(np.interp(fine % 1, [0, 0.3, 0.5, 0.8, 1], [-1, 1, 1, -1, -1]), -1, 1)
+    held, keep = np.zeros_like(wave), np.exp(-5e-3 / 0.5)
+    for step in range(1, wave.size):
+        held[step] = (held[step - 1] + 600 * (wave[step] - wave[step - 1])) * keep
+    force = 3000 + 1500 * wave + held
+    tension = np.interp(turn, fine, force) + rng.normal(0, 2, count)
     loops = close_loops(5 * turn, tension[None], strain[None], cycles, waveform="other")
     found = summarise_amplitude(loops, area=[1e-4])
     assert found.strain_amplitude[0] == pytest.approx(0.01, rel=5e-3)
-    assert found.tension_amplitude[0] == pytest.approx(2500, rel=5e-3)
+    # with 2 N of noise it is no less than what is read
+    read = [np.ptp(tension[one : other + 1]) / 2 for one, other in zip(first, last, strict=True)]
+    assert found.tension_amplitude[0] > np.mean(read[1:]) - 4

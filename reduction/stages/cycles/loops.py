@@ -1343,6 +1343,20 @@ _PARTS = 5  # of a plateau: tension that relaxes at once is above its mean in th
 _LEVEL, _CLEARLY = 0.25, 5.0  # noise and standard errors of the mean, within which it is level
 
 
+def _noise_of_corners(noise: float, turns: Floats) -> float:
+    """Noise of a driven channel over its range, where its corners are taken for it; else zero.
+
+    What they make of the driven channel they make of the other one as well, which relaxes behind
+    them, so that its extremes scatter and say nothing of its noise.  ``turns``: peaks, valleys.
+    """
+    if _within_scatter(noise, turns[0]) >= noise / 2:
+        return 0.0
+    return noise / float(np.nanmedian(np.abs(turns[0] - turns[1])))
+
+
+_LIKE_CORNERS = 3.0
+
+
 def _within_scatter(noise: float, top: Floats) -> float:
     """Noise of a reading, no more than the scatter of the extremes from cycle to cycle allows.
 
@@ -1358,6 +1372,10 @@ def _within_scatter(noise: float, top: Floats) -> float:
         return noise
     return min(noise, float(np.sqrt(np.mean(change**2) / 2)) / _LEAST_OF_GREATEST)
 
+
+_EITHER_WAY = np.sqrt(
+    8 / 3
+)  # of a half range, evenly likely up to it, as `Loops` takes what is missed
 
 _LEAST_OF_GREATEST = 0.2  # of the noise: half the scatter of the greatest of hundreds of readings
 
@@ -1467,13 +1485,15 @@ def _without_noise(
     noise: float,
     way: int,
     may_dwell: bool,
+    of_corners: float,
 ) -> None:
     """Valleys of cycles that touch made one, and what noise adds to extremes taken off.
 
-    ``measured`` has the rows of top, first and last valley and is changed.  A channel that is held
-    at its turns is at the mean of what it reads there.
+    ``measured`` has the rows of top, first and last valley, and of what a turn may miss, and is
+    changed.  A channel that is held at its turns is at the mean of what it reads there.  What may
+    be corners and no noise is not taken off: the truth is between both.
     """
-    top, first, last = measured
+    top, first, last, missed = measured
     touch = np.flatnonzero(touching(cycles))
     both = last[touch - 1]
     if turn == "sharp":
@@ -1499,6 +1519,9 @@ def _without_noise(
         noise_in_extreme(values, turn, reach=reach, sign=sign, noise=noise)
         for turn, sign in ((peak, way), (cycles.first[touch], -way))
     )
+    if of_corners and 0 < noise < _LIKE_CORNERS * of_corners * np.nanmedian(np.abs(top - first)):
+        np.hypot(missed, _EITHER_WAY * (of_peak + of_valley) / 2, out=missed)
+        return
     top -= way * of_peak
     first += way * of_valley
     last += way * of_valley
@@ -1706,6 +1729,10 @@ def close_loops(
     for index, (force, stretch) in enumerate(zip(tension, strain, strict=True)):
         noise, strain_noise = noises[index]
         if waveform != "sinusoidal":
+            of_driven, rows = (
+                (noise, _OF_TURNS) if control == "load" else (strain_noise, _OF_TURNS + 4)
+            )
+            of_corners = _noise_of_corners(of_driven, measured[index, rows : rows + 2])
             for series, of_series, way, rows in (
                 (force, noise, ways[index][0], _OF_TURNS),
                 (stretch, strain_noise, ways[index][1], _OF_TURNS + 4),
@@ -1715,9 +1742,9 @@ def close_loops(
                 missed = measured[index, rows + 3]
                 np.hypot(missed, rounded, out=missed)
                 _without_noise(
-                    measured[index, rows : rows + 3], series, cycles, reach=reach,
+                    measured[index, rows : rows + 4], series, cycles, reach=reach,
                     turn=turns[index], noise=own, way=way,
-                    may_dwell=waveform == "other",
+                    may_dwell=waveform == "other", of_corners=of_corners,
                 )  # fmt: skip
         shapes = None
         if waveform == "sinusoidal":
