@@ -921,3 +921,53 @@ def test_corners_of_a_dwell_of_three_readings_are_no_noise(per_cycle):
     # with 2 N of noise it is no less than what is read
     read = [np.ptp(tension[one : other + 1]) / 2 for one, other in zip(first, last, strict=True)]
     assert found.tension_amplitude[0] > np.mean(read[1:]) - 4
+
+
+def cycles_between(turn, n_cycles, begin=0.0, peak=0.5):
+    """Cycles of a wave that is read at these numbers of turns: valleys and peaks at the readings beside."""
+    first = np.searchsorted(turn, np.arange(n_cycles) + 1 + begin)
+    last = np.searchsorted(turn, np.arange(n_cycles) + 2 + begin)
+    top = np.searchsorted(turn, np.arange(n_cycles) + 1 + peak)
+    return Cycles(
+        first, last, np.stack([first, top], axis=1), np.stack([top, last], axis=1),
+        np.ones((n_cycles, 2)), np.zeros(turn.size, np.int32), np.zeros(turn.size, np.int8),
+        np.zeros(turn.size, bool), 0.001,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("per_cycle", [15.7, 15.9, 16.1, 16.3, 18.4])
+def test_tension_at_the_corner_of_a_rest_of_two_readings_is_held_by_its_interval(per_cycle):
+    # a spring, and as much again in a Maxwell element of 0.5 s, less than from reading to reading
+    n_cycles = 14
+    fine = np.arange(0, n_cycles + 3, 1e-4)
+    wave = np.interp(fine % 1, [0, 0.35, 0.5, 0.85, 1], [-1, 1, 1, -1, -1])
+    held, keep = np.zeros_like(wave), np.exp(-1e-3 / 0.5)
+    for step in range(1, wave.size):
+        held[step] = (held[step - 1] + 2000 * (wave[step] - wave[step - 1])) * keep
+    force = 9000 + 2000 * wave + held
+    true = np.ptp(force[-20000:]) / 2
+    turn = np.arange(0.37, per_cycle * (n_cycles + 2)) / per_cycle
+    strain = 0.06 + 0.02 * np.interp(turn, fine, wave)
+    tension = np.interp(turn, fine, force) + np.random.default_rng(3).normal(0, 1, turn.size)
+    cycles = cycles_between(turn, n_cycles, peak=0.35)
+    loops = close_loops(10 * turn, tension[None], strain[None], cycles, waveform="other")
+    found = summarise_amplitude(loops, area=[1e-4])
+    assert found.strain_amplitude[0] == pytest.approx(0.02, rel=6e-3)
+    for name, value in (("tension_amplitude", true), ("apparent_spring_constant", true / 0.02)):
+        assert abs(getattr(found, name)[0] - value) < 2 * found.uncertainty[name][0] < 0.1 * value
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_ramps_that_are_read_when_it_pleases_the_logger_hold_their_amplitude(seed):
+    # intervals that scatter as much as they are long: a turn lies in one twice as long as the mean
+    rng = np.random.default_rng(seed)
+    turn = np.cumsum(rng.exponential(1 / 60, 1100))
+    turn = turn[turn < 15]
+    wave = 2 * np.abs((turn - 0.5) % 1 - 0.5) * 2 - 1
+    cycles = cycles_between(turn, 12)
+    strain = 0.06 + 0.02 * wave
+    loops = close_loops(10 * turn, 3e5 * strain[None], strain[None], cycles, driven=strain)
+    found = summarise_amplitude(loops, area=[1e-4])
+    assert found.strain_amplitude[0] < 0.0197
+    assert found.strain_amplitude[0] + 2.5 * found.uncertainty["strain_amplitude"][0] > 0.02
+    assert found.uncertainty["strain_amplitude"][0] < 0.001

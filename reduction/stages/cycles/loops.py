@@ -1199,21 +1199,23 @@ def _extremes(values: Floats, first: Integers, last: Integers) -> tuple[Floats, 
 
 def _readings_at_turns(
     series: Floats,
+    time: Floats,
     branch_first: Integers,
     branch_last: Integers,
     *,
     reach: int,
     turn: Turn,
     way: int,
-    moved: Floats | None,
+    moved: Floats,
+    answers: bool,
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """Greatest reading near each peak, least ones near both valleys, and what they miss.
 
     A turn between two samples lies above the readings, and below where the lines beside it cross,
     since no machine turns at once: half way, and half the range is missed by as much again.  Of a
     turn that is rounded over samples the readings miss less.  What answers a corner of the channel
-    that ``moved`` it turns where its approach meets that corner: it may relax before the next
-    reading.  A series of way -1 falls where the driven channel rises.
+    that ``moved`` it, if it ``answers``, turns where its approach meets that corner: it may relax
+    before the next reading.  A series of way -1 falls where the driven channel rises.
     """
     values = way * series
     begin, peak, end = branch_first[:, 0], branch_last[:, 0], branch_last[:, 1]
@@ -1231,13 +1233,17 @@ def _readings_at_turns(
     if turn == "sharp":
         above = level_of_turn(values, peak, top, sign=1) - top
         below = last - level_of_turn(values, end, last, sign=-1)
-        if moved is not None:
-            noise = reading_noise(moved)
-            at_top = _places(values, peak - reach, np.minimum(peak + reach, end))
-            at_last = _places(-values, np.maximum(end - reach, peak), end)
-            of_peak = level_at_corner(values, moved, at_top, sign=1, noise=noise)
-            of_valley = level_at_corner(values, moved, at_last, sign=-1, noise=noise)
-            excess = np.fmax(of_peak - top - above, 0), np.fmax(last - of_valley - below, 0)
+        noise = reading_noise(moved)
+        at_top = _places(values, peak - reach, np.minimum(peak + reach, end))
+        at_last = _places(-values, np.maximum(end - reach, peak), end)
+        of_peak, peak_rests = level_at_corner(values, moved, at_top, sign=1, noise=noise)
+        of_valley, valley_rests = level_at_corner(values, moved, at_last, sign=-1, noise=noise)
+        of_peak, of_valley = of_peak - top, last - of_valley
+        # lines beside a short rest cross above it, and above its corners
+        above = np.where(peak_rests, np.fmin(above, of_peak), above)
+        below = np.where(valley_rests, np.fmin(below, of_valley), below)
+        if answers:
+            excess = np.fmax(of_peak - above, 0), np.fmax(of_valley - below, 0)
             above, below = above + excess[0], below + excess[1]
             missed = (_EITHER - 1) * (excess[0] + excess[1]) / 2
         else:
@@ -1254,7 +1260,10 @@ def _readings_at_turns(
         # the readings are the lower end of it, and not its middle
         missed = np.full(top.size, np.nanmedian(above + below))
     elif turn == "hidden":  # at most what lines of these ramps add where they cross half way
-        missed = (top - (first + last) / 2) / (end - begin)
+        wait = np.diff(time, append=time[-1])
+        at_peak, at_end = (np.fmax(wait[at - 1], wait[at]) for at in (peak, end))
+        beside = (at_peak + at_end) / 2
+        missed = (top - (first + last) / 2) * beside / (time[end] - time[begin])
     return way * top, way * first, way * last, missed
 
 
@@ -1559,12 +1568,14 @@ def _measure(
             for series, way in zip((force, stretch), ways, strict=True)
             for one in _readings_at_turns(
                 series,
+                time,
                 *branches,
                 reach=reach,
                 turn=turn,
                 way=way,
                 # of two the other one answers: strain follows the position that is driven
-                moved=moved if (series is force) != (moved is force) else None,
+                moved=ways[moved is stretch] * moved,
+                answers=(series is force) != (moved is force),
             )
         )
     )

@@ -25,7 +25,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from reduction.record.measurement import Floats, Integers
+from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.samples import take_samples
 
 _MOST_TURNS = 400  # for a mean over cycles
@@ -273,7 +273,7 @@ def level_of_turn(values: Floats, turn: Integers, extreme: Floats, *, sign: int)
 
 def level_at_corner(
     values: Floats, moved: Floats, extreme_at: Integers, *, sign: int, noise: float
-) -> Floats:
+) -> tuple[Floats, Bools]:
     """Level to which the approach of a series goes on, to the corner of the channel that moves it.
 
     What relaxes within a sample after the corner leaves no line there: the readings after it say
@@ -296,6 +296,8 @@ def level_at_corner(
     -------
     level : ndarray, shape (n_turns,)
         The extreme reading where ``moved`` has no corner beside it, or is past it. [any]
+    rests : ndarray of bool, shape (n_turns,)
+        Whether ``moved`` rests there for two readings: lines beside such a turn cross above it. [1]
 
     Raises
     ------
@@ -309,16 +311,17 @@ def level_at_corner(
     >>> place = np.arange(11)
     >>> drive = np.minimum(place - 5.6, 0)
     >>> force = np.where(place <= 5, 100 + 10 * (place - 5.6), 80)
-    >>> print(level_at_corner(force, drive, np.array([5]), sign=1, noise=0))
+    >>> level, _ = level_at_corner(force, drive, np.array([5]), sign=1, noise=0)
+    >>> print(level)
     [100.]
     """
-    offset = _offset_of_corner(moved, extreme_at, sign=sign, noise=noise)
+    offset, rests = _offset_of_corner(moved, extreme_at, sign=sign, noise=noise)
     reading = sign * take_samples(values, extreme_at)
     before = extreme_at - (offset < 0)
     level = sign * values
     approach = level[before] - level[before - 1]
     beyond = level[before] + approach * np.where(offset < 0, 1 + offset, offset)
-    return np.asarray(sign * np.where(np.isfinite(offset), np.fmax(beyond, reading), reading))
+    return sign * np.where(np.isfinite(offset), np.fmax(beyond, reading), reading), rests
 
 
 def energy_beside_polygon(
@@ -408,24 +411,40 @@ def energy_beside_polygon(
 
 def has_corners(moved: Floats, extreme_at: Integers, *, sign: int, noise: float) -> bool:
     """Whether a channel has a corner beside most of the extremes of the one that answers it."""
-    offset = _offset_of_corner(moved, extreme_at, sign=sign, noise=noise)
+    offset, _ = _offset_of_corner(moved, extreme_at, sign=sign, noise=noise)
     return bool(np.isfinite(offset).mean() > _MOST_CORNERS)
 
 
-def _offset_of_corner(moved: Floats, extreme_at: Integers, *, sign: int, noise: float) -> Floats:
-    """Samples from an extreme to the corner beside it; NaN where there is none."""
+def _offset_of_corner(
+    moved: Floats, extreme_at: Integers, *, sign: int, noise: float
+) -> tuple[Floats, Bools]:
+    """Samples from an extreme to the corner beside it, NaN where none is; and short rests there.
+
+    A rest of two readings has one step after the corner, and not two that are alike.
+    """
     window = extreme_at[:, None] + np.arange(-_BESIDE, _BESIDE + 1)
-    usable = (window[:, 0] >= 0) & (window[:, -1] < moved.size)
+    inside = (window[:, 0] >= 0) & (window[:, -1] < moved.size)
     drive = sign * moved[np.clip(window, 0, moved.size - 1)]
     steps = np.diff(drive, axis=1)
     rise, on = steps[:, 1], steps[:, 4]
     # two steps alike before the corner and two after it, and a change of slope between them
     alike = np.maximum(np.abs(steps[:, 0] - rise), np.abs(steps[:, 5] - on))
-    usable &= (rise > _STEEP * noise) & (alike < _ROUNDED * rise + 2 * noise)
+    usable = inside & (rise > _STEEP * noise) & (alike < _ROUNDED * rise + 2 * noise)
     usable &= rise - on > 2 * _ROUNDED * rise
     with np.errstate(divide="ignore", invalid="ignore"):
         offset = (drive[:, 4] - drive[:, 2] - rise - on) / (rise - on)
-    return np.where(usable & (np.abs(offset) <= 1), offset, np.nan)
+    offset[~usable | (np.abs(offset) > 1)] = np.nan
+    rests = np.zeros(offset.shape, dtype=bool)
+    for at in (_BESIDE, _BESIDE - 1):  # the step that has the corner, after the extreme or before
+        second, rise, own, on = steps[:, at - 2 : at + 2].T
+        usable = inside & np.isnan(offset) & (rise > _STEEP * noise)
+        usable &= np.abs(second - rise) < _ROUNDED * rise + 2 * noise
+        usable &= (np.abs(on) < _ROUNDED * rise) & (own > on - 2 * noise) & (own < rise)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.maximum((own - on) / (rise - on), 0)
+        rests |= usable
+        offset = np.where(usable, at - _BESIDE + share, offset)
+    return offset, rests
 
 
 def missed_by_extreme(values: Floats, turn: Integers, extreme: Floats, *, sign: int) -> Floats:
