@@ -103,7 +103,7 @@ def test_the_end_of_a_ramp_that_slows_down_is_known_to_its_slowing():
     _, slows = ramp_end_time(time, ramp(time, "slows"), band=1e-6)
     # the last fiftieth takes 0.95 s (root of 0.02 over 0.05, of 1.5 s), 0.3 s at the mean rate
     assert sharp < 0.05
-    assert slows == pytest.approx((0.95 - 0.3) / np.sqrt(12), rel=0.25)
+    assert slows == pytest.approx(2 * (0.95 - 0.3) / np.sqrt(12), rel=0.25)
 
 
 def one_hold(shape):

@@ -364,3 +364,77 @@ def test_a_converter_in_coarse_steps_leaves_no_value_without_uncertainty():
     value, spread = _value_at_times(elapsed, read, [10.0, 60.0])
     expected = 1500 - 40 * np.log10(1 + np.array([10.0, 60.0]))
     assert (np.abs(value - expected) < 2 * spread).all()
+
+
+def superposed(
+    shape, interval, *, late, duration=300.0, terms=((1500.0, 1.0), (1000.0, 100.0)), seed=0
+):
+    """A stroke of 2 m from 20 s on, as a share of time; Maxwell terms beside a spring, read at intervals."""
+    fine = np.arange(0, 40 + duration, 0.0025)
+    part = shape(fine - 20)
+    tension = 9000 * part
+    for force, time in terms:
+        keep = np.exp(-0.0025 / time)
+        tension += force * lfilter(
+            [(1 - keep) * time / 0.0025], [1, -keep], np.diff(part, prepend=0)
+        )
+    rng = np.random.default_rng(seed)
+    time = np.arange(late * interval, fine[-1], interval)
+    position, load = 4 + 2 * np.interp(time, fine, part), np.interp(time, fine, tension)
+    return fine, tension, (time, position, load + rng.normal(0, 1.0, time.size))
+
+
+@pytest.mark.parametrize("late", [0.1, 0.4, 0.8])
+def test_what_relaxes_between_two_readings_is_in_the_interval_of_the_initial_tension(late):
+    # at its end the ramp of 10 s has 0.3 s of a term of 4,000 N, read every 2 s
+    fine, tension, log = superposed(
+        lambda t: np.clip(t / 10, 0, 1), 2.0, late=late, terms=((4000.0, 0.3),)
+    )
+    (found,) = reduce(*log, spans=((0, 20), (30, 1e9)))
+    true = np.interp(30.0, fine, tension)
+    assert true == pytest.approx(9120, abs=2)
+    spread = found.hold_initial_tension_standard_uncertainty
+    assert abs(found.hold_initial_tension - true) < 2 * spread < 0.03 * true
+    drop = 1 - tension[-1] / true
+    assert abs(found.relaxation_drop - drop) < 2 * found.relaxation_drop_standard_uncertainty
+
+
+@pytest.mark.parametrize("late", [0.1, 0.3, 0.6, 0.9])
+def test_a_step_within_one_reading_ends_at_a_time_that_is_known_to_one_reading(late):
+    fine, tension, log = superposed(lambda t: np.clip(t / 0.05, 0, 1), 0.1, late=late)
+    (found,) = reduce(*log, spans=((0, 20), (20.1, 1e9)))
+    for time, value, spread in zip(
+        found.times, found.tension_at_time, found.tension_at_time_standard_uncertainty, strict=True
+    ):
+        if np.isfinite(value):
+            true = np.interp(20.05 + time, fine, tension)
+            assert abs(value - true) < 2.5 * spread + 1e-4 * true < 0.02 * true
+
+
+@pytest.mark.parametrize("late", [0.1, 0.5, 0.9])
+def test_a_ramp_without_a_corner_ends_where_it_has_come_to_rest(late):
+    # a stroke of smooth shape over 4 s, read five times a second: no last step that is cut short
+    def smooth(t):
+        part = np.clip(t / 4, 0, 1)
+        return part * part * (3 - 2 * part)
+
+    fine, tension, log = superposed(smooth, 0.2, late=late)
+    (found,) = reduce(*log, spans=((0, 20), (24, 1e9)))
+    assert found.ramp_end_time == pytest.approx(24, abs=0.2)
+    for time, value, spread in zip(
+        found.times, found.tension_at_time, found.tension_at_time_standard_uncertainty, strict=True
+    ):
+        if np.isfinite(value):
+            true = np.interp(24 + time, fine, tension)
+            assert abs(value - true) < 2.5 * spread + 1e-4 * true < 0.02 * true
+
+
+def test_the_final_tension_is_that_of_the_last_reading_and_not_of_the_mean_before_it():
+    # what is lost in the last twentieth is 0.1 % of the tension, and ten times the uncertainty
+    fine, tension, log = superposed(lambda t: np.clip(t / 5, 0, 1), 0.1, late=0.5, duration=60.0)
+    (found,) = reduce(*log, spans=((0, 20), (25, 1e9)))
+    true = np.interp(log[0][-1], fine, tension)
+    stretch = np.interp(log[0][-int(0.05 * (log[0][-1] - 25) / 0.1) :], fine, tension)
+    spread = found.hold_final_tension_standard_uncertainty
+    assert stretch.mean() - true > 10 * spread
+    assert abs(found.hold_final_tension - true) < 2.5 * spread

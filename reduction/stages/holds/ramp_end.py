@@ -60,9 +60,10 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
     Notes
     -----
     No source: the last step of a ramp sampled at even steps is cut short where the ramp ends
-    between two samples.  A ramp that slows down has no corner: what its last fiftieth takes
-    longer than at its mean rate is the width in which it may have ended, and so is a step of the
-    log that does not show the corner.
+    between two samples.  A ramp that slows down has no corner, and is over at the last sample: what
+    its last fiftieth takes longer than at its mean rate is how far, either way, it may have ended
+    from there.  A step of the log that does not show the corner is such a width, too; of a ramp
+    within two steps, both of which are cut short, it ends before the last sample.
 
     Examples
     --------
@@ -72,24 +73,34 @@ def ramp_end_time(time: Floats, place: Floats, *, band: float) -> tuple[float, f
     (2.5, 0.0)
     """
     end = float(time[-1])
-    if time.size < 3:
-        return end, float(end - time[0]) / 12**0.5
+    step = float(time[-1] - time[-2]) if time.size > 1 else 0.0
+    # a ramp within a step or two: each is cut short, and says nothing of the rate
+    if time.size <= _FEWEST_STEPS:
+        return end, step / 3**0.5
     left = np.abs(place - place[-1])
     stroke, duration = float(left[0]), end - float(time[0])
     near = max(NEAR_SHARE * stroke, band / 2)
     entered = int(time.size - np.argmax((left > near)[::-1]))
     slowing = end - float(time[min(entered, time.size - 1)]) - near / stroke * duration
-    first = max(time.size - 2 - _STEPS_BEFORE, 0)
-    # of a ramp of few samples the first step is cut short as well
-    rate = float(np.median(np.diff(place[first:-1]) / np.diff(time[first:-1])))
+    # the first step is cut short as well
+    rates = np.diff(place[max(time.size - 2 - _STEPS_BEFORE, 1) : -1])
+    rates /= np.diff(time[-1 - rates.size - 1 : -1])
+    rate = float(np.median(rates))
     last = place[-1] - place[-2]
-    step = float(time[-1] - time[-2])
     width = max(slowing, 0.0)
-    if abs(rate) * step > band:
-        end = float(time[-2]) + step * float(np.clip(last / (rate * step), 0.0, 1.0))
-    else:
+    if abs(rate) * step <= band:
         width = max(width, step)
+    elif rates[-1] / rate < _SLOWS and abs(rate - rates[-1]) * step > band:
+        # it has no corner, and ends when its last part is within what noise and near ones hide
+        width *= 2
+    else:
+        end = float(time[-2]) + step * float(np.clip(last / (rate * step), 0.0, 1.0))
     return end, width / 12**0.5
+
+
+_FEWEST_STEPS = 3  # samples
+
+_SLOWS = 0.8  # of the rate of the steps before, that the last whole one has
 
 
 @dataclass(frozen=True)

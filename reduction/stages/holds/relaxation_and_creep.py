@@ -194,8 +194,8 @@ class HoldResult:
     hold_start_time, hold_duration : float
         [s]
     hold_strain, hold_initial_tension, hold_final_tension : float
-        Mean strain [1]; tension at the start and at the end of the hold, each the
-        mean of a short stretch that ``made`` names. [N]
+        Mean strain [1]; tension at the start and at the end of the hold, each of a
+        line through a short stretch that ``made`` names. [N]
     relaxation_drop, relaxation_drop_standard_uncertainty : float
         Share of the initial tension lost over the hold. [1]
     rate_per_decade, rate_per_decade_standard_uncertainty : float
@@ -608,6 +608,9 @@ class Hold:
     logged_peak, earlier_peak : float
         Greatest reading of tension beside the end of the ramp, and in its last half before
         that; NaN where the ramp does not add tension. [N]
+    ramp_leads_to : float
+        Tension to which the last readings before the end of the ramp lead, at the length where it
+        ends; NaN where it is not known. [N]
     n_logged : int
         How many samples the log has of it, those that are left out included. [1]
     on_tension : bool
@@ -626,6 +629,7 @@ class Hold:
     slack_tension: float = 0.0
     logged_peak: float = float("nan")
     earlier_peak: float = float("nan")
+    ramp_leads_to: float = float("nan")
     n_logged: int = 0
     on_tension: bool = False
     refusals: list[Note] = field(default_factory=list)
@@ -708,7 +712,10 @@ def _hold_ends(hold: Hold) -> _Ends:
     ramp ended is known to a step of the log or to the noise of the position, at the rate of
     the tension.  A log that peaks higher beside it may mean the tension to be as high.  The line
     is no shorter than a twentieth of the ramp: what relaxes faster has done so within it, and a
-    machine rings.  The last is the mean of 5 % of the samples, at least three.
+    machine rings.  Where the last readings of the ramp lead higher than that line, something may
+    have relaxed between two readings, and the tension lies between both.  The tension at the end is
+    that of a line over the logarithm of time through the last 5 % of the samples, at
+    least three: their mean is that of the middle of them.
 
     Examples
     --------
@@ -721,7 +728,7 @@ def _hold_ends(hold: Hold) -> _Ends:
     0.1875
     """
     n_final = max(3, int(FINAL_SHARE * hold.time.size))
-    final, u_final = end_mean(hold.tension, n_samples=n_final, at_end=True)
+    final, u_final = _at_last(hold, n_final)
     first = level_at_end(
         shifted(hold.time, hold.ramp_end_time),
         hold.tension,
@@ -743,11 +750,26 @@ def _hold_ends(hold: Hold) -> _Ends:
     # it has not settled at once: the tension is somewhere between the two
     if SIGNIFICANT * u_initial < above < LARGEST_DISAGREEMENT * first.value:
         u_initial = float(np.hypot(u_initial, above / np.sqrt(3)))
+    led_to = hold.ramp_leads_to - SIGNIFICANT * hold.tension_noise - first.value
+    # of a piece that has broken the ramp says nothing
+    if SIGNIFICANT * u_initial < led_to < first.value:
+        u_initial = float(np.hypot(u_initial, led_to / np.sqrt(3)))
     drop = float(_relaxation_drop(first.value, final))
     uncertainty = float(np.hypot(u_final, (1 - drop) * u_initial) / first.value)
     known = uncertainty if drop == drop else np.nan
     counts = first.n_samples, n_final
     return _Ends(first.value, final, drop, known, u_initial, u_final, *counts, late)
+
+
+def _at_last(hold: Hold, n_samples: int) -> tuple[float, float]:
+    """Tension at the last sample, of a line over the logarithm of time through the last ones."""
+    series = hold.tension[-n_samples:]
+    mean, spread = end_mean(hold.tension, n_samples=n_samples, at_end=True)
+    since = hold.time[-n_samples:] - hold.ramp_end_time
+    if since.size < 3 or not since[0] > 0:
+        return mean, spread
+    value, _, own = _on_line(since, series, float(since[-1]), noise=reading_noise(hold.tension))
+    return value, float(np.hypot(spread, own))
 
 
 def _late_load(hold: Hold, initial: float) -> _LateLoad | None:
@@ -1078,6 +1100,9 @@ def select_hold(
     earlier, peak = (
         (np.nan, np.nan) if ramp is None else _logged_peaks(time, tension, ramp, first, last)
     )
+    leads_to = np.nan
+    if ramp is not None and standstills.tension_tolerance is None and place.size:
+        leads_to = _ramp_leads_to(time, position, tension, ramp, first, float(place[0]))
     return Hold(
         time=seconds,
         position=place,
@@ -1089,9 +1114,36 @@ def select_hold(
         slack_tension=standstills.slack_tension,
         logged_peak=peak,
         earlier_peak=earlier,
+        ramp_leads_to=leads_to,
         n_logged=last + 1 - first,
         on_tension=standstills.tension_tolerance is not None,
     )
+
+
+def _ramp_leads_to(
+    time: Floats, position: Floats, tension: Floats, ramp: _Ramp, first: int, held_at: float
+) -> float:
+    """Tension to which the last readings before the end of a ramp lead, where it ends."""
+    begin = int(np.searchsorted(time[: first + 1], ramp.start_time))
+    end = int(np.searchsorted(time[: first + 1], ramp.end_time))
+    known = np.flatnonzero(np.isfinite(position[begin:end] + tension[begin:end])) + begin
+    if known.size < _FEWEST_ON_RAMP:
+        return float("nan")
+    load, place = tension[known[-_FEWEST_ON_RAMP:]], position[known[-_FEWEST_ON_RAMP:]]
+    if not np.abs(np.diff(place)).min() > 0:
+        return float("nan")
+    earlier, slope = np.diff(load) / np.diff(place)
+    ahead = held_at - place[-1]
+    # of a curve that bends more than noise does, the line lies below
+    bend = (slope - earlier) / (place[-1] - place[0])
+    if abs(bend) * (place[-1] - place[-2]) ** 2 < _BENDS * reading_noise(tension[begin:end]):
+        bend = 0.0
+    return float(load[-1] + slope * ahead + bend * ahead * (held_at - place[-2]))
+
+
+_BENDS = 3.0  # noise of a reading
+
+_FEWEST_ON_RAMP = 3  # readings, of which the first may not be on it
 
 
 def _logged_peaks(
@@ -1295,8 +1347,8 @@ def _result(
         ends = _hold_ends(hold)
         hold.made.append(
             f"initial tension is that of a line through the first {ends.n_initial} samples at the "
-            f"end of the ramp, final tension the mean of the last {ends.n_final} of "
-            f"{hold.time.size}"
+            f"end of the ramp, final tension that of a line over the logarithm of time through the "
+            f"last {ends.n_final} of {hold.time.size}"
         )
         unsure = 0.0 if hold.ramp is None else hold.ramp.end_uncertainty
         tension_at = _value_at_times(
