@@ -222,7 +222,9 @@ def _by_response(archive: xr.Dataset) -> xr.Dataset:
 
 def _stacked(archive: xr.Dataset, names: Sequence[str], what: str) -> xr.Variable | None:
     """Set one quantity of every response behind the experiments; None where none has it."""
-    given = {name: archive[f"{name}{what}"] for name in names if f"{name}{what}" in archive}
+    given = {
+        name: archive.variables[f"{name}{what}"] for name in names if f"{name}{what}" in archive
+    }
     if not given:
         return None
     first = next(iter(given.values()))

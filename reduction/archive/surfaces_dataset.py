@@ -842,7 +842,7 @@ class _Reader:
 
     def own(self, name: str) -> NDArray[Any]:
         """Give a variable of this experiment."""
-        variable = self.dataset[name]
+        variable = self.dataset.variables[name]
         cut = tuple(slice(self.sizes[str(dim)]) for dim in variable.dims[1:])
         values: NDArray[Any] = np.asarray(variable.values[self.row])[cut]
         return values

@@ -8,7 +8,8 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import cached_property
 from math import pi
 from typing import Literal
 
@@ -123,13 +124,13 @@ class HoseDesign:
         first, second = self.layer_diameter
         return np.asarray((np.asarray(first, dtype=np.float64) + second) / 2)
 
-    @property
+    @cached_property
     def shape(self) -> tuple[int, ...]:
         """Of the designs together; () for one."""
         numbers = [
-            value
-            for name, value in vars(self).items()
-            if name not in ("layer_diameter", "cord", "rubber_law")
+            getattr(self, item.name)
+            for item in fields(self)
+            if item.name not in ("layer_diameter", "cord", "rubber_law")
         ]
         shapes = {np.shape(one) for one in (*numbers, *self.layer_diameter)}
         return np.broadcast_shapes(*shapes)

@@ -464,7 +464,7 @@ class ExperimentView(RowView):
         """Values of a text variable, one an entry of its dimension; as many "" where none."""
         if name not in self.data:
             return ("",) * self.sizes.get("run" if name.startswith("run_") else "", 0)
-        variable = self.data[name]
+        variable = self.data.variables[name]
         cut = tuple(slice(self.sizes.get(str(dim))) for dim in variable.dims[1:])
         return tuple(str(text) for text in np.ravel(variable.values[self.index][cut]))
 

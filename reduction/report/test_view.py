@@ -547,7 +547,7 @@ class RowView:
         """Values of a variable of this row; of no length where there is none."""
         if name not in self.data:
             return np.full(0, np.nan)
-        variable = self.data[name]
+        variable = self.data.variables[name]
         cut = tuple(slice(self.sizes.get(str(dim))) for dim in variable.dims[1:])
         return np.asarray(variable.values[self.index], dtype=np.float64)[cut]
 
