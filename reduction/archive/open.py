@@ -26,7 +26,6 @@ from reduction.archive.dataset_builder import (
     SCHEMA_VERSION,
     as_read,
     build_dataset,
-    variable_of,
 )
 from reduction.archive.scratch_file import ScratchFile
 from reduction.quantities.names import (
@@ -171,20 +170,17 @@ def _stamp_of(path: Path) -> tuple[int, ...]:
 
 
 def _as_read(built: xr.Dataset) -> xr.Dataset:
-    """Return a dataset that was built for writing as the libraries give it when they read it."""
-    variables: dict[Any, xr.Variable] = {}
-    for name, variable in built.variables.items():
-        values = variable.values
-        if values.dtype.kind == "U":
-            values = values.astype(object)
-        attributes = as_read(variable.attrs)
-        variables[name] = variable_of(str(name), variable.dims, values, attributes=attributes)
-    coordinates = set(built.coords)
-    return xr.Dataset(
-        {name: one for name, one in variables.items() if name not in coordinates},
-        {name: one for name, one in variables.items() if name in coordinates},
-        built.attrs,
-    )
+    """Return a dataset that was built for writing as the libraries give it when they read it.
+
+    Its variables are those of a copy, since to make a dataset of new ones takes four times as long.
+    """
+    found = built.copy(deep=False)
+    for variable in found.variables.values():
+        if variable.dtype.kind == "U":
+            variable.values = variable.values.astype(object)
+        variable.attrs = as_read(variable.attrs)
+        variable.encoding = {}
+    return found
 
 
 def in_memory(archive: xr.Dataset) -> xr.Dataset:
