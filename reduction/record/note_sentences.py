@@ -548,8 +548,8 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     ),
     "not-triangular": (
         "warning",
-        "the waveform is declared triangular, but only {share:.0%} of the branches run at a"
-        ' constant rate. Check whether waveform = "sinusoidal" applies',
+        "the waveform is taken as triangular (stated, or by default), but only {share:.0%} of the"
+        ' branches run at a constant rate. Check whether waveform = "sinusoidal" applies',
     ),
     "stated-lag-long": (
         "warning",
@@ -1441,12 +1441,14 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "waveform-not-as-stated": (
         "warning",
         lambda stated, found: (
-            f"the stated waveform is {stated}, but that of the log is"
+            f'waveform = "{stated}"'
+            + (" (stated, or by default)" if stated == "triangular" else "")
+            + ", but that of the log is"
             + (
                 " neither a triangle nor a sine, and its loops are reduced as those of waveform ="
-                ' "other". State it'
+                ' "other". State the waveform'
                 if found == "other"
-                else f" {found}. Check waveform"
+                else f" {found}. State the waveform of the machine"
             )
         ),
     ),
