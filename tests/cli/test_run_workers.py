@@ -289,7 +289,8 @@ def test_jobs_and_scheduler_exclude_each_other(campaign, command, tmp_path):
 
 def test_a_scheduler_without_dask_says_what_to_install(campaign, command, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    monkeypatch.delitem(sys.modules, "reduction.batch.workers", raising=False)
+    for name in ("workers", "dask_cluster"):  # which a test before may have imported
+        monkeypatch.delitem(sys.modules, f"reduction.batch.{name}", raising=False)
     done = command("run", campaign, "--scheduler", "tcp://127.0.0.1:1", cwd=tmp_path)
     assert done.returncode == 2
     assert "--scheduler needs Dask, which is not installed" in done.stderr
