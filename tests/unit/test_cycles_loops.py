@@ -557,7 +557,7 @@ def test_a_window_that_noise_fills_does_not_stop_a_reduction(seed):
     ramps = np.append(np.tile(np.r_[0:60, 60:0:-1], 30), 0) * 0.05
     noisy = ramps + np.random.default_rng(seed).normal(0, 2, ramps.size)
     peak = np.arange(60, ramps.size, 120)
-    excess = noise_in_extreme(noisy, peak, reach=15, sign=1, noise=2.0)
+    excess, _ = noise_in_extreme(noisy, peak, reach=15, sign=1, noise=2.0)
     assert 2.0 < excess < 5.0  # of 31 normal readings of one level the greatest is 4.1 N above
 
 
@@ -825,7 +825,7 @@ def test_noise_lifts_the_extremes_of_rounded_turns_by_what_is_taken_off(rounded,
         noisy = ramps + np.random.default_rng(seed).normal(0, 3, ramps.size)
         found = np.array([one - 25 + noisy[one - 25 : one + 26].argmax() for one in peak])
         lifted.append(noisy[found].mean() - ramps[peak].mean())
-        taken_off.append(noise_in_extreme(noisy, found, reach=25, sign=1, noise=3.0))
+        taken_off.append(noise_in_extreme(noisy, found, reach=25, sign=1, noise=3.0)[0])
     assert np.mean(taken_off) == pytest.approx(np.mean(lifted), abs=0.25 * 3)
 
 
@@ -971,3 +971,34 @@ def test_ramps_that_are_read_when_it_pleases_the_logger_hold_their_amplitude(see
     assert found.strain_amplitude[0] < 0.0197
     assert found.strain_amplitude[0] + 2.5 * found.uncertainty["strain_amplitude"][0] > 0.02
     assert found.uncertainty["strain_amplitude"][0] < 0.001
+
+
+def creeping_trapezoids(per_cycle, *, noise, rest=0.15, n_cycles=14, seed=3):
+    """Load that rests at its turns, and a strain that creeps on there: a Kelvin element of 1 s in 10 s."""
+    fine = np.arange(0, n_cycles + 3, 1e-4)
+    wave = np.interp(fine % 1, [0, 0.5 - rest, 0.5, 1 - rest, 1], [-1, 1, 1, -1, -1])
+    held, keep = np.zeros_like(wave), np.exp(-1e-3)
+    for step in range(1, wave.size):
+        held[step] = held[step - 1] * keep + (1 - keep) * wave[step]
+    strain = 0.05 + 0.015 * wave + 0.002 * held
+    turn = np.arange(0.37, per_cycle * (n_cycles + 2)) / per_cycle
+    rng = np.random.default_rng(seed)
+    read = np.interp(turn, fine, strain) + 0.015 * noise * rng.normal(size=turn.size)
+    load = 9000 + 4000 * (np.interp(turn, fine, wave) + noise * rng.normal(size=turn.size))
+    # the machine is taken to turn anywhere in its rest
+    cycles = cycles_between(turn + rng.uniform(0, rest) * (turn % 1 > 0.5), n_cycles, peak=0.4)
+    return 10 * turn, load, read, cycles, np.ptp(strain[-20000:]) / 2
+
+
+@pytest.mark.parametrize("per_cycle", [14.3, 31.4, 100.3])
+@pytest.mark.parametrize("noise", [0.0, 0.006])
+def test_strain_that_creeps_while_the_load_rests_is_farthest_where_it_leaves(per_cycle, noise):
+    time, load, strain, cycles, true = creeping_trapezoids(per_cycle, noise=noise)
+    loops = close_loops(
+        time, load[None], strain[None], cycles, waveform="other", control="load", driven=load
+    )
+    found = summarise_amplitude(loops, area=[1e-4])
+    for name, value in (("strain_amplitude", true), ("apparent_spring_constant", 4000 / true)):
+        spread = found.uncertainty[name][0]
+        assert abs(getattr(found, name)[0] - value) < 2.5 * spread + 1e-4 * value < 0.15 * value
+    assert found.tension_amplitude[0] == pytest.approx(4000, rel=4e-3)

@@ -102,6 +102,7 @@ from reduction.stages.cycles.turns import (
     level_of_turn,
     missed_by_extreme,
     noise_in_extreme,
+    rests_at_turns,
 )
 
 _EIGHTH_ORDER = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
@@ -882,7 +883,7 @@ def _quantities_of_cycles(
     waveform: Waveform,
     noise: float,
     strain_noise: float,
-    rise_share: Floats | float = 0.5,
+    rise_shares: tuple[Floats | float, Floats | float] = (0.5, 0.5),
     control: Control = "position",
     turn: Turn = "rounded",
     shapes: tuple[_Shape, _Shape] | None = None,
@@ -959,7 +960,10 @@ def _quantities_of_cycles(
                 rise_share,
                 follows,
             )
-            for name, drift in (("force", force_drift), ("strain", strain_drift))
+            for name, drift, rise_share in (
+                ("force", force_drift, rise_shares[0]),
+                ("strain", strain_drift, rise_shares[1]),
+            )
         )
     energy = _without_drift(
         row["energy"],
@@ -1231,17 +1235,26 @@ def _readings_at_turns(
     last = extreme(np.minimum, end - reach, end)
     missed = np.zeros(top.size)
     if turn == "sharp":
+        # what creeps while its channel rests is farthest after the turn that ends the cycle
+        stop = np.minimum(end + reach, np.append(peak[1:], values.size - 1))
+        at_top = _places(values, peak - reach, np.minimum(peak + reach, end))
+        at_last = _places(-values, np.maximum(end - reach, peak), stop)
+        last = np.fmin(last, values[at_last])
         above = level_of_turn(values, peak, top, sign=1) - top
         below = last - level_of_turn(values, end, last, sign=-1)
-        noise = reading_noise(moved)
-        at_top = _places(values, peak - reach, np.minimum(peak + reach, end))
-        at_last = _places(-values, np.maximum(end - reach, peak), end)
-        of_peak, peak_rests = level_at_corner(values, moved, at_top, sign=1, noise=noise)
-        of_valley, valley_rests = level_at_corner(values, moved, at_last, sign=-1, noise=noise)
-        of_peak, of_valley = of_peak - top, last - of_valley
-        # lines beside a short rest cross above it, and above its corners
-        above = np.where(peak_rests, np.fmin(above, of_peak), above)
-        below = np.where(valley_rests, np.fmin(below, of_valley), below)
+        noise = _within_scatter(reading_noise(moved), moved[peak])
+        rests = rests_at_turns(moved, peak)
+        of_peak, of_valley = (
+            np.abs(level_at_corner(values, moved, at, sign=sign, noise=noise, rests=rests) - level)
+            for at, sign, level in ((at_top, 1, top), (at_last, -1, last))
+        )
+        if rests:
+            # lines beside a rest cross above it, and of its readings noise makes one the greatest
+            above, below = np.zeros((2, top.size))
+            if not answers:
+                step = (top - last) / (end - peak)
+                top = _mean_of_rest(values, at_top, top, within=_OF_A_STEP * step)
+                last = -_mean_of_rest(-values, at_last, -last, within=_OF_A_STEP * step)
         if answers:
             excess = np.fmax(of_peak - above, 0), np.fmax(of_valley - below, 0)
             above, below = above + excess[0], below + excess[1]
@@ -1249,7 +1262,6 @@ def _readings_at_turns(
         else:
             # a machine that dwells is at the level of its corner, and misses nothing
             upper = _plateau(values, peak - reach, np.minimum(peak + reach, end), top)
-            stop = np.minimum(end + reach, np.append(peak[1:], values.size - 1))
             lower = _plateau(-values, np.maximum(end - reach, peak), stop, -last)
             top, above = (top, above) if upper is None else (upper, 0 * above)
             last, below = (last, below) if lower is None else (-lower, 0 * below)
@@ -1365,6 +1377,8 @@ def _noise_of_corners(noise: float, turns: Floats) -> float:
 
 _LIKE_CORNERS = 3.0
 
+_FALLS = 0.8  # noise of a reading, from a turn to the reading beside it
+
 
 def _within_scatter(noise: float, top: Floats) -> float:
     """Noise of a reading, no more than the scatter of the extremes from cycle to cycle allows.
@@ -1423,6 +1437,15 @@ def _plateau(values: Floats, low: Integers, high: Integers, top: Floats) -> Floa
         return None
     # of a cycle that begins or ends in its plateau little of it is left
     return np.where(np.isfinite(level), level, top - np.nanmedian(top - level))
+
+
+def _mean_of_rest(values: Floats, at: Integers, greatest: Floats, *, within: Floats) -> Floats:
+    """Mean of the greatest reading of a rest and the next one; the former where it is alone."""
+    beside = np.fmax(values[np.maximum(at - 1, 0)], values[np.minimum(at + 1, values.size - 1)])
+    return np.where(greatest - beside < within, (greatest + beside) / 2, greatest)
+
+
+_OF_A_STEP = 0.05  # of the mean step of a branch
 
 
 def _held_levels(
@@ -1524,13 +1547,16 @@ def _without_noise(
             first[touch] = last[touch - 1]
             return
     noise = _within_scatter(noise, top)
-    of_peak, of_valley = (
+    (of_peak, peak_falls), (of_valley, valley_falls) = (
         noise_in_extreme(values, turn, reach=reach, sign=sign, noise=noise)
         for turn, sign in ((peak, way), (cycles.first[touch], -way))
     )
+    either = _EITHER_WAY * (of_peak + of_valley) / 2
     if of_corners and 0 < noise < _LIKE_CORNERS * of_corners * np.nanmedian(np.abs(top - first)):
-        np.hypot(missed, _EITHER_WAY * (of_peak + of_valley) / 2, out=missed)
+        np.hypot(missed, either, out=missed)
         return
+    if may_dwell and max(peak_falls, valley_falls) > _FALLS * noise:
+        np.hypot(missed, either, out=missed)
     top -= way * of_peak
     first += way * of_valley
     last += way * of_valley
@@ -1706,7 +1732,11 @@ def close_loops(
     reach = max(int((1.0 if waveform == "other" else _REACH_OF_TURN) * branch), 1)
     ways = [(_way(force, cycles), _way(stretch, cycles)) for force, stretch in
             zip(tension, strain, strict=True)]  # fmt: skip
-    turns = _turns(tension, moved, cycles, waveform, noises, ways)
+    answer = int(control == "load")
+    turns = _turns(
+        (tension, strain)[answer], moved, cycles, waveform,
+        [one[answer] for one in noises], [one[answer] for one in ways],
+    )  # fmt: skip
     # the middles of rise and fall, at least a sample apart and from either end
     middles = (cycles.branch_first + cycles.branch_last).T // 2
     middles[0] = np.clip(middles[0], cycles.first + 1, cycles.last - 2)
@@ -1736,7 +1766,7 @@ def close_loops(
         for name in _FIELDS
         if name not in _WITHOUT_UNCERTAINTY
     }
-    rise_share = _rise_share(time, cycles)
+    rise_shares = (_rise_share(time, cycles),) * 2
     for index, (force, stretch) in enumerate(zip(tension, strain, strict=True)):
         noise, strain_noise = noises[index]
         if waveform != "sinusoidal":
@@ -1758,6 +1788,12 @@ def close_loops(
                     may_dwell=waveform == "other", of_corners=of_corners,
                 )  # fmt: skip
         shapes = None
+        if waveform == "other":
+            of_force, of_stretch = ways[index]
+            rise_shares = (
+                _rise_share(time, cycles, of_force * force),
+                _rise_share(time, cycles, of_stretch * stretch),
+            )
         if waveform == "sinusoidal":
             shapes = (
                 _shape_of_wave(time, force, cycles, period, measured[index, _OF_FORCE], ends),
@@ -1765,7 +1801,7 @@ def close_loops(
             )
         values, errors = _quantities_of_cycles(
             measured[index], cycles, ends, waveform=waveform, noise=noise,
-            strain_noise=strain_noise, rise_share=rise_share, control=control,
+            strain_noise=strain_noise, rise_shares=rise_shares, control=control,
             turn=turns[index], shapes=shapes,
         )  # fmt: skip
         for name, column in values.items():
@@ -1795,34 +1831,38 @@ _OF_FORCE, _OF_STRAIN = (
 
 
 def _turns(
-    tension: Floats,
+    answers: Floats,
     driven: Floats,
     cycles: Cycles,
     waveform: Waveform,
-    noises: list[tuple[float, float]],
-    ways: list[tuple[int, int]],
+    noises: list[float],
+    ways: list[int],
 ) -> list[Turn]:
-    """How the wave of each specimen turns; a sine has no corner, another wave what it shows."""
+    """How the wave of each specimen turns; a sine has no corner, another wave what it shows.
+
+    By the channel that answers the driven one: that is farthest at a corner of it.
+    """
     peak = cycles.branch_last[:, 0]
     if waveform == "sinusoidal":
         return ["rounded"] * len(noises)
     if waveform == "other":
         begin, end = cycles.branch_first[:, 0], cycles.branch_last[:, 1]
+        of_driven = _within_scatter(reading_noise(driven), take_samples(driven, peak))
+        rests = rests_at_turns(driven, peak)
         return [
             "sharp"
-            if has_corners(driven, _places(way * force, begin, end), sign=1,
-                           noise=reading_noise(driven))
+            if has_corners(
+                driven, _places(way * answer, begin, end), sign=1, noise=of_driven, rests=rests
+            )
             else "rounded"
-            for force, (way, _) in zip(tension, ways, strict=True)
-        ]  # fmt: skip
+            for answer, way in zip(answers, ways, strict=True)
+        ]
     kind = kind_of_turns(driven, peak, noise=reading_noise(driven))
     if kind != "sharp":
         return [kind] * len(noises)
     return [
-        "sharp"
-        if kind_of_turns(way * force, peak, noise=own, in_doubt=kind) == "sharp"
-        else "hidden"
-        for force, (own, _), (way, _) in zip(tension, noises, ways, strict=True)
+        "sharp" if kind_of_turns(way * answer, peak, noise=own, in_doubt=kind) == kind else "hidden"
+        for answer, own, way in zip(answers, noises, ways, strict=True)
     ]
 
 
@@ -1834,14 +1874,24 @@ def _way(values: Floats, cycles: Cycles) -> int:
     return -1 if known.size and np.median(known) < 0 else 1
 
 
-def _rise_share(time: Floats, cycles: Cycles) -> Floats:
-    """Share of the time of each cycle that its rise takes."""
+def _rise_share(time: Floats, cycles: Cycles, series: Floats | None = None) -> Floats:
+    """Share of the time of each cycle that its rise takes.
+
+    Of a ``series`` that may rest at its turns, from its own extremes: what answers a machine that
+    dwells is farthest where it begins to dwell, or ends, and the machine turns anywhere between.
+    """
     begin, peak, end = (
-        take_samples(time, one)
-        for one in (cycles.branch_first[:, 0], cycles.branch_last[:, 0], cycles.branch_last[:, 1])
-    )
+        cycles.branch_first[:, 0], cycles.branch_last[:, 0], cycles.branch_last[:, 1]
+    )  # fmt: skip
+    if series is not None:
+        follows = touching(cycles)
+        top = _places(series, begin, end)
+        begin = _places(-series, np.where(follows, np.roll(peak, 1), begin), peak)
+        end = np.where(np.roll(follows, -1), np.roll(begin, -1), _places(-series, peak, end))
+        peak = top
+    start, turn, stop = (take_samples(time, one) for one in (begin, peak, end))
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray((peak - begin) / (end - begin))
+        return np.asarray((turn - start) / (stop - start))
 
 
 _PASSES = 4  # each leaves a part in so many of the error as there are cycles

@@ -25,7 +25,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from reduction.record.measurement import Bools, Floats, Integers
+from reduction.record.measurement import Floats, Integers
 from reduction.record.samples import take_samples
 
 _MOST_TURNS = 400  # for a mean over cycles
@@ -37,6 +37,10 @@ _MOST_REACH = 600  # samples beside a turn
 _FARTHEST = 6.0  # standard deviations below a turn
 
 _SMOOTHED = 1.2  # noise over the step from sample to sample: width that rounds a turn little
+
+_PASSES = (
+    3  # of laying turns on each other: a window beside its turn has one flank more than another
+)
 
 _CLEAR = 3.0  # noise of a reading, by which a step from sample to sample shows where a turn is
 
@@ -98,7 +102,7 @@ def noise_in_extreme(
     reach: int,
     sign: int,
     noise: float,
-) -> float:
+) -> tuple[float, float]:
     r"""How far noise lifts the extreme reading beside a turn, on average.
 
     Parameters
@@ -118,6 +122,9 @@ def noise_in_extreme(
     -------
     excess : float
         To be taken off a peak and added to a valley; 0 of fewer than five turns. [any]
+    fall : float
+        By which the shape falls from its top to the reading beside it, on the steeper side: of a
+        turn between two readings their mean is blunt, and the excess too great. [any]
 
     Raises
     ------
@@ -138,40 +145,47 @@ def noise_in_extreme(
     >>> noisy = ramp + np.random.default_rng(1).normal(0, 3, ramp.size)
     >>> peak = np.arange(100, ramp.size, 200)
     >>> greatest = np.mean([noisy[one - 25 : one + 25].max() for one in peak])
-    >>> excess = noise_in_extreme(noisy, peak, reach=25, sign=1, noise=3.0)
+    >>> excess, _ = noise_in_extreme(noisy, peak, reach=25, sign=1, noise=3.0)
     >>> print(round(greatest - 200, 1), round(excess, 1))
     1.6 1.8
     """
     reach = min(reach, _MOST_REACH)
     inside = turn[(turn >= 2 * reach) & (turn < values.size - 2 * reach)]
     if inside.size < _FEWEST_TURNS or reach < 1 or not noise > 0:
-        return 0.0
+        return 0.0, 0.0
     some = inside[np.linspace(0, inside.size - 1, min(inside.size, _MOST_TURNS)).astype(int)]
     place = np.arange(-reach, reach + 1)
-    levels = sign * np.stack([take_samples(values, one + place) for one in some])
-    mean = levels.mean(axis=0)
-    if not np.isfinite(mean).all():
-        return 0.0
-    # what chose the turns put them beside: the first moment of the window says where they are
-    weight = levels - min(mean[0], mean[-1])
-    total = weight.sum(axis=1)
-    # of a window that noise fills its moment says nothing
-    clear = total * reach > 2 * noise * np.sqrt((place**2).sum())
     shift = np.zeros(some.size, dtype=int)
-    if clear.any():
+    for _ in range(_PASSES):
+        levels = sign * np.stack([take_samples(values, one + place) for one in some + shift])
+        mean = levels.mean(axis=0)
+        if not np.isfinite(mean).all():
+            return 0.0, 0.0
+        # what chose the turns put them beside: the first moment of the window says where they are
+        weight = levels - min(mean[0], mean[-1])
+        total = weight.sum(axis=1)
+        # of a window that noise fills its moment says nothing
+        clear = total * reach > 2 * noise * np.sqrt((place**2).sum())
+        if not clear.any():
+            break
         middle = (weight[clear] @ place) / total[clear]
-        shift[clear] = np.clip(np.round(middle - np.median(middle)), -reach, reach)
+        moved = np.round(middle - np.median(middle)).astype(int)
+        shift[clear] = np.clip(shift[clear] + moved, -reach, reach)
+        if not moved.any():
+            break
     mean = sign * np.mean(
         [take_samples(values, one + place) for one in (some + shift).tolist()], axis=0
     )
     if not np.isfinite(mean).all():
-        return 0.0
+        return 0.0, 0.0
     step = float(mean.max() - min(mean[0], mean[-1])) / reach
     rough = _SMOOTHED * noise * min(6 / np.sqrt(some.size), 1.0)
     width = min(int(rough / step) if step > 0 else reach, reach) // 2 * 2 + 1
     padded = np.pad(mean, width // 2, mode="edge")
     shape = np.convolve(padded, np.full(width, 1 / width), mode="valid")
-    return noise * _excess_of_greatest((shape.max() - shape) / noise)
+    top = int(np.argmax(shape[1:-1])) + 1
+    fall = float(shape[top] - min(shape[top - 1], shape[top + 1]))
+    return noise * _excess_of_greatest((shape.max() - shape) / noise), fall
 
 
 Turn = Literal["sharp", "hidden", "rounded"]
@@ -272,8 +286,14 @@ def level_of_turn(values: Floats, turn: Integers, extreme: Floats, *, sign: int)
 
 
 def level_at_corner(
-    values: Floats, moved: Floats, extreme_at: Integers, *, sign: int, noise: float
-) -> tuple[Floats, Bools]:
+    values: Floats,
+    moved: Floats,
+    extreme_at: Integers,
+    *,
+    sign: int,
+    noise: float,
+    rests: bool,
+) -> Floats:
     """Level to which the approach of a series goes on, to the corner of the channel that moves it.
 
     What relaxes within a sample after the corner leaves no line there: the readings after it say
@@ -291,13 +311,13 @@ def level_at_corner(
         1 of peaks, -1 of valleys. [1]
     noise : float
         Standard deviation of one reading of ``moved``. [any]
+    rests : bool
+        Whether ``moved`` stays where it turns: `rests_at_turns`. [-]
 
     Returns
     -------
     level : ndarray, shape (n_turns,)
         The extreme reading where ``moved`` has no corner beside it, or is past it. [any]
-    rests : ndarray of bool, shape (n_turns,)
-        Whether ``moved`` rests there for two readings: lines beside such a turn cross above it. [1]
 
     Raises
     ------
@@ -311,17 +331,63 @@ def level_at_corner(
     >>> place = np.arange(11)
     >>> drive = np.minimum(place - 5.6, 0)
     >>> force = np.where(place <= 5, 100 + 10 * (place - 5.6), 80)
-    >>> level, _ = level_at_corner(force, drive, np.array([5]), sign=1, noise=0)
-    >>> print(level)
+    >>> print(level_at_corner(force, drive, np.array([5]), sign=1, noise=0, rests=True))
     [100.]
     """
-    offset, rests = _offset_of_corner(moved, extreme_at, sign=sign, noise=noise)
+    offset = _offset_of_corner(moved, extreme_at, sign=sign, noise=noise, rests=rests)
     reading = sign * take_samples(values, extreme_at)
-    before = extreme_at - (offset < 0)
     level = sign * values
-    approach = level[before] - level[before - 1]
-    beyond = level[before] + approach * np.where(offset < 0, 1 + offset, offset)
-    return sign * np.where(np.isfinite(offset), np.fmax(beyond, reading), reading), rests
+
+    def led_to(series: Floats, at: Integers, offset: Floats) -> Floats:
+        before = at - (offset < 0)
+        approach = series[before] - series[before - 1]
+        return series[before] + approach * np.where(offset < 0, 1 + offset, offset)
+
+    # what creeps while its channel rests is farthest where that leaves: the same, backward in time
+    backward = moved.size - 1 - extreme_at
+    leaving = _offset_of_corner(moved[::-1], backward, sign=sign, noise=noise, rests=rests)
+    beyond = np.where(
+        np.isfinite(offset),
+        led_to(level, extreme_at, offset),
+        led_to(level[::-1], backward, leaving),
+    )
+    return np.asarray(sign * np.fmax(beyond, reading))
+
+
+def rests_at_turns(moved: Floats, extreme_at: Integers) -> bool:
+    """Whether a channel stays where it turns for more than one reading, at most of its extremes.
+
+    Then two readings are at one level, or the lines beside cross farther above the one that is
+    there than they do above the readings on either side of a turn of ramps.
+
+    Examples
+    --------
+    >>> place = np.arange(200)
+    >>> ramps = np.abs((place * 1.01) % 20 - 10)
+    >>> peaks = np.flatnonzero((ramps[1:-1] > ramps[:-2]) & (ramps[1:-1] > ramps[2:])) + 1
+    >>> print(rests_at_turns(ramps, peaks), rests_at_turns(np.minimum(ramps, 8.9), peaks))
+    False True
+    """
+    inside = extreme_at[(extreme_at >= _BESIDE) & (extreme_at < moved.size - _BESIDE)]
+    if inside.size == 0:
+        return False
+    level = moved[inside[:, None] + np.arange(-_BESIDE, _BESIDE + 1)]
+    steps = np.diff(level, axis=1)
+    rise, fall = steps[:, 0], -steps[:, -1]
+    is_ramp = np.minimum(rise, fall) > _RESTS * np.abs(steps).max(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # of the lines through the outer readings, in steps from the second one
+        along = (level[:, -2] - level[:, 1] + 4 * fall) / (rise + fall)
+        height = level[:, 1] + rise * along - level.max(axis=1)
+        is_above = height > _ABOVE * rise * fall / (rise + fall)
+    beside = np.abs(steps[:, _BESIDE - 1 : _BESIDE + 1]).min(axis=1)
+    is_level = beside < _RESTS * np.abs(steps).max(axis=1)
+    return bool(np.where(is_ramp, is_above, is_level).mean() > _MOST_CORNERS)
+
+
+_RESTS = 0.05  # of the greatest step nearby
+
+_ABOVE = 1.1  # of the most by which lines cross above the readings beside a turn of ramps
 
 
 def energy_beside_polygon(
@@ -409,42 +475,49 @@ def energy_beside_polygon(
     return at_corners, between
 
 
-def has_corners(moved: Floats, extreme_at: Integers, *, sign: int, noise: float) -> bool:
+def has_corners(
+    moved: Floats, extreme_at: Integers, *, sign: int, noise: float, rests: bool
+) -> bool:
     """Whether a channel has a corner beside most of the extremes of the one that answers it."""
-    offset, _ = _offset_of_corner(moved, extreme_at, sign=sign, noise=noise)
-    return bool(np.isfinite(offset).mean() > _MOST_CORNERS)
+    arriving, leaving = (
+        _offset_of_corner(series, at, sign=sign, noise=noise, rests=rests)
+        for series, at in ((moved, extreme_at), (moved[::-1], moved.size - 1 - extreme_at))
+    )
+    return bool((np.isfinite(arriving) | np.isfinite(leaving)).mean() > _MOST_CORNERS)
 
 
 def _offset_of_corner(
-    moved: Floats, extreme_at: Integers, *, sign: int, noise: float
-) -> tuple[Floats, Bools]:
-    """Samples from an extreme to the corner beside it, NaN where none is; and short rests there.
+    moved: Floats, extreme_at: Integers, *, sign: int, noise: float, rests: bool
+) -> Floats:
+    """Samples from an extreme to the corner beside it; NaN where there is none.
 
-    A rest of two readings has one step after the corner, and not two that are alike.
+    Of a channel that ``rests`` where it turns, the corner is where its approach meets the rest.
     """
     window = extreme_at[:, None] + np.arange(-_BESIDE, _BESIDE + 1)
-    inside = (window[:, 0] >= 0) & (window[:, -1] < moved.size)
+    usable = (window[:, 0] >= 0) & (window[:, -1] < moved.size)
     drive = sign * moved[np.clip(window, 0, moved.size - 1)]
     steps = np.diff(drive, axis=1)
-    rise, on = steps[:, 1], steps[:, 4]
-    # two steps alike before the corner and two after it, and a change of slope between them
-    alike = np.maximum(np.abs(steps[:, 0] - rise), np.abs(steps[:, 5] - on))
-    usable = inside & (rise > _STEEP * noise) & (alike < _ROUNDED * rise + 2 * noise)
-    usable &= rise - on > 2 * _ROUNDED * rise
-    with np.errstate(divide="ignore", invalid="ignore"):
-        offset = (drive[:, 4] - drive[:, 2] - rise - on) / (rise - on)
-    offset[~usable | (np.abs(offset) > 1)] = np.nan
-    rests = np.zeros(offset.shape, dtype=bool)
-    for at in (_BESIDE, _BESIDE - 1):  # the step that has the corner, after the extreme or before
-        second, rise, own, on = steps[:, at - 2 : at + 2].T
-        usable = inside & np.isnan(offset) & (rise > _STEEP * noise)
-        usable &= np.abs(second - rise) < _ROUNDED * rise + 2 * noise
-        usable &= (np.abs(on) < _ROUNDED * rise) & (own > on - 2 * noise) & (own < rise)
+    if rests:
+        row = np.arange(extreme_at.size)
+        below = drive[:, 1:-1].max(axis=1)[:, None] - drive
+        is_on_ramp = below[:, : _BESIDE + 1] > _RESTS * np.abs(steps).max(axis=1)[:, None]
+        last = _BESIDE - is_on_ramp[:, ::-1].argmax(axis=1)
+        usable &= is_on_ramp.any(axis=1) & (last >= _BESIDE - 1)
+        rise = steps[row, last - 1]
+        alike = np.abs(steps[row, np.maximum(last - 2, 0)] - rise)
         with np.errstate(divide="ignore", invalid="ignore"):
-            share = np.maximum((own - on) / (rise - on), 0)
-        rests |= usable
-        offset = np.where(usable, at - _BESIDE + share, offset)
-    return offset, rests
+            share = below[row, last] / rise
+        usable &= share < 1 + _ROUNDED
+        offset = last - _BESIDE + np.minimum(share, 1)
+    else:
+        rise, on = steps[:, 1], steps[:, 4]
+        # two steps alike before the corner and two after it, and a change of slope between them
+        alike = np.maximum(np.abs(steps[:, 0] - rise), np.abs(steps[:, 5] - on))
+        usable &= rise - on > 2 * _ROUNDED * rise
+        with np.errstate(divide="ignore", invalid="ignore"):
+            offset = (drive[:, 4] - drive[:, 2] - rise - on) / (rise - on)
+    usable &= (rise > _STEEP * noise) & (alike < _ROUNDED * rise + 2 * noise)
+    return np.where(usable & (np.abs(offset) <= 1), offset, np.nan)
 
 
 def missed_by_extreme(values: Floats, turn: Integers, extreme: Floats, *, sign: int) -> Floats:
