@@ -1237,8 +1237,9 @@ def _readings_at_turns(
     if turn == "sharp":
         # what creeps while its channel rests is farthest after the turn that ends the cycle
         stop = np.minimum(end + reach, np.append(peak[1:], values.size - 1))
+        goes_on = np.append(begin[1:] == end[:-1], False)  # and after the last one it unloads
         at_top = _places(values, peak - reach, np.minimum(peak + reach, end))
-        at_last = _places(-values, np.maximum(end - reach, peak), stop)
+        at_last = _places(-values, np.maximum(end - reach, peak), np.where(goes_on, stop, end))
         last = np.fmin(last, values[at_last])
         above = level_of_turn(values, peak, top, sign=1) - top
         below = last - level_of_turn(values, end, last, sign=-1)
