@@ -298,6 +298,8 @@ class ExploreServer(ThreadingHTTPServer):
     daemon_threads = True
     block_on_close = False
     allow_reuse_address = False
+    # connections beyond five that come at once would wait a second or more to be tried again
+    request_queue_size = MOST_AT_ONCE
 
     def __init__(
         self,
