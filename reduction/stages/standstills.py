@@ -595,6 +595,82 @@ def _tolerances(values: Floats, stated: float | None) -> tuple[float, float]:
     return (noise, noise) if stated is None else (stated, min(noise, stated))
 
 
+_BESIDE = 0.25  # of an interval, read on either side of it
+
+_HINGES = (1.0, 0.75, 0.5)  # of an interval: how much of it is flat if the channel stands there
+
+
+def _misfits(time: Floats, values: Floats, half: float) -> tuple[float, float]:
+    """Sums of squares about a parabola, and about the best level that is left on both sides.
+
+    ``time`` is counted from the middle of an interval of twice ``half``.
+    """
+
+    def about(*columns: Floats) -> float:
+        design = np.column_stack([np.ones(time.size), *columns])
+        left = values - design @ np.linalg.lstsq(design, values, rcond=None)[0]
+        return float(left @ left)
+
+    clock = time / half
+    levels = []
+    for hinge in _HINGES:
+        before, after = np.maximum(-clock - hinge, 0), np.maximum(clock - hinge, 0)
+        levels += [about(before, after), about(before**2, after**2)]
+    return about(clock, clock**2), min(levels)
+
+
+def _are_turns(
+    time: Floats, values: Floats, first: Integers, last: Integers, *, tolerance: float
+) -> Bools:
+    """Which intervals are the rounded turn of a slow cycle, not a stand of the channel.
+
+    Notes
+    -----
+    With noise in the channel its tolerance holds the turn of a slow sine for a time that a
+    stand could take.  About a turn, and a quarter of the interval to either side, the channel is
+    a parabola; about a stand it is a level that is left by ramps or by rounded ones.  Where the
+    sums of squares differ by less than a factor of two, the median of the intervals at the same
+    level decides.
+
+    Examples
+    --------
+    >>> time = np.arange(0, 300.0)
+    >>> sine = -np.cos(2 * np.pi * time / 100)
+    >>> first, last = np.array([97, 147]), np.array([103, 153])
+    >>> print(_are_turns(time, sine, first, last, tolerance=0.1))
+    [ True  True]
+    >>> stand = np.interp(time, [0, 45, 55, 95, 105, 300], [-1, 1, 1, -1, -1, 1])
+    >>> print(_are_turns(time, stand, first[:1] - 2, last[:1] + 2, tolerance=0.1))
+    [False]
+    """
+    ratio = np.full(first.size, np.nan)
+    for index, (one, end) in enumerate(zip(first.tolist(), last.tolist(), strict=True)):
+        beside = max(ceil(_BESIDE * (end - one)), 1)
+        if one < beside or end + beside >= values.size:
+            continue
+        part = slice(one - beside, end + beside + 1)
+        stride = max((part.stop - part.start) // _TURN_SAMPLES, 1)
+        seconds, series = time[part][::stride], values[part][::stride]
+        known = np.isfinite(series)
+        if known.sum() < _FEWEST_OF_TURN:
+            continue
+        middle, half = (time[one] + time[end]) / 2, (time[end] - time[one]) / 2
+        parabola, stand = _misfits(seconds[known] - middle, series[known], half)
+        ratio[index] = np.log2(max(parabola, _TINY) / max(stand, _TINY))
+    is_turn: Bools = ratio < 0
+    unclear = np.flatnonzero(np.abs(ratio) < 1)
+    level = _interval_means(values, first, last)
+    for index in unclear:  # what the others at its level are
+        alike = ratio[np.abs(level - level[index]) <= tolerance]
+        is_turn[index] = np.nanmedian(alike) < 0
+    return is_turn
+
+
+_TURN_SAMPLES = 400
+
+_FEWEST_OF_TURN = 6  # a parabola has three constants
+
+
 def _stands(
     time: Floats,
     values: Floats,
@@ -611,7 +687,9 @@ def _stands(
     """
     duration = settings.minimum_duration
     if not is_held:
-        return _still_intervals(time, values, tolerance=tolerance, minimum_duration=duration)
+        first, last = _still_intervals(time, values, tolerance=tolerance, minimum_duration=duration)
+        stays = ~_are_turns(time, values, first, last, tolerance=tolerance)
+        return first[stays], last[stays]
     first, last = _held_intervals(
         time, values, tolerance=tolerance, noise=noise, minimum_duration=duration
     )

@@ -166,3 +166,30 @@ def test_time_that_stands_is_refused():
 def test_series_that_do_not_pair_up_are_refused():
     with pytest.raises(DataError, match="do not pair up"):
         find(np.arange(9.0), np.ones(8), [np.ones(9)])
+
+
+@pytest.mark.parametrize("period", [33.0, 50.0, 100.0, 200.0])
+def test_the_rounded_turns_of_a_slow_noisy_sine_are_no_holds(period):
+    time = np.arange(0.0, 20.25 * period, period / 100)
+    noise = np.random.default_rng(3).normal(0, 0.003, time.size)
+    position = -np.cos(2 * np.pi * time / period) + noise
+    found = find_standstills(
+        time,
+        position,
+        [100 * position + 120],
+        settings=PhaseSettings(minimum_duration=0.02 * period),
+    )
+    assert found.n_standstills <= 2  # of 41 turns
+
+
+@pytest.mark.parametrize("share", [0.05, 0.1, 0.2])
+def test_rests_at_the_turns_of_a_slow_noisy_trapezoid_are_holds(share):
+    corners = np.cumsum([0.0, *np.tile([0.5 - share, share], 40)])
+    levels = np.tile([-1.0, 1.0, 1.0, -1.0], 21)[: corners.size]
+    time = np.arange(0.0, 100 * corners[-1])
+    noise = np.random.default_rng(3).normal(0, 0.003, time.size)
+    position = np.interp(time, 100 * corners, levels) + noise
+    found = find_standstills(
+        time, position, [100 * position + 120], settings=PhaseSettings(minimum_duration=3.0)
+    )
+    assert found.n_standstills >= 39  # of 40 rests
