@@ -660,7 +660,7 @@ def _are_turns(
     is_turn: Bools = ratio < 0
     unclear = np.flatnonzero(np.abs(ratio) < 1)
     level = _interval_means(values, first, last)
-    for index in unclear:  # what the others at its level are
+    for index in unclear.tolist():  # what the others at its level are
         alike = ratio[np.abs(level - level[index]) <= tolerance]
         is_turn[index] = np.nanmedian(alike) < 0
     return is_turn
