@@ -220,7 +220,8 @@ def variables_if(
         with h5py.File(path, "r", locking=False) as file:
             if any(_as_text(file.attrs.get(key, "")) != text for key, text in attributes.items()):
                 return None
-            places = [file, *(file[group] for group in GROUPS if group in file)]
+            groups = (file.get(name) for name in GROUPS)  # a variable may have such a name
+            places = [file, *(one for one in groups if isinstance(one, h5py.Group))]
             for place, name in product(places, names):
                 for stored in (name, f"{_BESIDE}{name}"):
                     is_there = isinstance(place.get(stored, getlink=True), h5py.HardLink)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import fields
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -154,25 +155,22 @@ def _combine_channel(values: Values, name: str, rows: Floats) -> None:
     values[key] = combined_standard_uncertainty(rows, random)
 
 
-_ONE_CELL = "has_one_load_cell"
-
-
 def stated_errors_of(archive: xr.Dataset) -> StatedErrors:
     """Standard uncertainties with which a test was reduced."""
     settings = json.loads(str(archive.attrs.get("settings") or "{}"))
     kept = settings.get("uncertainty") or {}
-    one_cell = kept.get(_ONE_CELL, False)
-    if not isinstance(one_cell, bool):
-        raise _fault(_ONE_CELL, one_cell, "true or false")
-    known: dict[str, float] = {}
+    known: dict[str, Any] = {}
     for item in fields(StatedErrors):
-        if (name := item.name) == _ONE_CELL:
+        value = kept.get(item.name, item.default)
+        if isinstance(item.default, bool):
+            if not isinstance(value, bool):
+                raise _fault(item.name, value, "true or false")
+            known[item.name] = value
             continue
-        value = kept.get(name, item.default)
         if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise _fault(name, value, "a number in SI")
-        known[name] = float(value)
-    return StatedErrors(has_one_load_cell=one_cell, **known)
+            raise _fault(item.name, value, "a number in SI")
+        known[item.name] = float(value)
+    return StatedErrors(**known)
 
 
 def _fault(name: str, value: object, needed: str) -> ArchiveError:

@@ -401,7 +401,9 @@ def _with_friction(stated: StatedErrors, model: StrainModel) -> StatedErrors:
     if "relaxed_splice_length" not in fitted.coefficients:
         return replace(stated, splice_friction=0.0)
     found = fitted.splice_friction
-    return replace(stated, splice_friction=found) if np.isfinite(found) else stated
+    if not np.isfinite(found):
+        return stated
+    return replace(stated, splice_friction=found, is_splice_friction_known=True)
 
 
 def stepwise_instruments(campaign: Campaign, survey: Survey) -> tuple[InstrumentErrors, ...]:

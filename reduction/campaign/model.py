@@ -232,7 +232,7 @@ class UncertaintySection(_UncertaintySection):
     """Of the mass per length of the specimens."""
     machine_compliance: Annotated[float, _Standard("compliance")] | None = None
     """Of frame, load cell and grips: ``"2e-8 m/N"``."""
-    splice_friction: _Relative = USUAL_SPLICE_FRICTION
+    splice_friction: _Relative | None = None
     """Of splices on the way down against those on the way up, over their extension: ``"2 %"``."""
 
 
@@ -276,7 +276,10 @@ def stated_errors(
         attached_mass=section.attached_mass or 0.0,
         linear_density=section.linear_density or 0.0,
         machine_compliance=section.machine_compliance or 0.0,
-        splice_friction=section.splice_friction,
+        splice_friction=(
+            USUAL_SPLICE_FRICTION if section.splice_friction is None else section.splice_friction
+        ),
+        is_splice_friction_known=section.splice_friction is not None,
         has_one_load_cell=tension.one_load_cell,
     )
 

@@ -813,9 +813,11 @@ def _calibrate_hose(
     value = best[:p] * problem.unit
     fitted = _design_with(design, dict(zip(names, value.tolist(), strict=True)))
     spread = _spread_of(problem, best, noise)
+    curve = problem.tension_at(best[None, : problem.n_traced])[0]
     told_apart = _identify_directions(
         problem.slopes(best[: problem.n_traced])[:, :p] / problem.unit,
-        tension=problem.tension_at(best[None, : problem.n_traced])[0],
+        # cords that never pick up press on nothing: shares are then of what was measured
+        tension=curve if curve.any() else judged[used],
         names=names,
         plausible=problem.unit,
         value=value,

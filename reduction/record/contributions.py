@@ -68,6 +68,8 @@ class InstrumentErrors:
     splice_friction : float
         By how much longer the splices are on the way down than on the way up at one tension, over
         their extension. [1]
+    is_splice_friction_known : bool
+        It is stated, or found from a mark on the way down.
     test : str
         Which test.
     tension_reading, position_reading : float
@@ -94,6 +96,7 @@ class InstrumentErrors:
     linear_density: float = 0.0
     machine_compliance: float = 0.0
     splice_friction: float = 0.0
+    is_splice_friction_known: bool = False
     tension_reading: float = 0.0
     position_reading: float = 0.0
     test: str = ""
@@ -639,6 +642,8 @@ class StatedErrors:
     splice_friction : float
         Of splices on the way down against those on the way up, over their extension; where nothing
         is stated it is not zero. [1]
+    is_splice_friction_known : bool
+        It is stated, or found from a mark on the way down.
     has_one_load_cell : bool
         All tension channels share the errors of one load cell.
     """
@@ -659,6 +664,7 @@ class StatedErrors:
     linear_density: float = 0.0
     machine_compliance: float = 0.0
     splice_friction: float = USUAL_SPLICE_FRICTION
+    is_splice_friction_known: bool = False
     has_one_load_cell: bool = False
 
     @property
@@ -698,6 +704,7 @@ class StatedErrors:
             linear_density=self.linear_density,
             machine_compliance=self.machine_compliance,
             splice_friction=self.splice_friction,
+            is_splice_friction_known=self.is_splice_friction_known,
             tension_reading=self.tension_reading,
             position_reading=self.position_reading,
             tension_instrument=self.load_cell_name(load_cell, channel=channel),

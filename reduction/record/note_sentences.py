@@ -72,8 +72,8 @@ def _unknown_mass(mass: float, usual: float, effect: float, cell: str) -> str:
 
 def _unknown_friction(size: float, of_energy: float, of_constant: float) -> str:
     return (
-        f"no mark was read on the way down: splices that are {size:.0%} longer there, by friction,"
-        f" would make H {of_energy:.0%} and K_ap {of_constant:.1%} too large. Read marks on"
+        f"no mark was read on the way down: if friction makes the splices extend {size:.0%} more"
+        f" there, H is {of_energy:.0%} and K_ap {of_constant:.1%} too large. Read marks on"
         ' the way down (hold "centre down"), or state splice_friction in [uncertainty]'
     )
 

@@ -312,7 +312,7 @@ def instrument_table(tests: Sequence[TestView], units: UnitSystem) -> PageTable 
     has_one_cell = any(one.has_one_load_cell for one in statements)
     remarks = [
         "Standard uncertainties (k = 1) from campaign.toml; anything without a row is treated as"
-        " exact.",
+        " exact, except tape readings and friction in the splices, which have default values.",
         *(["All tension channels share one load cell."] if has_one_cell else []),
         *([f"Nothing is stated for {', '.join(without)}."] if without else []),
     ]

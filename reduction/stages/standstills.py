@@ -819,7 +819,8 @@ def find_standstills(
     samples beside a peak of a slow log are no hold.  A movement too slow to leave the
     tolerance within that time is told from a hold by wider windows, and the turn of a
     slow cycle by its neighbourhood: from a standstill the crosshead gets four tolerances
-    away within as long as it stood, before it or after it.
+    away within as long as it stood, before it or after it, and it is a level there, no
+    parabola.
 
     *Rests.* A standstill whose mean tension is at or below the slack tension for every
     specimen.  None: the greater of 2 % of the greatest tension of the record and half

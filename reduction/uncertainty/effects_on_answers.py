@@ -17,7 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from reduction.record.contributions import USUAL_SPLICE_FRICTION, InstrumentErrors
+from reduction.record.contributions import InstrumentErrors
 from reduction.record.notes import Note, note
 from reduction.stages.moduli.modulus_product import AmplitudeSummary
 from reduction.stages.reduced_test import ReducedTest
@@ -98,7 +98,7 @@ def splice_friction_notes(
             for number, one in enumerate(found.component)
             if one.source == "splice_friction" and one.of == errors.specimen
         ]
-        if errors.splice_friction != USUAL_SPLICE_FRICTION or not rows:
+        if errors.is_splice_friction_known or not rows:
             continue
         share = _POSSIBLE_FRICTION / errors.splice_friction
         energy, constant = (

@@ -6,9 +6,11 @@ and stated as an error: but in T-4 what it does lies within the intervals.
 """
 
 import json
+import shutil
 from collections import Counter
 
 import pytest
+from commandruns import ROOT
 
 CAMPAIGNS = {
     "tmt-synthetic": "synthetic", "nylon-synthetic": "nylon_campaign",
@@ -96,3 +98,17 @@ def test_planted_faults_are_checks_and_every_other_check_is_justified(campaign):
 
 def test_every_campaign_has_a_planted_fault():
     assert {name for name, *_ in PLANTED} == set(CAMPAIGNS)
+
+
+@pytest.mark.parametrize(("stated", "is_said"), [("", True), ('splice_friction = "2 %"\n', False)])
+def test_friction_that_is_stated_is_not_asked_for_even_where_it_is_the_default(
+    command, tmp_path, stated, is_said
+):
+    folder = shutil.copytree(
+        ROOT / "raw/tmt-synthetic", tmp_path / "logs", ignore=shutil.ignore_patterns("truth")
+    )
+    text = (folder / "campaign.toml").read_text("utf-8")
+    text = text.replace("[uncertainty]\n", f"[uncertainty]\n{stated}", 1)
+    (folder / "campaign.toml").write_text(text, encoding="utf-8")
+    done = command("run", folder / "campaign.toml", "--test", "T-4", cwd=tmp_path)
+    assert ("or state splice_friction" in done.stdout) is is_said

@@ -9,7 +9,7 @@ from scipy.stats import binom
 from reduction.prediction.hose_comparison import _compare_hose, compare_record
 from reduction.prediction.hose_prediction import HosePlan
 from reduction.prediction.hose_tension import predict_hose
-from reduction.prediction.measured_curve import constant_errors
+from reduction.prediction.measured_curve import constant_errors, measured_curve, pressure_errors
 
 UNCERTAIN = {"wrap_angle": np.radians(0.3), "cord_load_scale": 0.03}
 GAUGE, STRAIN_GAIN = 5e3, 0.003
@@ -49,6 +49,20 @@ def test_the_pressure_finds_the_angle_and_says_nothing_of_the_rubber():
     spread = found.fill_pressure_parameter_value_standard_uncertainty
     assert np.isnan(spread[0]) and 0 < spread[1] < np.radians(0.5)
     assert compared(steeper, calibrate=("rubber_modulus",)).calibration is None
+
+
+def test_cords_that_never_press_calibrate_nothing():
+    """A gauge that reads its own noise, over strains at which the cords are still slack."""
+    reach = 0.3
+    assert not TRUTH.pressure(np.linspace(0.0, reach, 51)).any()
+    up = np.linspace(0.0, reach, 401)
+    idle = measured_curve(
+        np.tile(np.concatenate([up, up[::-1]]), 3), np.random.default_rng(5).normal(0, 1e3, 2406),
+        loading="static", cycle_number=np.repeat([1, 2, 3], 802),
+        branch=np.tile(np.repeat([1, 2], 401), 3), shared=pressure_errors(None, 2e3),
+    )  # fmt: skip
+    found = compared(pressure=idle, calibrate=("wrap_angle",))
+    assert not found.calibration.identifiability.is_identified
 
 
 def test_the_pressure_stands_on_the_strains_of_the_tension():
