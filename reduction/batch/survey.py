@@ -37,6 +37,8 @@ from reduction.stages.load_at_slack import (
     rises_with_stretch,
     stands_at_slack_length,
 )
+from reduction.stages.moduli.loop_balance import cycle_tension_level
+from reduction.stages.moduli.splice_slip import find_slips
 from reduction.stages.standstills import median_step
 from reduction.stages.strain.tape_and_crosshead import (
     TAPE_UNCERTAINTY,
@@ -123,6 +125,14 @@ def _step_plan(plan: TestPlan, step: StepPlan, place: int) -> TestPlan:
     )
 
 
+@dataclass(frozen=True)
+class SpliceSlip:
+    """One slip of the splices: time of the first cycle after it [s], and length let out [m]."""
+
+    time: float
+    length: float
+
+
 Reader = Callable[..., tuple[Record, tuple[Source, ...]]]
 """Gives the record of a log, as `reduction.readers.read_log.read_record` does."""
 
@@ -136,7 +146,8 @@ class Survey:
     these marks the crosshead contradicts.  ``zero_strain`` is where strain is zero, by specimen,
     ``reference_length`` [m] the length at displacement zero where it is stated.  ``extremes`` is
     how far the test went and ``levels`` what it was run at; ``found`` and ``notes`` what a person
-    is told of the log, ``remarks`` what of its levels.
+    is told of the log, ``remarks`` what of its levels.  ``first_time`` is that of the first row
+    [s]; ``slips`` holds those of the splices, by specimen, where a later test is to know of them.
     """
 
     plan: TestPlan
@@ -145,6 +156,8 @@ class Survey:
     step_readings: StepReadings | None = None
     n_rows: int = 0
     n_cycles: int = 0
+    first_time: float = float("nan")
+    slips: dict[str, list[SpliceSlip]] = field(default_factory=dict)
     mark_tension: dict[str, Floats] = field(default_factory=dict)
     mark_tension_at_start: dict[str, Floats] = field(default_factory=dict)
     mark_errors: dict[str, DataError] = field(default_factory=dict)
@@ -323,6 +336,7 @@ def _located(plan: TestPlan, located: Located, sources: tuple[Source, ...]) -> S
         located,
         n_rows=record.n_samples,
         n_cycles=0 if cycles is None else cycles.n_cycles,
+        first_time=float(record.time[0]),
         extremes=extremes_of_test(located),
         levels=levels_of_test(
             record.time,
@@ -449,8 +463,13 @@ def survey_campaign(
     progress = progress or Silent()
     progress.stage("survey", len(campaign.tests))
     is_elsewhere = workers is not None
+    followed = _followed_logs(campaign)
     tasks = [
-        Task(log, (with_one_log(campaign, log), log, lock, is_elsewhere), _n_bytes(campaign, log))
+        Task(
+            log,
+            (with_one_log(campaign, log), log, lock, is_elsewhere, log in followed),
+            _n_bytes(campaign, log),
+        )
         for log in campaign.tests
     ]
     kept: dict[str, list[Survey]] = {}
@@ -464,6 +483,21 @@ def survey_campaign(
         of_log[ended.test] = [replace(survey, located=None) for survey in found]
         progress.ended(ended.test)
     return FirstPass([survey for log in campaign.tests for survey in of_log[log]], kept)
+
+
+def _followed_logs(campaign: Campaign) -> set[str]:
+    """Logs that another test of one of their specimens comes after, or is a part of."""
+    last: dict[str, int] = {}
+    for plan in campaign.tests.values():
+        for name in plan.specimens:
+            last[name] = max(plan.order or 0, last.get(name, 0))
+    whole = {plan.part_of for plan in campaign.tests.values()}
+    return {
+        log
+        for log, plan in campaign.tests.items()
+        if log in whole
+        or (plan.order is not None and any(last[name] > plan.order for name in plan.specimens))
+    }
 
 
 def with_one_log(campaign: Campaign, log: str) -> Campaign:
@@ -481,14 +515,44 @@ def _n_bytes(campaign: Campaign, log: str) -> int:
     return n_bytes
 
 
-def _survey(campaign: Campaign, log: str, lock: RunLock | None, is_elsewhere: bool) -> list[Survey]:
+def _survey(
+    campaign: Campaign, log: str, lock: RunLock | None, is_elsewhere: bool, is_followed: bool
+) -> list[Survey]:
     if lock is not None:
         lock.confirm()
     surveys = survey_log(campaign, log)
+    for survey in surveys if is_followed or len(surveys) > 1 else ():
+        if survey.located is not None:
+            survey.slips = _splice_slips(survey.located, survey.plan)
     is_sent = sum(survey.n_rows for survey in surveys) <= SENT_SAMPLES
     return (
         surveys if is_sent or not is_elsewhere else [replace(one, located=None) for one in surveys]
     )
+
+
+def _splice_slips(located: Located, plan: TestPlan) -> dict[str, list[SpliceSlip]]:
+    """Slips of the splices by specimen, of a test with the cycles to find them in."""
+    cycles = located.cycles
+    if cycles is None or cycles.n_cycles < plan.settings.slip.minimum_cycles:
+        return {}
+    number = cycles.cycle_number
+    level, slope = cycle_tension_level(
+        located.position, located.tension, cycle_number=number, branch=cycles.branch,
+        n_cycles=cycles.n_cycles,
+    )  # fmt: skip
+    inside = np.where(number > 0, located.tension, np.nan)
+    found = find_slips(
+        np.fmax.reduceat(inside, cycles.first, axis=1),
+        specimens=located.record.specimens,
+        settings=plan.settings.slip,
+        tension_level=level,
+        tension_slope=slope,
+    )
+    times = located.record.time[cycles.first[found.slip_cycle - 1]]
+    slips: dict[str, list[SpliceSlip]] = {}
+    for name, time, length in zip(found.specimen, times, found.slip_length, strict=True):
+        slips.setdefault(name, []).append(SpliceSlip(float(time), float(length)))
+    return slips
 
 
 def with_record(survey: Survey, kept: Sequence[Survey] | None) -> Survey:

@@ -105,6 +105,17 @@ def _earlier(survey: Survey, past: EarlierTests, name: str) -> list[Survey]:
     return [entry for _, entry in placed[: bisect_left(placed, place, key=itemgetter(0))]]
 
 
+def _let_out_before(survey: Survey, own: Survey, earlier: Sequence[Survey], name: str) -> float:
+    """Length that the splices slipped by before a test [m].
+
+    A burst of a longer log has the clock of that log.
+    """
+    slips = [slip for entry in earlier for slip in entry.slips.get(name, ())]
+    if own is not survey:
+        slips += [slip for slip in own.slips.get(name, ()) if slip.time <= survey.first_time]
+    return sum((slip.length for slip in slips), start=0.0)
+
+
 def _earlier_cycles(earlier: Sequence[Survey], own: Survey, before: int | None) -> float:
     """Cycles of tension before a test, logged or not; NaN where an earlier test failed."""
     if any(entry.error is not None for entry in earlier):
@@ -136,7 +147,7 @@ def history_of(survey: Survey, past: EarlierTests, campaign: Campaign) -> Histor
         return None
     nothing = float("nan")
     tests: list[tuple[str, ...]] = []
-    strain, tension, cycles, flex, left = [], [], [], [], []
+    strain, tension, cycles, flex, left, let_out = [], [], [], [], [], []
     own = _with_earlier_steps(survey, past)
     for name in survey.plan.specimens:
         earlier = _earlier(survey, past, name)
@@ -152,6 +163,9 @@ def history_of(survey: Survey, past: EarlierTests, campaign: Campaign) -> Histor
         model = past.models.get((survey.plan.id, name))
         free = nothing if model is None else model.relaxed_length
         left.append(_set_after_rest(survey, earlier, name, free))
+        marks = campaign.marks.get(name)
+        is_marked = marks is not None and survey.plan.log in marks.test
+        let_out.append(0.0 if is_marked else _let_out_before(survey, own, earlier, name))
     return History(
         earlier_tests=tuple(tests),
         earlier_maximum_strain=np.array(strain),
@@ -160,6 +174,7 @@ def history_of(survey: Survey, past: EarlierTests, campaign: Campaign) -> Histor
         permanent_set=np.array([value for value, _, _ in left]),
         permanent_set_standard_uncertainty=np.array([spread for _, spread, _ in left]),
         permanent_set_by_tension=np.array([slope for _, _, slope in left]),
+        splices_let_out=np.array(let_out),
         earlier_flex_cycles=None if np.isnan(flex).all() else np.array(flex),
     )
 

@@ -235,7 +235,7 @@ def parts_of_cycles(
             branch=cycles.branch, n_cycles=cycles.n_cycles,
         )  # fmt: skip
         parts["slips"] = find_slips(
-            loops, specimens=record.specimens, settings=settings.slip,
+            loops.peak_tension, specimens=record.specimens, settings=settings.slip,
             tension_level=level, tension_slope=slope,
         )  # fmt: skip
         kept = curves.selected_cycle

@@ -661,6 +661,17 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
             + ". Read the marks after the test, or use the cycles before the slip"
         ),
     ),
+    "splice-slipped-before": (
+        "warning",
+        lambda length, excess, effect: (
+            f"before this test the splices slipped by at least {1000 * length:.0f} mm, and no"
+            " marks were read in it"
+            + ("" if excess != excess else
+               f": strain is at least {100 * excess:.1f} percentage points too large"
+               f" ({effect:.1%} of the mean strain)")
+            + ". Read marks in this test"
+        ),
+    ),
     "tension-steps-up": (
         "warning",
         "tension steps up at cycle {cycles}. A splice cannot do this: check the zero of the load"

@@ -64,6 +64,8 @@ class History:
     rest. NaN where one of the two records does not begin slack. [1]
     ``permanent_set_by_tension`` is by how much it changes with the tension that counts as
     slack. [N-1]
+    ``splices_let_out`` is by how much the splices slipped since the marks were read that its
+    strain rests on, at least. [m]
     ``earlier_flex_cycles`` is None where nothing is known of flexing.
     """
 
@@ -74,6 +76,7 @@ class History:
     permanent_set: Floats
     permanent_set_standard_uncertainty: Floats
     permanent_set_by_tension: Floats
+    splices_let_out: Floats
     earlier_flex_cycles: Floats | None = None
 
 

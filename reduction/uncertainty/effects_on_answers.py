@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -28,6 +29,8 @@ _USUAL_MASS = 1.2  # kg, [1]: no testing laboratory clamps a mooring line with l
 _USUAL_COMPLIANCE = 3.8e-9  # m/N, the softest frame of [2]; grips and load cell come on top
 
 _NAME = "apparent_spring_constant"
+
+_SMALL = 1e-3  # step of strain for a slope
 
 
 def load_train_notes(test: ReducedTest) -> Iterator[Note]:
@@ -124,29 +127,52 @@ def splice_friction_notes(
 def splice_slip_notes(test: ReducedTest) -> Iterator[Note]:
     """Say by how much strain is too large after slips: a warning where that is beyond its interval.
 
-    An extensometer lies on the free length, where no splice enters.
+    Slips of this test, and those of earlier tests since the marks were read.  An extensometer lies
+    on the free length, where no splice enters.
     """
-    summary, slips = test.amplitude, test.slips
-    if summary is None or slips is None:
-        return
+    slips = test.slips
     for index, specimen in enumerate(test.specimens):
-        own = [place for place, name in enumerate(slips.specimen) if name == specimen.name]
-        if not own:
-            continue
-        let_out = float(np.sum(slips.slip_length[own]))
+        own = [
+            place
+            for place, name in enumerate(() if slips is None else slips.specimen)
+            if name == specimen.name
+        ]
+        if slips is not None and own and test.amplitude is not None:
+            let_out = float(np.sum(slips.slip_length[own]))
+            cycles = "cycle " if len(own) == 1 else "cycles "
+            cycles += " and ".join(f"{cycle:,}" for cycle in slips.slip_cycle[own].tolist())
+            yield _of_slip(test, index, "splice-slipped", let_out, cycles=cycles)
+        before = 0.0 if test.history is None else float(test.history.splices_let_out[index])
+        if before and test.strain_models[index].method != "extensometer":
+            yield _of_slip(test, index, "splice-slipped-before", before)
+
+
+def _of_slip(test: ReducedTest, index: int, code: str, let_out: float, **numbers: Any) -> Note:
+    """What a length that the splices let out does to the strain of a test."""
+    specimen, model, summary = test.specimens[index], test.strain_models[index], test.amplitude
+    if summary is not None:
         excess = let_out / _length_of_strain(test, summary, index)
+        mean = float(summary.mean_strain[index])
         half = _EXPANDED * _standard_uncertainty(test, summary, "mean_strain", index)
-        found = note(
-            "splice-slipped",
-            specimen.name,
-            cycles=("cycle " if len(own) == 1 else "cycles ")
-            + " and ".join(f"{cycle:,}" for cycle in slips.slip_cycle[own].tolist()),
-            length=let_out,
-            excess=excess,
-            effect=excess / float(summary.mean_strain[index]),
-        )
-        is_held = test.strain_models[index].method == "extensometer" or excess <= half
-        yield replace(found, severity="note") if is_held else found
+    else:
+        hold = max(
+            (one for one in test.holds if one.specimen == specimen.name),
+            key=lambda one: one.hold_duration, default=None,
+        )  # fmt: skip
+        excess = mean = half = float("nan")
+        if hold is not None:
+            mean = hold.hold_strain
+            ends = position_by_model(
+                model, strain=[mean, mean + _SMALL], tension=[hold.hold_initial_tension] * 2
+            )
+            excess = let_out * _SMALL / float(ends[1] - ends[0])
+        if test.strain_standard_uncertainty is not None:
+            half = _EXPANDED * float(test.strain_standard_uncertainty[index])
+    found = note(
+        code, specimen.name, length=let_out, excess=excess, effect=excess / mean, **numbers
+    )
+    is_held = model.method == "extensometer" or excess <= half
+    return replace(found, severity="note") if is_held else found
 
 
 _OF_ANSWER = {"identity-open": _NAME, "drift-in-energy": "hysteresis_energy"}

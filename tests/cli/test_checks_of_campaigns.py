@@ -20,6 +20,8 @@ CAMPAIGNS = {
 PLANTED = (
     ("tmt-synthetic", "T-4-extended", "splices of one tether let out line from cycle 600 and 1,500",
      "new: the splices slipped at cycles 599 and 1,501"),
+    ("tmt-synthetic", "T-4-extended-end, overnight-hold", "the same, with marks from before them",
+     "new: before this test the splices slipped by at least 98 mm"),
     ("tmt-synthetic", "T-4", "tension logged 20 ms late: without it the residual is half as large",
      "Possible causes: channel lag"),
     ("nylon-synthetic", "R05", "amplitude greater than the mean: no tension in each cycle",

@@ -68,7 +68,7 @@ def extended():
 def test_the_slips_of_the_new_splice_are_dated_and_creep_is_not_a_slip(extended, by_level):
     loops, level, slope = extended
     slips = find_slips(
-        loops,
+        loops.peak_tension,
         specimens=SPECIMENS,
         settings=SlipSettings(),
         tension_level=level if by_level else None,

@@ -333,6 +333,7 @@ def rich_test():
             np.array([0.02, np.nan]),
             np.array([0.001, np.nan]),
             np.array([1e-5, np.nan]),
+            np.array([0.0, 0.0]),
             np.array([1e6, np.nan]),
         ),
         standstills=Standstills(

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reduction.batch.survey import Survey
+from reduction.batch.survey import SpliceSlip, Survey
 from reduction.batch.test_history import earlier_tests_of, history_of, history_remarks
 from reduction.campaign.plan import TestPlan
 from reduction.record.errors import DataError
@@ -25,7 +25,7 @@ def survey(name, order, *, n_cycles=0, log="", place=0, error=None, specimens=("
 
 def past(surveys, *specimens):
     """Earlier cycles and earlier flex cycles of the first specimen, by test."""
-    campaign = SimpleNamespace(specimens={one.name: one for one in specimens})
+    campaign = SimpleNamespace(specimens={one.name: one for one in specimens}, marks={})
     found = {}
     for entry in surveys:
         history = history_of(entry, earlier_tests_of(surveys, {}), campaign)
@@ -59,7 +59,8 @@ def test_flexing_is_counted_where_the_campaign_says_something_of_it():
 def test_one_specimen_of_two_that_was_never_said_to_be_flexed_has_no_number():
     both = survey("A", 1, specimens=("hose", "other"))
     campaign = SimpleNamespace(
-        specimens={"hose": Specimen("hose", earlier_flex_cycles=0), "other": Specimen("other")}
+        specimens={"hose": Specimen("hose", earlier_flex_cycles=0), "other": Specimen("other")},
+        marks={},
     )
     flex = history_of(both, earlier_tests_of([both], {}), campaign).earlier_flex_cycles
     assert flex[0] == 0 and np.isnan(flex[1])
@@ -98,7 +99,9 @@ def test_a_failed_test_leaves_its_cycles_unknown_but_not_the_stated_flexing():
 )
 def test_cycles_in_no_log_are_named_since_no_strain_of_them_is_known(before, between, count):
     surveys = [survey("A", 1, unlogged_cycles=between)]
-    campaign = SimpleNamespace(specimens={"hose": Specimen("hose", earlier_cycles=before)})
+    campaign = SimpleNamespace(
+        specimens={"hose": Specimen("hose", earlier_cycles=before)}, marks={}
+    )
     remarks = tuple(map(str, history_remarks(surveys[0], earlier_tests_of(surveys, {}), campaign)))
     expected = f"hose: {count} earlier cycles were not logged: earlier_maximum_strain and "
     assert [text.startswith(expected) for text in remarks] == ([] if count is None else [True])
@@ -106,14 +109,14 @@ def test_cycles_in_no_log_are_named_since_no_strain_of_them_is_known(before, bet
 
 def test_a_test_without_a_place_has_no_history():
     alone = survey("A", None, unlogged_cycles=5)
-    campaign = SimpleNamespace(specimens={"hose": Specimen("hose")})
+    campaign = SimpleNamespace(specimens={"hose": Specimen("hose")}, marks={})
     assert history_of(alone, earlier_tests_of([alone], {}), campaign) is None
     assert tuple(map(str, history_remarks(alone, earlier_tests_of([alone], {}), campaign))) == ()
 
 
 def test_specimens_that_share_tests_without_an_order_are_asked_for_one():
     surveys = [survey("A", None), survey("B", None)]
-    campaign = SimpleNamespace(specimens={"hose": Specimen("hose")})
+    campaign = SimpleNamespace(specimens={"hose": Specimen("hose")}, marks={})
     (remark,) = map(str, history_remarks(surveys[0], earlier_tests_of(surveys, {}), campaign))
     assert remark.endswith("the effect of earlier tests is not known. Set order")
 
@@ -129,7 +132,7 @@ def loaded(*loads, **told):
 
 
 def after_greater(surveys):
-    campaign = SimpleNamespace(specimens={"hose": Specimen("hose")})
+    campaign = SimpleNamespace(specimens={"hose": Specimen("hose")}, marks={})
     past = earlier_tests_of(surveys, {})
     remarks = [one for entry in surveys for one in history_remarks(entry, past, campaign)]
     assert {one.severity for one in remarks} <= {"note"}
@@ -151,3 +154,28 @@ def test_a_test_after_a_greater_load_than_its_own_says_which_and_how_great():
 
 def test_no_load_is_called_the_greatest_where_one_is_not_known():
     assert after_greater(loaded(900.0, None, 600.0)) == []
+
+
+def let_out(surveys, *tests_of_marks):
+    campaign = SimpleNamespace(
+        specimens={"hose": Specimen("hose")},
+        marks={"hose": SimpleNamespace(test=tests_of_marks)} if tests_of_marks else {},
+    )
+    past = earlier_tests_of(surveys, {})
+    return [history_of(entry, past, campaign).splices_let_out[0] for entry in surveys]
+
+
+def test_slips_count_for_every_later_test_but_those_with_marks_of_their_own():
+    surveys = [survey(name, place) for place, name in enumerate("ABCD", 1)]
+    surveys[1].slips = {"hose": [SpliceSlip(60.0, 0.03), SpliceSlip(90.0, 0.02)], "other": []}
+    assert let_out(surveys) == pytest.approx([0, 0, 0.05, 0.05])
+    # its own marks were read with the splices as they are
+    assert let_out(surveys, "A", "C") == pytest.approx([0, 0, 0, 0.05])
+
+
+def test_a_part_of_a_log_comes_after_the_slips_before_its_first_row():
+    whole, early, late = survey("A", 1), survey("A1", None), survey("A2", None)
+    whole.slips = {"hose": [SpliceSlip(60.0, 0.03), SpliceSlip(90.0, 0.02)]}
+    for part, begin in ((early, 0.0), (late, 70.0)):
+        part.plan, part.first_time = replace(part.plan, part_of="A"), begin
+    assert let_out([whole, early, late]) == pytest.approx([0, 0, 0.03])

@@ -6,7 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reduction.record.errors import DataError
+from reduction.record.settings import CycleSettings, PhaseSettings
 from reduction.stages.cycles.cycle_product import Cycles
+from reduction.stages.cycles.cycle_search import find_cycles
 from reduction.stages.cycles.loops import (
     _cycle_basis,
     _fundamental,
@@ -19,6 +21,7 @@ from reduction.stages.cycles.loops import (
 )
 from reduction.stages.cycles.turns import noise_in_extreme
 from reduction.stages.moduli.secant_modulus import summarise_amplitude
+from reduction.stages.standstills import find_standstills, find_tension_stands
 
 STORAGE, LOSS, AMPLITUDE = 900.0, 100.0, 0.2
 
@@ -1002,3 +1005,73 @@ def test_strain_that_creeps_while_the_load_rests_is_farthest_where_it_leaves(per
         spread = found.uncertainty[name][0]
         assert abs(getattr(found, name)[0] - value) < 2.5 * spread + 1e-4 * value < 0.15 * value
     assert found.tension_amplitude[0] == pytest.approx(4000, rel=4e-3)
+
+
+def parted_by_rests(control, *, drift, at_top=20.0, at_valley=20.0, n_cycles=16, seed=5):
+    """Ramps of 5 s with rests between them, 10 Hz, and a specimen that creeps or relaxes there.
+
+    A spring with a Kelvin element (load) or a Maxwell element (position) of 2 s, and a drift that
+    grows with the logarithm of time.  The energy is that of a late cycle without the drift.
+    """
+    period, per_second = 10 + at_top + at_valley, 50
+    # two periods before the log begins, after which nothing is left of how it was mounted
+    time = np.arange(-2 * period, n_cycles * period + at_valley, 1 / per_second)
+    corners = np.cumsum([0, at_valley, 5, at_top, 5])
+    wave = np.interp(time % period, corners, [-1, -1, 1, 1, -1])
+    inner, keep = np.zeros_like(wave), np.exp(-1 / per_second / 2)
+    if control == "load":
+        for step in range(1, wave.size):
+            inner[step] = inner[step - 1] * keep + (1 - keep) * wave[step]
+        load, strain = 9000 + 4000 * wave, 0.05 + 0.015 * wave + 0.003 * inner
+    else:
+        for step in range(1, wave.size):
+            inner[step] = (inner[step - 1] + wave[step] - wave[step - 1]) * keep
+        load, strain = 9000 + 4000 * wave + 900 * inner, 0.05 + 0.015 * wave
+    stop = time.size - int(at_valley * per_second)
+    late = slice(stop - int(period * per_second) - 1, stop)
+    energy = np.trapezoid(load[late], strain[late])
+    half = np.ptp(load[late]) / 2, np.ptp(strain[late]) / 2
+    begin = int(2 * period * per_second)
+    time, load, strain = time[begin:], load[begin:], strain[begin:]
+    moved = drift * np.log10(1 + time)
+    load, strain = (load, strain + moved) if control == "load" else (load - moved, strain)
+    rng = np.random.default_rng(seed)
+    time, load, strain = time[::5], load[::5], strain[::5]
+    load = load + rng.normal(0, 2, time.size)
+    strain = strain + rng.normal(0, 1e-5, time.size)
+    return time, load, strain, energy, half
+
+
+@pytest.mark.parametrize(
+    ("control", "drift", "at_top", "at_valley"),
+    [
+        ("load", 0.0, 20.0, 20.0), ("load", 1e-3, 20.0, 20.0), ("load", 1e-3, 5.0, 5.0),
+        ("load", 1e-3, 0.0, 20.0), ("load", 1e-3, 20.0, 0.0),
+        ("position", 0.0, 20.0, 20.0), ("position", 300.0, 20.0, 20.0),
+        ("position", 300.0, 5.0, 20.0),
+    ],
+)  # fmt: skip
+def test_rests_that_part_the_cycles_take_nothing_from_amplitudes_and_no_drift_into_the_energy(
+    control, drift, at_top, at_valley
+):
+    time, load, strain, energy, (half_load, half_strain) = parted_by_rests(
+        control, drift=drift, at_top=at_top, at_valley=at_valley
+    )
+    settings = CycleSettings(control=control)
+    stands = (
+        find_tension_stands(time, strain, load[None], settings=PhaseSettings())
+        if control == "load"
+        else find_standstills(time, strain, load[None], settings=PhaseSettings())
+    )
+    cycles = find_cycles(time, strain, load[None], stands, settings=settings)
+    loops = close_loops(
+        time, load[None], strain[None], cycles, waveform="other", control=control,
+        driven=load if control == "load" else strain,
+    )  # fmt: skip
+    found = summarise_amplitude(loops, area=[1e-4])
+    for name, value in (
+        ("tension_amplitude", half_load), ("strain_amplitude", half_strain),
+        ("apparent_spring_constant", half_load / half_strain), ("hysteresis_energy", energy),
+    ):  # fmt: skip
+        spread = found.uncertainty[name][0]
+        assert abs(getattr(found, name)[0] - value) < 2.5 * spread + 4e-4 * value < 0.1 * value

@@ -1,22 +1,14 @@
 """The level of a cycle, and slips told from creep."""
 
-from dataclasses import fields
-
 import numpy as np
 import pytest
 
 from reduction.record.errors import DataError
 from reduction.record.settings import SlipSettings
-from reduction.stages.cycles.cycle_product import Loops
 from reduction.stages.moduli.loop_balance import cycle_tension_level
 from reduction.stages.moduli.splice_slip import find_slips
 
 SLOPE = 200.0  # N/m
-
-
-def loops_of(peak):
-    names = [item.name for item in fields(Loops) if item.name != "uncertainty"]
-    return Loops(**{name: np.array(peak) for name in names}, uncertainty={})
 
 
 def sampled_log(n_cycles, samples_per_cycle, slip, *, noise=0.0, phase=0.0):
@@ -105,9 +97,9 @@ def peaks(steps, n_cycles=600, noise=1.0, seed=0):
 
 
 def test_slips_are_listed_by_specimen_and_creep_is_not():
-    loops = loops_of([peaks([(201, -9.0), (401, -6.0)]), peaks([], seed=1)])
+    series = [peaks([(201, -9.0), (401, -6.0)]), peaks([], seed=1)]
     slips = find_slips(
-        loops, specimens=("new", "used"), settings=SlipSettings(), tension_slope=[SLOPE, SLOPE]
+        series, specimens=("new", "used"), settings=SlipSettings(), tension_slope=[SLOPE, SLOPE]
     )
     assert slips.specimen == ("new", "new")
     np.testing.assert_allclose(slips.slip_cycle, [201, 401], atol=2)
@@ -127,31 +119,29 @@ def test_creep_is_that_of_the_last_half():
     count = np.arange(1.0, 601)
     series = 700 - 30 * np.exp(-count / 15) - 0.01 * count
     series += 1e-3 * np.random.default_rng(3).standard_normal(600)
-    slips = find_slips(loops_of([series]), specimens=("new",), settings=SlipSettings())
+    slips = find_slips([series], specimens=("new",), settings=SlipSettings())
     assert slips.creep_per_cycle == pytest.approx([-0.01], abs=1e-5)
 
 
 def test_without_a_slope_the_length_is_not_given():
-    slips = find_slips(
-        loops_of([peaks([(201, -9.0)])]), specimens=("new",), settings=SlipSettings()
-    )
+    slips = find_slips([peaks([(201, -9.0)])], specimens=("new",), settings=SlipSettings())
     assert np.isnan(slips.slip_length).all()
 
 
 def test_a_step_up_is_named_for_what_it_cannot_be():
-    slips = find_slips(loops_of([peaks([(201, 9.0)])]), specimens=("new",), settings=SlipSettings())
+    slips = find_slips([peaks([(201, 9.0)])], specimens=("new",), settings=SlipSettings())
     assert slips.slip_tension_step[0] > 0
     assert "A splice cannot do this" in str(slips.notes[0])
 
 
 def test_two_specimens_stepping_together_point_to_the_machine():
-    loops = loops_of([peaks([(201, -9.0)]), peaks([(201, -9.0)], seed=1)])
-    slips = find_slips(loops, specimens=("new", "used"), settings=SlipSettings())
+    series = [peaks([(201, -9.0)]), peaks([(201, -9.0)], seed=1)]
+    slips = find_slips(series, specimens=("new", "used"), settings=SlipSettings())
     assert any("check the crosshead before the splices" in note for note in map(str, slips.notes))
 
 
 def test_too_few_cycles_are_a_line_of_the_history():
-    slips = find_slips(loops_of([peaks([], 30)]), specimens=("new",), settings=SlipSettings())
+    slips = find_slips([peaks([], 30)], specimens=("new",), settings=SlipSettings())
     assert slips.specimen == ()
     assert slips.notes == ()
     assert slips.made == ("not looked for: 30 cycles; 50 or more are needed",)
@@ -162,7 +152,7 @@ def test_missing_cycles_are_bridged_until_they_are_too_many():
     some, most = peaks([(301, -9.0)]), peaks([])
     some[[40, 41, 350]] = np.nan
     most[:400] = np.nan
-    slips = find_slips(loops_of([some, most]), specimens=("new", "used"), settings=SlipSettings())
+    slips = find_slips([some, most], specimens=("new", "used"), settings=SlipSettings())
     assert slips.slip_cycle == pytest.approx(301, abs=2)
     assert tuple(map(str, slips.notes)) == (
         "used: no search for slip: 400 of 600 cycles are missing",
@@ -170,5 +160,5 @@ def test_missing_cycles_are_bridged_until_they_are_too_many():
 
 
 def test_names_that_do_not_fit_are_refused():
-    with pytest.raises(DataError, match="series do not fit the loops.*2 names"):
-        find_slips(loops_of([peaks([])]), specimens=("a", "b"), settings=SlipSettings())
+    with pytest.raises(DataError, match="series do not fit the peaks.*2 names"):
+        find_slips([peaks([])], specimens=("a", "b"), settings=SlipSettings())

@@ -32,7 +32,14 @@ def history(strain, cycles):
     n = len(strain)
     nothing = np.full(n, np.nan)
     return History(
-        (("T-0",),) * n, np.array(strain), nothing, np.array(cycles), nothing, nothing, nothing
+        (("T-0",),) * n,
+        np.array(strain),
+        nothing,
+        np.array(cycles),
+        nothing,
+        nothing,
+        nothing,
+        0 * nothing,
     )
 
 

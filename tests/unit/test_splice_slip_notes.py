@@ -30,7 +30,7 @@ def reduced(*, spread, method=None):
     )  # fmt: skip
     return SimpleNamespace(
         amplitude=summary, slips=slips, specimens=(SimpleNamespace(name="new"),),
-        strain_models=(model,), contributions=None,
+        strain_models=(model,), contributions=None, history=None,
     )  # fmt: skip
 
 
@@ -56,3 +56,31 @@ def test_no_slip_has_no_note():
     assert list(splice_slip_notes(test)) == []
     test.slips = None
     assert list(splice_slip_notes(test)) == []
+
+
+@pytest.mark.parametrize(
+    ("spread", "severity"), [(0.004, "warning"), (0.03, "note")], ids=["beyond", "within"]
+)
+def test_a_slip_before_the_test_is_told_like_one_in_it(spread, severity):
+    test = reduced(spread=spread)
+    test.slips, test.history = None, SimpleNamespace(splices_let_out=np.array([0.1]))
+    (found,) = splice_slip_notes(test)
+    assert found.severity == severity
+    assert "before this test the splices slipped by at least 100 mm" in str(found)
+    # 100 mm over a free length of 2.5 m
+    assert "4.0 percentage points too large (2.5% of the mean strain)" in str(found)
+
+
+def test_a_hold_after_a_slip_has_the_same_excess():
+    test = reduced(spread=0.004)
+    test.slips, test.amplitude = None, None
+    test.history = SimpleNamespace(splices_let_out=np.array([0.1]))
+    test.strain_standard_uncertainty = np.array([0.004])
+    test.holds = (
+        SimpleNamespace(
+            specimen="new", hold_duration=60.0, hold_strain=1.6, hold_initial_tension=400.0
+        ),
+    )
+    (found,) = splice_slip_notes(test)
+    assert found.severity == "warning"
+    assert "4.0 percentage points too large (2.5% of the mean strain)" in str(found)

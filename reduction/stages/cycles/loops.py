@@ -615,6 +615,29 @@ def _part_means(values: Floats, basis: _CycleBasis, middles: Integers) -> Floats
     return np.array(means)
 
 
+def _drift_between_rests(top: Floats, valley: Floats, ends: Floats) -> Floats:
+    """Steady drift of a series over each cycle where a rest parts it from the next one.
+
+    Of the middle between its turns, since a mean over the cycle holds more or less of its rests.
+    The median of three steps beside it: a first cycle after a ramp says nothing of the others.
+
+    Examples
+    --------
+    Cycles of 6 s every 10 s, of which each lies 2 higher than the last:
+
+    >>> ends = np.array([[0.0], [1], [5], [6]]) + np.arange(0, 40, 10)
+    >>> print(_drift_between_rests(9 + 2 * np.arange(4.0), 2 * np.arange(4.0), ends))
+    [1.2 1.2 1.2 1.2]
+    """
+    middle, duration = (top + valley) / 2, ends[3] - ends[0]
+    if middle.size < 2:
+        return np.zeros(middle.size)
+    steps = np.diff(middle) / np.diff(ends[0])
+    beside = np.clip(np.arange(middle.size) - 1, 0, max(steps.size - 3, 0))
+    rate = np.median([steps[np.minimum(beside + one, steps.size - 1)] for one in range(3)], axis=0)
+    return np.asarray(np.nan_to_num(rate * duration, nan=0.0))
+
+
 def _mean_drift(means: Floats, ends: Floats) -> Floats:
     """Steady drift of a series over each cycle, from its means across the ends of cycles.
 
@@ -666,6 +689,8 @@ def _mean_drift(means: Floats, ends: Floats) -> Floats:
     found = np.where(np.isfinite(own), own, np.where(np.isfinite(of_next), of_next, of_last))
     return np.nan_to_num(found, nan=0.0)
 
+
+_OF_PERIOD = ("rise", "turn", "fall")
 
 _LEAST_STEP = 1e-9  # of the half range
 
@@ -919,8 +944,12 @@ def _quantities_of_cycles(
     n_samples = (cycles.last - cycles.first).astype(np.float64)
     peak, valley = row["peak"], row["valley"]
     force_cos, strain_cos = row["force_cosine"], row["strain_cosine"]
+    follows = touching(cycles)
+    is_parted = waveform != "sinusoidal" and 2 * np.count_nonzero(follows) < follows.size - 1
     force_drift, strain_drift = (
-        _mean_drift(np.stack([row[f"{name}_{part}"] for part in ("rise", "turn", "fall")]), ends)
+        _drift_between_rests(row[f"{name}_top"], row[f"{name}_begin"], ends)
+        if is_parted
+        else _mean_drift(np.stack([row[f"{name}_{part}"] for part in _OF_PERIOD]), ends)
         for name in ("force", "strain")
     )
     # drift of more than the range is that of a jump among the neighbours: no steady cycle is left
@@ -948,9 +977,13 @@ def _quantities_of_cycles(
             row["force_missed"] = np.hypot(row["force_missed"], of_shape)
     else:
         begin = row["strain_begin"]
+        if is_parted:  # all of it may take place on one way between the turns
+            for name, drift in (("force", force_drift), ("strain", strain_drift)):
+                row[f"{name}_missed"] = np.hypot(
+                    row[f"{name}_missed"], _EITHER_WAY * np.abs(drift) / 4
+                )
         turns = [row["force_top"], row["force_begin"], row["force_end_turn"]]
         peak, valley = np.max(turns, axis=0), np.min(turns, axis=0)
-        follows = touching(cycles)
         (mean, amplitude), (mean_strain, strain_amplitude) = (
             _mean_and_amplitude(
                 row[f"{name}_top"],
@@ -1079,7 +1112,7 @@ def _mean_and_amplitude(
 
     Of the valleys on either side, at the time of the peak.  Where no cycle comes before, the first
     valley is that of an approach or a hold, and no line through both is a drift: the one farther
-    from the peak is taken, and of the range what half a period drifts.
+    from the peak is taken, and of the range what drifts on the way from it to the peak.
 
     Examples
     --------
@@ -1093,7 +1126,8 @@ def _mean_and_amplitude(
     # of a channel of the wrong sign the top is the lower one
     far = np.where(np.abs(top - begin) > np.abs(top - end), begin, end)
     foot = np.where(follows, (1 - rise_share) * begin + rise_share * end, far)
-    amplitude = np.abs(top - foot) / 2 - np.where(follows, 0.0, np.abs(drift) / 4)
+    way = np.where(far == begin, rise_share, 1 - rise_share)
+    amplitude = np.abs(top - foot) / 2 - np.where(follows, 0.0, way * np.abs(drift) / 2)
     return (top + foot) / 2, np.where(np.isnan(drift), np.nan, amplitude)
 
 
@@ -1223,6 +1257,8 @@ def _readings_at_turns(
     """
     values = way * series
     begin, peak, end = branch_first[:, 0], branch_last[:, 0], branch_last[:, 1]
+    # what creeps while its channel is held at the peak is farthest where that leaves
+    after_peak = np.minimum(branch_first[:, 1] + reach, end)
 
     def extreme(of: np.ufunc, low: Integers, high: Integers) -> Floats:
         pairs = np.column_stack([np.maximum(low, begin), np.minimum(high, end)]).ravel()
@@ -1230,7 +1266,7 @@ def _readings_at_turns(
         found = of.reduceat(values[:stop], np.minimum(pairs[:-1], stop - 1))[::2]
         return np.asarray(of(found, values[np.minimum(high, end)]))
 
-    top = extreme(np.maximum, peak - reach, peak + reach)
+    top = extreme(np.maximum, peak - reach, after_peak)
     first = extreme(np.minimum, begin, begin + reach)
     last = extreme(np.minimum, end - reach, end)
     missed = np.zeros(top.size)
@@ -1238,7 +1274,7 @@ def _readings_at_turns(
         # what creeps while its channel rests is farthest after the turn that ends the cycle
         stop = np.minimum(end + reach, np.append(peak[1:], values.size - 1))
         goes_on = np.append(begin[1:] == end[:-1], False)  # and after the last one it unloads
-        at_top = _places(values, peak - reach, np.minimum(peak + reach, end))
+        at_top = _places(values, peak - reach, after_peak)
         at_last = _places(-values, np.maximum(end - reach, peak), np.where(goes_on, stop, end))
         last = np.fmin(last, values[at_last])
         above = level_of_turn(values, peak, top, sign=1) - top
@@ -1262,7 +1298,7 @@ def _readings_at_turns(
             missed = (_EITHER - 1) * (excess[0] + excess[1]) / 2
         else:
             # a machine that dwells is at the level of its corner, and misses nothing
-            upper = _plateau(values, peak - reach, np.minimum(peak + reach, end), top)
+            upper = _plateau(values, peak - reach, after_peak, top)
             lower = _plateau(-values, np.maximum(end - reach, peak), stop, -last)
             top, above = (top, above) if upper is None else (upper, 0 * above)
             last, below = (last, below) if lower is None else (-lower, 0 * below)

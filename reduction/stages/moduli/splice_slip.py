@@ -48,7 +48,6 @@ from reduction.record.measurement import Bools, Floats, Integers
 from reduction.record.notes import Note, note
 from reduction.record.samples import sample_blocks
 from reduction.record.settings import SlipSettings
-from reduction.stages.cycles.cycle_product import Loops
 from reduction.stages.moduli.modulus_product import Slips
 
 
@@ -571,7 +570,7 @@ def _remarks(name: str, steps: tuple[_SlipStep, ...], sizes: Floats) -> list[Not
 
 
 def find_slips(
-    loops: Loops,
+    peak_tension: ArrayLike,
     *,
     specimens: tuple[str, ...],
     settings: SlipSettings,
@@ -582,8 +581,8 @@ def find_slips(
 
     Parameters
     ----------
-    loops : Loops
-        Table of loops; ``peak_tension`` gives the size of each step. [N]
+    peak_tension : array_like, shape (n_specimens, n_cycles)
+        Of each cycle, which gives the size of each step. [N]
     specimens : tuple of str, length n_specimens
         Names, in the order of the rows. [text]
     settings : SlipSettings
@@ -605,7 +604,7 @@ def find_slips(
     Raises
     ------
     DataError
-        If the names or the level do not fit the loops.
+        If the names or the level do not fit the peaks.
 
     Notes
     -----
@@ -618,22 +617,20 @@ def find_slips(
 
     Examples
     --------
-    >>> from reduction.stages.cycles.cycle_product import Loops
     >>> peak = 700 + np.random.default_rng(0).standard_normal((1, 200))
     >>> peak[:, 120:] -= 8.0
-    >>> loops = Loops(*[peak] * 21, uncertainty={})
     >>> slips = find_slips(
-    ...     loops, specimens=("new",), settings=SlipSettings(), tension_slope=[200.0]
+    ...     peak, specimens=("new",), settings=SlipSettings(), tension_slope=[200.0]
     ... )
     >>> print(slips.specimen, slips.slip_cycle, slips.slip_length.round(2))
     ('new',) [121] [0.04]
     """
-    peaks = np.atleast_2d(loops.peak_tension)
+    peaks = np.atleast_2d(np.asarray(peak_tension, dtype=float))
     level = peaks if tension_level is None else np.atleast_2d(np.asarray(tension_level, float))
     slopes = np.asarray([np.nan] * len(peaks) if tension_slope is None else tension_slope, float)
     if level.shape != peaks.shape or not len(specimens) == slopes.size == len(peaks):
         raise DataError(
-            "the series do not fit the loops",
+            "the series do not fit the peaks",
             found=f"level {level.shape}, {len(specimens)} names, {slopes.size} slopes",
             needed=f"level {peaks.shape}, {peaks.shape[0]} names and slopes",
         )
