@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from itertools import islice
 from multiprocessing.resource_tracker import ensure_running
 from queue import Empty, SimpleQueue
+from types import FrameType
 from typing import Any, Generic, TypeVar
 
 from reduction import __version__
@@ -32,6 +33,11 @@ _MEMORY = "Most often the memory did not suffice: take fewer workers, or workers
 
 # a worker may have several threads, and the netCDF library bears one
 _AT_WORK = threading.Lock()
+
+# whether this worker is to end once what it sends is sent
+_TO_END = threading.Event()
+
+_SENT = 1.0  # s, after which what a worker sends is sent
 
 
 @dataclass(frozen=True)
@@ -166,6 +172,8 @@ def _work(version: str, function: Callable[..., Result], *arguments: Any) -> tup
             needed=version,
         )
     with _AT_WORK, _alone():
+        if _TO_END.is_set():
+            os._exit(1)
         return function(*arguments), worker
 
 
@@ -216,7 +224,16 @@ def _begin(threads: int, threshold: tuple[int, int, int]) -> None:
     """
     os.environ |= {"OMP_NUM_THREADS": str(threads), "OPENBLAS_NUM_THREADS": "1"}
     gc.set_threshold(*threshold)
+    signal.signal(signal.SIGTERM, _end)
     threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end(number: int, frame: FrameType | None) -> None:
+    """End at once, but not in the middle of a message: whoever waits for the rest waits forever."""
+    if _AT_WORK.locked():
+        os._exit(1)
+    _TO_END.set()
+    threading.Timer(_SENT, os._exit, (1,)).start()
 
 
 def _end_with_parent() -> None:

@@ -325,3 +325,34 @@ def test_a_folder_of_products_that_workers_do_not_see_ends_the_run(campaign, sch
     assert process.returncode == 6
     assert "is not the lock of this run any more; found no such file on this machine" in errors
     assert not archives(tmp_path)
+
+
+_SENDS_MUCH = """
+import os, sys, time
+from reduction import __version__
+from reduction.batch.workers import _work, local_workers
+
+def give_back(data):
+    time.sleep(0.05)
+    return data
+
+if __name__ == "__main__":
+    data = os.urandom(30_000_000)
+    with local_workers(2) as workers:
+        for _ in range(20):
+            workers.executor.submit(_work, __version__, give_back, data)
+        time.sleep(float(sys.argv[1]))
+        raise KeyboardInterrupt
+"""
+
+
+@pytest.mark.posix
+@pytest.mark.parametrize("after", [0.4, 0.5])
+def test_workers_that_are_ended_while_they_send_leave_nobody_waiting_for_the_rest(after, tmp_path):
+    script = tmp_path / "sends.py"
+    script.write_text(_SENDS_MUCH)
+    ended = subprocess.run(
+        [sys.executable, script, str(after)], timeout=30, capture_output=True, text=True,
+        check=False,
+    )  # fmt: skip
+    assert ended.stderr.splitlines()[-1] == "KeyboardInterrupt"
