@@ -395,7 +395,7 @@ def differences_between(before: Path, after: Path, *, is_exact: bool = False) ->
     """Compare two archives, two tables, or two folders of products."""
     for path in (before, after):
         if not path.exists():
-            raise ArchiveError(f"there is no product {path}", needed="an archive or a folder")
+            raise ArchiveError(f"there is no file or folder {path}", needed="one that exists")
     found = Differences(is_exact)
     kinds = {path.suffix.lower() if path.is_file() else "folder" for path in (before, after)}
     if kinds == {"folder"}:
@@ -408,7 +408,7 @@ def differences_between(before: Path, after: Path, *, is_exact: bool = False) ->
         raise SettingsError(
             "these two cannot be compared",
             found=f"{before} and {after}",
-            needed="two .nc, two .csv, two folders of products, or two campaign.toml",
+            needed="two .nc, two .csv, two folders of archives, or two campaign.toml",
         )
     if not found.archived and not found.tabled:
         raise DataError(

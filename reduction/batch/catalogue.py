@@ -221,7 +221,7 @@ def campaigns_below(folder: Path) -> list[Path]:
         raise SettingsError(
             f"there is no folder {_shown_path(str(folder))}",
             needed="a folder of processed campaigns",
-            hint="Run a campaign first, or name the folder of its products.",
+            hint="Run a campaign first, or name the folder of its archives.",
         )
     try:
         with os.scandir(folder) as entries:

@@ -311,7 +311,7 @@ def _nothing_to_fit(plan: ExperimentPlan) -> FitError:
     """What is wrong with an experiment none of whose runs gave a product."""
     return FitError(
         "there is nothing to fit",
-        found=f"no product of any of its {len(plan.runs)} runs",
+        found=f"no archive of any of its {len(plan.runs)} runs",
         hint="The messages of its runs say why.",
     )
 

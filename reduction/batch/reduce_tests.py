@@ -136,7 +136,7 @@ def _check_raw_files(campaign: Campaign, survey: Survey) -> None:
                 "the file changed while the campaign ran",
                 found=f"sha256 {now.sha256[:16]}... of {now.size} bytes",
                 needed=f"sha256 {read.sha256[:16]}... of {read.size} bytes, as it was read",
-                hint="The product before is kept. Run again when nothing writes to the file.",
+                hint="The earlier archive is kept. Run again when nothing writes to the file.",
             )
 
 

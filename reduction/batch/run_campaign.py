@@ -176,7 +176,7 @@ def _loaded_before(
     if count:
         return f"it had carried {count} cycles before the first test"
     if not steps or steps[0].name != first.id:
-        return f"{first.id} came first, and gave no product"
+        return f"{first.id} came first, and gave no archive"
     return ""
 
 
@@ -361,10 +361,10 @@ def _refuse_name(folder: Path) -> None:
         name.encode(sys.getfilesystemencoding())
     except UnicodeEncodeError as error:
         raise SettingsError(
-            "products cannot be written to this folder",
+            "archives cannot be written to this folder",
             found=f"{name!a}, a name that {error.encoding} has no letters for",
             needed="a path in the character set of this process",
-            hint="Rename the folder, or say with --processed where the products go.",
+            hint="Rename the folder, or choose another with --processed.",
         ) from error
 
 

@@ -61,8 +61,8 @@ class RunLock:
             raise ArchiveError(
                 f"{self.path} is not the lock of this run any more",
                 found=text or "that it was given back",
-                needed="a folder of products that every worker sees, and one run at a time on it",
-                hint="Products that were finished are kept; run again to go on.",
+                needed="a folder that every worker can access, and one run at a time in it",
+                hint="Archives that were finished are kept; run again to go on.",
             )
 
 
@@ -96,8 +96,8 @@ def _hold(file: BinaryIO, lock: RunLock) -> None:
         raise ArchiveError(
             f"another run holds {folder}",
             found=f"{lock.path}: {_run_named(folder)}",
-            needed="one run at a time on a folder of products",
-            hint="Wait for it or end it; products that it finished are kept.",
+            needed="one run at a time in a folder of archives",
+            hint="Wait for it or end it; archives that it finished are kept.",
         ) from None
     except OSError as error:  # a disk of the network that keeps no locks
         raise _refused(lock.path, error) from error
@@ -115,7 +115,7 @@ def _refused(path: Path, error: OSError) -> ArchiveError:
     return ArchiveError(
         f"{path} cannot be written",
         found=error.strerror or str(error),
-        needed="a folder for products that this user may write to",
+        needed="a folder that this user may write to",
     )
 
 

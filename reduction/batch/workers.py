@@ -27,7 +27,7 @@ Result = TypeVar("Result")
 PATIENCE = 60.0
 """How long a run waits for a test to end before it looks whether workers are left. [s]."""
 
-_AGAIN = "Products that were finished are kept; run again to go on."
+_AGAIN = "Archives that were finished are kept; run again to go on."
 
 _MEMORY = "Most often the memory did not suffice: take fewer workers, or workers with more memory."
 

@@ -64,7 +64,7 @@ def _check_names(path: Path, campaign: str, tests: Mapping[str, TestPlan]) -> No
         other = seen.setdefault(name.casefold(), name)
         if not other:
             raise in_toml(
-                path, f"test '{name}' has the name of a product of the campaign",
+                path, f"test '{name}' has the name of another archive of the campaign",
                 needed="another name than " + ", ".join(OF_CAMPAIGN),
             )  # fmt: skip
         if other != name:

@@ -77,7 +77,7 @@ def show_budget(path: Path, quantity: str, places: Sequence[str], *, output: Com
     )
     if drawn is not None:
         output.say(
-            f"the product states {short(drawn * scale, 3)} {unit}, by Monte Carlo: this budget is "
+            f"the archive states {short(drawn * scale, 3)} {unit}, by Monte Carlo: this budget is "
             "of first order, which does not hold here"
         )
     output.answer(_document(budget, synthetic))

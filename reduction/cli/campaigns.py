@@ -518,7 +518,7 @@ def _say_run(result: CampaignResult, name: str, output: CommandOutput) -> None:
             f"{path}: nothing in this campaign makes it now; moved there, and no answer rests on it"
         )
     has_failed = bool(result.tests) and all(one.status == "failed" for one in result.tests)
-    output.say(f"products: {'none; all tests failed' if has_failed else result.processed}")
+    output.say(f"archives: {'none; all tests failed' if has_failed else result.processed}")
     if result.tables and not has_failed:
         number, folder = len(result.tables) - 1, result.tables[0].parent
         output.say(f"tables:   {folder}: {number} tables, and columns.csv, which explains them")

@@ -124,7 +124,7 @@ def _no_products(path: Path) -> SettingsError:
     return SettingsError(
         problem,
         found=found,
-        needed="the products of a campaign",
+        needed="the archives of a campaign",
         hint=f"`reduction run raw/{campaign}/campaign.toml` makes processed/{campaign}.",
     )
 

@@ -853,7 +853,7 @@ def verify(
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Check that raw files and products still match; change nothing."""
+    """Check that raw files and archives still match; change nothing."""
     with guarded(CommandOutput(json=json, quiet=quiet)) as output:
         from reduction.cli.verify import verify_products
 
@@ -865,7 +865,7 @@ def diff(
         Path,
         typer.Argument(
             metavar="A",
-            help="Before: an archive, a table, a folder of products, or a CAMPAIGN.toml.",
+            help="Before: an archive, a table, a folder of archives, or a CAMPAIGN.toml.",
             show_default=False,
             callback=here,
         ),

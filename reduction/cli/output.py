@@ -227,7 +227,7 @@ def guarded(output: CommandOutput) -> Iterator[CommandOutput]:
     except ReductionError as error:
         _say_failure(output, error)
     except KeyboardInterrupt:
-        output.error("interrupted; products that were finished are kept")
+        output.error("interrupted; archives that were finished are kept")
         output.status = INTERRUPTED
     except BrokenPipeError:
         # the reader of a pipe went away: not an error of ours, and nothing more can be said

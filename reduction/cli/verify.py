@@ -21,7 +21,7 @@ def verify_products(
     folders = processed_folders(processed)
     if campaign is not None and folders != [processed]:
         raise SettingsError(
-            "--campaign applies to one folder of products",
+            "--campaign applies to the archives of one campaign",
             found=f"{processed}, which contains {', '.join(folder.name for folder in folders)}",
             needed="processed/CAMPAIGN",
         )

@@ -725,7 +725,7 @@ def _pull_of(folder: Path, test: str, specimen: str, opener: Opener = reading) -
                 )  # fmt: skip
     raise ArchiveError(
         f"the slow pull of {specimen} has no archive", found=f"no test {test} in {folder}",
-        needed="the products of the whole campaign in one folder",
+        needed="the archives of the whole campaign in one folder",
     )  # fmt: skip
 
 

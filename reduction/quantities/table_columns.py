@@ -71,7 +71,7 @@ OF_LOOK_UP: tuple[Quantity, ...] = (
 
 OF_CATALOGUE: tuple[Quantity, ...] = (
     label("campaign", "campaign"),
-    label("archive", "archive of the row, relative to the folder of products"),
+    label("archive", "archive of the row, relative to the folder of archives"),
     label("test_kind", "kind of test, or of campaign archive"),
     label("control", "control mode of the machine"),
     label("waveform", "waveform of the controlled channel"),

@@ -64,17 +64,18 @@ def _unknown_mass(mass: float, usual: float, effect: float, cell: str) -> str:
         else "the position of the load cell and the mass attached to it are not stated"
     )
     return (
-        f"{lacks}: {mass:.3g} kg at a moving load cell would change K_ap by its standard"
+        f"{lacks}: {mass:.3g} kg at a moving load cell would change EA by one standard"
         f" uncertainty, {usual:g} kg (a grip for 22 kN) by {effect:+.2%}; a load cell on the fixed"
-        " frame feels none. State load_cell_at and attached_mass in the layout"
+        " frame is not affected. State load_cell_at and attached_mass in the layout"
     )
 
 
 def _unknown_friction(size: float, of_energy: float, of_constant: float) -> str:
     return (
-        f"no mark was read on the way down: if friction makes the splices extend {size:.0%} more"
-        f" there, H is {of_energy:.0%} and K_ap {of_constant:.1%} too large. Read marks on"
-        ' the way down (hold "centre down"), or state splice_friction in [uncertainty]'
+        "no mark was read during unloading: if friction makes the extension of the splices"
+        f" {size:.0%} larger there than during loading, the hysteresis energy is {of_energy:.0%}"
+        f" and EA {of_constant:.1%} too large. Read marks during unloading"
+        ' (hold "centre down"), or state splice_friction in [uncertainty]'
     )
 
 
@@ -82,7 +83,7 @@ def _unknown_compliance(compliance: float, usual: float, effect: float) -> str:
     """Effect of a machine compliance that nobody stated."""
     return (
         f"the compliance of frame, load cell and grips is not stated: {compliance:.3g} m/N would"
-        f" change K_ap by its standard uncertainty, {usual:.2g} m/N (a frame for 100 kN, without"
+        f" change EA by one standard uncertainty, {usual:.2g} m/N (a frame for 100 kN, without"
         f" grips) by {effect:+.2%}. State machine_compliance in the layout"
     )
 
@@ -206,8 +207,8 @@ _OF_STRAIN: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note",
         lambda ratio, chi_square, freedom, chance, rows="rows": (
             f"the {rows} scatter {ratio:.1f} times as much as tape reading explains (chi-square"
-            f" {chi_square:.3g} with {freedom} degree{_plural(freedom)} of freedom, probability one"
-            f" in {f'{1 / chance:,.0f}' if chance > 1e-6 else 'a million or more'}); their"
+            f" {chi_square:.3g} with {freedom} degree{_plural(freedom)} of freedom, probability"
+            f" {f'one in {1 / chance:,.0f}' if chance > 1e-6 else 'below one in a million'}); their"
             " uncertainty is increased by this factor"
         ),
     ),
@@ -585,7 +586,7 @@ _OF_CYCLES: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "own-mass-unknown": (
         "note",
         "the inertia of the specimen itself is not corrected (this needs load_cell_at and"
-        " linear_density): a specimen mass of {at_moving:.3g} kg would change K_ap by its standard"
+        " linear_density): a specimen mass of {at_moving:.3g} kg would change EA by one standard"
         " uncertainty with the load cell at the moving end, {at_fixed:.3g} kg with the load cell"
         " at the fixed end",
     ),
@@ -642,9 +643,9 @@ _OF_MODULI: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "identity-open": (
         "warning",
         lambda effect, error, is_coarse: (
-            "the mean slopes of the two branches do not agree with the tension lost in a cycle:"
-            f" residual {effect:+.1%} of the modulus (standard error {error:.1%}). Possible causes:"
-            " channel lag, a dwell at the reversals, slip or slack"
+            "the difference between the mean slopes of the two branches does not match the tension"
+            f" lost over a cycle: residual {effect:+.1%} of the modulus (standard error"
+            f" {error:.1%}). Possible causes: channel lag, a dwell at the reversals, slip or slack"
             f"{', or too few samples for the curvature' if is_coarse else ''}"
         ),
     ),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -81,7 +81,8 @@ def find_faults(
 ) -> list[SummaryFinding]:
     """Return failures, then warnings, notes and refusals, by how far each could move an answer.
 
-    The same text of many tests stands once, with that of the test in which it matters most.
+    Texts that differ in numbers alone stand once: that of the test in which it matters most, under
+    the name of that test, then the names of the others.
     """
     gathered: dict[tuple[Severity, str], list[SummaryFinding]] = {}
     for pattern, one in _all_faults(tests, statuses, unreadable):
@@ -89,11 +90,21 @@ def find_faults(
     found = []
     for own in gathered.values():
         worst = min(own, key=lambda one: one.urgency)
-        n_texts = len({one.text for one in own})
-        more = f" (and {n_texts - 1} more like it)" if n_texts > 1 else ""
-        names = tuple(dict.fromkeys(name for one in own for name in one.tests))
-        found.append(replace(worst, tests=names, text=worst.text + more))
+        names = _names(one for one in own if one.text == worst.text)
+        found.append(replace(worst, tests=names, text=worst.text + _similar(worst, own)))
     return sorted([*found, *others], key=lambda one: (_ORDER.index(one.severity), one.urgency))
+
+
+def _names(findings: Iterable[SummaryFinding]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(name for one in findings for name in one.tests))
+
+
+def _similar(shown: SummaryFinding, alike: Sequence[SummaryFinding]) -> str:
+    """Return in which tests the text of a finding stands with other numbers; empty in none."""
+    others = [one for one in alike if one.text != shown.text]
+    names = _names(others)
+    more = f" ({len(others)} notes)" if len(others) > len(names) else ""
+    return f". Similar, with other numbers: {', '.join(names)}{more}" if others else ""
 
 
 def grouped_notes(view: TestView) -> list[tuple[str, list[str]]]:

@@ -157,7 +157,7 @@ def test_a_budget_of_what_was_drawn_says_that_the_product_states_another(tmp_pat
     made.to_netcdf(tmp_path / "made.nc")
     found = run("budget", tmp_path / "made.nc", "--quantity", "relaxation_time")
     assert found.exit_code == 0, found.output
-    said = "the product states 0.75 s, by Monte Carlo" in " ".join(found.output.split())
+    said = "the archive states 0.75 s, by Monte Carlo" in " ".join(found.output.split())
     assert said == is_said
 
 

@@ -149,7 +149,7 @@ def test_two_campaigns_are_run_and_compared(made, tmp_path, command, monkeypatch
         (["processed"], 2, "diff compares two things; found A alone; needed A and B, or"),
         (["processed", "processed", "--against", "HEAD"], 2, "found B and --against"),
         (["processed", "--against", "HEAD"], 2, "--against runs a campaign; found processed"),
-        (["processed", "none"], 6, "there is no product none"),
+        (["processed", "none"], 6, "there is no file or folder none"),
         (["processed", "raw"], 6, "raw: no archive was found"),
         (["processed", "raw/two-tethers/marks.csv"], 2, "these two cannot be compared"),
         (

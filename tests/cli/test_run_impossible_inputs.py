@@ -321,4 +321,4 @@ def test_errors_stand_once_in_one_file_and_a_run_that_failed_names_no_products(t
     )  # fmt: skip
     assert done.returncode == 3
     assert sum("A.csv" in line for line in done.stdout.splitlines()) == 1
-    assert "products: none; all tests failed\n" in done.stdout
+    assert "archives: none; all tests failed\n" in done.stdout

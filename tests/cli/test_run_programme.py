@@ -418,7 +418,7 @@ def test_a_step_that_failed_is_named_where_its_property_is_missing(log, tmp_path
     assert result.exit_status != 0
     found = table(result, "change_in_length").set_index("property_name")
     assert (
-        "new came first, and gave no product" in found.loc["original stiffness", "property_remark"]
+        "new came first, and gave no archive" in found.loc["original stiffness", "property_remark"]
     )
     assert found.loc["construction strain", "property_remark"].endswith("; new failed")
     assert found.loc["dynamic stiffness", "property_stiffness"] > 0

@@ -315,7 +315,7 @@ def test_a_command_that_is_told_to_end_takes_its_copies_away(here, campaign, tmp
             process.terminate()
             _, told = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert told == "interrupted; products that were finished are kept\n"
+    assert told == "interrupted; archives that were finished are kept\n"
     assert list(scratch.iterdir()) == []
 
 

@@ -259,7 +259,7 @@ def test_an_experiment_none_of_whose_runs_gave_a_product_has_nothing_to_fit(tmp_
     found = run_campaign(few, processed=tmp_path / "p", reports=tmp_path / "r", clock=lambda: 0.0)
     (one,) = found.parts["experiments"]
     assert (one.status, one.exit_status) == ("failed", 5)
-    assert one.message.startswith("there is nothing to fit; found no product of any of its 2 runs")
+    assert one.message.startswith("there is nothing to fit; found no archive of any of its 2 runs")
     assert not (found.processed / "surfaces.nc").exists()
 
 

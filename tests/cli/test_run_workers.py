@@ -130,7 +130,7 @@ def test_a_scheduler_that_is_lost_ends_the_run_with_words_and_nothing_half_writt
     master.send_signal(signal.SIGKILL)
     _, errors = process.communicate(timeout=60)
     assert process.returncode == 1
-    assert "the scheduler was lost. Products that were finished are kept" in errors
+    assert "the scheduler was lost. Archives that were finished are kept" in errors
     assert "Traceback" not in errors and "distributed" not in errors
     made = products(tmp_path)
     assert made and all(serial[name] == made[name] for name in made)
@@ -168,7 +168,7 @@ def test_an_interrupt_ends_the_workers_and_gives_back_the_lock(campaign, tmp_pat
     os.killpg(process.pid, signal.SIGCONT)
     _, errors = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert errors.splitlines()[-1] == "interrupted; products that were finished are kept"
+    assert errors.splitlines()[-1] == "interrupted; archives that were finished are kept"
     assert "Traceback" not in errors
     assert time.monotonic() - began < 15
     assert psutil.wait_procs(children, timeout=10)[1] == []
@@ -196,7 +196,7 @@ def test_a_request_to_end_is_an_interrupt(jobs, request_, campaign, tmp_path):
     process.send_signal(getattr(signal, request_))
     _, errors = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert errors.splitlines()[-1] == "interrupted; products that were finished are kept"
+    assert errors.splitlines()[-1] == "interrupted; archives that were finished are kept"
     assert psutil.wait_procs(children, timeout=10)[1] == []
     assert products(tmp_path)  # and no lock
 

@@ -73,7 +73,7 @@ def test_what_is_left_on_the_screen_fits_it_and_is_whole(narrow):
     _, said = narrow
     left = [line.split("\r")[-1] for line in ESCAPE.sub("", said).replace("\r\n", "\n").split("\n")]
     start = next(place for place, line in enumerate(left) if line.startswith("Pulls and weights"))
-    end = next(place for place, line in enumerate(left) if line.startswith("products:"))
+    end = next(place for place, line in enumerate(left) if line.startswith("archives:"))
     assert max(map(len, left[start:end])) <= 80
     text = " ".join(" ".join(left[start:end]).split())
     assert "the moduli of the adjacent intervals would be 0.62 and 0.33 MPa" in text

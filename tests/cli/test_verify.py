@@ -77,7 +77,7 @@ def test_one_campaign_is_not_that_of_several_folders(place):
     done = reduction("verify", "processed", *stated, cwd=place)
     assert done.returncode == 2
     assert (
-        "--campaign applies to one folder of products; found processed, which contains other"
+        "--campaign applies to the archives of one campaign; found processed, which contains other"
         in (done.stderr)
     )
 

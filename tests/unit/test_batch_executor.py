@@ -130,7 +130,7 @@ def test_a_worker_process_that_dies_ends_the_work_and_the_tests_at_work_are_name
         pytest.raises(
             WorkerError,
             match=r"^a worker process died; found it at work on one of \d, \d; needed workers that "
-            "live .*Most often the memory .*Products that were finished are kept; run again",
+            "live .*Most often the memory .*Archives that were finished are kept; run again",
         ) as caught,
     ):
         told.extend(one.value for one in work_on(die_slowly, tasks, workers=two))

@@ -100,7 +100,7 @@ def test_a_second_run_is_told_who_holds_the_folder(tmp_path):
                 pytest.raises(
                     ArchiveError,
                     match=rf"^another run holds .*process {os.getpid()} on .*, since 20.*one run at a "
-                    "time.*Wait for it or end it; products that it finished are kept",
+                    "time.*Wait for it or end it; archives that it finished are kept",
                 ),
                 run_lock(tmp_path),
             ):

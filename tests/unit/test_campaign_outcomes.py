@@ -100,5 +100,5 @@ def test_a_table_outside_the_folder_and_one_that_is_not_there_are_refused(load):
 
 
 def test_a_test_may_not_have_the_name_of_the_product_of_the_results(load):
-    with pytest.raises(SettingsError, match="test 'outcomes' has the name of a product"):
+    with pytest.raises(SettingsError, match="test 'outcomes' has the name of another archive"):
         load(NAMED + TEST, ROWS.replace("N-1", ""))

@@ -152,7 +152,7 @@ def test_tension_sampled_late_is_noted_and_sound_channels_are_not(triangle):
     assert abs(found.mean_identity_residual[0]) < 0.001
     assert -0.011 < found.mean_identity_residual[1] < -0.007
     (note,) = map(str, found.notes)
-    assert note.startswith("late: the mean slopes of the two branches")
+    assert note.startswith("late: the difference between the mean slopes of the two branches")
     assert "residual -0." in note and "channel lag" in note
     assert "few samples" not in note
 

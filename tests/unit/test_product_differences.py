@@ -371,7 +371,7 @@ def test_what_cannot_be_read_is_an_error_of_its_own(tmp_path):
 
 def test_what_is_missing_empty_or_of_another_kind(tmp_path):
     good = put(tmp_path / "good.nc", modulus())
-    with pytest.raises(ArchiveError, match="there is no product"):
+    with pytest.raises(ArchiveError, match="there is no file or folder"):
         differences_between(good, tmp_path / "none.nc")
     (tmp_path / "nothing").mkdir()
     with pytest.raises(ArchiveError, match="nothing: no archive was found"):

@@ -71,7 +71,7 @@ def test_a_row_to_spare_is_needed_to_refute_the_tape():
 
 
 def test_odds_that_are_too_small_to_print_are_not_printed():
-    assert "one in a million or more" in str(_row_scatter(1.0, 100 * AWAY, LINE).note)
+    assert "below one in a million" in str(_row_scatter(1.0, 100 * AWAY, LINE).note)
 
 
 def test_residuals_and_design_pair_up():

@@ -89,7 +89,7 @@ def _exponentials(elapsed: Floats, relaxation_time: Floats) -> Floats:
     return columns
 
 
-_DEGENERATE = "no positive terms that can be told apart"
+_DEGENERATE = "terms not positive, or not distinct"
 
 GRID_TIMES = 20
 
@@ -157,6 +157,10 @@ def _starts(
 
 def _is_positive(fit: SeparableFit) -> bool:
     return bool(np.all(fit.amplitude[1:] > 0) and fit.amplitude[0] >= 0)
+
+
+def _terms(number: int) -> str:
+    return f"{number} term{'' if number == 1 else 's'}"
 
 
 def _unsupported(
@@ -264,12 +268,12 @@ def fit_prony(
     for n_terms in range(1, maximum_terms + 1):
         starts = _starts(time, load, weight, grid, n_terms)
         if starts.size == 0 or time.size <= 2 * n_terms + 1:
-            refused.append(f"{n_terms} terms: {_DEGENERATE}")
+            refused.append(f"{_terms(n_terms)}: {_DEGENERATE}")
             continue
         try:
             fits[n_terms] = fit_separable(basis, load, starts=starts, weights=weight)
         except FitError:
-            refused.append(f"{n_terms} terms: {_DEGENERATE}")
+            refused.append(f"{_terms(n_terms)}: {_DEGENERATE}")
     # terms that cancel each other are found, or not, by the last digits of the library that
     # searches: they are no witness of how many values are independent
     inflation = min(
@@ -289,13 +293,14 @@ def fit_prony(
         if reason is None:
             supported.append(n_terms)
         else:
-            refused.append(f"{n_terms} terms: {reason}")
+            refused.append(f"{_terms(n_terms)}: {reason}")
     if not supported:
-        raise FitError("no Prony series is supported", found="; ".join(sorted(refused)))
+        raise FitError("the record supports no Prony series", found="; ".join(sorted(refused)))
     n_terms = min(supported, key=lambda key: scores[key])
     if scores[n_terms] > min(scores.values()) + DECISIVE:
         raise FitError(
-            f"{n_terms} terms are supported but do not fit", found="; ".join(sorted(refused))
+            f"the record supports {_terms(n_terms)}, which fits poorly",
+            found="; ".join(sorted(refused)),
         )
     criterion = (
         f"{n_terms} of up to {maximum_terms} terms: lowest Bayesian information criterion "
