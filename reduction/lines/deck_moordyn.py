@@ -90,7 +90,7 @@ _LENGTH, _SEGMENTS = 10.0, 5
 NO_GRAVITY = "0 g"
 
 WEIGHTLESS = (
-    f"NO GRAVITY in this deck ({NO_GRAVITY}), so that its tension is that of its strain: set 9.81,"
+    f"NO GRAVITY in this deck ({NO_GRAVITY}), so that tension depends on strain alone: set 9.81,"
     " or copy the line type into your own deck"
 )
 
@@ -151,7 +151,7 @@ def _deck(
     rule = "-" * 22
     return "\n".join(
         [
-            f"{program} input file with one line type, in a deck that tries it",
+            f"{program} input file with one line type, in a small test deck",
             WEIGHTLESS,
             *head,
             f"{rule} LINE TYPES {rule}",
@@ -209,7 +209,7 @@ _FAST_SHARE = 0.1
 
 def _table_text(line: ExportLine, curve: ThinnedCurve) -> str:
     """Look-up table: three lines of header, rows with one blank, no line end at the end."""
-    low, high = line.tested
+    low, high = line.measured
     where = (
         f"tested {plain_number(low, 4)} to {plain_number(high, 4)}"
         if low == low

@@ -40,15 +40,15 @@ def one_line(text: str) -> str:
 
 def header_lines(line: ExportLine, curve: ThinnedCurve | None, *remarks: str) -> list[str]:
     """Header of a file, without the signs that make it a remark there."""
-    told = [f"{line.name}, by reduction {__version__}"]
+    told = [f"Line {line.name}, written by reduction {__version__}"]
     if line.is_synthetic:
-        told.append("SYNTHETIC: made from a formula, nothing was tested")
+        told.append("SYNTHETIC: generated from a formula, nothing was tested")
     if curve is not None:
         told += [
             f"Curve: {line.curve}",
-            f"Holds as {range_of(line)}. The curve ends at strain {curve.strain[-1]:.6g} and "
+            f"Range: {range_of(line)}. The curve ends at strain {curve.strain[-1]:.6g} and "
             f"tension {plain_number(curve.tension[-1], 6)} N; not known beyond",
-            f"{curve.strain.size} points of {line.strain.size}; greatest error "
+            f"{curve.strain.size} points of {line.strain.size}; greatest error of thinning "
             f"{plain_number(curve.error, 3)} N, {curve.share:.2e} of the greatest "
             f"tension; {local_words(curve)}",
         ]

@@ -256,6 +256,9 @@ class ExportLine:
         What it is, in words: which branch, which cycles, or the mean of what. Never a loop.
     tested : tuple of float
         Least and greatest strain that was tested; NaN where nothing was. [1]
+    turns : tuple of float
+        Strains at which a mean cycle turns, where its curve goes on to them beyond the branches,
+        which are trimmed; else NaN. [1]
     diameter : float
         NaN where not stated. [m]
     linear_density, wet_linear_density : float
@@ -289,6 +292,7 @@ class ExportLine:
     tension: Floats
     curve: str
     tested: tuple[float, float]
+    turns: tuple[float, float] = (math.nan, math.nan)
     diameter: float = math.nan
     linear_density: float = math.nan
     wet_linear_density: float = math.nan
@@ -321,6 +325,12 @@ class ExportLine:
             )
         if not self.sources:
             raise SettingsError(f"{self.name} has no source", needed="where its numbers are from")
+
+    @property
+    def measured(self) -> tuple[float, float]:
+        """Least and greatest strain with a measured tension: of the branches, or of the turns."""
+        (low, high), (lower, upper) = self.tested, self.turns
+        return (lower if lower < low else low, upper if upper > high else high)
 
     @property
     def identifier(self) -> str:
@@ -492,7 +502,7 @@ def curve_from_zero(strain: ArrayLike, tension: ArrayLike) -> tuple[Floats, Floa
     --------
     >>> strain, tension, words = curve_from_zero([0.1, 0.3], [200.0, 500.0])
     >>> print(strain, tension, words)
-    [0.  0.1 0.3] [  0. 200. 500.] a straight line from 0 0 to the first point at strain 0.1
+    [0.  0.1 0.3] [  0. 200. 500.] a straight line from zero to the first point at strain 0.1
     """
     at = np.asarray(strain, dtype=np.float64)
     load = np.asarray(tension, dtype=np.float64)
@@ -526,12 +536,12 @@ def curve_from_zero(strain: ArrayLike, tension: ArrayLike) -> tuple[Floats, Floa
     if slack.size:
         at = np.concatenate([zero, slack[-1:], at[kept]])
         load = np.concatenate([zero, zero, load[kept]])
-        words = f"slack from 0 0 to strain {slack[-1]:g}"
+        words = f"slack from zero to strain {slack[-1]:g}"
     else:
         has_zero = bool(np.any(~kept & (at == 0)))
         at, load = np.concatenate([zero, at[kept]]), np.concatenate([zero, load[kept]])
         words = "" if has_zero else (
-            f"a straight line from 0 0 to the first point at strain {at[1]:g}"
+            f"a straight line from zero to the first point at strain {at[1]:g}"
         )  # fmt: skip
     if np.any(np.diff(load) <= _ROUNDING * load[-1]):
         load = load + LIFT * load[-1] * at / at[-1]
@@ -663,11 +673,16 @@ def without_damping(line: ExportLine) -> str:
     cycle = straight_cycle(line)
     if cycle is None:
         return ""
+    of, stiffness = "that cycle", cycle.stiffness
+    if line.damping is not None:
+        # that of the cycle has the range of the dashpot too, which this form has not
+        half = cycle.strain_amplitude
+        ends = continued_tension(line, np.array([cycle.strain - half, cycle.strain + half]))
+        of, stiffness = "the curve over that cycle", float(np.ptp(ends)) / (2 * half)
     return (
         f"no damping in this form: the hysteresis energy of a cycle, "
         f"{plain_number(cycle.hysteresis_energy, 4)} J/m at {cycle.holds}, is NOT included; K_ap"
-        " is "
-        f"{plain_number(cycle.stiffness, 6)} N"
+        f" of {of} is {plain_number(stiffness, 6)} N"
     )
 
 
@@ -750,7 +765,9 @@ def local_words(curve: _Close) -> str:
     AttributeError
         If it is no such curve.
     """
-    return f"{curve.local:.2e} of the tension there, or of {LEAST_SHARE:g} of the greatest"
+    return (
+        f"{curve.local:.2e} of the local tension, taken as at least {LEAST_SHARE:g} of the greatest"
+    )
 
 
 def local_share(difference: ArrayLike, tension: ArrayLike, greatest: float) -> float:
@@ -826,13 +843,17 @@ def range_of(line: ExportLine) -> str:
     AttributeError
         If it is no line.
     """
-    low, high = line.tested
-    if not low == low:
+    of_branches = line.tested
+    if not of_branches[0] == of_branches[0]:
         return "nothing was tested"
+    low, high = line.measured
     words = f"tested from strain {plain_number(low, 6)} to {plain_number(high, 6)}"
+    if (low, high) != of_branches:
+        words += f" (both branches from {' to '.join(plain_number(at, 6) for at in of_branches)})"
     if low > _SAME * high:
         words += (
-            f"; the start, a line from 0 0 up to strain {low:.6g}, was NOT measured on this curve"
+            f"; the start, a straight line from zero to strain {low:.6g}, was NOT measured on this"
+            " curve"
         )
     return words
 

@@ -211,9 +211,9 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
         if added.any():
             spread = None if spread is None else _with_ends(spread, added)
             notes.append(
-                f"the branches are known from strain {plain_number(tested[0], 4)} to"
-                f" {plain_number(tested[1], 4)}; beyond, a straight line goes on to the"
-                f" turns of the mean cycle at its peaks and valleys,"
+                f"both branches are known from strain {plain_number(tested[0], 4)} to"
+                f" {plain_number(tested[1], 4)}; from there a straight line goes on to the"
+                " turning points of the mean cycle, at"
                 f" {plain_number(strain[0], 4)} and {plain_number(strain[-1], 4)}"
             )
         if turns.strain[1] - strain[-1] > _SHORT * (turns.strain[1] - turns.strain[0]):
@@ -229,6 +229,7 @@ def _of_test(archive: xr.Dataset, curve: CurveName, name: str | None) -> dict[st
         **_rising(strain, tension),
         "curve": words,
         "tested": tested,
+        "turns": (float(strain[0]), float(strain[-1])),
         "diameter": _number(archive, "diameter", place),
         "rated_break_strength": _number(archive, "rated_break_strength", place),
         "linear_density": _number(archive, "linear_density", place),
@@ -855,7 +856,7 @@ def _without_constant(strain: Floats, tension: Floats) -> tuple[Floats, Floats, 
     doubt = "DOUBTFUL: " if constant > _LARGE_CONSTANT else ""
     said = (
         f"{doubt}the regression has strain {constant:.4g} at no tension, a constant of the fit,"
-        " not measured slack: replaced by a straight line from 0 0 that joins it at strain "
+        " not measured slack: replaced by a straight line from zero that joins it at strain "
         f"{plain_number(strain[first], 4)} and {plain_number(tension[first], 4)} N; as "
         f"slack it would be "
         f"{100 * constant:.2g} m in 100 m of line"

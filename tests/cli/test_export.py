@@ -32,16 +32,22 @@ def test_a_reduced_test_becomes_a_deck_and_its_table(command, synthetic, tmp_pat
     low, high = answer["tested"]["strain"]
     assert strain[1] < low < high < strain[-2]
     with reading(archive) as dataset:
-        middle, half = (
-            float(dataset[name].values[0]) for name in ("test_mean_strain", "test_strain_amplitude")
+        middle, half, stiffness = (
+            float(dataset[f"test_{name}"].values[0])
+            for name in ("mean_strain", "strain_amplitude", "apparent_spring_constant")
         )
     # the turns of the mean cycle, which no trimmed branch reaches
     assert [strain[1], strain[-2]] == pytest.approx([middle - half, middle + half])
+    # the header gives the range and K_ap of the table: those of the archive, not of a damped form
+    head = " ".join(deck.split())
+    assert f"tested from strain {strain[1]:.6g} to {strain[-2]:.6g} (both branches from" in head
+    assert f"K_ap of the curve over that cycle is {stiffness:.6g} N" in head
+    assert np.ptp(tension[[1, -2]]) / np.ptp(strain[[1, -2]]) == pytest.approx(stiffness, rel=1e-6)
     # and one row straight on, since MoorDyn keeps the last tension
     assert strain[-1] == pytest.approx(1.3 * strain[-2])
     slopes = np.diff(tension)[-2:] / np.diff(strain)[-2:]
     assert slopes[1] == pytest.approx(slopes[0], rel=0.01)
-    assert "a straight line goes on to the turns" in " ".join(answer["notes"])
+    assert "a straight line goes on to the turning points" in " ".join(answer["notes"])
 
 
 def test_branches_differ_and_their_mean_lies_between(command, synthetic, tmp_path):

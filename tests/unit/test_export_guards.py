@@ -9,11 +9,15 @@ from reduction.lines.export_line import SEA_WATER, guards_of, range_of
 
 def test_the_straight_start_is_said_not_to_be_measured():
     assert range_of(line()) == (
-        "tested from strain 0.1 to 1.4; the start, a line from 0 0 up to strain 0.1, was NOT "
+        "tested from strain 0.1 to 1.4; the start, a straight line from zero to strain 0.1, was NOT "
         "measured on this curve"
     )
     assert range_of(line(tested=(0.0, 1.4))) == "tested from strain 0 to 1.4"
     assert range_of(line(tested=(math.nan, math.nan))) == "nothing was tested"
+    assert range_of(line(tested=(0.2, 1.3), turns=(0.1, 1.4))) == (
+        "tested from strain 0.1 to 1.4 (both branches from 0.2 to 1.3); the start, a straight line"
+        " from zero to strain 0.1, was NOT measured on this curve"
+    )
 
 
 def test_a_line_that_floats_or_is_heavier_than_a_rod_of_its_fibre_is_doubtful():

@@ -87,7 +87,7 @@ def test_a_curve_says_which_points_were_tested():
     )
     table = curve_table(one)
     assert table.columns[2].values.tolist() == [False, True, True, False]
-    assert "straight line from 0 0" in table.notes[-1]
+    assert "straight line from zero" in table.notes[-1]
 
 
 def test_faults_are_named(tmp_path):

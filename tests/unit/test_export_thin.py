@@ -56,7 +56,7 @@ def test_slack_is_told_from_what_was_not_measured():
     strain, tension, words = curve_from_zero([0.1, 0.2, 0.5], [0.0, 0.0, 8.0])
     np.testing.assert_allclose(strain, [0, 0.2, 0.5])
     np.testing.assert_allclose(tension, [0, LIFT * 8 * 0.4, 8 * (1 + LIFT)])
-    assert words.startswith("slack from 0 0 to strain 0.2")
+    assert words.startswith("slack from zero to strain 0.2")
     assert "straight line" in curve_from_zero([0.1, 0.2], [1.0, 2.0])[2]
 
 
