@@ -608,8 +608,8 @@ def look_up_ranked(source: str, wanted: LookupRequest, *, output: CommandOutput)
         output.say(f"not ranked: {name}: {why}")
     for erratum in found.errata:
         output.say(
-            f"erratum {erratum.id}: {erratum.place} prints the opposite ({erratum.printed}); it "
-            f"is {erratum.corrected}"
+            f"erratum {erratum.id}: {erratum.place} prints the opposite ({erratum.printed}, in"
+            f" 10,000 lbf); correct: {erratum.corrected}"
         )
     output.say("a tie: the 95 % intervals overlap, so the order may be reversed")
     output.answer(
@@ -796,9 +796,10 @@ def _show_consistent(
     )
     stated = "printed" if line.is_printed else "of surface"
     output.say(
-        f"as {stated}, and K_1 and tau from K_ap, H and K_0 by the line model:"
+        "K_1 and tau as printed, and solved from K_ap, H and K_0 by the three-parameter model:"
         if line.is_printed
-        else "by the surfaces, and K_1 and tau from K_ap, H and K_0 by the line model:"
+        else "K_1 and tau of their own surfaces, and solved from K_ap, H and K_0 by the"
+        " three-parameter model:"
     )
     table = table_of(
         *heads, "K_0 by", *(f"{name}\n[{force}]" for name in ("K_ap", "K_0")),
@@ -845,7 +846,7 @@ def _remarks(found: DesignValues, place: int) -> list[str]:
             ("peak above the residual strength", at(found.own_peak_share) >= 1),
             ("peak above the rule", at(found.is_above_rule)),
             ("snap load: goes slack", at(found.is_slack) and at(found.peak_tension) > 0),
-            ("below zero: no value", at(found.is_below_zero)),
+            ("negative: do not use", at(found.is_below_zero)),
             (
                 "interval includes zero",
                 not at(found.is_below_zero) and (at(found.low) < 0 or at(found.surface_low) < 0),
@@ -869,7 +870,9 @@ def _said_of_lines(output: CommandOutput, *pairs: tuple[LineSource, DesignValues
             told.append(f"test conditions{of}: {words}")
         told.append(f"rule: {found.rule}")
         if found.errata:
-            told.append(f"errata that apply{of}: {', '.join(found.errata)}")
+            told.append(
+                f"errata that apply{of.replace(' of ', ' to ', 1)}: {', '.join(found.errata)}"
+            )
         told += [f"note{of}: {note}" for note in found.notes]
     for text in dict.fromkeys(told):
         output.say(text)
@@ -1149,7 +1152,7 @@ def _remark(found: LineDifference, place: int) -> str:
         elif one.is_above_rule.ravel()[place]:
             words.append(f"{which}: peak above the rule")
         if one.is_below_zero.ravel()[place]:
-            words.append(f"{which}: below zero, no value")
+            words.append(f"{which}: negative, do not use")
     return "; ".join(words)
 
 

@@ -278,7 +278,7 @@ def _surface(
 ) -> LineSurface:
     covariance = fitted.covariance_factor[fitted.pattern[index]]
     n_terms = len(fitted.exponents)
-    notes = [] if name == response else [f"from the surface of {name}, brought back"]
+    notes = [] if name == response else [f"transformed back from the surface of {name}"]
     component, rows = shared
     sigma = float(fitted.sigma[index])
     missed = discrepancy_of(fitted)

@@ -766,7 +766,7 @@ def local_words(curve: _Close) -> str:
         If it is no such curve.
     """
     return (
-        f"{curve.local:.2e} of the local tension, taken as at least {LEAST_SHARE:g} of the greatest"
+        f"{curve.local:.2e} of the local tension (or of {LEAST_SHARE:g} of the greatest, if larger)"
     )
 
 

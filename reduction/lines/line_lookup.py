@@ -270,7 +270,8 @@ def _design_values(
     below = int(np.sum(numbers["value"] < 0))
     if below:
         notes.append(
-            f"{below} of {inside.size} values are below zero, which {of.quantity} cannot be: the"
+            f"{below} of {inside.size} values {'is' if below == 1 else 'are'} negative, which"
+            f" {of.quantity} cannot be: the"
             " surface is not valid there"
         )
     return DesignValues(
@@ -303,10 +304,9 @@ def _scatter_note(of: LineSurface | LineCurve | LineLevels, words: tuple[str, st
     """What the intervals hold, and what they do not."""
     if isinstance(of, LineSurface) and np.isfinite(of.line_scatter):
         return (
-            f"specimens of this kind differ by about {100 * of.line_scatter:.0f} % "
-            f"(CG-D-39-80, sec. 4.4.1), taken with {of.n_lines:.0f} specimens and the degrees of "
-            "freedom of the surface: included only in the intervals of the kind and of another "
-            "specimen"
+            f"specimens of this kind scatter by about {100 * of.line_scatter:.0f} % "
+            f"(CG-D-39-80, sec. 4.4.1; {of.n_lines:.0f} specimens tested): included only in the "
+            "intervals of the kind and of another specimen"
         )
     return interval_note(*words)
 

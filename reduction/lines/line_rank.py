@@ -140,7 +140,9 @@ def rank_lines(
 
 def _above(values: DesignValues) -> str:
     share = float(values.own_peak_share.ravel()[0])
-    return f"its peak would be {100 * share:.0f} % of its break strength, above the rule"
+    return (
+        f"its peak would be {100 * share:.0f} % of its break strength, above the load limit (rule)"
+    )
 
 
 def _reason(error: ReductionError) -> str:

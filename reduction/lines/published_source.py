@@ -76,8 +76,8 @@ def _curves_of_line(line: PublishedLine) -> tuple[tuple[LineCurve, ...], dict[st
     absent = {OF_CUBIC.get(name, name): why for name, why in line.absent.items()}
     for cubic, found in ((line.stiffness, rest), (line.load_strain, strain)):
         if cubic is not None and found is None:
-            why = "; ".join(term.note for term in cubic.open_terms) or "the range is"
-            absent[OF_CUBIC.get(cubic.quantity, cubic.quantity)] = f"open: {why}"
+            why = "; ".join(term.note for term in cubic.open_terms) or "the printed range"
+            absent[OF_CUBIC.get(cubic.quantity, cubic.quantity)] = f"ambiguous: {why}"
     if rest is not None:
         rest = _beside_slope(rest, strain or _of_same_row(line))
     elif strain is not None:
@@ -144,7 +144,7 @@ def _curve(cubic: PublishedCubic) -> LineCurve | None:
     if [term.index for term in cubic.open_terms] == [0]:
         (term,) = cubic.open_terms
         coefficient[0] = term.values[0]
-        notes.append(f"open: constant of {cubic.quantity}: {term.note}; the first is taken")
+        notes.append(f"ambiguous: constant of {cubic.quantity}: {term.note}; the first is taken")
     if not (np.isfinite(coefficient).all() and np.isfinite(cubic.tension_high)):
         return None
     is_strain = cubic.quantity == "quasi_static_strain"
@@ -337,17 +337,17 @@ def _surface(line: PublishedLine, found: PublishedSurface) -> LineSurface:
     names = tuple(f"B{number}" for number in range(1, len(_EXPONENTS) + 1))
     covariance = covariance_factor(matrix, names=names)
     notes = [
-        f"open: B{term.index + 1} of {found.response}: {term.note}; the interval spans them"
+        f"ambiguous: B{term.index + 1} of {found.response}: {term.note}; the interval spans both"
         for term in found.open_terms
     ]
     if not np.isfinite(found.r2):
-        notes.append("r2 is open: no interval can be given")
+        notes.append("r2 is ambiguous: no interval can be given")
     if not found.passes_f_test:
         notes.append(
             "the surface fails its F test at 5 %: it explains the runs no better than their mean"
         )
     notes += [
-        f"the tested levels are open: shares of {box.rated_break_strength:.0f} N (Table "
+        f"the tested levels are ambiguous: shares of {box.rated_break_strength:.0f} N (Table "
         f"{box.table}) or of {other.rated_break_strength:.0f} N (Table {other.table}); the "
         "intervals span both"
         for other in others

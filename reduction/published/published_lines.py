@@ -596,9 +596,8 @@ def scatter_notes(line: PublishedLine) -> tuple[str, ...]:
     if line.condition == "new":
         return ()
     return (
-        "exposed specimens differ among each other by about half, new ones by a tenth "
-        "(sec. 4.4.1): that is in no interval but those of the kind and of another specimen, "
-        "which K_ap has",
+        "exposed specimens scatter by about 50 %, new ones by 10 % (sec. 4.4.1): included only in "
+        "the intervals of the kind and of another specimen, which only K_ap has",
     )
 
 

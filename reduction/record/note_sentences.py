@@ -992,7 +992,7 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
         "note",
         lambda test, earlier, tension: (
             f"test {test} loaded it to {_newtons(earlier)} before, this test reaches"
-            f" {_newtons(tension)}: all results are those after the greater load"
+            f" {_newtons(tension)}: all results are those of a specimen after the higher load"
         ),
     ),
     "earlier-test-failed": (
@@ -1314,14 +1314,14 @@ _OF_PLAUSIBILITY: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "zero-or-relaxation": (
         "note",
         lambda earlier, later: (
-            f"mean tension of like cycles goes from {earlier:.3g} to {later:.3g} N, "
+            f"mean tension of cycles at the same strain goes from {earlier:.3g} to {later:.3g} N, "
             + (
                 "as fast at the end as before: the specimen relaxes slowly"
                 if later < earlier
-                else "while relaxation lowers it: the specimen recovers, warms up or seats,"
+                else "although relaxation lowers it: the specimen recovers, warms up or seats,"
             )
             + " or the zero of the load cell drifts. The log has no slack rest after the cycles"
-            " that would tell"
+            " that would show which"
         ),
     ),
     "strength-outside-band": (

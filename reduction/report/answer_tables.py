@@ -225,10 +225,10 @@ def design_modulus_table(tests: Sequence[TestView]) -> PageTable | None:
                 [_OF_ROPE, *([] if is_of_lines else [_WHOLE]), _TANGENT],
             ),
             "Cycles used: for the whole cycle, then for the tangents if different; which ones, and"
-            " whether EA had settled: its mean over the last half of them lies inside its interval."
+            " whether EA had settled: its mean over the last half of them is inside its interval."
             f" {NOT_GIVEN}: no trustworthy value on that branch; the section of the test says why."
             " A modulus holds for the strain range of its test; another amplitude or mean gives"
-            " another modulus. Status 'check': something could move the answer beyond its"
+            " another modulus. Status 'check': a problem could shift a result by more than its"
             " interval.",
         ],
     )  # fmt: skip
@@ -557,7 +557,7 @@ def _differences(first: _Level, second: _Level) -> Iterator[str]:
         what for what, ratio in ratios.items() if 1 / _LIKE_CONDITIONS < ratio < _LIKE_CONDITIONS
     ]
     if alike:
-        yield f"{' and '.join(alike)} alike within {100 * (_LIKE_CONDITIONS - 1):.0f} %"
+        yield f"{' and '.join(alike)} equal within {100 * (_LIKE_CONDITIONS - 1):.0f} %"
 
 
 def _rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]]:

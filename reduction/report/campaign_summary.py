@@ -102,9 +102,10 @@ def _names(findings: Iterable[SummaryFinding]) -> tuple[str, ...]:
 def _similar(shown: SummaryFinding, alike: Sequence[SummaryFinding]) -> str:
     """Return in which tests the text of a finding stands with other numbers; empty in none."""
     others = [one for one in alike if one.text != shown.text]
-    names = _names(others)
-    more = f" ({len(others)} notes)" if len(others) > len(names) else ""
-    return f". Similar, with other numbers: {', '.join(names)}{more}" if others else ""
+    if not others:
+        return ""
+    notes = f"{len(others)} similar note{'' if len(others) == 1 else 's'}"
+    return f". {notes} with other numbers: {', '.join(_names(others))}"
 
 
 def grouped_notes(view: TestView) -> list[tuple[str, list[str]]]:

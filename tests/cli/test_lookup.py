@@ -122,7 +122,7 @@ def test_old_line_stands_against_new(command):
     assert answer["known"] is True
     assert answer["different"] is (answer["surface_interval"][0] > 0)
     assert answer["test_different"] is False
-    assert any("about half" in note for note in answer["second"]["notes"])
+    assert any("scatter by about 50 %" in note for note in answer["second"]["notes"])
 
 
 def test_shares_are_of_each_lines_own_strength_and_tensions_are_one(command):
@@ -420,7 +420,7 @@ def test_kinds_are_told_apart_with_the_scatter_between_lines_alone(command):
     assert answer["kind_interval"][0] < 0 < answer["kind_interval"][1]
     text = command(*pair).stdout
     assert "no difference shown" in text
-    assert "specimens of this kind differ by about 50 %" in text
+    assert "specimens of this kind scatter by about 50 %" in text
 
 
 def test_one_line_of_a_campaign_is_named_by_its_test_and_specimen(command, two_tests):

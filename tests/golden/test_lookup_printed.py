@@ -33,8 +33,8 @@ CUBICS = {
 # what the page does not give, with the words in which the look-up says so
 OPEN = {
     ("polyester-8-strand-plaited-0.5in-4-years", "hysteresis_energy"): "its mean B1 is open",
-    ("polyester-8-strand-plaited-0.5in-new", "strain"): "open: .417",
-    ("nylon-8-strand-plaited-0.8125in-new", "strain"): "open: the range is",
+    ("polyester-8-strand-plaited-0.5in-new", "strain"): "ambiguous: .417",
+    ("nylon-8-strand-plaited-0.8125in-new", "strain"): "ambiguous: the printed range",
 }
 # rows whose range or coefficient is open: the slope of the load-strain curve stands for them
 BY_SLOPE = {"nylon-double-braid-0.75in-new", "nylon-double-braid-0.5in-5-years"}

@@ -145,9 +145,9 @@ function told(line, of, points, { loads, words, more, is_untested, freedom }) {
   const isCurve = "variable" in of;
   if (words[0] || words[1]) {
     notes.push(!isCurve && Number.isFinite(of.line_scatter)
-      ? `specimens of this kind differ by about ${(100 * of.line_scatter).toFixed(0)} % `
-        + `(CG-D-39-80, sec. 4.4.1), taken with ${of.n_lines.toFixed(0)} specimens and the degrees of `
-        + "freedom of the surface: included only in the intervals of the kind and of another specimen"
+      ? `specimens of this kind scatter by about ${(100 * of.line_scatter).toFixed(0)} % `
+        + `(CG-D-39-80, sec. 4.4.1; ${of.n_lines.toFixed(0)} specimens tested): included only in the `
+        + "intervals of the kind and of another specimen"
       : `the interval applies to ${words[0] || words[1]}; scatter between specimens is not included`);
   } else if (isCurve) {
     notes.push("no interval is given: the source does not state the scatter of this curve");
@@ -157,7 +157,7 @@ function told(line, of, points, { loads, words, more, is_untested, freedom }) {
     notes.push("the minimum is zero: a snap load, which breaks fibres (CG-D-39-80, sec. 5.0)");
   }
   if (points.value < 0) {
-    notes.push(`1 of 1 values are below zero, which ${of.quantity} cannot be: the surface is not valid there`);
+    notes.push(`1 of 1 values is negative, which ${of.quantity} cannot be: the surface is not valid there`);
   }
   return {
     ...points, ...loads, is_untested, freedom,

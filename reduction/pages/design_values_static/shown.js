@@ -24,7 +24,7 @@ function remarksOf(found) {
     ["peak above the residual strength", found.own_peak_share >= 1],
     ["peak above the rule", found.is_above_rule],
     ["snap load: goes slack", found.is_slack && found.peak > 0],
-    ["below zero: no value", isBelow],
+    ["negative: do not use", isBelow],
     ["interval includes zero", !isBelow && (found.low < 0 || found.surface_low < 0)],
   ].filter((one) => one[1]).map((one) => one[0]);
 }

@@ -436,7 +436,9 @@ def cycles_to_failure(
         elif fell:
             how.append(f"the peak falls below {failure_share:.0%} of its median and stays there")
         elif stated is None:
-            how.append("every whole cycle is sound: a run-out, or a failure after the last one")
+            how.append(
+                "no failure in any complete cycle: a run-out, or a failure after the last one"
+            )
         else:
             how.append("as stated" + (", after the last whole cycle" if stated[row] else ""))
     return CyclesToFailure(
