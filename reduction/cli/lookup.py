@@ -346,7 +346,7 @@ def list_sources(source: str, search: Mapping[str, Any], *, output: CommandOutpu
     force, scale = output.unit("N")
     table = table_of(
         "line", "source", "material", "construction", "condition", f"diameter\n[{unit}]",
-        f"%RBS are of\n[{force}]", "quantities", texts=5,
+        f"100 %RBS\n[{force}]", "quantities", texts=5,
     )  # fmt: skip
     _fold_last(table)
     # what is copied into the next command is never broken

@@ -401,8 +401,8 @@ def _table_files(
 
 
 _NUMERICAL = (
-    f"internal damping {NUMERICAL_DAMPING:g}: MoorDyn takes a number below zero for minus a share "
-    "of critical damping, and finds the damping of each segment by it; numerical, not measured"
+    f"internal damping {NUMERICAL_DAMPING:g}: MoorDyn reads a negative number as a share of the "
+    "critical damping of each segment; numerical, not measured"
 )
 
 

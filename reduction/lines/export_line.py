@@ -143,7 +143,11 @@ class Hydrodynamics:
 
 
 CYLINDER = Hydrodynamics(
-    1.2, 0.0, 1.0, 0.0, "assumed, not measured: a smooth cylinder across the flow, none along it"
+    1.2,
+    0.0,
+    1.0,
+    0.0,
+    "assumed, not measured: a smooth cylinder across the flow, zero along it",
 )
 
 
@@ -367,7 +371,7 @@ class ExportLine:
             return diameter, f"diameter: {found}, from {words}{nominal}"
         return (
             self.needed("diameter"),
-            "diameter: nominal; the displaced volume of a rope is smaller",
+            "diameter: nominal; the displaced volume of a fibre rope is smaller",
         )
 
     def needed(self, name: str) -> float:

@@ -991,8 +991,8 @@ _OF_LINE: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "after-a-greater-load": (
         "note",
         lambda test, earlier, tension: (
-            f"test {test} loaded it to {_newtons(earlier)} before, this test reaches"
-            f" {_newtons(tension)}: all results are those of a specimen after the higher load"
+            f"test {test} loaded the specimen to {_newtons(earlier)} before; this test reaches"
+            f" {_newtons(tension)}: its results apply only after the higher load"
         ),
     ),
     "earlier-test-failed": (

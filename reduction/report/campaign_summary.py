@@ -100,12 +100,12 @@ def _names(findings: Iterable[SummaryFinding]) -> tuple[str, ...]:
 
 
 def _similar(shown: SummaryFinding, alike: Sequence[SummaryFinding]) -> str:
-    """Return in which tests the text of a finding stands with other numbers; empty in none."""
+    """Return which tests have the text of a finding with other numbers; empty if none."""
     others = [one for one in alike if one.text != shown.text]
     if not others:
         return ""
     notes = f"{len(others)} similar note{'' if len(others) == 1 else 's'}"
-    return f". {notes} with other numbers: {', '.join(_names(others))}"
+    return f". {notes}: {', '.join(_names(others))}"
 
 
 def grouped_notes(view: TestView) -> list[tuple[str, list[str]]]:
@@ -166,7 +166,9 @@ def test_table(tests: Sequence[TestView], statuses: Sequence[Status]) -> PageTab
         "strain reached [%]",
         "cycles found", "samples", "status",
     )  # fmt: skip
-    return make_table("Tests in order.", columns, rows)
+    several = any(len(view.specimens) > 1 for view in tests)
+    mean = " Strain reached: mean over the specimens of a test." if several else ""
+    return make_table(f"Tests in order.{mean}", columns, rows)
 
 
 def tiles(

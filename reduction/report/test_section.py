@@ -175,9 +175,9 @@ def _slope_sentences(view: TestView) -> list[str]:
             continue
         excess = 100.0 * (1.0 / one - 1.0)
         found.append(
-            f"{name}: a constant splice fraction, the method printed in WHOI-2005-10, reads these"
-            f" moduli {abs(excess):.1f} % {'high' if excess >= 0 else 'low'} (strain slope"
-            f" {one:.3f} of the one used here)."
+            f"{name}: a constant splice fraction, the method printed in WHOI-2005-10, would give"
+            f" moduli {abs(excess):.1f} % {'higher' if excess >= 0 else 'lower'} (strain per"
+            f" position: {one:.3f} times the one used here)."
         )
     return found
 
@@ -364,8 +364,9 @@ def _identity_table(view: TestView) -> PageTable | None:
         .numbers("median residual", [np.median(row) for row in ends], PERCENT, 2)
         .numbers("greatest residual", [np.max(row) for row in ends], PERCENT, 2)
         .table(
-            "Check: stroke-mean modulus ascending minus descending equals the tension lost over"
-            " area and strain stroke, on every cycle; residual over the stroke-mean modulus."
+            "Check: in every cycle, the stroke-mean modulus ascending minus descending must equal"
+            " the tension lost, divided by area and strain stroke. Residuals relative to the"
+            " stroke-mean modulus."
         )
     )
 

@@ -91,7 +91,7 @@ def test_the_statements_of_the_standard_are_there_and_the_end_is_marked(text, pa
     assert "Decision rule: guard band" in text
     assert "Opinion, not a result of the tests" in text
     assert "not stated" in text  # the temperature of a generated test
-    assert "On the screen alone" not in text
+    assert "Shown on the screen only" not in text
     assert "End of report SYNTHETIC-0001, revision 1" in pages[-1]
     assert not any("End of report" in page for page in pages[:-1])
 

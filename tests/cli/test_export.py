@@ -264,6 +264,6 @@ def test_a_deck_is_called_after_the_program_that_reads_it(command, tmp_path):
         text = path.read_text(encoding="utf-8")
         assert text.startswith(f"{name} input file")
         if program == "moordyn":
-            assert "MoorDyn takes a number below zero for minus a share of critical" in " ".join(
+            assert "MoorDyn reads a negative number as a share of the critical" in " ".join(
                 text.replace("\n", " ").split()
             )

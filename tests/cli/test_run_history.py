@@ -137,7 +137,11 @@ def test_weights_are_in_the_history_and_have_one(run_once):
         assert names == ", ".join(earlier)
         assert numbers == pytest.approx(greatest(earlier), rel=3e-3)
         # the weights are the greatest load of the four
-        told = [one for one in notes if one.startswith("cord: test weights loaded it to 840 N")]
+        told = [
+            one
+            for one in notes
+            if one.startswith("cord: test weights loaded the specimen to 840 N")
+        ]
         assert len(told) == (test in "BC")
     names, numbers, _ = history(row, "A")
     assert names == "" and np.isnan(numbers[:2]).all() and numbers[2] == 0

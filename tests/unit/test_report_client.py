@@ -98,7 +98,7 @@ def test_what_is_not_stated_is_called_so_field_by_field(client, rich_test):
     missing = {label for label, text in found.items() if text == NOT_STATED}
     assert set(FIELDS) - missing == {"Revision"}
     assert found["Revision"] == "0 (first issue)"
-    assert "not stated in this report are Report number, Date of issue, Laboratory" in text_of(page)
+    assert "This report does not state: Report number, Date of issue, Laboratory" in text_of(page)
     for name in ("identification", "condition on receipt"):
         at = rows_of(page, "Items as they were received")[0].index(name)
         assert {row[at] for row in rows_of(page, "Items as they were received")[1:]} == {NOT_STATED}

@@ -172,7 +172,7 @@ def test_tests_of_one_specimen_that_differ_over_the_same_strains_stand_side_by_s
     assert first[1:3] == ["early, late", "100 to 200"]
     assert first[5] == "0.500"
     assert "stretched to 280 % in between, at most 200 % before" in first[6]
-    assert "30 cycles" in first[6] and "strain amplitude and frequency alike" in first[6]
+    assert "30 cycles" in first[6] and "strain amplitude and frequency equal" in first[6]
 
 
 def test_other_strains_parts_of_a_test_and_like_values_are_no_such_pair():
