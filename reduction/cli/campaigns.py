@@ -572,7 +572,7 @@ def _show_answers(output: CommandOutput, found: ShownAnswers) -> Sequence[str]:
     for tests, text in found.doubts[:_MOST_DOUBTS]:
         output.say(f"  {tests}: {text}")
     if len(found.doubts) > _MOST_DOUBTS:
-        output.say("  The report has the others.")
+        output.say("  The report lists the others.")
     return found.answered
 
 

@@ -609,7 +609,7 @@ def look_up_ranked(source: str, wanted: LookupRequest, *, output: CommandOutput)
     for erratum in found.errata:
         output.say(
             f"erratum {erratum.id}: {erratum.place} prints the opposite ({erratum.printed}, in"
-            f" 10,000 lbf); correct: {erratum.corrected}"
+            f" units of 10,000 lbf); correct: {erratum.corrected}"
         )
     output.say("a tie: the 95 % intervals overlap, so the order may be reversed")
     output.answer(

@@ -386,8 +386,8 @@ def _values_of_curve(
             if low < first < high
         )
         raise DataError(
-            f"{int((~inside).sum())} of {inside.size} points are outside the tested range of "
-            f"{curve.quantity} of {line.name}",
+            f"outside the tested range of {curve.quantity} of {line.name}: "
+            f"{int((~inside).sum())} of {inside.size} points",
             found=f"{curve.variable} {plain_number(first)}{unit}",
             needed=f"{plain_number(curve.low)} to {plain_number(curve.high)}{unit}{gaps}",
             hint=". ".join(
@@ -611,8 +611,8 @@ def _refuse_outside(
                 f"{plain_number(high)} {unit}"
             )
     raise DataError(
-        f"{int((~inside).sum())} of {inside.size} points are outside the tested range of "
-        f"{surface.quantity} of {line.name}",
+        f"outside the tested range of {surface.quantity} of {line.name}: "
+        f"{int((~inside).sum())} of {inside.size} points",
         found="; ".join(told),
         needed="levels inside the tested range, the range of usefulness of the source",
         hint=_HOW_FLAGGED,

@@ -252,8 +252,8 @@ def pull_table(tests: Sequence[TestView]) -> PageTable | None:
         *([] if is_of_lines else [stress.label("modulus there")]), "status",
     ]  # fmt: skip
     return make_table(
-        "Pulls and weights. EA: slope of load on strain of the first rise, at half the strain that"
-        " was reached.",
+        "Pulls and weights. EA: slope of load against strain on the first loading, at half the"
+        " strain reached.",
         columns, found, is_compact=True, is_tall=len(found) > _MOST_ROWS,
         remarks=[
             *_about_spread(
@@ -302,7 +302,7 @@ def _pull_rows(view: TestView, *, is_of_lines: bool) -> Iterator[list[TableCell]
         is_break = broke is not None and broke[place] == 1
         yield [
             words(name), words(f"{view.id} (earlier run)" if view.is_of_earlier_run else view.id),
-            words("break" if is_break else "greatest load"), *ends, line,
+            words("break" if is_break else "peak load"), *ends, line,
             *([] if is_of_lines else [material]), _status(view),
         ]  # fmt: skip
 

@@ -224,7 +224,7 @@ def test_a_pull_has_its_end_and_the_stiffness_half_way_there():
     )  # fmt: skip
     # 2 MPa at 20 %, over 500 mm2
     assert texts(table) == [
-        ["new", "P-1", "greatest load", "40.00", "500.0 ± 2.0", "1,000.0 ± 9.8", "2.000 ± 0.020",
+        ["new", "P-1", "peak load", "40.00", "500.0 ± 2.0", "1,000.0 ± 9.8", "2.000 ± 0.020",
          "reduced"]
     ]  # fmt: skip
 

@@ -87,7 +87,7 @@ function valuesOfSurface(line, surface, levels, flag) {
       const unit = unitOf(name);
       return [`${name} ${plainNumber(value, 5)} ${unit}, tested ${plainNumber(low, 5)} to ${plainNumber(high, 5)} ${unit}`];
     });
-    throw new Refusal(`1 of 1 points are outside the tested range of ${surface.quantity} of ${line.name}`, {
+    throw new Refusal(`outside the tested range of ${surface.quantity} of ${line.name}: 1 of 1 points`, {
       found: told.join("; "),
       needed: "levels inside the tested range, the range of usefulness of the source",
       hint: FLAG_HINT,
@@ -110,7 +110,7 @@ function valuesOfCurve(line, curve, levels, flag) {
     const unit = unitBehind(curve.variable);
     const gaps = curve.gaps.filter(([low, high]) => low < x && x < high)
       .map(([low, high]) => `, nothing between ${plainNumber(low, 5)} and ${plainNumber(high, 5)}`).join("");
-    throw new Refusal(`1 of 1 points are outside the tested range of ${curve.quantity} of ${line.name}`, {
+    throw new Refusal(`outside the tested range of ${curve.quantity} of ${line.name}: 1 of 1 points`, {
       found: `${curve.variable} ${plainNumber(x, 5)}${unit}`,
       needed: `${plainNumber(curve.low, 5)} to ${plainNumber(curve.high, 5)}${unit}${gaps}`,
       hint: [curve.range_note, FLAG_HINT].filter(Boolean).join(". "),
