@@ -21,7 +21,7 @@ def test_a_table_is_named_in_the_row_and_has_numerical_damping():
     ]  # fmt: skip
     strain, _ = moordyn_table(files["x_table.txt"])
     assert strain.size == 30
-    assert "internal damping -1: MoorDyn takes a number below zero for" in files[""]
+    assert "internal damping -1: MoorDyn reads a negative number as" in files[""]
 
 
 def test_static_and_dynamic_stiffness_have_the_dashpot_of_the_series_form():
