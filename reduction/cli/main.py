@@ -357,7 +357,7 @@ def lookup(
     ] = None,
     population: Annotated[
         str | None,
-        typer.Option(help='All specimens as one line; limits of a share of the kind: "95 %".'),
+        typer.Option(help='All specimens combined; share for the tolerance limits: "95 %".'),
     ] = None,
     rank: Annotated[
         bool, typer.Option("--rank", help="All lines in order at one load, ties marked.")

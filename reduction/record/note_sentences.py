@@ -847,13 +847,13 @@ _OF_HOLDS: dict[str, tuple[Severity, str | Callable[..., str]]] = {
     "no-rate": ("refusal", "rate per decade not given: {reason}"),
     "rate-not-told-from-zero": (
         "refusal",
-        "rate per decade not given: the interval of the loss, {loss:.2%} +- {spread:.2%} (one"
-        " standard uncertainty), includes zero",
+        "rate per decade not given: the loss per decade, {loss:.2%}, is less than three times its"
+        " standard uncertainty, {spread:.2%}",
     ),
     "drop-not-told-from-zero": (
         "refusal",
-        "Prony series not given: the interval of the drop, {drop:.2%} +- {spread:.2%} (one"
-        " standard uncertainty), includes zero",
+        "Prony series not given: the drop, {drop:.2%}, is less than three times its standard"
+        " uncertainty, {spread:.2%}",
     ),
     "no-prony-series": ("refusal", "Prony series not given: {reason} ({found})"),
 }  # fmt: skip

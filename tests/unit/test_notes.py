@@ -19,8 +19,8 @@ SAID = replace(
 )
 # what a reader may be told, and whether it could move an answer
 FACTS = {
-    "Prony series not given: the interval of the drop, 0.03% +- 0.11% (one standard uncertainty), "
-    "includes zero": (REFUSED, "refusal"),
+    "Prony series not given: the drop, 0.03%, is less than three times its standard uncertainty, "
+    "0.11%": (REFUSED, "refusal"),
     "the printed diameters contradict each other": (SAID, "note"),
     "400 rows read, 400 kept, flagged: tension of new spike 3": (
         note("rows-flagged", n_read=400, n_kept=400, flags="tension of new spike 3"), "warning",
