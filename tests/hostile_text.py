@@ -568,7 +568,7 @@ NAMES = (
         for name in ("CON", "nul", "Com1", "LPT9")
     ),
     Case("tests a and A", test_id("a", "A"), 2, "differ in capital letters only"),
-    Case("test Surfaces", test_id("Surfaces"), 2, "the name of a product"),
+    Case("test Surfaces", test_id("Surfaces"), 2, "the name of another archive"),
     Case("steps that differ in capital letters", added(
         '[[tests.T-1.steps]]\nname = "a b"\nfrom = 1\nto = 2\n'
         '[[tests.T-1.steps]]\nname = "A-b"\nfrom = 3\nto = 4\n'), 2, "have one name"),
