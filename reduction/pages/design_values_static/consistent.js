@@ -128,8 +128,8 @@ function moreTables(line, found, at, system) {
   };
   return [{
     intro: line.is_printed
-      ? "as printed, and K_1 and tau from K_ap, H and K_0 by the line model:"
-      : "by the surfaces, and K_1 and tau from K_ap, H and K_0 by the line model:",
+      ? "K_1 and tau as printed, and solved from K_ap, H and K_0 by the three-parameter model:"
+      : "K_1 and tau of their own surfaces, and solved from K_ap, H and K_0 by the three-parameter model:",
     heads: [...levels.map((one) => one[0]), "K_0 by", `K_ap\n[${force}]`, `K_0\n[${force}]`,
       `K_1 ${stated}\n[${force}]`, `K_1 solved\n[${force}]`, `tau ${stated}\n[s]`, "tau solved\n[s]", "remark"],
     rows: values.map((one) => [
