@@ -636,7 +636,10 @@ def step_of_codes(values: Floats) -> float:
     moves = steps[steps > 1e-9 * steps.max(initial=0.0)]
     if not moves.size:
         return 0.0
-    step = float(moves.min())
+    # of a wave that passes over codes the levels of its rise and of its fall lie between each other
+    levels = np.sort(values[:_CODES_READ][np.isfinite(values[:_CODES_READ])])
+    apart = np.diff(levels)
+    step = float(apart[apart > 1e-9 * moves.max()].min())
     multiple = moves / step
     whole = np.abs(multiple - np.round(multiple)) < 0.05
     turns = np.count_nonzero(np.diff(np.round(steps / step)))

@@ -1075,3 +1075,48 @@ def test_rests_that_part_the_cycles_take_nothing_from_amplitudes_and_no_drift_in
     ):  # fmt: skip
         spread = found.uncertainty[name][0]
         assert abs(getattr(found, name)[0] - value) < 2.5 * spread + 4e-4 * value < 0.1 * value
+
+
+def in_step(waveform, channel, *, n_codes, noise, seed, per_cycle=40, n_cycles=25):
+    """A loop of parabolas or an ellipse, logged in step by a coarse converter of one channel."""
+    rng = np.random.default_rng(seed)
+    turn = np.arange(per_cycle * n_cycles + 1) / per_cycle + rng.uniform(0, 1) / per_cycle
+    if waveform == "sinusoidal":
+        strain = -0.02 * np.cos(2 * np.pi * turn)
+        load = 3e5 * strain + 500 * np.sin(2 * np.pi * turn)
+        energy = np.pi * 500 * 0.02
+    else:
+        way = np.where(turn % 1 < 0.5, 1, -1)
+        strain = 0.02 * (1 - 2 * np.abs(1 - 2 * (turn % 1))) * 1.0
+        load = 3e5 * strain + 500 * way * (1 - (strain / 0.02) ** 2)
+        energy = 8 / 3 * 500 * 0.02
+    half = np.hypot(6000, 500) if waveform == "sinusoidal" else 6000.0
+    step = 2 * (half if channel == "load" else 0.02) / n_codes
+    series = load if channel == "load" else strain
+    level = rng.uniform(0, 1)
+    read = np.round(series / step + level + noise * rng.normal(size=turn.size)) - level
+    load, strain = (read * step, strain) if channel == "load" else (load, read * step)
+    time = turn / 0.1
+    cycles = find_cycles(
+        time, strain, load[None], find_standstills(time, strain, load[None],
+        settings=PhaseSettings()), settings=CycleSettings(),
+    )  # fmt: skip
+    loops = close_loops(time, load[None], strain[None], cycles, waveform=waveform)
+    return summarise_amplitude(loops, area=[1e-4]), energy, half / 0.02
+
+
+@pytest.mark.parametrize("waveform", ["sinusoidal", "triangular"])
+@pytest.mark.parametrize("noise", [0.0, 0.1])
+@pytest.mark.parametrize(("channel", "n_codes"), [("load", 100), ("strain", 97)])
+def test_steps_of_a_converter_in_step_with_the_wave_are_carried(waveform, noise, channel, n_codes):
+    errors = []
+    for seed in range(6):
+        found, energy, constant = in_step(
+            waveform, channel, n_codes=n_codes, noise=noise, seed=seed
+        )
+        for name, value in (("hysteresis_energy", energy), ("apparent_spring_constant", constant)):
+            spread = found.uncertainty[name][0]
+            assert spread < 0.06 * value
+            errors.append((getattr(found, name)[0] - value) / spread)
+    assert np.percentile(np.abs(errors), 85) < 2.2
+    assert np.abs(errors).max() < 3.5

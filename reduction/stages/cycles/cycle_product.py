@@ -152,20 +152,20 @@ class Loops:
             # of the area, and of the square of the amplitude that it is divided by
             loss = np.hypot(
                 area / (np.pi * mean("strain_amplitude") ** 2),
-                2 * strain / mean("strain_amplitude") * mean("loss_spring_constant") / _WITHIN_STEP,
+                2 * strain / mean("strain_amplitude") * mean("loss_spring_constant") / WITHIN_STEP,
             )
             storage = mean("storage_spring_constant")
             return {
                 # of a peak that is missed by more than a valley
-                "mean_tension": tension / _WITHIN_STEP,
-                "mean_strain": strain / _WITHIN_STEP,
-                "tension_amplitude": tension / _WITHIN_STEP,
-                "strain_amplitude": strain / _WITHIN_STEP,
-                "apparent_spring_constant": apart * mean("apparent_spring_constant") / _WITHIN_STEP,
-                "storage_spring_constant": apart * storage / _WITHIN_STEP,
+                "mean_tension": tension / WITHIN_STEP,
+                "mean_strain": strain / WITHIN_STEP,
+                "tension_amplitude": tension / WITHIN_STEP,
+                "strain_amplitude": strain / WITHIN_STEP,
+                "apparent_spring_constant": apart * mean("apparent_spring_constant") / WITHIN_STEP,
+                "storage_spring_constant": apart * storage / WITHIN_STEP,
                 "hysteresis_energy": area,
                 "loss_spring_constant": loss,
-                "loss_factor": np.hypot(loss / storage, apart * mean("loss_factor") / _WITHIN_STEP),
+                "loss_factor": np.hypot(loss / storage, apart * mean("loss_factor") / WITHIN_STEP),
             }
 
     def release_pages(self) -> None:
@@ -177,6 +177,6 @@ class Loops:
         trim_heap(self.frequency)
 
 
-_WITHIN_STEP = np.sqrt(8)  # width over deviation, of what is likeliest at either end
+WITHIN_STEP = np.sqrt(8)  # width over deviation, of what is likeliest at either end
 
 PLACE_OF_DRIFT = np.sqrt(6)  # half width of a triangular distribution over its deviation

@@ -68,6 +68,7 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
@@ -86,7 +87,7 @@ from reduction.record.samples import (
     step_that_fills,
     take_samples,
 )
-from reduction.stages.cycles.cycle_product import PLACE_OF_DRIFT, Cycles, Loops
+from reduction.stages.cycles.cycle_product import PLACE_OF_DRIFT, WITHIN_STEP, Cycles, Loops
 from reduction.stages.cycles.periods import (
     own_periods,
     spread_of_turns,
@@ -809,8 +810,12 @@ def _shape_of_wave(
     period: Floats,
     parts: Floats,
     ends: Floats,
+    *,
+    rounding: float = 0.0,
 ) -> _Shape:
     """Shape of a wave by its harmonics, over some of its cycles together.
+
+    ``rounding`` is the standard uncertainty that the steps of a converter leave in each reading.
 
     Notes
     -----
@@ -873,6 +878,10 @@ def _shape_of_wave(
     design, wave = terms(np.concatenate(phases)), np.concatenate(waves)
     of_wave = np.linalg.lstsq(design, wave, rcond=None)[0]
     spread = float(np.std(wave - design @ of_wave)) * np.sqrt(2 / wave.size)
+    # of readings at the same phases every cycle has the same error
+    n_phases = min(wave.size, 1 / max(step_that_fills(read), _FINEST))
+    per_harmonic = rounding / middle * np.sqrt(2 / n_phases)
+    spread = float(np.hypot(spread, per_harmonic))
     size = np.hypot(of_wave[1 : order + 1], of_wave[order + 1 :])
     # the fundamental is that of each cycle; a harmonic within the noise is none
     is_kept = (size > _ABOVE_NOISE * spread) & (orders > 1)
@@ -886,7 +895,9 @@ def _shape_of_wave(
     sums = curve @ (np.column_stack([np.zeros(len(faded)), np.tile(faded, 2)]) * weights).T
     low, high = sums.min(axis=0), sums.max(axis=0)
     half = (high - low) / 2
-    return _Shape(half[-1], (high[-1] + low[-1]) / 2, 2 * float(np.abs(half[-1] - half).max()))
+    missed = 2 * float(np.abs(half[-1] - half).max())
+    rounded = WITHIN_STEP * per_harmonic * np.sqrt(1 + np.count_nonzero(is_kept))
+    return _Shape(half[-1], (high[-1] + low[-1]) / 2, float(np.hypot(missed, rounded)))
 
 
 _IRREGULAR = 0.03  # change of amplitude from one cycle to the next, median
@@ -1511,37 +1522,152 @@ def _places(values: Floats, low: Integers, high: Integers) -> Integers:
     ])  # fmt: skip
 
 
-def _noise_and_rounding(values: Floats, noise: float) -> tuple[float, float]:
-    r"""Noise of readings before they were rounded, and what rounding leaves of an error.
+def _noise_and_step(values: Floats, noise: float) -> tuple[float, float]:
+    r"""Noise of readings before they were rounded, and the step that they were rounded to.
 
-    .. math:: \sigma^2 = s^2 - q^2 / 12, \qquad
-              u = q / \sqrt{12} \; e^{-2 (\pi \sigma_e / q)^2}, \qquad \sigma_e = 0.55 \, \sigma
+    .. math:: \sigma^2 = s^2 - q^2 / 12
 
-    The greatest of some ten noisy readings scatters by about 0.55 of their noise, and its mean over
-    many cycles is free of the steps where that is more than half of one.  The median of third
-    differences is itself a number of steps where these are coarse: there it is their mean square,
-    but for those of a turn, that says what the noise is.
+    The median of third differences is itself a number of steps where these are coarse: there it is
+    their mean square that says what the noise is.  The step is zero where
+    noise of more than a step leaves nothing of it.
 
     Examples
     --------
     >>> level = np.random.default_rng(1).normal(0, 1, 4000) + np.sin(np.arange(4000) / 300) * 100
     >>> rounded = 3 * np.round(level / 3)
-    >>> print([round(one, 1) for one in _noise_and_rounding(rounded, reading_noise(rounded))])
-    [1.0, 0.5]
+    >>> print([round(one, 1) for one in _noise_and_step(rounded, reading_noise(rounded))])
+    [1.0, 3.0]
     """
     step = step_of_codes(values)
     if not step or noise > _COARSE * step:
         return noise, 0.0
     third = np.abs(np.diff(values[:_NOISE_SAMPLES], n=3))
     third = third[np.isfinite(third) & (third < _FAR * step)]
-    square = float(np.mean(third**2)) / 20 if third.size else 0.0
-    own = np.sqrt(max(square - step**2 / 12, 0.0))
-    return float(own), rounding_left(step, _OF_GREATEST * own)
+    # the corners of a wave are no noise: without the greatest fifth, as of a normal distribution
+    inner = np.sort(third)[: int(0.8 * third.size)]
+    square = float(np.mean(inner**2)) / (20 * _OF_INNER) if inner.size else 0.0
+    return float(np.sqrt(max(square - step**2 / 12, 0.0))), step
+
+
+def _codes_of_branches(values: Floats, cycles: Cycles, step: float) -> list[Floats]:
+    """Readings of the rise and of the fall of some cycles, one row each, in steps of a converter.
+
+    Noise puts a turn a reading early or late: each row begins where it is most like the others.
+    """
+    found = []
+    some = slice(_CYCLES_OF_SHAPE)
+    for begin, end in zip(cycles.branch_first[some].T, cycles.branch_last[some].T, strict=True):
+        n = int(np.median(end - begin)) + 1
+        begin = begin[(begin > 0) & (begin + n < values.size)]
+        if n < _FEWEST_ON_PLATEAU or not begin.size:
+            continue
+        places = begin[:, None, None] + np.array([-1, 0, 1])[:, None] + np.arange(n)
+        codes = take_samples(values, places.ravel()).reshape(places.shape) / step
+        codes = codes[np.isfinite(codes).all(axis=(1, 2))]
+        if not codes.size:
+            continue
+        apart = np.abs(codes - np.median(codes[:, 1], axis=0)).sum(axis=2)
+        found.append(codes[np.arange(len(codes)), apart.argmin(axis=1)])
+    return found
+
+
+def _scatter_over_cycles(values: Floats, cycles: Cycles, step: float) -> float:
+    r"""Scatter of one place of the wave over the cycles, before it was rounded. [any].
+
+    .. math:: \langle v \rangle \approx q \sigma / \sqrt{\pi}
+              \quad (\sigma \ll q), \qquad \langle v \rangle \approx \sigma^2 + q^2 / 12
+
+    of the variance v of its codes, over all levels that a reading may have between two codes.
+    Noise makes it, or a log that is out of step with its wave, and either frees the mean of the
+    steps; a log in step has none of it, though third differences take its steps for noise.
+
+    Examples
+    --------
+    >>> first = np.arange(0, 1200, 40)
+    >>> ends = np.column_stack([first, first + 20])
+    >>> cycles = Cycles(first, first + 40, ends, ends + 20, np.ones((30, 2)),
+    ...     np.zeros(1201), np.zeros(1201), np.zeros(1201), 0.1)
+    >>> wave = 107.4 - 5.37 * np.abs(np.arange(1201) % 40 - 20)
+    >>> noise = np.random.default_rng(1).normal(0, 1, 1201)
+    >>> print([round(_scatter_over_cycles(np.round(wave + size * noise), cycles, 1.0), 1)
+    ...     for size in (0.0, 0.2, 0.6)])
+    [0.0, 0.2, 0.6]
+    """
+    codes = _codes_of_branches(values, cycles, step)
+    if not codes:
+        return np.inf
+    square = float(np.mean(np.concatenate([np.var(one, axis=0) for one in codes])))
+    linear = square * np.sqrt(np.pi)
+    return step * float(linear if linear < _FEW_FLIP else np.sqrt(square - 1 / 12))
+
+
+_FEW_FLIP = 0.3  # steps of scatter, where both lines meet
+
+
+def _rounding_of_branches(values: Floats, cycles: Cycles, step: float) -> float:
+    r"""Root mean square of the mean error that rounding leaves over a branch. [any].
+
+    .. math:: u = q \sqrt{\langle (\tfrac1n \sum_k \{o + x_k\})^2 \rangle}
+
+    with the distance {} of a number from the nearest whole one, readings x of the branch without
+    rounding, by a cubic through their codes, and any level o.  Where a branch goes by a whole
+    number of steps from one reading to the next, all its readings err alike.
+
+    Examples
+    --------
+    Ramps of 20 readings, of 5 steps a reading and of 5.37, from a level that any cycle has:
+
+    >>> first = np.arange(0, 200, 40)
+    >>> ends = np.column_stack([first, first + 20])
+    >>> cycles = Cycles(first, first + 40, ends, ends + 20, np.ones((5, 2)),
+    ...     np.zeros(201), np.zeros(201), np.zeros(201), 0.1)
+    >>> wave = 20.0 - np.abs(np.arange(201) % 40 - 20)
+    >>> print(round(_rounding_of_branches(5 * wave, cycles, 1.0), 2),
+    ...     round(_rounding_of_branches(np.round(5.37 * wave), cycles, 1.0), 2))
+    0.29 0.01
+    """
+    errors = []
+    for codes in _codes_of_branches(values, cycles, step):
+        along = np.linspace(-1, 1, codes.shape[1])
+        branch = np.polynomial.Polynomial.fit(along, codes.mean(axis=0), 3)(along)
+        place = np.linspace(0, 1, 16, endpoint=False)[:, None] + branch
+        errors.append(np.mean(np.round(place) - place, axis=1))
+    return step * float(np.sqrt(np.mean(np.square(errors)))) if errors else 0.0
+
+
+def _energy_of_rounding(
+    series: tuple[Floats, Floats],
+    steps: Sequence[float],
+    left: Sequence[float],
+    cycles: Cycles,
+    norm: Floats,
+    ranges: Floats,
+    *,
+    waveform: Waveform,
+) -> Floats:  # fmt: skip
+    """Standard uncertainty of the energy of each cycle by the steps of both converters.
+
+    Of every reading by itself, by the norm of the steps of strain, and of the branches together.
+    """
+    force, strain = ranges
+    own = norm * np.hypot(left[0], left[1] * force / strain)
+    if waveform == "sinusoidal":
+        return np.asarray(own)
+    of_branches = [
+        # of both branches; what noise leaves of an error of one reading it leaves of their mean
+        np.sqrt(2) * _rounding_of_branches(one, cycles, step) * rest * np.sqrt(12) / step * other
+        if step
+        else 0.0
+        for one, step, rest, other in zip(series, steps, left, (strain, force), strict=True)
+    ]
+    return np.asarray(np.sqrt(own**2 + sum(one**2 for one in of_branches)))
 
 
 _OF_GREATEST = 0.55  # of the noise: scatter of the greatest of some ten readings
 
 _COARSE, _FAR = 1.5, 12.0  # steps of a converter
+
+_OF_INNER = 0.4377  # of the mean square of normal values, that of the least four fifths of them
 
 
 def _without_noise(
@@ -1806,19 +1932,40 @@ def close_loops(
     rise_shares = (_rise_share(time, cycles),) * 2
     for index, (force, stretch) in enumerate(zip(tension, strain, strict=True)):
         noise, strain_noise = noises[index]
+        own_noise, steps = zip(
+            _noise_and_step(force, noise), _noise_and_step(stretch, strain_noise), strict=True
+        )
+        scatter = [
+            _scatter_over_cycles(one, cycles, step) if step else np.inf
+            for one, step in zip((force, stretch), steps, strict=True)
+        ]
+        left = [rounding_left(step, one) for step, one in zip(steps, scatter, strict=True)]
+        if any(steps):
+            may_lack = measured[index, _OF_ENERGY]
+            ranges = measured[index, _OF_EXTREMES[0]] - measured[index, _OF_EXTREMES[1]]
+            np.hypot(
+                may_lack,
+                _energy_of_rounding(
+                    (force, stretch), steps, left, cycles, measured[index, _OF_NORM], ranges,
+                    waveform=waveform,
+                ),
+                out=may_lack,
+            )  # fmt: skip
         if waveform != "sinusoidal":
             of_driven, rows = (
                 (noise, _OF_TURNS) if control == "load" else (strain_noise, _OF_TURNS + 4)
             )
             of_corners = _noise_of_corners(of_driven, measured[index, rows : rows + 2])
-            for series, of_series, way, rows in (
-                (force, noise, ways[index][0], _OF_TURNS),
-                (stretch, strain_noise, ways[index][1], _OF_TURNS + 4),
-            ):
-                # the step of a converter lifts no extreme, and moves it alike in all cycles
-                own, rounded = _noise_and_rounding(series, of_series)
+            for series, own, step, over_cycles, way, rows in zip(
+                (force, stretch), own_noise, steps, scatter, ways[index],
+                (_OF_TURNS, _OF_TURNS + 4), strict=True,
+            ):  # fmt: skip
+                # the step of a converter lifts no extreme, and moves it alike in all cycles; the
+                # greatest of some ten noisy readings scatters, and the mean of many is free of it
                 missed = measured[index, rows + 3]
-                np.hypot(missed, rounded, out=missed)
+                np.hypot(
+                    missed, rounding_left(step, _OF_GREATEST * min(own, over_cycles)), out=missed
+                )
                 _without_noise(
                     measured[index, rows : rows + 4], series, cycles, reach=reach,
                     turn=turns[index], noise=own, way=way,
@@ -1833,9 +1980,14 @@ def close_loops(
             )
         if waveform == "sinusoidal":
             shapes = (
-                _shape_of_wave(time, force, cycles, period, measured[index, _OF_FORCE], ends),
-                _shape_of_wave(time, stretch, cycles, period, measured[index, _OF_STRAIN], ends),
-            )
+                _shape_of_wave(
+                    time, force, cycles, period, measured[index, _OF_FORCE], ends, rounding=left[0]
+                ),
+                _shape_of_wave(
+                    time, stretch, cycles, period, measured[index, _OF_STRAIN], ends,
+                    rounding=left[1],
+                ),
+            )  # fmt: skip
         values, errors = _quantities_of_cycles(
             measured[index], cycles, ends, waveform=waveform, noise=noise,
             strain_noise=strain_noise, rise_shares=rise_shares, control=control,
@@ -1860,7 +2012,13 @@ def close_loops(
 
 _REACH_OF_TURN = 0.25  # of the shorter branch, in which its extremes are sought
 
-_OF_TURNS = MEASURED.index("force_top")
+_OF_TURNS, _OF_ENERGY, _OF_NORM = (
+    MEASURED.index(name) for name in ("force_top", "energy_missed", "strain_step_norm")
+)
+
+_OF_EXTREMES = [
+    [MEASURED.index(one) for one in pair] for pair in (("peak", "high"), ("valley", "low"))
+]
 
 _OF_FORCE, _OF_STRAIN = (
     [MEASURED.index(f"{name}_{part}") for part in _OF_PARTS] for name in ("force", "strain")
