@@ -137,6 +137,7 @@ def _settings_json(
             else {
                 "test": test_of[name],
                 "strain_coefficient": pull.strain_coefficient.tolist(),
+                "curve_coefficient": pull.curve_coefficient.tolist(),
                 "tension_low": pull.tension_low,
                 "tension_high": pull.tension_high,
                 "instruments": None if origin is None else asdict(origin.errors),

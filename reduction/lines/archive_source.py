@@ -37,8 +37,10 @@ from reduction.record.measurement import Bools, Floats
 
 _OVER_STRAIN = ("tangent_modulus", "branch_tension")
 
+_K_0 = "quasi_static_spring_constant"
+
 _OVER_TENSION = {
-    "quasi_static_spring_constant": ("quasi_static_spring_constant", "mean_tension"),
+    _K_0: (_K_0, "mean_tension"),
     "quasi_static_strain": ("strain", "tension"),
 }
 
@@ -135,21 +137,22 @@ def _uncertainty(dataset: xr.Dataset, name: str, place: tuple[int, ...], seen: B
 
 
 def _of_pull(dataset: xr.Dataset, place: int) -> list[LineCurve]:
-    """K_0 and strain of a slow pull, by its cubic, over its range of use."""
+    """K_0 of a slow pull at its tensions, and its strain by the cubic, over its range of use."""
     if "pull_strain_coefficient" not in dataset:
         return []
     coefficient = np.array(dataset.variables["pull_strain_coefficient"].values[place])
     if not np.isfinite(coefficient).all():
         return []
     everywhere = np.ones(dataset.sizes["tension_grid"], dtype=bool)
+    constant = np.array(dataset.variables[_K_0].values[place])
     return [
         LineCurve(
             quantity=name,
             variable=variable,
             low=float(dataset.variables["pull_tension_low"].values[place]),
             high=float(dataset.variables["pull_tension_high"].values[place]),
-            coefficient=coefficient,
-            is_inverse_slope=name != "strain",
+            coefficient=coefficient if name == "strain" else np.empty(0),
+            value=np.empty(0) if name == "strain" else constant,
             at=np.array(dataset.variables["tension_grid"].values),
             **_uncertainty(dataset, stored, (place,), everywhere),
             spread_of="the curve of this one pull",
@@ -519,9 +522,7 @@ def _slow_pulls(path: Path, settings: Mapping[str, Any], opener: Opener) -> dict
         except ArchiveError:
             continue
         label = f"slow pull {test}" + (f" of {specimen}" if len(pulls) > 1 else "")
-        found[label] = next(
-            one for one in pulled.curves if one.quantity == "quasi_static_spring_constant"
-        )
+        found[label] = next(one for one in pulled.curves if one.quantity == _K_0)
     return found
 
 
@@ -583,7 +584,7 @@ def _rope(folder: Path, name: str, tests: Sequence[LineSource]) -> LineSource:
     for line in tests:
         for one in line.levels:
             by_quantity.setdefault(one.quantity, []).append(one)
-    pulls = [line for line in tests if any(one.is_inverse_slope for one in line.curves)]
+    pulls = [line for line in tests if any(one.quantity == _K_0 for one in line.curves)]
     absent = {}
     if len(pulls) > 1:
         why = "several slow pulls; each is a line of its own: " + ", ".join(

@@ -161,7 +161,11 @@ from reduction.stages.three_parameter_line.line_model import (
     line_sensitivities,
 )
 from reduction.stages.three_parameter_line.line_product import SlowPull
-from reduction.stages.three_parameter_line.slow_pull import quasi_static_spring_constant
+from reduction.stages.three_parameter_line.slow_pull import (
+    MISFIT_AT,
+    quasi_static_spring_constant,
+    rows_of_slope,
+)
 from reduction.uncertainty.error_field import (
     ErrorField,
     Inertia,
@@ -999,7 +1003,7 @@ def fit_contributions(pull: SlowPull, tension: ArrayLike, *, of: str) -> Contrib
     Notes
     -----
     First order ([10]_, of the slope of [11]_).  The covariance is taken apart into independent
-    errors.  What the cubic misses of the curve is one error more, of one sign along the curve: a
+    errors.  What the curve misses of its slope is one error more, of one sign along the curve: a
     size is known of it, no course.
 
     Examples
@@ -1020,14 +1024,14 @@ def fit_contributions(pull: SlowPull, tension: ArrayLike, *, of: str) -> Contrib
     load = np.asarray(tension, dtype=np.float64)
     constant, _ = quasi_static_spring_constant(pull, load)
     scaled = (load - pull.tension_centre) / pull.tension_half_range
-    slope = np.stack([np.zeros(load.shape), np.ones(load.shape), 2 * scaled, 3 * scaled**2])
-    variance, direction = np.linalg.eigh(pull.covariance)
+    variance, direction = np.linalg.eigh(pull.curve_covariance)
     kept = variance > _NEGLIGIBLE * variance.max()
     root = (direction * np.sqrt(np.maximum(variance, 0)))[:, kept]
-    of_slope = [*np.tensordot(root.T, slope, axes=1)]
-    if pull.slope_misfit:
-        of_slope.append(np.full(load.shape, pull.slope_misfit))
-    rows = -(constant**2) * np.reshape(of_slope, (-1, *load.shape)) / pull.tension_half_range
+    of_slope = [*np.moveaxis(rows_of_slope(pull, scaled) @ root, -1, 0)]
+    if pull.slope_misfit.any():
+        missed = np.interp(scaled, MISFIT_AT, pull.slope_misfit)
+        of_slope.append(missed / pull.tension_half_range)
+    rows = -(constant**2) * np.reshape(of_slope, (-1, *load.shape))
     component = tuple(Component("quasi_static_fit", of, number) for number in range(len(rows)))
     return Contributions(component, {"quasi_static_spring_constant": rows})
 

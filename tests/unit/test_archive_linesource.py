@@ -136,13 +136,13 @@ def test_a_slow_pull_gives_rest_stiffness_and_strain_over_tension(folder):
     strain = look_up(line, "strain", tension=grid)
     assert strain.value == pytest.approx(expected["quasi_static_strain"], rel=1e-9)
     assert strain.peak_tension == pytest.approx(grid)
-    # K_0 is the slope of tension over strain, between the nodes too
+    # K_0 is the slope of tension over strain, on straight lines between the nodes
     middle = (grid[1:] + grid[:-1]) / 2
     step = 0.1
     ends = [look_up(line, "strain", tension=middle + half).value for half in (-step, step)]
     slope = 2 * step / (ends[1] - ends[0])
     between = look_up(line, "quasi_static_spring_constant", mean_tension=middle).value
-    assert between == pytest.approx(slope, rel=1e-5)
+    assert between == pytest.approx(slope, rel=1e-3)
     with pytest.raises(DataError, match="outside the tested range of strain of line-1"):
         look_up(line, "strain", tension=1.01 * grid[-1])
 

@@ -97,7 +97,7 @@ class LineParameters:
 @dataclass(frozen=True)
 @read_only_arrays
 class SlowPull:
-    """Load-strain curve of one specimen: strain as a cubic of tension, and its inverse slope.
+    """Load-strain curve of one specimen: strain as a cubic of tension, and the local slope.
 
     Parameters
     ----------
@@ -110,9 +110,15 @@ class SlowPull:
     covariance : ndarray, shape (4, 4)
         Of the coefficients, from the residuals and their likeness to their neighbours
         (type A); no part of load cell or gauge length. [1]
-    strain_misfit, slope_misfit : float
-        Root mean square of what a cubic misses of the strain, and of its slope in u, by a
-        polynomial of sixth degree; 0 where noise explains it. [1]
+    strain_misfit : float
+        Root mean square of what a cubic misses of the strain, by a polynomial of sixth degree; 0
+        where noise explains it. [1]
+    curve_coefficient : ndarray, shape (n_pieces + 3,)
+        Of the cubic B-splines over -1 to 1 on equal knots, whose slope is K_0. [1]
+    curve_covariance : ndarray, shape (n_pieces + 3, n_pieces + 3)
+        Of these coefficients, as ``covariance``. [1]
+    slope_misfit : ndarray, shape (81,)
+        What the curve misses of its slope in u, from -1 to 1. [1]
     tension_low, tension_high : float
         Range of use: where there are readings and the slope is positive. [N]
     residual_deviation : float
@@ -150,7 +156,9 @@ class SlowPull:
     coefficient: Floats
     covariance: Floats
     strain_misfit: float
-    slope_misfit: float
+    curve_coefficient: Floats
+    curve_covariance: Floats
+    slope_misfit: Floats
     tension_low: float
     tension_high: float
     residual_deviation: float
