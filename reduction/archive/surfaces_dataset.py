@@ -461,15 +461,14 @@ def _run_values(runs: RunTable, response_names: Sequence[str]) -> Values:
     for index, name in enumerate(response_names):
         values[f"{name}_measured"] = runs.response[index]
         random = runs.response_standard_uncertainty[index]
-        values[f"{name}_measured_standard_uncertainty"] = random
+        whole = random
         if runs.shared is not None:
-            rows = runs.shared.values[name]
-            values |= {
-                f"{name}_measured_standard_uncertainty": combined_standard_uncertainty(
-                    rows, random
-                ),
-                f"{name}_measured_random_standard_uncertainty": random,
-            }
+            whole = combined_standard_uncertainty(runs.shared.values[name], random)
+            values[f"{name}_measured_random_standard_uncertainty"] = random
+        if runs.response_whole_uncertainty is not None:
+            stated = runs.response_whole_uncertainty[index]
+            whole = np.where(np.isfinite(stated), stated, whole)
+        values[f"{name}_measured_standard_uncertainty"] = whole
     return values
 
 

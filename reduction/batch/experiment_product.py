@@ -174,8 +174,9 @@ def _row_of_archive(plan: ExperimentPlan, archive: xr.Dataset, place: int, speci
     for name in plan.responses:
         # what is shared is no scatter of the run: it goes another way, with its sign
         row[f"u {name}"] = of_test(f"{name}_random_standard_uncertainty")
+        row[f"whole u {name}"] = of_test(f"{name}_standard_uncertainty")
         if np.isnan(row[f"u {name}"]):
-            row[f"u {name}"] = of_test(f"{name}_standard_uncertainty")
+            row[f"u {name}"] = row[f"whole u {name}"]
     row["shared"] = {
         name: shared_contributions(archive, f"test_{name}", place)
         for name in dict.fromkeys((*MEASURED, *plan.responses))
@@ -407,6 +408,9 @@ def _fit_rows(plan: ExperimentPlan, rows: list[Row]) -> ExperimentResult:
         rated_break_strength=_column(rows, "strength"),
         remarks=tuple(row["remarks"] for row in rows),
         shared=_shared(plan, rows),
+        response_whole_uncertainty=np.array(
+            [_column(rows, f"whole u {name}") for name in plan.responses]
+        ),
     )
     result = fit_experiment(
         runs,

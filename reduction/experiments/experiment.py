@@ -51,6 +51,10 @@ class RunTable:
     shared : Contributions or None
         Of errors that runs share, to responses and levels by name, shape (n_components, n_runs);
         None where nothing is known of any.
+    response_whole_uncertainty : ndarray or None, shape (n_responses, n_runs)
+        Standard uncertainty of all errors as each run states it: of K_1 and tau by Monte Carlo
+        where they are not linear in their errors. None, or NaN, where it is the root of the sum of
+        squares of both parts. [SI unit of each response]
     """
 
     run: tuple[str, ...]
@@ -67,6 +71,7 @@ class RunTable:
     rated_break_strength: Floats
     remarks: tuple[tuple[Note, ...], ...]
     shared: Contributions | None = None
+    response_whole_uncertainty: Floats | None = None
 
     def __post_init__(self) -> None:
         """Check that every column has one entry a run, and make the arrays read-only."""

@@ -292,3 +292,17 @@ def test_a_load_cell_of_runs_and_pull_scales_the_line_and_leaves_its_time(run, s
             value = float(archive[f"test_{name}"].to_numpy()[0])
             found = archive[f"test_{name}_uncertainty_contribution"].to_numpy()[row, 0]
             assert found / value == pytest.approx(wanted, abs=1e-5), name
+
+
+def test_a_run_has_one_uncertainty_in_its_archive_and_in_the_table_of_runs(archives, run):
+    table = pd.read_csv(run.processed / "tables" / "run_responses.csv")
+    drawn = 0
+    of_runs = ~table["response"].str.startswith("log_")
+    for row in table[of_runs].to_dict("records"):
+        archive = archives[row["run_name"]]
+        stated = archive[f"test_{row['response']}_standard_uncertainty"].to_numpy()[0]
+        # nine digits are written
+        assert row["response_measured_standard_uncertainty [unit]"] == pytest.approx(stated), row
+        drawn += archive["test_line_uncertainty_method"].to_numpy()[0] == 2
+    # of some runs K_1 and tau are not linear in their errors, and the interval is drawn
+    assert drawn > 0
