@@ -34,6 +34,7 @@ from reduction.record.samples import finite_extremes
 from reduction.stages.load_at_slack import (
     load_at_slack,
     notes_on_zero,
+    pulls_as_at_reference,
     rises_with_stretch,
     stands_at_slack_length,
 )
@@ -44,7 +45,12 @@ from reduction.stages.strain.tape_and_crosshead import (
     TAPE_UNCERTAINTY,
     check_tape_against_crosshead,
 )
-from reduction.stages.strain.zero_strain import ZeroStrain, zero_at_slack, zero_at_tension
+from reduction.stages.strain.zero_strain import (
+    ZeroStrain,
+    half_band_of,
+    zero_at_slack,
+    zero_at_tension,
+)
 from reduction.stages.test_levels import TestLevels, levels_of_test
 
 
@@ -282,7 +288,7 @@ def _with_load_at_slack(
 ) -> Located:
     """Say what each load cell reads at the slack rests of the whole log."""
     layouts, stands = _layouts(campaign, plan), whole.standstills
-    slack_length = length_at_slack(layouts)
+    slack_length, tension_of_layout = length_at_slack(layouts), reference_of(layouts)[1]
     found, zeros = [], []
     stroke = float(np.subtract(*finite_extremes(whole.position)[::-1]))
     for number, (name, tension) in enumerate(zip(plan.specimens, whole.tension, strict=True), 1):
@@ -299,6 +305,12 @@ def _with_load_at_slack(
         can_push = campaign.specimens[name].can_push
         if not can_push and rises_with_stretch(whole.position, tension):
             is_slack = stands_at_slack_length(stands, is_slack)
+        reference = campaign.specimens[name].reference_tension or tension_of_layout
+        if reference:
+            is_slack = is_slack & ~pulls_as_at_reference(
+                stands, stands.mean_tension[number - 1], reference_tension=reference,
+                half=half_band_of(reference, tension),
+            )  # fmt: skip
         one = load_at_slack(tension, stands, is_slack, stroke=stroke)
         if one is not None and can_push:
             one = replace(one, drift=0.0)

@@ -90,6 +90,37 @@ def stands_at_slack_length(standstills: Standstills, is_slack: Bools) -> Bools:
     return np.asarray(is_slack | (place <= reached + standstills.position_tolerance))
 
 
+def pulls_as_at_reference(
+    standstills: Standstills, load: Floats, *, reference_tension: float, half: float
+) -> Bools:
+    """Standstills in which a specimen pulls, since strain is stated zero at a tension that it had.
+
+    ``load`` [N] is its mean load in each of them.  In a standstill that reads the reference tension
+    within ``half`` [N] it is not slack, and neither, as far as the log tells, in one that is no
+    shorter and reads above zero.
+
+    Examples
+    --------
+    A hose is mounted at 20 N, stretched, and comes back to its length with 12 N; then it is slack.
+
+    >>> load = np.array([20.0, 300.0, 12.0, 0.1])
+    >>> stands = Standstills(
+    ...     first=np.array([0, 20, 40, 60]), last=np.array([9, 29, 49, 69]),
+    ...     start_time=np.zeros(4), end_time=np.ones(4),
+    ...     mean_position=np.array([1.0, 2.0, 1.0, 0.8]), mean_tension=load[None],
+    ...     is_rest=np.array([True, False, True, True]), position_tolerance=0.01,
+    ...     slack_tension=25.0)
+    >>> print(pulls_as_at_reference(stands, load, reference_tension=21.0, half=4.0))
+    [ True  True  True False]
+    """
+    place = standstills.mean_position
+    at_reference = np.abs(load - reference_tension) <= half
+    if not at_reference.any():
+        return at_reference
+    shortest = float(place[at_reference].min()) - standstills.position_tolerance
+    return np.asarray(at_reference | ((place >= shortest) & (load > 0)))
+
+
 def load_at_slack(
     tension: Floats, standstills: Standstills, is_slack: Bools, *, stroke: float = np.nan
 ) -> LoadAtSlack | None:

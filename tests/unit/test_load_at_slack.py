@@ -5,10 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from reduction.batch.survey import survey_campaign
+from reduction.campaign.load import load_campaign
 from reduction.stages.load_at_slack import (
     LoadAtSlack,
     load_at_slack,
     notes_on_zero,
+    pulls_as_at_reference,
     stands_at_slack_length,
 )
 from reduction.stages.standstills import Standstills
@@ -179,3 +182,67 @@ def test_a_rest_that_is_stretched_or_noisy_is_no_drift():
     # without a rest before the first stretch nothing is known
     load, stands = log_with_drift(9.0)
     assert load_at_slack(load, stands, np.array([False, True])).drift == 0.0
+
+
+def hose_log(folder, *, mounted, stated, zero=0.0, creep=0.0):
+    """A hose that is mounted at a tension, stretched three times, and back; its load at slack."""
+    begin = mounted / 4000
+    stroke = np.concatenate([np.linspace(begin, 1.2, 500), np.linspace(1.2, begin, 500)])
+    stretch = np.concatenate([np.full(100, begin), np.tile(stroke, 3), np.full(100, begin)])
+    own = np.maximum(stretch - creep * (np.arange(stretch.size) > 600), 0)
+    load = 4000 * own + 9000 * np.maximum(own - 0.5, 0) ** 2 + zero
+    load = load + np.random.default_rng(1).normal(0, 2, load.size)
+    length = 2000 * (1 + stretch) / (1 + begin)
+    rows = zip(0.2 * np.arange(load.size), length, load, strict=True)
+    text = "\n".join(f"{time:.1f},{place:.3f},{pull:.2f}" for time, place, pull in rows)
+    (folder / "A.csv").write_text(f"t,L,F\n{text}\n")
+    (folder / "campaign.toml").write_text(f"""
+[campaign]
+id = "hose"
+title = "hose"
+institution = "none"
+source = "synthetic"
+synthetic = true
+[specimens.h]
+kind = "stretch hose"
+material = "rubber"
+diameter = ["100 mm"]
+gauge_length = "2000 mm"
+{f'reference_tension = "{stated} N"' if stated else ""}
+[layouts.b]
+format = "delimited"
+delimiter = ","
+[layouts.b.channels]
+time = {{ column = "t", unit = "s" }}
+crosshead_position = {{ column = "L", unit = "mm", datum = "pin-to-pin" }}
+tension.1 = {{ column = "F", unit = "N" }}
+[tests.A]
+file = "A.csv"
+layout = "b"
+specimens = ["h"]
+kind = "cyclic"
+control = "position"
+waveform = "triangular"
+strain = {{ method = "gauge-length" }}
+""")
+    (survey,) = survey_campaign(load_campaign(folder / "campaign.toml")).kept["A"]
+    return [one for one in survey.located.record.notes if one.code.startswith("load-zero")]
+
+
+@pytest.mark.parametrize("creep", [0.0, 0.01])
+def test_a_preload_at_which_strain_is_zero_is_no_zero_of_the_load_cell(tmp_path, creep):
+    assert hose_log(tmp_path, mounted=150, stated=150, creep=creep) == []
+
+
+@pytest.mark.parametrize(("mounted", "stated", "zero"), [(150, 0, 0), (0, 0, 150), (150, 40, 0)])
+def test_a_load_at_rest_that_no_reference_tension_explains_is_told(tmp_path, mounted, stated, zero):
+    (found,) = hose_log(tmp_path, mounted=mounted, stated=stated, zero=zero)
+    assert found.code == "load-zero-wrong" and found.numbers["load"] == pytest.approx(150, abs=1)
+
+
+def test_a_load_cell_that_pushes_at_the_length_of_the_reference_is_at_slack():
+    stands = replace(rests((0, 9), (20, 29)), mean_position=np.array([1.0, 1.0]))
+    load = np.array([20.0, -3.0])
+    assert pulls_as_at_reference(stands, load, reference_tension=20.0, half=4.0).tolist() == [
+        True, False,
+    ]  # fmt: skip

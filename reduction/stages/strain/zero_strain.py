@@ -63,6 +63,11 @@ def zero_at_slack(
     return ZeroStrain(length_at_slack if position_is_length else 0.0)
 
 
+def half_band_of(reference_tension: float, tension: Floats) -> float:
+    """By how much a reading at the reference tension may miss it: a fifth of it, or noise. [N]."""
+    return max(_BAND * reference_tension, float(noise_range(tension)) / 2)
+
+
 def zero_at_tension(
     position: Floats,
     tension: Floats,
@@ -120,7 +125,7 @@ def zero_at_tension(
     stated = ZeroStrain(stated_position, reference_tension=reference_tension)
     if np.count_nonzero(np.isfinite(tension)) < 2 * _FEWEST:
         return stated
-    half = max(_BAND * reference_tension, noise_range(tension) / 2)
+    half = half_band_of(reference_tension, tension)
 
     def is_above(part: slice) -> Bools:
         return (tension[part] > reference_tension + half) & np.isfinite(position[part])
