@@ -39,7 +39,7 @@ class Truth:
     def design(self, **changes):
         numbers = {name: getattr(self, name) for name in self.__dataclass_fields__}
         curve = CordCurve(CORD_STRAIN.copy(), CORD_LOAD.copy())
-        return HoseDesign(cord=curve, cord_diameter=0.022 * INCH, **(numbers | changes))
+        return HoseDesign(**({"cord": curve, "cord_diameter": 0.022 * INCH} | numbers | changes))
 
     def cord_stretch(self, stretch):
         cos2, sin2 = np.cos(self.wrap_angle) ** 2, np.sin(self.wrap_angle) ** 2

@@ -19,7 +19,7 @@ A verdict in words, in the unit of who reads it.
 
 Comparison error against the uncertainty of measurement and prediction together.
 
-.. math:: u_{val}^2 = u_{input}^2 + u_D^2 \qquad (u_{num} = 0)
+.. math:: u_{val}^2 = u_{input}^2 + u_{num}^2 + u_D^2
 
 at every strain, and with the covariance over the strains for the curve as a whole.
 
@@ -966,26 +966,32 @@ _SEED = 21  # any; that it stays makes answers repeatable
 
 @dataclass(frozen=True)
 class _Errors:
-    """At the strains that are compared: own (n,), shared (n_source, n), inputs (n_draws, n)."""
+    """At the strains that are compared: own (n,), shared (n_source, n), inputs (n_draws, n).
+
+    ``numerical`` (n_row, n) is of the prediction too: one standard uncertainty a row.
+    """
 
     own: Floats
     shared: Floats
     inputs: Floats
+    numerical: Floats
 
     def of_test(self) -> Floats:
         return np.asarray(np.sqrt(self.own**2 + np.sum(self.shared**2, axis=0)))
 
     def of_model(self) -> Floats:
         """Root mean square about the nominal hose: the shift of the mean is in it."""
-        if not self.inputs.size:
-            return np.zeros(self.own.size)
-        return np.asarray(np.sqrt(np.mean(self.inputs**2, axis=0)))
+        own = np.sum(self.numerical**2, axis=0)
+        if self.inputs.size:
+            own = own + np.mean(self.inputs**2, axis=0)
+        return np.asarray(np.sqrt(own))
 
     def covariance(self) -> Floats:
         n_draws = max(self.inputs.shape[0], 1)
         by_inputs = _product(self.inputs.T, self.inputs) / n_draws
         by_shared = _product(self.shared.T, self.shared)
-        return np.asarray(by_inputs + by_shared + np.diag(self.own**2))
+        by_curve = _product(self.numerical.T, self.numerical)
+        return np.asarray(by_inputs + by_shared + by_curve + np.diag(self.own**2))
 
     def draw(self) -> Floats:
         """What E may be if the prediction is right, shape (n_draws, n)."""
@@ -993,6 +999,7 @@ class _Errors:
         normal = np.random.default_rng(_SEED).standard_normal
         errors = _product(normal((n_draws, self.shared.shape[0])), self.shared)
         errors += normal((n_draws, self.own.size)) * self.own
+        errors += _product(normal((n_draws, self.numerical.shape[0])), self.numerical)
         return np.asarray(errors - self.inputs if self.inputs.size else errors)
 
 
@@ -1043,6 +1050,7 @@ def validate_curve(
     measured: MeasuredCurve,
     *,
     input_error: ArrayLike,
+    numerical_error: ArrayLike | None = None,
     largest_useful_share: float = 0.3,
 ) -> _Validation:
     """Whether prediction and test agree within what both are uncertain by.
@@ -1066,7 +1074,9 @@ def validate_curve(
     The draws are the same every time.
 
     Nothing is taken for an uncertainty that was not stated: the verdict says which side is
-    missing.
+    missing.  ``numerical_error`` (n_row, n_strain) [N] is what the prediction may be off by since
+    its cord curve is known at its points alone, where that is not in ``input_error``; where nothing
+    else is known, nothing is judged.
 
     Examples
     --------
@@ -1105,7 +1115,12 @@ def validate_curve(
         own=measured.independent_uncertainty()[there],
         shared=np.vstack([shared, measured.scatter_contribution])[:, there],
         inputs=inputs[:, there],
+        numerical=np.zeros((0, int(there.sum())))
+        if numerical_error is None
+        else np.asarray(numerical_error, dtype=np.float64)[:, there],
     )
+    if not (errors.of_test().any() or inputs[:, there].any()):
+        errors = replace(errors, numerical=errors.numerical[:0])
     error = np.where(there, model - test, np.nan)
     judged = _judge(error[there], errors)
 

@@ -373,7 +373,8 @@ def _input_draws(
     Normal and independent, cut at three standard uncertainties and at the range of the number
     (propagation of distributions, [4]_).  Where cords pick up, tension is no linear function
     of the angle over the width of its uncertainty, and no covariance from derivatives has the
-    shapes of curve that it makes.
+    shapes of curve that it makes.  What the cord curve may be between its points is drawn beside
+    them (`_cord_curve_errors`): where that shows in the hose goes with the angle.
 
     Examples
     --------
@@ -387,7 +388,8 @@ def _input_draws(
     known = _known_uncertainties(design, standard_uncertainty)
     if not known:
         return np.zeros((0, strain.size))
-    normal = np.random.default_rng(_SEED).standard_normal((n_draws, len(HOSE_PARAMETERS)))
+    random = np.random.default_rng(_SEED)
+    normal = random.standard_normal((n_draws, len(HOSE_PARAMETERS)))
     steps = np.clip(normal, -_CUT, _CUT)
     values = np.stack(
         [
@@ -401,18 +403,31 @@ def _input_draws(
     )
     centre = np.array([[_number_of(design, name) for name in known]])
     found = _trial_load(design, tuple(known), np.vstack([centre, values]), strain, load)
+    apart, interval = _between_points(design, tuple(known), values, strain, load)
+    for other in apart.values():
+        size = random.standard_normal((n_draws, design.cord.strain.size + 1))
+        found[1:] += other * np.take_along_axis(size, interval + 1, axis=1)
     return np.asarray(found[1:] - found[0])
 
 
-def _cord_curve_error(design: HoseDesign, strain: Floats, load: _Load = "tension") -> Floats:
-    """What the load may be off by since the cord curve is known at its points alone.
+def _cord_curve_errors(
+    design: HoseDesign, strain: Floats, load: _Load = "tension"
+) -> tuple[Floats, tuple[str, ...]]:
+    r"""What the load may be off by since the cord curve is known at its points alone, and where.
+
+    One row for each interval between two points, and each of two other curves through them: a
+    cubic spline, and a monotone cubic of ln P over ln e, which below the first point goes on as
+    a power.  A row is the load with that curve less that with the monotone cubic; rows of nothing
+    are left out.
 
     Notes
     -----
-    Tension with a cubic spline through the points less that with the monotone cubic. Nobody
-    states this error: it is one of the numerical solution [5]_.  It is a few newtons for a curve
-    of fourteen points, far below the noise of any one strain; but it is smooth and bends the
-    curve as a scale of the cord strain does, of which a fit would make two standard deviations.
+    Nobody states this error: it is one of the numerical solution [5]_.  It is a few newtons for a
+    curve of fourteen points, far below the noise of any one strain; but it is smooth, and bends the
+    curve as a scale of the cord strain does.  A spline follows a law that is smooth at rest, and no
+    law of which the stiffness is not finite there or bends at once, such as :math:`e^{1.15}`; a
+    power does.  What a cord does between two points says nothing of what it does between two
+    others, so that each interval has errors of its own.
 
     Examples
     --------
@@ -420,28 +435,77 @@ def _cord_curve_error(design: HoseDesign, strain: Floats, load: _Load = "tension
 
     >>> design = HoseDesign(1.1, (0.08, 0.09), 0.06, 0.12, 1300.0, 5e-4, 1.4e6,
     ...     CordCurve(np.linspace(0.0, 0.2, 5), np.linspace(0.0, 130.0, 5)))
-    >>> print(np.abs(_cord_curve_error(design, np.array([0.5, 1.0]))).max() < 1e-6)
+    >>> rows, where = _cord_curve_errors(design, np.array([0.5, 1.0]))
+    >>> print(bool(np.all(np.abs(rows) < 1e-6)))
     True
     """
+    centre = np.array([[_number_of(design, "cord_load_scale")]])
+    apart, interval = _between_points(design, ("cord_load_scale",), centre, strain, load)
+    rows, where = [], []
+    for name, other in apart.items():
+        for place in range(design.cord.strain.size - 1):
+            row = np.where(interval[0] == place, other[0], 0.0)
+            if row.any():
+                rows.append(row)
+                where.append(f"cord curve between points {place + 1} and {place + 2} ({name})")
+    return (np.array(rows) if rows else np.zeros((0, strain.size))), tuple(where)
+
+
+def _between_points(
+    design: HoseDesign, names: Sequence[str], values: Floats, strain: Floats, load: _Load
+) -> tuple[dict[str, Floats], Integers]:
+    """Load of trials with other curves through the points of the cord, less that with its own.
+
+    By the name of the curve, shape (n_trial, n_strain); and between which points each cord is.
+    """
     points = design.cord
+    trials = _design_with(design, {name: values[:, k] for k, name in enumerate(names)})
+    scale = np.reshape(trials.cord_strain_scale, (-1, 1))
+    of_cord = predict_hose(trials, strain).cord_strain / scale
+    interval = np.searchsorted(points.strain, of_cord) - 1
     if points.strain.size < _LEAST_POINTS:
-        return np.zeros(strain.size)
+        return {}, interval
     steps = np.arange(_BETWEEN) / _BETWEEN
     dense = points.strain[:-1, None] + np.diff(points.strain)[:, None] * steps
     plain = cord_load(points, dense.ravel()).reshape(dense.shape)
-    other = np.asarray(scipy.interpolate.CubicSpline(points.strain, points.load)(dense))
-    whole = np.hstack([other, points.load[1:, None]])
-    other = np.where(np.all(np.diff(whole, axis=1) > 0, axis=1)[:, None], other, plain)
-    curves = (
-        CordCurve(np.append(dense, points.strain[-1]), np.append(loads, points.load[-1]))
-        for loads in (other, plain)
+
+    def load_with(loads: Floats) -> Floats:
+        curve = CordCurve(np.append(dense, points.strain[-1]), np.append(loads, points.load[-1]))
+        return _trial_load(replace(design, cord=curve), names, values, strain, load)
+
+    monotone, apart = load_with(plain), {}
+    for name, other in _other_curves(points, dense).items():
+        whole = np.hstack([other, points.load[1:, None]])
+        rises = np.all(np.diff(whole, axis=1) > 0, axis=1)
+        apart[name] = load_with(np.where(rises[:, None], other, plain)) - monotone
+    return apart, interval
+
+
+def _other_curves(points: CordCurve, strain: Floats) -> dict[str, Floats]:
+    """Loads of other curves through the points of a cord, by their names.
+
+    Examples
+    --------
+    A power is found again, below the first point too.
+
+    >>> at = np.array([0.0, 0.02, 0.06, 0.1, 0.15])
+    >>> found = _other_curves(CordCurve(at, 900 * at**1.15), np.array([[0.0, 0.01, 0.04]]))
+    >>> print((found["power"] / 900).round(6), np.array([0.01, 0.04]) ** 1.15)
+    [[0. 0.005012 0.024681]] [0.00501187 0.02468135]
+    """
+    spline = scipy.interpolate.CubicSpline(points.strain, points.load)
+    at, height = np.log(points.strain[1:]), np.log(points.load[1:])
+    power = (height[1] - height[0]) / (at[1] - at[0])
+    inside = scipy.interpolate.PchipInterpolator(at, height)
+    place = np.log(np.where(strain > 0, strain, points.strain[1]))
+    first = place < at[0]
+    logarithm = np.where(
+        first, height[0] + power * (place - at[0]), inside(np.maximum(place, at[0]))
     )
-    scale = np.array([[_number_of(design, "cord_load_scale")]])
-    spline, monotone = (
-        _trial_load(replace(design, cord=curve), ("cord_load_scale",), scale, strain, load)[0]
-        for curve in curves
-    )
-    return np.asarray(spline - monotone)
+    return {
+        "spline": np.asarray(spline(strain)),
+        "power": np.where(strain > 0, np.exp(logarithm), 0.0),
+    }
 
 
 def _known_uncertainties(
@@ -800,10 +864,12 @@ def _calibrate_hose(
     p = len(names)
     first = problem.solve(problem.start(start / problem.unit), problem.noise)
     near = _design_with(design, dict(zip(names, (first[:p] * problem.unit).tolist(), strict=True)))
-    between = _cord_curve_error(near, measured.strain, load)[used]
-    if np.any(np.abs(between) > problem.noise * _NOTHING):
-        problem = replace(problem, shared=np.vstack([problem.shared, between]))
-        sources = (*sources, "cord curve between its points")
+    between, where = _cord_curve_errors(near, measured.strain, load)
+    between = between[:, used]
+    seen = np.any(np.abs(between) > problem.noise * _NOTHING, axis=1)
+    if seen.any():
+        problem = replace(problem, shared=np.vstack([problem.shared, between[seen]]))
+        sources = (*sources, *(name for name, is_seen in zip(where, seen, strict=True) if is_seen))
         first = problem.solve(first, problem.noise)
     remainder = problem.remainder(first)
     excess = remainder @ remainder / (remainder.size - p) - np.mean(problem.noise**2)
@@ -1039,7 +1105,10 @@ def _compare_hose(
         energy=energy_difference(prediction.tension, measured),
         cycles=cycle_differences(prediction.tension, measured),
         validation=validate_curve(
-            _as_read(design, measured, prediction.tension), measured, input_error=inputs
+            _as_read(design, measured, prediction.tension),
+            measured,
+            input_error=inputs,
+            numerical_error=None if inputs.size else _cord_curve_errors(design, measured.strain)[0],
         ),
         calibration=calibration,
         notes=(*_notes(design, measured, prediction, events[1]), *_of_pick_up(pick_up)),
@@ -1065,7 +1134,12 @@ def _compare_pressure(
     inputs = _input_draws(design, known, measured.strain, n_draws=N_DRAWS, load="fill_pressure")
     names = [name for name in calibrate if name != _WITHOUT_PRESSURE]
     validation = validate_curve(
-        _as_read(design, measured, predicted, "fill_pressure"), measured, input_error=inputs
+        _as_read(design, measured, predicted, "fill_pressure"),
+        measured,
+        input_error=inputs,
+        numerical_error=(
+            None if inputs.size else _cord_curve_errors(design, measured.strain, "fill_pressure")[0]
+        ),
     )
     words = verdict_words(validation, unit="kPa", factor=1e-3, of="fill pressure")
     return PressureComparison(

@@ -1,7 +1,9 @@
 import numpy as np
 import pytest
-from measured_hoses import Truth
+from measured_hoses import CORD_LOAD, CORD_STRAIN, Truth
+from scipy.interpolate import PchipInterpolator
 
+from reduction.prediction.cord_curve import CordCurve
 from reduction.prediction.hose_comparison import _compare_hose
 from reduction.prediction.hose_tension import find_events
 from reduction.prediction.measured_curve import constant_errors, measured_curve
@@ -109,3 +111,59 @@ def test_many_designs_are_refused():
     many = TRUTH.design(rubber_modulus=np.array([1e6, 2e6]))
     with pytest.raises(SettingsError, match="a comparison is of one hose"):
         _compare_hose(many, cyclic())
+
+
+_LAWS = {
+    "power": lambda share: share**1.15,
+    "quadratic": lambda share: 0.45 * share + 0.55 * share**2,
+    "cubic": lambda share: 1.6 * share - 1.7 * share**2 + 1.1 * share**3,
+}
+
+
+@pytest.mark.parametrize("law", _LAWS)
+def test_a_right_hose_has_the_right_shape_although_its_cord_is_known_at_six_points(law):
+    def load_of(strain):
+        return CORD_LOAD[-1] * _LAWS[law](strain / CORD_STRAIN[-1])
+
+    def tension(truth, strain):
+        """That of the hose, with the law in place of the curve through its points."""
+        cord = np.maximum(truth.cord_stretch(1 + strain) - 1, 1e-9)
+        rubber = truth.but(cord_load_scale=0.0).tension(strain)
+        monotone = PchipInterpolator(CORD_STRAIN, CORD_LOAD)(cord)
+        return rubber + (truth.tension(strain) - rubber) * load_of(cord) / monotone
+
+    stroke = np.concatenate([np.linspace(0, 0.95, 1500), np.linspace(0.95, 0, 1500)])
+    verdicts = []
+    for seed in range(6):
+        random = np.random.default_rng(seed)
+        angle, modulus, scale, gain = random.normal(0, 1, 4)
+        built = TRUTH.but(
+            wrap_angle=TRUTH.wrap_angle + np.radians(0.4) * angle,
+            rubber_modulus=TRUTH.rubber_modulus * (1 + 0.05 * modulus),
+            cord_load_scale=1 + 0.03 * scale,
+        )
+        read = tension(built, stroke) * (1 + 0.003 * gain) + random.normal(0, 8, stroke.size)
+        test = measured_curve(
+            stroke, read, loading="static", cycle_number=np.ones(stroke.size, dtype=int),
+            branch=np.repeat([1, 2], 1500), shared=constant_errors(tension_gain=0.003),
+        )  # fmt: skip
+        found = _compare_hose(
+            TRUTH.design(cord=CordCurve(CORD_STRAIN.copy(), load_of(CORD_STRAIN))), test,
+            standard_uncertainty={
+                "wrap_angle": np.radians(0.4), "rubber_modulus": 0.05 * TRUTH.rubber_modulus,
+                "cord_load_scale": 0.03,
+            },
+        )  # fmt: skip
+        verdicts.append(found.validation.verdict)
+        assert found.validation.is_informative
+    # one of twenty by chance
+    assert sum("its shape does not" in one for one in verdicts) <= 1, verdicts
+
+
+def test_a_wrong_law_of_the_rubber_has_another_shape():
+    softening = cyclic()
+    design = TRUTH.design(rubber_law="linear")
+    found = _compare_hose(
+        design, softening, standard_uncertainty={"rubber_modulus": 0.5 * TRUTH.rubber_modulus}
+    )
+    assert not found.validation.agrees or found.validation.chi_square_probability < 0.05
