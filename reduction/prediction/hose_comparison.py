@@ -40,7 +40,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 from math import degrees, pi
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import scipy
@@ -66,10 +66,11 @@ from reduction.prediction.comparison_error import (
     verdict_words,
 )
 from reduction.prediction.cord_curve import CordCurve, cord_load
+from reduction.prediction.hose_geometry import cord_stretch_ratio
 from reduction.prediction.hose_prediction import HosePlan
 from reduction.prediction.hose_product import HOSE_PARAMETERS, HoseDesign, HosePrediction
 from reduction.prediction.hose_sensitivity import hose_sensitivity
-from reduction.prediction.hose_tension import find_events, predict_hose
+from reduction.prediction.hose_tension import find_events, loads_at, numbers_of, predict_hose
 from reduction.prediction.measured_curve import (
     Loading,
     MeasuredCurve,
@@ -403,16 +404,16 @@ def _input_draws(
     )
     centre = np.array([[_number_of(design, name) for name in known]])
     found = _trial_load(design, tuple(known), np.vstack([centre, values]), strain, load)
-    apart, interval = _between_points(design, tuple(known), values, strain, load)
-    for other in apart.values():
-        size = random.standard_normal((n_draws, design.cord.strain.size + 1))
-        found[1:] += other * np.take_along_axis(size, interval + 1, axis=1)
+    cord = _open_cord_of(design.cord)
+    size = random.standard_normal((n_draws, len(cord.apart), design.cord.strain.size + 1))
+    trials = _design_with(design, {name: values[:, k] for k, name in enumerate(known)})
+    found[1:] += _load_between_points(trials, strain, cord, size, load)
     return np.asarray(found[1:] - found[0])
 
 
 def _cord_curve_errors(
     design: HoseDesign, strain: Floats, load: _Load = "tension"
-) -> tuple[Floats, tuple[str, ...]]:
+) -> tuple[Floats, tuple[tuple[str, int], ...]]:
     r"""What the load may be off by since the cord curve is known at its points alone, and where.
 
     One row for each interval between two points, and each of two other curves through them: a
@@ -439,46 +440,67 @@ def _cord_curve_errors(
     >>> print(bool(np.all(np.abs(rows) < 1e-6)))
     True
     """
-    centre = np.array([[_number_of(design, "cord_load_scale")]])
-    apart, interval = _between_points(design, ("cord_load_scale",), centre, strain, load)
+    trials = replace(design, cord_load_scale=np.array([_number_of(design, "cord_load_scale")]))
+    open_curve = _open_cord_of(design.cord)
     rows, where = [], []
-    for name, other in apart.items():
+    for name, _ in open_curve.apart:
         for place in range(design.cord.strain.size - 1):
-            row = np.where(interval[0] == place, other[0], 0.0)
+            size = np.zeros((1, len(open_curve.apart), design.cord.strain.size + 1))
+            size[0, open_curve.place_of(name), place + 1] = 1.0
+            row = _load_between_points(trials, strain, open_curve, size, load)[0]
             if row.any():
                 rows.append(row)
-                where.append(f"cord curve between points {place + 1} and {place + 2} ({name})")
+                where.append((name, place))
     return (np.array(rows) if rows else np.zeros((0, strain.size))), tuple(where)
 
 
-def _between_points(
-    design: HoseDesign, names: Sequence[str], values: Floats, strain: Floats, load: _Load
-) -> tuple[dict[str, Floats], Integers]:
-    """Load of trials with other curves through the points of the cord, less that with its own.
+class _OpenCord(NamedTuple):
+    """What other curves through the points of a cord are above its own, at some strains."""
 
-    By the name of the curve, shape (n_trial, n_strain); and between which points each cord is.
-    """
-    points = design.cord
-    trials = _design_with(design, {name: values[:, k] for k, name in enumerate(names)})
-    scale = np.reshape(trials.cord_strain_scale, (-1, 1))
-    of_cord = predict_hose(trials, strain).cord_strain / scale
-    interval = np.searchsorted(points.strain, of_cord) - 1
+    point: Floats
+    strain: Floats
+    apart: tuple[tuple[str, Floats], ...]
+
+    def place_of(self, name: str) -> int:
+        """Which of the curves has a name."""
+        return [own for own, _ in self.apart].index(name)
+
+
+def _open_cord_of(points: CordCurve) -> _OpenCord:
     if points.strain.size < _LEAST_POINTS:
-        return {}, interval
+        return _OpenCord(points.strain, points.strain, ())
     steps = np.arange(_BETWEEN) / _BETWEEN
     dense = points.strain[:-1, None] + np.diff(points.strain)[:, None] * steps
     plain = cord_load(points, dense.ravel()).reshape(dense.shape)
-
-    def load_with(loads: Floats) -> Floats:
-        curve = CordCurve(np.append(dense, points.strain[-1]), np.append(loads, points.load[-1]))
-        return _trial_load(replace(design, cord=curve), names, values, strain, load)
-
-    monotone, apart = load_with(plain), {}
+    apart = []
     for name, other in _other_curves(points, dense).items():
         whole = np.hstack([other, points.load[1:, None]])
         rises = np.all(np.diff(whole, axis=1) > 0, axis=1)
-        apart[name] = load_with(np.where(rises[:, None], other, plain)) - monotone
-    return apart, interval
+        above = np.where(rises[:, None], other - plain, 0.0)
+        apart.append((name, np.append(above, 0.0)))
+    return _OpenCord(points.strain, np.append(dense, points.strain[-1]), tuple(apart))
+
+
+def _load_between_points(
+    trials: HoseDesign, strain: Floats, cord: _OpenCord, size: Floats, load: _Load
+) -> Floats:
+    """Load of trials with other curves through the points of the cord, less that with its own.
+
+    ``size`` (n_trial, n_curve, n_points + 1) is how much of each curve is in each interval, the
+    first of them slack and the last broken, where there is nothing.  The load of a hose is
+    proportional to that of its cords, so that the difference is that of the difference.
+    """
+    numbers = numbers_of(trials).column(slice(None))
+    stretch = 1 + strain / numbers.free_share
+    cord_stretch = cord_stretch_ratio(stretch, np.reshape(trials.wrap_angle, (-1, 1)))
+    of_cord = (cord_stretch - 1) / numbers.strain_scale
+    interval = np.searchsorted(cord.point, of_cord)
+    above = np.zeros(of_cord.shape)
+    for place, (_, apart) in enumerate(cord.apart):
+        weight = np.take_along_axis(size[:, place], interval, axis=1)
+        above += weight * np.interp(of_cord, cord.strain, apart, left=0.0, right=0.0)
+    cords = loads_at(numbers, stretch, cord_stretch, numbers.load_scale * above)
+    return cords.cord_axial_load if load == "tension" else cords.fill_pressure
 
 
 def _other_curves(points: CordCurve, strain: Floats) -> dict[str, Floats]:
@@ -565,7 +587,8 @@ class _FitProblem:
     """Measured points and what is to be fitted to them.
 
     What is fitted stands in one vector: numbers in plausible errors, then errors in standard
-    uncertainties, those of held numbers, of strain, and those in proportion.
+    uncertainties, those of held numbers, of strain, of the cord between its points (``between``,
+    curve and interval), and those in proportion.
 
     Notes
     -----
@@ -587,6 +610,7 @@ class _FitProblem:
     noise: Floats
     shared: Floats
     load: _Load
+    between: tuple[tuple[str, int], ...] = ()
 
     @cached_property
     def used(self) -> Bools:
@@ -598,15 +622,20 @@ class _FitProblem:
         """Numbers of the design that are not fitted and not known either."""
         return {name: _number_of(self.design, name) for name in self.held}
 
+    @cached_property
+    def open_cord(self) -> _OpenCord:
+        """What other curves through the points of the cord are above its own."""
+        return _open_cord_of(self.design.cord)
+
     @property
     def n_traced(self) -> int:
         """Numbers and errors whose effect is computed by the hose, not in proportion."""
-        return len(self.names) + len(self.held) + len(self.moved)
+        return len(self.names) + len(self.held) + len(self.moved) + len(self.between)
 
     @property
     def n_error(self) -> int:
         """Errors that are fitted beside the numbers."""
-        return len(self.held) + len(self.moved) + len(self.shared)
+        return len(self.held) + len(self.moved) + len(self.between) + len(self.shared)
 
     def tension_of_test(self) -> Floats:
         """Judged curve, shape (n_strain,). [N]."""
@@ -615,6 +644,7 @@ class _FitProblem:
     def tension_at(self, traced: Floats) -> Floats:
         """Tension of trials (n_trial, n_traced) as the test shows it, (n_trial, n_used). [N]."""
         p, q = len(self.names), len(self.held)
+        of_cord = p + q + len(self.moved)
         values = [traced[:, :p] * self.unit]
         for k, (name, spread) in enumerate(self.held.items()):
             at = self.held_at[name] + spread * traced[:, p + k]
@@ -623,14 +653,30 @@ class _FitProblem:
         node = self.measured.reading.node
         tension = np.empty((traced.shape[0], self.noise.size))
         used = self.used
-        axes, which = np.unique(traced[:, p + q :], axis=0, return_inverse=True)
+        axes, which = np.unique(traced[:, p + q : of_cord], axis=0, return_inverse=True)
         for k, size in enumerate(axes):
             trials = which.ravel() == k
             strain = node - size @ self.moved
             # a record that is read low has strains just below zero: the curve goes on there
-            curve = _trial_load(self.design, names, numbers[trials], np.abs(strain), self.load)
+            there = np.abs(strain)
+            curve = _trial_load(self.design, names, numbers[trials], there, self.load)
+            if self.between:
+                curve += self._between_points(
+                    names, numbers[trials], there, traced[trials, of_cord:]
+                )
             tension[trials] = self.measured.reading.of(np.sign(strain) * curve)[:, used]
         return tension
+
+    def _between_points(
+        self, names: Sequence[str], numbers: Floats, strain: Floats, error: Floats
+    ) -> Floats:
+        """What errors of the cord between its points do to trials, (n_trial, n_strain)."""
+        cord = self.open_cord
+        size = np.zeros((numbers.shape[0], len(cord.apart), cord.point.size + 1))
+        for (name, place), own in zip(self.between, error.T, strict=True):
+            size[:, cord.place_of(name), place + 1] = own
+        trials = _design_with(self.design, {name: numbers[:, k] for k, name in enumerate(names)})
+        return _load_between_points(trials, strain, cord, size, self.load)
 
     def slopes(self, traced: Floats) -> Floats:
         """Derivative of tension by each number and traced error, (n_used, n_traced)."""
@@ -711,6 +757,12 @@ class _FitProblem:
                 hint="Fit fewer numbers.",
             )
         return self._polished(np.asarray(found.x), noise)
+
+    def solve_from(self, begins: Sequence[Floats], noise: Floats) -> Floats:
+        """The least of the sums of squares that several starts lead to: the curve has kinks."""
+        found = [self.solve(one, noise) for one in begins]
+        squares = [float(np.sum(self.residual(one, noise) ** 2)) for one in found]
+        return found[int(np.argmin(squares))]
 
     def _polished(self, x: Floats, noise: Floats) -> Floats:
         """Gauss-Newton steps while they get shorter.
@@ -862,15 +914,9 @@ def _calibrate_hose(
     start = np.array([_number_of(design, name) for name in names])
     problem, sources = _pose(design, measured, names, bounds or {}, held, load)
     p = len(names)
-    first = problem.solve(problem.start(start / problem.unit), problem.noise)
-    near = _design_with(design, dict(zip(names, (first[:p] * problem.unit).tolist(), strict=True)))
-    between, where = _cord_curve_errors(near, measured.strain, load)
-    between = between[:, used]
-    seen = np.any(np.abs(between) > problem.noise * _NOTHING, axis=1)
-    if seen.any():
-        problem = replace(problem, shared=np.vstack([problem.shared, between[seen]]))
-        sources = (*sources, *(name for name, is_seen in zip(where, seen, strict=True) if is_seen))
-        first = problem.solve(first, problem.noise)
+    at_start = start / problem.unit
+    begins = (problem.start(at_start), np.clip(at_start, problem.low, problem.high))
+    first = problem.solve_from(begins, problem.noise)
     remainder = problem.remainder(first)
     excess = remainder @ remainder / (remainder.size - p) - np.mean(problem.noise**2)
     model_error = float(np.sqrt(np.maximum(excess, 0.0)))
@@ -946,7 +992,7 @@ def _pose(
             found=", ".join(names) or "nothing",
             needed="one number or more, each once",
         )
-    start = [_number_of(design, name) for name in names]
+    start = np.array([_number_of(design, name) for name in names])
     unit = np.array([_plausible_error(name, at) for name, at in zip(names, start, strict=True)])
     limits = []
     for name, at in zip(names, start, strict=True):
@@ -990,7 +1036,27 @@ def _pose(
     )
     common = tuple(f"scatter of the cycles {k + 1}" for k in range(scatter.shape[0]))
     names_of = np.array([error_words(one) for one in measured.component], dtype=object)
-    return problem, (*stated, *names_of[is_moved], *names_of[~is_moved], *common)
+    problem = replace(problem, between=_between_seen(problem, start / unit))
+    where = tuple(
+        f"cord curve between points {place + 1} and {place + 2} ({name})"
+        for name, place in problem.between
+    )
+    return problem, (*stated, *names_of[is_moved], *where, *names_of[~is_moved], *common)
+
+
+def _between_seen(problem: _FitProblem, first: Floats) -> tuple[tuple[str, int], ...]:
+    """Curves and intervals of the cord that show at the measured strains, from either start."""
+    strain = problem.measured.strain[problem.used]
+    found: dict[tuple[str, int], None] = {}
+    for begin in (first, problem.start(first)):
+        near = _design_with(
+            problem.design,
+            dict(zip(problem.names, (begin * problem.unit).tolist(), strict=True)),
+        )
+        rows, where = _cord_curve_errors(near, strain, problem.load)
+        seen = np.any(np.abs(rows) > problem.noise * _NOTHING, axis=1)
+        found |= dict.fromkeys(one for one, is_seen in zip(where, seen, strict=True) if is_seen)
+    return tuple(found)
 
 
 def _notes_of_numbers(
